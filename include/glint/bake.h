@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/bake.h - the offline half: lens tables, exact rays, exact pictures.
+ *
+ *     glint_prescription_parse(&lens, text, bytes, "x.lens", &error);
+ *     glint_optics_of(&lens, &optics);                   focal length, ...
+ *     n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
+ *     glint_path_init(&path, &lens, &ghosts[k], 532.0);  one ghost, one colour
+ *     glint_trace(&path, px, py, direction, &ray, NULL);
+ *
+ * Everything here is double precision and may take its time. Lengths are in
+ * millimetres, wavelengths in nanometres, angles in degrees.
+ *
+ * Axes: z runs from the front vertex (0) to the sensor, x to the right and y
+ * up as the picture is seen. A light at (THETA, PHI) sends parallel rays along
+ * (sin T cos P, sin T sin P, cos T); its own image is at f tan T (cos P, sin P)
+ * on the sensor.
+ */
+#ifndef GLINT_BAKE_H
+#define GLINT_BAKE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/status.h"
+#include "glint/workers.h"
+
+#define GLINT_MAX_SURFACES 64 /* refracting surfaces of a lens */
+#define GLINT_MAX_GHOSTS   (GLINT_MAX_SURFACES * (GLINT_MAX_SURFACES - 1) / 2)
+#define GLINT_MAX_EVENTS   (3 * GLINT_MAX_SURFACES) /* of one path */
+#define GLINT_NAME_BYTES   64
+
+/* ------------------------------------------------------------ lens tables */
+
+/* A refracting surface. The medium before surface 0 is air. */
+struct glint_surface {
+    double radius_mm;    /* > 0: centre towards the sensor; 0: plane */
+    double thickness_mm; /* to the next surface, the stop, or the sensor */
+    double semi_mm;      /* semi-diameter of the barrel here */
+    double nd;           /* index at 587.56 nm of the medium after it */
+    double vd;           /* Abbe number of that medium; 0 for air */
+    double coating_nm;   /* design wavelength of its quarter-wave film; 0:
+                            bare, as cemented surfaces always are */
+    double coating_n;    /* index of the film */
+};
+
+/* A lens table, all of it checked. The stop lies between two surfaces: its gap
+ * before is the thickness of the surface in front of it. */
+struct glint_prescription {
+    char name[GLINT_NAME_BYTES];
+    char source[256]; /* patent or book, for people */
+    double f_number;
+    double film_width_mm, film_height_mm;
+    int n_surfaces; /* without the stop, 1 .. GLINT_MAX_SURFACES */
+    struct glint_surface surface[GLINT_MAX_SURFACES];
+    int stop_after;           /* surfaces before the stop, 0 .. n_surfaces */
+    double stop_thickness_mm; /* from the stop to the next surface (or the
+                                 sensor); a front stop lies at z < 0 */
+    double stop_semi_mm;      /* largest opening of the stop */
+    double check_focal_mm;    /* stated values; 0: not stated */
+    double check_back_mm;
+};
+
+/* Reads a lens table; lenses/README.md describes the format. TEXT need not be
+ * terminated and may hold anything. FILE_NAME only names it in errors.
+ * GLINT_E_LENS: ERROR says file, line, column and cause; LENS is unchanged. */
+enum glint_status glint_prescription_parse(struct glint_prescription *lens,
+                                           const char *text, size_t bytes,
+                                           const char *file_name,
+                                           struct glint_error *error);
+
+/* Changes the f-number. GLINT_E_ARGUMENT: not finite, or the stop it asks for
+ * is wider than stop_semi_mm. */
+enum glint_status glint_prescription_set_f_number(
+    struct glint_prescription *lens, double f_number,
+    struct glint_error *error);
+
+/* First-order quantities at the d line (587.56 nm). */
+struct glint_optics {
+    double focal_mm;         /* effective focal length */
+    double back_focal_mm;    /* last surface to the paraxial focus */
+    double entrance_radius_mm; /* of the entrance pupil: focal / (2 N) */
+    double entrance_z_mm;      /* of the entrance pupil from the front vertex */
+    double stop_radius_mm;     /* of the aperture stop at the f-number */
+    double length_mm;          /* front vertex to sensor */
+};
+
+void glint_optics_of(const struct glint_prescription *lens,
+                     struct glint_optics *optics);
+
+/* ------------------------------------------------------------------ ghosts */
+
+/* Light reflected at surface J and then, running backwards, at surface I.
+ * I = J = -1 is the direct path without reflections. */
+struct glint_ghost {
+    int i, j; /* indices into glint_prescription.surface, i < j */
+};
+
+/* All pairs on the same side of the stop, those before it first, I outer, J
+ * inner. Writes at most MAX; returns how many there are. [Hullin11] */
+int glint_ghost_list(const struct glint_prescription *lens,
+                     struct glint_ghost *ghosts, int max);
+
+/* --------------------------------------------------------------- exact rays */
+
+enum glint_event_kind { GLINT_REFRACT, GLINT_REFLECT, GLINT_STOP };
+
+/* One thing that happens to a ray, all constants worked out. */
+struct glint_event {
+    enum glint_event_kind kind;
+    int surface;         /* index; -1 for the stop */
+    double curvature;    /* 1 / radius, 0 for a plane and the stop */
+    double advance_mm;   /* z from the vertex before (or the start plane) to
+                            this one; negative when running backwards */
+    double semi_mm;      /* semi-diameter */
+    double n_from, n_to; /* index on the side it comes from, and beyond */
+    double film_n;       /* index of the coating; 0: bare */
+    double film_phase;   /* 4 pi n d / wavelength, radians */
+};
+
+/* The path of one ghost at one wavelength: forward to J, back to I, forward to
+ * the sensor. Immutable once made; any number of threads may trace it. */
+struct glint_path {
+    int n_events;
+    struct glint_event event[GLINT_MAX_EVENTS + 1];
+    double to_sensor_mm; /* last vertex to the sensor */
+};
+
+/* Fills PATH for GHOST of LENS (NULL: the direct path). */
+void glint_path_init(struct glint_path *path,
+                     const struct glint_prescription *lens,
+                     const struct glint_ghost *ghost, double wavelength_nm);
+
+enum glint_ray_status {
+    GLINT_RAY_OK = 0,
+    GLINT_RAY_MISSED = 1,          /* a surface, its equator, or the way */
+    GLINT_RAY_TOTAL_REFLECTION = 2 /* at a refraction */
+};
+
+struct glint_ray {
+    double stop_x_mm, stop_y_mm;     /* where it crosses the stop's plane */
+    double sensor_x_mm, sensor_y_mm; /* where it hits the sensor */
+    double energy;     /* transmittances times reflectances, 0 .. 1 */
+    double rel_radius; /* largest |xy| / semi-diameter over all surfaces */
+};
+
+/* Traces the ray that starts at (PX, PY) on the vertex plane of the first
+ * surface along DIRECTION (unit length). It goes on where a barrel or the stop
+ * would have ended it. RAY is written only for GLINT_RAY_OK. HITS, unless NULL,
+ * receives x and y of each event, [n_events][2], in mm.
+ * [Hullin11] section 4; unpolarised energy. */
+enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
+                                  double py_mm, const double direction[3],
+                                  struct glint_ray *ray, double (*hits)[2]);
+
+/* Index of refraction at WAVELENGTH_NM of a glass (two-term Cauchy from nd and
+ * Vd; vd <= 0 is a medium without dispersion). */
+double glint_index(double nd, double vd, double wavelength_nm);
+
+/* Reflectance of one boundary for unpolarised light that meets it at
+ * COS_FROM; FILM_N = 0 is a bare boundary, else a film of that index with
+ * FILM_PHASE = 4 pi n d / wavelength. 1 at total reflection. */
+double glint_reflectance(double n_from, double n_to, double cos_from,
+                         double film_n, double film_phase);
+
+/* ------------------------------------------------- lens, stop and colours */
+
+#define GLINT_MAX_WAVELENGTHS 32
+
+/* A lens made ready for drawing: everything that no light and no frame
+ * changes. */
+struct glint_setup {
+    const struct glint_prescription *lens; /* kept */
+    struct glint_optics optics;
+    int n_ghosts;
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    int n_blades;               /* of the stop; 0: circle */
+    double blade_rotation_deg;  /* of the first corner, from x towards y */
+    int n_wavelengths;
+    double wavelength_nm[GLINT_MAX_WAVELENGTHS];
+    double rgb[GLINT_MAX_WAVELENGTHS][3]; /* linear BT.709; each channel sums
+                                             to 1 */
+    double direct_flux[GLINT_MAX_WAVELENGTHS]; /* through the stop at angle 0
+                                                  for irradiance 1, mm^2 */
+};
+
+/* Prepares LENS with a stop of N_BLADES (0 or 3 .. 64; corners on the circle of
+ * the f-number) for N wavelengths (1 .. GLINT_MAX_WAVELENGTHS, 300 .. 1100 nm).
+ * Three wavelengths become R, G and B as they stand; any other number is
+ * weighted by the CIE 1931 observer [Wyman13]. GLINT_E_ARGUMENT: out of range.
+ * GLINT_E_LENS: no light gets through. */
+enum glint_status glint_setup_init(struct glint_setup *setup,
+                                   const struct glint_prescription *lens,
+                                   int n_blades, double blade_rotation_deg,
+                                   const double *wavelength_nm, int n,
+                                   struct glint_error *error);
+
+/* A light at infinity. */
+struct glint_lamp {
+    double theta_deg; /* off the axis, 0 .. 89.9 */
+    double phi_deg;   /* about it: 0 = +x, 90 = up */
+    double power;     /* its in-focus image, spread over one pixel, would have
+                         this linear value; 1 = display white */
+    double rgb[3];    /* colour, linear BT.709; white is 1 1 1 */
+};
+
+/* Where a picture lies on the sensor: centred, square pixels. */
+struct glint_view {
+    int width, height;      /* pixels */
+    double sensor_width_mm; /* of the whole width */
+};
+
+/* The largest view of WIDTH x HEIGHT that fits FILM. */
+struct glint_view glint_view_fit(int width, int height, double film_width_mm,
+                                 double film_height_mm);
+
+/* Where a light is whose image lies at pixel (X, Y) of VIEW behind a lens of
+ * FOCAL_MM, and the reverse. Pixels from the top left corner, y down. */
+void glint_view_to_angles(const struct glint_view *view, double focal_mm,
+                          double x, double y, struct glint_lamp *lamp);
+void glint_view_to_pixel(const struct glint_view *view, double focal_mm,
+                         const struct glint_lamp *lamp, double *x, double *y);
+
+/* ------------------------------------------------------- the exact picture */
+
+/* Told now and then how much is done, 0 .. 1, from the calling thread. */
+typedef void glint_progress_fn(void *ctx, double done);
+
+struct glint_exact_config {
+    const struct glint_setup *setup;
+    struct glint_view view;
+    const struct glint_lamp *lamps;
+    int n_lamps;
+    int grid;       /* cells a side over each ghost's pupil box, even */
+    int only_ghost; /* -1: all */
+    struct glint_workers *workers; /* never changes the picture */
+    glint_progress_fn *progress;   /* NULL: silent */
+    void *progress_ctx;
+};
+
+/* The reference picture: every ray in double, each cell clipped exactly by the
+ * stop and by every barrel's own circle, coverage by area, energy conserving.
+ * RGB is [height][width][3], row 0 on top; values are what the lamps' POWER
+ * says. GLINT_E_MEMORY: it needs about 100 bytes per cell of one ghost and 24
+ * per pixel. Deterministic. */
+enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
+                                     double *rgb);
+
+/* ------------------------------------------------ feeding the run-time half */
+
+struct glint_stop;
+struct glint_bundle;
+struct glint_vertex;
+
+/* The stop of SETUP as the run-time half takes it. */
+void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop);
+
+/* Signed distances of that stop at the nodes of a square mask of NODES^2 over
+ * +-SPAN stop radii, q13, row 0 at the lowest y. */
+void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
+                      int nodes, double span);
+
+/* Part of the vertex plane of the first surface, symmetric in y, that holds
+ * every ray of a path that the stop and the barrels let through; the light is
+ * in the x-z plane. */
+struct glint_pupil {
+    double x0_mm, x1_mm, y1_mm;
+    double energy;         /* largest one seen inside */
+    double sensor_mm[4];   /* x0, x1, y0, y1 of its light on the sensor */
+};
+
+/* False: nothing gets through. */
+bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
+                      double theta_deg, double stop_radius_mm);
+
+struct glint_feed_config {
+    const struct glint_setup *setup;
+    struct glint_view view;
+    double scale;  /* of all light: gain times 2^EV */
+    int max_cells; /* per side of the largest ghosts, 1 .. 1024 */
+    bool uniform;  /* all ghosts get max_cells */
+};
+
+/* One ghost, light and wavelength, and the grid chosen for it. */
+struct glint_feed {
+    const struct glint_lamp *lamp;
+    int ghost, wavelength;
+    struct glint_pupil pupil;
+    int n_cells; /* 0: nothing of it is in the picture */
+};
+
+/* Finds the pupil and chooses the grid by the ghost's size on the sensor:
+ * n = max clamp(sqrt(ghost area / sensor area), 0.05, 1), a multiple of 4.
+ * [Bodonyi23] section 4. Lamp, ghost and wavelength are set already. */
+void glint_feed_plan(const struct glint_feed_config *cfg,
+                     struct glint_feed *feed);
+
+/* The bundle of FEED, n_cells > 0, and its (n_cells + 1)^2 vertices. */
+void glint_feed_bundle(const struct glint_feed_config *cfg,
+                       const struct glint_feed *feed,
+                       struct glint_bundle *bundle);
+void glint_feed_trace(const struct glint_feed_config *cfg,
+                      const struct glint_feed *feed,
+                      struct glint_vertex *vertex);
+
+#endif

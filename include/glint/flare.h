@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/flare.h - lens-flare ghosts, drawn tile by tile in integers.
+ *
+ *     bytes = glint_flare_bytes(&cfg);                       once
+ *     glint_flare_init(&flare, &cfg, mem, bytes);
+ *     glint_flare_begin(flare);                              each frame
+ *     for each ghost, light and wavelength:
+ *         vertices = glint_flare_add(flare, &bundle);        fill them in
+ *     glint_flare_bin(flare, &stats);
+ *     glint_flare_draw(flare, &image);
+ *
+ * All memory is the caller's, taken at init; drawing never allocates and cannot
+ * fail. What did not fit the capacities is left out and counted, together with
+ * the capacities that would have served. No result depends on the number of
+ * workers, the order of jobs, the tile sizes or the order of bundles.
+ * Method: [Bodonyi23], with irradiance per cell and anti-aliased clipping.
+ */
+#ifndef GLINT_FLARE_H
+#define GLINT_FLARE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+#include "glint/workers.h"
+
+#define GLINT_MAX_BLADES 64
+#define GLINT_MAX_CELLS  1024 /* of a ray grid, per side */
+
+/* ------------------------------------------------------------ aperture stop */
+
+/* The opening of the aperture stop, in stop radii (1 = the circle that the
+ * f-number asks for), fixed to the camera: x right, y up. */
+struct glint_stop {
+    int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
+    int32_t normal_q30[GLINT_MAX_BLADES][2]; /* of each side, outwards */
+    int32_t apothem_q16;                     /* centre to side */
+
+    /* Unless NULL, the opening is read from this mask instead: signed distance
+     * to the outline, positive inside, at the nodes of a square of
+     * mask_nodes^2 over +-mask_span_q16, row 0 at the lowest y. Kept. */
+    const int16_t *mask_q13;
+    int mask_nodes; /* 2 .. 4096 */
+    int32_t mask_span_q16;
+};
+
+/* --------------------------------------------------------------- ray grids */
+
+/* Where one ray of a grid went. */
+struct glint_vertex {
+    int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
+                           down; within +-GLINT_VERTEX_LIMIT_Q8 */
+    int32_t stop_x_q16, stop_y_q16; /* stop radii, within +-2^14 */
+    int32_t radius_q16;             /* relative radius, 0 .. 2^14; above 1 the
+                                       barrel cuts */
+    int32_t energy_q16; /* 0 .. 65536, in units of the bundle; below 0: the ray
+                           was lost, and the rest means nothing */
+};
+
+#define GLINT_VERTEX_LIMIT_Q8 (INT32_C(1) << 28) /* 2^20 pixels */
+
+/* The rays of one ghost, one light and one wavelength, as a square grid over
+ * the ghost's part of the entrance pupil. */
+struct glint_bundle {
+    int n_cells; /* per side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2 vertices,
+                    row by row */
+    /* What one cell sends through the lens at energy 1: flux_q31 * 2^(exponent
+     * - 31), in display white times pixels. */
+    int32_t flux_q31; /* 2^30 .. 2^31 - 1, or 0 */
+    int flux_exponent;
+    int32_t rgb_q14[3]; /* colour of the wavelength times that of the light,
+                           linear BT.709, -4 .. 4 */
+};
+
+/* ------------------------------------------------------------------ drawing */
+
+enum glint_weights {
+    GLINT_WEIGHTS_LOOP_DEROSE,
+    GLINT_WEIGHTS_WACHSPRESS
+};
+
+struct glint_flare_config {
+    struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
+    int width, height;             /* of the picture, 1 .. GLINT_MAX_SIDE */
+    int tile_log2;   /* small tiles of 2^n pixels square, 3 .. 5 */
+    int coarse_log2; /* large tiles, tile_log2 + 1 .. 8; 0: one level only */
+    enum glint_weights weights;
+    int merge_steps;         /* blocks of 2^n cells may become one, 0 .. 4 */
+    int32_t merge_gamma_q16; /* how far edges may disagree, relative */
+    int antialias;           /* 0: a pixel's centre decides, as published */
+    int dither;              /* when encoding to 8 bits; deterministic */
+    struct glint_stop stop;  /* copied; its mask is kept */
+
+    /* Capacities. glint_flare_bin() reports what a frame needed. */
+    int max_bundles;
+    int max_vertices;
+    int max_primitives;
+    int max_refs;      /* entries of the index lists of the first level */
+    int max_tile_refs; /* entries for one large tile; 0 with one level */
+};
+
+struct glint_flare_stats {
+    int bundles, vertices, primitives, refs, tile_refs; /* as drawn */
+    int need_bundles, need_vertices, need_primitives, need_refs,
+        need_tile_refs; /* what would have drawn everything */
+    int dropped_bundles;    /* left out for want of capacity */
+    int dropped_cells;      /* of bundles that were drawn: with a lost ray, a
+                               vertex out of range, or no area */
+    int merged_cells;       /* cells that went into a larger primitive */
+};
+
+struct glint_flare; /* opaque, in the caller's memory */
+
+/* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
+size_t glint_flare_bytes(const struct glint_flare_config *cfg);
+
+/* Places a flare in MEM[BYTES], aligned to 64; *FLARE points into it. There is
+ * no finish: drop the memory. GLINT_E_MEMORY: BYTES is too small. */
+enum glint_status glint_flare_init(struct glint_flare **flare,
+                                   const struct glint_flare_config *cfg,
+                                   void *mem, size_t bytes);
+
+/* Forgets all bundles. */
+void glint_flare_begin(struct glint_flare *flare);
+
+/* Takes BUNDLE in and returns its vertices, to be filled before bin: row by
+ * row, [n_cells + 1][n_cells + 1]. NULL: no room; the bundle is counted and
+ * left out. */
+struct glint_vertex *glint_flare_add(struct glint_flare *flare,
+                                     const struct glint_bundle *bundle);
+
+/* Turns the grids into primitives and sorts these into tiles. Bundles that do
+ * not fit are left out whole, the last ones added first. */
+void glint_flare_bin(struct glint_flare *flare,
+                     struct glint_flare_stats *stats);
+
+/* Adds the flare to IMAGE, which has the size of the configuration. Tiles that
+ * nothing touches are neither read nor written. May be repeated. */
+void glint_flare_draw(struct glint_flare *flare,
+                      const struct glint_image *image);
+
+/* Small tiles that the last draw touched. */
+int glint_flare_tiles(const struct glint_flare *flare);
+
+#endif

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/lights.h - finds the lamps and the sun in a picture.
+ *
+ *     bytes = glint_lights_bytes(&cfg);                     once
+ *     glint_lights_init(&finder, &cfg, mem, bytes);
+ *     n = glint_lights_find(finder, &image, lights, 64);    each picture
+ *
+ * Bright regions become lights: pixels above the upper threshold seed a region,
+ * pixels above the lower one belong to it. Everything is weighted by flux in
+ * linear light, never by the single brightest pixel, so that noise does not
+ * move a light. Integers only; nothing is kept from picture to picture.
+ */
+#ifndef GLINT_LIGHTS_H
+#define GLINT_LIGHTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+
+/* A light as the picture shows it. */
+struct glint_spot {
+    int32_t x_q8, y_q8; /* flux-weighted centroid; pixels from the top left
+                           corner of the picture, pixel centres at n + 1/2 */
+    int32_t size_q8;    /* RMS radius, pixels */
+    int32_t area;       /* pixels that belong to it */
+    int32_t n_clipped;  /* of these, pixels at the upper threshold or above */
+    int64_t flux_q16;   /* sum of linear luminance over its pixels, 1 = white */
+    int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
+};
+
+struct glint_lights_config {
+    int width, height;     /* of the pictures, 1 .. GLINT_MAX_SIDE */
+    int threshold_high;    /* 8-bit full-range luma code, 1 .. 255 */
+    int threshold_low;     /* 1 .. threshold_high */
+    int min_area;          /* pixels; smaller regions are noise, >= 1 */
+    int32_t max_share_q15; /* of the picture; larger regions are sky or wall */
+    int32_t merge_q15;     /* of the width: closer lights become one */
+};
+
+struct glint_lights; /* opaque, in the caller's memory */
+
+/* What a newcomer should start from, for WIDTH x HEIGHT. */
+void glint_lights_defaults(struct glint_lights_config *cfg, int width,
+                           int height);
+
+/* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
+size_t glint_lights_bytes(const struct glint_lights_config *cfg);
+
+enum glint_status glint_lights_init(struct glint_lights **finder,
+                                    const struct glint_lights_config *cfg,
+                                    void *mem, size_t bytes);
+
+/* Writes the lights of IMAGE (of cfg's size, any format but LINEAR_Q20), by
+ * falling flux, at most MAX (1 .. 1024). What exceeds MAX joins the nearest
+ * light kept where one is near, else it is dropped. Returns how many it wrote.
+ */
+int glint_lights_find(struct glint_lights *finder,
+                      const struct glint_image *image,
+                      struct glint_spot *spots, int max);
+
+/* Lights of the last find that were dropped because MAX was too small. */
+int glint_lights_dropped(const struct glint_lights *finder);
+
+#endif

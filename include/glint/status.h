@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/status.h - what a glint function returns when it can fail.
+ *
+ * Loading and initialising validate everything and return a status; drawing a
+ * frame cannot fail and counts what it left out; the offline half returns a
+ * status and fills a struct glint_error with one line for a person.
+ */
+#ifndef GLINT_STATUS_H
+#define GLINT_STATUS_H
+
+enum glint_status {
+    GLINT_OK = 0,
+    GLINT_E_ARGUMENT,    /* a parameter is outside its documented range */
+    GLINT_E_MEMORY,      /* not enough memory, or a block too small */
+    GLINT_E_FORMAT,      /* a picture or stream is not what it says it is */
+    GLINT_E_UNSUPPORTED, /* well formed, but not something glint handles */
+    GLINT_E_LENS,        /* a lens table or model is wrong */
+    GLINT_E_IO,          /* reading failed */
+    GLINT_E_OUTPUT,      /* writing failed */
+    GLINT_E_CLOSED       /* the reader of a pipe went away */
+};
+
+/* One line for a person, "FILE:LINE:COLUMN: cause" where there is a file.
+ * Always terminated; longer texts are cut. */
+struct glint_error {
+    char text[256];
+};
+
+/* A few words for STATUS, never NULL. */
+const char *glint_status_text(enum glint_status status);
+
+#endif

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/workers.h - the parallel-for that an application hands to glint.
+ *
+ * glint has no threads of its own. Where a header takes a struct
+ * glint_workers, NULL means that the calling thread does all the work. No
+ * result depends on the number of workers or on the order of the jobs.
+ */
+#ifndef GLINT_WORKERS_H
+#define GLINT_WORKERS_H
+
+/* Does job JOB as worker WORKER (0 .. n - 1; no two threads are the same
+ * worker at the same time). */
+typedef void glint_job_fn(void *ctx, int job, int worker);
+
+struct glint_workers {
+    int n; /* threads that may run jobs at once, 1 .. 64 */
+
+    /* Runs fn(ctx, 0 .. n_jobs - 1, worker), in any order, and returns when
+     * all are done. Never called from inside a job. */
+    void (*run)(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
+                void *ctx);
+};
+
+/* Runs the jobs on WORKERS, or on the calling thread where it is NULL. */
+void glint_workers_run(struct glint_workers *workers, int n_jobs,
+                       glint_job_fn *fn, void *ctx);
+
+/* How many workers there are: 1 where WORKERS is NULL. */
+int glint_workers_count(const struct glint_workers *workers);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Exact rays for the run-time half: the one place where doubles become its
+ * integers. Later the polynomials take this place.
+ */
+#include "glint/bake.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "bake/degrees.h"
+#include "glint/flare.h"
+
+/* The ghost's box on the sensor, turned by the light's azimuth, meets the
+ * picture. */
+static bool in_view(const struct glint_feed_config *cfg,
+                    const struct glint_feed *feed)
+{
+    const double *s = feed->pupil.sensor_mm;
+    const double half_w = 0.5 * cfg->view.sensor_width_mm;
+    const double half_h = half_w * cfg->view.height / cfg->view.width;
+    const double c = glint_cos_deg(feed->lamp->phi_deg);
+    const double d = glint_sin_deg(feed->lamp->phi_deg);
+    const double x = 0.5 * (s[0] + s[1]);
+    const double w = 0.5 * (s[1] - s[0]), h = s[3];
+
+    return fabs(x * c) - fabs(c) * w - fabs(d) * h < half_w &&
+           fabs(x * d) - fabs(d) * w - fabs(c) * h < half_h;
+}
+
+static int choose_cells(const struct glint_feed_config *cfg,
+                        const struct glint_feed *feed)
+{
+    const double *s = feed->pupil.sensor_mm;
+    const double sensor = cfg->view.sensor_width_mm *
+                          cfg->view.sensor_width_mm * cfg->view.height /
+                          cfg->view.width;
+    const double share = (s[1] - s[0]) * (s[3] - s[2]) / sensor;
+    const double part = cfg->uniform ? 1 : fmin(1, fmax(0.05, sqrt(share)));
+    const int n = (int)ceil(cfg->max_cells * part / 4) * 4;
+
+    return n < cfg->max_cells ? n : cfg->max_cells;
+}
+
+void glint_feed_plan(const struct glint_feed_config *cfg,
+                     struct glint_feed *feed)
+{
+    const struct glint_setup *s = cfg->setup;
+    struct glint_path path;
+
+    glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
+                    s->wavelength_nm[feed->wavelength]);
+    feed->n_cells = 0;
+    if (glint_pupil_find(&feed->pupil, &path, feed->lamp->theta_deg,
+                         s->optics.stop_radius_mm) &&
+        in_view(cfg, feed))
+        feed->n_cells = choose_cells(cfg, feed);
+}
+
+/* The energy that a vertex's 65536 stands for: some head-room over what the
+ * search for the pupil saw. */
+static double energy_unit(const struct glint_feed *feed)
+{
+    return 1.5 * feed->pupil.energy;
+}
+
+static int32_t colour_q14(double x)
+{
+    return (int32_t)lrint(fmax(-4, fmin(x, 4)) * 16384);
+}
+
+void glint_feed_bundle(const struct glint_feed_config *cfg,
+                       const struct glint_feed *feed,
+                       struct glint_bundle *bundle)
+{
+    const struct glint_setup *s = cfg->setup;
+    const struct glint_pupil *p = &feed->pupil;
+    const double n = feed->n_cells;
+    const double area = (p->x1_mm - p->x0_mm) / n * (2 * p->y1_mm / n);
+    const double flux = cfg->scale * feed->lamp->power *
+                        glint_cos_deg(feed->lamp->theta_deg) * area *
+                        energy_unit(feed) / s->direct_flux[feed->wavelength];
+    int exponent = 0;
+    const double mantissa =
+        flux > 0 && isfinite(flux) ? frexp(flux, &exponent) : 0;
+
+    bundle->n_cells = feed->n_cells;
+    bundle->flux_q31 = (int32_t)floor(mantissa * 0x1p31);
+    bundle->flux_exponent = exponent;
+    for (int c = 0; c < 3; c++)
+        bundle->rgb_q14[c] =
+            colour_q14(s->rgb[feed->wavelength][c] * feed->lamp->rgb[c]);
+}
+
+/* Nothing outside these ranges may become a vertex: geometry never saturates.
+ */
+static bool in_range(const double at[5])
+{
+    return fabs(at[0]) < 0x1p20 && fabs(at[1]) < 0x1p20 &&
+           fabs(at[2]) < 0x1p14 && fabs(at[3]) < 0x1p14 && at[4] < 0x1p14;
+}
+
+static void quantise(const struct glint_feed_config *cfg,
+                     const struct glint_feed *feed, const struct glint_ray *ray,
+                     struct glint_vertex *v)
+{
+    const double scale = cfg->view.width / cfg->view.sensor_width_mm;
+    const double stop = cfg->setup->optics.stop_radius_mm;
+    const double c = glint_cos_deg(feed->lamp->phi_deg);
+    const double s = glint_sin_deg(feed->lamp->phi_deg);
+    const double at[5] = {
+        0.5 * cfg->view.width +
+            scale * (ray->sensor_x_mm * c - ray->sensor_y_mm * s),
+        0.5 * cfg->view.height -
+            scale * (ray->sensor_x_mm * s + ray->sensor_y_mm * c),
+        (ray->stop_x_mm * c - ray->stop_y_mm * s) / stop,
+        (ray->stop_x_mm * s + ray->stop_y_mm * c) / stop, ray->rel_radius};
+
+    if (!in_range(at))
+        return;
+    v->x_q8 = (int32_t)lrint(at[0] * 256);
+    v->y_q8 = (int32_t)lrint(at[1] * 256);
+    v->stop_x_q16 = (int32_t)lrint(at[2] * 65536);
+    v->stop_y_q16 = (int32_t)lrint(at[3] * 65536);
+    v->radius_q16 = (int32_t)lrint(at[4] * 65536);
+    v->energy_q16 =
+        (int32_t)lrint(fmin(1, ray->energy / energy_unit(feed)) * 65536);
+}
+
+static void trace_row(const struct glint_feed_config *cfg,
+                      const struct glint_feed *feed,
+                      const struct glint_path *path, int j,
+                      struct glint_vertex *row, struct glint_vertex *mirrored)
+{
+    const struct glint_pupil *p = &feed->pupil;
+    const double direction[3] = {glint_sin_deg(feed->lamp->theta_deg), 0,
+                                 glint_cos_deg(feed->lamp->theta_deg)};
+    const int n = feed->n_cells;
+
+    for (int i = 0; i <= n; i++) {
+        struct glint_ray ray;
+
+        row[i].energy_q16 = mirrored[i].energy_q16 = -1;
+        if (glint_trace(path, p->x0_mm + (p->x1_mm - p->x0_mm) * i / n,
+                        p->y1_mm * (2.0 * j - n) / n, direction, &ray,
+                        NULL) != GLINT_RAY_OK)
+            continue;
+        quantise(cfg, feed, &ray, &row[i]);
+        ray.sensor_y_mm = -ray.sensor_y_mm;
+        ray.stop_y_mm = -ray.stop_y_mm;
+        quantise(cfg, feed, &ray, &mirrored[i]);
+    }
+}
+
+void glint_feed_trace(const struct glint_feed_config *cfg,
+                      const struct glint_feed *feed,
+                      struct glint_vertex *vertex)
+{
+    const struct glint_setup *s = cfg->setup;
+    const int n = feed->n_cells;
+    struct glint_path path;
+
+    glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
+                    s->wavelength_nm[feed->wavelength]);
+    for (int j = 0; j <= n / 2; j++)
+        trace_row(cfg, feed, &path, j, vertex + (size_t)j * (size_t)(n + 1),
+                  vertex + (size_t)(n - j) * (size_t)(n + 1));
+}

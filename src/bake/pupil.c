@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Finds the part of the pupil that a ghost's visible rays come through.
+ *
+ * A grid over the front element keeps the cells that may hold a visible ray,
+ * judged by the box of their corners' stop positions and by their relative
+ * radii, both with a margin for what bends in between; then a finer grid over
+ * what was kept, until it no longer shrinks. Limits: a visible part that is
+ * smaller than a 64th of the front element and whose surroundings bend by more
+ * than the margin can be missed.
+ */
+#include "glint/bake.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "bake/degrees.h"
+
+enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
+
+struct sample {
+    bool valid;
+    struct glint_ray ray;
+};
+
+struct search {
+    const struct glint_path *path;
+    double direction[3];
+    double stop_mm;
+    struct sample node[DOWN + 1][ACROSS + 1];
+};
+
+static double column_x(const struct glint_pupil *p, int i)
+{
+    return p->x0_mm + (p->x1_mm - p->x0_mm) * i / ACROSS;
+}
+
+static void sample_grid(struct search *s, const struct glint_pupil *p)
+{
+    for (int j = 0; j <= DOWN; j++)
+        for (int i = 0; i <= ACROSS; i++) {
+            struct sample *node = &s->node[j][i];
+
+            node->valid = glint_trace(s->path, column_x(p, i),
+                                      p->y1_mm * j / DOWN, s->direction,
+                                      &node->ray, NULL) == GLINT_RAY_OK;
+        }
+}
+
+struct bounds {
+    int n;
+    double low[5], high[5]; /* stop x, y; radius; sensor x, y */
+};
+
+static void bounds_add(struct bounds *b, const struct sample *s)
+{
+    const double v[5] = {s->ray.stop_x_mm, s->ray.stop_y_mm, s->ray.rel_radius,
+                         s->ray.sensor_x_mm, s->ray.sensor_y_mm};
+
+    if (!s->valid)
+        return;
+    for (int k = 0; k < 5; k++) {
+        b->low[k] = b->n ? fmin(b->low[k], v[k]) : v[k];
+        b->high[k] = b->n ? fmax(b->high[k], v[k]) : v[k];
+    }
+    b->n++;
+}
+
+static double from_zero(double low, double high)
+{
+    return low > 0 ? low : high < 0 ? -high : 0;
+}
+
+/* Whether a cell may hold a ray that gets through. Cells with lost corners are
+ * judged by what they have, with twice the margin. */
+static bool may_pass(const struct search *s, const struct bounds *b)
+{
+    const double more = b->n == 4 ? 0.5 : 1;
+    double low[3], high[3];
+
+    if (b->n == 0)
+        return false;
+    for (int k = 0; k < 3; k++) {
+        const double grow = more * (b->high[k] - b->low[k]);
+
+        low[k] = b->low[k] - grow;
+        high[k] = b->high[k] + grow;
+    }
+    return low[2] <= 1 && hypot(from_zero(low[0], high[0]),
+                                from_zero(low[1], high[1])) <= s->stop_mm;
+}
+
+/* Tallies one kept cell: where it is, its energy and its light's extent. */
+static void keep(const struct search *s, int i, int j,
+                 const struct bounds *cell, struct bounds *box,
+                 struct glint_pupil *found)
+{
+    const int at[4] = {i, i + 1, j, j + 1};
+    double *sensor = found->sensor_mm;
+
+    for (int k = 0; k < 4; k += 2) {
+        const double lo = at[k], hi = at[k + 1];
+
+        box->low[k] = box->n ? fmin(box->low[k], lo) : lo;
+        box->high[k] = box->n ? fmax(box->high[k], hi) : hi;
+    }
+    for (int k = 0; k < 2; k++) {
+        const double lo = cell->low[3 + k], hi = cell->high[3 + k];
+
+        sensor[2 * k] = box->n ? fmin(sensor[2 * k], lo) : lo;
+        sensor[2 * k + 1] = box->n ? fmax(sensor[2 * k + 1], hi) : hi;
+    }
+    box->n++;
+    for (int k = 0; k < 4; k++) {
+        const struct sample *node = &s->node[j + (k >> 1)][i + (k & 1)];
+
+        if (node->valid)
+            found->energy = fmax(found->energy, node->ray.energy);
+    }
+}
+
+/* Shrinks P to the cells that may pass. */
+static bool shrink(struct search *s, struct glint_pupil *p)
+{
+    struct glint_pupil found = *p;
+    struct bounds box = {.n = 0};
+
+    found.energy = 0;
+    sample_grid(s, p);
+    for (int j = 0; j < DOWN; j++)
+        for (int i = 0; i < ACROSS; i++) {
+            struct bounds cell = {.n = 0};
+
+            for (int k = 0; k < 4; k++)
+                bounds_add(&cell, &s->node[j + (k >> 1)][i + (k & 1)]);
+            if (may_pass(s, &cell))
+                keep(s, i, j, &cell, &box, &found);
+        }
+    if (box.n == 0)
+        return false;
+    found.x0_mm = column_x(p, (int)box.low[0]);
+    found.x1_mm = column_x(p, (int)box.high[0]);
+    found.y1_mm = p->y1_mm * box.high[2] / DOWN;
+    /* mirrored in y */
+    found.sensor_mm[3] = fmax(fabs(found.sensor_mm[2]),
+                              fabs(found.sensor_mm[3]));
+    found.sensor_mm[2] = -found.sensor_mm[3];
+    *p = found;
+    return true;
+}
+
+static double extent(const struct glint_pupil *p)
+{
+    return (p->x1_mm - p->x0_mm) * p->y1_mm;
+}
+
+bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
+                      double theta_deg, double stop_radius_mm)
+{
+    struct search *s = malloc(sizeof *s);
+    struct glint_pupil p = {0};
+    const struct glint_event *front = NULL;
+    bool found = true;
+
+    for (int k = 0; k < path->n_events && !front; k++)
+        if (path->event[k].kind != GLINT_STOP)
+            front = &path->event[k];
+    if (!s || !front) {
+        free(s);
+        return false;
+    }
+    s->path = path;
+    s->direction[0] = glint_sin_deg(theta_deg);
+    s->direction[1] = 0;
+    s->direction[2] = glint_cos_deg(theta_deg);
+    s->stop_mm = stop_radius_mm;
+    /* A slanted ray crosses the vertex plane beside where it meets the curved
+     * surface: by the sag at the rim times the tangent. */
+    {
+        const double h = front->semi_mm, c = front->curvature;
+        const double sag = c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
+        const double aside =
+            fabs(sag) * fabs(s->direction[0] / s->direction[2]);
+
+        p.x0_mm = -h - aside;
+        p.x1_mm = h + aside;
+        p.y1_mm = h;
+    }
+    for (int round = 0; round < ROUNDS && found; round++) {
+        const double before = extent(&p);
+
+        found = shrink(s, &p);
+        if (extent(&p) > 0.8 * before)
+            break;
+    }
+    if (found)
+        *pupil = p;
+    free(s);
+    return found;
+}

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lens, stop and wavelengths, made ready once: colours of the wavelengths and
+ * the flux of the direct image that everything is measured by.
+ */
+#include "glint/bake.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bake/cells.h"
+#include "bake/degrees.h"
+#include "glint/flare.h"
+
+/* A Gaussian with one width on either side. */
+static double lobe(double nm, double centre, double below, double above)
+{
+    const double t = (nm - centre) / (nm < centre ? below : above);
+
+    return exp(-0.5 * t * t);
+}
+
+/* CIE 1931 2 degree observer, multi-lobe fit [Wyman13] table 1; within 1 % of
+ * the peak of the tabulated functions. */
+static void observer(double nm, double xyz[3])
+{
+    xyz[0] = 1.056 * lobe(nm, 599.8, 37.9, 31.0) +
+             0.362 * lobe(nm, 442.0, 16.0, 26.7) -
+             0.065 * lobe(nm, 501.1, 20.4, 26.2);
+    xyz[1] = 0.821 * lobe(nm, 568.8, 46.9, 40.5) +
+             0.286 * lobe(nm, 530.9, 16.3, 31.1);
+    xyz[2] = 1.217 * lobe(nm, 437.0, 11.8, 36.0) +
+             0.681 * lobe(nm, 459.0, 26.0, 13.8);
+}
+
+static void to_bt709(const double xyz[3], double rgb[3])
+{
+    static const double m[3][3] = {{3.2404542, -1.5371385, -0.4985314},
+                                   {-0.9692660, 1.8760108, 0.0415560},
+                                   {0.0556434, -0.2040259, 1.0572252}};
+
+    for (int c = 0; c < 3; c++)
+        rgb[c] = m[c][0] * xyz[0] + m[c][1] * xyz[1] + m[c][2] * xyz[2];
+}
+
+/* Scales each channel to the sum 1, so that a flat spectrum is white. A channel
+ * that the wavelengths hardly excite, or excite negatively, takes them all
+ * alike: few wavelengths make a grey picture rather than a wrong one. */
+static void normalise(struct glint_setup *s)
+{
+    const int n = s->n_wavelengths;
+
+    for (int c = 0; c < 3; c++) {
+        double sum = 0, size = 0;
+
+        for (int i = 0; i < n; i++) {
+            sum += s->rgb[i][c];
+            size += fabs(s->rgb[i][c]);
+        }
+        for (int i = 0; i < n; i++)
+            s->rgb[i][c] = sum > 0.2 * size && sum > 0.05
+                               ? s->rgb[i][c] / sum
+                               : 1.0 / n;
+    }
+}
+
+static void set_colours(struct glint_setup *s)
+{
+    for (int i = 0; i < s->n_wavelengths; i++) {
+        double xyz[3];
+
+        observer(s->wavelength_nm[i], xyz);
+        to_bt709(xyz, s->rgb[i]);
+        for (int c = 0; s->n_wavelengths == 3 && c < 3; c++)
+            s->rgb[i][c] = c == i;
+    }
+    if (s->n_wavelengths != 3)
+        normalise(s);
+}
+
+static enum glint_status check(int n_blades, double rotation_deg,
+                               const double *wavelength_nm, int n,
+                               struct glint_error *error)
+{
+    if (n_blades != 0 && (n_blades < 3 || n_blades > GLINT_MAX_BLADES))
+        snprintf(error->text, sizeof error->text,
+                 "a stop has 3 to %d blades, not %d", GLINT_MAX_BLADES,
+                 n_blades);
+    else if (!isfinite(rotation_deg))
+        snprintf(error->text, sizeof error->text,
+                 "the rotation of the stop must be a finite angle");
+    else if (n < 1 || n > GLINT_MAX_WAVELENGTHS)
+        snprintf(error->text, sizeof error->text,
+                 "1 to %d wavelengths can be drawn, not %d",
+                 GLINT_MAX_WAVELENGTHS, n);
+    else {
+        for (int i = 0; i < n; i++)
+            if (!(wavelength_nm[i] >= 300 && wavelength_nm[i] <= 1100)) {
+                snprintf(error->text, sizeof error->text,
+                         "a wavelength must be 300 to 1100 nm, not %g",
+                         wavelength_nm[i]);
+                return GLINT_E_ARGUMENT;
+            }
+        return GLINT_OK;
+    }
+    return GLINT_E_ARGUMENT;
+}
+
+enum glint_status glint_setup_init(struct glint_setup *setup,
+                                   const struct glint_prescription *lens,
+                                   int n_blades, double blade_rotation_deg,
+                                   const double *wavelength_nm, int n,
+                                   struct glint_error *error)
+{
+    const enum glint_status status =
+        check(n_blades, blade_rotation_deg, wavelength_nm, n, error);
+
+    if (status != GLINT_OK)
+        return status;
+    setup->lens = lens;
+    glint_optics_of(lens, &setup->optics);
+    setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);
+    setup->n_blades = n_blades;
+    setup->blade_rotation_deg = blade_rotation_deg;
+    setup->n_wavelengths = n;
+    memcpy(setup->wavelength_nm, wavelength_nm,
+           (size_t)n * sizeof *wavelength_nm);
+    set_colours(setup);
+    for (int i = 0; i < n; i++) {
+        setup->direct_flux[i] = glint_direct_flux(setup, wavelength_nm[i]);
+        if (!(setup->direct_flux[i] > 0)) {
+            snprintf(error->text, sizeof error->text,
+                     "%s: no light of %g nm gets through to the sensor",
+                     lens->name, wavelength_nm[i]);
+            return GLINT_E_LENS;
+        }
+    }
+    return GLINT_OK;
+}
+
+struct glint_view glint_view_fit(int width, int height, double film_width_mm,
+                                 double film_height_mm)
+{
+    const double shape = (double)width / height;
+    const double tall = film_height_mm * shape;
+
+    return (struct glint_view){width, height,
+                               tall < film_width_mm ? tall : film_width_mm};
+}
+
+void glint_view_to_angles(const struct glint_view *view, double focal_mm,
+                          double x, double y, struct glint_lamp *lamp)
+{
+    const double mm = view->sensor_width_mm / view->width;
+    const double dx = (x - 0.5 * view->width) * mm;
+    const double dy = (0.5 * view->height - y) * mm;
+    const double degrees = 180 / GLINT_PI;
+
+    lamp->theta_deg = atan(hypot(dx, dy) / fabs(focal_mm)) * degrees;
+    lamp->phi_deg = atan2(dy, dx) * degrees;
+    if (focal_mm < 0)
+        lamp->phi_deg += 180;
+}
+
+void glint_view_to_pixel(const struct glint_view *view, double focal_mm,
+                         const struct glint_lamp *lamp, double *x, double *y)
+{
+    const double mm = view->sensor_width_mm / view->width;
+    const double r = focal_mm *
+                     (glint_sin_deg(lamp->theta_deg) /
+                      glint_cos_deg(lamp->theta_deg)) /
+                     mm;
+
+    *x = 0.5 * view->width + r * glint_cos_deg(lamp->phi_deg);
+    *y = 0.5 * view->height - r * glint_sin_deg(lamp->phi_deg);
+}
+
+void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop)
+{
+    const int n = setup->n_blades;
+
+    *stop = (struct glint_stop){.n_blades = n, .apothem_q16 = 1 << 16};
+    if (n == 0)
+        return;
+    stop->apothem_q16 = (int32_t)lrint(65536 * cos(GLINT_PI / n));
+    for (int i = 0; i < n; i++) {
+        const double a = setup->blade_rotation_deg + (i + 0.5) * 360.0 / n;
+
+        stop->normal_q30[i][0] = (int32_t)lrint(glint_cos_deg(a) * 0x1p30);
+        stop->normal_q30[i][1] = (int32_t)lrint(glint_sin_deg(a) * 0x1p30);
+    }
+}
+
+/* Signed distance of a point to the sides of the stop: exact inside and beside
+ * a side, short of the truth beyond a corner, where only the sign matters. */
+static double stop_distance(const struct glint_stop *stop, double x, double y)
+{
+    double d = stop->n_blades ? 4 : 1 - hypot(x, y);
+
+    for (int i = 0; i < stop->n_blades; i++) {
+        const double side =
+            stop->apothem_q16 * 0x1p-16 - x * stop->normal_q30[i][0] * 0x1p-30 -
+            y * stop->normal_q30[i][1] * 0x1p-30;
+
+        d = fmin(d, side);
+    }
+    return d;
+}
+
+void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
+                      int nodes, double span)
+{
+    const double step = 2 * span / (nodes - 1);
+    struct glint_stop stop;
+
+    glint_setup_stop(setup, &stop);
+    for (int j = 0; j < nodes; j++)
+        for (int i = 0; i < nodes; i++) {
+            const double d = stop_distance(&stop, i * step - span,
+                                           j * step - span);
+
+            mask_q13[j * nodes + i] =
+                (int16_t)lrint(fmax(-3.9, fmin(d, 3.9)) * 8192);
+        }
+}

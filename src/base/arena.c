@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+#include "base/arena.h"
+
+struct glint_arena glint_arena_measure(void)
+{
+    return (struct glint_arena){.base = NULL, .size = SIZE_MAX, .used = 0};
+}
+
+struct glint_arena glint_arena_over(void *mem, size_t bytes)
+{
+    return (struct glint_arena){.base = mem, .size = bytes, .used = 0};
+}
+
+void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes)
+{
+    const size_t room = SIZE_MAX - arena->used;
+    const size_t at = arena->used;
+
+    if (bytes > 0 && count > (room - GLINT_ALIGN) / bytes) {
+        arena->used = SIZE_MAX - GLINT_ALIGN; /* nothing fits any more */
+        return NULL;
+    }
+    arena->used += (count * bytes + GLINT_ALIGN - 1) / GLINT_ALIGN *
+                   GLINT_ALIGN;
+    if (!arena->base || arena->used > arena->size)
+        return NULL;
+    return arena->base + at;
+}

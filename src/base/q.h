@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Fixed-point arithmetic.
+ *
+ * The container is a stdint type, the format is the name's suffix: x_q30 has
+ * 30 fraction bits, and q_mul(a_qA, b_qB, s) is a Q(A + B - s); tools/lint-q
+ * checks that. One rounding everywhere: to nearest, ties up.
+ * With -DGLINT_Q_CHECK an operation whose exact result does not fit aborts.
+ */
+#ifndef GLINT_BASE_Q_H
+#define GLINT_BASE_Q_H
+
+#include <stdint.h>
+
+#ifdef GLINT_Q_CHECK
+void glint_q_overflow(const char *operation, int64_t exact);
+#define Q_FITS(op, r, lo, hi) \
+    ((r) < (lo) || (r) > (hi) ? glint_q_overflow(op, r) : (void)0)
+#else
+#define Q_FITS(op, r, lo, hi) ((void)0)
+#endif
+
+/* Constant from a literal, rounded; folds at compile time. */
+#define Q_CONST(x, frac) \
+    ((int32_t)((x) * (double)(INT64_C(1) << (frac)) + ((x) < 0 ? -0.5 : 0.5)))
+
+/* x / 2^s, rounded; 0 <= s <= 62, |x| < 2^62. */
+static inline int64_t q_shift(int64_t x, int s)
+{
+    Q_FITS("q_shift", x, -(INT64_C(1) << 62), INT64_C(1) << 62);
+    return s ? (x + (INT64_C(1) << (s - 1))) >> s : x;
+}
+
+/* X as an int32; its range is the caller's promise. */
+static inline int32_t q_narrow(int64_t x)
+{
+    Q_FITS("q_narrow", x, INT32_MIN, INT32_MAX);
+    return (int32_t)x;
+}
+
+/* a * b / 2^s, rounded; 1 <= s <= 62. */
+static inline int32_t q_mul(int32_t a, int32_t b, int s)
+{
+    return q_narrow(q_shift((int64_t)a * b, s));
+}
+
+/* X held to LO .. HI: for light, never for geometry. */
+static inline int32_t q_clamp_sat(int64_t x, int32_t lo, int32_t hi)
+{
+    return x < lo ? lo : x > hi ? hi : (int32_t)x;
+}
+
+#endif

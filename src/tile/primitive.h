@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the tiles are filled with: convex quads and triangles over the vertices
+ * of the ray grids, each with one irradiance.
+ */
+#ifndef GLINT_TILE_PRIMITIVE_H
+#define GLINT_TILE_PRIMITIVE_H
+
+#include <stdint.h>
+
+#include "glint/flare.h"
+
+enum {
+    GLINT_CUT_STOP = 1,  /* the outline of the stop may cross it */
+    GLINT_CUT_BARREL = 2 /* relative radius 1 may cross it */
+};
+
+struct glint_primitive {
+    int32_t vertex[4]; /* corners in order, area positive; a triangle has -1
+                          last */
+    int32_t irradiance_q20; /* display white, at energy 1 */
+    uint16_t bundle;
+    uint8_t n_corners; /* 3 or 4 */
+    uint8_t cut;
+};
+
+/* A primitive's corners, gathered. */
+struct glint_corners {
+    int n; /* 3 or 4 */
+    const struct glint_vertex *at[4];
+    int64_t area2_q16; /* twice the area, pixels squared, > 0 */
+};
+
+/* Pixels whose centre may lie inside: X0 .. X1 - 1, Y0 .. Y1 - 1. */
+struct glint_box {
+    int x0, y0, x1, y1;
+};
+
+/* (B - A) x (P - A), q16: positive where A, B, P turn to the positive side.
+ * Within +-2^60 for coordinates inside GLINT_VERTEX_LIMIT_Q8. */
+static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
+                                     int32_t by, int32_t px, int32_t py)
+{
+    return (int64_t)(bx - ax) * (py - ay) - (int64_t)(by - ay) * (px - ax);
+}
+
+/* Gathers the N (3 or 4) corners VERTEX of V. */
+void glint_corners_gather(struct glint_corners *corners,
+                          const struct glint_vertex *v, const int32_t *vertex,
+                          int n);
+
+/* The pixels of a WIDTH x HEIGHT picture that CORNERS may cover. */
+struct glint_box glint_corners_box(const struct glint_corners *corners,
+                                   int width, int height);
+
+static inline struct glint_box glint_box_cut(struct glint_box a,
+                                             struct glint_box b)
+{
+    return (struct glint_box){
+        a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0,
+        a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
+}
+
+static inline int glint_box_empty(struct glint_box b)
+{
+    return b.x0 >= b.x1 || b.y0 >= b.y1;
+}
+
+#endif

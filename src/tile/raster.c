@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+#include "tile/raster.h"
+
+#include "base/compiler.h"
+#include "base/q.h"
+
+enum { HALF_Q8 = 128 };
+
+/* Edge I runs from corner I to corner I + 1. */
+struct edges {
+    int n;
+    int64_t at[4];     /* value at the pixel, >= 0 inside */
+    int64_t row[4];    /* value at the first pixel of the row */
+    int64_t dx[4], dy[4]; /* change to the next pixel, next row */
+    int bias[4];       /* -1 where a pixel on the edge is the neighbour's */
+    int shift;         /* leaves 24 bits of a value */
+    int64_t fan[4];    /* Wachspress: area at each corner, 12 bits; else 1 */
+};
+
+static void edges_init(struct edges *e, const struct glint_corners *c,
+                       enum glint_weights weights, int px, int py)
+{
+    const int wide = bit_length((uint64_t)c->area2_q16);
+    const int32_t x_q8 = px * 256 + HALF_Q8, y_q8 = py * 256 + HALF_Q8;
+
+    e->n = c->n;
+    e->shift = wide > 24 ? wide - 24 : 0;
+    for (int i = 0; i < c->n; i++) {
+        const struct glint_vertex *a = c->at[i];
+        const struct glint_vertex *b = c->at[i + 1 < c->n ? i + 1 : 0];
+        const struct glint_vertex *before = c->at[i > 0 ? i - 1 : c->n - 1];
+        const int32_t ex = b->x_q8 - a->x_q8, ey = b->y_q8 - a->y_q8;
+
+        e->row[i] = glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, x_q8,
+                                   y_q8);
+        e->dx[i] = -(int64_t)ey * 256;
+        e->dy[i] = (int64_t)ex * 256;
+        e->bias[i] = ey < 0 || (ey == 0 && ex > 0) ? 0 : -1;
+        e->fan[i] = 1;
+        if (c->n == 4 && weights == GLINT_WEIGHTS_WACHSPRESS)
+            e->fan[i] = (glint_turn_q16(before->x_q8, before->y_q8, a->x_q8,
+                                        a->y_q8, b->x_q8, b->y_q8) >>
+                         (wide > 12 ? wide - 12 : 0)) +
+                        1;
+    }
+}
+
+static int inside(const struct edges *e)
+{
+    int64_t low = e->at[0] + e->bias[0];
+
+    for (int i = 1; i < e->n; i++) {
+        const int64_t v = e->at[i] + e->bias[i];
+
+        low = v < low ? v : low;
+    }
+    return low >= 0;
+}
+
+/* Barycentric weights, q16, of the corners. Each factor is below 2^24 (2^12 for
+ * the fans), products below 2^60, sums below 2^62. */
+static void corner_weights(const struct edges *e, int32_t *weight_q16)
+{
+    uint64_t w[4] = {0, 0, 0, 0}, sum = 0, scale;
+    int wide;
+
+    for (int i = 0; i < e->n; i++) {
+        const int j = (i + 1) % e->n, k = (i + 2) % e->n;
+        const uint64_t a = (uint64_t)(e->at[j] >> e->shift);
+
+        w[i] = e->n == 3 ? a
+                         : a * (uint64_t)(e->at[k] >> e->shift) *
+                               (uint64_t)e->fan[i];
+        sum += w[i];
+    }
+    if (sum == 0) { /* a sliver of a few steps: any corner will do */
+        w[0] = sum = 1;
+    }
+    wide = bit_length(sum);
+    if (wide > 31) {
+        for (int i = 0; i < e->n; i++)
+            w[i] >>= wide - 31;
+        sum >>= wide - 31;
+        wide = 31;
+    }
+    scale = (UINT64_C(1) << (wide + 31)) / sum; /* 2^31 .. 2^32 */
+    for (int i = 0; i < 4; i++)
+        weight_q16[i] =
+            (int32_t)((w[i] * scale + (UINT64_C(1) << (wide + 14))) >>
+                      (wide + 15));
+}
+
+/* Share of the pixel, q16, that the clips leave: distances in pixels become
+ * cover by half a pixel on either side, or a step at 0. */
+static int32_t cover_of(const struct glint_raster *r,
+                        const struct glint_clip *clip,
+                        const struct glint_corners *c, const int32_t *w_q16)
+{
+    int64_t cover_q16 = 1 << 16;
+
+    for (int k = 0; k < clip->n + clip->field; k++) {
+        int64_t d_q8 = 0;
+
+        if (k < clip->n) {
+            for (int i = 0; i < c->n; i++)
+                d_q8 += (int64_t)w_q16[i] * clip->at_q8[k][i];
+            d_q8 = q_shift(d_q8, 16);
+        } else {
+            int64_t x = 0, y = 0;
+
+            for (int i = 0; i < c->n; i++) {
+                x += (int64_t)w_q16[i] * c->at[i]->stop_x_q16;
+                y += (int64_t)w_q16[i] * c->at[i]->stop_y_q16;
+            }
+            d_q8 = glint_clip_field_q16(r->stop,
+                                        q_narrow(q_shift(x, 16)),
+                                        q_narrow(q_shift(y, 16)));
+            d_q8 = q_shift(d_q8 * clip->field_q16, 24);
+        }
+        if (!r->antialias)
+            d_q8 = d_q8 >= 0 ? HALF_Q8 : -HALF_Q8;
+        cover_q16 =
+            q_shift(cover_q16 * q_clamp_sat(d_q8 + HALF_Q8, 0, 256), 8);
+        if (cover_q16 == 0)
+            break;
+    }
+    return (int32_t)cover_q16;
+}
+
+static int32_t energy_of(const struct glint_corners *c, const int32_t *w_q16)
+{
+    int64_t sum = 0;
+
+    for (int i = 0; i < c->n; i++)
+        sum += (int64_t)w_q16[i] * c->at[i]->energy_q16;
+    return (int32_t)q_shift(sum, 16);
+}
+
+/* One pixel of the primitive: light times colour into the three sums. */
+static void add_pixel(int64_t *acc_q20, int channel_stride,
+                      const int32_t *rgb_q14, int64_t light_q20)
+{
+    for (int c = 0; c < 3; c++)
+        acc_q20[c * channel_stride] += q_shift(light_q20 * rgb_q14[c], 14);
+}
+
+static void next_row(struct edges *e)
+{
+    for (int i = 0; i < e->n; i++)
+        e->row[i] += e->dy[i];
+}
+
+void glint_raster_primitive(const struct glint_raster *raster, int primitive,
+                            struct glint_box tile, struct glint_clip *clip,
+                            int64_t *acc_q20)
+{
+    const struct glint_primitive *p = &raster->primitive[primitive];
+    const int32_t *rgb_q14 = raster->bundle[p->bundle].rgb_q14;
+    const int side = 1 << raster->tile_log2;
+    struct glint_corners c;
+    struct glint_box box;
+    struct edges e;
+
+    glint_corners_gather(&c, raster->vertex, p->vertex, p->n_corners);
+    box = glint_box_cut(glint_corners_box(&c, GLINT_MAX_SIDE, GLINT_MAX_SIDE),
+                        tile);
+    if (glint_box_empty(box))
+        return;
+    glint_clip_init(clip, &c, raster->stop, p->cut);
+    edges_init(&e, &c, raster->weights, box.x0, box.y0);
+    for (int y = box.y0; y < box.y1; y++, next_row(&e)) {
+        int64_t *acc = acc_q20 + (y - tile.y0) * side + (box.x0 - tile.x0);
+
+        for (int i = 0; i < e.n; i++)
+            e.at[i] = e.row[i];
+        for (int x = box.x0; x < box.x1; x++, acc++) {
+            if (inside(&e)) {
+                int32_t w_q16[4];
+                int64_t light_q20;
+
+                corner_weights(&e, w_q16);
+                light_q20 = q_shift(
+                    (int64_t)p->irradiance_q20 * energy_of(&c, w_q16), 16);
+                if (p->cut)
+                    light_q20 = q_shift(
+                        light_q20 * cover_of(raster, clip, &c, w_q16), 16);
+                add_pixel(acc, side * side, rgb_q14, light_q20);
+            }
+            for (int i = 0; i < e.n; i++)
+                e.at[i] += e.dx[i];
+        }
+    }
+}
