@@ -23,9 +23,10 @@ CORE := base/status base/arena base/q base/image base/workers \
 BAKE := bake/text bake/prescription bake/glass bake/coating bake/paraxial \
         bake/ghosts bake/trace bake/pupil bake/cells bake/setup bake/exact \
         bake/feed
-PLATFORM := posix/workers posix/output plain/pnm plain/pfm plain/y4m \
-        oiio/loader
-TOOLS := glint cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
+PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
+        plain/pfm plain/y4m oiio/loader plain/picture
+TOOLS := glint tool measure frame scene cmd_info cmd_trace cmd_render \
+         cmd_overlay cmd_compare
 
 have = $(foreach f,$(2),$(if $(wildcard $(1)/$(f).c),$(OUT)/$(1)/$(f).o))
 core_o     := $(call have,src,$(CORE))
@@ -33,13 +34,14 @@ bake_o     := $(call have,src,$(BAKE))
 platform_o := $(call have,platform,$(PLATFORM))
 tools_o    := $(call have,tools,$(TOOLS))
 
-CPPFLAGS := -Iinclude -Isrc
+CPPFLAGS := -Iinclude
 CFLAGS := -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden -Wall -Wextra \
           -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
           -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef -Werror
 LDLIBS := -lm
+$(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: \
-        CPPFLAGS += -D_POSIX_C_SOURCE=200809L
+        CPPFLAGS += -Iplatform -D_POSIX_C_SOURCE=200809L
 $(core_o): CFLAGS += -Wframe-larger-than=1024 -ffreestanding
 ifeq ($(CONFIG),asan)
 CFLAGS += -O1 -fsanitize=address,undefined -fno-sanitize-recover=all

@@ -183,6 +183,9 @@ struct glint_setup {
                                              to 1 */
     double direct_flux[GLINT_MAX_WAVELENGTHS]; /* through the stop at angle 0
                                                   for irradiance 1, mm^2 */
+    double unit_flux[GLINT_MAX_WAVELENGTHS]; /* what light is measured by, mm^2:
+                                                the mean of direct_flux, or
+                                                itself after _balance */
 };
 
 /* Prepares LENS with a stop of N_BLADES (0 or 3 .. 64; corners on the circle of
@@ -195,6 +198,11 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
                                    int n_blades, double blade_rotation_deg,
                                    const double *wavelength_nm, int n,
                                    struct glint_error *error);
+
+/* Measures each wavelength by its own direct image, as a camera does that is
+ * balanced to white behind this lens. Otherwise the lens's own tint shows in
+ * the ghosts as it shows in everything else. */
+void glint_setup_balance(struct glint_setup *setup);
 
 /* A light at infinity. */
 struct glint_lamp {

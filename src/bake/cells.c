@@ -115,33 +115,31 @@ static double inner_radius(const struct glint_setup *s)
     return s->n_blades ? cos(GLINT_PI / s->n_blades) : 1;
 }
 
-static void trace_node(const struct glint_cells *c, double x_mm, double y_mm,
-                       double *node)
+/* One ray as a node; MIRROR -1 is the ray on the other side of the light's
+ * plane. */
+static void fill_node(const struct glint_cells *c, const struct glint_ray *ray,
+                      double (*hits)[2], double mirror, double *node)
 {
     const double stop_mm = c->setup->optics.stop_radius_mm;
-    double hits[GLINT_MAX_EVENTS + 1][2];
-    struct glint_ray ray;
+    const double sensor_y = mirror * ray->sensor_y_mm;
+    const double stop_y = mirror * ray->stop_y_mm;
     bool clear;
 
-    node[NODE_STATE] = 0;
-    if (glint_trace(c->path, x_mm, y_mm, c->direction, &ray, hits) !=
-        GLINT_RAY_OK)
-        return;
-    node[NODE_X] = ray.sensor_x_mm * c->cos_phi - ray.sensor_y_mm * c->sin_phi;
-    node[NODE_Y] = ray.sensor_x_mm * c->sin_phi + ray.sensor_y_mm * c->cos_phi;
+    node[NODE_X] = ray->sensor_x_mm * c->cos_phi - sensor_y * c->sin_phi;
+    node[NODE_Y] = ray->sensor_x_mm * c->sin_phi + sensor_y * c->cos_phi;
     node[NODE_STOP_X] =
-        (ray.stop_x_mm * c->cos_phi - ray.stop_y_mm * c->sin_phi) / stop_mm;
+        (ray->stop_x_mm * c->cos_phi - stop_y * c->sin_phi) / stop_mm;
     node[NODE_STOP_Y] =
-        (ray.stop_x_mm * c->sin_phi + ray.stop_y_mm * c->cos_phi) / stop_mm;
-    node[NODE_ENERGY] = ray.energy;
-    clear = hypot(node[NODE_STOP_X], node[NODE_STOP_Y]) <
-            inner_radius(c->setup);
+        (ray->stop_x_mm * c->sin_phi + stop_y * c->cos_phi) / stop_mm;
+    node[NODE_ENERGY] = ray->energy;
+    clear =
+        hypot(node[NODE_STOP_X], node[NODE_STOP_Y]) < inner_radius(c->setup);
     for (int k = 0; k < c->n_cuts; k++) {
         const int e = c->cut_event[k];
         const double semi = c->path->event[e].semi_mm;
 
         node[NODE_CUT + 2 * k] = hits[e][0] / semi;
-        node[NODE_CUT + 2 * k + 1] = hits[e][1] / semi;
+        node[NODE_CUT + 2 * k + 1] = mirror * hits[e][1] / semi;
         clear &= hypot(hits[e][0], hits[e][1]) < semi;
     }
     node[NODE_STATE] = clear ? 2 : 1;
@@ -153,9 +151,21 @@ void glint_cells_trace(const struct glint_cells *cells, int row)
     const int n = cells->n;
     const double y = p->y1_mm * (2.0 * row - n) / n;
 
-    for (int i = 0; i <= n; i++)
-        trace_node(cells, p->x0_mm + (p->x1_mm - p->x0_mm) * i / n, y,
-                   node_at(cells, i, row));
+    for (int i = 0; i <= n; i++) {
+        const double x = p->x0_mm + (p->x1_mm - p->x0_mm) * i / n;
+        double *node = node_at(cells, i, row);
+        double *mirrored = node_at(cells, i, n - row);
+        double hits[GLINT_MAX_EVENTS + 1][2];
+        struct glint_ray ray;
+
+        node[NODE_STATE] = mirrored[NODE_STATE] = 0;
+        if (glint_trace(cells->path, x, y, cells->direction, &ray, hits) !=
+            GLINT_RAY_OK)
+            continue;
+        fill_node(cells, &ray, hits, 1, node);
+        if (mirrored != node)
+            fill_node(cells, &ray, hits, -1, mirrored);
+    }
 }
 
 /* --------------------------------------------------------------------- clip */
@@ -349,7 +359,7 @@ double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm)
     glint_path_init(path, setup->lens, NULL, wavelength_nm);
     if (glint_cells_init(&cells, setup, path, 0, 0, 256) &&
         (cells.node = malloc(glint_cells_bytes(&cells)))) {
-        for (int j = 0; j <= cells.n; j++)
+        for (int j = 0; j <= cells.n / 2; j++)
             glint_cells_trace(&cells, j);
         for (int k = 0; k < 2 * cells.n * cells.n; k++) {
             glint_cells_clip(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1,

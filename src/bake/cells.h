@@ -51,7 +51,7 @@ bool glint_cells_init(struct glint_cells *cells,
 /* Bytes that NODE needs. */
 size_t glint_cells_bytes(const struct glint_cells *cells);
 
-/* Traces row ROW (0 .. n) of the nodes. */
+/* Traces row ROW (0 .. n / 2) of the nodes and mirrors it into row n - ROW. */
 void glint_cells_trace(const struct glint_cells *cells, int row);
 
 /* The visible part of a triangle: convex, in NODE_X and NODE_Y. */

@@ -20,9 +20,19 @@
 
 enum { BAND = 32 }; /* pixel rows a job; the last may be shorter */
 
+/* One ghost, lamp and wavelength. */
+struct bundle {
+    const struct glint_lamp *lamp;
+    int ghost, wavelength;
+    bool seen;
+    struct glint_cells cells; /* without its nodes and path */
+};
+
 struct picture {
     const struct glint_exact_config *cfg;
-    struct glint_cells cells;
+    struct bundle *bundle;
+    int n_bundles;
+    struct glint_cells cells; /* of the bundle being drawn */
     struct glint_path *path;
     double *row_y;     /* [n + 1][2]: lowest and highest pixel row of nodes */
     double *difference; /* [height][3][width + 2] */
@@ -200,18 +210,15 @@ static void deposit_piece(const struct picture *p, const struct band *band,
 
 /* --------------------------------------------------------------------- jobs */
 
-/* Rays of one row, moved to pixels. */
-static void trace_job(void *ctx, int job, int worker)
+/* Moves one row of nodes to pixels. */
+static void place_row(struct picture *p, int row)
 {
-    struct picture *p = ctx;
     const struct glint_view *view = &p->cfg->view;
     const double scale = view->width / view->sensor_width_mm;
     const int nodes = p->cells.n + 1, stride = p->cells.stride;
-    double *node = p->cells.node + (size_t)job * (size_t)(nodes * stride);
-    double *range = p->row_y + 2 * job;
+    double *node = p->cells.node + (size_t)row * (size_t)(nodes * stride);
+    double *range = p->row_y + 2 * row;
 
-    (void)worker;
-    glint_cells_trace(&p->cells, job);
     range[0] = HUGE_VAL;
     range[1] = -HUGE_VAL;
     for (int i = 0; i < nodes; i++, node += stride) {
@@ -222,6 +229,18 @@ static void trace_job(void *ctx, int job, int worker)
         range[0] = fmin(range[0], node[NODE_Y]);
         range[1] = fmax(range[1], node[NODE_Y]);
     }
+}
+
+/* Rays of one row and the one it mirrors. */
+static void trace_job(void *ctx, int job, int worker)
+{
+    struct picture *p = ctx;
+
+    (void)worker;
+    glint_cells_trace(&p->cells, job);
+    place_row(p, job);
+    if (job != p->cells.n - job)
+        place_row(p, p->cells.n - job);
 }
 
 static void band_job(void *ctx, int job, int worker)
@@ -252,27 +271,67 @@ static void band_job(void *ctx, int job, int worker)
 
 /* ------------------------------------------------------------------ picture */
 
-static enum glint_status draw_bundle(struct picture *p,
-                                     const struct glint_lamp *lamp, int ghost,
-                                     int wavelength)
+static void path_of(const struct picture *p, const struct bundle *b,
+                    struct glint_path *path)
+{
+    const struct glint_setup *s = p->cfg->setup;
+
+    glint_path_init(path, s->lens, &s->ghost[b->ghost],
+                    s->wavelength_nm[b->wavelength]);
+}
+
+static void find_job(void *ctx, int job, int worker)
+{
+    struct picture *p = ctx;
+    struct bundle *b = &p->bundle[job];
+    struct glint_path path;
+
+    (void)worker;
+    path_of(p, b, &path);
+    b->seen = glint_cells_init(&b->cells, p->cfg->setup, &path,
+                               b->lamp->theta_deg, b->lamp->phi_deg,
+                               p->cfg->grid);
+}
+
+static enum glint_status list_bundles(struct picture *p)
+{
+    const struct glint_exact_config *c = p->cfg;
+    const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
+    const int all = c->n_lamps * ghosts * waves;
+
+    p->bundle = calloc((size_t)all + 1, sizeof *p->bundle);
+    if (!p->bundle)
+        return GLINT_E_MEMORY;
+    for (int k = 0; k < all; k++) {
+        const int ghost = k / waves % ghosts;
+
+        if (c->only_ghost < 0 || c->only_ghost == ghost)
+            p->bundle[p->n_bundles++] =
+                (struct bundle){.lamp = &c->lamps[k / waves / ghosts],
+                                .ghost = ghost,
+                                .wavelength = k % waves};
+    }
+    glint_workers_run(c->workers, p->n_bundles, find_job, p);
+    return GLINT_OK;
+}
+
+static enum glint_status draw_bundle(struct picture *p, const struct bundle *b)
 {
     const struct glint_exact_config *c = p->cfg;
     const struct glint_setup *s = c->setup;
     double flux;
 
-    glint_path_init(p->path, s->lens, &s->ghost[ghost],
-                    s->wavelength_nm[wavelength]);
-    if (!glint_cells_init(&p->cells, s, p->path, lamp->theta_deg,
-                          lamp->phi_deg, c->grid))
-        return GLINT_OK;
+    path_of(p, b, p->path);
+    p->cells = b->cells;
+    p->cells.path = p->path;
     p->cells.node = malloc(glint_cells_bytes(&p->cells));
     if (!p->cells.node)
         return GLINT_E_MEMORY;
-    flux = lamp->power * p->cells.direction[2] * 0.5 *
-           glint_cells_area(&p->cells) / s->direct_flux[wavelength];
+    flux = b->lamp->power * p->cells.direction[2] * 0.5 *
+           glint_cells_area(&p->cells) / s->unit_flux[b->wavelength];
     for (int k = 0; k < 3; k++)
-        p->weight[k] = flux * s->rgb[wavelength][k] * lamp->rgb[k];
-    glint_workers_run(c->workers, c->grid + 1, trace_job, p);
+        p->weight[k] = flux * s->rgb[b->wavelength][k] * b->lamp->rgb[k];
+    glint_workers_run(c->workers, c->grid / 2 + 1, trace_job, p);
     glint_workers_run(c->workers, (c->view.height + BAND - 1) / BAND, band_job,
                       p);
     free(p->cells.node);
@@ -282,22 +341,16 @@ static enum glint_status draw_bundle(struct picture *p,
 static enum glint_status draw_all(struct picture *p)
 {
     const struct glint_exact_config *c = p->cfg;
-    const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
-    const int n = c->n_lamps * ghosts * waves;
+    enum glint_status status = list_bundles(p);
 
-    for (int k = 0; k < n; k++) {
-        const int ghost = k / waves % ghosts;
-        enum glint_status status = GLINT_OK;
-
-        if (c->only_ghost < 0 || c->only_ghost == ghost)
-            status = draw_bundle(p, &c->lamps[k / waves / ghosts], ghost,
-                                 k % waves);
-        if (status != GLINT_OK)
-            return status;
+    for (int k = 0; k < p->n_bundles && status == GLINT_OK; k++) {
+        if (p->bundle[k].seen)
+            status = draw_bundle(p, &p->bundle[k]);
         if (c->progress)
-            c->progress(c->progress_ctx, (k + 1.0) / n);
+            c->progress(c->progress_ctx, (k + 1.0) / p->n_bundles);
     }
-    return GLINT_OK;
+    free(p->bundle);
+    return status;
 }
 
 /* The running sums along the rows. */

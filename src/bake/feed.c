@@ -79,7 +79,7 @@ void glint_feed_bundle(const struct glint_feed_config *cfg,
     const double area = (p->x1_mm - p->x0_mm) / n * (2 * p->y1_mm / n);
     const double flux = cfg->scale * feed->lamp->power *
                         glint_cos_deg(feed->lamp->theta_deg) * area *
-                        energy_unit(feed) / s->direct_flux[feed->wavelength];
+                        energy_unit(feed) / s->unit_flux[feed->wavelength];
     int exponent = 0;
     const double mantissa =
         flux > 0 && isfinite(flux) ? frexp(flux, &exponent) : 0;

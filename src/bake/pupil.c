@@ -18,6 +18,9 @@
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
 
+/* Later rounds look at less and get by with a coarser grid. */
+enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
+
 struct sample {
     bool valid;
     struct glint_ray ray;
@@ -27,22 +30,24 @@ struct search {
     const struct glint_path *path;
     double direction[3];
     double stop_mm;
+    int across, down; /* cells of this round */
     struct sample node[DOWN + 1][ACROSS + 1];
 };
 
-static double column_x(const struct glint_pupil *p, int i)
+static double column_x(const struct search *s, const struct glint_pupil *p,
+                       int i)
 {
-    return p->x0_mm + (p->x1_mm - p->x0_mm) * i / ACROSS;
+    return p->x0_mm + (p->x1_mm - p->x0_mm) * i / s->across;
 }
 
 static void sample_grid(struct search *s, const struct glint_pupil *p)
 {
-    for (int j = 0; j <= DOWN; j++)
-        for (int i = 0; i <= ACROSS; i++) {
+    for (int j = 0; j <= s->down; j++)
+        for (int i = 0; i <= s->across; i++) {
             struct sample *node = &s->node[j][i];
 
-            node->valid = glint_trace(s->path, column_x(p, i),
-                                      p->y1_mm * j / DOWN, s->direction,
+            node->valid = glint_trace(s->path, column_x(s, p, i),
+                                      p->y1_mm * j / s->down, s->direction,
                                       &node->ray, NULL) == GLINT_RAY_OK;
         }
 }
@@ -127,8 +132,8 @@ static bool shrink(struct search *s, struct glint_pupil *p)
 
     found.energy = 0;
     sample_grid(s, p);
-    for (int j = 0; j < DOWN; j++)
-        for (int i = 0; i < ACROSS; i++) {
+    for (int j = 0; j < s->down; j++)
+        for (int i = 0; i < s->across; i++) {
             struct bounds cell = {.n = 0};
 
             for (int k = 0; k < 4; k++)
@@ -138,15 +143,28 @@ static bool shrink(struct search *s, struct glint_pupil *p)
         }
     if (box.n == 0)
         return false;
-    found.x0_mm = column_x(p, (int)box.low[0]);
-    found.x1_mm = column_x(p, (int)box.high[0]);
-    found.y1_mm = p->y1_mm * box.high[2] / DOWN;
+    found.x0_mm = column_x(s, p, (int)box.low[0]);
+    found.x1_mm = column_x(s, p, (int)box.high[0]);
+    found.y1_mm = p->y1_mm * box.high[2] / s->down;
     /* mirrored in y */
     found.sensor_mm[3] = fmax(fabs(found.sensor_mm[2]),
                               fabs(found.sensor_mm[3]));
     found.sensor_mm[2] = -found.sensor_mm[3];
     *p = found;
     return true;
+}
+
+/* All that can enter. A slanted ray crosses the vertex plane beside where it
+ * meets the curved surface: by the sag at the rim times the tangent. */
+static struct glint_pupil whole_front(const struct glint_event *front,
+                                      const double direction[3])
+{
+    const double h = front->semi_mm, c = front->curvature;
+    const double sag = c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
+    const double aside = fabs(sag) * fabs(direction[0] / direction[2]);
+
+    return (struct glint_pupil){
+        .x0_mm = -h - aside, .x1_mm = h + aside, .y1_mm = h};
 }
 
 static double extent(const struct glint_pupil *p)
@@ -158,7 +176,7 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm)
 {
     struct search *s = malloc(sizeof *s);
-    struct glint_pupil p = {0};
+    struct glint_pupil p;
     const struct glint_event *front = NULL;
     bool found = true;
 
@@ -174,23 +192,14 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
     s->direction[1] = 0;
     s->direction[2] = glint_cos_deg(theta_deg);
     s->stop_mm = stop_radius_mm;
-    /* A slanted ray crosses the vertex plane beside where it meets the curved
-     * surface: by the sag at the rim times the tangent. */
-    {
-        const double h = front->semi_mm, c = front->curvature;
-        const double sag = c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
-        const double aside =
-            fabs(sag) * fabs(s->direction[0] / s->direction[2]);
-
-        p.x0_mm = -h - aside;
-        p.x1_mm = h + aside;
-        p.y1_mm = h;
-    }
+    p = whole_front(front, s->direction);
     for (int round = 0; round < ROUNDS && found; round++) {
         const double before = extent(&p);
 
+        s->across = round ? NEXT_ACROSS : ACROSS;
+        s->down = round ? NEXT_DOWN : DOWN;
         found = shrink(s, &p);
-        if (extent(&p) > 0.8 * before)
+        if (round > 0 && extent(&p) > 0.8 * before)
             break;
     }
     if (found)

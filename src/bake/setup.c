@@ -115,6 +115,7 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
 {
     const enum glint_status status =
         check(n_blades, blade_rotation_deg, wavelength_nm, n, error);
+    double mean = 0;
 
     if (status != GLINT_OK)
         return status;
@@ -135,8 +136,17 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
                      lens->name, wavelength_nm[i]);
             return GLINT_E_LENS;
         }
+        mean += setup->direct_flux[i] / n;
     }
+    for (int i = 0; i < n; i++)
+        setup->unit_flux[i] = mean;
     return GLINT_OK;
+}
+
+void glint_setup_balance(struct glint_setup *setup)
+{
+    for (int i = 0; i < setup->n_wavelengths; i++)
+        setup->unit_flux[i] = setup->direct_flux[i];
 }
 
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,

@@ -7,10 +7,8 @@
 
 #include <stdint.h>
 
-#define STATIC_ASSERT_JOIN(a, b) a##b
-#define STATIC_ASSERT_NAME(line) STATIC_ASSERT_JOIN(static_assert_, line)
 #define STATIC_ASSERT(condition) \
-    typedef char STATIC_ASSERT_NAME(__LINE__)[(condition) ? 1 : -1]
+    __extension__ _Static_assert(condition, #condition)
 
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);

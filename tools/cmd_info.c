@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint info: what a lens is.
+ */
+#include <stdlib.h>
+
+#include "tool.h"
+
+static const char help[] =
+    "glint info LENS [--json] [--f-number N]\n"
+    "\n"
+    "Prints focal length, back focal length, entrance pupil, stop radius at\n"
+    "the f-number, surfaces and ghosts with their pairs of surfaces (counted\n"
+    "from 0 at the front, without the stop). First-order values are for the\n"
+    "d line, 587.56 nm.\n"
+    "\n"
+    "  --f-number N   stop the lens to f/N first\n"
+    "  --json         one JSON object\n";
+
+struct info {
+    struct glint_prescription lens;
+    struct glint_optics optics;
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    int n_ghosts;
+};
+
+static void print_json(const struct info *info)
+{
+    printf("{\"name\": ");
+    tool_json_string(stdout, info->lens.name);
+    printf(", \"source\": ");
+    tool_json_string(stdout, info->lens.source);
+    printf(", \"focal_length_mm\": %.6f, \"back_focal_length_mm\": %.6f, "
+           "\"entrance_pupil_radius_mm\": %.6f, \"entrance_pupil_z_mm\": %.6f, "
+           "\"stop_radius_mm\": %.6f, \"f_number\": %g, \"length_mm\": %.6f, "
+           "\"film_mm\": [%g, %g], \"surfaces\": %d, "
+           "\"surfaces_before_stop\": %d, \"ghosts\": %d, \"ghost_pairs\": [",
+           info->optics.focal_mm, info->optics.back_focal_mm,
+           info->optics.entrance_radius_mm, info->optics.entrance_z_mm,
+           info->optics.stop_radius_mm, info->lens.f_number,
+           info->optics.length_mm, info->lens.film_width_mm,
+           info->lens.film_height_mm, info->lens.n_surfaces,
+           info->lens.stop_after, info->n_ghosts);
+    for (int k = 0; k < info->n_ghosts; k++)
+        printf("%s[%d, %d]", k ? ", " : "", info->ghost[k].i, info->ghost[k].j);
+    printf("]}\n");
+}
+
+static void print_text(const struct info *info)
+{
+    const struct glint_prescription *l = &info->lens;
+    const struct glint_optics *o = &info->optics;
+
+    printf("%s\n%s\n\n", l->name, l->source);
+    printf("focal length        %10.3f mm\n", o->focal_mm);
+    printf("back focal length   %10.3f mm\n", o->back_focal_mm);
+    printf("entrance pupil      %10.3f mm radius, %.3f mm behind the front\n",
+           o->entrance_radius_mm, o->entrance_z_mm);
+    printf("stop                %10.4f mm radius at f/%g\n", o->stop_radius_mm,
+           l->f_number);
+    printf("front to sensor     %10.3f mm\n", o->length_mm);
+    printf("film                %6gx%g mm\n", l->film_width_mm,
+           l->film_height_mm);
+    printf("surfaces            %6d before the stop, %d after\n",
+           l->stop_after, l->n_surfaces - l->stop_after);
+    printf("ghosts              %6d: ", info->n_ghosts);
+    for (int k = 0; k < info->n_ghosts; k++)
+        printf("%s%d:%d-%d", k == 0 ? "" : k % 8 ? "  " : "\n" "        ", k,
+               info->ghost[k].i, info->ghost[k].j);
+    printf("\n");
+}
+
+static int parse(struct tool *tool, int argc, char **argv, double *f_number)
+{
+    static const struct option options[] = {
+        {"f-number", required_argument, NULL, 'f'}, TOOL_COMMON_OPTIONS};
+    int c, code;
+
+    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+           0) {
+        if (c == 'f') {
+            if (!tool_number(optarg, f_number))
+                return tool_usage(tool, "--f-number takes a number, not '%s'",
+                                  optarg);
+            continue;
+        }
+        code = tool_option(tool, c, optarg);
+        if (code >= 0)
+            return code;
+    }
+    if (optind + 1 != argc)
+        return tool_usage(tool, "takes one lens");
+    return -1;
+}
+
+int cmd_info(int argc, char **argv)
+{
+    struct tool tool = {.name = "info", .help = help};
+    struct glint_error error;
+    struct info *info;
+    double f_number = 0;
+    int code = parse(&tool, argc, argv, &f_number);
+
+    if (code >= 0)
+        return code;
+    info = calloc(1, sizeof *info);
+    if (!info)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    code = tool_lens(&tool, argv[optind], &info->lens);
+    if (code == EXIT_OK && f_number != 0) {
+        const enum glint_status status =
+            glint_prescription_set_f_number(&info->lens, f_number, &error);
+
+        if (status != GLINT_OK)
+            code = tool_fail(&tool, status, error.text);
+    }
+    if (code == EXIT_OK) {
+        glint_optics_of(&info->lens, &info->optics);
+        info->n_ghosts =
+            glint_ghost_list(&info->lens, info->ghost, GLINT_MAX_GHOSTS);
+        (tool.json ? print_json : print_text)(info);
+    }
+    free(info);
+    return code;
+}

@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint render: the flare alone, in linear light.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure.h"
+#include "plain/picture.h"
+#include "scene.h"
+
+static const char help[] =
+    "glint render LENS -o OUT --light THETA,PHI[,POWER[,R,G,B]]... [options]\n"
+    "\n"
+    "Draws the ghosts of LENS alone. Values are linear: 1 is what a light of\n"
+    "POWER 1 would give if its in-focus image fell on one pixel. OUT is .pfm,\n"
+    "or with the image plug-in .exr, .hdr: linear as it stands. A .ppm, .png\n"
+    "or .jpg is for the eye: sRGB, the 99.9th percentile of luminance at 1\n"
+    "unless --exposure says otherwise.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --size WxH          default 960x540\n"
+    "  --light LIST        degrees off the axis, degrees about it (0 = right,\n"
+    "                      90 = up), power (default 1), colour; repeatable\n"
+    "  --engine E          model: the integer run time (default)\n"
+    "                      exact: the reference, every ray in double\n" SCENE_HELP
+        COMMON_HELP;
+
+struct render {
+    struct scene scene;
+    const char *output;
+    int width, height;
+    bool exact;
+    int n_lamps;
+    struct glint_lamp lamp[SCENE_MAX_LAMPS];
+    struct glint_float_image image;
+    double ms;
+};
+
+static int take(struct tool *tool, struct render *r, int c)
+{
+    static const char *const engines[] = {"model", "exact", NULL};
+    int word;
+
+    switch (c) {
+    case 'o':
+        r->output = optarg;
+        return -1;
+    case 's':
+        if (tool_size(optarg, &r->width, &r->height))
+            return -1;
+        return tool_usage(tool, "--size takes WxH of 1 to %d pixels, not '%s'",
+                          GLINT_MAX_SIDE, optarg);
+    case 'l':
+        if (r->n_lamps == SCENE_MAX_LAMPS)
+            return tool_usage(tool, "more than %d lights", SCENE_MAX_LAMPS);
+        if (scene_lamp(optarg, &r->lamp[r->n_lamps++]))
+            return -1;
+        return tool_usage(tool,
+                          "--light takes THETA,PHI[,POWER[,R,G,B]] with THETA "
+                          "0 to 89.9, not '%s'",
+                          optarg);
+    case 'e':
+        word = tool_word(optarg, engines);
+        r->exact = word == 1;
+        return word >= 0 ? -1
+                         : tool_usage(tool, "no engine '%s': model or exact",
+                                      optarg);
+    default:
+        return tool_option(tool, c, optarg);
+    }
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct render *r)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"size", required_argument, NULL, 's'},
+        {"light", required_argument, NULL, 'l'},
+        {"engine", required_argument, NULL, 'e'},
+        SCENE_OPTIONS,
+        TOOL_COMMON_OPTIONS};
+    int c, code;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            NULL)) >= 0) {
+        code = scene_option(tool, &r->scene, c, optarg);
+        if (code == -2)
+            code = take(tool, r, c);
+        if (code >= 0)
+            return code;
+    }
+    if (optind + 1 != argc)
+        return tool_usage(tool, "takes one lens");
+    if (!r->output)
+        return tool_usage(tool, "needs -o OUT");
+    if (r->n_lamps == 0)
+        return tool_usage(tool, "needs a --light");
+    return -1;
+}
+
+/* ------------------------------------------------------------------ engines */
+
+static int render_exact(struct tool *tool, struct render *r)
+{
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct tool_progress progress;
+    struct glint_exact_config cfg = {
+        .setup = &r->scene.setup,
+        .view = scene_view(&r->scene, r->width, r->height),
+        .lamps = r->lamp,
+        .n_lamps = r->n_lamps,
+        .grid = r->scene.grid ? (r->scene.grid + 1) / 2 * 2 : 512,
+        .only_ghost = r->scene.only_ghost,
+        .workers = tool->workers,
+        .progress = tool_progress_show,
+        .progress_ctx = &progress};
+    double *rgb = malloc(n * sizeof *rgb);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    tool_progress_start(&progress, tool, "exact");
+    if (rgb)
+        status = glint_exact_render(&cfg, rgb);
+    tool_progress_end(&progress);
+    for (size_t i = 0; status == GLINT_OK && i < n; i++)
+        r->image.rgb[i] = (float)(rgb[i] * scene_scale(&r->scene));
+    free(rgb);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (tool->json)
+        printf("{\"engine\": \"exact\", \"grid\": %d, \"lights\": %d, "
+               "\"ghosts\": %d, ",
+               cfg.grid, r->n_lamps, r->scene.setup.n_ghosts);
+    return EXIT_OK;
+}
+
+static int render_model(struct tool *tool, struct render *r)
+{
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
+                                .width = r->width,
+                                .height = r->height};
+    struct frame_report report = {{0}, 0, 0, 0, 0, 0, 0, 0, 0};
+    int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
+    enum glint_status status = GLINT_E_MEMORY;
+    struct frame frame;
+    double scale;
+    int code;
+
+    if (!linear_q20)
+        return tool_fail(tool, status, NULL);
+    glint_image_place(&layer, linear_q20);
+    code = scene_frame(tool, &r->scene,
+                       scene_view(&r->scene, r->width, r->height), &frame);
+    if (code == EXIT_OK) {
+        scale = frame_auto_scale(&frame, r->lamp, r->n_lamps);
+        status = frame_draw(&frame, r->lamp, r->n_lamps, scale, &layer,
+                            &report);
+        for (size_t i = 0; i < n; i++)
+            r->image.rgb[i] =
+                (float)(linear_q20[i] * 0x1p-20 / scale *
+                        scene_scale(&r->scene));
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, NULL);
+    }
+    if (code == EXIT_OK && tool->json) {
+        printf("{\"engine\": \"model\", ");
+        scene_json(&report);
+        printf(", ");
+    }
+    frame_finish(&frame);
+    free(linear_q20);
+    return code;
+}
+
+/* ------------------------------------------------------------------- output */
+
+static int save(struct tool *tool, struct render *r)
+{
+    struct glint_image codes = {.format = GLINT_RGB24,
+                                .width = r->width,
+                                .height = r->height};
+    struct glint_error error = {""};
+    enum glint_status status;
+    uint8_t *mem;
+
+    if (glint_picture_is_float(r->output))
+        status = glint_picture_save_float(r->output, &r->image, &error);
+    else {
+        mem = measure_encode(&r->image, r->scene.has_exposure
+                                            ? 1
+                                            : measure_exposure(&r->image));
+        if (!mem)
+            return tool_fail(tool, GLINT_E_MEMORY, NULL);
+        glint_image_place(&codes, mem);
+        status = glint_picture_save(r->output, &codes, &error);
+        free(mem);
+    }
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+static int run(struct tool *tool, struct render *r, const char *lens)
+{
+    const double start = tool_seconds();
+    int code = scene_open(tool, &r->scene, lens);
+
+    if (code != EXIT_OK)
+        return code;
+    r->image.width = r->width;
+    r->image.height = r->height;
+    r->image.rgb =
+        calloc(3 * (size_t)r->width * (size_t)r->height, sizeof(float));
+    if (!r->image.rgb)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = r->exact ? render_exact(tool, r) : render_model(tool, r);
+    if (code == EXIT_OK)
+        code = save(tool, r);
+    if (code == EXIT_OK && tool->json)
+        printf("\"ms\": %.3f}\n", 1e3 * (tool_seconds() - start));
+    free(r->image.rgb);
+    return code;
+}
+
+int cmd_render(int argc, char **argv)
+{
+    struct tool tool = {.name = "render", .help = help};
+    struct render *r = calloc(1, sizeof *r);
+    int code;
+
+    if (!r)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    scene_defaults(&r->scene);
+    r->width = 960;
+    r->height = 540;
+    code = parse(&tool, argc, argv, r);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, r, argv[optind]);
+        tool_finish(&tool);
+    }
+    free(r);
+    return code;
+}

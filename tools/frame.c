@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: MIT */
+#include "frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tool.h"
+
+void frame_init(struct frame *frame, const struct glint_setup *setup,
+                struct glint_view view, struct glint_workers *workers)
+{
+    *frame = (struct frame){.setup = setup,
+                            .view = view,
+                            .cfg = {.workers = workers,
+                                    .width = view.width,
+                                    .height = view.height,
+                                    .tile_log2 = 3,
+                                    .coarse_log2 = 7,
+                                    .weights = GLINT_WEIGHTS_WACHSPRESS,
+                                    .antialias = 1},
+                            .max_cells = 64,
+                            .only_ghost = -1};
+    glint_setup_stop(setup, &frame->cfg.stop);
+}
+
+enum glint_status frame_use_mask(struct frame *frame, int nodes)
+{
+    const double span = 1.25;
+
+    frame->mask = malloc((size_t)nodes * (size_t)nodes * sizeof *frame->mask);
+    if (!frame->mask)
+        return GLINT_E_MEMORY;
+    glint_setup_mask(frame->setup, frame->mask, nodes, span);
+    frame->cfg.stop.mask_q13 = frame->mask;
+    frame->cfg.stop.mask_nodes = nodes;
+    frame->cfg.stop.mask_span_q16 = (int32_t)(span * 65536);
+    return GLINT_OK;
+}
+
+void frame_finish(struct frame *frame)
+{
+    free(frame->mask);
+    free(frame->feed);
+    free(frame->vertices);
+    free(frame->mem);
+}
+
+/* --------------------------------------------------------------------- plan */
+
+struct job {
+    struct frame *frame;
+    struct glint_feed_config cfg;
+};
+
+static struct glint_feed_config feed_config(const struct frame *f, double scale)
+{
+    return (struct glint_feed_config){f->setup, f->view, scale, f->max_cells,
+                                      f->uniform};
+}
+
+static void plan_job(void *ctx, int job, int worker)
+{
+    struct job *j = ctx;
+
+    (void)worker;
+    glint_feed_plan(&j->cfg, &j->frame->feed[job]);
+}
+
+static enum glint_status reserve_feeds(struct frame *f, int n)
+{
+    struct glint_feed *feed;
+    struct glint_vertex **vertices;
+
+    if (n <= f->max_feeds)
+        return GLINT_OK;
+    feed = realloc(f->feed, (size_t)n * sizeof *feed);
+    if (!feed)
+        return GLINT_E_MEMORY;
+    f->feed = feed;
+    vertices = realloc(f->vertices, (size_t)n * sizeof *vertices);
+    if (!vertices)
+        return GLINT_E_MEMORY;
+    f->vertices = vertices;
+    f->max_feeds = n;
+    return GLINT_OK;
+}
+
+/* Every ghost, lamp and wavelength that reaches the picture. */
+static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
+                              int n_lamps)
+{
+    const struct glint_setup *s = f->setup;
+    const int first = f->only_ghost < 0 ? 0 : f->only_ghost;
+    const int last = f->only_ghost < 0 ? s->n_ghosts - 1 : f->only_ghost;
+    struct job job = {f, feed_config(f, 1)};
+    const enum glint_status status =
+        reserve_feeds(f, n_lamps * (last - first + 1) * s->n_wavelengths);
+    int n = 0, kept = 0;
+
+    if (status != GLINT_OK)
+        return status;
+    for (int lamp = 0; lamp < n_lamps; lamp++)
+        for (int ghost = first; ghost <= last; ghost++)
+            for (int wave = 0; wave < s->n_wavelengths; wave++)
+                f->feed[n++] = (struct glint_feed){.lamp = &lamps[lamp],
+                                                   .ghost = ghost,
+                                                   .wavelength = wave};
+    glint_workers_run(f->cfg.workers, n, plan_job, &job);
+    for (int i = 0; i < n; i++)
+        if (f->feed[i].n_cells > 0)
+            f->feed[kept++] = f->feed[i];
+    f->n_feeds = kept;
+    return GLINT_OK;
+}
+
+/* Irradiance of a feed if it filled the box of its light, display white. */
+static double mean_irradiance(const struct frame *f,
+                              const struct glint_feed *feed)
+{
+    const struct glint_pupil *p = &feed->pupil;
+    const double pixel = f->view.sensor_width_mm / f->view.width;
+    const double pixels = (p->sensor_mm[1] - p->sensor_mm[0]) *
+                              (p->sensor_mm[3] - p->sensor_mm[2]) /
+                              (pixel * pixel) +
+                          1;
+    const double area = (p->x1_mm - p->x0_mm) * 2 * p->y1_mm;
+
+    return feed->lamp->power * p->energy * area /
+           f->setup->unit_flux[feed->wavelength] / pixels;
+}
+
+double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
+                        int n_lamps)
+{
+    double brightest = 0;
+
+    if (plan(frame, lamps, n_lamps) != GLINT_OK)
+        return 1;
+    for (int i = 0; i < frame->n_feeds; i++)
+        brightest = fmax(brightest, mean_irradiance(frame, &frame->feed[i]));
+    return brightest > 0 ? exp2(3 - ceil(log2(brightest))) : 1;
+}
+
+/* ------------------------------------------------------------------- memory */
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+/* A new block of exactly what was needed so far; the vertices move over. */
+static enum glint_status regrow(struct frame *f,
+                                const struct glint_feed_config *cfg)
+{
+    const size_t bytes = glint_flare_bytes(&f->cfg);
+    struct glint_flare *flare;
+    enum glint_status status;
+    void *mem = NULL;
+
+    if (bytes == 0 || posix_memalign(&mem, 64, bytes) != 0)
+        return GLINT_E_MEMORY;
+    status = glint_flare_init(&flare, &f->cfg, mem, bytes);
+    for (int i = 0; i < f->n_feeds && status == GLINT_OK; i++) {
+        const int nodes = f->feed[i].n_cells + 1;
+        struct glint_bundle bundle;
+        struct glint_vertex *to;
+
+        glint_feed_bundle(cfg, &f->feed[i], &bundle);
+        to = glint_flare_add(flare, &bundle);
+        if (f->vertices[i])
+            memcpy(to, f->vertices[i],
+                   (size_t)nodes * (size_t)nodes * sizeof *to);
+        f->vertices[i] = to;
+    }
+    free(f->mem);
+    f->mem = mem;
+    f->bytes = bytes;
+    f->flare = flare;
+    return status;
+}
+
+/* -------------------------------------------------------------------- frame */
+
+static void trace_job(void *ctx, int job, int worker)
+{
+    struct job *j = ctx;
+
+    (void)worker;
+    glint_feed_trace(&j->cfg, &j->frame->feed[job], j->frame->vertices[job]);
+}
+
+/* Takes all bundles in; makes room first where there is too little. */
+static enum glint_status add_bundles(struct frame *f,
+                                     const struct glint_feed_config *cfg)
+{
+    int vertices = 0;
+
+    for (int i = 0; i < f->n_feeds; i++) {
+        f->vertices[i] = NULL;
+        vertices += (f->feed[i].n_cells + 1) * (f->feed[i].n_cells + 1);
+    }
+    if (!f->mem || f->n_feeds > f->cfg.max_bundles ||
+        vertices > f->cfg.max_vertices) {
+        f->cfg.max_bundles = larger(f->cfg.max_bundles, f->n_feeds);
+        f->cfg.max_vertices = larger(f->cfg.max_vertices, vertices);
+        return regrow(f, cfg);
+    }
+    glint_flare_begin(f->flare);
+    for (int i = 0; i < f->n_feeds; i++) {
+        struct glint_bundle bundle;
+
+        glint_feed_bundle(cfg, &f->feed[i], &bundle);
+        f->vertices[i] = glint_flare_add(f->flare, &bundle);
+    }
+    return GLINT_OK;
+}
+
+/* Bins, and where something did not fit, once more with room for it. */
+static enum glint_status bin(struct frame *f,
+                             const struct glint_feed_config *cfg,
+                             struct glint_flare_stats *s)
+{
+    for (;;) {
+        enum glint_status status;
+
+        glint_flare_bin(f->flare, s);
+        if (s->need_primitives <= f->cfg.max_primitives &&
+            s->need_refs <= f->cfg.max_refs &&
+            s->need_tile_refs <= f->cfg.max_tile_refs)
+            return GLINT_OK;
+        f->cfg.max_primitives =
+            larger(f->cfg.max_primitives, s->need_primitives);
+        f->cfg.max_refs = larger(f->cfg.max_refs, s->need_refs);
+        f->cfg.max_tile_refs =
+            larger(f->cfg.max_tile_refs, s->need_tile_refs);
+        status = regrow(f, cfg);
+        if (status != GLINT_OK)
+            return status;
+    }
+}
+
+/* What the frame took, by the same measure that sized the block. */
+static size_t bytes_used(const struct frame *f,
+                         const struct glint_flare_stats *s)
+{
+    struct glint_flare_config used = f->cfg;
+
+    used.max_bundles = s->bundles;
+    used.max_vertices = s->vertices;
+    used.max_primitives = s->primitives;
+    used.max_refs = s->refs;
+    used.max_tile_refs = s->tile_refs;
+    return glint_flare_bytes(&used);
+}
+
+static int count_ghosts(const struct frame *f)
+{
+    int n = 0;
+
+    for (int ghost = 0; ghost < f->setup->n_ghosts; ghost++) {
+        bool seen = false;
+
+        for (int i = 0; i < f->n_feeds && !seen; i++)
+            seen = f->feed[i].ghost == ghost;
+        n += seen;
+    }
+    return n;
+}
+
+enum glint_status frame_draw(struct frame *frame,
+                             const struct glint_lamp *lamps, int n_lamps,
+                             double scale, const struct glint_image *image,
+                             struct frame_report *report)
+{
+    struct job job = {frame, feed_config(frame, scale)};
+    const double t0 = tool_seconds();
+    double t1, t2, t3;
+    enum glint_status status = plan(frame, lamps, n_lamps);
+
+    if (status == GLINT_OK)
+        status = add_bundles(frame, &job.cfg);
+    if (status != GLINT_OK)
+        return status;
+    glint_workers_run(frame->cfg.workers, frame->n_feeds, trace_job, &job);
+    t1 = tool_seconds();
+    status = bin(frame, &job.cfg, &report->stats);
+    if (status != GLINT_OK)
+        return status;
+    t2 = tool_seconds();
+    glint_flare_draw(frame->flare, image);
+    t3 = tool_seconds();
+    report->lights = n_lamps;
+    report->ghosts = count_ghosts(frame);
+    report->tiles = glint_flare_tiles(frame->flare);
+    report->arena_bytes = frame->bytes;
+    report->peak_bytes = bytes_used(frame, &report->stats);
+    report->trace_ms = 1e3 * (t1 - t0);
+    report->bin_ms = 1e3 * (t2 - t1);
+    report->draw_ms = 1e3 * (t3 - t2);
+    return GLINT_OK;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame's flare, end to end: lamps -> grids of exact rays -> run-time half.
+ *
+ *     frame_init(&frame, &setup, view, workers);    then set options
+ *     frame_draw(&frame, lamps, n, scale, &image, &report);
+ *     frame_finish(&frame);
+ *
+ * The run-time half gets one block of memory, exactly as large as the most
+ * demanding frame so far needed.
+ */
+#ifndef GLINT_TOOLS_FRAME_H
+#define GLINT_TOOLS_FRAME_H
+
+#include "glint/glint.h"
+
+struct frame {
+    const struct glint_setup *setup;
+    struct glint_view view;
+    struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop;
+                                      capacities are the frame's own */
+    int max_cells;
+    bool uniform;   /* the same grid for all ghosts */
+    int only_ghost; /* -1: all */
+    int16_t *mask;  /* of the stop, unless NULL */
+
+    struct glint_feed *feed;
+    int n_feeds, max_feeds;
+    struct glint_vertex **vertices; /* of each feed, in the flare's block */
+    struct glint_flare *flare;
+    void *mem;
+    size_t bytes;
+};
+
+struct frame_report {
+    struct glint_flare_stats stats;
+    int lights, ghosts, tiles;
+    size_t arena_bytes; /* what the run-time half was given */
+    size_t peak_bytes;  /* what its largest frame took of it */
+    double trace_ms, bin_ms, draw_ms;
+};
+
+void frame_init(struct frame *frame, const struct glint_setup *setup,
+                struct glint_view view, struct glint_workers *workers);
+
+/* Reads the stop from a mask of NODES^2 distances rather than its sides. */
+enum glint_status frame_use_mask(struct frame *frame, int nodes);
+
+/* Plans LAMPS and returns the power of two that brings the brightest ghost near
+ * 8 times display white: the scale for pictures in linear light. */
+double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
+                        int n_lamps);
+
+/* Adds the flare of LAMPS, times SCALE, to IMAGE. GLINT_E_MEMORY. */
+enum glint_status frame_draw(struct frame *frame,
+                             const struct glint_lamp *lamps, int n_lamps,
+                             double scale, const struct glint_image *image,
+                             struct frame_report *report);
+
+void frame_finish(struct frame *frame);
+
+#endif

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint - the command: finds the subcommand and runs it.
+ */
+#include <stdio.h>
+#include <string.h>
+
+#include "tool.h"
+
+static const char help[] =
+    "glint: lens flare of real lenses, on pictures and video, without a GPU\n"
+    "\n"
+    "  glint info LENS                 what a lens is: focal length, ghosts\n"
+    "  glint trace LENS --ghost K ...  exact rays as a table\n"
+    "  glint render LENS -o OUT ...    the flare alone\n"
+    "  glint overlay IN -o OUT ...     the flare of the lamps in a picture or\n"
+    "                                  video, on top of it\n"
+    "  glint compare A B               how far two pictures are apart\n"
+    "\n"
+    "  glint COMMAND --help            all options of a command\n"
+    "  glint --version\n"
+    "\n"
+    "LENS is a .lens file or the name of one that comes with glint, such as\n"
+    "heliar-tronnier. Exit codes: 0 ok, 1 run-time failure, 2 usage, 3 input\n"
+    "or format, 4 device, 5 lens data, 6 output.\n";
+
+struct command {
+    const char *name;
+    int (*run)(int argc, char **argv);
+};
+
+static const struct command commands[] = {
+    {"info", cmd_info},       {"trace", cmd_trace},
+    {"render", cmd_render},   {"overlay", cmd_overlay},
+    {"compare", cmd_compare},
+};
+
+int main(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "";
+
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+        if (strcmp(name, commands[i].name) == 0)
+            return commands[i].run(argc - 1, argv + 1);
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+        fputs(help, stdout);
+        return EXIT_OK;
+    }
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
+        struct tool tool = {.name = "version", .help = help};
+
+        return tool_option(&tool, 'V', NULL);
+    }
+    if (*name)
+        fprintf(stderr, "glint: no command '%s'\n", name);
+    fputs(*name ? "Try 'glint --help'.\n" : help, stderr);
+    return EXIT_USAGE;
+}

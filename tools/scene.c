@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void scene_defaults(struct scene *scene)
+{
+    *scene = (struct scene){.n_blades = 8,
+                            .wavelength_nm = {650, 532, 450},
+                            .n_wavelengths = 3,
+                            .gain = 1,
+                            .only_ghost = -1,
+                            .tile_log2 = 3,
+                            .coarse_log2 = 7,
+                            .weights = GLINT_WEIGHTS_WACHSPRESS,
+                            .antialias = true};
+}
+
+/* "circle" or "polygon:N[,ROT]" */
+static bool parse_stop(const char *text, struct scene *scene)
+{
+    double v[2] = {0, 0};
+
+    if (strcmp(text, "circle") == 0) {
+        scene->n_blades = 0;
+        return true;
+    }
+    if (strncmp(text, "polygon:", 8) != 0 ||
+        tool_numbers(text + 8, v, 2) == 0 || v[0] != floor(v[0]) ||
+        v[0] < 3 || v[0] > GLINT_MAX_BLADES)
+        return false;
+    scene->n_blades = (int)v[0];
+    scene->blade_rotation_deg = v[1];
+    return true;
+}
+
+static bool parse_sensor(const char *text, double mm[2])
+{
+    char *end;
+
+    mm[0] = strtod(text, &end);
+    return end != text && *end == 'x' && tool_number(end + 1, &mm[1]) &&
+           mm[0] >= 0.1 && mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
+}
+
+static bool parse_merge(const char *text, struct scene *scene)
+{
+    double v[2];
+
+    if (tool_numbers(text, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
+        v[0] > 4 || v[1] < 0 || v[1] > 1)
+        return false;
+    scene->merge_steps = (int)v[0];
+    scene->merge_gamma = v[1];
+    return true;
+}
+
+/* A power of two out of a short list, as its logarithm. */
+static bool parse_side(const char *text, int low, int high, int *log2)
+{
+    int side;
+
+    if (!tool_integer(text, 0, 1 << high, &side))
+        return false;
+    for (*log2 = low; *log2 <= high; ++*log2)
+        if (side == 1 << *log2)
+            return true;
+    *log2 = 0;
+    return side == 0 && low > 3;
+}
+
+static bool take(struct scene *s, int option, const char *value)
+{
+    static const char *const weights[] = {"loop-derose", "wachspress", NULL};
+    static const char *const parts[] = {"ghosts", "all", NULL};
+    int word;
+
+    switch (option) {
+    case OPT_F_NUMBER:
+        return tool_number(value, &s->f_number) && s->f_number > 0;
+    case OPT_STOP:
+        return parse_stop(value, s);
+    case OPT_WAVELENGTHS:
+        s->n_wavelengths =
+            tool_numbers(value, s->wavelength_nm, GLINT_MAX_WAVELENGTHS);
+        return s->n_wavelengths > 0;
+    case OPT_SENSOR:
+        return parse_sensor(value, s->sensor_mm);
+    case OPT_EXPOSURE:
+        s->has_exposure = true;
+        return tool_number(value, &s->exposure_ev) &&
+               fabs(s->exposure_ev) <= 100;
+    case OPT_GAIN:
+        return tool_number(value, &s->gain) && s->gain >= 0;
+    case OPT_GHOST:
+        return tool_integer(value, 0, GLINT_MAX_GHOSTS, &s->only_ghost);
+    case OPT_GRID:
+        return tool_integer(value, 4, GLINT_MAX_CELLS, &s->grid);
+    case OPT_UNIFORM:
+        return s->uniform = true;
+    case OPT_MERGE:
+        return parse_merge(value, s);
+    case OPT_TILE:
+        return parse_side(value, 3, 5, &s->tile_log2);
+    case OPT_COARSE:
+        return parse_side(value, 6, 8, &s->coarse_log2);
+    case OPT_WEIGHTS:
+        word = tool_word(value, weights);
+        s->weights =
+            word == 0 ? GLINT_WEIGHTS_LOOP_DEROSE : GLINT_WEIGHTS_WACHSPRESS;
+        return word >= 0;
+    case OPT_MASK:
+        return tool_integer(value, 2, 4096, &s->mask_nodes);
+    case OPT_NO_ANTIALIAS:
+        s->antialias = false;
+        return true;
+    case OPT_DITHER:
+        return s->dither = true;
+    default:
+        return tool_word(value, parts) >= 0;
+    }
+}
+
+int scene_option(const struct tool *tool, struct scene *scene, int option,
+                 const char *value)
+{
+    static const struct option names[] = {SCENE_OPTIONS};
+
+    if (option < OPT_F_NUMBER || option >= OPT_LAST)
+        return -2;
+    if (take(scene, option, value))
+        return -1;
+    return tool_usage(tool, "--%s: '%s' is not something it takes",
+                      names[option - OPT_F_NUMBER].name, value);
+}
+
+bool scene_lamp(const char *text, struct glint_lamp *lamp)
+{
+    double v[6] = {0, 0, 1, 1, 1, 1};
+    const int n = tool_numbers(text, v, 6);
+
+    if ((n != 2 && n != 3 && n != 6) || v[0] < 0 || v[0] > 89.9 || v[2] < 0)
+        return false;
+    *lamp = (struct glint_lamp){v[0], v[1], v[2], {v[3], v[4], v[5]}};
+    return true;
+}
+
+int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    const int code = tool_lens(tool, lens, &scene->lens);
+
+    if (code != EXIT_OK)
+        return code;
+    if (scene->f_number > 0)
+        status = glint_prescription_set_f_number(&scene->lens, scene->f_number,
+                                                 &error);
+    if (status == GLINT_OK)
+        status = glint_setup_init(
+            &scene->setup, &scene->lens, scene->n_blades,
+            scene->blade_rotation_deg, scene->wavelength_nm,
+            scene->n_wavelengths, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (scene->only_ghost >= scene->setup.n_ghosts)
+        return tool_usage(tool, "%s has %d ghosts, there is no %d",
+                          scene->lens.name, scene->setup.n_ghosts,
+                          scene->only_ghost);
+    return EXIT_OK;
+}
+
+struct glint_view scene_view(const struct scene *scene, int width, int height)
+{
+    const double *mm = scene->sensor_mm;
+
+    return glint_view_fit(width, height,
+                          mm[0] > 0 ? mm[0] : scene->lens.film_width_mm,
+                          mm[0] > 0 ? mm[1] : scene->lens.film_height_mm);
+}
+
+int scene_frame(const struct tool *tool, const struct scene *scene,
+                struct glint_view view, struct frame *frame)
+{
+    frame_init(frame, &scene->setup, view, tool->workers);
+    frame->max_cells = scene->grid ? scene->grid : 64;
+    frame->uniform = scene->uniform;
+    frame->only_ghost = scene->only_ghost;
+    frame->cfg.tile_log2 = scene->tile_log2;
+    frame->cfg.coarse_log2 = scene->coarse_log2;
+    frame->cfg.weights = scene->weights;
+    frame->cfg.merge_steps = scene->merge_steps;
+    frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
+    frame->cfg.antialias = scene->antialias;
+    frame->cfg.dither = scene->dither;
+    if (scene->mask_nodes &&
+        frame_use_mask(frame, scene->mask_nodes) != GLINT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    return EXIT_OK;
+}
+
+double scene_scale(const struct scene *scene)
+{
+    return scene->gain * exp2(scene->exposure_ev);
+}
+
+void scene_json(const struct frame_report *r)
+{
+    printf("\"lights\": %d, \"ghosts\": %d, \"bundles\": %d, "
+           "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
+           "\"peak_bytes\": %zu, \"refs\": %d, \"merged_cells\": %d, "
+           "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
+           "\"trace_ms\": %.3f, \"bin_ms\": %.3f, \"draw_ms\": %.3f",
+           r->lights, r->ghosts, r->stats.bundles, r->stats.primitives,
+           r->tiles, r->arena_bytes, r->peak_bytes, r->stats.refs,
+           r->stats.merged_cells, r->stats.dropped_bundles,
+           r->stats.dropped_cells, r->trace_ms, r->bin_ms, r->draw_ms);
+}

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The options that say what is drawn and how, for render and overlay alike.
+ */
+#ifndef GLINT_TOOLS_SCENE_H
+#define GLINT_TOOLS_SCENE_H
+
+#include "frame.h"
+#include "tool.h"
+
+enum { SCENE_MAX_LAMPS = 1024 };
+
+struct scene {
+    struct glint_prescription lens;
+    struct glint_setup setup;
+    double f_number; /* 0: as the table says */
+    int n_blades;
+    double blade_rotation_deg;
+    double wavelength_nm[GLINT_MAX_WAVELENGTHS];
+    int n_wavelengths;
+    double sensor_mm[2]; /* 0: the table's film */
+    double exposure_ev, gain;
+    int only_ghost;
+
+    int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
+    double merge_gamma;
+    enum glint_weights weights;
+    bool uniform, antialias, dither, has_exposure;
+};
+
+/* Long options of this file, for a command's array; all above 1000. */
+enum scene_option {
+    OPT_F_NUMBER = 1000,
+    OPT_STOP,
+    OPT_WAVELENGTHS,
+    OPT_SENSOR,
+    OPT_EXPOSURE,
+    OPT_GAIN,
+    OPT_GHOST,
+    OPT_GRID,
+    OPT_UNIFORM,
+    OPT_MERGE,
+    OPT_TILE,
+    OPT_COARSE,
+    OPT_WEIGHTS,
+    OPT_MASK,
+    OPT_NO_ANTIALIAS,
+    OPT_DITHER,
+    OPT_ONLY,
+    OPT_LAST
+};
+
+#define SCENE_OPTIONS                                          \
+    {"f-number", required_argument, NULL, OPT_F_NUMBER},       \
+        {"stop", required_argument, NULL, OPT_STOP},           \
+        {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS}, \
+        {"sensor", required_argument, NULL, OPT_SENSOR},       \
+        {"exposure", required_argument, NULL, OPT_EXPOSURE},   \
+        {"gain", required_argument, NULL, OPT_GAIN},           \
+        {"ghost", required_argument, NULL, OPT_GHOST},         \
+        {"grid", required_argument, NULL, OPT_GRID},           \
+        {"uniform-grid", no_argument, NULL, OPT_UNIFORM},      \
+        {"merge", required_argument, NULL, OPT_MERGE},         \
+        {"tile", required_argument, NULL, OPT_TILE},           \
+        {"coarse", required_argument, NULL, OPT_COARSE},       \
+        {"weights", required_argument, NULL, OPT_WEIGHTS},     \
+        {"mask", required_argument, NULL, OPT_MASK},           \
+        {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS}, \
+        {"dither", no_argument, NULL, OPT_DITHER},             \
+    {                                                          \
+        "only", required_argument, NULL, OPT_ONLY              \
+    }
+
+/* What they do, for a command's help. */
+#define SCENE_HELP                                                             \
+    "The lens\n"                                                               \
+    "  --f-number N        stop it to f/N (default: the table's)\n"            \
+    "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the first\n" \
+    "                      corner at ROT degrees (default polygon:8)\n"        \
+    "  --wavelengths LIST  nm; three become R,G,B as they stand (default\n"    \
+    "                      650,532,450), any other number is weighted by the\n" \
+    "                      CIE 1931 observer\n"                                \
+    "  --sensor WxH        mm (default: the film of the table); the picture\n" \
+    "                      is the largest of its shape that fits\n"            \
+    "  --ghost K           this ghost alone\n"                                 \
+    "  --only WHAT         ghosts | all; ghosts are all there is yet\n"        \
+    "Brightness\n"                                                             \
+    "  --exposure EV       stops; all light times 2^EV (default 0)\n"          \
+    "  --gain G            and times G (default 1)\n"                          \
+    "Speed and accuracy of the integer engine\n"                               \
+    "  --grid N            cells a side for the largest ghosts, 4 to 1024\n"   \
+    "                      (default 64; the exact engine: 512)\n"              \
+    "  --uniform-grid      that many for every ghost\n"                        \
+    "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
+    "                      where edges agree within GAMMA (default 0,0)\n"     \
+    "  --tile N            small tiles of 8, 16 or 32 pixels (default 8)\n"    \
+    "  --coarse N          large tiles of 64, 128 or 256, or 0 for none\n"     \
+    "                      (default 128)\n"                                    \
+    "  --weights W         wachspress | loop-derose (default wachspress)\n"    \
+    "  --mask N            look the stop up in N x N signed distances\n"       \
+    "  --no-antialias      a pixel's centre decides, as published\n"           \
+    "  --dither            ordered dither when writing 8 bits\n"
+
+#define COMMON_HELP                                                           \
+    "Common\n"                                                                \
+    "  -j, --threads N     default: all processors; never changes a result\n" \
+    "  --kernels c|auto    --seed N   --json   -q   -v   --help   --version\n"
+
+void scene_defaults(struct scene *scene);
+
+/* Takes a scene option. -1: taken; -2: not one of these; else an exit code. */
+int scene_option(const struct tool *tool, struct scene *scene, int option,
+                 const char *value);
+
+/* "THETA,PHI[,POWER[,R,G,B]]" */
+bool scene_lamp(const char *text, struct glint_lamp *lamp);
+
+/* Reads LENS and prepares it. Returns an exit code. */
+int scene_open(const struct tool *tool, struct scene *scene, const char *lens);
+
+struct glint_view scene_view(const struct scene *scene, int width, int height);
+
+/* Makes FRAME as the options say. Returns an exit code. */
+int scene_frame(const struct tool *tool, const struct scene *scene,
+                struct glint_view view, struct frame *frame);
+
+/* gain * 2^EV */
+double scene_scale(const struct scene *scene);
+
+/* Prints the report of a frame as JSON members, without braces. */
+void scene_json(const struct frame_report *report);
+
+#endif

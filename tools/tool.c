@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: MIT */
+#include "tool.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "posix/input.h"
+#include "posix/workers.h"
+
+#ifndef GLINT_LENS_DIR
+#define GLINT_LENS_DIR "/usr/local/share/glint/lenses"
+#endif
+
+int tool_usage(const struct tool *tool, const char *format, ...)
+{
+    va_list args;
+
+    fprintf(stderr, "glint %s: ", tool->name);
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    fprintf(stderr, "\nTry 'glint %s --help'.\n", tool->name);
+    return EXIT_USAGE;
+}
+
+int tool_fail(const struct tool *tool, enum glint_status status,
+              const char *text)
+{
+    static const int code[] = {
+        [GLINT_OK] = EXIT_OK,           [GLINT_E_ARGUMENT] = EXIT_USAGE,
+        [GLINT_E_MEMORY] = EXIT_RUNTIME, [GLINT_E_FORMAT] = EXIT_INPUT,
+        [GLINT_E_UNSUPPORTED] = EXIT_INPUT, [GLINT_E_LENS] = EXIT_LENS,
+        [GLINT_E_IO] = EXIT_INPUT,      [GLINT_E_OUTPUT] = EXIT_OUTPUT,
+        [GLINT_E_CLOSED] = EXIT_OK};
+
+    if (status == GLINT_E_CLOSED) /* the reader had enough: no failure */
+        return EXIT_OK;
+    fprintf(stderr, "glint %s: %s\n", tool->name,
+            text && *text ? text : glint_status_text(status));
+    return code[status];
+}
+
+static int show_version(void)
+{
+    printf("glint %s (C kernels; MIT licence)\n", GLINT_VERSION);
+    return EXIT_OK;
+}
+
+int tool_option(struct tool *tool, int option, const char *value)
+{
+    static const char *const kernels[] = {"c", "auto", NULL};
+    int seed;
+
+    switch (option) {
+    case 'h':
+        fputs(tool->help, stdout);
+        return EXIT_OK;
+    case 'V':
+        return show_version();
+    case 'q':
+        tool->quiet = true;
+        return -1;
+    case 'v':
+        tool->verbose++;
+        return -1;
+    case 'J':
+        tool->json = true;
+        return -1;
+    case 'j':
+        if (tool_integer(value, 1, GLINT_MAX_WORKERS, &tool->n_threads))
+            return -1;
+        return tool_usage(tool, "--threads takes 1 to %d, not '%s'",
+                          GLINT_MAX_WORKERS, value);
+    case 'K':
+        if (tool_word(value, kernels) >= 0)
+            return -1;
+        return tool_usage(tool, "--kernels: this build has c and auto, not "
+                          "'%s'", value);
+    case 'S': /* nothing is random yet: any seed gives the same picture */
+        if (tool_integer(value, 0, INT_MAX, &seed))
+            return -1;
+        return tool_usage(tool, "--seed takes a whole number, not '%s'",
+                          value);
+    default: /* getopt_long has said what is wrong */
+        fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
+        return EXIT_USAGE;
+    }
+}
+
+int tool_start(struct tool *tool)
+{
+    const int n = tool->n_threads ? tool->n_threads : glint_cpu_count();
+    const enum glint_status status = glint_pool_create(&tool->workers, n);
+
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(tool, status, "no threads to be had");
+}
+
+void tool_finish(struct tool *tool)
+{
+    glint_pool_destroy(tool->workers);
+    tool->workers = NULL;
+}
+
+/* ------------------------------------------------------------------ numbers */
+
+bool tool_number(const char *text, double *value)
+{
+    char *end;
+
+    *value = strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*value);
+}
+
+int tool_numbers(const char *text, double *values, int max)
+{
+    for (int n = 0; n < max;) {
+        char *end;
+
+        values[n] = strtod(text, &end);
+        if (end == text || !isfinite(values[n]))
+            return 0;
+        n++;
+        if (*end == '\0')
+            return n;
+        if (*end != ',')
+            return 0;
+        text = end + 1;
+    }
+    return 0;
+}
+
+bool tool_integer(const char *text, int low, int high, int *value)
+{
+    char *end;
+    long n;
+
+    errno = 0;
+    n = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || errno || n < low || n > high)
+        return false;
+    *value = (int)n;
+    return true;
+}
+
+bool tool_size(const char *text, int *width, int *height)
+{
+    char first[12];
+    const char *x = strchr(text, 'x');
+
+    if (!x || x - text >= (ptrdiff_t)sizeof first)
+        return false;
+    memcpy(first, text, (size_t)(x - text));
+    first[x - text] = '\0';
+    return tool_integer(first, 1, GLINT_MAX_SIDE, width) &&
+           tool_integer(x + 1, 1, GLINT_MAX_SIDE, height);
+}
+
+int tool_word(const char *text, const char *const *words)
+{
+    for (int i = 0; words[i]; i++)
+        if (strcmp(text, words[i]) == 0)
+            return i;
+    return -1;
+}
+
+double tool_seconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* -------------------------------------------------------------------- lens */
+
+/* lenses/ beside the directory of the executable, or what was installed. */
+static bool find_table(const char *name, char *path, size_t bytes)
+{
+    char self[512];
+    const ptrdiff_t n = readlink("/proc/self/exe", self, sizeof self - 1);
+    const char *given = getenv("GLINT_LENSES");
+
+    if (given) {
+        snprintf(path, bytes, "%s/%s.lens", given, name);
+        if (access(path, R_OK) == 0)
+            return true;
+    }
+    if (n > 0) {
+        self[n] = '\0';
+        for (int up = 0; up < 3 && strrchr(self, '/'); up++) {
+            *strrchr(self, '/') = '\0';
+            snprintf(path, bytes, "%s/lenses/%s.lens", self, name);
+            if (access(path, R_OK) == 0)
+                return true;
+        }
+    }
+    snprintf(path, bytes, "%s/%s.lens", GLINT_LENS_DIR, name);
+    return access(path, R_OK) == 0;
+}
+
+int tool_lens(const struct tool *tool, const char *argument,
+              struct glint_prescription *lens)
+{
+    struct glint_error error = {""};
+    char path[1024];
+    const char *file = argument;
+    enum glint_status status;
+    uint8_t *text = NULL;
+    size_t bytes = 0;
+
+    if (!strchr(argument, '/') && access(argument, F_OK) != 0 &&
+        find_table(argument, path, sizeof path))
+        file = path;
+    status = glint_input_slurp(&text, &bytes, file, 1 << 20, &error);
+    if (status == GLINT_OK)
+        status = glint_prescription_parse(lens, (const char *)text, bytes,
+                                          file, &error);
+    free(text);
+    if (status == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, status, error.text);
+    return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
+}
+
+/* ----------------------------------------------------------------- progress */
+
+void tool_progress_start(struct tool_progress *p, const struct tool *tool,
+                         const char *what)
+{
+    p->what = what;
+    p->started = tool_seconds();
+    p->last = 0;
+    p->shown = !tool->quiet && isatty(STDERR_FILENO);
+}
+
+void tool_progress_show(void *progress, double done)
+{
+    struct tool_progress *p = progress;
+    const double now = tool_seconds(), spent = now - p->started;
+    const int width = 30, filled = (int)(done * width);
+    char bar[32];
+
+    if (!p->shown || (now - p->last < 0.1 && done < 1))
+        return;
+    p->last = now;
+    for (int i = 0; i < width; i++)
+        bar[i] = i < filled ? '#' : '.';
+    bar[width] = '\0';
+    fprintf(stderr, "\r%s [%s] %3.0f %%  %.0f s left \033[K", p->what, bar,
+            100 * done, done > 0.01 ? spent * (1 - done) / done : 0);
+    fflush(stderr);
+}
+
+void tool_progress_end(struct tool_progress *p)
+{
+    if (p->shown && p->last > 0)
+        fputs("\r\033[K", stderr);
+}
+
+void tool_json_string(FILE *file, const char *text)
+{
+    fputc('"', file);
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+
+        if (c == '"' || c == '\\')
+            fputc('\\', file);
+        if (c < 0x20)
+            fprintf(file, "\\u%04x", c);
+        else
+            fputc(c, file);
+    }
+    fputc('"', file);
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What all commands share: common options, exit codes, errors, progress, and
+ * the reading of numbers and lens files.
+ */
+#ifndef GLINT_TOOLS_TOOL_H
+#define GLINT_TOOLS_TOOL_H
+
+#include <getopt.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "glint/glint.h"
+
+enum exit_code {
+    EXIT_OK = 0,
+    EXIT_RUNTIME = 1,
+    EXIT_USAGE = 2,
+    EXIT_INPUT = 3,
+    EXIT_DEVICE = 4,
+    EXIT_LENS = 5,
+    EXIT_OUTPUT = 6
+};
+
+struct tool {
+    const char *name; /* of the command */
+    const char *help; /* its whole text */
+    bool json, quiet;
+    int verbose;
+    int n_threads;
+    struct glint_workers *workers; /* made by tool_start */
+};
+
+/* Options that every command takes, for its struct option array. */
+#define TOOL_COMMON_SHORT "hVqvj:"
+#define TOOL_COMMON_OPTIONS                                         \
+    {"help", no_argument, NULL, 'h'},                               \
+        {"version", no_argument, NULL, 'V'},                        \
+        {"quiet", no_argument, NULL, 'q'},                          \
+        {"verbose", no_argument, NULL, 'v'},                        \
+        {"json", no_argument, NULL, 'J'},                           \
+        {"threads", required_argument, NULL, 'j'},                  \
+        {"kernels", required_argument, NULL, 'K'},                  \
+        {"seed", required_argument, NULL, 'S'},                     \
+    {                                                               \
+        NULL, 0, NULL, 0                                            \
+    }
+
+/* Takes a common option. Returns -1 to go on, else the exit code to leave with
+ * (EXIT_OK after --help). An unknown option is a usage error. */
+int tool_option(struct tool *tool, int option, const char *value);
+
+/* Makes the workers. */
+int tool_start(struct tool *tool);
+void tool_finish(struct tool *tool);
+
+/* Prints "glint COMMAND: ..." and returns the code. */
+int tool_usage(const struct tool *tool, const char *format, ...);
+int tool_fail(const struct tool *tool, enum glint_status status,
+              const char *text);
+
+/* ------------------------------------------------------------------ numbers */
+
+/* All of TEXT is a finite number, or N of them with commas (at most MAX);
+ * return how many there were, 0 on failure. */
+bool tool_number(const char *text, double *value);
+int tool_numbers(const char *text, double *values, int max);
+
+/* All of TEXT is an integer within LOW .. HIGH. */
+bool tool_integer(const char *text, int low, int high, int *value);
+
+/* "WxH" */
+bool tool_size(const char *text, int *width, int *height);
+
+/* Which of the NULL-terminated WORDS it is, or -1. */
+int tool_word(const char *text, const char *const *words);
+
+/* Seconds since some moment. */
+double tool_seconds(void);
+
+/* -------------------------------------------------------------------- lens */
+
+/* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
+ * Returns an exit code; has printed on failure. */
+int tool_lens(const struct tool *tool, const char *argument,
+              struct glint_prescription *lens);
+
+/* ----------------------------------------------------------------- progress */
+
+/* A bar on a terminal's standard error, nothing elsewhere. CTX is a struct
+ * tool_progress. */
+struct tool_progress {
+    const char *what;
+    bool shown;
+    double started, last;
+};
+
+void tool_progress_start(struct tool_progress *p, const struct tool *tool,
+                         const char *what);
+void tool_progress_show(void *progress, double done);
+void tool_progress_end(struct tool_progress *p);
+
+/* Writes TEXT as a JSON string. */
+void tool_json_string(FILE *file, const char *text);
+
+/* Commands. ARGV[0] is the command's name. Return the exit code. */
+int cmd_info(int argc, char **argv);
+int cmd_trace(int argc, char **argv);
+int cmd_render(int argc, char **argv);
+int cmd_overlay(int argc, char **argv);
+int cmd_compare(int argc, char **argv);
+
+#endif
