@@ -1,9 +1,11 @@
 # glint - physically based camera effects for small machines.
 #
-#   make          build/glint and the libraries; needs a C compiler only
-#   make demo     overlays ghosts on a real photograph and a video
+#   make          build/glint; needs a C compiler only
+#   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make lint     layers, Q formats, formatting, symbols, purity
+#   make install  DESTDIR= PREFIX=/usr/local
+#   also: oiio table inputs fuzz format golden-update clean
 
 MAKEFLAGS += -r
 .DEFAULT_GOAL := all
@@ -11,44 +13,57 @@ CONFIG ?= release
 ifeq ($(origin CC),default)
 CC := gcc
 endif
-AR ?= ar
-NM ?= nm
+CXX     := g++
+AR      ?= ar
+NM      ?= nm
+OBJDUMP ?= objdump
+PREFIX  ?= /usr/local
 ARCH := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
 OUT  := build/$(ARCH)-$(notdir $(CC))-$(CONFIG)
+export DEPS OUT
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/image base/workers \
-        flare/lights flare/ghost_grid tile/primitive tile/clip tile/bins \
-        tile/raster tile/transfer tile/resolve flare/flare
+CORE := base/status base/arena base/q base/image base/workers flare/lights \
+        tile/primitive tile/clip flare/ghost_grid tile/bins tile/raster \
+        tile/transfer tile/resolve flare/flare
 BAKE := bake/text bake/prescription bake/glass bake/coating bake/paraxial \
         bake/ghosts bake/trace bake/pupil bake/cells bake/setup bake/exact \
         bake/feed
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
-TOOLS := glint tool measure frame scene cmd_info cmd_trace cmd_render \
-         cmd_overlay cmd_compare
+TOOLS := tool measure lamps frame scene cmd_info cmd_trace cmd_render \
+        cmd_overlay cmd_compare
+UNIT := arena prescription optics trace pupil exact transfer resolve lights \
+        flare pnm y4m output workers measure
+FUZZ := lens y4m pnm
 
-have = $(foreach f,$(2),$(if $(wildcard $(1)/$(f).c),$(OUT)/$(1)/$(f).o))
-core_o     := $(call have,src,$(CORE))
-bake_o     := $(call have,src,$(BAKE))
-platform_o := $(call have,platform,$(PLATFORM))
-tools_o    := $(call have,tools,$(TOOLS))
+core_o     := $(CORE:%=$(OUT)/src/%.o)
+bake_o     := $(BAKE:%=$(OUT)/src/%.o)
+platform_o := $(PLATFORM:%=$(OUT)/platform/%.o)
+tools_o    := $(TOOLS:%=$(OUT)/tools/%.o)
 
-CPPFLAGS := -Iinclude
-CFLAGS := -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden -Wall -Wextra \
-          -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
-          -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef -Werror
-LDLIBS := -lm
+CPPFLAGS := -Iinclude -D_FILE_OFFSET_BITS=64
+WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
+        -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef $(WERROR)
+CFLAGS := -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
+LDLIBS := -lm -lpthread -ldl
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
-$(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: \
-        CPPFLAGS += -Iplatform -D_POSIX_C_SOURCE=200809L
-$(core_o): CFLAGS += -Wframe-larger-than=1024 -ffreestanding
+$(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
+        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
+        -DGLINT_LENS_DIR='"$(PREFIX)/share/glint/lenses"' \
+        -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
+# Run-time half: no library, small stack frames.
+$(core_o): CFLAGS += -ffreestanding -Wframe-larger-than=1024
 ifeq ($(CONFIG),asan)
 CFLAGS += -O1 -fsanitize=address,undefined -fno-sanitize-recover=all
+$(core_o): CFLAGS += -Wno-frame-larger-than
 else ifeq ($(CONFIG),tsan)
 CFLAGS += -O1 -fsanitize=thread
+$(core_o): CFLAGS += -Wno-frame-larger-than
 else ifeq ($(CONFIG),qcheck)
 CPPFLAGS += -DGLINT_Q_CHECK
+else ifneq ($(CONFIG),release)
+$(error CONFIG is release, asan, tsan or qcheck)
 endif
 
 $(OUT)/%.o: %.c
@@ -59,28 +74,107 @@ $(OUT)/%.o: %.c
 $(OUT)/libglint.a: $(core_o)
 $(OUT)/libglint-bake.a: $(bake_o)
 $(OUT)/libglint-platform.a: $(platform_o)
+$(OUT)/libglint-tools.a: $(tools_o)
 $(OUT)/lib%.a:
 	$(say) AR $@
 	$(Q)rm -f $@; $(AR) rcs $@ $^
-libs := $(OUT)/libglint-platform.a $(OUT)/libglint-bake.a $(OUT)/libglint.a
+libs := $(OUT)/libglint-tools.a $(OUT)/libglint-platform.a \
+        $(OUT)/libglint-bake.a $(OUT)/libglint.a
+
+define link
+	@mkdir -p $(@D)
+	$(say) LD $@
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(filter %.o,$^) $(libs) $(EXTRA) \
+	        $(LDLIBS) -o $@
+endef
 
 all: build/glint
 build/glint: $(OUT)/glint
-	@cp -f $< $@
-$(OUT)/glint: $(tools_o) $(libs)
-	$(say) LD $@
-	$(Q)$(CC) $(CFLAGS) $(tools_o) $(libs) $(LDLIBS) -lpthread -ldl -o $@
+	$(Q)cp -f $< $@.tmp && mv -f $@.tmp $@
+$(OUT)/glint: $(OUT)/tools/glint.o $(libs)
+	$(link)
 
-unit := $(patsubst tests/unit/%.c,%,$(wildcard tests/unit/*.c))
-$(OUT)/tests/unit/%: $(OUT)/tests/unit/%.o $(libs)
-	$(say) LD $@
-	$(Q)$(CC) $(CFLAGS) $< $(libs) -lcmocka $(LDLIBS) -lpthread -ldl -o $@
-unit: $(unit:%=$(OUT)/tests/unit/%)
-	@for t in $^; do $$t || exit 1; done
+# The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.
+oiio: build/glint-oiio.so
+build/glint-oiio.so: platform/oiio/oiio.cc platform/oiio/oiio.h
+	@mkdir -p $(@D)
+	$(say) CXX $<
+	$(Q)$(CXX) -std=c++17 -O2 -Wall -Wextra -fPIC -shared -Iinclude -Iplatform \
+	        $< -o $@ $$(pkg-config --cflags --libs OpenImageIO)
 
+# ------------------------------------------------------------------- to see
+demo:
+	@tools/deps "PNG and JPEG pictures, and video to look at" g++ pkg-config \
+	        libopenimageio-dev ffmpeg
+	@$(MAKE) --no-print-directory all \
+	        $(shell [ "$(DEPS)" = no ] || echo oiio inputs)
+	@tools/demo
+inputs:
+	@tools/inputs
+table: all
+	@tools/raster-table
+
+# ------------------------------------------------------------------- to test
+test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
+$(test_bins): EXTRA := -lcmocka
+$(test_bins): $(OUT)/tests/unit/test_%: $(OUT)/tests/unit/test_%.o $(libs)
+	$(link)
+replay_bins := $(FUZZ:%=$(OUT)/tests/fuzz/replay_%)
+$(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
+        $(OUT)/tests/fuzz/replay.o $(libs)
+	$(link)
+$(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
+	$(link)
+
+check:
+	@tools/deps "unit tests, lint, sanitizers" gcc libc6-dev binutils \
+	        libcmocka-dev clang clang-format libclang-rt-14-dev
+	@$(MAKE) --no-print-directory WERROR=-Werror run-check
+run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
+	@tests/run $(test_bins) -- $(replay_bins)
+golden-update: $(OUT)/tests/unit/test_flare
+	@GLINT_GOLDEN_UPDATE=1 $<
+
+# One fuzzer for SECONDS:  make fuzz TARGET=lens SECONDS=60
+TARGET  ?= lens
+SECONDS ?= 60
+fuzz:
+	@mkdir -p build/fuzz/$(TARGET)
+	clang -std=c99 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Isrc \
+	        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L -ffp-contract=off \
+	        tests/fuzz/fuzz_$(TARGET).c $(BAKE:%=src/%.c) $(CORE:%=src/%.c) \
+	        $(PLATFORM:%=platform/%.c) -lm -lpthread -ldl \
+	        -o build/fuzz/fuzz_$(TARGET)
+	build/fuzz/fuzz_$(TARGET) -max_total_time=$(SECONDS) -timeout=10 \
+	        build/fuzz/$(TARGET) tests/fuzz/corpus/$(TARGET)
+
+sources = $(shell find include src platform tools tests -name '*.[ch]')
+format:
+	clang-format -i $(sources)
+lint: $(OUT)/libglint.a $(OUT)/libglint-bake.a
+	@tools/lint-layers && tools/lint-q
+	@tools/lint-symbols $(NM) $(OUT)/libglint.a $(OUT)/libglint-bake.a
+	@[ $(CONFIG) != release ] || \
+	        tools/lint-purity $(NM) $(OBJDUMP) $(OUT)/libglint.a
+	@clang-format --dry-run -Werror $(sources)
+	@for h in include/glint/*.h; do \
+	        $(CC) -Iinclude -std=c99 -fsyntax-only -x c $$h || exit 1; done
+
+# ---------------------------------------------------------------- to install
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/glint \
+	        $(DESTDIR)$(PREFIX)/lib/glint $(DESTDIR)$(PREFIX)/share/glint/lenses
+	install -m 755 build/glint $(DESTDIR)$(PREFIX)/bin
+	install -m 644 include/glint/*.h $(DESTDIR)$(PREFIX)/include/glint
+	install -m 644 $(OUT)/libglint.a $(OUT)/libglint-bake.a \
+	        $(DESTDIR)$(PREFIX)/lib
+	install -m 644 lenses/*.lens $(DESTDIR)$(PREFIX)/share/glint/lenses
+	[ ! -f build/glint-oiio.so ] || install -m 755 build/glint-oiio.so \
+	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all unit clean
+.PHONY: all oiio demo inputs table check run-check golden-update fuzz format \
+        lint install clean
 .SECONDARY:
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -30,6 +30,7 @@ static const char help[] =
 struct render {
     struct scene scene;
     const char *output;
+    bool linear; /* the output takes floats */
     int width, height;
     bool exact;
     int n_lamps;
@@ -185,8 +186,8 @@ static int save(struct tool *tool, struct render *r)
     enum glint_status status;
     uint8_t *mem;
 
-    if (glint_picture_is_float(r->output))
-        status = glint_picture_save_float(r->output, &r->image, &error);
+    if (r->linear)
+        status = glint_picture_save_floats(r->output, &r->image, &error);
     else {
         mem = measure_encode(&r->image, r->scene.has_exposure
                                             ? 1
@@ -200,11 +201,29 @@ static int save(struct tool *tool, struct render *r)
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
+/* Refuses an output that cannot be written before there is much work. */
+static int check_output(struct tool *tool, struct render *r)
+{
+    struct glint_error error = {""};
+    enum glint_status status =
+        glint_picture_check(r->output, GLINT_PICTURE_FLOAT, &error);
+
+    r->linear = status == GLINT_OK;
+    if (!r->linear)
+        status = glint_picture_check(r->output, GLINT_PICTURE_8BIT, &error);
+    if (status == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, status, error.text);
+    return EXIT_OUTPUT;
+}
+
 static int run(struct tool *tool, struct render *r, const char *lens)
 {
     const double start = tool_seconds();
-    int code = scene_open(tool, &r->scene, lens);
+    int code = check_output(tool, r);
 
+    if (code == EXIT_OK)
+        code = scene_open(tool, &r->scene, lens);
     if (code != EXIT_OK)
         return code;
     r->image.width = r->width;

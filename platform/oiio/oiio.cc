@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The plug-in behind oiio/oiio.h. Nothing is thrown across the seam: whatever
+ * OpenImageIO throws or returns becomes a status and one line of text. */
+#include "oiio/oiio.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+
+#include "glint/image.h"
+
+namespace
+{
+
+struct failure {
+    enum glint_status status;
+    std::string cause;
+};
+
+/* Runs BODY, which returns or throws; NAME is for errors. */
+template <class Body>
+enum glint_status guarded(const char *name, struct glint_error *error,
+                          Body body)
+{
+    failure what = {GLINT_OK, ""};
+
+    try {
+        body();
+    } catch (const failure &f) {
+        what = f;
+    } catch (const std::bad_alloc &) {
+        what = {GLINT_E_MEMORY, "not enough memory"};
+    } catch (const std::exception &e) {
+        what = {GLINT_E_FORMAT, e.what()};
+    } catch (...) {
+        what = {GLINT_E_FORMAT, "OpenImageIO failed"};
+    }
+    if (what.status) {
+        const size_t len = std::strlen(name), most = 120;
+        const bool cut = len > most;
+
+        for (char &c : what.cause)
+            if (static_cast<unsigned char>(c) < ' ')
+                c = ' ';
+        std::snprintf(error->text, sizeof error->text, "%s%s: %s",
+                      cut ? "..." : "", name + (cut ? len - most : 0),
+                      what.cause.c_str());
+    }
+    return what.status;
+}
+
+/* Opens PATH and checks what is cheap to check before it takes memory. */
+void check_file(const char *path)
+{
+    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
+
+    if (!in)
+        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
+    const OIIO::ImageSpec &spec = in->spec();
+    if (spec.deep || spec.nchannels < 1 || spec.depth > 1)
+        throw failure{GLINT_E_UNSUPPORTED, "is not a flat picture"};
+    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 ||
+        spec.full_height < 1)
+        throw failure{GLINT_E_FORMAT, "has no pixels"};
+    if (spec.width > GLINT_MAX_SIDE || spec.height > GLINT_MAX_SIDE ||
+        spec.full_width > GLINT_MAX_SIDE || spec.full_height > GLINT_MAX_SIDE)
+        throw failure{GLINT_E_UNSUPPORTED, "larger than " +
+                                               std::to_string(GLINT_MAX_SIDE) +
+                                               " pixels a side"};
+}
+
+/* Colour from the first three channels, or grey from the first. */
+std::vector<int> channel_order(int n_channels)
+{
+    if (n_channels >= 3)
+        return {0, 1, 2};
+    return {0, 0, 0};
+}
+
+OIIO::ImageBuf load_upright(const char *path, OIIO::TypeDesc type)
+{
+    OIIO::ImageBuf buf(path);
+
+    if (!buf.read(0, 0, true, type))
+        throw failure{GLINT_E_FORMAT, buf.geterror()};
+    if (buf.orientation() == 1)
+        return buf;
+    OIIO::ImageBuf upright = OIIO::ImageBufAlgo::reorient(buf);
+    if (upright.has_error())
+        throw failure{GLINT_E_FORMAT, upright.geterror()};
+    return upright;
+}
+
+void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
+{
+    check_file(path);
+
+    OIIO::ImageBuf probe(path);
+    if (!probe.init_spec(path, 0, 0))
+        throw failure{GLINT_E_FORMAT, probe.geterror()};
+    const bool is_float = probe.nativespec().format.is_floating_point();
+    const OIIO::TypeDesc type =
+        is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
+    OIIO::ImageBuf buf = load_upright(path, type);
+    OIIO::ImageBuf rgb =
+        OIIO::ImageBufAlgo::channels(buf, 3, channel_order(buf.nchannels()));
+
+    if (rgb.has_error())
+        throw failure{GLINT_E_FORMAT, rgb.geterror()};
+    OIIO::ROI roi = rgb.roi_full(); /* black where the file has no data */
+    roi.chbegin = 0;
+    roi.chend = 3;
+    struct glint_oiio_pixels made = {roi.width(), roi.height(), is_float,
+                                     nullptr};
+    made.rgb = std::malloc(roi.npixels() * 3 * type.size());
+    if (!made.rgb)
+        throw std::bad_alloc();
+    if (!rgb.get_pixels(roi, type, made.rgb)) {
+        std::free(made.rgb);
+        throw failure{GLINT_E_FORMAT, rgb.geterror()};
+    }
+    *pixels = made;
+}
+
+void write_pixels(const char *path, const struct glint_oiio_pixels *pixels,
+                  ptrdiff_t stride_bytes)
+{
+    const OIIO::TypeDesc type =
+        pixels->is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
+    const std::unique_ptr<OIIO::ImageOutput> out =
+        OIIO::ImageOutput::create(path);
+    OIIO::ImageSpec spec(pixels->width, pixels->height, 3, type);
+
+    if (!out)
+        throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
+    spec.attribute("oiio:ColorSpace", pixels->is_float ? "Linear" : "sRGB");
+    if (!out->open(path, spec) ||
+        !out->write_image(type, pixels->rgb, OIIO::AutoStride, stride_bytes) ||
+        !out->close())
+        throw failure{GLINT_E_OUTPUT, out->geterror()};
+}
+
+enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,
+                            struct glint_error *error)
+{
+    return guarded(path, error, [&] { read_pixels(pixels, path); });
+}
+
+enum glint_status face_write(const char *path,
+                             const struct glint_oiio_pixels *pixels,
+                             ptrdiff_t stride_bytes, const char *name,
+                             struct glint_error *error)
+{
+    return guarded(name, error,
+                   [&] { write_pixels(path, pixels, stride_bytes); });
+}
+
+} // namespace
+
+extern "C" __attribute__((visibility("default")))
+const struct glint_oiio glint_oiio_face;
+const struct glint_oiio glint_oiio_face = {GLINT_OIIO_VERSION, face_read,
+                                           face_write};

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT */
+#include "posix/input.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "posix/error.h"
+
+#define FIRST_BYTES 65536 /* room where the size is not known beforehand */
+
+enum glint_status glint_input_open(struct glint_input *in, const char *path,
+                                   struct glint_error *error)
+{
+    const int is_stdin = !strcmp(path, "-");
+
+    in->name = is_stdin ? "standard input" : path;
+    if (is_stdin)
+        in->fd = dup(STDIN_FILENO);
+    else
+        in->fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    if (in->fd < 0)
+        return glint_error_report(error, GLINT_E_IO, in->name, "%s",
+                                  strerror(errno));
+    if (is_stdin && isatty(in->fd)) {
+        glint_input_close(in);
+        return glint_error_report(error, GLINT_E_IO, in->name,
+                                  "is a terminal; pipe a file into it");
+    }
+    return GLINT_OK;
+}
+
+/* Whether a read that failed is worth repeating, after waiting if need be. */
+static int may_retry(int fd)
+{
+    struct pollfd readable = {.fd = fd, .events = POLLIN};
+
+    if (errno == EAGAIN || errno == EWOULDBLOCK)
+        return poll(&readable, 1, -1) >= 0 || errno == EINTR;
+    return errno == EINTR;
+}
+
+ptrdiff_t glint_input_some(struct glint_input *in, void *dst, size_t bytes)
+{
+    ssize_t n;
+
+    do
+        n = read(in->fd, dst, bytes);
+    while (n < 0 && may_retry(in->fd));
+    return n;
+}
+
+/* What to make room for at first: the size of a regular file and one byte more,
+ * so that the end is seen without growing. */
+static size_t expected_bytes(const struct glint_input *in, size_t max)
+{
+    struct stat st;
+
+    if (fstat(in->fd, &st) < 0 || !S_ISREG(st.st_mode) || st.st_size < 0)
+        return FIRST_BYTES;
+    return (uintmax_t)st.st_size < max ? (size_t)st.st_size + 1 : max + 1;
+}
+
+static enum glint_status grow(struct glint_input *in, uint8_t **data,
+                              size_t size, struct glint_error *error)
+{
+    uint8_t *const moved = realloc(*data, size);
+
+    if (!moved)
+        return glint_error_report(error, GLINT_E_MEMORY, in->name,
+                                  "no memory for %zu bytes", size);
+    *data = moved;
+    return GLINT_OK;
+}
+
+enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
+                                     size_t *bytes, size_t max,
+                                     struct glint_error *error)
+{
+    size_t size = *bytes + expected_bytes(in, max);
+    ptrdiff_t n;
+
+    if (grow(in, data, size, error))
+        return GLINT_E_MEMORY;
+    while ((n = glint_input_some(in, *data + *bytes, size - *bytes)) > 0) {
+        *bytes += (size_t)n;
+        if (*bytes > max)
+            return glint_error_report(error, GLINT_E_UNSUPPORTED, in->name,
+                                      "larger than %zu bytes", max);
+        if (*bytes < size)
+            continue;
+        size += size / 2 + FIRST_BYTES;
+        if (grow(in, data, size, error))
+            return GLINT_E_MEMORY;
+    }
+    if (n < 0)
+        return glint_error_report(error, GLINT_E_IO, in->name, "%s",
+                                  strerror(errno));
+    return GLINT_OK;
+}
+
+void glint_input_close(struct glint_input *in)
+{
+    if (in->fd >= 0)
+        close(in->fd);
+    in->fd = -1;
+}
+
+enum glint_status glint_input_slurp(uint8_t **data, size_t *bytes,
+                                    const char *path, size_t max,
+                                    struct glint_error *error)
+{
+    uint8_t *block = NULL;
+    size_t n = 0;
+    struct glint_input in;
+    enum glint_status status = glint_input_open(&in, path, error);
+
+    if (status)
+        return status;
+    status = glint_input_append(&in, &block, &n, max, error);
+    glint_input_close(&in);
+    if (status) {
+        free(block);
+        return status;
+    }
+    *data = block;
+    *bytes = n;
+    return GLINT_OK;
+}

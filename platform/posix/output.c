@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT */
+#define _XOPEN_SOURCE 700 /* realpath */
+#include "posix/output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "posix/error.h"
+
+#define BUFFER_BYTES 65536
+#define MAX_TMP      16   /* temporary files at a time */
+#define MAX_TRIES    1000 /* names that somebody else has taken */
+#define EXT_CHARS    16   /* of a file name extension worth keeping */
+
+/* ---------------------------------------------- files to remove when dying */
+
+static const int deadly[] = {SIGHUP, SIGINT, SIGTERM};
+
+static char *doomed[MAX_TMP]; /* atomic: names of temporary files, or NULL */
+static int dying;             /* atomic */
+
+/* Async-signal-safe. */
+static void remove_doomed(void)
+{
+    const int saved = errno;
+
+    __atomic_store_n(&dying, 1, __ATOMIC_SEQ_CST);
+    for (int i = 0; i < MAX_TMP; i++) {
+        const char *const name = __atomic_load_n(&doomed[i], __ATOMIC_SEQ_CST);
+
+        if (name)
+            unlink(name);
+    }
+    errno = saved;
+}
+
+/* SA_RESETHAND has put the default action back: the second signal, delivered
+ * on return, kills the process with the status everybody expects. */
+static void die(int signal_number)
+{
+    remove_doomed();
+    raise(signal_number);
+}
+
+static void take_signals(void)
+{
+    static const int broken[] = {SIGPIPE, SIGXFSZ};
+    struct sigaction old, act = {.sa_handler = SIG_IGN};
+
+    sigemptyset(&act.sa_mask);
+    for (size_t i = 0; i < sizeof broken / sizeof *broken; i++)
+        if (!sigaction(broken[i], NULL, &old) && old.sa_handler == SIG_DFL)
+            sigaction(broken[i], &act, NULL);
+    act.sa_handler = die;
+    act.sa_flags = (int)SA_RESETHAND;
+    for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
+        if (!sigaction(deadly[i], NULL, &old) && old.sa_handler == SIG_DFL)
+            sigaction(deadly[i], &act, NULL);
+    atexit(remove_doomed);
+}
+
+static bool doom(char *name)
+{
+    for (int i = 0; i < MAX_TMP; i++) {
+        char *none = NULL;
+
+        if (__atomic_compare_exchange_n(&doomed[i], &none, name, false,
+                                        __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+            return true;
+    }
+    return false;
+}
+
+/* Takes NAME off the list and frees it. Another thread may be in the handler
+ * with that very name in hand; either it has missed the name, or we see that
+ * it is dying and leave the memory alone. */
+static void spare(char *name)
+{
+    for (int i = 0; i < MAX_TMP; i++) {
+        char *same = name;
+
+        __atomic_compare_exchange_n(&doomed[i], &same, NULL, false,
+                                    __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST);
+    }
+    if (!__atomic_load_n(&dying, __ATOMIC_SEQ_CST))
+        free(name);
+}
+
+/* ----------------------------------------------------------------- opening */
+
+static enum glint_status refuse(const struct glint_output *out,
+                                struct glint_error *error, int number)
+{
+    return glint_error_report(error, GLINT_E_OUTPUT, out->name, "%s",
+                              strerror(number));
+}
+
+/* DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT; malloc'ed, or NULL. Some
+ * writers go by the extension, so it stays. */
+static char *tmp_name(const char *target, unsigned n)
+{
+    const char *const slash = strrchr(target, '/');
+    const char *const base = slash ? slash + 1 : target;
+    const char *ext = strrchr(base, '.');
+    const size_t size = strlen(target) + 64;
+    char *const name = malloc(size);
+
+    if (!ext || ext == base || strlen(ext) > EXT_CHARS)
+        ext = "";
+    if (name)
+        snprintf(name, size, "%.*s.glint-%ld-%u%s", (int)(base - target),
+                 target, (long)getpid(), n, ext);
+    return name;
+}
+
+/* Creates the file NAME and puts it on the list, undisturbed by signals, which
+ * would otherwise find it created and not yet listed. */
+static int create_doomed(char *name, mode_t mode)
+{
+    sigset_t held, old;
+    int fd, saved;
+
+    sigemptyset(&held);
+    for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
+        sigaddset(&held, deadly[i]);
+    pthread_sigmask(SIG_BLOCK, &held, &old);
+    fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    saved = errno;
+    if (fd >= 0 && !doom(name)) {
+        close(fd);
+        unlink(name);
+        fd = -1;
+        saved = EMFILE;
+    }
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    errno = saved;
+    return fd;
+}
+
+/* Opens a temporary file beside out->target. MODE: permission bits to give it,
+ * or (mode_t)-1 for those that the umask leaves. */
+static enum glint_status open_beside(struct glint_output *out, mode_t mode,
+                                     struct glint_error *error)
+{
+    static unsigned counter; /* atomic */
+    const bool keep = mode != (mode_t)-1;
+    int number = 0;
+
+    for (int i = 0; i < MAX_TRIES; i++) {
+        out->tmp = tmp_name(out->target,
+                            __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED));
+        if (!out->tmp)
+            return glint_error_report(error, GLINT_E_MEMORY, out->name,
+                                      "no memory for a file name");
+        out->fd = create_doomed(out->tmp, keep ? 0600 : 0666);
+        if (out->fd >= 0)
+            break;
+        number = errno;
+        free(out->tmp);
+        out->tmp = NULL;
+        if (number != EEXIST)
+            break;
+    }
+    if (out->fd < 0)
+        return glint_error_report(error, GLINT_E_OUTPUT, out->name,
+                                  "cannot create a file beside it: %s",
+                                  strerror(number));
+    if (keep && fchmod(out->fd, mode) < 0)
+        return refuse(out, error, errno);
+    return GLINT_OK;
+}
+
+/* The target is a regular file (ST) or not there yet (NULL). */
+static enum glint_status open_replacing(struct glint_output *out,
+                                        const struct stat *st,
+                                        struct glint_error *error)
+{
+    if (st && access(out->name, W_OK) < 0)
+        return refuse(out, error, errno);
+    out->target = st ? realpath(out->name, NULL) : strdup(out->name);
+    if (!out->target)
+        return refuse(out, error, errno);
+    return open_beside(out, st ? st->st_mode & 0777 : (mode_t)-1, error);
+}
+
+static enum glint_status open_straight(struct glint_output *out, bool is_stdout,
+                                       enum glint_output_kind kind,
+                                       struct glint_error *error)
+{
+    if (is_stdout)
+        out->fd = dup(STDOUT_FILENO);
+    else
+        out->fd = open(out->name, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    if (out->fd < 0)
+        return refuse(out, error, errno);
+    if (kind == GLINT_OUTPUT_BINARY && isatty(out->fd))
+        return glint_error_report(error, GLINT_E_OUTPUT, out->name,
+                                  "is a terminal; redirect it or name a file");
+    return GLINT_OK;
+}
+
+enum glint_status glint_output_open(struct glint_output *out, const char *path,
+                                    enum glint_output_kind kind,
+                                    struct glint_error *error)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    const bool is_stdout = !strcmp(path, "-");
+    enum glint_status status;
+    struct stat st;
+
+    pthread_once(&once, take_signals);
+    *out = (struct glint_output){.fd = -1,
+                                 .name = is_stdout ? "standard output" : path};
+    out->buffer = malloc(BUFFER_BYTES);
+    if (!out->buffer)
+        status = glint_error_report(error, GLINT_E_MEMORY, out->name,
+                                    "no memory for a buffer");
+    else if (is_stdout)
+        status = open_straight(out, true, kind, error);
+    else if (stat(path, &st) == 0)
+        status = S_ISREG(st.st_mode) ? open_replacing(out, &st, error)
+                                     : open_straight(out, false, kind, error);
+    else if (errno == ENOENT && *path)
+        status = open_replacing(out, NULL, error);
+    else
+        status = refuse(out, error, errno);
+    if (status)
+        glint_output_abort(out);
+    return status;
+}
+
+/* ----------------------------------------------------------------- writing */
+
+static enum glint_status report_failed(const struct glint_output *out,
+                                       struct glint_error *error)
+{
+    return glint_error_report(
+        error, out->failed == EPIPE ? GLINT_E_CLOSED : GLINT_E_OUTPUT,
+        out->name, "%s", strerror(out->failed));
+}
+
+/* Whether a write that failed is worth repeating, after waiting if need be. */
+static bool may_retry(int fd)
+{
+    struct pollfd writable = {.fd = fd, .events = POLLOUT};
+
+    if (errno == EAGAIN || errno == EWOULDBLOCK)
+        return poll(&writable, 1, -1) >= 0 || errno == EINTR;
+    return errno == EINTR;
+}
+
+static void write_all(struct glint_output *out, const uint8_t *data,
+                      size_t bytes)
+{
+    while (bytes > 0 && !out->failed) {
+        const ssize_t n = write(out->fd, data, bytes);
+
+        if (n >= 0) {
+            data += n;
+            bytes -= (size_t)n;
+        } else if (!may_retry(out->fd)) {
+            out->failed = errno;
+        }
+    }
+}
+
+enum glint_status glint_output_write(struct glint_output *out, const void *data,
+                                     size_t bytes, struct glint_error *error)
+{
+    if (bytes > BUFFER_BYTES - out->used) {
+        write_all(out, out->buffer, out->used);
+        out->used = 0;
+    }
+    if (out->failed)
+        return report_failed(out, error);
+    if (bytes >= BUFFER_BYTES) {
+        write_all(out, data, bytes);
+    } else {
+        memcpy(out->buffer + out->used, data, bytes);
+        out->used += bytes;
+    }
+    return out->failed ? report_failed(out, error) : GLINT_OK;
+}
+
+enum glint_status glint_output_flush(struct glint_output *out,
+                                     struct glint_error *error)
+{
+    write_all(out, out->buffer, out->used);
+    out->used = 0;
+    return out->failed ? report_failed(out, error) : GLINT_OK;
+}
+
+/* ----------------------------------------------------------------- closing */
+
+enum glint_status glint_output_commit(struct glint_output *out,
+                                      struct glint_error *error)
+{
+    enum glint_status status = glint_output_flush(out, error);
+
+    if (!status && close(out->fd) < 0 && errno != EINTR)
+        status = refuse(out, error, errno);
+    else if (status)
+        close(out->fd);
+    out->fd = -1;
+    if (!status && out->tmp && rename(out->tmp, out->target) < 0)
+        status = refuse(out, error, errno);
+    if (!status && out->tmp) {
+        spare(out->tmp);
+        out->tmp = NULL;
+    }
+    glint_output_abort(out);
+    return status;
+}
+
+void glint_output_abort(struct glint_output *out)
+{
+    if (out->fd >= 0)
+        close(out->fd);
+    out->fd = -1;
+    if (out->tmp) {
+        unlink(out->tmp);
+        spare(out->tmp);
+    }
+    out->tmp = NULL;
+    free(out->target);
+    out->target = NULL;
+    free(out->buffer);
+    out->buffer = NULL;
+    out->used = 0;
+}

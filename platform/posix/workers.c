@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+#include "posix/workers.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+struct pool;
+
+struct helper {
+    struct pool *pool;
+    int worker; /* 1 .. n - 1 */
+    pthread_t thread;
+};
+
+struct pool {
+    struct glint_workers base; /* first: a pool is a glint_workers */
+    pthread_mutex_t lock;      /* of round, open, quit and busy */
+    pthread_cond_t wake;       /* a round was opened, or quit */
+    pthread_cond_t idle;       /* busy became 0 */
+    unsigned round;            /* calls of run so far */
+    bool open;                 /* the round still takes helpers in */
+    bool quit;
+    int busy; /* helpers inside the round */
+
+    /* Constant while a round is open or a helper is busy. */
+    glint_job_fn *fn;
+    void *ctx;
+    unsigned n_jobs;
+
+    unsigned next; /* job; atomic. Unsigned, as every worker oversteps once */
+    int n_helpers;
+    struct helper helper[GLINT_MAX_WORKERS - 1];
+};
+
+static void do_jobs(struct pool *p, int worker)
+{
+    unsigned job;
+
+    while ((job = __atomic_fetch_add(&p->next, 1, __ATOMIC_RELAXED)) <
+           p->n_jobs)
+        p->fn(p->ctx, (int)job, worker);
+}
+
+static void *help(void *arg)
+{
+    const struct helper *const h = arg;
+    struct pool *const p = h->pool;
+    unsigned seen = 0;
+
+    pthread_mutex_lock(&p->lock);
+    for (;;) {
+        while (!p->quit && (!p->open || p->round == seen))
+            pthread_cond_wait(&p->wake, &p->lock);
+        if (p->quit)
+            break;
+        seen = p->round;
+        p->busy++;
+        pthread_mutex_unlock(&p->lock);
+        do_jobs(p, h->worker);
+        pthread_mutex_lock(&p->lock);
+        if (--p->busy == 0)
+            pthread_cond_signal(&p->idle);
+    }
+    pthread_mutex_unlock(&p->lock);
+    return NULL;
+}
+
+static void run(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
+                void *ctx)
+{
+    struct pool *const p = (struct pool *)workers;
+
+    if (n_jobs <= 1 || p->n_helpers == 0) {
+        for (int job = 0; job < n_jobs; job++)
+            fn(ctx, job, 0);
+        return;
+    }
+    pthread_mutex_lock(&p->lock);
+    p->fn = fn;
+    p->ctx = ctx;
+    p->n_jobs = (unsigned)n_jobs;
+    p->next = 0;
+    p->round++;
+    p->open = true;
+    pthread_cond_broadcast(&p->wake);
+    pthread_mutex_unlock(&p->lock);
+
+    do_jobs(p, 0);
+
+    pthread_mutex_lock(&p->lock);
+    p->open = false; /* who still sleeps would find no job */
+    while (p->busy > 0)
+        pthread_cond_wait(&p->idle, &p->lock);
+    pthread_mutex_unlock(&p->lock);
+}
+
+static bool start_helpers(struct pool *p, int n)
+{
+    sigset_t all, old;
+
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    while (p->n_helpers < n) {
+        struct helper *const h = &p->helper[p->n_helpers];
+
+        h->pool = p;
+        h->worker = p->n_helpers + 1;
+        if (pthread_create(&h->thread, NULL, help, h))
+            break;
+        p->n_helpers++;
+    }
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    return p->n_helpers == n;
+}
+
+enum glint_status glint_pool_create(struct glint_workers **workers,
+                                    int n_threads)
+{
+    struct pool *p;
+
+    if (n_threads < 1 || n_threads > GLINT_MAX_WORKERS)
+        return GLINT_E_ARGUMENT;
+    p = calloc(1, sizeof *p);
+    if (!p)
+        return GLINT_E_MEMORY;
+    p->base.n = n_threads;
+    p->base.run = run;
+    pthread_mutex_init(&p->lock, NULL);
+    pthread_cond_init(&p->wake, NULL);
+    pthread_cond_init(&p->idle, NULL);
+    if (!start_helpers(p, n_threads - 1)) {
+        glint_pool_destroy(&p->base);
+        return GLINT_E_MEMORY;
+    }
+    *workers = &p->base;
+    return GLINT_OK;
+}
+
+void glint_pool_destroy(struct glint_workers *workers)
+{
+    struct pool *const p = (struct pool *)workers;
+
+    if (!p)
+        return;
+    pthread_mutex_lock(&p->lock);
+    p->quit = true;
+    pthread_cond_broadcast(&p->wake);
+    pthread_mutex_unlock(&p->lock);
+    for (int i = 0; i < p->n_helpers; i++)
+        pthread_join(p->helper[i].thread, NULL);
+    pthread_cond_destroy(&p->idle);
+    pthread_cond_destroy(&p->wake);
+    pthread_mutex_destroy(&p->lock);
+    free(p);
+}
+
+int glint_cpu_count(void)
+{
+    const long n = sysconf(_SC_NPROCESSORS_ONLN);
+
+    return n < 1 ? 1 : n > GLINT_MAX_WORKERS ? GLINT_MAX_WORKERS : (int)n;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * posix/workers.h - a pool of POSIX threads behind struct glint_workers.
+ *
+ *     glint_pool_create(&workers, glint_cpu_count());
+ *     cfg.workers = workers;
+ *     ...
+ *     glint_pool_destroy(workers);
+ *
+ * The calling thread takes part as worker 0, so a pool of n makes n - 1
+ * threads and a pool of one makes none. Jobs are handed out by one counter;
+ * nothing else is shared while they run. Threads that sleep too deeply to join
+ * in before the jobs are gone are not waited for. All signals are blocked in
+ * the threads of the pool and go to those of the application.
+ */
+#ifndef GLINT_POSIX_WORKERS_H
+#define GLINT_POSIX_WORKERS_H
+
+#include "glint/status.h"
+#include "glint/workers.h"
+
+#define GLINT_MAX_WORKERS 64
+
+/* Makes a pool of N_THREADS, 1 .. GLINT_MAX_WORKERS, else GLINT_E_ARGUMENT.
+ * GLINT_E_MEMORY: no memory, or the system gives no more threads. */
+enum glint_status glint_pool_create(struct glint_workers **workers,
+                                    int n_threads);
+
+/* Ends the threads and frees WORKERS; NULL is fine. Not while it runs. */
+void glint_pool_destroy(struct glint_workers *workers);
+
+/* Processors that are online, 1 .. GLINT_MAX_WORKERS. */
+int glint_cpu_count(void);
+
+#endif

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lens -> the pairs of surfaces whose reflections reach the sensor through the
+ * stop once. Pairs across the stop cross it three times and hardly pass.
+ */
+#include "glint/bake.h"
+
+int glint_ghost_list(const struct glint_prescription *lens,
+                     struct glint_ghost *ghosts, int max)
+{
+    const int side[3] = {0, lens->stop_after, lens->n_surfaces};
+    int n = 0;
+
+    for (int s = 0; s < 2; s++)
+        for (int i = side[s]; i < side[s + 1]; i++)
+            for (int j = i + 1; j < side[s + 1]; j++, n++)
+                if (n < max)
+                    ghosts[n] = (struct glint_ghost){i, j};
+    return n;
+}

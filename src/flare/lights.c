@@ -1,0 +1,671 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One pass over the rows. The runs of a row that reach the lower threshold
+ * join the runs they touch in the row above, corners included; a component
+ * that a row does not continue is finished and its label is used again. So no
+ * more labels live than a row has runs, twice, and no shape can exceed them.
+ *
+ * A finished component that qualifies becomes a candidate; of these the
+ * brightest N_CANDIDATES are held, and only then is anything merged.
+ *
+ * Moments: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^26
+ * pixels of coordinates below 2^13, the sums of w and of w x stay below 2^40
+ * and 2^53. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about the
+ * centroid, which is what we want, is below 2^14 * 8192^4 / 6 < 2^64.
+ */
+#include "glint/lights.h"
+
+#include "base/arena.h"
+#include "base/q.h"
+#include "tile/transfer.h"
+
+#define N_CANDIDATES 2048 /* at least the 1024 that find may be asked for */
+#define MAX_SPOTS    1024
+#define CLIPPED_CODE 250 /* a channel here or above says nothing of colour */
+#define RIM          2   /* pixels beside a run that show the colour, too */
+#define SEED_LOG2    5   /* a region with fewer seeds than area / 2^n is a lit
+                            surface, no light */
+#define JOIN_REACH   4   /* what exceeds MAX joins within so many merge radii */
+
+/* What is summed over the pixels of a light. */
+struct region {
+    int32_t first; /* y * width + x of its first pixel: no two have the same */
+    int32_t area, n_clipped;
+    int64_t w_q14, wx_q14, wy_q14;
+    uint64_t wr2_q14;
+    int64_t rgb_q14[3];     /* of all pixels */
+    int64_t rim_rgb_q14[3]; /* of those with no channel clipped, and of their
+                               neighbours within the row */
+};
+
+struct component {
+    struct region sum;
+    int32_t parent; /* label; its own for a root */
+    int32_t last_row;
+};
+
+struct run {
+    int32_t x0, x1; /* first pixel, and one past the last */
+    int32_t label;
+};
+
+struct row {
+    struct run *run;
+    int n_runs;
+};
+
+struct candidate {
+    struct region sum;
+    int32_t x_q8, y_q8;
+    int gone; /* merged into another */
+};
+
+struct glint_lights {
+    struct glint_lights_config cfg;
+    int64_t max_area;
+    int64_t merge2_q16; /* squared merge distance */
+    struct glint_curve curve;
+    struct glint_ycc ycc;
+    uint8_t full_luma[256]; /* of Y codes */
+XX};
+
+/* ------------------------------------------------------------------- memory */
+
+static int is_valid(const struct glint_lights_config *c)
+{
+    return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
+           c->height <= GLINT_MAX_SIDE && c->threshold_low >= 1 &&
+           c->threshold_low <= c->threshold_high && c->threshold_high <= 255 &&
+           c->min_area >= 1 && c->max_share_q15 >= 0 &&
+           c->max_share_q15 <= 1 << 15 && c->merge_q15 >= 0 &&
+           c->merge_q15 <= 1 << 15;
+}
+
+/* Runs twice: to measure, and to place. NULL if measuring or full. */
+static struct glint_lights *carve(struct glint_arena *a,
+                                  const struct glint_lights_config *c)
+{
+    const size_t n_runs = ((size_t)c->width + 1) / 2;
+    struct glint_lights *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct buffers none;
+    struct buffers *b = placed ? &placed->buffers : &none;
+
+    b->luma = glint_arena_take(a, (size_t)c->width, sizeof *b->luma);
+    b->run[0] = glint_arena_take(a, n_runs, sizeof *b->run[0]);
+    b->run[1] = glint_arena_take(a, n_runs, sizeof *b->run[1]);
+    b->component = glint_arena_take(a, 2 * n_runs, sizeof *b->component);
+    b->active = glint_arena_take(a, 2 * n_runs, sizeof *b->active);
+    b->idle = glint_arena_take(a, 2 * n_runs, sizeof *b->idle);
+    b->candidate = glint_arena_take(a, N_CANDIDATES, sizeof *b->candidate);
+    b->order = glint_arena_take(a, N_CANDIDATES, sizeof *b->order);
+    return a->used <= a->size ? placed : NULL;
+}
+
+void glint_lights_defaults(struct glint_lights_config *cfg, int width,
+                           int height)
+{
+    const int pixels = width * height;
+
+    *cfg = (struct glint_lights_config){.width = width,
+                                        .height = height,
+                                        .threshold_high = 250,
+                                        .threshold_low = 200,
+                                        .min_area =
+                                            pixels < 1 << 19 ? 2 : pixels >> 18,
+                                        .max_share_q15 = Q_CONST(0.25, 15),
+                                        .merge_q15 = Q_CONST(0.01, 15)};
+}
+
+size_t glint_lights_bytes(const struct glint_lights_config *cfg)
+{
+    struct glint_arena measured = glint_arena_measure();
+
+    if (!is_valid(cfg))
+        return 0;
+    carve(&measured, cfg);
+    return measured.used;
+}
+
+enum glint_status glint_lights_init(struct glint_lights **finder,
+                                    const struct glint_lights_config *cfg,
+                                    void *mem, size_t bytes)
+{
+    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_lights *f;
+    int64_t merge_q8;
+
+    if (!is_valid(cfg) || (uintptr_t)mem % GLINT_ALIGN)
+        return GLINT_E_ARGUMENT;
+    f = carve(&arena, cfg);
+    if (!f)
+        return GLINT_E_MEMORY;
+    merge_q8 = q_shift((int64_t)cfg->width * cfg->merge_q15, 7);
+    f->merge2_q16 = merge_q8 * merge_q8;
+    f->max_area =
+        q_shift((int64_t)cfg->width * cfg->height * cfg->max_share_q15, 15);
+    *finder = f;
+    return GLINT_OK;
+}
+
+/* ------------------------------------------------------------------- pixels */
+
+static void prepare_tables(struct glint_lights *f,
+                           const struct glint_image *image)
+{
+    glint_curve_init(&f->curve, image->transfer);
+    glint_ycc_init(&f->ycc, image->matrix, image->range);
+    for (int code = 0; code < 256; code++)
+        f->full_luma[code] = (uint8_t)q_clamp_sat(
+            q_shift((int64_t)(code - f->ycc.black) * f->ycc.to_rgb_q16[0][0],
+                    16),
+            0, 255);
+}
+
+/* Full-range luma of row Y. That of RGB24 has the weights of BT.709, in 256ths,
+ * whose sum is 256. */
+static void read_luma(struct glint_lights *f, const struct glint_image *image,
+                      int y)
+{
+    const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
+
+    if (image->format == GLINT_RGB24)
+        for (int x = 0; x < f->cfg.width; x++, px += 3)
+            f->luma[x] =
+                (uint8_t)((54 * px[0] + 183 * px[1] + 19 * px[2] + 128) >> 8);
+    else
+        for (int x = 0; x < f->cfg.width; x++)
+            f->luma[x] = f->full_luma[px[x]];
+}
+
+static void read_ycc_q20(const struct glint_lights *f,
+                         const struct glint_image *image, int x, int y,
+                         int32_t rgb_q20[3])
+{
+    const int cx = image->format == GLINT_I444 ? x : x / 2;
+    const int cy = image->format == GLINT_I420 ? y / 2 : y;
+    int32_t rgb_q7[3];
+
+    ycc_to_rgb(&f->ycc, image->plane[0][y * image->stride_bytes[0] + x],
+               image->plane[1][cy * image->stride_bytes[1] + cx],
+               image->plane[2][cy * image->stride_bytes[2] + cx], rgb_q7);
+    for (int i = 0; i < 3; i++)
+        rgb_q20[i] =
+            curve_decode(&f->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
+}
+
+/* Linear light of pixel (X, Y), 0 .. white. */
+static void read_light_q20(const struct glint_lights *f,
+                           const struct glint_image *image, int x, int y,
+                           int32_t rgb_q20[3])
+{
+    const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
+
+    if (image->format == GLINT_RGB24)
+        for (int i = 0; i < 3; i++)
+            rgb_q20[i] = f->curve.decode_q20[px[3 * x + i]];
+    else if (image->format == GLINT_GREY)
+        rgb_q20[0] = rgb_q20[1] = rgb_q20[2] =
+            f->curve.decode_q20[f->full_luma[px[x]]];
+    else
+        read_ycc_q20(f, image, x, y, rgb_q20);
+}
+
+static int64_t luminance(int64_t r, int64_t g, int64_t b)
+{
+    return q_shift(r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
+                       b * Q_CONST(0.0722, 15),
+                   15);
+}
+
+/* ------------------------------------------------------------------ regions */
+
+static void add_pixel(struct region *sum, const int32_t rgb_q20[3], int x,
+                      int y)
+{
+    const int64_t seen_q14 =
+        q_shift(luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]), 20 - 14);
+    const int64_t w_q14 = seen_q14 > 1 ? seen_q14 : 1;
+
+    sum->w_q14 += w_q14;
+    sum->wx_q14 += w_q14 * x;
+    sum->wy_q14 += w_q14 * y;
+    sum->wr2_q14 += (uint64_t)w_q14 * (uint64_t)(x * x + y * y);
+    for (int i = 0; i < 3; i++)
+        sum->rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
+}
+
+/* A colour is known only where no channel is clipped. */
+static void add_rim_pixel(struct region *sum, const struct glint_lights *f,
+                          const int32_t rgb_q20[3])
+{
+    const int32_t clipped_q20 = f->curve.decode_q20[CLIPPED_CODE];
+
+    if (rgb_q20[0] < clipped_q20 && rgb_q20[1] < clipped_q20 &&
+        rgb_q20[2] < clipped_q20)
+        for (int i = 0; i < 3; i++)
+            sum->rim_rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
+}
+
+static void add_run(struct region *sum, const struct glint_lights *f,
+                    const struct glint_image *image, const struct run *run,
+                    int y)
+{
+    const int first = run->x0 > RIM ? run->x0 - RIM : 0;
+    const int end =
+        run->x1 < f->cfg.width - RIM ? run->x1 + RIM : f->cfg.width;
+
+    sum->area += run->x1 - run->x0;
+    for (int x = first; x < end; x++) {
+        int32_t rgb_q20[3];
+
+        read_light_q20(f, image, x, y, rgb_q20);
+        add_rim_pixel(sum, f, rgb_q20);
+        if (x < run->x0 || x >= run->x1)
+            continue;
+        add_pixel(sum, rgb_q20, x, y);
+        sum->n_clipped += f->luma[x] >= f->cfg.threshold_high;
+    }
+}
+
+static void absorb(struct region *sum, const struct region *other)
+{
+    if (other->first < sum->first)
+        sum->first = other->first;
+    sum->area += other->area;
+    sum->n_clipped += other->n_clipped;
+    sum->w_q14 += other->w_q14;
+    sum->wx_q14 += other->wx_q14;
+    sum->wy_q14 += other->wy_q14;
+    sum->wr2_q14 += other->wr2_q14;
+    for (int i = 0; i < 3; i++) {
+        sum->rgb_q14[i] += other->rgb_q14[i];
+        sum->rim_rgb_q14[i] += other->rim_rgb_q14[i];
+    }
+}
+
+/* A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 - FRAC).
+ */
+static int64_t quotient(uint64_t a, int64_t b, int frac)
+{
+    const uint64_t d = (uint64_t)b;
+
+    return (int64_t)((a / d << frac) + (((a % d) << frac) + d / 2) / d);
+}
+
+/* Mean position, in pixel indices: the centre of the first pixel is 0. */
+static int32_t mean_q8(int64_t wx_q14, int64_t w_q14)
+{
+    return q_narrow(quotient((uint64_t)wx_q14, w_q14, 8));
+}
+
+static uint32_t square_root(uint64_t x)
+{
+    uint64_t root = 0;
+
+    for (uint64_t bit = UINT64_C(1) << 31; bit; bit >>= 1)
+        if ((root | bit) * (root | bit) <= x)
+            root |= bit;
+    return (uint32_t)root;
+}
+
+/* RMS distance from the centroid; pixels are squares, of 1/6 square pixel. The
+ * sums are moved to the pixel nearest to the centroid, exactly, modulo 2^64. */
+static int32_t rms_radius_q8(const struct region *sum)
+{
+    const int32_t x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
+    const int32_t y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
+    const int32_t x = (x_q8 + 128) >> 8, y = (y_q8 + 128) >> 8;
+    const int64_t fx_q8 = x_q8 - x * 256, fy_q8 = y_q8 - y * 256;
+    const uint64_t about =
+        sum->wr2_q14 - 2 * (uint64_t)x * (uint64_t)sum->wx_q14 -
+        2 * (uint64_t)y * (uint64_t)sum->wy_q14 +
+        ((uint64_t)x * (uint64_t)x + (uint64_t)y * (uint64_t)y) *
+            (uint64_t)sum->w_q14;
+    const int64_t mean_q16 = quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 -
+                             fy_q8 * fy_q8 + Q_CONST(1.0 / 6, 16);
+
+    return (int32_t)square_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
+}
+
+/* --------------------------------------------------------------- components */
+
+static int32_t find_root(struct component *c, int32_t label)
+{
+    while (c[label].parent != label) {
+        c[label].parent = c[c[label].parent].parent;
+        label = c[label].parent;
+    }
+    return label;
+}
+
+static int32_t unite(struct component *c, int32_t a, int32_t b)
+{
+    a = find_root(c, a);
+    b = find_root(c, b);
+    if (a == b)
+        return a;
+    absorb(&c[a].sum, &c[b].sum);
+    c[b].parent = a;
+    return a;
+}
+
+static int32_t new_label(struct glint_lights *f, int32_t first)
+{
+    const int32_t label = f->idle[--f->n_idle];
+
+    f->component[label] =
+        (struct component){.sum = {.first = first}, .parent = label};
+    f->active[f->n_active++] = label;
+    return label;
+}
+
+static void find_runs(struct row *row, const uint8_t *luma, int width, int low)
+{
+    int x = 0;
+
+    row->n_runs = 0;
+    for (;;) {
+        struct run *run = &row->run[row->n_runs];
+
+        while (x < width && luma[x] < low)
+            x++;
+        if (x == width)
+            return;
+        run->x0 = x;
+        while (x < width && luma[x] >= low)
+            x++;
+        run->x1 = x;
+        row->n_runs++;
+    }
+}
+
+/* Gives the runs of row Y the labels of what they touch. */
+static void link_runs(struct glint_lights *f, const struct glint_image *image,
+                      int y)
+{
+    const struct row *above = &f->above;
+    int first = 0; /* of the runs above that may touch this one or a later */
+
+    for (int i = 0; i < f->here.n_runs; i++) {
+        struct run *run = &f->here.run[i];
+        int32_t label = -1;
+
+        while (first < above->n_runs && above->run[first].x1 < run->x0)
+            first++;
+        for (int j = first; j < above->n_runs && above->run[j].x0 <= run->x1;
+             j++)
+            label = label < 0 ? find_root(f->component, above->run[j].label)
+                              : unite(f->component, label, above->run[j].label);
+        if (label < 0)
+            label = new_label(f, y * f->cfg.width + run->x0);
+        f->component[label].last_row = y;
+        add_run(&f->component[label].sum, f, image, run, y);
+        run->label = label;
+    }
+}
+
+/* ---------------------------------------------------------------- candidates
+ */
+
+static int is_brighter(const struct glint_lights *f, int32_t a, int32_t b)
+{
+    const struct region *p = &f->candidate[a].sum, *q = &f->candidate[b].sum;
+
+    return p->w_q14 != q->w_q14 ? p->w_q14 > q->w_q14 : p->first < q->first;
+}
+
+static void swap(int32_t *a, int32_t *b)
+{
+    const int32_t old = *a;
+
+    *a = *b;
+    *b = old;
+}
+
+/* Restores the heap order[0 .. n - 1], the faintest first, below AT. */
+static void sift_down(struct glint_lights *f, int at, int n)
+{
+    int32_t *order = f->order;
+
+    for (;;) {
+        int child = 2 * at + 1;
+
+        if (child >= n)
+            return;
+        if (child + 1 < n && is_brighter(f, order[child], order[child + 1]))
+            child++;
+        if (is_brighter(f, order[child], order[at]))
+            return;
+        swap(&order[child], &order[at]);
+        at = child;
+    }
+}
+
+static void make_heap(struct glint_lights *f, int n)
+{
+    for (int i = n / 2 - 1; i >= 0; i--)
+        sift_down(f, i, n);
+}
+
+static void sort_by_flux(struct glint_lights *f)
+{
+    make_heap(f, f->n);
+    for (int end = f->n - 1; end > 0; end--) {
+        swap(&f->order[0], &f->order[end]);
+        sift_down(f, 0, end);
+    }
+}
+
+/* Holds SUM if it qualifies, at the expense of the faintest if need be. */
+static void offer(struct glint_lights *f, const struct region *sum)
+{
+    if (sum->area < f->cfg.min_area || sum->area > f->max_area ||
+        sum->n_clipped == 0 || sum->n_clipped < sum->area >> SEED_LOG2)
+        return;
+    if (f->n < N_CANDIDATES) {
+        f->candidate[f->n].sum = *sum;
+        f->order[f->n] = f->n;
+        f->n++;
+        if (f->n == N_CANDIDATES)
+            make_heap(f, f->n);
+        return;
+    }
+    f->dropped++;
+    if (sum->w_q14 <= f->candidate[f->order[0]].sum.w_q14)
+        return;
+    f->candidate[f->order[0]].sum = *sum;
+    sift_down(f, 0, f->n);
+}
+
+/* Finishes what row Y did not continue, and takes the labels of that and of
+ * what was united back. */
+static void end_row(struct glint_lights *f, int y)
+{
+    const int n_before = f->n_active;
+
+    for (int i = 0; i < f->here.n_runs; i++)
+        f->here.run[i].label = find_root(f->component, f->here.run[i].label);
+    f->n_active = 0;
+    for (int i = 0; i < n_before; i++) {
+        const int32_t label = f->active[i];
+        const struct component *c = &f->component[label];
+
+        if (c->parent == label && c->last_row == y) {
+            f->active[f->n_active++] = label;
+            continue;
+        }
+        if (c->parent == label)
+            offer(f, &c->sum);
+        f->idle[f->n_idle++] = label;
+    }
+}
+
+static void swap_rows(struct glint_lights *f)
+{
+    const struct row here = f->here;
+
+    f->here = f->above;
+    f->above = here;
+    f->here.n_runs = 0;
+}
+
+static void find_candidates(struct glint_lights *f,
+                            const struct glint_image *image)
+{
+    f->n = f->dropped = f->n_active = f->n_idle = 0;
+    f->above.n_runs = f->here.n_runs = 0;
+    for (int label = 2 * ((f->cfg.width + 1) / 2); label > 0; label--)
+        f->idle[f->n_idle++] = label - 1;
+    for (int y = 0; y < f->cfg.height; y++) {
+        read_luma(f, image, y);
+        find_runs(&f->here, f->luma, f->cfg.width, f->cfg.threshold_low);
+        link_runs(f, image, y);
+        end_row(f, y);
+        swap_rows(f);
+    }
+    end_row(f, f->cfg.height);
+}
+
+/* ------------------------------------------------------------------ merging */
+
+static void locate(struct glint_lights *f)
+{
+    for (int i = 0; i < f->n; i++) {
+        struct candidate *c = &f->candidate[f->order[i]];
+
+        c->x_q8 = mean_q8(c->sum.wx_q14, c->sum.w_q14);
+        c->y_q8 = mean_q8(c->sum.wy_q14, c->sum.w_q14);
+        c->gone = 0;
+    }
+}
+
+static int64_t distance2_q16(const struct candidate *a,
+                             const struct candidate *b)
+{
+    const int64_t dx_q8 = a->x_q8 - b->x_q8, dy_q8 = a->y_q8 - b->y_q8;
+
+    return dx_q8 * dx_q8 + dy_q8 * dy_q8;
+}
+
+/* Gives CANDIDATE to INTO; positions stay until the next locate. */
+static void give(struct candidate *candidate, struct candidate *into)
+{
+    absorb(&into->sum, &candidate->sum);
+    candidate->gone = 1;
+}
+
+static void compact(struct glint_lights *f)
+{
+    const int n_before = f->n;
+
+    f->n = 0;
+    for (int i = 0; i < n_before; i++)
+        if (!f->candidate[f->order[i]].gone)
+            f->order[f->n++] = f->order[i];
+}
+
+/* Each, the brightest first, takes what lies within the merge distance of where
+ * it was. Returns whether anything merged. */
+static int merge_once(struct glint_lights *f)
+{
+    const int n_before = f->n;
+
+    sort_by_flux(f);
+    locate(f);
+    for (int i = 0; i < f->n; i++) {
+        struct candidate *c = &f->candidate[f->order[i]];
+
+        for (int j = i + 1; j < f->n && !c->gone; j++) {
+            struct candidate *other = &f->candidate[f->order[j]];
+
+            if (!other->gone && distance2_q16(c, other) < f->merge2_q16)
+                give(other, c);
+        }
+    }
+    compact(f);
+    return f->n < n_before;
+}
+
+/* The nearest of the first MAX to candidate C, or NULL if none is in reach. */
+static struct candidate *nearest_kept(const struct glint_lights *f,
+                                      const struct candidate *c, int max)
+{
+    int64_t best_q16 = JOIN_REACH * JOIN_REACH * f->merge2_q16;
+    struct candidate *best = NULL;
+
+    for (int i = 0; i < max; i++) {
+        struct candidate *kept = &f->candidate[f->order[i]];
+        const int64_t d_q16 = distance2_q16(c, kept);
+
+        if (d_q16 < best_q16) {
+            best_q16 = d_q16;
+            best = kept;
+        }
+    }
+    return best;
+}
+
+static void cap(struct glint_lights *f, int max)
+{
+    for (int i = max; i < f->n; i++) {
+        struct candidate *c = &f->candidate[f->order[i]];
+        struct candidate *kept = nearest_kept(f, c, max);
+
+        if (kept)
+            give(c, kept);
+        else
+            f->dropped++;
+    }
+    if (f->n > max)
+        f->n = max;
+    sort_by_flux(f);
+}
+
+/* ------------------------------------------------------------------- result */
+
+/* Mean colour at luminance 1. A clipped pixel tells little, so it counts 1/64:
+ * the rim decides where there is one worth the name, and white comes out where
+ * everything is clipped to white, without a step in between. */
+static void mean_colour(int32_t rgb_q15[3], const struct region *sum)
+{
+    int64_t c[3], y;
+
+    for (int i = 0; i < 3; i++)
+        c[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
+    y = luminance(c[0], c[1], c[2]);
+    for (int i = 0; i < 3; i++)
+        rgb_q15[i] =
+            y > 0 ? q_narrow(quotient((uint64_t)c[i], y, 15)) : 1 << 15;
+}
+
+static struct glint_spot spot_of(const struct region *sum)
+{
+    struct glint_spot s = {.x_q8 = mean_q8(sum->wx_q14, sum->w_q14) + 128,
+                           .y_q8 = mean_q8(sum->wy_q14, sum->w_q14) + 128,
+                           .size_q8 = rms_radius_q8(sum),
+                           .area = sum->area,
+                           .n_clipped = sum->n_clipped,
+                           .flux_q16 = sum->w_q14 * 4};
+
+    mean_colour(s.rgb_q15, sum);
+    return s;
+}
+
+int glint_lights_find(struct glint_lights *finder,
+                      const struct glint_image *image, struct glint_spot *spots,
+                      int max)
+{
+    prepare_tables(finder, image);
+    find_candidates(finder, image);
+    while (merge_once(finder))
+        ;
+    cap(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
+    for (int i = 0; i < finder->n; i++)
+        spots[i] = spot_of(&finder->candidate[finder->order[i]].sum);
+    return finder->n;
+}
+
+int glint_lights_dropped(const struct glint_lights *finder)
+{
+    return finder->dropped;
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From one tile's accumulators to pixels of the picture.
+ *
+ *   in   linear light to add, int64 _q20 per channel, 1 = display white;
+ *        negative sums (colours outside the gamut) count as 0
+ *   out  the picture's own codes, changed in place: decode to linear, add,
+ *        encode. A pixel whose sums are 0 keeps its code exactly, whatever the
+ *        format; light saturates at the code range.
+ *
+ * Y'CbCr pictures: the change of R'G'B' is carried over to Y' per pixel, and to
+ * Cb and Cr as the mean change over the pixels that share the sample; samples
+ * that change by less than half a code stay. R'G'B' above white is held to
+ * white for the sum only and R'G'B' below black has negative light, so that
+ * codes outside the cube do not jump when the first light arrives.
+ *
+ * Grey pictures: what is added is the luminance of the sums, with the weights
+ * of BT.709, the primaries of linear light here; the matrix has no say.
+ *
+ * All tables are integers made from integers at init: the same on every CPU.
+ * Error against real arithmetic, codes: RGB24 and grey 0.51; Y'CbCr 0.52 where
+ * the codes are inside the cube.
+ */
+#ifndef GLINT_TILE_RESOLVE_H
+#define GLINT_TILE_RESOLVE_H
+
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "tile/transfer.h"
+
+struct glint_resolve { /* 6.4 KiB: too much for a stack */
+    struct glint_curve curve;
+    struct glint_ycc ycc;
+    /* Added before rounding down, in codes: 1/2, or an 8 x 8 pattern of that
+     * mean below 1, which leaves whole codes whole. */
+    int32_t round_q7[8][8];
+};
+
+/* Tables for pictures that are coded as IMAGE is. DITHER: add an ordered
+ * pattern of less than a code before rounding, the same for every run. */
+void glint_resolve_init(struct glint_resolve *resolve,
+                        const struct glint_image *image, int dither);
+
+/* Adds ACC to the pixels X0 .. X1 - 1, Y0 .. Y1 - 1 of IMAGE. ACC is [3][side *
+ * side] with side = 1 << TILE_LOG2, pixel (X0, Y0) first, channels R, G, B.
+ * X0 and Y0 are even, X1 and Y1 too but at the picture's edges; then tiles
+ * share no sample and may be resolved in any order, or at once.
+ * GLINT_LINEAR_Q20 pictures (4-byte aligned) get the sums added as they are,
+ * saturating at the int32 range, negative ones too. */
+void glint_resolve_tile(const struct glint_resolve *resolve,
+                        const struct glint_image *image, int x0, int y0, int x1,
+                        int y1, int tile_log2, const int64_t *acc_q20);
+
+#endif

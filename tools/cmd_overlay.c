@@ -1,0 +1,543 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint overlay: the flare of the lamps in a picture or video, on top of it.
+ */
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "lamps.h"
+#include "plain/picture.h"
+#include "plain/y4m.h"
+#include "posix/error.h"
+#include "scene.h"
+
+static const char help[] =
+    "glint overlay IN -o OUT [options]\n"
+    "\n"
+    "Puts the ghosts of a lens on top of IN, in linear light:\n"
+    "  a picture         .ppm; with the image plug-in .png .jpg and more\n"
+    "  a sequence        frames/%04d.ppm -> out/%04d.ppm, from the first that\n"
+    "                    is there to the first that is missing\n"
+    "  a y4m video       .y4m, or - for standard input and output:\n"
+    "                    ffmpeg -i in.mp4 -f yuv4mpegpipe - |\n"
+    "                      glint overlay - -o - | ffmpeg -i - out.mp4\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --lens LENS         default heliar-tronnier\n"
+    "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"
+    "                      frame,x,y,power[,r,g,b[,size]] or JSON lines with\n"
+    "                      these keys; x, y in pixels from the top left, also\n"
+    "                      outside; frame * is every frame; size is read and\n"
+    "                      not used yet\n"
+    "  --light LIST        one by hand, as of glint render, for all frames;\n"
+    "                      repeatable; replaces auto\n"
+    "  --threshold H[,L]   luma code that makes a light, and the one down to\n"
+    "                      which it extends\n"
+    "  --max-lights N      the N strongest of a frame, 1 to 1024 (default 16)\n"
+    "  --headroom EV       stops by which clipped pixels really exceed white\n"
+    "                      (default 12); what --lights auto takes for power\n"
+    "  --layer WHAT        composite | flare: the flare alone on black\n"
+    "  --range R           auto | full | limited codes of a video\n"
+    "  --matrix M          auto | 601 | 709\n"
+    "  --start-number N    first of a sequence (default: 0 or 1, as found)\n"
+    "  --quality Q         0 to 1, or draft, default, high: sets --grid\n" SCENE_HELP
+        COMMON_HELP;
+
+struct overlay {
+    struct scene scene;
+    const char *input, *output, *lens, *lights_file;
+    struct glint_lights_config lights;
+    int threshold[2];
+    double headroom_ev;
+    int max_lights, start_number;
+    bool flare_only;
+    int range, matrix; /* 0: auto */
+
+    struct lamp_list list;
+    struct lamp_finder finder;
+    int n_hand;
+    struct glint_lamp hand[SCENE_MAX_LAMPS];
+
+    struct glint_view view;
+    bool open; /* frame and finder are made, for view's size */
+    struct frame frame;
+    struct glint_lamp lamp[SCENE_MAX_LAMPS];
+
+    struct frame_report report; /* of the last frame */
+    int n_frames, most_lights;
+    double find_ms, flare_ms, started;
+    size_t arena_bytes, peak_bytes;
+};
+
+/* ------------------------------------------------------------------ options */
+
+static bool take_quality(const char *text, int *grid)
+{
+    static const char *const words[] = {"draft", "default", "high", NULL};
+    const int word = tool_word(text, words);
+    double q = 0.25 * (word + 1);
+
+    if (word < 0 && (!tool_number(text, &q) || q < 0 || q > 1))
+        return false;
+    *grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
+    return true;
+}
+
+static bool take_threshold(const char *text, int threshold[2])
+{
+    double v[2];
+    const int n = tool_numbers(text, v, 2);
+
+    if (n == 0 || v[0] < 1 || v[0] > 255 || (n == 2 && (v[1] < 1 || v[1] > v[0])))
+        return false;
+    threshold[0] = (int)v[0];
+    threshold[1] = n == 2 ? (int)v[1] : (int)ceil(v[0] * 0.8);
+    return true;
+}
+
+static bool take_word(const char *text, const char *const *words, int *value)
+{
+    *value = tool_word(text, words);
+    return *value >= 0;
+}
+
+static bool take(struct overlay *o, int option, const char *value)
+{
+    static const char *const ranges[] = {"auto", "full", "limited", NULL};
+    static const char *const matrices[] = {"auto", "601", "709", NULL};
+    static const char *const layers[] = {"composite", "flare", NULL};
+    int layer;
+
+    switch (option) {
+    case 'l':
+        return o->n_hand < SCENE_MAX_LAMPS &&
+               scene_lamp(value, &o->hand[o->n_hand++]);
+    case 't':
+        return take_threshold(value, o->threshold);
+    case 'm':
+        return tool_integer(value, 1, SCENE_MAX_LAMPS, &o->max_lights);
+    case 'H':
+        return tool_number(value, &o->headroom_ev) && o->headroom_ev >= 0 &&
+               o->headroom_ev <= 40;
+    case 'r':
+        return take_word(value, ranges, &o->range);
+    case 'x':
+        return take_word(value, matrices, &o->matrix);
+    case 'n':
+        return tool_integer(value, 0, 1000000000, &o->start_number);
+    case 'Q':
+        return take_quality(value, &o->scene.grid);
+    default: /* 'y' */
+        if (!take_word(value, layers, &layer))
+            return false;
+        o->flare_only = layer == 1;
+        return true;
+    }
+}
+
+static const struct option options[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"lens", required_argument, NULL, 'L'},
+    {"lights", required_argument, NULL, 'f'},
+    {"light", required_argument, NULL, 'l'},
+    {"threshold", required_argument, NULL, 't'},
+    {"max-lights", required_argument, NULL, 'm'},
+    {"headroom", required_argument, NULL, 'H'},
+    {"layer", required_argument, NULL, 'y'},
+    {"range", required_argument, NULL, 'r'},
+    {"matrix", required_argument, NULL, 'x'},
+    {"start-number", required_argument, NULL, 'n'},
+    {"quality", required_argument, NULL, 'Q'},
+    SCENE_OPTIONS,
+    TOOL_COMMON_OPTIONS};
+
+static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
+{
+    int c, code, index = 0;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &index)) >= 0) {
+        code = scene_option(tool, &o->scene, c, optarg);
+        if (code >= 0)
+            return code;
+        if (code == -1)
+            continue;
+        if (c == 'o')
+            o->output = optarg;
+        else if (c == 'L')
+            o->lens = optarg;
+        else if (c == 'f')
+            o->lights_file = strcmp(optarg, "auto") == 0 ? NULL : optarg;
+        else if (strchr("ltmHyrxnQ", c)) {
+            if (!take(o, c, optarg))
+                return tool_usage(tool, "--%s: '%s' is not something it takes",
+                                  options[index].name, optarg);
+        } else if ((code = tool_option(tool, c, optarg)) >= 0)
+            return code;
+    }
+    if (optind + 1 != argc)
+        return tool_usage(tool, "takes one input");
+    if (!o->output)
+        return tool_usage(tool, "needs -o OUT");
+    o->input = argv[optind];
+    return -1;
+}
+
+/* -------------------------------------------------------------------- frame */
+
+/* Makes what depends on the size of the pictures. */
+static int open_frame(struct tool *tool, struct overlay *o, int width,
+                      int height)
+{
+    enum glint_status status;
+    int code;
+
+    o->view = scene_view(&o->scene, width, height);
+    code = scene_frame(tool, &o->scene, o->view, &o->frame);
+    if (code != EXIT_OK)
+        return code;
+    o->open = true;
+    glint_lights_defaults(&o->lights, width, height);
+    if (o->threshold[0]) {
+        o->lights.threshold_high = o->threshold[0];
+        o->lights.threshold_low = o->threshold[1];
+    }
+    o->finder.headroom_ev = o->headroom_ev;
+    o->finder.max = o->max_lights;
+    status = lamp_finder_open(&o->finder, &o->lights);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+}
+
+static int lamps_of(struct overlay *o, const struct glint_image *image)
+{
+    const double focal = o->scene.setup.optics.focal_mm;
+    int n = o->n_hand;
+
+    memcpy(o->lamp, o->hand, (size_t)n * sizeof *o->lamp);
+    if (o->lights_file)
+        n += lamp_list_frame(&o->list, o->n_frames, &o->view, focal,
+                             o->lamp + n, SCENE_MAX_LAMPS - n);
+    else if (n == 0)
+        n = lamp_finder_frame(&o->finder, image, &o->view, focal, o->lamp);
+    return n;
+}
+
+/* Black, in the codes of IMAGE. */
+static void blacken(const struct glint_image *image)
+{
+    for (int p = 0; p < glint_image_planes(image->format); p++) {
+        const int rows =
+            glint_image_plane_height(image->format, p, image->height);
+        const int bytes =
+            glint_image_plane_width(image->format, p, image->width) *
+            glint_image_sample_bytes(image->format);
+        const int code = p > 0 ? 128
+                         : image->range == GLINT_RANGE_LIMITED &&
+                                 image->format != GLINT_RGB24
+                             ? 16
+                             : 0;
+
+        for (int y = 0; y < rows; y++)
+            memset(image->plane[p] + y * image->stride_bytes[p], code,
+                   (size_t)bytes);
+    }
+}
+
+static int draw(struct tool *tool, struct overlay *o,
+                const struct glint_image *image)
+{
+    const double t0 = tool_seconds();
+    enum glint_status status;
+    double t1;
+    int n, code = EXIT_OK;
+
+    if (!o->open)
+        code = open_frame(tool, o, image->width, image->height);
+    if (code != EXIT_OK)
+        return code;
+    n = lamps_of(o, image);
+    t1 = tool_seconds();
+    if (o->flare_only)
+        blacken(image);
+    status = frame_draw(&o->frame, o->lamp, n, scene_scale(&o->scene), image,
+                        &o->report);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    o->find_ms += 1e3 * (t1 - t0);
+    o->flare_ms += 1e3 * (tool_seconds() - t1);
+    o->n_frames++;
+    o->most_lights = n > o->most_lights ? n : o->most_lights;
+    o->arena_bytes = o->report.arena_bytes;
+    if (o->report.peak_bytes > o->peak_bytes)
+        o->peak_bytes = o->report.peak_bytes;
+    if (tool->verbose && !tool->quiet)
+        fprintf(stderr, "frame %d: %d lights, %d ghosts, %d primitives\n",
+                o->n_frames - 1, n, o->report.ghosts,
+                o->report.stats.primitives);
+    return EXIT_OK;
+}
+
+/* -------------------------------------------------------------------- video */
+
+static void show_frame(const struct tool *tool, const struct overlay *o)
+{
+    const double spent = tool_seconds() - o->started;
+
+    if (tool->quiet || tool->verbose || !isatty(STDERR_FILENO))
+        return;
+    fprintf(stderr, "\rframe %d  %.1f fps  %d lights \033[K", o->n_frames,
+            o->n_frames / spent, o->report.lights);
+    fflush(stderr);
+}
+
+static int video_frames(struct tool *tool, struct overlay *o,
+                        struct glint_y4m_reader *in,
+                        struct glint_y4m_writer *out)
+{
+    struct glint_error error = {""};
+    const struct glint_image *image;
+    int code = EXIT_OK;
+
+    while (code == EXIT_OK) {
+        enum glint_status status = glint_y4m_reader_next(in, &image, &error);
+
+        if (status == GLINT_OK && !image)
+            break;
+        if (status == GLINT_OK) {
+            code = draw(tool, o, image);
+            if (code != EXIT_OK)
+                break;
+            status = glint_y4m_writer_put(out, image, in->frame_tags, &error);
+            show_frame(tool, o);
+        }
+        if (status == GLINT_E_CLOSED)
+            break;
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, error.text);
+    }
+    return code;
+}
+
+static int run_video(struct tool *tool, struct overlay *o)
+{
+    struct glint_error error = {""};
+    struct glint_y4m_reader in;
+    struct glint_y4m_writer out;
+    enum glint_status status = glint_y4m_reader_open(&in, o->input, &error);
+    int code;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (o->range)
+        in.header.range = o->range == 1 ? GLINT_RANGE_FULL
+                                        : GLINT_RANGE_LIMITED;
+    if (o->matrix)
+        in.header.matrix =
+            o->matrix == 1 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
+    status = glint_y4m_writer_open(&out, o->output, &in.header, &error);
+    if (status != GLINT_OK) {
+        glint_y4m_reader_close(&in);
+        return tool_fail(tool, status, error.text);
+    }
+    code = video_frames(tool, o, &in, &out);
+    if (code == EXIT_OK) {
+        status = glint_y4m_writer_commit(&out, &error);
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, error.text);
+    }
+    glint_y4m_writer_abort(&out);
+    glint_y4m_reader_close(&in);
+    return code;
+}
+
+/* ----------------------------------------------------------------- pictures */
+
+static int run_picture(struct tool *tool, struct overlay *o, const char *from,
+                       const char *to)
+{
+    struct glint_error error = {""};
+    struct glint_image image;
+    enum glint_status status = glint_picture_load(&image, from, &error);
+    int code = EXIT_OK;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (o->open && (image.width != o->view.width ||
+                    image.height != o->view.height)) {
+        fprintf(stderr, "glint overlay: %s: is %dx%d, those before it %dx%d\n",
+                from, image.width, image.height, o->view.width,
+                o->view.height);
+        code = EXIT_INPUT;
+    }
+    if (code == EXIT_OK)
+        code = draw(tool, o, &image);
+    if (code == EXIT_OK) {
+        status = glint_picture_save(to, &image, &error);
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, error.text);
+    }
+    glint_picture_free(&image);
+    return code;
+}
+
+/* Exactly one printf conversion of an int, "%d" or "%0Nd". */
+static bool is_pattern(const char *text)
+{
+    const char *at = strchr(text, '%');
+
+    if (!at)
+        return false;
+    for (at++; isdigit((unsigned char)*at); at++)
+        ;
+    return *at == 'd' && !strchr(at, '%');
+}
+
+static void name_of(char *name, size_t bytes, const char *pattern, int number)
+{
+    const char *at = strchr(pattern, '%');
+    const int digits = at[1] == 'd' ? 0 : (int)strtol(at + 1, NULL, 10);
+
+    snprintf(name, bytes, "%.*s%0*d%s", (int)(at - pattern), pattern,
+             digits < 20 ? digits : 20, number, strchr(at, 'd') + 1);
+}
+
+static int run_sequence(struct tool *tool, struct overlay *o)
+{
+    char from[1024], to[1024];
+    int number = o->start_number, code = EXIT_OK;
+
+    if (!is_pattern(o->input) || !is_pattern(o->output))
+        return tool_usage(tool, "a sequence needs one %%04d in both names");
+    if (number < 0) {
+        name_of(from, sizeof from, o->input, 0);
+        number = access(from, F_OK) == 0 ? 0 : 1;
+    }
+    for (;; number++) {
+        name_of(from, sizeof from, o->input, number);
+        if (access(from, F_OK) != 0)
+            break;
+        name_of(to, sizeof to, o->output, number);
+        code = run_picture(tool, o, from, to);
+        if (code != EXIT_OK)
+            return code;
+        show_frame(tool, o);
+    }
+    if (o->n_frames == 0) {
+        fprintf(stderr, "glint overlay: %s: no such frame\n", from);
+        return EXIT_INPUT;
+    }
+    return EXIT_OK;
+}
+
+/* ------------------------------------------------------------------- result */
+
+static void print_result(const struct tool *tool, const struct overlay *o)
+{
+    const double seconds = tool_seconds() - o->started;
+    const int n = o->n_frames ? o->n_frames : 1;
+    const bool piped = strcmp(o->output, "-") == 0;
+
+    if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
+        fputs("\r\033[K", stderr);
+    if (tool->json && !piped) {
+        printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
+               "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
+               o->n_frames, 1e3 * seconds, o->n_frames / seconds,
+               o->find_ms / n, o->flare_ms / n, o->most_lights);
+        scene_json(&o->report);
+        printf("}\n");
+    } else if (!tool->quiet) {
+        fprintf(stderr,
+                "%s: %d frame%s of %dx%d, %.1f fps (find %.1f ms, flare %.1f "
+                "ms), at most %d lights, %d ghosts; flare memory %zu bytes, "
+                "peak %zu\n",
+                o->output, o->n_frames, o->n_frames == 1 ? "" : "s",
+                o->view.width, o->view.height, o->n_frames / seconds,
+                o->find_ms / n, o->flare_ms / n, o->most_lights,
+                o->report.ghosts, o->arena_bytes, o->peak_bytes);
+        if (o->most_lights == 0)
+            fprintf(stderr, "%s: no light was found, so nothing was drawn; "
+                            "see --threshold, or give one with --light\n",
+                    o->output);
+    }
+}
+
+static bool is_y4m(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+
+    return strcmp(name, "-") == 0 || (dot && strcmp(dot, ".y4m") == 0);
+}
+
+/* Refuses an output that does not go with the input before there is work. */
+static int check_output(struct tool *tool, struct overlay *o)
+{
+    struct glint_error error = {""};
+
+    if (is_y4m(o->input) != is_y4m(o->output))
+        return tool_usage(tool, "a video becomes a video (.y4m or -), a "
+                                "picture a picture");
+    if (is_y4m(o->output) ||
+        glint_picture_check(o->output, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+static int run(struct tool *tool, struct overlay *o)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    int code = check_output(tool, o);
+
+    if (code == EXIT_OK)
+        code = scene_open(tool, &o->scene, o->lens);
+    if (code != EXIT_OK)
+        return code;
+    if (o->lights_file)
+        status = lamp_list_read(&o->list, o->lights_file, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    o->started = tool_seconds();
+    if (is_y4m(o->input))
+        code = run_video(tool, o);
+    else if (strchr(o->input, '%'))
+        code = run_sequence(tool, o);
+    else
+        code = run_picture(tool, o, o->input, o->output);
+    if (code == EXIT_OK)
+        print_result(tool, o);
+    return code;
+}
+
+int cmd_overlay(int argc, char **argv)
+{
+    struct tool tool = {.name = "overlay", .help = help};
+    struct overlay *o = calloc(1, sizeof *o);
+    int code;
+
+    if (!o)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    scene_defaults(&o->scene);
+    o->lens = "heliar-tronnier";
+    o->headroom_ev = 12;
+    o->max_lights = 16;
+    o->start_number = -1;
+    code = parse(&tool, argc, argv, o);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, o);
+        tool_finish(&tool);
+    }
+    lamp_list_free(&o->list);
+    if (o->open) {
+        lamp_finder_close(&o->finder);
+        frame_finish(&o->frame);
+    }
+    free(o);
+    return code;
+}
