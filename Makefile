@@ -48,6 +48,7 @@ WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
 CFLAGS := -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
 LDLIBS := -lm -lpthread -ldl
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
+$(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
         -DGLINT_LENS_DIR='"$(PREFIX)/share/glint/lenses"' \

@@ -37,7 +37,7 @@ static int compare(const struct tool *tool, const char *const *name, bool fit)
 
     for (int i = 0; i < 2 && code == EXIT_OK; i++) {
         const enum glint_status status =
-            glint_picture_load_floats(&image[i], name[i], &error);
+            glint_picture_load_float(name[i], &image[i], &error);
 
         if (status != GLINT_OK)
             code = tool_fail(tool, status, error.text);

@@ -61,12 +61,16 @@ static void print_text(const struct info *info)
     printf("front to sensor     %10.3f mm\n", o->length_mm);
     printf("film                %6gx%g mm\n", l->film_width_mm,
            l->film_height_mm);
-    printf("surfaces            %6d before the stop, %d after\n",
-           l->stop_after, l->n_surfaces - l->stop_after);
+    printf("surfaces            %6d before the stop, %d after\n", l->stop_after,
+           l->n_surfaces - l->stop_after);
     printf("ghosts              %6d: ", info->n_ghosts);
     for (int k = 0; k < info->n_ghosts; k++)
-        printf("%s%d:%d-%d", k == 0 ? "" : k % 8 ? "  " : "\n" "        ", k,
-               info->ghost[k].i, info->ghost[k].j);
+        printf("%s%d:%d-%d",
+               k == 0  ? ""
+               : k % 8 ? "  "
+                       : "\n"
+                         "        ",
+               k, info->ghost[k].i, info->ghost[k].j);
     printf("\n");
 }
 

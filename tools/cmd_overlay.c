@@ -43,8 +43,8 @@ static const char help[] =
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as found)\n"
-    "  --quality Q         0 to 1, or draft, default, high: sets --grid\n" SCENE_HELP
-        COMMON_HELP;
+    "  --quality Q         0 to 1, or draft, default, high: sets "
+    "--grid\n" SCENE_HELP COMMON_HELP;
 
 struct overlay {
     struct scene scene;
@@ -91,7 +91,8 @@ static bool take_threshold(const char *text, int threshold[2])
     double v[2];
     const int n = tool_numbers(text, v, 2);
 
-    if (n == 0 || v[0] < 1 || v[0] > 255 || (n == 2 && (v[1] < 1 || v[1] > v[0])))
+    if (n == 0 || v[0] < 1 || v[0] > 255 ||
+        (n == 2 && (v[1] < 1 || v[1] > v[0])))
         return false;
     threshold[0] = (int)v[0];
     threshold[1] = n == 2 ? (int)v[1] : (int)ceil(v[0] * 0.8);
@@ -332,8 +333,8 @@ static int run_video(struct tool *tool, struct overlay *o)
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (o->range)
-        in.header.range = o->range == 1 ? GLINT_RANGE_FULL
-                                        : GLINT_RANGE_LIMITED;
+        in.header.range =
+            o->range == 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
     if (o->matrix)
         in.header.matrix =
             o->matrix == 1 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
@@ -360,16 +361,15 @@ static int run_picture(struct tool *tool, struct overlay *o, const char *from,
 {
     struct glint_error error = {""};
     struct glint_image image;
-    enum glint_status status = glint_picture_load(&image, from, &error);
+    enum glint_status status = glint_picture_load(from, &image, &error);
     int code = EXIT_OK;
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (o->open && (image.width != o->view.width ||
-                    image.height != o->view.height)) {
+    if (o->open &&
+        (image.width != o->view.width || image.height != o->view.height)) {
         fprintf(stderr, "glint overlay: %s: is %dx%d, those before it %dx%d\n",
-                from, image.width, image.height, o->view.width,
-                o->view.height);
+                from, image.width, image.height, o->view.width, o->view.height);
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
@@ -459,8 +459,9 @@ static void print_result(const struct tool *tool, const struct overlay *o)
                 o->find_ms / n, o->flare_ms / n, o->most_lights,
                 o->report.ghosts, o->arena_bytes, o->peak_bytes);
         if (o->most_lights == 0)
-            fprintf(stderr, "%s: no light was found, so nothing was drawn; "
-                            "see --threshold, or give one with --light\n",
+            fprintf(stderr,
+                    "%s: no light was found, so nothing was drawn; "
+                    "see --threshold, or give one with --light\n",
                     o->output);
     }
 }

@@ -24,8 +24,8 @@ static const char help[] =
     "  --light LIST        degrees off the axis, degrees about it (0 = right,\n"
     "                      90 = up), power (default 1), colour; repeatable\n"
     "  --engine E          model: the integer run time (default)\n"
-    "                      exact: the reference, every ray in double\n" SCENE_HELP
-        COMMON_HELP;
+    "                      exact: the reference, every ray in "
+    "double\n" SCENE_HELP COMMON_HELP;
 
 struct render {
     struct scene scene;
@@ -65,9 +65,9 @@ static int take(struct tool *tool, struct render *r, int c)
     case 'e':
         word = tool_word(optarg, engines);
         r->exact = word == 1;
-        return word >= 0 ? -1
-                         : tool_usage(tool, "no engine '%s': model or exact",
-                                      optarg);
+        return word >= 0
+                   ? -1
+                   : tool_usage(tool, "no engine '%s': model or exact", optarg);
     default:
         return tool_option(tool, c, optarg);
     }
@@ -139,9 +139,8 @@ static int render_exact(struct tool *tool, struct render *r)
 static int render_model(struct tool *tool, struct render *r)
 {
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
-    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
-                                .width = r->width,
-                                .height = r->height};
+    struct glint_image layer = {
+        .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
     struct frame_report report = {{0}, 0, 0, 0, 0, 0, 0, 0, 0};
     int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
     enum glint_status status = GLINT_E_MEMORY;
@@ -156,12 +155,11 @@ static int render_model(struct tool *tool, struct render *r)
                        scene_view(&r->scene, r->width, r->height), &frame);
     if (code == EXIT_OK) {
         scale = frame_auto_scale(&frame, r->lamp, r->n_lamps);
-        status = frame_draw(&frame, r->lamp, r->n_lamps, scale, &layer,
-                            &report);
+        status =
+            frame_draw(&frame, r->lamp, r->n_lamps, scale, &layer, &report);
         for (size_t i = 0; i < n; i++)
-            r->image.rgb[i] =
-                (float)(linear_q20[i] * 0x1p-20 / scale *
-                        scene_scale(&r->scene));
+            r->image.rgb[i] = (float)(linear_q20[i] * 0x1p-20 / scale *
+                                      scene_scale(&r->scene));
         if (status != GLINT_OK)
             code = tool_fail(tool, status, NULL);
     }
@@ -179,19 +177,17 @@ static int render_model(struct tool *tool, struct render *r)
 
 static int save(struct tool *tool, struct render *r)
 {
-    struct glint_image codes = {.format = GLINT_RGB24,
-                                .width = r->width,
-                                .height = r->height};
+    struct glint_image codes = {
+        .format = GLINT_RGB24, .width = r->width, .height = r->height};
     struct glint_error error = {""};
     enum glint_status status;
     uint8_t *mem;
 
     if (r->linear)
-        status = glint_picture_save_floats(r->output, &r->image, &error);
+        status = glint_picture_save_float(r->output, &r->image, &error);
     else {
-        mem = measure_encode(&r->image, r->scene.has_exposure
-                                            ? 1
-                                            : measure_exposure(&r->image));
+        mem = measure_encode(
+            &r->image, r->scene.has_exposure ? 1 : measure_exposure(&r->image));
         if (!mem)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
         glint_image_place(&codes, mem);

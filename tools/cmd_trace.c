@@ -47,8 +47,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         if (c == 'g')
             ok = tool_integer(optarg, -1, GLINT_MAX_GHOSTS, &o->ghost);
         else if (c == 'a')
-            ok = tool_number(optarg, &o->angle_deg) &&
-                 fabs(o->angle_deg) < 90;
+            ok = tool_number(optarg, &o->angle_deg) && fabs(o->angle_deg) < 90;
         else if (c == 'w')
             ok = tool_number(optarg, &o->wavelength_nm) &&
                  o->wavelength_nm >= 300 && o->wavelength_nm <= 1100;
@@ -115,6 +114,7 @@ int cmd_trace(int argc, char **argv)
                     o.wavelength_nm);
     print_rays(&o, &lens, &path);
     if (ferror(stdout) || fflush(stdout) != 0)
-        return tool_fail(&tool, GLINT_E_OUTPUT, "standard output: write failed");
+        return tool_fail(&tool, GLINT_E_OUTPUT,
+                         "standard output: write failed");
     return EXIT_OK;
 }

@@ -103,9 +103,8 @@ static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
     for (int lamp = 0; lamp < n_lamps; lamp++)
         for (int ghost = first; ghost <= last; ghost++)
             for (int wave = 0; wave < s->n_wavelengths; wave++)
-                f->feed[n++] = (struct glint_feed){.lamp = &lamps[lamp],
-                                                   .ghost = ghost,
-                                                   .wavelength = wave};
+                f->feed[n++] = (struct glint_feed){
+                    .lamp = &lamps[lamp], .ghost = ghost, .wavelength = wave};
     glint_workers_run(f->cfg.workers, n, plan_job, &job);
     for (int i = 0; i < n; i++)
         if (f->feed[i].n_cells > 0)
@@ -232,8 +231,7 @@ static enum glint_status bin(struct frame *f,
         f->cfg.max_primitives =
             larger(f->cfg.max_primitives, s->need_primitives);
         f->cfg.max_refs = larger(f->cfg.max_refs, s->need_refs);
-        f->cfg.max_tile_refs =
-            larger(f->cfg.max_tile_refs, s->need_tile_refs);
+        f->cfg.max_tile_refs = larger(f->cfg.max_tile_refs, s->need_tile_refs);
         status = regrow(f, cfg);
         if (status != GLINT_OK)
             return status;

@@ -30,9 +30,8 @@ struct command {
 };
 
 static const struct command commands[] = {
-    {"info", cmd_info},       {"trace", cmd_trace},
-    {"render", cmd_render},   {"overlay", cmd_overlay},
-    {"compare", cmd_compare},
+    {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
+    {"overlay", cmd_overlay}, {"compare", cmd_compare},
 };
 
 int main(int argc, char **argv)

@@ -13,14 +13,13 @@
 
 enum { FIELDS = 8, MAX_ROWS = 1 << 20 };
 
-static const char *const names[FIELDS + 1] = {"frame", "x", "y",    "power",
-                                              "r",     "g", "b",    "size",
-                                              NULL};
+static const char *const names[FIELDS + 1] = {
+    "frame", "x", "y", "power", "r", "g", "b", "size", NULL};
 
 static struct lamp_row row_of(const double *v)
 {
-    return (struct lamp_row){(int)v[0], v[1], v[2], v[3], {v[4], v[5], v[6]},
-                             v[7]};
+    return (struct lamp_row){(int)v[0],          v[1], v[2], v[3],
+                             {v[4], v[5], v[6]}, v[7]};
 }
 
 static bool frame_ok(double frame)
@@ -141,8 +140,7 @@ static enum glint_status add_row(struct lamp_list *list, int *room,
 }
 
 static enum glint_status parse_text(struct lamp_list *list, char *text,
-                                    const char *path,
-                                    struct glint_error *error)
+                                    const char *path, struct glint_error *error)
 {
     int number = 1, room = 0;
 

@@ -88,9 +88,8 @@ static void difference(const uint8_t *a, const uint8_t *b, size_t n,
         count[e]++;
         squares += (double)e * e;
     }
-    m->psnr_db = squares > 0
-                     ? 10 * log10(255.0 * 255.0 * (double)n / squares)
-                     : 999;
+    m->psnr_db =
+        squares > 0 ? 10 * log10(255.0 * 255.0 * (double)n / squares) : 999;
     for (; d < 255; d++) {
         seen += count[d];
         if ((double)seen >= 0.99 * (double)n)

@@ -26,8 +26,7 @@ struct measure {
 double measure_exposure(const struct glint_float_image *image);
 
 /* LINEAR times EXPOSURE as sRGB codes, [height][width][3]; NULL: no memory. */
-uint8_t *measure_encode(const struct glint_float_image *image,
-                        double exposure);
+uint8_t *measure_encode(const struct glint_float_image *image, double exposure);
 
 /* Compares TEST with REFERENCE, of one size. FIT: times the factor that fits
  * best in the squares first. False: no memory. */

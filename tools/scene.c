@@ -28,8 +28,8 @@ static bool parse_stop(const char *text, struct scene *scene)
         return true;
     }
     if (strncmp(text, "polygon:", 8) != 0 ||
-        tool_numbers(text + 8, v, 2) == 0 || v[0] != floor(v[0]) ||
-        v[0] < 3 || v[0] > GLINT_MAX_BLADES)
+        tool_numbers(text + 8, v, 2) == 0 || v[0] != floor(v[0]) || v[0] < 3 ||
+        v[0] > GLINT_MAX_BLADES)
         return false;
     scene->n_blades = (int)v[0];
     scene->blade_rotation_deg = v[1];
@@ -159,10 +159,10 @@ int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
         status = glint_prescription_set_f_number(&scene->lens, scene->f_number,
                                                  &error);
     if (status == GLINT_OK)
-        status = glint_setup_init(
-            &scene->setup, &scene->lens, scene->n_blades,
-            scene->blade_rotation_deg, scene->wavelength_nm,
-            scene->n_wavelengths, &error);
+        status =
+            glint_setup_init(&scene->setup, &scene->lens, scene->n_blades,
+                             scene->blade_rotation_deg, scene->wavelength_nm,
+                             scene->n_wavelengths, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (scene->only_ghost >= scene->setup.n_ghosts)

@@ -50,35 +50,37 @@ enum scene_option {
     OPT_LAST
 };
 
-#define SCENE_OPTIONS                                          \
-    {"f-number", required_argument, NULL, OPT_F_NUMBER},       \
-        {"stop", required_argument, NULL, OPT_STOP},           \
+#define SCENE_OPTIONS                                              \
+    {"f-number", required_argument, NULL, OPT_F_NUMBER},           \
+        {"stop", required_argument, NULL, OPT_STOP},               \
         {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS}, \
-        {"sensor", required_argument, NULL, OPT_SENSOR},       \
-        {"exposure", required_argument, NULL, OPT_EXPOSURE},   \
-        {"gain", required_argument, NULL, OPT_GAIN},           \
-        {"ghost", required_argument, NULL, OPT_GHOST},         \
-        {"grid", required_argument, NULL, OPT_GRID},           \
-        {"uniform-grid", no_argument, NULL, OPT_UNIFORM},      \
-        {"merge", required_argument, NULL, OPT_MERGE},         \
-        {"tile", required_argument, NULL, OPT_TILE},           \
-        {"coarse", required_argument, NULL, OPT_COARSE},       \
-        {"weights", required_argument, NULL, OPT_WEIGHTS},     \
-        {"mask", required_argument, NULL, OPT_MASK},           \
-        {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS}, \
-        {"dither", no_argument, NULL, OPT_DITHER},             \
-    {                                                          \
-        "only", required_argument, NULL, OPT_ONLY              \
+        {"sensor", required_argument, NULL, OPT_SENSOR},           \
+        {"exposure", required_argument, NULL, OPT_EXPOSURE},       \
+        {"gain", required_argument, NULL, OPT_GAIN},               \
+        {"ghost", required_argument, NULL, OPT_GHOST},             \
+        {"grid", required_argument, NULL, OPT_GRID},               \
+        {"uniform-grid", no_argument, NULL, OPT_UNIFORM},          \
+        {"merge", required_argument, NULL, OPT_MERGE},             \
+        {"tile", required_argument, NULL, OPT_TILE},               \
+        {"coarse", required_argument, NULL, OPT_COARSE},           \
+        {"weights", required_argument, NULL, OPT_WEIGHTS},         \
+        {"mask", required_argument, NULL, OPT_MASK},               \
+        {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},     \
+        {"dither", no_argument, NULL, OPT_DITHER},                 \
+    {                                                              \
+        "only", required_argument, NULL, OPT_ONLY                  \
     }
 
 /* What they do, for a command's help. */
 #define SCENE_HELP                                                             \
     "The lens\n"                                                               \
     "  --f-number N        stop it to f/N (default: the table's)\n"            \
-    "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the first\n" \
+    "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the "      \
+    "first\n"                                                                  \
     "                      corner at ROT degrees (default polygon:8)\n"        \
     "  --wavelengths LIST  nm; three become R,G,B as they stand (default\n"    \
-    "                      650,532,450), any other number is weighted by the\n" \
+    "                      650,532,450), any other number is weighted by "     \
+    "the\n"                                                                    \
     "                      CIE 1931 observer\n"                                \
     "  --sensor WxH        mm (default: the film of the table); the picture\n" \
     "                      is the largest of its shape that fits\n"            \

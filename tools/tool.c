@@ -32,12 +32,15 @@ int tool_usage(const struct tool *tool, const char *format, ...)
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text)
 {
-    static const int code[] = {
-        [GLINT_OK] = EXIT_OK,           [GLINT_E_ARGUMENT] = EXIT_USAGE,
-        [GLINT_E_MEMORY] = EXIT_RUNTIME, [GLINT_E_FORMAT] = EXIT_INPUT,
-        [GLINT_E_UNSUPPORTED] = EXIT_INPUT, [GLINT_E_LENS] = EXIT_LENS,
-        [GLINT_E_IO] = EXIT_INPUT,      [GLINT_E_OUTPUT] = EXIT_OUTPUT,
-        [GLINT_E_CLOSED] = EXIT_OK};
+    static const int code[] = {[GLINT_OK] = EXIT_OK,
+                               [GLINT_E_ARGUMENT] = EXIT_USAGE,
+                               [GLINT_E_MEMORY] = EXIT_RUNTIME,
+                               [GLINT_E_FORMAT] = EXIT_INPUT,
+                               [GLINT_E_UNSUPPORTED] = EXIT_INPUT,
+                               [GLINT_E_LENS] = EXIT_LENS,
+                               [GLINT_E_IO] = EXIT_INPUT,
+                               [GLINT_E_OUTPUT] = EXIT_OUTPUT,
+                               [GLINT_E_CLOSED] = EXIT_OK};
 
     if (status == GLINT_E_CLOSED) /* the reader had enough: no failure */
         return EXIT_OK;
@@ -80,13 +83,14 @@ int tool_option(struct tool *tool, int option, const char *value)
     case 'K':
         if (tool_word(value, kernels) >= 0)
             return -1;
-        return tool_usage(tool, "--kernels: this build has c and auto, not "
-                          "'%s'", value);
+        return tool_usage(tool,
+                          "--kernels: this build has c and auto, not "
+                          "'%s'",
+                          value);
     case 'S': /* nothing is random yet: any seed gives the same picture */
         if (tool_integer(value, 0, INT_MAX, &seed))
             return -1;
-        return tool_usage(tool, "--seed takes a whole number, not '%s'",
-                          value);
+        return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
     default: /* getopt_long has said what is wrong */
         fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
         return EXIT_USAGE;
@@ -220,8 +224,8 @@ int tool_lens(const struct tool *tool, const char *argument,
         file = path;
     status = glint_input_slurp(&text, &bytes, file, 1 << 20, &error);
     if (status == GLINT_OK)
-        status = glint_prescription_parse(lens, (const char *)text, bytes,
-                                          file, &error);
+        status = glint_prescription_parse(lens, (const char *)text, bytes, file,
+                                          &error);
     free(text);
     if (status == GLINT_OK)
         return EXIT_OK;

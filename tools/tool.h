@@ -33,17 +33,15 @@ struct tool {
 
 /* Options that every command takes, for its struct option array. */
 #define TOOL_COMMON_SHORT "hVqvj:"
-#define TOOL_COMMON_OPTIONS                                         \
-    {"help", no_argument, NULL, 'h'},                               \
-        {"version", no_argument, NULL, 'V'},                        \
-        {"quiet", no_argument, NULL, 'q'},                          \
-        {"verbose", no_argument, NULL, 'v'},                        \
-        {"json", no_argument, NULL, 'J'},                           \
-        {"threads", required_argument, NULL, 'j'},                  \
-        {"kernels", required_argument, NULL, 'K'},                  \
-        {"seed", required_argument, NULL, 'S'},                     \
-    {                                                               \
-        NULL, 0, NULL, 0                                            \
+#define TOOL_COMMON_OPTIONS                                                    \
+    {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'V'},     \
+        {"quiet", no_argument, NULL, 'q'},                                     \
+        {"verbose", no_argument, NULL, 'v'}, {"json", no_argument, NULL, 'J'}, \
+        {"threads", required_argument, NULL, 'j'},                             \
+        {"kernels", required_argument, NULL, 'K'},                             \
+        {"seed", required_argument, NULL, 'S'},                                \
+    {                                                                          \
+        NULL, 0, NULL, 0                                                       \
     }
 
 /* Takes a common option. Returns -1 to go on, else the exit code to leave with

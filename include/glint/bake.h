@@ -72,14 +72,14 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
 
 /* Changes the f-number. GLINT_E_ARGUMENT: not finite, or the stop it asks for
  * is wider than stop_semi_mm. */
-enum glint_status glint_prescription_set_f_number(
-    struct glint_prescription *lens, double f_number,
-    struct glint_error *error);
+enum glint_status
+glint_prescription_set_f_number(struct glint_prescription *lens,
+                                double f_number, struct glint_error *error);
 
 /* First-order quantities at the d line (587.56 nm). */
 struct glint_optics {
-    double focal_mm;         /* effective focal length */
-    double back_focal_mm;    /* last surface to the paraxial focus */
+    double focal_mm;           /* effective focal length */
+    double back_focal_mm;      /* last surface to the paraxial focus */
     double entrance_radius_mm; /* of the entrance pupil: focal / (2 N) */
     double entrance_z_mm;      /* of the entrance pupil from the front vertex */
     double stop_radius_mm;     /* of the aperture stop at the f-number */
@@ -175,8 +175,8 @@ struct glint_setup {
     struct glint_optics optics;
     int n_ghosts;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
-    int n_blades;               /* of the stop; 0: circle */
-    double blade_rotation_deg;  /* of the first corner, from x towards y */
+    int n_blades;              /* of the stop; 0: circle */
+    double blade_rotation_deg; /* of the first corner, from x towards y */
     int n_wavelengths;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     double rgb[GLINT_MAX_WAVELENGTHS][3]; /* linear BT.709; each channel sums
@@ -274,8 +274,8 @@ void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
  * in the x-z plane. */
 struct glint_pupil {
     double x0_mm, x1_mm, y1_mm;
-    double energy;         /* largest one seen inside */
-    double sensor_mm[4];   /* x0, x1, y0, y1 of its light on the sensor */
+    double energy;       /* largest one seen inside */
+    double sensor_mm[4]; /* x0, x1, y0, y1 of its light on the sensor */
 };
 
 /* False: nothing gets through. */
@@ -299,8 +299,9 @@ struct glint_feed {
 };
 
 /* Finds the pupil and chooses the grid by the ghost's size on the sensor:
- * n = max clamp(sqrt(ghost area / sensor area), 0.05, 1), a multiple of 4.
- * [Bodonyi23] section 4. Lamp, ghost and wavelength are set already. */
+ * n = max clamp(sqrt(ghost area / sensor area), 0.05, 1), a multiple of 4 and
+ * at least 8, over the pupil and a pixel more on each side. [Bodonyi23]. Lamp,
+ * ghost and wavelength are set already. */
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed);
 

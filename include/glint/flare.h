@@ -76,10 +76,7 @@ struct glint_bundle {
 
 /* ------------------------------------------------------------------ drawing */
 
-enum glint_weights {
-    GLINT_WEIGHTS_LOOP_DEROSE,
-    GLINT_WEIGHTS_WACHSPRESS
-};
+enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
 
 struct glint_flare_config {
     struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
@@ -104,11 +101,11 @@ struct glint_flare_config {
 struct glint_flare_stats {
     int bundles, vertices, primitives, refs, tile_refs; /* as drawn */
     int need_bundles, need_vertices, need_primitives, need_refs,
-        need_tile_refs; /* what would have drawn everything */
-    int dropped_bundles;    /* left out for want of capacity */
-    int dropped_cells;      /* of bundles that were drawn: with a lost ray, a
-                               vertex out of range, or no area */
-    int merged_cells;       /* cells that went into a larger primitive */
+        need_tile_refs;  /* what would have drawn everything */
+    int dropped_bundles; /* left out for want of capacity */
+    int dropped_cells;   /* of bundles that were drawn: with a lost ray, a
+                            vertex out of range, or no area */
+    int merged_cells;    /* cells that went into a larger primitive */
 };
 
 struct glint_flare; /* opaque, in the caller's memory */

@@ -5,8 +5,9 @@
  * glint computes the ghosts that a real lens throws across a picture when a
  * lamp shines into it. Two halves:
  *
- *   offline   glint/bake.h             double precision; lens tables, exact rays
- *   run time  glint/lights.h flare.h   integers only; no allocation after init
+ *   offline   glint/bake.h             double precision; lens tables, exact
+ * rays run time  glint/lights.h flare.h   integers only; no allocation after
+ * init
  *
  * Conventions, unless a header says otherwise: pointers are not NULL; arrays do
  * not overlap; pointers are borrowed for the call, and kept only where marked

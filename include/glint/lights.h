@@ -9,7 +9,9 @@
  * Bright regions become lights: pixels above the upper threshold seed a region,
  * pixels above the lower one belong to it. Everything is weighted by flux in
  * linear light, never by the single brightest pixel, so that noise does not
- * move a light. Integers only; nothing is kept from picture to picture.
+ * move a light. A region needs seeds on a 32nd of its pixels, so that pale
+ * walls and skies with a glint in them are no lights. Integers only; nothing is
+ * kept from picture to picture.
  */
 #ifndef GLINT_LIGHTS_H
 #define GLINT_LIGHTS_H
@@ -49,6 +51,8 @@ void glint_lights_defaults(struct glint_lights_config *cfg, int width,
 /* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
 size_t glint_lights_bytes(const struct glint_lights_config *cfg);
 
+/* Places a finder in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: too small.
+ * GLINT_E_ARGUMENT: CFG or the alignment is wrong. */
 enum glint_status glint_lights_init(struct glint_lights **finder,
                                     const struct glint_lights_config *cfg,
                                     void *mem, size_t bytes);
@@ -58,8 +62,8 @@ enum glint_status glint_lights_init(struct glint_lights **finder,
  * light kept where one is near, else it is dropped. Returns how many it wrote.
  */
 int glint_lights_find(struct glint_lights *finder,
-                      const struct glint_image *image,
-                      struct glint_spot *spots, int max);
+                      const struct glint_image *image, struct glint_spot *spots,
+                      int max);
 
 /* Lights of the last find that were dropped because MAX was too small. */
 int glint_lights_dropped(const struct glint_lights *finder);

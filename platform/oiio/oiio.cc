@@ -59,14 +59,9 @@ enum glint_status guarded(const char *name, struct glint_error *error,
     return what.status;
 }
 
-/* Opens PATH and checks what is cheap to check before it takes memory. */
-void check_file(const char *path)
+/* Before any memory is taken. */
+void check_spec(const OIIO::ImageSpec &spec)
 {
-    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
-
-    if (!in)
-        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
-    const OIIO::ImageSpec &spec = in->spec();
     if (spec.deep || spec.nchannels < 1 || spec.depth > 1)
         throw failure{GLINT_E_UNSUPPORTED, "is not a flat picture"};
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 ||
@@ -87,12 +82,22 @@ std::vector<int> channel_order(int n_channels)
     return {0, 0, 0};
 }
 
-OIIO::ImageBuf load_upright(const char *path, OIIO::TypeDesc type)
+/* Reads PATH as bytes or floats and turns it upright. Not by the file name of
+ * an ImageBuf, which would answer from a cache after the file has changed. */
+OIIO::ImageBuf load_upright(const char *path)
 {
-    OIIO::ImageBuf buf(path);
+    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
 
-    if (!buf.read(0, 0, true, type))
-        throw failure{GLINT_E_FORMAT, buf.geterror()};
+    if (!in)
+        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
+    OIIO::ImageSpec spec = in->spec();
+    check_spec(spec);
+    spec.set_format(spec.format.is_floating_point() ? OIIO::TypeDesc::FLOAT
+                                                    : OIIO::TypeDesc::UINT8);
+    OIIO::ImageBuf buf(spec);
+    if (!in->read_image(0, 0, 0, spec.nchannels, spec.format,
+                        buf.localpixels()))
+        throw failure{GLINT_E_FORMAT, in->geterror()};
     if (buf.orientation() == 1)
         return buf;
     OIIO::ImageBuf upright = OIIO::ImageBufAlgo::reorient(buf);
@@ -103,16 +108,9 @@ OIIO::ImageBuf load_upright(const char *path, OIIO::TypeDesc type)
 
 void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
 {
-    check_file(path);
-
-    OIIO::ImageBuf probe(path);
-    if (!probe.init_spec(path, 0, 0))
-        throw failure{GLINT_E_FORMAT, probe.geterror()};
-    const bool is_float = probe.nativespec().format.is_floating_point();
-    const OIIO::TypeDesc type =
-        is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
-    OIIO::ImageBuf buf = load_upright(path, type);
-    OIIO::ImageBuf rgb =
+    const OIIO::ImageBuf buf = load_upright(path);
+    const OIIO::TypeDesc type = buf.spec().format;
+    const OIIO::ImageBuf rgb =
         OIIO::ImageBufAlgo::channels(buf, 3, channel_order(buf.nchannels()));
 
     if (rgb.has_error())
@@ -120,8 +118,8 @@ void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
     OIIO::ROI roi = rgb.roi_full(); /* black where the file has no data */
     roi.chbegin = 0;
     roi.chend = 3;
-    struct glint_oiio_pixels made = {roi.width(), roi.height(), is_float,
-                                     nullptr};
+    struct glint_oiio_pixels made = {roi.width(), roi.height(),
+                                     type.is_floating_point(), nullptr};
     made.rgb = std::malloc(roi.npixels() * 3 * type.size());
     if (!made.rgb)
         throw std::bad_alloc();

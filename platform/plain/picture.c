@@ -168,26 +168,37 @@ static uint8_t encode_srgb(float linear)
     return (uint8_t)((1.055F * powf(linear, 1 / 2.4F) - 0.055F) * 255 + 0.5F);
 }
 
-/* Makes an RGB24 image with the pixels of FROM, which is of another kind. */
+static float decode_srgb(int code)
+{
+    const float v = (float)code / 255;
+
+    return v <= 0.04045F ? v / 12.92F : powf((v + 0.055F) / 1.055F, 2.4F);
+}
+
+static enum glint_status report_memory(struct glint_error *error,
+                                       const char *path, int width, int height)
+{
+    return glint_error_report(error, GLINT_E_MEMORY, path,
+                              "no memory for a %d x %d picture", width, height);
+}
+
+/* Makes an RGB24 image of FROM, which is grey or floats. */
 static enum glint_status to_rgb24(struct glint_image *image,
                                   const struct loaded *from, const char *path,
                                   struct glint_error *error)
 {
     const float *const rgb = from->floats.rgb;
-    const int width = rgb ? from->floats.width : from->image.width;
-    const int height = rgb ? from->floats.height : from->image.height;
-    const size_t n = glint_image_bytes(GLINT_RGB24, width, height);
-    struct glint_image made = {.format = GLINT_RGB24,
-                               .width = width,
-                               .height = height,
-                               .range = GLINT_RANGE_FULL,
-                               .transfer = GLINT_TRANSFER_SRGB};
+    struct glint_image made = {
+        .format = GLINT_RGB24,
+        .width = rgb ? from->floats.width : from->image.width,
+        .height = rgb ? from->floats.height : from->image.height,
+        .range = GLINT_RANGE_FULL,
+        .transfer = GLINT_TRANSFER_SRGB};
+    const size_t n = glint_image_bytes(GLINT_RGB24, made.width, made.height);
     uint8_t *const mem = malloc(n);
 
     if (!mem)
-        return glint_error_report(error, GLINT_E_MEMORY, path,
-                                  "no memory for a %d x %d picture", width,
-                                  height);
+        return report_memory(error, path, made.width, made.height);
     for (size_t i = 0; i < n; i++)
         mem[i] = rgb ? encode_srgb(rgb[i]) : from->image.plane[0][i / 3];
     glint_image_place(&made, mem);
@@ -195,8 +206,28 @@ static enum glint_status to_rgb24(struct glint_image *image,
     return GLINT_OK;
 }
 
-enum glint_status glint_picture_load(struct glint_image *image,
-                                     const char *path,
+/* Makes floats of FROM, which is RGB24 or grey. */
+static enum glint_status to_floats(struct glint_float_image *floats,
+                                   const struct glint_image *from,
+                                   const char *path, struct glint_error *error)
+{
+    const size_t step = from->format == GLINT_RGB24 ? 1 : 3;
+    const size_t n = glint_image_bytes(GLINT_RGB24, from->width, from->height);
+    float *const rgb = malloc(n * sizeof *rgb);
+    float decoded[256];
+
+    if (!rgb)
+        return report_memory(error, path, from->width, from->height);
+    for (int i = 0; i < 256; i++)
+        decoded[i] = decode_srgb(i);
+    for (size_t i = 0; i < n; i++)
+        rgb[i] = decoded[from->plane[0][i / step]];
+    *floats = (struct glint_float_image){from->width, from->height, rgb};
+    return GLINT_OK;
+}
+
+enum glint_status glint_picture_load(const char *path,
+                                     struct glint_image *image,
                                      struct glint_error *error)
 {
     struct loaded loaded;
@@ -220,9 +251,9 @@ void glint_picture_free(struct glint_image *image)
     image->plane[0] = NULL;
 }
 
-enum glint_status glint_picture_load_floats(struct glint_float_image *floats,
-                                            const char *path,
-                                            struct glint_error *error)
+enum glint_status glint_picture_load_float(const char *path,
+                                           struct glint_float_image *floats,
+                                           struct glint_error *error)
 {
     struct loaded loaded;
     enum glint_status status = load(&loaded, path, error);
@@ -233,9 +264,9 @@ enum glint_status glint_picture_load_floats(struct glint_float_image *floats,
         *floats = loaded.floats;
         return GLINT_OK;
     }
+    status = to_floats(floats, &loaded.image, path, error);
     glint_picture_free(&loaded.image);
-    return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
-                              "holds 8-bit codes, not linear light in floats");
+    return status;
 }
 
 /* ------------------------------------------------------------------ saving */
@@ -267,6 +298,13 @@ static const struct file_type *find_type(const char *path,
         if (extension && !strcasecmp(extension, file_types[i].extension))
             return &file_types[i];
     return NULL;
+}
+
+bool glint_picture_is_float(const char *path)
+{
+    const struct file_type *const type = find_type(path, GLINT_PICTURE_8BIT);
+
+    return type && !type->takes_8bit;
 }
 
 enum glint_status glint_picture_check(const char *path,
@@ -343,9 +381,9 @@ enum glint_status glint_picture_save(const char *path,
 }
 
 enum glint_status
-glint_picture_save_floats(const char *path,
-                          const struct glint_float_image *floats,
-                          struct glint_error *error)
+glint_picture_save_float(const char *path,
+                         const struct glint_float_image *floats,
+                         struct glint_error *error)
 {
     const struct glint_oiio_pixels pixels = {floats->width, floats->height, 1,
                                              floats->rgb};

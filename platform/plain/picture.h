@@ -2,7 +2,7 @@
  *
  * plain/picture.h - any picture file, in and out.
  *
- *     glint_picture_load(&image, "x.png", &error);
+ *     glint_picture_load("x.png", &image, &error);
  *     ...
  *     glint_picture_save("y.ppm", &image, &error);
  *     glint_picture_free(&image);
@@ -12,12 +12,15 @@
  * loading, by extension when saving. "-" is a pipe: PPM, PGM or PFM come in;
  * PPM goes out, or PFM where floats are saved.
  *
- * Two kinds of picture, never converted into each other when saving:
+ * Two kinds of picture. Loading turns one into the other where it has to, by
+ * the sRGB curve; saving never does:
  *   8 bits   sRGB, struct glint_image, for .ppm .png .jpg .tif .bmp .tga .webp
  *   floats   linear light, struct glint_float_image, for .pfm .exr .hdr .tif
  */
 #ifndef GLINT_PLAIN_PICTURE_H
 #define GLINT_PLAIN_PICTURE_H
+
+#include <stdbool.h>
 
 #include "glint/image.h"
 #include "glint/status.h"
@@ -25,23 +28,27 @@
 
 enum glint_picture_kind { GLINT_PICTURE_8BIT, GLINT_PICTURE_FLOAT };
 
+/* Whether the extension of PATH is one of those that hold nothing but floats.
+ * TIFF, which takes both, and "-" count as 8 bits. */
+bool glint_picture_is_float(const char *path);
+
 /* Loads PATH as GLINT_RGB24, full range, sRGB; grey becomes R = G = B, alpha is
- * left out. Linear floats are clamped to 0 .. 1 and encoded. To be freed.
+ * left out, floats are clamped to 0 .. 1. To be freed.
  * GLINT_E_IO: it cannot be read. GLINT_E_FORMAT: it is malformed.
  * GLINT_E_UNSUPPORTED: no picture, too large, or it needs the plug-in, which is
  * not there. GLINT_E_MEMORY. */
-enum glint_status glint_picture_load(struct glint_image *image,
-                                     const char *path,
+enum glint_status glint_picture_load(const char *path,
+                                     struct glint_image *image,
                                      struct glint_error *error);
 
 /* Frees an image that was loaded; fine with an image of zeros. */
 void glint_picture_free(struct glint_image *image);
 
-/* Loads PATH, which must hold floats; floats->rgb is the caller's to free().
- * GLINT_E_UNSUPPORTED: it holds 8-bit codes, else as above. */
-enum glint_status glint_picture_load_floats(struct glint_float_image *floats,
-                                            const char *path,
-                                            struct glint_error *error);
+/* Loads PATH as linear light; floats->rgb is the caller's to free(). Errors as
+ * above. */
+enum glint_status glint_picture_load_float(const char *path,
+                                           struct glint_float_image *floats,
+                                           struct glint_error *error);
 
 /* Whether a picture of KIND can be saved to PATH, as far as can be told before
  * there is one; for asking before long work. GLINT_E_UNSUPPORTED: the extension
@@ -58,8 +65,8 @@ enum glint_status glint_picture_save(const char *path,
 
 /* Saves FLOATS in the same way. */
 enum glint_status
-glint_picture_save_floats(const char *path,
-                          const struct glint_float_image *floats,
-                          struct glint_error *error);
+glint_picture_save_float(const char *path,
+                         const struct glint_float_image *floats,
+                         struct glint_error *error);
 
 #endif

@@ -89,8 +89,8 @@ size_t glint_cells_bytes(const struct glint_cells *cells)
 
 static double *node_at(const struct glint_cells *c, int i, int j)
 {
-    return c->node + ((size_t)j * (size_t)(c->n + 1) + (size_t)i) *
-                         (size_t)c->stride;
+    return c->node +
+           ((size_t)j * (size_t)(c->n + 1) + (size_t)i) * (size_t)c->stride;
 }
 
 double glint_cells_area(const struct glint_cells *cells)
@@ -103,8 +103,7 @@ double glint_cells_area(const struct glint_cells *cells)
 /* Angle 0 .. of a polygonal stop's side SIDE, as its outward normal. */
 static void side_normal(const struct glint_setup *s, int side, double n[2])
 {
-    const double a =
-        s->blade_rotation_deg + (side + 0.5) * 360.0 / s->n_blades;
+    const double a = s->blade_rotation_deg + (side + 0.5) * 360.0 / s->n_blades;
 
     n[0] = glint_cos_deg(a);
     n[1] = glint_sin_deg(a);

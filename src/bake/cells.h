@@ -37,7 +37,7 @@ struct glint_cells {
     int n;                   /* cells a side, even */
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
-    int stride;  /* doubles a node */
+    int stride;   /* doubles a node */
     double *node; /* [n + 1][n + 1][stride] */
 };
 
@@ -74,7 +74,6 @@ bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
 double glint_cells_area(const struct glint_cells *cells);
 
 /* Flux of the direct image at angle 0 for irradiance 1, mm^2. */
-double glint_direct_flux(const struct glint_setup *setup,
-                         double wavelength_nm);
+double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm);
 
 #endif

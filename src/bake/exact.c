@@ -34,7 +34,7 @@ struct picture {
     int n_bundles;
     struct glint_cells cells; /* of the bundle being drawn */
     struct glint_path *path;
-    double *row_y;     /* [n + 1][2]: lowest and highest pixel row of nodes */
+    double *row_y;      /* [n + 1][2]: lowest and highest pixel row of nodes */
     double *difference; /* [height][3][width + 2] */
     double weight[3];   /* flux of half a cell at energy 1, per channel */
 };
@@ -288,9 +288,9 @@ static void find_job(void *ctx, int job, int worker)
 
     (void)worker;
     path_of(p, b, &path);
-    b->seen = glint_cells_init(&b->cells, p->cfg->setup, &path,
-                               b->lamp->theta_deg, b->lamp->phi_deg,
-                               p->cfg->grid);
+    b->seen =
+        glint_cells_init(&b->cells, p->cfg->setup, &path, b->lamp->theta_deg,
+                         b->lamp->phi_deg, p->cfg->grid);
 }
 
 static enum glint_status list_bundles(struct picture *p)

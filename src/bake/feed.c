@@ -28,6 +28,27 @@ static bool in_view(const struct glint_feed_config *cfg,
            fabs(x * d) - fabs(d) * w - fabs(c) * h < half_h;
 }
 
+/* Grows the pupil by what a pixel is worth on each side: a pixel whose centre
+ * lies just outside of the ghost still gets the light on its inner half. */
+static void add_rim(const struct glint_feed_config *cfg,
+                    struct glint_feed *feed)
+{
+    struct glint_pupil *p = &feed->pupil;
+    double *s = p->sensor_mm;
+    const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
+    const double x = fmin(0.5, pixel / (s[1] - s[0] + 1e-9));
+    const double y = fmin(0.5, pixel / (s[3] - s[2] + 1e-9));
+    const double wide = x * (p->x1_mm - p->x0_mm), across = x * (s[1] - s[0]);
+
+    p->x0_mm -= wide;
+    p->x1_mm += wide;
+    p->y1_mm *= 1 + 2 * y;
+    s[0] -= across;
+    s[1] += across;
+    s[2] *= 1 + 2 * y;
+    s[3] *= 1 + 2 * y;
+}
+
 static int choose_cells(const struct glint_feed_config *cfg,
                         const struct glint_feed *feed)
 {
@@ -38,8 +59,9 @@ static int choose_cells(const struct glint_feed_config *cfg,
     const double share = (s[1] - s[0]) * (s[3] - s[2]) / sensor;
     const double part = cfg->uniform ? 1 : fmin(1, fmax(0.05, sqrt(share)));
     const int n = (int)ceil(cfg->max_cells * part / 4) * 4;
+    const int enough = n > 8 ? n : 8;
 
-    return n < cfg->max_cells ? n : cfg->max_cells;
+    return enough < cfg->max_cells ? enough : cfg->max_cells;
 }
 
 void glint_feed_plan(const struct glint_feed_config *cfg,
@@ -53,8 +75,10 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
     feed->n_cells = 0;
     if (glint_pupil_find(&feed->pupil, &path, feed->lamp->theta_deg,
                          s->optics.stop_radius_mm) &&
-        in_view(cfg, feed))
+        in_view(cfg, feed)) {
+        add_rim(cfg, feed);
         feed->n_cells = choose_cells(cfg, feed);
+    }
 }
 
 /* The energy that a vertex's 65536 stands for: some head-room over what the

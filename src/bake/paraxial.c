@@ -3,7 +3,8 @@
  * First-order optics: lens -> focal lengths, pupil and stop, at the d line.
  *
  * Two paraxial rays (y, n u) meet all elements in turn: n u loses y times the
- * power of a surface, y gains n u times the reduced gap.
+ * power of a surface, y gains n u times the reduced gap. A lens without power
+ * has infinite focal lengths; glint_prescription_parse takes none of that kind.
  */
 #include "bake/prescription.h"
 

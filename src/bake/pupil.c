@@ -46,9 +46,9 @@ static void sample_grid(struct search *s, const struct glint_pupil *p)
         for (int i = 0; i <= s->across; i++) {
             struct sample *node = &s->node[j][i];
 
-            node->valid = glint_trace(s->path, column_x(s, p, i),
-                                      p->y1_mm * j / s->down, s->direction,
-                                      &node->ray, NULL) == GLINT_RAY_OK;
+            node->valid =
+                glint_trace(s->path, column_x(s, p, i), p->y1_mm * j / s->down,
+                            s->direction, &node->ray, NULL) == GLINT_RAY_OK;
         }
 }
 
@@ -147,8 +147,8 @@ static bool shrink(struct search *s, struct glint_pupil *p)
     found.x1_mm = column_x(s, p, (int)box.high[0]);
     found.y1_mm = p->y1_mm * box.high[2] / s->down;
     /* mirrored in y */
-    found.sensor_mm[3] = fmax(fabs(found.sensor_mm[2]),
-                              fabs(found.sensor_mm[3]));
+    found.sensor_mm[3] =
+        fmax(fabs(found.sensor_mm[2]), fabs(found.sensor_mm[3]));
     found.sensor_mm[2] = -found.sensor_mm[3];
     *p = found;
     return true;

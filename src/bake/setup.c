@@ -59,9 +59,8 @@ static void normalise(struct glint_setup *s)
             size += fabs(s->rgb[i][c]);
         }
         for (int i = 0; i < n; i++)
-            s->rgb[i][c] = sum > 0.2 * size && sum > 0.05
-                               ? s->rgb[i][c] / sum
-                               : 1.0 / n;
+            s->rgb[i][c] =
+                sum > 0.2 * size && sum > 0.05 ? s->rgb[i][c] / sum : 1.0 / n;
     }
 }
 
@@ -177,10 +176,9 @@ void glint_view_to_pixel(const struct glint_view *view, double focal_mm,
                          const struct glint_lamp *lamp, double *x, double *y)
 {
     const double mm = view->sensor_width_mm / view->width;
-    const double r = focal_mm *
-                     (glint_sin_deg(lamp->theta_deg) /
-                      glint_cos_deg(lamp->theta_deg)) /
-                     mm;
+    const double r =
+        focal_mm *
+        (glint_sin_deg(lamp->theta_deg) / glint_cos_deg(lamp->theta_deg)) / mm;
 
     *x = 0.5 * view->width + r * glint_cos_deg(lamp->phi_deg);
     *y = 0.5 * view->height - r * glint_sin_deg(lamp->phi_deg);
@@ -209,9 +207,9 @@ static double stop_distance(const struct glint_stop *stop, double x, double y)
     double d = stop->n_blades ? 4 : 1 - hypot(x, y);
 
     for (int i = 0; i < stop->n_blades; i++) {
-        const double side =
-            stop->apothem_q16 * 0x1p-16 - x * stop->normal_q30[i][0] * 0x1p-30 -
-            y * stop->normal_q30[i][1] * 0x1p-30;
+        const double side = stop->apothem_q16 * 0x1p-16 -
+                            x * stop->normal_q30[i][0] * 0x1p-30 -
+                            y * stop->normal_q30[i][1] * 0x1p-30;
 
         d = fmin(d, side);
     }
@@ -227,8 +225,8 @@ void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
     glint_setup_stop(setup, &stop);
     for (int j = 0; j < nodes; j++)
         for (int i = 0; i < nodes; i++) {
-            const double d = stop_distance(&stop, i * step - span,
-                                           j * step - span);
+            const double d =
+                stop_distance(&stop, i * step - span, j * step - span);
 
             mask_q13[j * nodes + i] =
                 (int16_t)lrint(fmax(-3.9, fmin(d, 3.9)) * 8192);

@@ -20,8 +20,8 @@ void *glint_arena_take(struct glint_arena *arena, size_t count, size_t bytes)
         arena->used = SIZE_MAX - GLINT_ALIGN; /* nothing fits any more */
         return NULL;
     }
-    arena->used += (count * bytes + GLINT_ALIGN - 1) / GLINT_ALIGN *
-                   GLINT_ALIGN;
+    arena->used +=
+        (count * bytes + GLINT_ALIGN - 1) / GLINT_ALIGN * GLINT_ALIGN;
     if (!arena->base || arena->used > arena->size)
         return NULL;
     return arena->base + at;

@@ -3,8 +3,7 @@
 
 int glint_image_planes(enum glint_pixel_format format)
 {
-    return format == GLINT_I420 || format == GLINT_I422 ||
-                   format == GLINT_I444
+    return format == GLINT_I420 || format == GLINT_I422 || format == GLINT_I444
                ? 3
                : 1;
 }
@@ -32,10 +31,8 @@ int glint_image_sample_bytes(enum glint_pixel_format format)
 static size_t plane_bytes(enum glint_pixel_format format, int plane, int width,
                           int height)
 {
-    const size_t across =
-        (size_t)glint_image_plane_width(format, plane, width);
-    const size_t down =
-        (size_t)glint_image_plane_height(format, plane, height);
+    const size_t across = (size_t)glint_image_plane_width(format, plane, width);
+    const size_t down = (size_t)glint_image_plane_height(format, plane, height);
 
     return across * down * (size_t)glint_image_sample_bytes(format);
 }
@@ -63,8 +60,7 @@ void glint_image_place(struct glint_image *image, void *mem)
         if (i >= n_planes)
             continue;
         image->stride_bytes[i] =
-            (ptrdiff_t)glint_image_plane_width(image->format, i,
-                                               image->width) *
+            (ptrdiff_t)glint_image_plane_width(image->format, i, image->width) *
             glint_image_sample_bytes(image->format);
         at += plane_bytes(image->format, i, image->width, image->height);
     }

@@ -76,19 +76,16 @@ static struct glint_flare *carve(struct glint_arena *a,
 
     placed = glint_arena_take(a, 1, sizeof *placed);
     f = placed ? placed : &measured;
-    f->bundle =
-        glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->bundle);
+    f->bundle = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->bundle);
     f->slot = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->slot);
-    f->vertex =
-        glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
+    f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
     f->level = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->level);
     f->primitive =
         glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->primitive);
     f->bins.start = glint_arena_take(
         a, tile_count(c->width, c->height, first_level_log2(c)) + 1,
         sizeof *f->bins.start);
-    f->bins.ref =
-        glint_arena_take(a, (size_t)c->max_refs, sizeof *f->bins.ref);
+    f->bins.ref = glint_arena_take(a, (size_t)c->max_refs, sizeof *f->bins.ref);
     f->worker = glint_arena_take(a, n_workers, sizeof *f->worker);
     f->resolve = glint_arena_take(a, 1, sizeof *f->resolve);
     for (size_t i = 0; i < n_workers; i++)
@@ -119,9 +116,9 @@ static int config_ok(const struct glint_flare_config *c)
            (c->weights == GLINT_WEIGHTS_LOOP_DEROSE ||
             c->weights == GLINT_WEIGHTS_WACHSPRESS) &&
            c->max_bundles >= 0 && c->max_bundles <= UINT16_MAX &&
-           c->max_vertices >= 0 && c->max_primitives >= 0 &&
-           c->max_refs >= 0 && c->max_tile_refs >= 0 && workers >= 1 &&
-           workers <= 64 && stop_ok(&c->stop);
+           c->max_vertices >= 0 && c->max_primitives >= 0 && c->max_refs >= 0 &&
+           c->max_tile_refs >= 0 && workers >= 1 && workers <= 64 &&
+           stop_ok(&c->stop);
 }
 
 size_t glint_flare_bytes(const struct glint_flare_config *cfg)
@@ -147,8 +144,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
         return GLINT_E_MEMORY;
     f = carve(&arena, cfg);
     f->cfg = *cfg;
-    glint_bins_init(&f->bins,
-                    (struct glint_box){0, 0, cfg->width, cfg->height},
+    glint_bins_init(&f->bins, (struct glint_box){0, 0, cfg->width, cfg->height},
                     first_level_log2(cfg), f->bins.start, f->bins.ref);
     for (int i = 0; i < glint_workers_count(cfg->workers); i++)
         f->worker[i].n_tiles = 0;
@@ -245,8 +241,8 @@ static void place_primitives(struct glint_flare *f)
         f->stats.need_primitives =
             add_sat(f->stats.need_primitives, slot->n_primitives);
         slot->first_primitive = f->stats.primitives;
-        full |= slot->n_primitives >
-                f->cfg.max_primitives - f->stats.primitives;
+        full |=
+            slot->n_primitives > f->cfg.max_primitives - f->stats.primitives;
         if (full)
             continue;
         f->stats.primitives += slot->n_primitives;
@@ -262,7 +258,7 @@ static struct glint_box primitive_box(const struct glint_flare *f, int index)
     struct glint_corners corners;
 
     glint_corners_gather(&corners, f->vertex, p->vertex, p->n_corners);
-    return glint_corners_box(&corners, f->cfg.width, f->cfg.height);
+    return glint_primitive_box(p, &corners, f->cfg.width, f->cfg.height);
 }
 
 /* Counts the index entries bundle by bundle and keeps the bundles that fit. */
@@ -275,10 +271,10 @@ static void count_refs(struct glint_flare *f)
         int refs = 0;
 
         for (int k = 0; k < slot->n_primitives; k++)
-            refs = add_sat(refs,
-                           glint_bins_span(&f->bins,
-                                           primitive_box(
-                                               f, slot->first_primitive + k)));
+            refs = add_sat(
+                refs,
+                glint_bins_span(&f->bins,
+                                primitive_box(f, slot->first_primitive + k)));
         f->stats.need_refs = add_sat(f->stats.need_refs, refs);
         full |= refs > f->cfg.max_refs - f->stats.refs;
         if (full)
@@ -324,8 +320,7 @@ static void count_tile_refs(struct glint_flare *f)
 
         for (int k = f->bins.start[tile]; k < f->bins.start[tile + 1]; k++)
             refs = add_sat(
-                refs, glint_bins_span(&bins,
-                                      primitive_box(f, f->bins.ref[k])));
+                refs, glint_bins_span(&bins, primitive_box(f, f->bins.ref[k])));
         if (refs > f->stats.need_tile_refs)
             f->stats.need_tile_refs = refs;
     }
@@ -350,8 +345,7 @@ static void total(struct glint_flare *f)
     }
 }
 
-void glint_flare_bin(struct glint_flare *flare,
-                     struct glint_flare_stats *stats)
+void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 {
     struct glint_workers *workers = flare->cfg.workers;
 
@@ -433,8 +427,7 @@ static void coarse_job(void *ctx, int job, int worker)
     }
     glint_bins_sum(&bins);
     for (int32_t k = first; k < end; k++)
-        glint_bins_put(&bins, primitive_box(f, f->bins.ref[k]),
-                       f->bins.ref[k]);
+        glint_bins_put(&bins, primitive_box(f, f->bins.ref[k]), f->bins.ref[k]);
     glint_bins_close(&bins);
     draw_tiles(d, w, &bins, 0, bins.tiles_x * bins.tiles_y);
 }

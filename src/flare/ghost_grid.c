@@ -76,12 +76,12 @@ static int cuts_agree(const struct glint_vertex *a,
                       const struct glint_vertex *b,
                       const struct glint_vertex *c, int32_t gamma_q16)
 {
-    const int64_t r = (int64_t)a->radius_q16 + c->radius_q16 -
-                      2 * (int64_t)b->radius_q16;
-    const int64_t x = (int64_t)a->stop_x_q16 + c->stop_x_q16 -
-                      2 * (int64_t)b->stop_x_q16;
-    const int64_t y = (int64_t)a->stop_y_q16 + c->stop_y_q16 -
-                      2 * (int64_t)b->stop_y_q16;
+    const int64_t r =
+        (int64_t)a->radius_q16 + c->radius_q16 - 2 * (int64_t)b->radius_q16;
+    const int64_t x =
+        (int64_t)a->stop_x_q16 + c->stop_x_q16 - 2 * (int64_t)b->stop_x_q16;
+    const int64_t y =
+        (int64_t)a->stop_y_q16 + c->stop_y_q16 - 2 * (int64_t)b->stop_y_q16;
 
     return r <= gamma_q16 && -r <= gamma_q16 && x <= gamma_q16 &&
            -x <= gamma_q16 && y <= gamma_q16 && -y <= gamma_q16;
@@ -181,24 +181,48 @@ void glint_ghost_grid_merge(struct glint_ghost_grid *grid)
         grid->n_merged += grid->level[k] != 0;
 }
 
+/* MANTISSA * 2^UP, held to what an int32 takes: it is light. */
+static int32_t scaled_sat(int64_t mantissa, int up)
+{
+    if (mantissa == 0 || up < -62)
+        return 0;
+    if (up <= 0)
+        return q_clamp_sat(q_shift(mantissa, -up), 0, INT32_MAX);
+    return up + bit_length((uint64_t)mantissa) > 31 ? INT32_MAX
+                                                    : (int32_t)(mantissa << up);
+}
+
 /* Irradiance of SHARE_LOG2 cells (-1: half of one) spread over AREA2, display
- * white; saturates. Flux and area are brought to 31 bits before they divide. */
+ * white. Flux and area are brought to 31 bits before they divide. */
 static int32_t irradiance_q20(const struct glint_bundle *b, int share_log2,
                               int64_t area2_q16)
 {
     const int lift = 62 - bit_length((uint64_t)area2_q16);
     const int64_t area = (area2_q16 << lift) >> 31; /* 2^30 .. 2^31 - 1 */
     const int64_t ratio = ((int64_t)b->flux_q31 << 31) / area;
-    /* flux 2^(e - 31), area2 = area 2^(31 - lift - 17), result q20 */
-    const int up =
-        b->flux_exponent - 31 + share_log2 + lift - 31 + 17 - 31 + 20;
 
-    if (ratio == 0 || up < -62)
+    /* flux 2^(e - 31), area2 = area 2^(31 - lift - 17), result q20 */
+    return scaled_sat(ratio, b->flux_exponent - 31 + share_log2 + lift - 31 +
+                                 17 - 31 + 20);
+}
+
+/* A primitive far smaller than a pixel, given the flux of its cells. */
+static int emit_point(struct glint_ghost_grid *g,
+                      const struct glint_corners *corners, int share_log2,
+                      struct glint_primitive *p, struct glint_primitive *out)
+{
+    if (glint_box_empty(glint_corners_pixel(corners, g->width, g->height)) ||
+        !glint_clip_middle(corners, g->stop))
         return 0;
-    if (up <= 0)
-        return q_clamp_sat(q_shift(ratio, -up), 0, INT32_MAX);
-    return up + bit_length((uint64_t)ratio) > 31 ? INT32_MAX
-                                                 : (int32_t)(ratio << up);
+    if (out) {
+        p->flags = GLINT_POINT;
+        p->irradiance_q20 =
+            scaled_sat(g->bundle->flux_q31,
+                       g->bundle->flux_exponent - 31 + share_log2 + 20);
+        out[g->n_primitives] = *p;
+    }
+    g->n_primitives++;
+    return 0;
 }
 
 /* Adds one primitive with the corners Q if anything of it can be seen. Returns
@@ -212,20 +236,22 @@ static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
     int cut;
 
     glint_corners_gather(&corners, g->vertex, q, n);
-    if (corners.area2_q16 == 0)
-        return 1;
     for (int i = 0; i < n; i++)
         p.vertex[i] = corners.area2_q16 > 0 ? q[i] : q[n - 1 - i];
     if (n == 3)
         p.vertex[3] = -1;
     glint_corners_gather(&corners, g->vertex, p.vertex, n);
+    if (g->focused && glint_corners_tiny(&corners))
+        return emit_point(g, &corners, share_log2, &p, out);
+    if (corners.area2_q16 == 0)
+        return 1;
     if (glint_box_empty(glint_corners_box(&corners, g->width, g->height)))
         return 0;
     cut = glint_clip_classify(&corners, g->stop);
     if (cut < 0)
         return 0;
     if (out) {
-        p.cut = (uint8_t)cut;
+        p.flags = (uint8_t)cut;
         p.irradiance_q20 =
             irradiance_q20(g->bundle, share_log2, corners.area2_q16);
         out[g->n_primitives] = p;
@@ -257,6 +283,14 @@ static int emit_triangles(struct glint_ghost_grid *g, int bundle,
     return dropped;
 }
 
+static int block_tiny(const struct glint_ghost_grid *g, const int32_t *q)
+{
+    struct glint_corners corners;
+
+    glint_corners_gather(&corners, g->vertex, q, 4);
+    return g->focused && glint_corners_tiny(&corners);
+}
+
 static int emit_block(struct glint_ghost_grid *g, int bundle, int i, int j,
                       int size_log2, struct glint_primitive *out)
 {
@@ -266,9 +300,27 @@ static int emit_block(struct glint_ghost_grid *g, int bundle, int i, int j,
     for (int k = 0; k < 4; k++)
         if (!vertex_valid(&g->vertex[q[k]]))
             return emit_triangles(g, bundle, q, out);
-    if (convexity(g->vertex, q) == 0)
+    if (convexity(g->vertex, q) == 0 && !block_tiny(g, q))
         return emit_triangles(g, bundle, q, out);
     return emit_one(g, bundle, q, 4, 2 * size_log2, out);
+}
+
+/* Whether all rays land within four pixels of the first. */
+static int is_focused(const struct glint_ghost_grid *g)
+{
+    const int n = g->bundle->n_cells;
+    const struct glint_vertex *v = g->vertex + g->first, *seen = NULL;
+
+    for (int k = 0; k < (n + 1) * (n + 1); k++) {
+        if (!vertex_valid(&v[k]))
+            continue;
+        if (!seen)
+            seen = &v[k];
+        if (v[k].x_q8 - seen->x_q8 > 1024 || seen->x_q8 - v[k].x_q8 > 1024 ||
+            v[k].y_q8 - seen->y_q8 > 1024 || seen->y_q8 - v[k].y_q8 > 1024)
+            return 0;
+    }
+    return 1;
 }
 
 void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
@@ -276,11 +328,12 @@ void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
 {
     const int n = grid->bundle->n_cells;
 
+    grid->focused = is_focused(grid);
     grid->n_primitives = 0;
     grid->n_dropped = 0;
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++)
             if (grid->level[j * n + i] != COVERED)
-                grid->n_dropped += emit_block(grid, bundle, i, j,
-                                              grid->level[j * n + i], out);
+                grid->n_dropped +=
+                    emit_block(grid, bundle, i, j, grid->level[j * n + i], out);
 }

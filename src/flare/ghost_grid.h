@@ -7,9 +7,11 @@
  *        each with the irradiance that keeps the energy of its cells
  *
  * Blocks of 2 x 2 equal cells become one where their edges agree, up to four
- * times over [Bodonyi23]. What nothing of can be seen is left out. Limits: a
- * cell that has shrunk to nothing loses its light; a cell that lost two corners
- * is dropped.
+ * times over [Bodonyi23]. What nothing of can be seen is left out. The cells
+ * of a ghost that is focused to a few pixels become points, so that its light
+ * arrives whole wherever in a pixel it falls.
+ * Limits: a long cell without area loses its light; a cell that lost two
+ * corners is dropped.
  */
 #ifndef GLINT_FLARE_GHOST_GRID_H
 #define GLINT_FLARE_GHOST_GRID_H
@@ -29,6 +31,7 @@ struct glint_ghost_grid {
     int32_t merge_gamma_q16; /* relative */
     uint8_t *level;          /* [n_cells][n_cells], scratch that keeps what
                                 merge found for emit */
+    int focused;             /* the whole ghost is a few pixels wide */
     int n_primitives, n_dropped, n_merged;
 };
 

@@ -9,9 +9,9 @@
  * brightest N_CANDIDATES are held, and only then is anything merged.
  *
  * Moments: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^26
- * pixels of coordinates below 2^13, the sums of w and of w x stay below 2^40
- * and 2^53. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about the
- * centroid, which is what we want, is below 2^14 * 8192^4 / 6 < 2^64.
+ * pixels of coordinates below 2^13, the sums of w and of w x reach 2^40 and
+ * 2^53 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about
+ * the centroid, which is what we want, is below 2^14 * 8192^4 / 6 < 2^64.
  */
 #include "glint/lights.h"
 
@@ -23,9 +23,11 @@
 #define MAX_SPOTS    1024
 #define CLIPPED_CODE 250 /* a channel here or above says nothing of colour */
 #define RIM          2   /* pixels beside a run that show the colour, too */
-#define SEED_LOG2    5   /* a region with fewer seeds than area / 2^n is a lit
-                            surface, no light */
 #define JOIN_REACH   4   /* what exceeds MAX joins within so many merge radii */
+
+/* Regions of which less than 1 / 2^SEED_LOG2 reaches the upper threshold are
+ * lit surfaces, not lights. */
+#define SEED_LOG2 5
 
 /* What is summed over the pixels of a light. */
 struct region {
@@ -64,10 +66,19 @@ struct glint_lights {
     struct glint_lights_config cfg;
     int64_t max_area;
     int64_t merge2_q16; /* squared merge distance */
-    struct glint_curve curve;
+    struct glint_curve *curve;
     struct glint_ycc ycc;
     uint8_t full_luma[256]; /* of Y codes */
-XX};
+    uint8_t *luma;          /* of one row */
+    struct row above, here;
+    struct component *component;
+    int32_t *active, *idle; /* labels */
+    int n_active, n_idle;
+    struct candidate *candidate;
+    int32_t *order; /* of candidates: a heap, then by falling flux */
+    int n;          /* in order */
+    int dropped;
+};
 
 /* ------------------------------------------------------------------- memory */
 
@@ -87,29 +98,30 @@ static struct glint_lights *carve(struct glint_arena *a,
 {
     const size_t n_runs = ((size_t)c->width + 1) / 2;
     struct glint_lights *placed = glint_arena_take(a, 1, sizeof *placed);
-    struct buffers none;
-    struct buffers *b = placed ? &placed->buffers : &none;
+    struct glint_lights measured;
+    struct glint_lights *f = placed ? placed : &measured;
 
-    b->luma = glint_arena_take(a, (size_t)c->width, sizeof *b->luma);
-    b->run[0] = glint_arena_take(a, n_runs, sizeof *b->run[0]);
-    b->run[1] = glint_arena_take(a, n_runs, sizeof *b->run[1]);
-    b->component = glint_arena_take(a, 2 * n_runs, sizeof *b->component);
-    b->active = glint_arena_take(a, 2 * n_runs, sizeof *b->active);
-    b->idle = glint_arena_take(a, 2 * n_runs, sizeof *b->idle);
-    b->candidate = glint_arena_take(a, N_CANDIDATES, sizeof *b->candidate);
-    b->order = glint_arena_take(a, N_CANDIDATES, sizeof *b->order);
+    f->curve = glint_arena_take(a, 1, sizeof *f->curve);
+    f->luma = glint_arena_take(a, (size_t)c->width, sizeof *f->luma);
+    f->above.run = glint_arena_take(a, n_runs, sizeof *f->above.run);
+    f->here.run = glint_arena_take(a, n_runs, sizeof *f->here.run);
+    f->component = glint_arena_take(a, 2 * n_runs, sizeof *f->component);
+    f->active = glint_arena_take(a, 2 * n_runs, sizeof *f->active);
+    f->idle = glint_arena_take(a, 2 * n_runs, sizeof *f->idle);
+    f->candidate = glint_arena_take(a, N_CANDIDATES, sizeof *f->candidate);
+    f->order = glint_arena_take(a, N_CANDIDATES, sizeof *f->order);
     return a->used <= a->size ? placed : NULL;
 }
 
 void glint_lights_defaults(struct glint_lights_config *cfg, int width,
                            int height)
 {
-    const int pixels = width * height;
+    const int pixels = width * height; /* 2^26 at most */
 
     *cfg = (struct glint_lights_config){.width = width,
                                         .height = height,
-                                        .threshold_high = 250,
-                                        .threshold_low = 200,
+                                        .threshold_high = 253,
+                                        .threshold_low = 240,
                                         .min_area =
                                             pixels < 1 << 19 ? 2 : pixels >> 18,
                                         .max_share_q15 = Q_CONST(0.25, 15),
@@ -139,6 +151,8 @@ enum glint_status glint_lights_init(struct glint_lights **finder,
     f = carve(&arena, cfg);
     if (!f)
         return GLINT_E_MEMORY;
+    f->cfg = *cfg;
+    f->n = f->dropped = 0;
     merge_q8 = q_shift((int64_t)cfg->width * cfg->merge_q15, 7);
     f->merge2_q16 = merge_q8 * merge_q8;
     f->max_area =
@@ -152,7 +166,7 @@ enum glint_status glint_lights_init(struct glint_lights **finder,
 static void prepare_tables(struct glint_lights *f,
                            const struct glint_image *image)
 {
-    glint_curve_init(&f->curve, image->transfer);
+    glint_curve_init(f->curve, image->transfer);
     glint_ycc_init(&f->ycc, image->matrix, image->range);
     for (int code = 0; code < 256; code++)
         f->full_luma[code] = (uint8_t)q_clamp_sat(
@@ -190,7 +204,7 @@ static void read_ycc_q20(const struct glint_lights *f,
                image->plane[2][cy * image->stride_bytes[2] + cx], rgb_q7);
     for (int i = 0; i < 3; i++)
         rgb_q20[i] =
-            curve_decode(&f->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
+            curve_decode(f->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
 }
 
 /* Linear light of pixel (X, Y), 0 .. white. */
@@ -202,10 +216,10 @@ static void read_light_q20(const struct glint_lights *f,
 
     if (image->format == GLINT_RGB24)
         for (int i = 0; i < 3; i++)
-            rgb_q20[i] = f->curve.decode_q20[px[3 * x + i]];
+            rgb_q20[i] = f->curve->decode_q20[px[3 * x + i]];
     else if (image->format == GLINT_GREY)
         rgb_q20[0] = rgb_q20[1] = rgb_q20[2] =
-            f->curve.decode_q20[f->full_luma[px[x]]];
+            f->curve->decode_q20[f->full_luma[px[x]]];
     else
         read_ycc_q20(f, image, x, y, rgb_q20);
 }
@@ -238,7 +252,7 @@ static void add_pixel(struct region *sum, const int32_t rgb_q20[3], int x,
 static void add_rim_pixel(struct region *sum, const struct glint_lights *f,
                           const int32_t rgb_q20[3])
 {
-    const int32_t clipped_q20 = f->curve.decode_q20[CLIPPED_CODE];
+    const int32_t clipped_q20 = f->curve->decode_q20[CLIPPED_CODE];
 
     if (rgb_q20[0] < clipped_q20 && rgb_q20[1] < clipped_q20 &&
         rgb_q20[2] < clipped_q20)
@@ -251,8 +265,7 @@ static void add_run(struct region *sum, const struct glint_lights *f,
                     int y)
 {
     const int first = run->x0 > RIM ? run->x0 - RIM : 0;
-    const int end =
-        run->x1 < f->cfg.width - RIM ? run->x1 + RIM : f->cfg.width;
+    const int end = run->x1 < f->cfg.width - RIM ? run->x1 + RIM : f->cfg.width;
 
     sum->area += run->x1 - run->x0;
     for (int x = first; x < end; x++) {
@@ -308,8 +321,8 @@ static uint32_t square_root(uint64_t x)
     return (uint32_t)root;
 }
 
-/* RMS distance from the centroid; pixels are squares, of 1/6 square pixel. The
- * sums are moved to the pixel nearest to the centroid, exactly, modulo 2^64. */
+/* RMS distance from the centroid: 0 for a pixel. The sums are moved to the
+ * pixel nearest to the centroid first, exactly, modulo 2^64. */
 static int32_t rms_radius_q8(const struct region *sum)
 {
     const int32_t x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
@@ -321,8 +334,8 @@ static int32_t rms_radius_q8(const struct region *sum)
         2 * (uint64_t)y * (uint64_t)sum->wy_q14 +
         ((uint64_t)x * (uint64_t)x + (uint64_t)y * (uint64_t)y) *
             (uint64_t)sum->w_q14;
-    const int64_t mean_q16 = quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 -
-                             fy_q8 * fy_q8 + Q_CONST(1.0 / 6, 16);
+    const int64_t mean_q16 =
+        quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
 
     return (int32_t)square_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }

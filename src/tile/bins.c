@@ -24,9 +24,9 @@ static struct glint_box tile_range(const struct glint_bins *bins,
 
     if (glint_box_empty(in))
         return (struct glint_box){0, 0, 0, 0};
-    return (struct glint_box){
-        (in.x0 - r->x0) >> log2, (in.y0 - r->y0) >> log2,
-        ((in.x1 - 1 - r->x0) >> log2) + 1, ((in.y1 - 1 - r->y0) >> log2) + 1};
+    return (struct glint_box){(in.x0 - r->x0) >> log2, (in.y0 - r->y0) >> log2,
+                              ((in.x1 - 1 - r->x0) >> log2) + 1,
+                              ((in.y1 - 1 - r->y0) >> log2) + 1};
 }
 
 int glint_bins_span(const struct glint_bins *bins, struct glint_box box)

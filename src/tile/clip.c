@@ -34,9 +34,8 @@ struct scale {
 static struct scale scale_of(uint64_t numerator, uint64_t denominator)
 {
     const int up = 62 - bit_length(numerator);
-    const int down = bit_length(denominator) > 31
-                         ? bit_length(denominator) - 31
-                         : 0;
+    const int down =
+        bit_length(denominator) > 31 ? bit_length(denominator) - 31 : 0;
     uint64_t q = (numerator << up) / (denominator >> down);
     const int extra = bit_length(q) > 28 ? bit_length(q) - 28 : 0;
 
@@ -76,9 +75,8 @@ static void to_pixels(const struct glint_corners *c, const int64_t *value_q16,
     const uint64_t ny = magnitude(g * fx - f * gx);
     const int wide = bit_length(nx | ny);
     const int down = wide > 31 ? wide - 31 : 0;
-    const uint64_t slope =
-        (uint64_t)square_root((nx >> down) * (nx >> down) +
-                              (ny >> down) * (ny >> down));
+    const uint64_t slope = (uint64_t)square_root((nx >> down) * (nx >> down) +
+                                                 (ny >> down) * (ny >> down));
     struct scale scale;
 
     if (slope == 0) { /* the same everywhere: all in or all out */
@@ -100,9 +98,9 @@ static void side_values(const struct glint_corners *c,
     const int64_t ny = stop->normal_q30[side][1];
 
     for (int i = 0; i < 4; i++)
-        value_q16[i] = stop->apothem_q16 -
-                       (q_shift(nx * c->at[i]->stop_x_q16, 30) +
-                        q_shift(ny * c->at[i]->stop_y_q16, 30));
+        value_q16[i] =
+            stop->apothem_q16 - (q_shift(nx * c->at[i]->stop_x_q16, 30) +
+                                 q_shift(ny * c->at[i]->stop_y_q16, 30));
 }
 
 static void barrel_values(const struct glint_corners *c, int64_t *value_q16)
@@ -193,8 +191,8 @@ int32_t glint_clip_field_q16(const struct glint_stop *stop, int32_t x_q16,
     if (!stop->mask_q13) { /* circle: (1 - r^2) / 2 is 1 - r near r = 1 */
         const int64_t x = x_q16 / 2, y = y_q16 / 2;
 
-        return q_clamp_sat(
-            (INT64_C(1) << 15) - q_shift(x * x + y * y, 15), -FAR_Q8, FAR_Q8);
+        return q_clamp_sat((INT64_C(1) << 15) - q_shift(x * x + y * y, 15),
+                           -FAR_Q8, FAR_Q8);
     }
     u_q16 = ((int64_t)x_q16 + stop->mask_span_q16) * last * (1 << 16) /
             (2 * (int64_t)stop->mask_span_q16);
@@ -245,8 +243,7 @@ static enum side circle_side(struct extent e, int64_t low, int64_t pixel_q16)
 static enum side field_side(const struct glint_corners *c,
                             const struct glint_stop *stop)
 {
-    const int64_t pixel_q16 =
-        ((INT64_C(1) << 32) / field_scale_q16(c)) + 1;
+    const int64_t pixel_q16 = ((INT64_C(1) << 32) / field_scale_q16(c)) + 1;
     const struct extent e = stop_extent(c, pixel_q16);
     const int64_t span = (e.x1 - e.x0) + (e.y1 - e.y0);
     int64_t value[4];
@@ -256,7 +253,7 @@ static enum side field_side(const struct glint_corners *c,
                                         c->at[i]->stop_y_q16);
     if (!stop->mask_q13)
         return circle_side(e, lowest(value), pixel_q16);
-    return lowest(value) > span    ? INSIDE
+    return lowest(value) > span     ? INSIDE
            : highest(value) < -span ? OUTSIDE
                                     : CUT;
 }
@@ -296,6 +293,38 @@ int glint_clip_classify(const struct glint_corners *corners,
         return -1;
     return (at_stop == CUT ? GLINT_CUT_STOP : 0) |
            (at_barrel == CUT ? GLINT_CUT_BARREL : 0);
+}
+
+static int64_t mean(const int64_t *v, int n)
+{
+    int64_t sum = 0;
+
+    for (int i = 0; i < n; i++)
+        sum += v[i];
+    return sum / n;
+}
+
+int glint_clip_middle(const struct glint_corners *corners,
+                      const struct glint_stop *stop)
+{
+    int64_t value[4], x[4], y[4];
+
+    barrel_values(corners, value);
+    if (mean(value, corners->n) < 0)
+        return 0;
+    for (int i = 0; i < 4; i++) {
+        x[i] = corners->at[i]->stop_x_q16;
+        y[i] = corners->at[i]->stop_y_q16;
+    }
+    if (stop->mask_q13 || stop->n_blades == 0)
+        return glint_clip_field_q16(stop, q_narrow(mean(x, corners->n)),
+                                    q_narrow(mean(y, corners->n))) >= 0;
+    for (int side = 0; side < stop->n_blades; side++) {
+        side_values(corners, stop, side, value);
+        if (mean(value, corners->n) < 0)
+            return 0;
+    }
+    return 1;
 }
 
 static void add_linear(struct glint_clip *clip, const struct glint_corners *c,

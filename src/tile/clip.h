@@ -17,16 +17,21 @@
 #include "tile/primitive.h"
 
 struct glint_clip {
-    int n;                                       /* linear functions */
-    int32_t at_q8[GLINT_MAX_BLADES + 1][4];      /* pixels, at each corner */
-    int field;          /* the stop is looked up per pixel */
-    int32_t field_q16;  /* pixels per stop radius, for the lookup */
+    int n;                                  /* linear functions */
+    int32_t at_q8[GLINT_MAX_BLADES + 1][4]; /* pixels, at each corner */
+    int field;         /* the stop is looked up per pixel */
+    int32_t field_q16; /* pixels per stop radius, for the lookup */
 };
 
 /* Which cuts may matter: a set of GLINT_CUT_, or -1 where nothing of the
  * primitive is seen. */
 int glint_clip_classify(const struct glint_corners *corners,
                         const struct glint_stop *stop);
+
+/* Whether the middle of CORNERS lies in the opening, for what is too small to
+ * be cut. */
+int glint_clip_middle(const struct glint_corners *corners,
+                      const struct glint_stop *stop);
 
 /* Fills CLIP for the cuts CUT of a primitive. */
 void glint_clip_init(struct glint_clip *clip,

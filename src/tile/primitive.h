@@ -11,17 +11,20 @@
 #include "glint/flare.h"
 
 enum {
-    GLINT_CUT_STOP = 1,  /* the outline of the stop may cross it */
-    GLINT_CUT_BARREL = 2 /* relative radius 1 may cross it */
+    GLINT_CUT_STOP = 1,   /* the outline of the stop may cross it */
+    GLINT_CUT_BARREL = 2, /* relative radius 1 may cross it */
+    GLINT_POINT = 4       /* far smaller than a pixel: all its light goes to the
+                             pixel its middle lies in */
 };
 
 struct glint_primitive {
     int32_t vertex[4]; /* corners in order, area positive; a triangle has -1
                           last */
-    int32_t irradiance_q20; /* display white, at energy 1 */
+    int32_t irradiance_q20; /* display white, at energy 1; of a point: what it
+                               adds to its pixel */
     uint16_t bundle;
     uint8_t n_corners; /* 3 or 4 */
-    uint8_t cut;
+    uint8_t flags;     /* GLINT_CUT_ and GLINT_POINT */
 };
 
 /* A primitive's corners, gathered. */
@@ -49,9 +52,21 @@ void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n);
 
+/* Whether all corners lie within half a pixel of each other. */
+int glint_corners_tiny(const struct glint_corners *corners);
+
+/* The pixel that the mean of CORNERS lies in, as a box; empty outside. */
+struct glint_box glint_corners_pixel(const struct glint_corners *corners,
+                                     int width, int height);
+
 /* The pixels of a WIDTH x HEIGHT picture that CORNERS may cover. */
 struct glint_box glint_corners_box(const struct glint_corners *corners,
                                    int width, int height);
+
+/* The pixels of primitive P with CORNERS, by what it is. */
+struct glint_box glint_primitive_box(const struct glint_primitive *p,
+                                     const struct glint_corners *corners,
+                                     int width, int height);
 
 static inline struct glint_box glint_box_cut(struct glint_box a,
                                              struct glint_box b)

@@ -9,12 +9,12 @@ enum { HALF_Q8 = 128 };
 /* Edge I runs from corner I to corner I + 1. */
 struct edges {
     int n;
-    int64_t at[4];     /* value at the pixel, >= 0 inside */
-    int64_t row[4];    /* value at the first pixel of the row */
+    int64_t at[4];        /* value at the pixel, >= 0 inside */
+    int64_t row[4];       /* value at the first pixel of the row */
     int64_t dx[4], dy[4]; /* change to the next pixel, next row */
-    int bias[4];       /* -1 where a pixel on the edge is the neighbour's */
-    int shift;         /* leaves 24 bits of a value */
-    int64_t fan[4];    /* Wachspress: area at each corner, 12 bits; else 1 */
+    int bias[4];          /* -1 where a pixel on the edge is the neighbour's */
+    int shift;            /* leaves 24 bits of a value */
+    int64_t fan[4];       /* Wachspress: area at each corner, 12 bits; else 1 */
 };
 
 static void edges_init(struct edges *e, const struct glint_corners *c,
@@ -31,8 +31,8 @@ static void edges_init(struct edges *e, const struct glint_corners *c,
         const struct glint_vertex *before = c->at[i > 0 ? i - 1 : c->n - 1];
         const int32_t ex = b->x_q8 - a->x_q8, ey = b->y_q8 - a->y_q8;
 
-        e->row[i] = glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, x_q8,
-                                   y_q8);
+        e->row[i] =
+            glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, x_q8, y_q8);
         e->dx[i] = -(int64_t)ey * 256;
         e->dy[i] = (int64_t)ex * 256;
         e->bias[i] = ey < 0 || (ey == 0 && ex > 0) ? 0 : -1;
@@ -68,9 +68,9 @@ static void corner_weights(const struct edges *e, int32_t *weight_q16)
         const int j = (i + 1) % e->n, k = (i + 2) % e->n;
         const uint64_t a = (uint64_t)(e->at[j] >> e->shift);
 
-        w[i] = e->n == 3 ? a
-                         : a * (uint64_t)(e->at[k] >> e->shift) *
-                               (uint64_t)e->fan[i];
+        w[i] = e->n == 3
+                   ? a
+                   : a * (uint64_t)(e->at[k] >> e->shift) * (uint64_t)e->fan[i];
         sum += w[i];
     }
     if (sum == 0) { /* a sliver of a few steps: any corner will do */
@@ -112,15 +112,13 @@ static int32_t cover_of(const struct glint_raster *r,
                 x += (int64_t)w_q16[i] * c->at[i]->stop_x_q16;
                 y += (int64_t)w_q16[i] * c->at[i]->stop_y_q16;
             }
-            d_q8 = glint_clip_field_q16(r->stop,
-                                        q_narrow(q_shift(x, 16)),
+            d_q8 = glint_clip_field_q16(r->stop, q_narrow(q_shift(x, 16)),
                                         q_narrow(q_shift(y, 16)));
             d_q8 = q_shift(d_q8 * clip->field_q16, 24);
         }
         if (!r->antialias)
             d_q8 = d_q8 >= 0 ? HALF_Q8 : -HALF_Q8;
-        cover_q16 =
-            q_shift(cover_q16 * q_clamp_sat(d_q8 + HALF_Q8, 0, 256), 8);
+        cover_q16 = q_shift(cover_q16 * q_clamp_sat(d_q8 + HALF_Q8, 0, 256), 8);
         if (cover_q16 == 0)
             break;
     }
@@ -150,6 +148,21 @@ static void next_row(struct edges *e)
         e->row[i] += e->dy[i];
 }
 
+/* All the light of a point, to the one pixel it has. */
+static void add_point(const struct glint_raster *raster,
+                      const struct glint_primitive *p,
+                      const struct glint_corners *c, int64_t *acc_q20)
+{
+    const int side = 1 << raster->tile_log2;
+    int64_t energy_q16 = 0;
+
+    for (int i = 0; i < c->n; i++)
+        energy_q16 += c->at[i]->energy_q16;
+    energy_q16 /= c->n;
+    add_pixel(acc_q20, side * side, raster->bundle[p->bundle].rgb_q14,
+              q_shift(p->irradiance_q20 * energy_q16, 16));
+}
+
 void glint_raster_primitive(const struct glint_raster *raster, int primitive,
                             struct glint_box tile, struct glint_clip *clip,
                             int64_t *acc_q20)
@@ -162,11 +175,16 @@ void glint_raster_primitive(const struct glint_raster *raster, int primitive,
     struct edges e;
 
     glint_corners_gather(&c, raster->vertex, p->vertex, p->n_corners);
-    box = glint_box_cut(glint_corners_box(&c, GLINT_MAX_SIDE, GLINT_MAX_SIDE),
-                        tile);
+    box = glint_box_cut(
+        glint_primitive_box(p, &c, GLINT_MAX_SIDE, GLINT_MAX_SIDE), tile);
     if (glint_box_empty(box))
         return;
-    glint_clip_init(clip, &c, raster->stop, p->cut);
+    if (p->flags & GLINT_POINT) {
+        add_point(raster, p, &c,
+                  acc_q20 + (box.y0 - tile.y0) * side + (box.x0 - tile.x0));
+        return;
+    }
+    glint_clip_init(clip, &c, raster->stop, p->flags);
     edges_init(&e, &c, raster->weights, box.x0, box.y0);
     for (int y = box.y0; y < box.y1; y++, next_row(&e)) {
         int64_t *acc = acc_q20 + (y - tile.y0) * side + (box.x0 - tile.x0);
@@ -181,7 +199,7 @@ void glint_raster_primitive(const struct glint_raster *raster, int primitive,
                 corner_weights(&e, w_q16);
                 light_q20 = q_shift(
                     (int64_t)p->irradiance_q20 * energy_of(&c, w_q16), 16);
-                if (p->cut)
+                if (p->flags)
                     light_q20 = q_shift(
                         light_q20 * cover_of(raster, clip, &c, w_q16), 16);
                 add_pixel(acc, side * side, rgb_q14, light_q20);

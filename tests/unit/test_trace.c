@@ -51,7 +51,7 @@ static void parse_bundle_name(struct bundle *bundle, const char *name)
 static double next_column(const char **at)
 {
     char *end;
-    double value = NAN;
+    double value = (double)NAN;
 
     if (**at != ',' && **at != '\n')
         value = strtod(*at, &end), *at = end;
@@ -390,15 +390,17 @@ static void test_hostile_rays(void **state)
     static const double flat[2] = {0.0, 0.0};
     const struct glint_prescription lens = simple_lens(2, flat, 5.0);
     const double along[3] = {0.0, 0.0, 1.0}, back[3] = {0.0, 0.0, -1.0};
-    const double across[3] = {1.0, 0.0, 0.0}, none[3] = {NAN, NAN, NAN};
+    const double across[3] = {1.0, 0.0, 0.0},
+                 none[3] = {(double)NAN, (double)NAN, (double)NAN};
     struct glint_ray ray;
 
     (void)state;
     assert_int_equal(trace_one(&lens, 0.0, back, &ray), GLINT_RAY_MISSED);
     assert_int_equal(trace_one(&lens, 0.0, across, &ray), GLINT_RAY_MISSED);
     assert_int_equal(trace_one(&lens, 0.0, none, &ray), GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, NAN, along, &ray), GLINT_RAY_MISSED);
-    assert_int_equal(trace_one(&lens, INFINITY, along, &ray), GLINT_RAY_MISSED);
+    assert_int_equal(trace_one(&lens, (double)NAN, along, &ray),
+                     GLINT_RAY_MISSED);
+    assert_int_equal(trace_one(&lens, HUGE_VAL, along, &ray), GLINT_RAY_MISSED);
     assert_int_equal(trace_one(&lens, 1e200, along, &ray), GLINT_RAY_MISSED);
 }
 

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Any bytes as a lens table. What parses must have finite optics, a list of
+ * ghosts that fits, and rays whose records are numbers.
+ *
+ *     clang -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Isrc \
+ *         tests/fuzz/fuzz_lens.c src/bake/text.c ... -lm
+ *     ./fuzz_lens tests/fuzz/corpus/lens
+ */
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/bake.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+static void check_ray(const struct glint_ray *ray)
+{
+    require(isfinite(ray->stop_x_mm) && isfinite(ray->stop_y_mm));
+    require(isfinite(ray->sensor_x_mm) && isfinite(ray->sensor_y_mm));
+    require(ray->energy >= 0.0 && ray->energy <= 1.0);
+    require(ray->rel_radius >= 0.0 && isfinite(ray->rel_radius));
+}
+
+/* Rays over the front element at angles up to 83 degrees. */
+static void trace_some(const struct glint_prescription *lens,
+                       const struct glint_ghost *ghost)
+{
+    static struct glint_path path;
+    static double hits[GLINT_MAX_EVENTS + 1][2];
+    const double semi = lens->surface[0].semi_mm;
+
+    glint_path_init(&path, lens, ghost, 450.0);
+    require(path.n_events <= GLINT_MAX_EVENTS);
+    for (int i = 0; i < 25; i++) {
+        const double sine = 0.248 * (i / 5);
+        const double direction[3] = {0.6 * sine, 0.8 * sine,
+                                     sqrt(1.0 - sine * sine)};
+        struct glint_ray ray;
+
+        if (glint_trace(&path, 0.4 * semi * (i % 5 - 2), 0.3 * semi, direction,
+                        &ray, i % 2 ? hits : NULL) == GLINT_RAY_OK)
+            check_ray(&ray);
+    }
+}
+
+static void use(const struct glint_prescription *lens)
+{
+    static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
+    const int n = glint_ghost_list(lens, ghosts, GLINT_MAX_GHOSTS);
+    struct glint_optics optics;
+
+    require(lens->n_surfaces >= 1 && lens->n_surfaces <= GLINT_MAX_SURFACES);
+    require(lens->stop_after >= 0 && lens->stop_after <= lens->n_surfaces);
+    require(memchr(lens->name, 0, sizeof(lens->name)) != NULL);
+    require(memchr(lens->source, 0, sizeof(lens->source)) != NULL);
+    glint_optics_of(lens, &optics);
+    require(isfinite(optics.focal_mm) && isfinite(optics.back_focal_mm));
+    require(isfinite(optics.entrance_z_mm) && isfinite(optics.length_mm));
+    require(optics.stop_radius_mm > 0.0);
+    require(n <= GLINT_MAX_GHOSTS);
+    trace_some(lens, NULL);
+    for (int k = 0; k < n; k += 1 + n / 4)
+        trace_some(lens, &ghosts[k]);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static struct glint_prescription lens;
+    struct glint_error error;
+    enum glint_status status;
+
+    memset(error.text, 'x', sizeof(error.text));
+    status = glint_prescription_parse(&lens, (const char *)data, size,
+                                      "fuzz.lens", &error);
+    require(status == GLINT_OK || status == GLINT_E_LENS);
+    if (status == GLINT_OK)
+        use(&lens);
+    else
+        require(memchr(error.text, 0, sizeof(error.text)) != NULL &&
+                strncmp(error.text, "fuzz.lens:", 10) == 0);
+    return 0;
+}

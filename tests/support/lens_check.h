@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * For tests about lenses; include after cmocka.h. Run from the root of the
+ * tree.
+ */
+#ifndef GLINT_TESTS_LENS_CHECK_H
+#define GLINT_TESTS_LENS_CHECK_H
+
+#include <math.h>
+#include <stdio.h>
+
+#include "glint/bake.h"
+
+/* |GOT - EXPECTED| <= TOLERANCE in double; cmocka has it for float only. */
+#define assert_near(got, expected, tolerance) \
+    check_near(got, expected, tolerance, #got, __FILE__, __LINE__)
+
+static inline void check_near(double got, double expected, double tolerance,
+                              const char *what, const char *file, int line)
+{
+    if (fabs(got - expected) <= tolerance)
+        return;
+    print_error("%s is %.17g, not within %g of %.17g\n", what, got, tolerance,
+                expected);
+    _fail(file, line);
+}
+
+/* Reads a whole file into TEXT[SIZE]; returns its bytes. */
+static inline size_t read_file(const char *path, char *text, size_t size)
+{
+    FILE *file = fopen(path, "rb");
+    size_t bytes;
+
+    if (!file)
+        fail_msg("%s: cannot be read; run from the root of the tree", path);
+    bytes = fread(text, 1, size, file);
+    fclose(file);
+    return bytes;
+}
+
+/* Reads lenses/NAME.lens. */
+static inline void load_lens(struct glint_prescription *lens, const char *name)
+{
+    static char text[65536];
+    struct glint_error error;
+    char path[300];
+
+    snprintf(path, sizeof(path), "lenses/%s.lens", name);
+    if (glint_prescription_parse(
+            lens, text, read_file(path, text, sizeof(text)), path, &error))
+        fail_msg("%s", error.text);
+}
+
+/* The lens with an octagonal stop and the plain three wavelengths. */
+static inline void load_setup(struct glint_setup *setup,
+                              struct glint_prescription *lens, const char *name)
+{
+    static const double nm[3] = {650, 532, 450};
+    struct glint_error error;
+
+    load_lens(lens, name);
+    if (glint_setup_init(setup, lens, 8, 0, nm, 3, &error))
+        fail_msg("%s", error.text);
+}
+
+#endif

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A scheduler that runs jobs one by one, in shuffled order, each as a random
+ * worker: what depends on order or on the worker shows.
+ */
+#ifndef GLINT_TESTS_SHUFFLE_H
+#define GLINT_TESTS_SHUFFLE_H
+
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "glint/workers.h"
+
+struct shuffle {
+    struct glint_workers workers;
+    uint32_t state;
+};
+
+/* Small, good enough, and the same everywhere. */
+static inline uint32_t shuffle_next(uint32_t *state)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 17;
+    *state ^= *state << 5;
+    return *state;
+}
+
+static inline void shuffle_run(struct glint_workers *workers, int n_jobs,
+                               glint_job_fn *fn, void *ctx)
+{
+    struct shuffle *s = (struct shuffle *)workers;
+    int *order = malloc((size_t)(n_jobs + 1) * sizeof *order);
+
+    for (int i = 0; i < n_jobs; i++)
+        order[i] = i;
+    for (int i = n_jobs - 1; i > 0; i--) {
+        const int j = (int)(shuffle_next(&s->state) % (uint32_t)(i + 1));
+        const int swap = order[i];
+
+        order[i] = order[j];
+        order[j] = swap;
+    }
+    for (int i = 0; i < n_jobs; i++)
+        fn(ctx, order[i],
+           (int)(shuffle_next(&s->state) % (uint32_t)workers->n));
+    free(order);
+}
+
+static inline void shuffle_init(struct shuffle *s, int n, uint32_t seed)
+{
+    s->workers.n = n;
+    s->workers.run = shuffle_run;
+    s->state = seed ? seed : 1;
+}
+
+#endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/arena.h"
+#include "base/compiler.h"
+#include "base/q.h"
+#include "glint/image.h"
+#include "glint/workers.h"
+
+static void test_measure_and_place(void **state)
+{
+    static uint8_t mem[256]; /* alignment is the caller's business */
+    struct glint_arena m = glint_arena_measure(), p;
+
+    (void)state;
+    assert_null(glint_arena_take(&m, 3, 4));  /* 64 */
+    assert_null(glint_arena_take(&m, 0, 4));  /* 0 */
+    assert_null(glint_arena_take(&m, 65, 1)); /* 128 */
+    assert_int_equal(m.used, 192);
+    p = glint_arena_over(mem, 192);
+    assert_ptr_equal(glint_arena_take(&p, 3, 4), mem);
+    assert_ptr_equal(glint_arena_take(&p, 0, 4), mem + 64);
+    assert_ptr_equal(glint_arena_take(&p, 65, 1), mem + 64);
+    assert_null(glint_arena_take(&p, 1, 1));
+    assert_true(p.used > p.size);
+}
+
+static void test_overflow_is_full(void **state)
+{
+    struct glint_arena m = glint_arena_measure();
+
+    (void)state;
+    assert_null(glint_arena_take(&m, SIZE_MAX / 2, 4));
+    assert_null(glint_arena_take(&m, 1, 1));
+    assert_true(m.used > SIZE_MAX - 256);
+}
+
+/* To nearest, ties up, also below zero. */
+static void test_rounding(void **state)
+{
+    (void)state;
+    assert_int_equal(q_shift(5, 1), 3);
+    assert_int_equal(q_shift(-5, 1), -2);
+    assert_int_equal(q_shift(-6, 2), -1);
+    assert_int_equal(q_shift(7, 0), 7);
+    assert_int_equal(q_mul(3 << 8, 5 << 8, 8), 15 << 8);
+    assert_int_equal(q_mul(-1, 1, 1), 0);
+    assert_int_equal(q_clamp_sat(1000, -5, 5), 5);
+    assert_int_equal(Q_CONST(-0.5, 3), -4);
+    assert_int_equal(bit_length(0), 0);
+    assert_int_equal(bit_length(UINT64_MAX), 64);
+    assert_int_equal(bit_length(1 << 8), 9);
+}
+
+static void test_image_sizes(void **state)
+{
+    struct glint_image image = {.format = GLINT_I420, .width = 5, .height = 3};
+    uint8_t mem[27];
+
+    (void)state;
+    assert_int_equal(glint_image_bytes(GLINT_I420, 5, 3), 15 + 2 * 6);
+    assert_int_equal(glint_image_bytes(GLINT_I422, 5, 3), 15 + 2 * 9);
+    assert_int_equal(glint_image_bytes(GLINT_RGB24, 5, 3), 45);
+    assert_int_equal(glint_image_bytes(GLINT_LINEAR_Q20, 5, 3), 180);
+    assert_int_equal(glint_image_bytes(GLINT_GREY, 0, 3), 0);
+    assert_int_equal(glint_image_bytes(GLINT_GREY, 8193, 3), 0);
+    glint_image_place(&image, mem);
+    assert_ptr_equal(image.plane[1], mem + 15);
+    assert_ptr_equal(image.plane[2], mem + 21);
+    assert_int_equal(image.stride_bytes[1], 3);
+}
+
+static void count(void *ctx, int job, int worker)
+{
+    int *sum = ctx;
+
+    assert_int_equal(worker, 0);
+    *sum += job;
+}
+
+static void test_serial_workers(void **state)
+{
+    int sum = 0;
+
+    (void)state;
+    glint_workers_run(NULL, 5, count, &sum);
+    assert_int_equal(sum, 10);
+    assert_int_equal(glint_workers_count(NULL), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_measure_and_place),
+        cmocka_unit_test(test_overflow_is_full),
+        cmocka_unit_test(test_rounding),
+        cmocka_unit_test(test_image_sizes),
+        cmocka_unit_test(test_serial_workers),
+    };
+
+    return cmocka_run_group_tests_name("base", tests, NULL, NULL);
+}

@@ -1,0 +1,557 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The integer rasteriser on grids made by hand: energy, clipping, folds,
+ * independence of everything that must not matter, capacities, and goldens.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/flare.h"
+#include "posix/workers.h"
+#include "support/shuffle.h"
+
+enum { WIDTH = 203, HEIGHT = 151 };
+
+/* An octagon's sides, rounded to q30 by hand from cos and sin of 22.5 + 45 k
+ * degrees: integers, so that goldens do not hang on a libm. */
+static const int32_t octagon[8][2] = {
+    {992008094, 410903207},  {410903207, 992008094},   {-410903207, 992008094},
+    {-992008094, 410903207}, {-992008094, -410903207}, {-410903207, -992008094},
+    {410903207, -992008094}, {992008094, -410903207}};
+
+static struct glint_flare_config base_config(void)
+{
+    struct glint_flare_config c = {.width = WIDTH,
+                                   .height = HEIGHT,
+                                   .tile_log2 = 3,
+                                   .coarse_log2 = 7,
+                                   .weights = GLINT_WEIGHTS_WACHSPRESS,
+                                   .antialias = 1,
+                                   .max_bundles = 64,
+                                   .max_vertices = 60000,
+                                   .max_primitives = 60000,
+                                   .max_refs = 400000,
+                                   .max_tile_refs = 400000};
+
+    c.stop.n_blades = 8;
+    c.stop.apothem_q16 = 60547; /* cos 22.5 degrees */
+    memcpy(c.stop.normal_q30, octagon, sizeof octagon);
+    return c;
+}
+
+/* A synthetic ghost: a grid over +-1.25 stop radii, scaled, sheared and bent.
+ */
+struct ghost {
+    int n;
+    int cx, cy;       /* pixels */
+    int size;         /* pixels per stop radius */
+    int bend;         /* quadratic term, per mille of size */
+    int mirror;       /* -1: turned over */
+    int barrel_shift; /* of the barrel against the stop, per mille of radius */
+    int32_t flux_exponent;
+    int32_t rgb_q14[3];
+};
+
+static struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j)
+{
+    /* +-1.25 as q16, integers only */
+    const int64_t sx = (int64_t)163840 * i / g->n - 81920;
+    const int64_t sy = (int64_t)163840 * j / g->n - 81920;
+    const int64_t bent = (sx * sx / 65536 + sx * sy / 131072) * g->bend / 1000;
+    const int64_t bx = sx + 65536 * g->barrel_shift / 1000;
+    const int64_t r2 = (bx * bx + sy * sy) / 65536;
+    struct glint_vertex v = {0, 0, 0, 0, 0, 0};
+
+    v.x_q8 = (int32_t)(g->cx * 256 + (sx + bent) * g->size * g->mirror / 256);
+    v.y_q8 = (int32_t)(g->cy * 256 - (sy + sx / 5) * g->size / 256);
+    v.stop_x_q16 = (int32_t)sx;
+    v.stop_y_q16 = (int32_t)sy;
+    v.radius_q16 = (int32_t)((r2 + 65536) / 2); /* about r, 1 at r = 1 */
+    v.energy_q16 = (int32_t)(50000 + sx / 8);
+    return v;
+}
+
+static void add_ghost(struct glint_flare *f, const struct ghost *g)
+{
+    struct glint_bundle b = {.n_cells = g->n,
+                             .flux_q31 = 1500000000,
+                             .flux_exponent = g->flux_exponent};
+    struct glint_vertex *v;
+
+    memcpy(b.rgb_q14, g->rgb_q14, sizeof b.rgb_q14);
+    v = glint_flare_add(f, &b);
+    if (!v)
+        return;
+    for (int j = 0; j <= g->n; j++)
+        for (int i = 0; i <= g->n; i++)
+            *v++ = ghost_vertex(g, i, j);
+}
+
+static const struct ghost scene[] = {
+    {16, 60, 60, 40, 0, 1, 0, 0, {16384, 0, 0}},
+    {16, 64, 62, 42, 50, 1, 300, 0, {0, 16384, 0}},
+    {32, 128, 64, 200, 120, -1, 600, 2, {0, 0, 16384}},
+    {8, 128, 128, 3, 0, 1, 0, -2, {16384, 8000, -2000}},
+    {16, 190, 20, 60, 900, 1, 0, 0, {9000, 9000, 9000}}, /* folded */
+    {16, -40, 160, 90, 0, -1, 0, 1, {3000, 16384, 200}}, /* partly outside */
+};
+
+enum { N_SCENE = sizeof scene / sizeof *scene };
+
+static struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
+{
+    const size_t bytes = glint_flare_bytes(c);
+    struct glint_flare *f;
+
+    assert_int_not_equal(bytes, 0);
+    assert_int_equal(posix_memalign(mem, 64, bytes), 0);
+    memset(*mem, 0xa5, bytes); /* nothing may hang on what was there */
+    assert_int_equal(glint_flare_init(&f, c, *mem, bytes), GLINT_OK);
+    return f;
+}
+
+static struct glint_image linear_image(int32_t *pixels)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+
+    memset(pixels, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
+    glint_image_place(&image, pixels);
+    return image;
+}
+
+static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
+
+static struct glint_flare_stats draw_list(struct glint_flare_config c,
+                                          const struct ghost *list, int n,
+                                          int32_t *out)
+{
+    const struct glint_image image = linear_image(out);
+    struct glint_flare_stats stats;
+    void *mem;
+    struct glint_flare *f = open_flare(&c, &mem);
+
+    for (int i = 0; i < n; i++)
+        add_ghost(f, &list[i]);
+    glint_flare_bin(f, &stats);
+    glint_flare_draw(f, &image);
+    free(mem);
+    return stats;
+}
+
+static struct glint_flare_stats draw_scene(struct glint_flare_config c,
+                                           int32_t *out)
+{
+    return draw_list(c, scene, N_SCENE, out);
+}
+
+static double total(const int32_t *p, int channel)
+{
+    double sum = 0;
+
+    for (int i = channel; i < 3 * WIDTH * HEIGHT; i += 3)
+        sum += p[i] / 1048576.0;
+    return sum;
+}
+
+/* --------------------------------------------------------------------- light
+ */
+
+/* The octagon of radius 1 in a grid of 2.5 x 2.5 radii: area 2 sqrt 2 of 6.25,
+ * flux 16 x 16 cells x 1.5e9 / 2^31 x 50000 / 65536 (energy is odd about 0). */
+static void test_energy(void **state)
+{
+    const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
+    const double flux =
+        256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    /* the barrel is as wide as the stop's corners: cut it out of the way */
+    c.stop.apothem_q16 = 60547;
+    draw_list(c, &g, 1, pixels);
+    assert_true(total(pixels, 0) > 0.995 * flux);
+    assert_true(total(pixels, 0) < 1.005 * flux);
+    assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
+}
+
+/* Twice as large, mirrored, other weights, merged or not: the same light. */
+static void test_energy_is_kept(void **state)
+{
+    struct ghost g = {16, 100, 75, 25, 0, 1, 0, 0, {16384, 0, 0}};
+    struct glint_flare_config c = base_config();
+    double first;
+
+    (void)state;
+    draw_list(c, &g, 1, pixels);
+    first = total(pixels, 0);
+    g.size = 50;
+    g.mirror = -1;
+    draw_list(c, &g, 1, pixels);
+    assert_true(total(pixels, 0) > 0.998 * first &&
+                total(pixels, 0) < 1.002 * first);
+    c.weights = GLINT_WEIGHTS_LOOP_DEROSE;
+    c.merge_steps = 4;
+    c.merge_gamma_q16 = 66;
+    assert_true(draw_list(c, &g, 1, pixels).merged_cells > 60);
+    assert_true(total(pixels, 0) > 0.998 * first &&
+                total(pixels, 0) < 1.002 * first);
+}
+
+/* A ghost smaller than a pixel, anywhere in it: its light still arrives. */
+static void test_focused_light_arrives(void **state)
+{
+    struct glint_flare_config c = base_config();
+    const double flux =
+        256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
+
+    (void)state;
+    for (int k = 0; k < 16; k++) {
+        const struct ghost g = {16, 50 + k, 70,           1, 9 * k, 1,
+                                0,  0,      {16384, 0, 0}};
+
+        draw_list(c, &g, 1, pixels);
+        assert_true(total(pixels, 0) > 0.9 * flux);
+        assert_true(total(pixels, 0) < 1.1 * flux);
+    }
+}
+
+static int32_t at(const int32_t *p, int x, int y)
+{
+    return p[3 * (y * WIDTH + x)];
+}
+
+/* A flat ghost is flat inside: every pixel away from the rim has the same
+ * irradiance, flux per cell over its area in pixels. */
+static void test_flat_inside(void **state)
+{
+    struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
+    const double cell = 2.5 * 40 / 16;
+    const double irradiance = 1.5e9 / 2147483648.0 / (cell * cell);
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    draw_list(c, &g, 1, pixels);
+    for (int y = 65; y < 85; y++) {
+        /* energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40 */
+        for (int x = 90; x < 110; x++) {
+            const double energy =
+                (50000 + (x + 0.5 - 100) / 40 * 65536 / 8) / 65536;
+            const double q20 = irradiance * energy * 1048576;
+
+            assert_true(at(pixels, x, y) > 0.997 * q20 - 2 &&
+                        at(pixels, x, y) < 1.003 * q20 + 2);
+        }
+    }
+    assert_int_equal(at(pixels, 100, 2), 0);
+}
+
+/* Light is linear: twice the flux is twice the picture, within rounding. */
+static void test_linear_in_light(void **state)
+{
+    struct ghost g = scene[1];
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    draw_list(c, &g, 1, want);
+    g.flux_exponent += 3;
+    draw_list(c, &g, 1, pixels);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        assert_true(abs(pixels[i] - 8 * want[i]) <= 24);
+}
+
+/* A cell without area, rays that were lost, and light beyond all bounds. */
+static void test_hostile_bundles(void **state)
+{
+    struct glint_flare_config c = base_config();
+    const struct glint_image image = linear_image(pixels);
+    struct glint_bundle b = {.n_cells = 4,
+                             .flux_q31 = INT32_MAX,
+                             .flux_exponent = 900,
+                             .rgb_q14 = {65536, -65536, 65536}};
+    struct glint_flare_stats stats;
+    void *mem;
+    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_vertex *v = glint_flare_add(f, &b);
+
+    (void)state;
+    for (int i = 0; i < 25; i++)
+        v[i] = (struct glint_vertex){5000, 5000, 0, 0, 0, 65536};
+    v = glint_flare_add(f, &b);
+    for (int i = 0; i < 25; i++) {
+        v[i] = ghost_vertex(&(struct ghost){4, 50, 50, 9, 0, 1, 0, 0, {0}},
+                            i % 5, i / 5);
+        if (i % 3 == 0)
+            v[i].energy_q16 = -1;
+    }
+    b.flux_exponent = -900;
+    v = glint_flare_add(f, &b);
+    for (int i = 0; i < 25; i++) {
+        v[i] = (struct glint_vertex){0, 0, 1 << 30, -(1 << 30), 1 << 30, 1};
+        v[i].x_q8 = (i % 5 - 2) * (GLINT_VERTEX_LIMIT_Q8 / 2 - 1);
+        v[i].y_q8 = (i / 5 - 2) * (GLINT_VERTEX_LIMIT_Q8 / 2 - 1);
+    }
+    glint_flare_bin(f, &stats);
+    glint_flare_draw(f, &image);
+    assert_true(stats.dropped_cells >= 10);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        assert_true(i % 3 == 1 ? pixels[i] <= 0 : pixels[i] >= 0);
+    free(mem);
+}
+
+/* ------------------------------------------------------ what must not matter
+ */
+
+static void same_as_want(struct glint_flare_config c)
+{
+    draw_scene(c, pixels);
+    assert_memory_equal(pixels, want, sizeof pixels);
+}
+
+static void test_tiles_do_not_matter(void **state)
+{
+    static const int levels[][2] = {{3, 0}, {4, 0}, {5, 0}, {3, 6}, {3, 7},
+                                    {4, 7}, {5, 8}, {5, 6}, {4, 5}, {3, 4}};
+
+    (void)state;
+    draw_scene(base_config(), want);
+    assert_true(total(want, 0) > 1);
+    for (size_t i = 0; i < sizeof levels / sizeof *levels; i++) {
+        struct glint_flare_config c = base_config();
+
+        c.tile_log2 = levels[i][0];
+        c.coarse_log2 = levels[i][1];
+        same_as_want(c);
+    }
+}
+
+static void test_threads_do_not_matter(void **state)
+{
+    (void)state;
+    draw_scene(base_config(), want);
+    for (int n = 1; n <= 8; n++) {
+        struct glint_flare_config c = base_config();
+
+        assert_int_equal(glint_pool_create(&c.workers, n), GLINT_OK);
+        same_as_want(c);
+        c.coarse_log2 = 0;
+        same_as_want(c);
+        glint_pool_destroy(c.workers);
+    }
+}
+
+static void test_order_does_not_matter(void **state)
+{
+    (void)state;
+    draw_scene(base_config(), want);
+    for (uint32_t seed = 1; seed <= 8; seed++) {
+        struct glint_flare_config c = base_config();
+        struct shuffle shuffle;
+
+        shuffle_init(&shuffle, 5, seed);
+        c.workers = &shuffle.workers;
+        c.coarse_log2 = seed & 1 ? 7 : 0;
+        same_as_want(c);
+    }
+}
+
+static void test_bundle_order_does_not_matter(void **state)
+{
+    struct ghost turned[N_SCENE];
+
+    (void)state;
+    for (int i = 0; i < N_SCENE; i++)
+        turned[i] = scene[N_SCENE - 1 - i];
+    draw_scene(base_config(), want);
+    draw_list(base_config(), turned, N_SCENE, pixels);
+    assert_memory_equal(pixels, want, sizeof pixels);
+}
+
+/* In place on 8 bits: what no ghost touches keeps its bytes, and padding too.
+ */
+static void test_untouched_stays(void **state)
+{
+    enum { STRIDE = WIDTH * 3 + 13 };
+    static uint8_t bytes[STRIDE * HEIGHT], before[STRIDE * HEIGHT];
+    struct glint_image image = {.format = GLINT_RGB24,
+                                .width = WIDTH,
+                                .height = HEIGHT,
+                                .plane = {bytes},
+                                .stride_bytes = {STRIDE}};
+    struct glint_flare_config c = base_config();
+    struct glint_flare_stats stats;
+    int changed = 0;
+    void *mem;
+    struct glint_flare *f = open_flare(&c, &mem);
+
+    (void)state;
+    for (int i = 0; i < STRIDE * HEIGHT; i++)
+        before[i] = bytes[i] = (uint8_t)(i * 7 + i / 251);
+    draw_list(c, scene, 1, want);
+    add_ghost(f, &scene[0]);
+    glint_flare_bin(f, &stats);
+    glint_flare_draw(f, &image);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < STRIDE; x++) {
+            const int k = y * STRIDE + x;
+
+            if (x >= WIDTH * 3 || want[y * WIDTH * 3 + x] == 0)
+                assert_int_equal(bytes[k], before[k]);
+            changed += bytes[k] != before[k];
+        }
+    assert_true(changed > 500);
+    assert_true(glint_flare_tiles(f) < 26 * 19 / 2);
+    free(mem);
+}
+
+/* ------------------------------------------------------------------ capacity
+ */
+
+/* Exactly what bin asked for is enough, and one byte less is refused. */
+static void test_exact_capacity(void **state)
+{
+    struct glint_flare_config c = base_config();
+    struct glint_flare_stats s = draw_scene(c, want);
+    struct glint_flare *f;
+    void *mem;
+    size_t bytes;
+
+    (void)state;
+    assert_int_equal(s.dropped_bundles, 0);
+    c.max_bundles = s.need_bundles;
+    c.max_vertices = s.need_vertices;
+    c.max_primitives = s.need_primitives;
+    c.max_refs = s.need_refs;
+    c.max_tile_refs = s.need_tile_refs;
+    same_as_want(c);
+    bytes = glint_flare_bytes(&c);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_flare_init(&f, &c, mem, bytes - 1), GLINT_E_MEMORY);
+    assert_int_equal(glint_flare_init(&f, &c, mem, bytes), GLINT_OK);
+    free(mem);
+}
+
+/* One less of anything: whole bundles go, counted, and the rest is right. */
+static void test_too_little_capacity(void **state)
+{
+    struct glint_flare_config full = base_config();
+    const struct glint_flare_stats s = draw_scene(full, pixels);
+
+    (void)state;
+    draw_list(full, scene, N_SCENE - 1, want);
+    for (int k = 0; k < 4; k++) {
+        struct glint_flare_config c = full;
+        struct glint_flare_stats less;
+
+        c.max_bundles = k == 0 ? s.need_bundles - 1 : c.max_bundles;
+        c.max_vertices = k == 1 ? s.need_vertices - 1 : c.max_vertices;
+        c.max_primitives = k == 2 ? s.need_primitives - 1 : c.max_primitives;
+        c.max_refs = k == 3 ? s.need_refs - 1 : c.max_refs;
+        less = draw_scene(c, pixels);
+        assert_int_equal(less.dropped_bundles, 1);
+        assert_memory_equal(pixels, want, sizeof pixels);
+    }
+}
+
+static void test_config_is_checked(void **state)
+{
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    assert_int_not_equal(glint_flare_bytes(&c), 0);
+    c.tile_log2 = 6;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.coarse_log2 = 3;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.width = GLINT_MAX_SIDE + 1;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.stop.n_blades = 2;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+}
+
+/* -------------------------------------------------------------------- golden
+ */
+
+static uint64_t hash(const void *data, size_t bytes)
+{
+    const uint8_t *p = data;
+    uint64_t h = UINT64_C(14695981039346656037); /* FNV-1a */
+
+    for (size_t i = 0; i < bytes; i++)
+        h = (h ^ p[i]) * UINT64_C(1099511628211);
+    return h;
+}
+
+static void golden_case(FILE *file, bool update, const char *name,
+                        struct glint_flare_config c)
+{
+    char line[80], expected[80];
+    uint64_t h;
+
+    draw_scene(c, pixels);
+    h = hash(pixels, sizeof pixels);
+    snprintf(expected, sizeof expected, "%s %08lx%08lx\n", name,
+             (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffff));
+    if (update) {
+        fputs(expected, file);
+        return;
+    }
+    assert_non_null(fgets(line, sizeof line, file));
+    assert_string_equal(line, expected);
+}
+
+/* The same bits on every CPU; GLINT_GOLDEN_UPDATE=1 writes them anew. */
+static void test_golden(void **state)
+{
+    const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;
+    FILE *file = fopen("tests/golden/flare.txt", update ? "w" : "r");
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    assert_non_null(file);
+    golden_case(file, update, "default", c);
+    c.weights = GLINT_WEIGHTS_LOOP_DEROSE;
+    golden_case(file, update, "loop-derose", c);
+    c.antialias = 0;
+    golden_case(file, update, "pixel-centre", c);
+    c = base_config();
+    c.merge_steps = 4;
+    c.merge_gamma_q16 = 6554;
+    golden_case(file, update, "merged", c);
+    c = base_config();
+    c.stop.n_blades = 0;
+    golden_case(file, update, "circle", c);
+    fclose(file);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_energy),
+        cmocka_unit_test(test_energy_is_kept),
+        cmocka_unit_test(test_focused_light_arrives),
+        cmocka_unit_test(test_flat_inside),
+        cmocka_unit_test(test_linear_in_light),
+        cmocka_unit_test(test_hostile_bundles),
+        cmocka_unit_test(test_tiles_do_not_matter),
+        cmocka_unit_test(test_threads_do_not_matter),
+        cmocka_unit_test(test_order_does_not_matter),
+        cmocka_unit_test(test_bundle_order_does_not_matter),
+        cmocka_unit_test(test_untouched_stays),
+        cmocka_unit_test(test_exact_capacity),
+        cmocka_unit_test(test_too_little_capacity),
+        cmocka_unit_test(test_config_is_checked),
+        cmocka_unit_test(test_golden),
+    };
+
+    return cmocka_run_group_tests_name("flare", tests, NULL, NULL);
+}

@@ -1,0 +1,442 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Output files are whole or not there, whatever goes wrong.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "posix/input.h"
+#include "posix/output.h"
+
+static char dir[] = "/tmp/glint-test-output-XXXXXX";
+static char path[64];
+
+static int enter(void **state)
+{
+    (void)state;
+    if (!mkdtemp(dir))
+        return -1;
+    snprintf(path, sizeof path, "%s/x.ppm", dir);
+    return 0;
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return rmdir(dir);
+}
+
+/* Files in the test's directory, hidden ones too. */
+static int n_files(void)
+{
+    DIR *const d = opendir(dir);
+    int n = 0;
+
+    assert_non_null(d);
+    while (readdir(d))
+        n++;
+    closedir(d);
+    return n - 2;
+}
+
+static void put_file(const char *text)
+{
+    FILE *const f = fopen(path, "w");
+
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+}
+
+static void expect_file(const char *text)
+{
+    struct glint_error error;
+    uint8_t *data;
+    size_t bytes;
+
+    assert_int_equal(glint_input_slurp(&data, &bytes, path, 1000, &error),
+                     GLINT_OK);
+    assert_int_equal(bytes, strlen(text));
+    assert_memory_equal(data, text, bytes);
+    free(data);
+}
+
+static mode_t mode_of(const char *name)
+{
+    struct stat st;
+
+    assert_int_equal(stat(name, &st), 0);
+    return st.st_mode & 0777;
+}
+
+static void open_text(struct glint_output *out, const char *text)
+{
+    struct glint_error error;
+
+    assert_int_equal(glint_output_open(out, path, GLINT_OUTPUT_BINARY, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_output_write(out, text, strlen(text), &error),
+                     GLINT_OK);
+}
+
+static void test_commit(void **state)
+{
+    const mode_t old = umask(027);
+    struct glint_error error;
+    struct glint_output out;
+
+    (void)state;
+    open_text(&out, "one");
+    assert_int_equal(access(path, F_OK), -1);
+    assert_int_equal(n_files(), 1); /* the temporary one */
+    assert_string_equal(strrchr(out.tmp, '.'), ".ppm");
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    umask(old);
+    expect_file("one");
+    assert_int_equal(mode_of(path), 0640);
+    assert_int_equal(n_files(), 1);
+    glint_output_abort(&out); /* nothing left to do */
+    unlink(path);
+}
+
+static void test_abort(void **state)
+{
+    struct glint_output out;
+
+    (void)state;
+    open_text(&out, "one");
+    glint_output_abort(&out);
+    glint_output_abort(&out);
+    assert_int_equal(n_files(), 0);
+}
+
+static void test_replaces_at_commit(void **state)
+{
+    struct glint_error error;
+    struct glint_output out;
+
+    (void)state;
+    put_file("old");
+    chmod(path, 0600);
+    open_text(&out, "new");
+    expect_file("old");
+    glint_output_abort(&out);
+    expect_file("old");
+    open_text(&out, "new");
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    expect_file("new");
+    assert_int_equal(mode_of(path), 0600);
+    assert_int_equal(n_files(), 1);
+    unlink(path);
+}
+
+static void test_follows_links(void **state)
+{
+    char link_path[80];
+    struct glint_error error;
+    struct glint_output out;
+    struct stat st;
+
+    (void)state;
+    snprintf(link_path, sizeof link_path, "%s/link.ppm", dir);
+    put_file("old");
+    assert_int_equal(symlink(path, link_path), 0);
+    assert_int_equal(
+        glint_output_open(&out, link_path, GLINT_OUTPUT_BINARY, &error),
+        GLINT_OK);
+    assert_int_equal(glint_output_write(&out, "new", 3, &error), GLINT_OK);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    expect_file("new");
+    assert_int_equal(lstat(link_path, &st), 0);
+    assert_true(S_ISLNK(st.st_mode));
+    unlink(link_path);
+    unlink(path);
+}
+
+/* Small writes, large ones, and one of exactly the buffer, in order. */
+static void test_sizes(void **state)
+{
+    static const size_t sizes[] = {1, 65535, 1, 65536, 3, 200000, 65537, 7};
+    static uint8_t data[200000];
+    uint8_t *read_back;
+    size_t bytes, at = 0;
+    struct glint_error error;
+    struct glint_output out;
+
+    (void)state;
+    open_text(&out, "");
+    for (size_t i = 0; i < 8; i++) {
+        memset(data, (int)i + 1, sizes[i]);
+        assert_int_equal(glint_output_write(&out, data, sizes[i], &error),
+                         GLINT_OK);
+    }
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    assert_int_equal(
+        glint_input_slurp(&read_back, &bytes, path, 1 << 20, &error), GLINT_OK);
+    assert_int_equal(bytes, 396620);
+    for (size_t i = 0; i < 8; i++)
+        for (size_t j = 0; j < sizes[i]; j++)
+            if (read_back[at++] != i + 1)
+                fail_msg("write %zu, byte %zu", i, j);
+    free(read_back);
+    unlink(path);
+}
+
+static void test_full_device(void **state)
+{
+    static uint8_t data[100000];
+    struct glint_error error;
+    struct glint_output out;
+
+    (void)state;
+    assert_int_equal(
+        glint_output_open(&out, "/dev/full", GLINT_OUTPUT_BINARY, &error),
+        GLINT_OK);
+    assert_int_equal(glint_output_write(&out, data, 10, &error), GLINT_OK);
+    assert_int_equal(glint_output_write(&out, data, sizeof data, &error),
+                     GLINT_E_OUTPUT);
+    assert_string_equal(error.text, "/dev/full: No space left on device");
+    assert_int_equal(glint_output_write(&out, data, 1, &error), GLINT_E_OUTPUT);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
+
+    /* what is small enough for the buffer is noticed at the end */
+    assert_int_equal(
+        glint_output_open(&out, "/dev/full", GLINT_OUTPUT_TEXT, &error),
+        GLINT_OK);
+    assert_int_equal(glint_output_write(&out, data, 10, &error), GLINT_OK);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
+    assert_int_equal(out.fd, -1);
+}
+
+/* A limit on the size of files stands for a disk that is full. */
+static int overflow_disk(void)
+{
+    static uint8_t data[100000];
+    const struct rlimit limit = {5000, 5000};
+    struct glint_error error;
+    struct glint_output out;
+
+    if (setrlimit(RLIMIT_FSIZE, &limit) ||
+        glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error))
+        return 1;
+    if (glint_output_write(&out, data, sizeof data, &error) != GLINT_E_OUTPUT)
+        return 2;
+    return glint_output_commit(&out, &error) == GLINT_E_OUTPUT ? 0 : 3;
+}
+
+static void test_full_disk(void **state)
+{
+    int how;
+
+    (void)state;
+    put_file("old");
+    const pid_t child = fork();
+    if (child == 0)
+        _exit(overflow_disk());
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_int_equal(how, 0);
+    expect_file("old");
+    assert_int_equal(n_files(), 1);
+    unlink(path);
+}
+
+static void test_closed_pipe(void **state)
+{
+    static uint8_t data[100000];
+    char name[32];
+    struct glint_error error;
+    struct glint_output out;
+    int fd[2];
+
+    (void)state;
+    assert_int_equal(pipe(fd), 0);
+    snprintf(name, sizeof name, "/dev/fd/%d", fd[1]);
+    assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
+                     GLINT_OK);
+    assert_null(out.tmp);
+    close(fd[0]);
+    assert_int_equal(glint_output_write(&out, data, sizeof data, &error),
+                     GLINT_E_CLOSED);
+    assert_int_equal(glint_output_flush(&out, &error), GLINT_E_CLOSED);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_E_CLOSED);
+    close(fd[1]);
+}
+
+/* A pipe that does not block and is read slowly takes everything in the end. */
+static void test_nonblocking_pipe(void **state)
+{
+    static uint8_t data[300000];
+    struct glint_error error;
+    struct glint_output out;
+    char name[32];
+    int fd[2], how;
+
+    (void)state;
+    assert_int_equal(pipe(fd), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        static uint8_t got[1000];
+        size_t sum = 0;
+        ssize_t n;
+
+        close(fd[1]);
+        while ((n = read(fd[0], got, sizeof got)) > 0)
+            sum += (size_t)n;
+        _exit(sum == sizeof data ? 0 : 1);
+    }
+    close(fd[0]);
+    snprintf(name, sizeof name, "/dev/fd/%d", fd[1]);
+    assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
+                     GLINT_OK);
+    assert_int_equal(fcntl(out.fd, F_SETFL, O_NONBLOCK), 0);
+    assert_int_equal(glint_output_write(&out, data, sizeof data, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    close(fd[1]);
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_int_equal(how, 0);
+}
+
+static void check_death(int signal_number, int handled)
+{
+    int how;
+    const pid_t child = fork();
+
+    if (child == 0) {
+        struct glint_error error;
+        struct glint_output out, other;
+
+        signal(signal_number, handled ? SIG_IGN : SIG_DFL);
+        if (glint_output_open(&other, path, GLINT_OUTPUT_BINARY, &error) ||
+            glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error))
+            _exit(99);
+        glint_output_abort(&other);
+        raise(signal_number);
+        glint_output_abort(&out);
+        _exit(7);
+    }
+    assert_int_equal(waitpid(child, &how, 0), child);
+    if (handled) {
+        assert_true(WIFEXITED(how));
+        assert_int_equal(WEXITSTATUS(how), 7);
+    } else {
+        assert_true(WIFSIGNALED(how));
+        assert_int_equal(WTERMSIG(how), signal_number);
+    }
+    assert_int_equal(n_files(), 0);
+}
+
+/* Must come first: the first open takes the signals for the whole process. */
+static void test_signals(void **state)
+{
+    (void)state;
+    check_death(SIGINT, 0);
+    check_death(SIGTERM, 0);
+    check_death(SIGHUP, 0);
+    check_death(SIGHUP, 1); /* as under nohup */
+}
+
+static void test_exit(void **state)
+{
+    int how;
+    const pid_t child = fork();
+
+    (void)state;
+    if (child == 0) {
+        struct glint_output out;
+        struct glint_error error;
+
+        exit(glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error) ? 1 : 0);
+    }
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_int_equal(how, 0);
+    assert_int_equal(n_files(), 0);
+}
+
+static void refuse(const char *name, const char *text)
+{
+    struct glint_error error;
+    struct glint_output out;
+
+    assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
+                     GLINT_E_OUTPUT);
+    assert_string_equal(error.text, text);
+    assert_int_equal(out.fd, -1);
+}
+
+static void test_refuses(void **state)
+{
+    char name[300], text[300];
+    struct glint_error error;
+    struct glint_output out;
+
+    (void)state;
+    refuse("/nowhere/x.ppm", "/nowhere/x.ppm: cannot create a file beside it: "
+                             "No such file or directory");
+    refuse("", ": No such file or directory");
+    snprintf(text, sizeof text, "%s: Is a directory", dir);
+    refuse(dir, text);
+
+    /* a name that is too long loses its beginning, not the cause */
+    snprintf(name, sizeof name, "/nowhere/%0250d/x\n.ppm", 1);
+    assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
+                     GLINT_E_OUTPUT);
+    assert_memory_equal(error.text, "...000", 6);
+    assert_non_null(strstr(error.text, "1/x?.ppm: cannot create a file beside"
+                                       " it: No such file or directory"));
+}
+
+static void test_many_at_a_time(void **state)
+{
+    struct glint_output out[17];
+    struct glint_error error;
+    char name[80];
+    int n = 0;
+
+    (void)state;
+    for (; n < 17; n++) {
+        snprintf(name, sizeof name, "%s/%d", dir, n);
+        if (glint_output_open(&out[n], name, GLINT_OUTPUT_TEXT, &error))
+            break;
+        assert_int_equal(n_files(), n + 1);
+    }
+    assert_int_equal(n, 16);
+    while (n-- > 0)
+        glint_output_abort(&out[n]);
+    assert_int_equal(n_files(), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_signals),
+        cmocka_unit_test(test_exit),
+        cmocka_unit_test(test_commit),
+        cmocka_unit_test(test_abort),
+        cmocka_unit_test(test_replaces_at_commit),
+        cmocka_unit_test(test_follows_links),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_full_device),
+        cmocka_unit_test(test_full_disk),
+        cmocka_unit_test(test_closed_pipe),
+        cmocka_unit_test(test_nonblocking_pipe),
+        cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_many_at_a_time),
+    };
+
+    return cmocka_run_group_tests_name("output", tests, enter, leave);
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The pupil box holds every ray that gets through: against a dense scan of the
+ * whole front element.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "support/lens_check.h"
+
+enum { SCAN = 240 };
+
+static struct glint_prescription lens;
+static struct glint_optics optics;
+static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
+
+/* Whether a ray passes, by its own record alone. */
+static bool passes(const struct glint_path *path, double x, double y,
+                   const double direction[3], struct glint_ray *ray)
+{
+    return glint_trace(path, x, y, direction, ray, NULL) == GLINT_RAY_OK &&
+           ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <= optics.stop_radius_mm;
+}
+
+static void scan(int ghost, double theta_deg, double nm, int *n_seen)
+{
+    const double t = theta_deg * 3.14159265358979 / 180;
+    const double direction[3] = {sin(t), 0, cos(t)};
+    const double semi = lens.surface[0].semi_mm * 1.1;
+    struct glint_pupil box;
+    struct glint_path path;
+    bool found;
+
+    glint_path_init(&path, &lens, &ghosts[ghost], nm);
+    found = glint_pupil_find(&box, &path, theta_deg, optics.stop_radius_mm);
+    for (int j = 0; j <= SCAN / 2; j++)
+        for (int i = 0; i <= SCAN; i++) {
+            const double x = semi * (2.0 * i / SCAN - 1);
+            const double y = semi * 2.0 * j / SCAN;
+            struct glint_ray ray;
+
+            if (!passes(&path, x, y, direction, &ray))
+                continue;
+            ++*n_seen;
+            if (!found || x < box.x0_mm || x > box.x1_mm || y > box.y1_mm)
+                fail_msg("ghost %d at %g degrees: (%g, %g) passes outside of "
+                         "the box",
+                         ghost, theta_deg, x, y);
+            assert_true(ray.energy <= 1.5 * box.energy);
+            assert_true(ray.sensor_x_mm >= box.sensor_mm[0] - 1e-6 ||
+                        box.sensor_mm[1] > box.sensor_mm[0]);
+        }
+}
+
+static void scan_lens(const char *name, int step)
+{
+    static const double angles[] = {0, 3, 7.5, 15, 25};
+    int n_ghosts, n_seen = 0;
+
+    load_lens(&lens, name);
+    glint_optics_of(&lens, &optics);
+    n_ghosts = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
+    for (int ghost = 0; ghost < n_ghosts; ghost += step)
+        for (int a = 0; a < 5; a++)
+            scan(ghost, angles[a], a & 1 ? 450 : 650, &n_seen);
+    assert_true(n_seen > 1000);
+}
+
+static void test_heliar(void **state)
+{
+    (void)state;
+    scan_lens("heliar-tronnier", 1);
+}
+
+static void test_angenieux(void **state)
+{
+    (void)state;
+    scan_lens("double-gauss-angenieux", 3);
+}
+
+static void test_itoh(void **state)
+{
+    (void)state;
+    scan_lens("itoh-zoom-long", 7);
+}
+
+/* Straight into the stop from far aside nothing gets through. */
+static void test_nothing_gets_through(void **state)
+{
+    struct glint_pupil box;
+    struct glint_path path;
+
+    (void)state;
+    load_lens(&lens, "canon-zoom-long");
+    glint_optics_of(&lens, &optics);
+    glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
+    glint_path_init(&path, &lens, &ghosts[0], 532);
+    assert_false(glint_pupil_find(&box, &path, 85, optics.stop_radius_mm));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_heliar),
+        cmocka_unit_test(test_angenieux),
+        cmocka_unit_test(test_itoh),
+        cmocka_unit_test(test_nothing_gets_through),
+    };
+
+    return cmocka_run_group_tests_name("pupil", tests, NULL, NULL);
+}

@@ -1,0 +1,597 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Light added to pictures of every coding, against the same in double: through
+ * the standards' own curves and matrices, not the tables.
+ */
+#include "tile/resolve.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum {
+    MAX_SIDE = 40,
+    TILE_LOG2 = 3,
+    TILE = 1 << TILE_LOG2,
+    PLANE_BYTES = 3 * (MAX_SIDE + 8) * (MAX_SIDE + 8),
+    GUARD = 0xa5
+};
+
+#define WHITE_Q20 INT64_C(1048576)
+
+/* A picture with guard bytes around and between its rows, what it was before,
+ * and the light to add. */
+struct fixture {
+    struct glint_image image;
+    uint8_t plane[3][PLANE_BYTES], before[3][PLANE_BYTES];
+    int64_t light_q20[3][MAX_SIDE * MAX_SIDE];
+};
+
+static struct fixture fixture;
+static struct glint_resolve resolve;
+static uint32_t seed = 1;
+
+static int draw_random(int n)
+{
+    seed = seed * 1664525 + 1013904223;
+    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
+}
+
+/* Strides of 5 bytes more than the row; UPSIDE_DOWN: negative ones. */
+static void set_up(enum glint_pixel_format format, int width, int height,
+                   int upside_down)
+{
+    struct glint_image *image = &fixture.image;
+
+    memset(fixture.plane, GUARD, sizeof fixture.plane);
+    memset(fixture.light_q20, 0, sizeof fixture.light_q20);
+    *image = (struct glint_image){
+        .format = format, .width = width, .height = height};
+    for (int i = 0; i < glint_image_planes(format); i++) {
+        const int across = glint_image_plane_width(format, i, width) *
+                           (i ? 1 : glint_image_sample_bytes(format));
+        const int down = glint_image_plane_height(format, i, height);
+        const ptrdiff_t stride = across + 5;
+
+        image->plane[i] = fixture.plane[i] + 64;
+        image->stride_bytes[i] = stride;
+        if (upside_down) {
+            image->plane[i] += (down - 1) * stride;
+            image->stride_bytes[i] = -stride;
+        }
+    }
+}
+
+static uint8_t *sample(int plane, int x, int y)
+{
+    return fixture.image.plane[plane] + y * fixture.image.stride_bytes[plane] +
+           x;
+}
+
+/* Samples of plane PLANE in a row. */
+static int across(int plane)
+{
+    const struct glint_image *image = &fixture.image;
+
+    return glint_image_plane_width(image->format, plane, image->width) *
+           (plane ? 1 : glint_image_sample_bytes(image->format));
+}
+
+static int down(int plane)
+{
+    const struct glint_image *image = &fixture.image;
+
+    return glint_image_plane_height(image->format, plane, image->height);
+}
+
+static void fill(int plane, int low, int high)
+{
+    for (int y = 0; y < down(plane); y++)
+        for (int x = 0; x < across(plane); x++)
+            *sample(plane, x, y) = (uint8_t)(low + draw_random(high - low + 1));
+}
+
+/* Adds the light, tile by tile, the last one first. */
+static void add_light(int dither)
+{
+    const struct glint_image *image = &fixture.image;
+    int64_t acc_q20[3][TILE * TILE];
+
+    memcpy(fixture.before, fixture.plane, sizeof fixture.before);
+    glint_resolve_init(&resolve, image, dither);
+    for (int y0 = (image->height - 1) / TILE * TILE; y0 >= 0; y0 -= TILE)
+        for (int x0 = (image->width - 1) / TILE * TILE; x0 >= 0; x0 -= TILE) {
+            const int x1 = x0 + TILE < image->width ? x0 + TILE : image->width;
+            const int y1 =
+                y0 + TILE < image->height ? y0 + TILE : image->height;
+
+            memset(acc_q20, 0x55, sizeof acc_q20); /* huge where unused */
+            for (int i = 0; i < 3; i++)
+                for (int y = y0; y < y1; y++)
+                    for (int x = x0; x < x1; x++)
+                        acc_q20[i][(y - y0) * TILE + x - x0] =
+                            fixture.light_q20[i][y * image->width + x];
+            glint_resolve_tile(&resolve, image, x0, y0, x1, y1, TILE_LOG2,
+                               acc_q20[0]);
+        }
+}
+
+static int before(int plane, int x, int y)
+{
+    return fixture.before[plane][sample(plane, x, y) - fixture.plane[plane]];
+}
+
+static void assert_guards_whole(void)
+{
+    for (int i = 0; i < 3; i++) {
+        static uint8_t inside[PLANE_BYTES];
+
+        memset(inside, 0, sizeof inside);
+        if (i < glint_image_planes(fixture.image.format))
+            for (int y = 0; y < down(i); y++)
+                for (int x = 0; x < across(i); x++)
+                    inside[sample(i, x, y) - fixture.plane[i]] = 1;
+        for (int k = 0; k < PLANE_BYTES; k++)
+            assert_true(inside[k] || fixture.plane[i][k] == GUARD);
+    }
+}
+
+/* --------------------------------------------------------------- reference */
+
+static double light_of(double v)
+{
+    if (v < 0)
+        return -light_of(-v);
+    if (fixture.image.transfer == GLINT_TRANSFER_SRGB)
+        return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
+}
+
+static double code_of(double light)
+{
+    if (light < 0)
+        return -code_of(-light);
+    if (light > 1)
+        return 1;
+    if (fixture.image.transfer == GLINT_TRANSFER_SRGB)
+        return light <= 0.0031308 ? 12.92 * light
+                                  : 1.055 * pow(light, 1 / 2.4) - 0.055;
+    return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
+}
+
+/* Change of V, 1 = white, under LIGHT. */
+static double change(double v, double light)
+{
+    const double held = fmax(-1, fmin(v, 1));
+
+    return light > 0 ? code_of(light_of(held) + light) - held : 0;
+}
+
+struct coding {
+    double kr, kg, kb, black, y_steps, c_steps;
+};
+
+static struct coding coding(void)
+{
+    const int bt601 = fixture.image.matrix == GLINT_MATRIX_BT601;
+    const int full = fixture.image.range == GLINT_RANGE_FULL;
+    struct coding c = {.kr = bt601 ? 0.299 : 0.2126,
+                       .kb = bt601 ? 0.114 : 0.0722,
+                       .black = full ? 0 : 16,
+                       .y_steps = full ? 255 : 219,
+                       .c_steps = full ? 255 : 224};
+
+    c.kg = 1 - c.kr - c.kb;
+    return c;
+}
+
+/* Change of R'G'B' of pixel (X, Y) of a Y'CbCr picture. */
+static void ycc_pixel_change(const struct coding *c, int x, int y, int cx,
+                             int cy, double rgb[3])
+{
+    const double luma = (before(0, x, y) - c->black) / c->y_steps;
+    const double cb = (before(1, cx, cy) - 128) / c->c_steps;
+    const double cr = (before(2, cx, cy) - 128) / c->c_steps;
+    const int at = y * fixture.image.width + x;
+
+    rgb[0] = luma + 2 * (1 - c->kr) * cr;
+    rgb[2] = luma + 2 * (1 - c->kb) * cb;
+    rgb[1] = (luma - c->kr * rgb[0] - c->kb * rgb[2]) / c->kg;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = change(rgb[i], (double)fixture.light_q20[i][at] * 0x1p-20);
+}
+
+static void assert_code(double want, int got, double within)
+{
+    want = want < 0 ? 0 : want > 255 ? 255 : want;
+    if (fabs(want - got) > within)
+        fail_msg("code %d where %.3f is right", got, want);
+}
+
+/* Checks the pixels that share the sample (CX, CY), and it. */
+static void check_block(int cx, int cy, double within)
+{
+    const enum glint_pixel_format format = fixture.image.format;
+    const struct coding c = coding();
+    const int nx = format == GLINT_I444 ? 1 : 2;
+    const int ny = format == GLINT_I420 ? 2 : 1;
+    double total[3] = {0, 0, 0};
+    int n = 0;
+
+    for (int y = cy * ny; y < cy * ny + ny && y < down(0); y++)
+        for (int x = cx * nx; x < cx * nx + nx && x < across(0); x++, n++) {
+            double rgb[3];
+
+            ycc_pixel_change(&c, x, y, cx, cy, rgb);
+            for (int i = 0; i < 3; i++)
+                total[i] += rgb[i];
+            assert_code(before(0, x, y) +
+                            c.y_steps *
+                                (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
+                        *sample(0, x, y), within);
+        }
+    for (int i = 0; i < 3; i++)
+        total[i] /= n;
+    {
+        const double luma = c.kr * total[0] + c.kg * total[1] + c.kb * total[2];
+
+        assert_code(before(1, cx, cy) +
+                        c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
+                    *sample(1, cx, cy), within);
+        assert_code(before(2, cx, cy) +
+                        c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
+                    *sample(2, cx, cy), within);
+    }
+}
+
+static void check_ycc(double within)
+{
+    for (int cy = 0; cy < down(1); cy++)
+        for (int cx = 0; cx < across(1); cx++)
+            check_block(cx, cy, within);
+}
+
+static void check_rgb24(double within)
+{
+    for (int y = 0; y < down(0); y++)
+        for (int x = 0; x < across(0); x++) {
+            const double light =
+                (double)
+                    fixture.light_q20[x % 3][y * fixture.image.width + x / 3] *
+                0x1p-20;
+            const int code = before(0, x, y);
+
+            assert_code(code + 255 * change(code / 255.0, light),
+                        *sample(0, x, y), within);
+        }
+}
+
+static void check_grey(double within)
+{
+    const struct coding c = coding();
+
+    for (int y = 0; y < down(0); y++)
+        for (int x = 0; x < across(0); x++) {
+            const int64_t *light_q20[3] = {fixture.light_q20[0],
+                                           fixture.light_q20[1],
+                                           fixture.light_q20[2]};
+            const double weight[3] = {0.2126, 0.7152, 0.0722};
+            const double v = (before(0, x, y) - c.black) / c.y_steps;
+            double light = 0;
+
+            for (int i = 0; i < 3; i++)
+                light +=
+                    weight[i] *
+                    fmax(
+                        0,
+                        fmin(2,
+                             (double)light_q20[i][y * fixture.image.width + x] *
+                                 0x1p-20));
+            assert_code(before(0, x, y) + c.y_steps * change(v, light),
+                        *sample(0, x, y), within);
+        }
+}
+
+static void check_picture(double within)
+{
+    if (fixture.image.format == GLINT_RGB24)
+        check_rgb24(within);
+    else if (fixture.image.format == GLINT_GREY)
+        check_grey(within);
+    else
+        check_ycc(within);
+    assert_guards_whole();
+}
+
+/* -------------------------------------------------------------------- cases */
+
+static const enum glint_pixel_format formats[5] = {
+    GLINT_RGB24, GLINT_GREY, GLINT_I420, GLINT_I422, GLINT_I444};
+static const int sizes[][2] = {{1, 1}, {3, 1}, {1, 3}, {7, 5}, {33, 18}};
+
+enum { N_SIZES = sizeof sizes / sizeof *sizes };
+
+/* Light of all magnitudes, and none or less than none for a third. */
+static void fill_light(void)
+{
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < MAX_SIDE * MAX_SIDE; k++) {
+            const int64_t size_q20 = draw_random(1 << draw_random(23));
+
+            fixture.light_q20[i][k] = draw_random(3) ? size_q20 : -size_q20;
+        }
+}
+
+/* Sets one of the 16 codings of a format. */
+static void set_coding(int k)
+{
+    fixture.image.transfer = k & 1 ? GLINT_TRANSFER_BT709 : GLINT_TRANSFER_SRGB;
+    fixture.image.range = k & 2 ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
+    fixture.image.matrix = k & 4 ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
+}
+
+/* CHROMA: how far from neutral. */
+static void check_random(int chroma, double within)
+{
+    for (int f = 0; f < 5; f++)
+        for (int s = 0; s < N_SIZES; s++)
+            for (int k = 0; k < 16; k++) {
+                set_up(formats[f], sizes[s][0], sizes[s][1], k & 8);
+                set_coding(k);
+                if (formats[f] == GLINT_RGB24)
+                    fixture.image.range = GLINT_RANGE_FULL;
+                fill(0, 0, 255);
+                if (glint_image_planes(formats[f]) == 3) {
+                    fill(1, 128 - chroma, 127 + chroma);
+                    fill(2, 128 - chroma, 127 + chroma);
+                }
+                fill_light();
+                add_light(0);
+                check_picture(within);
+            }
+}
+
+static void test_light_adds_up(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 4; round++)
+        check_random(40, 0.55);
+}
+
+/* Any codes at all: far outside the cube, too. */
+static void test_wild_codes(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 4; round++)
+        check_random(128, 0.55);
+}
+
+static void check_untouched(int dither)
+{
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 16; k++) {
+            set_up(formats[f], 33, 18, k & 8);
+            set_coding(k);
+            for (int i = 0; i < glint_image_planes(formats[f]); i++)
+                fill(i, 0, 255);
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 33 * 18; j++)
+                    fixture.light_q20[i][j] = -draw_random(3);
+            add_light(dither);
+            assert_memory_equal(fixture.plane, fixture.before,
+                                sizeof fixture.plane);
+        }
+}
+
+static void test_untouched_pixels_stay(void **state)
+{
+    (void)state;
+    check_untouched(0);
+    check_untouched(1);
+}
+
+/* Light too faint to move a code by half, on one pixel in four. */
+static void test_faint_light_changes_nothing(void **state)
+{
+    (void)state;
+    for (int f = 0; f < 5; f++) {
+        set_up(formats[f], 33, 18, 0);
+        for (int i = 0; i < glint_image_planes(formats[f]); i++)
+            fill(i, 128, 128);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 33 * 18; k += 4)
+                fixture.light_q20[i][k] = 1500; /* 0.4 code at 128 */
+        add_light(0);
+        assert_memory_equal(fixture.plane, fixture.before,
+                            sizeof fixture.plane);
+    }
+}
+
+static void test_white_saturates(void **state)
+{
+    (void)state;
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 16; k++) {
+            set_up(formats[f], 7, 5, k & 8);
+            set_coding(k);
+            fill(0, 20, 230);
+            for (int i = 1; i < glint_image_planes(formats[f]); i++)
+                fill(i, 128, 128);
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 7 * 5; j++)
+                    fixture.light_q20[i][j] = INT64_MAX >> j;
+            add_light(0);
+            for (int i = 0; i < glint_image_planes(formats[f]); i++)
+                for (int y = 0; y < down(i); y++)
+                    for (int x = 0; x < across(i); x++)
+                        assert_int_equal(*sample(i, x, y), i > 0 ? 128
+                                                           : (k & 2) && f > 0
+                                                               ? 235
+                                                               : 255);
+        }
+}
+
+/* sRGB by hand: code 128 is 226346 steps of light; twice that is code 176.3,
+ * four times 239.0, and half of white is 187.5. */
+static void test_codes_by_hand(void **state)
+{
+    (void)state;
+    set_up(GLINT_RGB24, 1, 1, 0);
+    memset(sample(0, 0, 0), 128, 3);
+    fixture.light_q20[0][0] = 226346;
+    fixture.light_q20[1][0] = 3 * 226346;
+    fixture.light_q20[2][0] = WHITE_Q20 / 2 - 226346;
+    add_light(0);
+    assert_int_equal(*sample(0, 0, 0), 176);
+    assert_int_equal(*sample(0, 1, 0), 239);
+    assert_int_equal(*sample(0, 2, 0), 188);
+}
+
+/* One lit pixel of four moves the shared sample by a quarter of what four do;
+ * alone in the corner of an odd picture, by all of it. */
+static void test_chroma_is_the_mean_of_those_that_exist(void **state)
+{
+    (void)state;
+    set_up(GLINT_I420, 3, 3, 0);
+    for (int i = 0; i < 3; i++)
+        fill(i, i ? 128 : 0, i ? 128 : 0);
+    fixture.light_q20[2][0] = WHITE_Q20;
+    fixture.light_q20[2][8] = WHITE_Q20;
+    add_light(0);
+    assert_int_equal(*sample(0, 0, 0), 29); /* 0.114 * 255 */
+    assert_int_equal(*sample(0, 1, 0), 0);
+    assert_int_equal(*sample(0, 2, 2), 29);
+    assert_int_equal(*sample(1, 0, 0), 160); /* 128 + 127.5 / 4 */
+    assert_int_equal(*sample(1, 1, 0), 128);
+    assert_int_equal(*sample(1, 1, 1), 255); /* 128 + 127.5 */
+    assert_int_equal(*sample(2, 1, 1), 107); /* 128 - 0.114 * 127.5 / 0.701 */
+}
+
+/* An even picture, at each of many levels between two codes: 64 thresholds
+ * give the level to 1/64. */
+static void test_dither_has_the_right_mean(void **state)
+{
+    (void)state;
+    for (int light = 0; light < 9000; light += 97) {
+        int total = 0;
+        double want;
+
+        set_up(GLINT_RGB24, 8, 8, 0);
+        fill(0, 200, 200);
+        for (int k = 0; k < 64; k++)
+            fixture.light_q20[0][k] = light;
+        add_light(1);
+        for (int k = 0; k < 64; k++) {
+            total += *sample(0, 3 * (k % 8), k / 8);
+            assert_int_equal(*sample(0, 3 * (k % 8) + 1, k / 8), 200);
+        }
+        want = 200 + 255 * change(200 / 255.0, light * 0x1p-20);
+        assert_true(fabs(total / 64.0 - want) <= 0.03);
+    }
+}
+
+/* Each of 64 thresholds once, so that neighbours differ. */
+static void test_dither_pattern(void **state)
+{
+    int seen[64] = {0};
+
+    (void)state;
+    set_up(GLINT_GREY, 8, 8, 0);
+    glint_resolve_init(&resolve, &fixture.image, 1);
+    for (int k = 0; k < 64; k++)
+        seen[(resolve.round_q7[k / 8][k % 8] - 1) / 2]++;
+    for (int k = 0; k < 64; k++)
+        assert_int_equal(seen[k], 1);
+    assert_int_equal(resolve.round_q7[0][0], 1);
+    assert_int_equal(resolve.round_q7[1][1], 33);
+    assert_int_equal(resolve.round_q7[0][1], 65);
+    assert_int_equal(resolve.round_q7[1][0], 97);
+}
+
+static void test_dither_in_ycc_stays_within_a_code(void **state)
+{
+    (void)state;
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 16; k++) {
+            set_up(formats[f], 33, 18, k & 8);
+            set_coding(k);
+            if (formats[f] == GLINT_RGB24)
+                fixture.image.range = GLINT_RANGE_FULL;
+            fill(0, 0, 255);
+            for (int i = 1; i < glint_image_planes(formats[f]); i++)
+                fill(i, 100, 156);
+            fill_light();
+            add_light(1);
+            check_picture(1.07);
+        }
+}
+
+static void test_linear_adds_and_saturates(void **state)
+{
+    static int32_t px_q20[2][9]; /* two rows of three pixels, one unused */
+    int64_t acc_q20[3][4] = {{5, INT64_MAX, -7, 1},
+                             {-9, INT64_MIN, 1 << 20, 2},
+                             {0, INT32_MAX, INT64_C(1) << 40, 3}};
+    const int32_t want_q20[2][9] = {
+        {15, 1, 10, INT32_MAX, INT32_MIN, INT32_MAX, 10, 10, 10},
+        {3, 1048586, INT32_MAX, 11, 12, 13, 10, 10, 10}};
+    const struct glint_image image = {.format = GLINT_LINEAR_Q20,
+                                      .width = 2,
+                                      .height = 2,
+                                      .plane = {(uint8_t *)px_q20},
+                                      .stride_bytes = {sizeof px_q20[0]}};
+
+    (void)state;
+    for (int k = 0; k < 18; k++)
+        px_q20[k / 9][k % 9] = 10;
+    glint_resolve_init(&resolve, &image, 0);
+    glint_resolve_tile(&resolve, &image, 0, 0, 2, 2, 1, acc_q20[0]);
+    assert_memory_equal(px_q20, want_q20, sizeof px_q20);
+}
+
+/* The bytes of a fixed picture, so that they are the same everywhere. */
+static void test_same_on_every_machine(void **state)
+{
+    uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
+
+    (void)state;
+    seed = 12345;
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 8; k++) {
+            set_up(formats[f], 33, 18, 0);
+            set_coding(k);
+            for (int i = 0; i < glint_image_planes(formats[f]); i++)
+                fill(i, 0, 255);
+            fill_light();
+            add_light(k & 1);
+            for (size_t i = 0; i < sizeof fixture.plane; i++)
+                hash = (hash ^ ((uint8_t *)fixture.plane)[i]) *
+                       UINT64_C(1099511628211);
+        }
+    assert_true(hash == UINT64_C(0x623501583c38efe7));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_light_adds_up),
+        cmocka_unit_test(test_wild_codes),
+        cmocka_unit_test(test_untouched_pixels_stay),
+        cmocka_unit_test(test_faint_light_changes_nothing),
+        cmocka_unit_test(test_white_saturates),
+        cmocka_unit_test(test_codes_by_hand),
+        cmocka_unit_test(test_chroma_is_the_mean_of_those_that_exist),
+        cmocka_unit_test(test_dither_has_the_right_mean),
+        cmocka_unit_test(test_dither_pattern),
+        cmocka_unit_test(test_dither_in_ycc_stays_within_a_code),
+        cmocka_unit_test(test_linear_adds_and_saturates),
+        cmocka_unit_test(test_same_on_every_machine),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
