@@ -4,6 +4,7 @@
  * OpenImageIO throws or returns becomes a status and one line of text. */
 #include "oiio/oiio.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -11,8 +12,10 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
@@ -130,22 +133,80 @@ void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
     *pixels = made;
 }
 
-void write_pixels(const char *path, const struct glint_oiio_pixels *pixels,
-                  ptrdiff_t stride_bytes)
+/* A file in memory that can be read back while it is written, as TIFF is. */
+class memory_file final : public OIIO::Filesystem::IOProxy
+{
+  public:
+    memory_file() : IOProxy("", Write)
+    {
+    }
+    const char *proxytype() const override
+    {
+        return "memory_file";
+    }
+    bool seek(int64_t offset) override
+    {
+        m_pos = offset;
+        return offset >= 0;
+    }
+    size_t size() const override
+    {
+        return bytes.size();
+    }
+    size_t read(void *dst, size_t n) override
+    {
+        const size_t at = static_cast<size_t>(m_pos);
+
+        if (at >= bytes.size())
+            return 0;
+        n = std::min(n, bytes.size() - at);
+        std::memcpy(dst, bytes.data() + at, n);
+        m_pos += static_cast<int64_t>(n);
+        return n;
+    }
+    size_t write(const void *src, size_t n) override
+    {
+        const size_t at = static_cast<size_t>(m_pos);
+
+        if (n == 0)
+            return 0;
+        if (at + n > bytes.size())
+            bytes.resize(at + n);
+        std::memcpy(bytes.data() + at, src, n);
+        m_pos += static_cast<int64_t>(n);
+        return n;
+    }
+
+    std::vector<unsigned char> bytes;
+};
+
+/* Into memory, because some writers of OpenImageIO do not notice a full disk.
+ */
+std::vector<unsigned char> encode_pixels(const char *path,
+                                         const struct glint_oiio_pixels *pixels,
+                                         ptrdiff_t stride_bytes)
 {
     const OIIO::TypeDesc type =
         pixels->is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
     const std::unique_ptr<OIIO::ImageOutput> out =
         OIIO::ImageOutput::create(path);
     OIIO::ImageSpec spec(pixels->width, pixels->height, 3, type);
+    memory_file file;
 
     if (!out)
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
-    spec.attribute("oiio:ColorSpace", pixels->is_float ? "Linear" : "sRGB");
+    if (!out->supports("ioproxy") || !out->set_ioproxy(&file))
+        throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
+                                           "type into memory"};
+    /* With a colour space, TIFF would get an Exif directory, whose writing into
+     * memory OpenImageIO 2.4 spoils. */
+    if (std::strcmp(out->format_name(), "tiff") != 0)
+        spec.attribute("oiio:ColorSpace", pixels->is_float ? "Linear" : "sRGB");
     if (!out->open(path, spec) ||
         !out->write_image(type, pixels->rgb, OIIO::AutoStride, stride_bytes) ||
         !out->close())
         throw failure{GLINT_E_OUTPUT, out->geterror()};
+    return std::move(file.bytes);
 }
 
 enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,
@@ -154,13 +215,21 @@ enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,
     return guarded(path, error, [&] { read_pixels(pixels, path); });
 }
 
-enum glint_status face_write(const char *path,
-                             const struct glint_oiio_pixels *pixels,
-                             ptrdiff_t stride_bytes, const char *name,
-                             struct glint_error *error)
+enum glint_status face_encode(void **data, size_t *bytes, const char *path,
+                              const struct glint_oiio_pixels *pixels,
+                              ptrdiff_t stride_bytes, struct glint_error *error)
 {
-    return guarded(name, error,
-                   [&] { write_pixels(path, pixels, stride_bytes); });
+    return guarded(path, error, [&] {
+        const std::vector<unsigned char> encoded =
+            encode_pixels(path, pixels, stride_bytes);
+        void *const block = std::malloc(encoded.size() + 1);
+
+        if (!block)
+            throw std::bad_alloc();
+        std::memcpy(block, encoded.data(), encoded.size());
+        *data = block;
+        *bytes = encoded.size();
+    });
 }
 
 } // namespace
@@ -168,4 +237,4 @@ enum glint_status face_write(const char *path,
 extern "C" __attribute__((visibility("default")))
 const struct glint_oiio glint_oiio_face;
 const struct glint_oiio glint_oiio_face = {GLINT_OIIO_VERSION, face_read,
-                                           face_write};
+                                           face_encode};

@@ -38,13 +38,13 @@ struct glint_oiio {
     enum glint_status (*read)(struct glint_oiio_pixels *pixels,
                               const char *path, struct glint_error *error);
 
-    /* Writes PIXELS to PATH in the file type of its extension. STRIDE_BYTES
-     * may be negative. NAME is for errors, as PATH may be a temporary file.
-     * GLINT_E_UNSUPPORTED: no such type. GLINT_E_OUTPUT. */
-    enum glint_status (*write)(const char *path,
-                               const struct glint_oiio_pixels *pixels,
-                               ptrdiff_t stride_bytes, const char *name,
-                               struct glint_error *error);
+    /* Encodes PIXELS in the file type of PATH's extension, as a malloc'ed block
+     * that the caller writes to PATH and frees. STRIDE_BYTES may be negative.
+     * GLINT_E_UNSUPPORTED: no such type. GLINT_E_OUTPUT, GLINT_E_MEMORY. */
+    enum glint_status (*encode)(void **data, size_t *bytes, const char *path,
+                                const struct glint_oiio_pixels *pixels,
+                                ptrdiff_t stride_bytes,
+                                struct glint_error *error);
 };
 
 /* Finds the plug-in, at the first call, and returns its functions. Looks at

@@ -334,19 +334,24 @@ enum glint_status glint_picture_check(const char *path,
     return GLINT_OK;
 }
 
-/* Saves by the plug-in, into the file that OUT keeps for it. */
 static enum glint_status write_by_plugin(struct glint_output *out,
                                          const struct glint_oiio_pixels *pixels,
                                          ptrdiff_t stride_bytes,
                                          struct glint_error *error)
 {
     const struct glint_oiio *oiio;
-    const enum glint_status status = glint_oiio_load(&oiio, error);
+    enum glint_status status = glint_oiio_load(&oiio, error);
+    void *data;
+    size_t bytes;
 
+    if (!status)
+        status =
+            oiio->encode(&data, &bytes, out->name, pixels, stride_bytes, error);
     if (status)
         return status;
-    return oiio->write(out->tmp ? out->tmp : out->name, pixels, stride_bytes,
-                       out->name, error);
+    status = glint_output_write(out, data, bytes, error);
+    free(data);
+    return status;
 }
 
 static enum glint_status finish(struct glint_output *out,

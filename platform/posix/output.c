@@ -104,8 +104,7 @@ static enum glint_status refuse(const struct glint_output *out,
                               strerror(number));
 }
 
-/* DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT; malloc'ed, or NULL. Some
- * writers go by the extension, so it stays. */
+/* DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT; malloc'ed, or NULL. */
 static char *tmp_name(const char *target, unsigned n)
 {
     const char *const slash = strrchr(target, '/');

@@ -129,22 +129,41 @@ static int64_t highest(const int64_t *v)
 
 enum side { OUTSIDE, CUT, INSIDE };
 
+/* MARGIN over the primitive's width at its narrowest, q8, from area and
+ * extent: a cut whose values keep that many times their span from 0 is out of
+ * reach. */
+static int64_t reach_q8(const struct glint_corners *c)
+{
+    int64_t x[4], y[4], extent_q8;
+
+    for (int i = 0; i < 4; i++) {
+        x[i] = c->at[i]->x_q8;
+        y[i] = c->at[i]->y_q8;
+    }
+    extent_q8 = (highest(x) - lowest(x)) + (highest(y) - lowest(y));
+    /* width >= area2 / (2 extent); all in q8 pixels */
+    return 2 * MARGIN_Q8 * 256 * extent_q8 / c->area2_q16 + 1;
+}
+
 /* On which side of a linear cut the primitive lies, with three quarters of a
  * pixel of respect for pixels that straddle it. */
 static enum side side_of(const struct glint_corners *c,
-                         const int64_t *value_q16)
+                         const int64_t *value_q16, int64_t reach)
 {
-    const int out = highest(value_q16) < 0;
-    const int in = lowest(value_q16) > 0;
+    const int64_t low = lowest(value_q16), high = highest(value_q16);
+    const int64_t near = low > 0 ? low : high < 0 ? -high : 0;
     int32_t at_q8[4];
-    int near = 0;
 
-    if (!out && !in)
+    if (near == 0)
         return CUT;
-    to_pixels(c, value_q16, at_q8);
-    for (int i = 0; i < 4; i++)
-        near |= at_q8[i] > -MARGIN_Q8 && at_q8[i] < MARGIN_Q8;
-    return near ? CUT : out ? OUTSIDE : INSIDE;
+    /* |values| < 2^34, reach < 2^29 or out of use */
+    if (reach >= INT64_C(1) << 29 || near * 256 < (high - low) * reach) {
+        to_pixels(c, value_q16, at_q8);
+        for (int i = 0; i < 4; i++)
+            if (at_q8[i] > -MARGIN_Q8 && at_q8[i] < MARGIN_Q8)
+                return CUT;
+    }
+    return low > 0 ? INSIDE : OUTSIDE;
 }
 
 /* Pixels per stop radius, from the ratio of the areas. */
@@ -259,7 +278,7 @@ static enum side field_side(const struct glint_corners *c,
 }
 
 static enum side stop_side(const struct glint_corners *c,
-                           const struct glint_stop *stop)
+                           const struct glint_stop *stop, int64_t reach)
 {
     enum side all = INSIDE;
     int64_t value[4];
@@ -270,7 +289,7 @@ static enum side stop_side(const struct glint_corners *c,
         enum side s;
 
         side_values(c, stop, side, value);
-        s = side_of(c, value);
+        s = side_of(c, value, reach);
         all = s < all ? s : all;
         if (all == OUTSIDE)
             break;
@@ -282,13 +301,14 @@ int glint_clip_classify(const struct glint_corners *corners,
                         const struct glint_stop *stop)
 {
     int64_t value[4];
+    const int64_t reach = reach_q8(corners);
     enum side at_barrel, at_stop;
 
     barrel_values(corners, value);
-    at_barrel = side_of(corners, value);
+    at_barrel = side_of(corners, value, reach);
     if (at_barrel == OUTSIDE)
         return -1;
-    at_stop = stop_side(corners, stop);
+    at_stop = stop_side(corners, stop, reach);
     if (at_stop == OUTSIDE)
         return -1;
     return (at_stop == CUT ? GLINT_CUT_STOP : 0) |
@@ -328,9 +348,9 @@ int glint_clip_middle(const struct glint_corners *corners,
 }
 
 static void add_linear(struct glint_clip *clip, const struct glint_corners *c,
-                       const int64_t *value_q16)
+                       const int64_t *value_q16, int64_t reach)
 {
-    if (side_of(c, value_q16) != INSIDE)
+    if (side_of(c, value_q16, reach) != INSIDE)
         to_pixels(c, value_q16, clip->at_q8[clip->n++]);
 }
 
@@ -338,13 +358,14 @@ void glint_clip_init(struct glint_clip *clip,
                      const struct glint_corners *corners,
                      const struct glint_stop *stop, int cut)
 {
+    const int64_t reach = reach_q8(corners);
     int64_t value[4];
 
     clip->n = 0;
     clip->field = 0;
     if (cut & GLINT_CUT_BARREL) {
         barrel_values(corners, value);
-        add_linear(clip, corners, value);
+        add_linear(clip, corners, value, reach);
     }
     if (!(cut & GLINT_CUT_STOP))
         return;
@@ -355,6 +376,6 @@ void glint_clip_init(struct glint_clip *clip,
     }
     for (int side = 0; side < stop->n_blades; side++) {
         side_values(corners, stop, side, value);
-        add_linear(clip, corners, value);
+        add_linear(clip, corners, value, reach);
     }
 }

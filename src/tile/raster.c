@@ -6,7 +6,8 @@
 
 enum { HALF_Q8 = 128 };
 
-/* Edge I runs from corner I to corner I + 1. */
+/* Edge I runs from corner I to corner I + 1. A triangle's fourth edge is one
+ * that everything is inside of. */
 struct edges {
     int n;
     int64_t at[4];        /* value at the pixel, >= 0 inside */
@@ -14,7 +15,7 @@ struct edges {
     int64_t dx[4], dy[4]; /* change to the next pixel, next row */
     int bias[4];          /* -1 where a pixel on the edge is the neighbour's */
     int shift;            /* leaves 24 bits of a value */
-    int64_t fan[4];       /* Wachspress: area at each corner, 12 bits; else 1 */
+    uint64_t fan[4];       /* Wachspress: area at each corner, 12 bits; else 1 */
 };
 
 static void edges_init(struct edges *e, const struct glint_corners *c,
@@ -23,7 +24,7 @@ static void edges_init(struct edges *e, const struct glint_corners *c,
     const int wide = bit_length((uint64_t)c->area2_q16);
     const int32_t x_q8 = px * 256 + HALF_Q8, y_q8 = py * 256 + HALF_Q8;
 
-    e->n = c->n;
+    *e = (struct edges){.n = c->n};
     e->shift = wide > 24 ? wide - 24 : 0;
     for (int i = 0; i < c->n; i++) {
         const struct glint_vertex *a = c->at[i];
@@ -38,55 +39,57 @@ static void edges_init(struct edges *e, const struct glint_corners *c,
         e->bias[i] = ey < 0 || (ey == 0 && ex > 0) ? 0 : -1;
         e->fan[i] = 1;
         if (c->n == 4 && weights == GLINT_WEIGHTS_WACHSPRESS)
-            e->fan[i] = (glint_turn_q16(before->x_q8, before->y_q8, a->x_q8,
-                                        a->y_q8, b->x_q8, b->y_q8) >>
-                         (wide > 12 ? wide - 12 : 0)) +
-                        1;
+            e->fan[i] =
+                (uint64_t)((glint_turn_q16(before->x_q8, before->y_q8, a->x_q8,
+                                           a->y_q8, b->x_q8, b->y_q8) >>
+                            (wide > 12 ? wide - 12 : 0)) +
+                           1);
     }
 }
 
 static int inside(const struct edges *e)
 {
-    int64_t low = e->at[0] + e->bias[0];
+    int64_t outside = 0; /* negative if any is */
 
-    for (int i = 1; i < e->n; i++) {
-        const int64_t v = e->at[i] + e->bias[i];
-
-        low = v < low ? v : low;
-    }
-    return low >= 0;
+    for (int i = 0; i < 4; i++)
+        outside |= e->at[i] + e->bias[i];
+    return outside >= 0;
 }
 
-/* Barycentric weights, q16, of the corners. Each factor is below 2^24 (2^12 for
- * the fans), products below 2^60, sums below 2^62. */
+/* Unnormalised weights. Each factor is below 2^24 (2^12 for the fans), products
+ * below 2^60, sums below 2^62. */
+static uint64_t raw_weights(const struct edges *e, uint64_t *w)
+{
+    uint64_t a[4];
+
+    for (int i = 0; i < 4; i++)
+        a[i] = (uint64_t)(e->at[i] >> e->shift);
+    if (e->n == 3) {
+        w[0] = a[1], w[1] = a[2], w[2] = a[0], w[3] = 0;
+    } else {
+        w[0] = a[1] * a[2] * e->fan[0];
+        w[1] = a[2] * a[3] * e->fan[1];
+        w[2] = a[3] * a[0] * e->fan[2];
+        w[3] = a[0] * a[1] * e->fan[3];
+    }
+    return w[0] + w[1] + w[2] + w[3];
+}
+
+/* Barycentric weights, q16, of the corners. */
 static void corner_weights(const struct edges *e, int32_t *weight_q16)
 {
-    uint64_t w[4] = {0, 0, 0, 0}, sum = 0, scale;
-    int wide;
+    uint64_t w[4], scale, sum = raw_weights(e, w);
+    int wide, drop;
 
-    for (int i = 0; i < e->n; i++) {
-        const int j = (i + 1) % e->n, k = (i + 2) % e->n;
-        const uint64_t a = (uint64_t)(e->at[j] >> e->shift);
-
-        w[i] = e->n == 3
-                   ? a
-                   : a * (uint64_t)(e->at[k] >> e->shift) * (uint64_t)e->fan[i];
-        sum += w[i];
-    }
-    if (sum == 0) { /* a sliver of a few steps: any corner will do */
+    if (sum == 0) /* a sliver of a few steps: any corner will do */
         w[0] = sum = 1;
-    }
     wide = bit_length(sum);
-    if (wide > 31) {
-        for (int i = 0; i < e->n; i++)
-            w[i] >>= wide - 31;
-        sum >>= wide - 31;
-        wide = 31;
-    }
-    scale = (UINT64_C(1) << (wide + 31)) / sum; /* 2^31 .. 2^32 */
+    drop = wide > 31 ? wide - 31 : 0;
+    wide -= drop;
+    scale = (UINT64_C(1) << (wide + 31)) / (sum >> drop); /* 2^31 .. 2^32 */
     for (int i = 0; i < 4; i++)
         weight_q16[i] =
-            (int32_t)((w[i] * scale + (UINT64_C(1) << (wide + 14))) >>
+            (int32_t)(((w[i] >> drop) * scale + (UINT64_C(1) << (wide + 14))) >>
                       (wide + 15));
 }
 
@@ -102,13 +105,13 @@ static int32_t cover_of(const struct glint_raster *r,
         int64_t d_q8 = 0;
 
         if (k < clip->n) {
-            for (int i = 0; i < c->n; i++)
+            for (int i = 0; i < 4; i++)
                 d_q8 += (int64_t)w_q16[i] * clip->at_q8[k][i];
             d_q8 = q_shift(d_q8, 16);
         } else {
             int64_t x = 0, y = 0;
 
-            for (int i = 0; i < c->n; i++) {
+            for (int i = 0; i < 4; i++) {
                 x += (int64_t)w_q16[i] * c->at[i]->stop_x_q16;
                 y += (int64_t)w_q16[i] * c->at[i]->stop_y_q16;
             }
@@ -129,7 +132,7 @@ static int32_t energy_of(const struct glint_corners *c, const int32_t *w_q16)
 {
     int64_t sum = 0;
 
-    for (int i = 0; i < c->n; i++)
+    for (int i = 0; i < 4; i++)
         sum += (int64_t)w_q16[i] * c->at[i]->energy_q16;
     return (int32_t)q_shift(sum, 16);
 }
@@ -144,7 +147,7 @@ static void add_pixel(int64_t *acc_q20, int channel_stride,
 
 static void next_row(struct edges *e)
 {
-    for (int i = 0; i < e->n; i++)
+    for (int i = 0; i < 4; i++)
         e->row[i] += e->dy[i];
 }
 
@@ -189,7 +192,7 @@ void glint_raster_primitive(const struct glint_raster *raster, int primitive,
     for (int y = box.y0; y < box.y1; y++, next_row(&e)) {
         int64_t *acc = acc_q20 + (y - tile.y0) * side + (box.x0 - tile.x0);
 
-        for (int i = 0; i < e.n; i++)
+        for (int i = 0; i < 4; i++)
             e.at[i] = e.row[i];
         for (int x = box.x0; x < box.x1; x++, acc++) {
             if (inside(&e)) {
@@ -204,7 +207,7 @@ void glint_raster_primitive(const struct glint_raster *raster, int primitive,
                         light_q20 * cover_of(raster, clip, &c, w_q16), 16);
                 add_pixel(acc, side * side, rgb_q14, light_q20);
             }
-            for (int i = 0; i < e.n; i++)
+            for (int i = 0; i < 4; i++)
                 e.at[i] += e.dx[i];
         }
     }
