@@ -132,7 +132,8 @@ check:
 	        libcmocka-dev clang clang-format libclang-rt-14-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
-	@tests/run $(test_bins) -- $(replay_bins)
+	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
+	        $(replay_bins)
 golden-update: $(OUT)/tests/unit/test_flare
 	@GLINT_GOLDEN_UPDATE=1 $<
 

@@ -59,12 +59,18 @@ static struct glint_feed_config feed_config(const struct frame *f, double scale)
                                       f->uniform};
 }
 
+/* All wavelengths of one ghost and lamp. */
 static void plan_job(void *ctx, int job, int worker)
 {
     struct job *j = ctx;
+    const int waves = j->frame->setup->n_wavelengths, middle = waves / 2;
+    struct glint_feed *feed = &j->frame->feed[job * waves];
 
     (void)worker;
-    glint_feed_plan(&j->cfg, &j->frame->feed[job]);
+    glint_feed_plan(&j->cfg, &feed[middle], NULL);
+    for (int wave = 0; wave < waves; wave++)
+        if (wave != middle)
+            glint_feed_plan(&j->cfg, &feed[wave], &feed[middle]);
 }
 
 static enum glint_status reserve_feeds(struct frame *f, int n)
@@ -105,7 +111,7 @@ static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
             for (int wave = 0; wave < s->n_wavelengths; wave++)
                 f->feed[n++] = (struct glint_feed){
                     .lamp = &lamps[lamp], .ghost = ghost, .wavelength = wave};
-    glint_workers_run(f->cfg.workers, n, plan_job, &job);
+    glint_workers_run(f->cfg.workers, n / s->n_wavelengths, plan_job, &job);
     for (int i = 0; i < n; i++)
         if (f->feed[i].n_cells > 0)
             f->feed[kept++] = f->feed[i];

@@ -278,9 +278,12 @@ struct glint_pupil {
     double sensor_mm[4]; /* x0, x1, y0, y1 of its light on the sensor */
 };
 
-/* False: nothing gets through. */
+/* NEAR: unless NULL, what was found for another wavelength; the search then
+ * looks only at it and its surroundings, for a third of the work. False:
+ * nothing gets through. */
 bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
-                      double theta_deg, double stop_radius_mm);
+                      double theta_deg, double stop_radius_mm,
+                      const struct glint_pupil *near);
 
 struct glint_feed_config {
     const struct glint_setup *setup;
@@ -295,6 +298,7 @@ struct glint_feed {
     const struct glint_lamp *lamp;
     int ghost, wavelength;
     struct glint_pupil pupil;
+    bool found;  /* something gets through: PUPIL means something */
     int n_cells; /* 0: nothing of it is in the picture */
 };
 
@@ -303,7 +307,7 @@ struct glint_feed {
  * at least 8, over the pupil and a pixel more on each side. [Bodonyi23]. Lamp,
  * ghost and wavelength are set already. */
 void glint_feed_plan(const struct glint_feed_config *cfg,
-                     struct glint_feed *feed);
+                     struct glint_feed *feed, const struct glint_feed *near);
 
 /* The bundle of FEED, n_cells > 0, and its (n_cells + 1)^2 vertices. */
 void glint_feed_bundle(const struct glint_feed_config *cfg,

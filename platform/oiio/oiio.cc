@@ -4,7 +4,6 @@
  * OpenImageIO throws or returns becomes a status and one line of text. */
 #include "oiio/oiio.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -12,7 +11,6 @@
 #include <memory>
 #include <new>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
@@ -133,53 +131,6 @@ void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
     *pixels = made;
 }
 
-/* A file in memory that can be read back while it is written, as TIFF is. */
-class memory_file final : public OIIO::Filesystem::IOProxy
-{
-  public:
-    memory_file() : IOProxy("", Write)
-    {
-    }
-    const char *proxytype() const override
-    {
-        return "memory_file";
-    }
-    bool seek(int64_t offset) override
-    {
-        m_pos = offset;
-        return offset >= 0;
-    }
-    size_t size() const override
-    {
-        return bytes.size();
-    }
-    size_t read(void *dst, size_t n) override
-    {
-        const size_t at = static_cast<size_t>(m_pos);
-
-        if (at >= bytes.size())
-            return 0;
-        n = std::min(n, bytes.size() - at);
-        std::memcpy(dst, bytes.data() + at, n);
-        m_pos += static_cast<int64_t>(n);
-        return n;
-    }
-    size_t write(const void *src, size_t n) override
-    {
-        const size_t at = static_cast<size_t>(m_pos);
-
-        if (n == 0)
-            return 0;
-        if (at + n > bytes.size())
-            bytes.resize(at + n);
-        std::memcpy(bytes.data() + at, src, n);
-        m_pos += static_cast<int64_t>(n);
-        return n;
-    }
-
-    std::vector<unsigned char> bytes;
-};
-
 /* Into memory, because some writers of OpenImageIO do not notice a full disk.
  */
 std::vector<unsigned char> encode_pixels(const char *path,
@@ -191,7 +142,8 @@ std::vector<unsigned char> encode_pixels(const char *path,
     const std::unique_ptr<OIIO::ImageOutput> out =
         OIIO::ImageOutput::create(path);
     OIIO::ImageSpec spec(pixels->width, pixels->height, 3, type);
-    memory_file file;
+    std::vector<unsigned char> encoded;
+    OIIO::Filesystem::IOVecOutput file(encoded);
 
     if (!out)
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
@@ -206,7 +158,7 @@ std::vector<unsigned char> encode_pixels(const char *path,
         !out->write_image(type, pixels->rgb, OIIO::AutoStride, stride_bytes) ||
         !out->close())
         throw failure{GLINT_E_OUTPUT, out->geterror()};
-    return std::move(file.bytes);
+    return encoded;
 }
 
 enum glint_status face_read(struct glint_oiio_pixels *pixels, const char *path,

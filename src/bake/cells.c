@@ -74,7 +74,7 @@ bool glint_cells_init(struct glint_cells *cells,
     cells->n = n;
     cells->node = NULL;
     if (!glint_pupil_find(&cells->pupil, path, theta_deg,
-                          setup->optics.stop_radius_mm))
+                          setup->optics.stop_radius_mm, NULL))
         return false;
     find_cuts(cells);
     cells->stride = NODE_CUT + 2 * cells->n_cuts;

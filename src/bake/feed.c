@@ -65,7 +65,7 @@ static int choose_cells(const struct glint_feed_config *cfg,
 }
 
 void glint_feed_plan(const struct glint_feed_config *cfg,
-                     struct glint_feed *feed)
+                     struct glint_feed *feed, const struct glint_feed *near)
 {
     const struct glint_setup *s = cfg->setup;
     struct glint_path path;
@@ -73,9 +73,10 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
     glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
                     s->wavelength_nm[feed->wavelength]);
     feed->n_cells = 0;
-    if (glint_pupil_find(&feed->pupil, &path, feed->lamp->theta_deg,
-                         s->optics.stop_radius_mm) &&
-        in_view(cfg, feed)) {
+    feed->found = glint_pupil_find(&feed->pupil, &path, feed->lamp->theta_deg,
+                                   s->optics.stop_radius_mm,
+                                   near && near->found ? &near->pupil : NULL);
+    if (feed->found && in_view(cfg, feed)) {
         add_rim(cfg, feed);
         feed->n_cells = choose_cells(cfg, feed);
     }

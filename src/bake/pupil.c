@@ -172,8 +172,23 @@ static double extent(const struct glint_pupil *p)
     return (p->x1_mm - p->x0_mm) * p->y1_mm;
 }
 
+/* BOX and half of its size around it, and a part of the whole front for boxes
+ * that are slivers. */
+static struct glint_pupil surroundings(const struct glint_pupil *box,
+                                       const struct glint_pupil *front)
+{
+    const double more =
+        0.5 * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
+
+    return (struct glint_pupil){
+        .x0_mm = fmax(front->x0_mm, box->x0_mm - more),
+        .x1_mm = fmin(front->x1_mm, box->x1_mm + more),
+        .y1_mm = fmin(front->y1_mm, 1.5 * box->y1_mm + 0.02 * front->y1_mm)};
+}
+
 bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
-                      double theta_deg, double stop_radius_mm)
+                      double theta_deg, double stop_radius_mm,
+                      const struct glint_pupil *near)
 {
     struct search *s = malloc(sizeof *s);
     struct glint_pupil p;
@@ -193,11 +208,13 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
     s->direction[2] = glint_cos_deg(theta_deg);
     s->stop_mm = stop_radius_mm;
     p = whole_front(front, s->direction);
+    if (near)
+        p = surroundings(near, &p);
     for (int round = 0; round < ROUNDS && found; round++) {
         const double before = extent(&p);
 
-        s->across = round ? NEXT_ACROSS : ACROSS;
-        s->down = round ? NEXT_DOWN : DOWN;
+        s->across = round || near ? NEXT_ACROSS : ACROSS;
+        s->down = round || near ? NEXT_DOWN : DOWN;
         found = shrink(s, &p);
         if (round > 0 && extent(&p) > 0.8 * before)
             break;

@@ -27,17 +27,22 @@ static bool passes(const struct glint_path *path, double x, double y,
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= optics.stop_radius_mm;
 }
 
-static void scan(int ghost, double theta_deg, double nm, int *n_seen)
+/* NEAR: start from what 532 nm gave, as a frame does. */
+static void scan(int ghost, double theta_deg, double nm, bool near, int *n_seen)
 {
     const double t = theta_deg * 3.14159265358979 / 180;
     const double direction[3] = {sin(t), 0, cos(t)};
     const double semi = lens.surface[0].semi_mm * 1.1;
-    struct glint_pupil box;
+    struct glint_pupil box, middle;
     struct glint_path path;
     bool found;
 
+    glint_path_init(&path, &lens, &ghosts[ghost], 532);
+    near = near && glint_pupil_find(&middle, &path, theta_deg,
+                                    optics.stop_radius_mm, NULL);
     glint_path_init(&path, &lens, &ghosts[ghost], nm);
-    found = glint_pupil_find(&box, &path, theta_deg, optics.stop_radius_mm);
+    found = glint_pupil_find(&box, &path, theta_deg, optics.stop_radius_mm,
+                             near ? &middle : NULL);
     for (int j = 0; j <= SCAN / 2; j++)
         for (int i = 0; i <= SCAN; i++) {
             const double x = semi * (2.0 * i / SCAN - 1);
@@ -59,7 +64,7 @@ static void scan(int ghost, double theta_deg, double nm, int *n_seen)
 
 static void scan_lens(const char *name, int step)
 {
-    static const double angles[] = {0, 3, 7.5, 15, 25};
+    static const double angles[] = {0, 3, 7.5, 12, 25};
     int n_ghosts, n_seen = 0;
 
     load_lens(&lens, name);
@@ -67,7 +72,7 @@ static void scan_lens(const char *name, int step)
     n_ghosts = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
     for (int ghost = 0; ghost < n_ghosts; ghost += step)
         for (int a = 0; a < 5; a++)
-            scan(ghost, angles[a], a & 1 ? 450 : 650, &n_seen);
+            scan(ghost, angles[a], a & 1 ? 450 : 650, a != 2, &n_seen);
     assert_true(n_seen > 1000);
 }
 
@@ -100,7 +105,8 @@ static void test_nothing_gets_through(void **state)
     glint_optics_of(&lens, &optics);
     glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
     glint_path_init(&path, &lens, &ghosts[0], 532);
-    assert_false(glint_pupil_find(&box, &path, 85, optics.stop_radius_mm));
+    assert_false(
+        glint_pupil_find(&box, &path, 85, optics.stop_radius_mm, NULL));
 }
 
 int main(void)

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Any bytes as a PPM, PGM or PFM. What is read is there to its last sample, can
+ * be written, and had its samples in the file.
+ *
+ *     make fuzz TARGET=pnm SECONDS=60
+ */
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "plain/pfm.h"
+#include "plain/pnm.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+static void open_null(struct glint_output *out)
+{
+    struct glint_error error;
+
+    require(!glint_output_open(out, "/dev/null", GLINT_OUTPUT_BINARY, &error));
+}
+
+static void use_pnm(const uint8_t *data, size_t size)
+{
+    struct glint_image image;
+    struct glint_error error;
+    struct glint_output out;
+    static volatile unsigned sink;
+    size_t n;
+
+    if (glint_pnm_read(&image, data, size, "fuzz", &error)) {
+        require(!memcmp(error.text, "fuzz: ", 6));
+        return;
+    }
+    n = glint_image_bytes(image.format, image.width, image.height);
+    require(n > 0 && n < size);
+    for (size_t i = 0; i < n; i++)
+        sink += image.plane[0][i];
+    if (image.format == GLINT_RGB24) {
+        open_null(&out);
+        require(!glint_pnm_write(&out, &image, &error));
+        require(!glint_output_commit(&out, &error));
+    }
+    free(image.plane[0]);
+}
+
+static void use_pfm(const uint8_t *data, size_t size)
+{
+    struct glint_float_image floats;
+    struct glint_error error;
+    struct glint_output out;
+
+    if (glint_pfm_read(&floats, data, size, "fuzz", &error)) {
+        require(!memcmp(error.text, "fuzz: ", 6));
+        return;
+    }
+    require(floats.width >= 1 && floats.width <= GLINT_MAX_SIDE);
+    require(floats.height >= 1 && floats.height <= GLINT_MAX_SIDE);
+    require(4 * (size_t)floats.width * (size_t)floats.height < size);
+    open_null(&out);
+    require(!glint_pfm_write(&out, &floats, &error));
+    require(!glint_output_commit(&out, &error));
+    free(floats.rgb);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    use_pnm(data, size);
+    use_pfm(data, size);
+    return 0;
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Any bytes as a Y4M stream. The first byte says how many arrive at a time. A
+ * header that parses prints as one that parses to the same; every frame that
+ * is delivered is there to its last sample and can be written.
+ *
+ *     make fuzz TARGET=y4m SECONDS=60
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "plain/y4m.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+struct memory {
+    const uint8_t *data;
+    size_t bytes, chunk;
+};
+
+static ptrdiff_t pull(void *ctx, void *dst, size_t bytes)
+{
+    struct memory *const m = ctx;
+    size_t n = m->bytes < m->chunk ? m->bytes : m->chunk;
+
+    n = n < bytes ? n : bytes;
+    memcpy(dst, m->data, n);
+    m->data += n;
+    m->bytes -= n;
+    return (ptrdiff_t)n;
+}
+
+static void check_header(const struct glint_y4m_header *header)
+{
+    struct glint_y4m_header again;
+    struct glint_error error;
+    char line[GLINT_Y4M_PRINTED], twice[GLINT_Y4M_PRINTED];
+    size_t len = glint_y4m_header_print(line, header);
+
+    require(header->width >= 1 && header->width <= GLINT_MAX_SIDE);
+    require(header->height >= 1 && header->height <= GLINT_MAX_SIDE);
+    require(len == strlen(line) && len < sizeof line && line[len - 1] == '\n');
+    if (len > GLINT_Y4M_LINE) /* a tag that was left out has been added */
+        return;
+    line[len - 1] = 0;
+    require(!glint_y4m_header_parse(&again, line, "again", &error));
+    line[len - 1] = '\n';
+    require(glint_y4m_header_print(twice, &again) == len);
+    require(!memcmp(line, twice, len));
+    require(again.format == header->format && again.range == header->range);
+}
+
+/* Sums all samples up; the memory checker looks at each. */
+static unsigned touch(const struct glint_image *frame)
+{
+    unsigned sum = 0;
+
+    for (int i = 0; i < glint_image_planes(frame->format); i++) {
+        const int across =
+            glint_image_plane_width(frame->format, i, frame->width);
+        const int down =
+            glint_image_plane_height(frame->format, i, frame->height);
+
+        for (int y = 0; y < down; y++)
+            for (int x = 0; x < across; x++)
+                sum += frame->plane[i][y * frame->stride_bytes[i] + x];
+    }
+    return sum;
+}
+
+static void use(struct glint_y4m_reader *reader)
+{
+    const struct glint_image *frame;
+    struct glint_y4m_writer writer;
+    struct glint_error error;
+    static volatile unsigned sink;
+
+    check_header(&reader->header);
+    require(
+        !glint_y4m_writer_open(&writer, "/dev/null", &reader->header, &error));
+    while (!glint_y4m_reader_next(reader, &frame, &error) && frame) {
+        sink += touch(frame);
+        require(
+            !glint_y4m_writer_put(&writer, frame, reader->frame_tags, &error));
+    }
+    require(writer.n_frames == reader->n_frames);
+    require(!glint_y4m_writer_commit(&writer, &error));
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct memory memory;
+    struct glint_y4m_reader reader;
+    struct glint_error error;
+
+    if (size < 1)
+        return 0;
+    memory = (struct memory){data + 1, size - 1, 1 + data[0] % 200U};
+    if (!glint_y4m_reader_start(&reader, pull, &memory, "fuzz", &error))
+        use(&reader);
+    glint_y4m_reader_close(&reader);
+    return 0;
+}
