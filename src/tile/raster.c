@@ -15,7 +15,7 @@ struct edges {
     int64_t dx[4], dy[4]; /* change to the next pixel, next row */
     int bias[4];          /* -1 where a pixel on the edge is the neighbour's */
     int shift;            /* leaves 24 bits of a value */
-    uint64_t fan[4];       /* Wachspress: area at each corner, 12 bits; else 1 */
+    uint64_t fan[4];      /* Wachspress: area at each corner, 12 bits; else 1 */
 };
 
 static void edges_init(struct edges *e, const struct glint_corners *c,

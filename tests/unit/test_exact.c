@@ -139,7 +139,8 @@ static void test_golden_angenieux(void **state)
 static void test_golden_canon(void **state)
 {
     (void)state;
-    if (getenv("GLINT_QUICK") && *getenv("GLINT_QUICK")) /* sanitizers would take minutes */
+    if (getenv("GLINT_QUICK") &&
+        *getenv("GLINT_QUICK")) /* sanitizers would take minutes */
         skip();
     compare_golden(&(struct golden){"canon-zoom-mid", 5.06, 10.2, 64});
 }
