@@ -34,7 +34,7 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
 TOOLS := tool measure lamps frame scene cmd_info cmd_trace cmd_render \
         cmd_overlay cmd_compare
 UNIT := arena prescription optics trace pupil exact transfer resolve lights \
-        flare pnm y4m output workers measure
+        flare pnm y4m picture output workers measure
 FUZZ := lens y4m pnm
 
 core_o     := $(CORE:%=$(OUT)/src/%.o)
@@ -100,7 +100,7 @@ oiio: build/glint-oiio.so
 build/glint-oiio.so: platform/oiio/oiio.cc platform/oiio/oiio.h
 	@mkdir -p $(@D)
 	$(say) CXX $<
-	$(Q)$(CXX) -std=c++17 -O2 -Wall -Wextra -fPIC -shared -Iinclude -Iplatform \
+	$(Q)$(CXX) -std=c++17 -O2 -Wall -Wextra -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
 	        $< -o $@ $$(pkg-config --cflags --libs OpenImageIO)
 
 # ------------------------------------------------------------------- to see

@@ -30,7 +30,7 @@ static float floats[2][3 * MAX_PIXELS];
 static int open_pool(void **state)
 {
     (void)state;
-    return glint_pool_create(&workers, glint_cpu_count());
+    return glint_pool_create(&workers, glint_cpu_count()) != GLINT_OK;
 }
 
 static int close_pool(void **state)
