@@ -117,6 +117,8 @@ static int render_exact(struct tool *tool, struct render *r)
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
+    const int n_ghosts =
+        r->scene.only_ghost < 0 ? r->scene.setup.n_ghosts : 1;
     double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -131,8 +133,10 @@ static int render_exact(struct tool *tool, struct render *r)
         return tool_fail(tool, status, NULL);
     if (tool->json)
         printf("{\"engine\": \"exact\", \"grid\": %d, \"lights\": %d, "
-               "\"ghosts\": %d, ",
-               cfg.grid, r->n_lamps, r->scene.setup.n_ghosts);
+               "\"ghosts\": %d, \"bundles\": %d, \"primitives\": 0, "
+               "\"tiles\": 0, \"arena_bytes\": 0, ",
+               cfg.grid, r->n_lamps, n_ghosts,
+               r->n_lamps * n_ghosts * r->scene.n_wavelengths);
     return EXIT_OK;
 }
 

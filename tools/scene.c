@@ -132,6 +132,9 @@ int scene_option(const struct tool *tool, struct scene *scene, int option,
         return -2;
     if (take(scene, option, value))
         return -1;
+    if (option == OPT_ONLY && strcmp(value, "starburst") == 0)
+        return tool_usage(tool, "there is no starburst yet; ghosts are all "
+                                "that is drawn");
     return tool_usage(tool, "--%s: '%s' is not something it takes",
                       names[option - OPT_F_NUMBER].name, value);
 }
