@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -71,9 +72,10 @@ static void test_overflow_traps(void **state)
 
         if (child == 0) {
             volatile int64_t big = INT64_C(1) << 40;
-            volatile int32_t out = q_narrow(big);
 
-            _exit(out == 0);
+            signal(SIGILL, SIG_DFL); /* cmocka catches it */
+            signal(SIGTRAP, SIG_DFL);
+            _exit(q_narrow(big) == 0);
         }
         assert_true(child > 0 && waitpid(child, &status, 0) == child);
         assert_true(WIFSIGNALED(status));
