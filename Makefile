@@ -128,8 +128,8 @@ $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
 	$(link)
 
 check:
-	@tools/deps "unit tests, lint, sanitizers" gcc libc6-dev binutils \
-	        libcmocka-dev clang clang-format libclang-rt-14-dev
+	@tools/deps "unit tests, lint" gcc libc6-dev binutils \
+	        libcmocka-dev clang clang-format
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
@@ -141,6 +141,7 @@ golden-update: $(OUT)/tests/unit/test_flare
 TARGET  ?= lens
 SECONDS ?= 60
 fuzz:
+	@tools/deps "libFuzzer" clang libclang-rt-14-dev
 	@mkdir -p build/fuzz/$(TARGET)
 	clang -std=c99 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Isrc \
 	        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L -ffp-contract=off \
