@@ -115,7 +115,7 @@ static int config_ok(const struct glint_flare_config *c)
            c->merge_gamma_q16 >= 0 && c->merge_gamma_q16 <= 1 << 16 &&
            (c->weights == GLINT_WEIGHTS_LOOP_DEROSE ||
             c->weights == GLINT_WEIGHTS_WACHSPRESS) &&
-           c->max_bundles >= 0 && c->max_bundles <= UINT16_MAX &&
+           c->max_bundles >= 0 && c->max_bundles <= 65535 &&
            c->max_vertices >= 0 && c->max_primitives >= 0 && c->max_refs >= 0 &&
            c->max_tile_refs >= 0 && workers >= 1 && workers <= 64 &&
            stop_ok(&c->stop);
