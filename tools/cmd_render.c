@@ -117,8 +117,7 @@ static int render_exact(struct tool *tool, struct render *r)
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
-    const int n_ghosts =
-        r->scene.only_ghost < 0 ? r->scene.setup.n_ghosts : 1;
+    const int n_ghosts = r->scene.only_ghost < 0 ? r->scene.setup.n_ghosts : 1;
     double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
 
