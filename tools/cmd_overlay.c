@@ -458,6 +458,11 @@ static void print_result(const struct tool *tool, const struct overlay *o)
                 o->view.width, o->view.height, o->n_frames / seconds,
                 o->find_ms / n, o->flare_ms / n, o->most_lights,
                 o->report.ghosts, o->arena_bytes, o->peak_bytes);
+        if (o->report.stats.dropped_bundles > 0)
+            fprintf(stderr,
+                    "%s: %d bundles were left out: fewer lights or a "
+                    "smaller --grid would fit\n",
+                    o->output, o->report.stats.dropped_bundles);
         if (o->most_lights == 0)
             fprintf(stderr,
                     "%s: no light was found, so nothing was drawn; "

@@ -7,6 +7,9 @@
 
 #include "tool.h"
 
+/* What one frame may take: 65535 bundles, 0.8 GB of vertices. */
+enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
+
 void frame_init(struct frame *frame, const struct glint_setup *setup,
                 struct glint_view view, struct glint_workers *workers)
 {
@@ -201,9 +204,17 @@ static enum glint_status add_bundles(struct frame *f,
 {
     int vertices = 0;
 
+    f->n_dropped = 0;
     for (int i = 0; i < f->n_feeds; i++) {
+        const int n = f->feed[i].n_cells + 1;
+
+        if (i == MAX_BUNDLES || n * n > MAX_VERTICES - vertices) {
+            f->n_dropped = f->n_feeds - i; /* the weakest lamps come last */
+            f->n_feeds = i;
+            break;
+        }
         f->vertices[i] = NULL;
-        vertices += (f->feed[i].n_cells + 1) * (f->feed[i].n_cells + 1);
+        vertices += n * n;
     }
     if (!f->mem || f->n_feeds > f->cfg.max_bundles ||
         vertices > f->cfg.max_vertices) {
@@ -294,6 +305,7 @@ enum glint_status frame_draw(struct frame *frame,
     t2 = tool_seconds();
     glint_flare_draw(frame->flare, image);
     t3 = tool_seconds();
+    report->stats.dropped_bundles += frame->n_dropped;
     report->lights = n_lamps;
     report->ghosts = count_ghosts(frame);
     report->tiles = glint_flare_tiles(frame->flare);

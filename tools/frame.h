@@ -26,6 +26,7 @@ struct frame {
 
     struct glint_feed *feed;
     int n_feeds, max_feeds;
+    int n_dropped;                  /* bundles beyond what a frame may take */
     struct glint_vertex **vertices; /* of each feed, in the flare's block */
     struct glint_flare *flare;
     void *mem;

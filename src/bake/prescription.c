@@ -3,26 +3,20 @@
  * Text of a lens table -> struct glint_prescription, or the first mistake and
  * its place. lenses/README.md is the manual of the format.
  *
- * Reading stores values that are in range, one word at a time; what concerns
- * several values (rims, power, stated values) is checked when all is read.
+ * Reading stores values that are in range, one word at a time; the lens as a
+ * whole is checked by bake/check.h when all is read.
  */
 #include "bake/prescription.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "bake/check.h"
 #include "bake/text.h"
 #include "base/compiler.h"
 
 #define MAX_GLASSES      64
 #define GLASS_NAME_BYTES 24
-#define STATED_TOLERANCE 1e-3 /* of a stated focal length, relative */
-#define CLEAR_SHARE      0.9  /* of the semi-diameter: surfaces stay apart */
-#define CONTACT_MM       1e-6 /* what rounding may make surfaces overlap */
-#define MAX_FOCAL_MM     1e6  /* a longer one is no power at all */
-#define MIN_STOP_MM      1e-6
-#define STOP_SLACK       1e-9 /* rounding of the stop radius, relative */
 #define MGF2_NM          550.0
 #define MGF2_INDEX       1.38
 
@@ -37,11 +31,12 @@ struct coating {
     double nm, index;
 };
 
-static const struct glint_range f_number_range = {"f-number", 0.5, 1000};
+static const struct glint_range f_number_range = {
+    "f-number", GLINT_MIN_F_NUMBER, GLINT_MAX_F_NUMBER};
 static const struct glint_range film_width_range = {"film width", 0.1, 1000};
 static const struct glint_range film_height_range = {"film height", 0.1, 1000};
 static const struct glint_range stated_range = {"focal length", 0.01,
-                                                MAX_FOCAL_MM};
+                                                GLINT_MAX_FOCAL_MM};
 static const struct glint_range radius_range = {"radius", 0.01, 1e9};
 static const struct glint_range thickness_range = {"thickness", 0, 1e5};
 static const struct glint_range semi_range = {"semi-diameter", 0.01, 1e4};
@@ -68,12 +63,10 @@ enum field {
 struct parser {
     struct glint_text text;
     struct glint_prescription lens;
-    struct glint_place word[N_FIELDS];  /* latest of each, line 0: none */
-    struct glint_place value[N_FIELDS]; /* last number of the field */
-    struct coating coating;             /* of surfaces without their own */
+    struct glint_place word[N_FIELDS]; /* latest of each, line 0: none */
+    struct glint_places places;
+    struct coating coating; /* of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
-    struct glint_place thickness[GLINT_MAX_ELEMENTS];
-    struct glint_place medium; /* of the last surface */
     int n_elements;
     int n_glasses;
     struct {
@@ -133,7 +126,7 @@ static bool read_source(struct parser *p)
 static bool read_f_number(struct parser *p)
 {
     return glint_text_value(&p->text, &f_number_range, &p->lens.f_number,
-                            &p->value[F_NUMBER]);
+                            &p->places.f_number);
 }
 
 static bool read_film(struct parser *p)
@@ -147,13 +140,13 @@ static bool read_film(struct parser *p)
 static bool read_focal(struct parser *p)
 {
     return glint_text_value(&p->text, &stated_range, &p->lens.check_focal_mm,
-                            &p->value[FOCAL]);
+                            &p->places.focal);
 }
 
 static bool read_back_focal(struct parser *p)
 {
     return glint_text_value(&p->text, &stated_range, &p->lens.check_back_mm,
-                            &p->value[BACK_FOCAL]);
+                            &p->places.back_focal);
 }
 
 /* "none" or NM [INDEX]. */
@@ -234,7 +227,7 @@ static bool read_medium(struct parser *p, struct medium *medium)
     char quote[GLINT_QUOTE_BYTES];
     int glass;
 
-    p->medium = word.place;
+    p->places.medium = word.place;
     if (!word.length)
         return glint_text_fail(&p->text, word.place,
                                "medium is missing: air, ND VD or a glass");
@@ -276,7 +269,7 @@ static bool read_gap_and_semi(struct parser *p, double *thickness_mm,
                               double *semi_mm, struct glint_place *semi)
 {
     return glint_text_value(&p->text, &thickness_range, thickness_mm,
-                            &p->thickness[p->n_elements++]) &&
+                            &p->places.thickness[p->n_elements++]) &&
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
 
@@ -329,7 +322,7 @@ static bool read_surface(struct parser *p)
     if (k > 0)
         before = (struct medium){s[-1].nd, s[-1].vd};
     if (before.nd == medium.nd && before.vd == medium.vd)
-        return glint_text_fail(&p->text, p->medium,
+        return glint_text_fail(&p->text, p->places.medium,
                                "medium is the same on both sides");
     s->nd = medium.nd;
     s->vd = medium.vd;
@@ -341,7 +334,7 @@ static bool read_stop(struct parser *p)
 {
     p->lens.stop_after = p->lens.n_surfaces;
     return read_gap_and_semi(p, &p->lens.stop_thickness_mm,
-                             &p->lens.stop_semi_mm, &p->value[STOP]);
+                             &p->lens.stop_semi_mm, &p->places.stop);
 }
 
 /* ------------------------------------------------------------------- lines */
@@ -401,7 +394,7 @@ static bool read_lines(struct parser *p)
     return true;
 }
 
-/* ------------------------------------------------------- the lens as whole */
+/* ---------------------------------------------------------------- the lens */
 
 static void coat(struct parser *p)
 {
@@ -410,93 +403,6 @@ static void coat(struct parser *p)
             p->lens.surface[k].coating_nm = p->coating.nm;
             p->lens.surface[k].coating_n = p->coating.index;
         }
-}
-
-/* Depth of element E at HEIGHT from the axis, behind its vertex. */
-static double sag_mm(const struct glint_prescription *lens, int e,
-                     double height)
-{
-    const double c = element_curvature(lens, e);
-    const double ch = c * height;
-
-    return ch * height / (1.0 + sqrt(1.0 - ch * ch));
-}
-
-/* Each element ends before the next begins. The distance between two spheres
- * changes one way from the axis to the rim, and vertices are in order, so one
- * height decides. It is not the very rim, because published semi-diameters are
- * often estimates: surfaces of the Canon zoom meet at 0.92 of theirs. */
-static bool check_rims(struct parser *p)
-{
-    const struct glint_prescription *lens = &p->lens;
-    const int last = element_count(lens) - 1;
-
-    for (int e = 0; e < last; e++) {
-        const double height = CLEAR_SHARE * fmin(element_semi_mm(lens, e),
-                                                 element_semi_mm(lens, e + 1));
-        const double gap = element_gap_mm(lens, e) +
-                           sag_mm(lens, e + 1, height) -
-                           sag_mm(lens, e, height);
-
-        if (gap < -CONTACT_MM)
-            return glint_text_fail(&p->text, p->thickness[e],
-                                   "overlaps the next element by %.4g mm at "
-                                   "%.4g mm from the axis",
-                                   -gap, height);
-    }
-    if (element_gap_mm(lens, last) <=
-        fmax(0.0, sag_mm(lens, last, element_semi_mm(lens, last))))
-        return glint_text_fail(&p->text, p->thickness[last],
-                               "the sensor must lie behind the last element");
-    return true;
-}
-
-static bool check_stated(struct parser *p, enum field f, double stated,
-                         double found)
-{
-    return !p->word[f].line ||
-           fabs(found - stated) <= STATED_TOLERANCE * stated ||
-           glint_text_fail(&p->text, p->value[f],
-                           "%s is %.6g mm, not the stated %.6g mm",
-                           fields[f].word, found, stated);
-}
-
-/* Comparisons are such that a NaN fails. */
-static bool check_optics(struct parser *p)
-{
-    const struct glint_prescription *lens = &p->lens;
-    const struct glint_place end = glint_text_end(&p->text);
-    struct glint_optics optics;
-
-    glint_optics_of(lens, &optics);
-    if (!(fabs(optics.focal_mm) <= MAX_FOCAL_MM))
-        return glint_text_fail(&p->text, end, "the lens has no power");
-    if (!(optics.focal_mm > 0.0 && optics.back_focal_mm > 0.0))
-        return glint_text_fail(&p->text, end,
-                               "the lens has no focus behind it: focal length "
-                               "%.6g mm, back focal length %.6g mm",
-                               optics.focal_mm, optics.back_focal_mm);
-    if (!(optics.stop_radius_mm >= MIN_STOP_MM))
-        return glint_text_fail(&p->text, p->value[STOP],
-                               "the stop lies in a focus of the surfaces "
-                               "before it");
-    if (!(optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK)))
-        return glint_text_fail(&p->text, p->value[F_NUMBER],
-                               "f/%g needs a stop of %.4g mm radius, but its "
-                               "semi-diameter is %.4g mm",
-                               lens->f_number, optics.stop_radius_mm,
-                               lens->stop_semi_mm);
-    return check_stated(p, FOCAL, lens->check_focal_mm, optics.focal_mm) &&
-           check_stated(p, BACK_FOCAL, lens->check_back_mm,
-                        optics.back_focal_mm);
-}
-
-static bool check_lens(struct parser *p)
-{
-    if (p->lens.surface[p->lens.n_surfaces - 1].vd > 0.0)
-        return glint_text_fail(&p->text, p->medium,
-                               "the last medium must be air");
-    return check_rims(p) && check_optics(p);
 }
 
 enum glint_status glint_prescription_parse(struct glint_prescription *lens,
@@ -509,38 +415,10 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     memset(&p, 0, sizeof(p));
     p.coating = (struct coating){MGF2_NM, MGF2_INDEX};
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
-        !read_lines(&p) || !check_lens(&p))
+        !read_lines(&p) ||
+        !glint_prescription_check(&p.lens, &p.text, &p.places))
         return GLINT_E_LENS;
     coat(&p);
     *lens = p.lens;
-    return GLINT_OK;
-}
-
-enum glint_status
-glint_prescription_set_f_number(struct glint_prescription *lens,
-                                double f_number, struct glint_error *error)
-{
-    const double widest = f_number_range.min, narrowest = f_number_range.max;
-    struct glint_prescription changed = *lens;
-    struct glint_optics optics;
-
-    if (!(f_number >= widest && f_number <= narrowest)) {
-        snprintf(error->text, sizeof(error->text),
-                 "f-number must be %g .. %g, not %g", widest, narrowest,
-                 f_number);
-        return GLINT_E_ARGUMENT;
-    }
-    changed.f_number = f_number;
-    glint_optics_of(&changed, &optics);
-    if (!(optics.stop_radius_mm <= lens->stop_semi_mm * (1.0 + STOP_SLACK))) {
-        snprintf(error->text, sizeof(error->text),
-                 "f/%g needs a stop of %.4g mm radius; %s opens to %.4g mm, "
-                 "f/%.3g",
-                 f_number, optics.stop_radius_mm, lens->name,
-                 lens->stop_semi_mm,
-                 f_number * optics.stop_radius_mm / lens->stop_semi_mm);
-        return GLINT_E_ARGUMENT;
-    }
-    lens->f_number = f_number;
     return GLINT_OK;
 }

@@ -1,22 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * One pass over the rows. The runs of a row that reach the lower threshold
- * join the runs they touch in the row above, corners included; a component
- * that a row does not continue is finished and its label is used again. So no
- * more labels live than a row has runs, twice, and no shape can exceed them.
+ * From the regions of a picture to its lights.
  *
- * A finished component that qualifies becomes a candidate; of these the
- * brightest N_CANDIDATES are held, and only then is anything merged.
- *
- * Moments: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^26
- * pixels of coordinates below 2^13, the sums of w and of w x reach 2^40 and
- * 2^53 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about
- * the centroid, which is what we want, is below 2^14 * 8192^4 / 6 < 2^64.
+ * A region that qualifies becomes a candidate; of these the brightest
+ * N_CANDIDATES are held, and only when all are found is anything merged.
  */
 #include "glint/lights.h"
 
 #include "base/arena.h"
 #include "base/q.h"
+#include "flare/regions.h"
 #include "tile/transfer.h"
 
 #define N_CANDIDATES 2048 /* at least the 1024 that find may be asked for */
@@ -29,35 +22,8 @@
  * lit surfaces, not lights. */
 #define SEED_LOG2 5
 
-/* What is summed over the pixels of a light. */
-struct region {
-    int32_t first; /* y * width + x of its first pixel: no two have the same */
-    int32_t area, n_clipped;
-    int64_t w_q14, wx_q14, wy_q14;
-    uint64_t wr2_q14;
-    int64_t rgb_q14[3];     /* of all pixels */
-    int64_t rim_rgb_q14[3]; /* of those with no channel clipped, and of their
-                               neighbours within the row */
-};
-
-struct component {
-    struct region sum;
-    int32_t parent; /* label; its own for a root */
-    int32_t last_row;
-};
-
-struct run {
-    int32_t x0, x1; /* first pixel, and one past the last */
-    int32_t label;
-};
-
-struct row {
-    struct run *run;
-    int n_runs;
-};
-
 struct candidate {
-    struct region sum;
+    struct glint_region sum;
     int32_t x_q8, y_q8;
     int gone; /* merged into another */
 };
@@ -70,10 +36,7 @@ struct glint_lights {
     struct glint_ycc ycc;
     uint8_t full_luma[256]; /* of Y codes */
     uint8_t *luma;          /* of one row */
-    struct row above, here;
-    struct component *component;
-    int32_t *active, *idle; /* labels */
-    int n_active, n_idle;
+    struct glint_regions regions;
     struct candidate *candidate;
     int32_t *order; /* of candidates: a heap, then by falling flux */
     int n;          /* in order */
@@ -96,18 +59,13 @@ static int is_valid(const struct glint_lights_config *c)
 static struct glint_lights *carve(struct glint_arena *a,
                                   const struct glint_lights_config *c)
 {
-    const size_t n_runs = ((size_t)c->width + 1) / 2;
     struct glint_lights *placed = glint_arena_take(a, 1, sizeof *placed);
     struct glint_lights measured;
     struct glint_lights *f = placed ? placed : &measured;
 
     f->curve = glint_arena_take(a, 1, sizeof *f->curve);
     f->luma = glint_arena_take(a, (size_t)c->width, sizeof *f->luma);
-    f->above.run = glint_arena_take(a, n_runs, sizeof *f->above.run);
-    f->here.run = glint_arena_take(a, n_runs, sizeof *f->here.run);
-    f->component = glint_arena_take(a, 2 * n_runs, sizeof *f->component);
-    f->active = glint_arena_take(a, 2 * n_runs, sizeof *f->active);
-    f->idle = glint_arena_take(a, 2 * n_runs, sizeof *f->idle);
+    glint_regions_carve(&f->regions, a, c->width);
     f->candidate = glint_arena_take(a, N_CANDIDATES, sizeof *f->candidate);
     f->order = glint_arena_take(a, N_CANDIDATES, sizeof *f->order);
     return a->used <= a->size ? placed : NULL;
@@ -224,45 +182,23 @@ static void read_light_q20(const struct glint_lights *f,
         read_ycc_q20(f, image, x, y, rgb_q20);
 }
 
-static int64_t luminance(int64_t r, int64_t g, int64_t b)
-{
-    return q_shift(r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
-                       b * Q_CONST(0.0722, 15),
-                   15);
-}
-
 /* ------------------------------------------------------------------ regions */
 
-static void add_pixel(struct region *sum, const int32_t rgb_q20[3], int x,
-                      int y)
-{
-    const int64_t seen_q14 =
-        q_shift(luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]), 20 - 14);
-    const int64_t w_q14 = seen_q14 > 1 ? seen_q14 : 1;
-
-    sum->w_q14 += w_q14;
-    sum->wx_q14 += w_q14 * x;
-    sum->wy_q14 += w_q14 * y;
-    sum->wr2_q14 += (uint64_t)w_q14 * (uint64_t)(x * x + y * y);
-    for (int i = 0; i < 3; i++)
-        sum->rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
-}
-
 /* A colour is known only where no channel is clipped. */
-static void add_rim_pixel(struct region *sum, const struct glint_lights *f,
+static void add_rim_pixel(struct glint_region *sum,
+                          const struct glint_lights *f,
                           const int32_t rgb_q20[3])
 {
     const int32_t clipped_q20 = f->curve->decode_q20[CLIPPED_CODE];
 
     if (rgb_q20[0] < clipped_q20 && rgb_q20[1] < clipped_q20 &&
         rgb_q20[2] < clipped_q20)
-        for (int i = 0; i < 3; i++)
-            sum->rim_rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
+        glint_region_add_rim(sum, rgb_q20);
 }
 
-static void add_run(struct region *sum, const struct glint_lights *f,
-                    const struct glint_image *image, const struct run *run,
-                    int y)
+static void add_run(struct glint_region *sum, const struct glint_lights *f,
+                    const struct glint_image *image,
+                    const struct glint_run *run, int y)
 {
     const int first = run->x0 > RIM ? run->x0 - RIM : 0;
     const int end = run->x1 < f->cfg.width - RIM ? run->x1 + RIM : f->cfg.width;
@@ -275,154 +211,17 @@ static void add_run(struct region *sum, const struct glint_lights *f,
         add_rim_pixel(sum, f, rgb_q20);
         if (x < run->x0 || x >= run->x1)
             continue;
-        add_pixel(sum, rgb_q20, x, y);
+        glint_region_add_pixel(sum, rgb_q20, x, y);
         sum->n_clipped += f->luma[x] >= f->cfg.threshold_high;
     }
 }
 
-static void absorb(struct region *sum, const struct region *other)
-{
-    if (other->first < sum->first)
-        sum->first = other->first;
-    sum->area += other->area;
-    sum->n_clipped += other->n_clipped;
-    sum->w_q14 += other->w_q14;
-    sum->wx_q14 += other->wx_q14;
-    sum->wy_q14 += other->wy_q14;
-    sum->wr2_q14 += other->wr2_q14;
-    for (int i = 0; i < 3; i++) {
-        sum->rgb_q14[i] += other->rgb_q14[i];
-        sum->rim_rgb_q14[i] += other->rim_rgb_q14[i];
-    }
-}
-
-/* A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 - FRAC).
- */
-static int64_t quotient(uint64_t a, int64_t b, int frac)
-{
-    const uint64_t d = (uint64_t)b;
-
-    return (int64_t)((a / d << frac) + (((a % d) << frac) + d / 2) / d);
-}
-
-/* Mean position, in pixel indices: the centre of the first pixel is 0. */
-static int32_t mean_q8(int64_t wx_q14, int64_t w_q14)
-{
-    return q_narrow(quotient((uint64_t)wx_q14, w_q14, 8));
-}
-
-static uint32_t square_root(uint64_t x)
-{
-    uint64_t root = 0;
-
-    for (uint64_t bit = UINT64_C(1) << 31; bit; bit >>= 1)
-        if ((root | bit) * (root | bit) <= x)
-            root |= bit;
-    return (uint32_t)root;
-}
-
-/* RMS distance from the centroid: 0 for a pixel. The sums are moved to the
- * pixel nearest to the centroid first, exactly, modulo 2^64. */
-static int32_t rms_radius_q8(const struct region *sum)
-{
-    const int32_t x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
-    const int32_t y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
-    const int32_t x = (x_q8 + 128) >> 8, y = (y_q8 + 128) >> 8;
-    const int64_t fx_q8 = x_q8 - x * 256, fy_q8 = y_q8 - y * 256;
-    const uint64_t about =
-        sum->wr2_q14 - 2 * (uint64_t)x * (uint64_t)sum->wx_q14 -
-        2 * (uint64_t)y * (uint64_t)sum->wy_q14 +
-        ((uint64_t)x * (uint64_t)x + (uint64_t)y * (uint64_t)y) *
-            (uint64_t)sum->w_q14;
-    const int64_t mean_q16 =
-        quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
-
-    return (int32_t)square_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
-}
-
-/* --------------------------------------------------------------- components */
-
-static int32_t find_root(struct component *c, int32_t label)
-{
-    while (c[label].parent != label) {
-        c[label].parent = c[c[label].parent].parent;
-        label = c[label].parent;
-    }
-    return label;
-}
-
-static int32_t unite(struct component *c, int32_t a, int32_t b)
-{
-    a = find_root(c, a);
-    b = find_root(c, b);
-    if (a == b)
-        return a;
-    absorb(&c[a].sum, &c[b].sum);
-    c[b].parent = a;
-    return a;
-}
-
-static int32_t new_label(struct glint_lights *f, int32_t first)
-{
-    const int32_t label = f->idle[--f->n_idle];
-
-    f->component[label] =
-        (struct component){.sum = {.first = first}, .parent = label};
-    f->active[f->n_active++] = label;
-    return label;
-}
-
-static void find_runs(struct row *row, const uint8_t *luma, int width, int low)
-{
-    int x = 0;
-
-    row->n_runs = 0;
-    for (;;) {
-        struct run *run = &row->run[row->n_runs];
-
-        while (x < width && luma[x] < low)
-            x++;
-        if (x == width)
-            return;
-        run->x0 = x;
-        while (x < width && luma[x] >= low)
-            x++;
-        run->x1 = x;
-        row->n_runs++;
-    }
-}
-
-/* Gives the runs of row Y the labels of what they touch. */
-static void link_runs(struct glint_lights *f, const struct glint_image *image,
-                      int y)
-{
-    const struct row *above = &f->above;
-    int first = 0; /* of the runs above that may touch this one or a later */
-
-    for (int i = 0; i < f->here.n_runs; i++) {
-        struct run *run = &f->here.run[i];
-        int32_t label = -1;
-
-        while (first < above->n_runs && above->run[first].x1 < run->x0)
-            first++;
-        for (int j = first; j < above->n_runs && above->run[j].x0 <= run->x1;
-             j++)
-            label = label < 0 ? find_root(f->component, above->run[j].label)
-                              : unite(f->component, label, above->run[j].label);
-        if (label < 0)
-            label = new_label(f, y * f->cfg.width + run->x0);
-        f->component[label].last_row = y;
-        add_run(&f->component[label].sum, f, image, run, y);
-        run->label = label;
-    }
-}
-
-/* ---------------------------------------------------------------- candidates
- */
+/* --------------------------------------------------------------- candidates */
 
 static int is_brighter(const struct glint_lights *f, int32_t a, int32_t b)
 {
-    const struct region *p = &f->candidate[a].sum, *q = &f->candidate[b].sum;
+    const struct glint_region *p = &f->candidate[a].sum;
+    const struct glint_region *q = &f->candidate[b].sum;
 
     return p->w_q14 != q->w_q14 ? p->w_q14 > q->w_q14 : p->first < q->first;
 }
@@ -470,8 +269,10 @@ static void sort_by_flux(struct glint_lights *f)
 }
 
 /* Holds SUM if it qualifies, at the expense of the faintest if need be. */
-static void offer(struct glint_lights *f, const struct region *sum)
+static void offer(void *finder, const struct glint_region *sum)
 {
+    struct glint_lights *f = finder;
+
     if (sum->area < f->cfg.min_area || sum->area > f->max_area ||
         sum->n_clipped == 0 || sum->n_clipped < sum->area >> SEED_LOG2)
         return;
@@ -490,53 +291,21 @@ static void offer(struct glint_lights *f, const struct region *sum)
     sift_down(f, 0, f->n);
 }
 
-/* Finishes what row Y did not continue, and takes the labels of that and of
- * what was united back. */
-static void end_row(struct glint_lights *f, int y)
-{
-    const int n_before = f->n_active;
-
-    for (int i = 0; i < f->here.n_runs; i++)
-        f->here.run[i].label = find_root(f->component, f->here.run[i].label);
-    f->n_active = 0;
-    for (int i = 0; i < n_before; i++) {
-        const int32_t label = f->active[i];
-        const struct component *c = &f->component[label];
-
-        if (c->parent == label && c->last_row == y) {
-            f->active[f->n_active++] = label;
-            continue;
-        }
-        if (c->parent == label)
-            offer(f, &c->sum);
-        f->idle[f->n_idle++] = label;
-    }
-}
-
-static void swap_rows(struct glint_lights *f)
-{
-    const struct row here = f->here;
-
-    f->here = f->above;
-    f->above = here;
-    f->here.n_runs = 0;
-}
-
 static void find_candidates(struct glint_lights *f,
                             const struct glint_image *image)
 {
-    f->n = f->dropped = f->n_active = f->n_idle = 0;
-    f->above.n_runs = f->here.n_runs = 0;
-    for (int label = 2 * ((f->cfg.width + 1) / 2); label > 0; label--)
-        f->idle[f->n_idle++] = label - 1;
+    struct glint_regions *r = &f->regions;
+
+    f->n = f->dropped = 0;
+    glint_regions_begin(r);
     for (int y = 0; y < f->cfg.height; y++) {
         read_luma(f, image, y);
-        find_runs(&f->here, f->luma, f->cfg.width, f->cfg.threshold_low);
-        link_runs(f, image, y);
-        end_row(f, y);
-        swap_rows(f);
+        glint_regions_link_row(r, f->luma, f->cfg.threshold_low, y);
+        for (int i = 0; i < r->here.n_runs; i++)
+            add_run(glint_regions_of_run(r, i), f, image, &r->here.run[i], y);
+        glint_regions_end_row(r, offer, f, y);
     }
-    end_row(f, f->cfg.height);
+    glint_regions_end_row(r, offer, f, f->cfg.height);
 }
 
 /* ------------------------------------------------------------------ merging */
@@ -546,8 +315,7 @@ static void locate(struct glint_lights *f)
     for (int i = 0; i < f->n; i++) {
         struct candidate *c = &f->candidate[f->order[i]];
 
-        c->x_q8 = mean_q8(c->sum.wx_q14, c->sum.w_q14);
-        c->y_q8 = mean_q8(c->sum.wy_q14, c->sum.w_q14);
+        glint_region_centroid(&c->sum, &c->x_q8, &c->y_q8);
         c->gone = 0;
     }
 }
@@ -563,7 +331,7 @@ static int64_t distance2_q16(const struct candidate *a,
 /* Gives CANDIDATE to INTO; positions stay until the next locate. */
 static void give(struct candidate *candidate, struct candidate *into)
 {
-    absorb(&into->sum, &candidate->sum);
+    glint_region_absorb(&into->sum, &candidate->sum);
     candidate->gone = 1;
 }
 
@@ -636,31 +404,18 @@ static void cap(struct glint_lights *f, int max)
 
 /* ------------------------------------------------------------------- result */
 
-/* Mean colour at luminance 1. A clipped pixel tells little, so it counts 1/64:
- * the rim decides where there is one worth the name, and white comes out where
- * everything is clipped to white, without a step in between. */
-static void mean_colour(int32_t rgb_q15[3], const struct region *sum)
+/* A spot's origin is the corner of the first pixel, a region's its centre. */
+static struct glint_spot spot_of(const struct glint_region *sum)
 {
-    int64_t c[3], y;
-
-    for (int i = 0; i < 3; i++)
-        c[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
-    y = luminance(c[0], c[1], c[2]);
-    for (int i = 0; i < 3; i++)
-        rgb_q15[i] =
-            y > 0 ? q_narrow(quotient((uint64_t)c[i], y, 15)) : 1 << 15;
-}
-
-static struct glint_spot spot_of(const struct region *sum)
-{
-    struct glint_spot s = {.x_q8 = mean_q8(sum->wx_q14, sum->w_q14) + 128,
-                           .y_q8 = mean_q8(sum->wy_q14, sum->w_q14) + 128,
-                           .size_q8 = rms_radius_q8(sum),
+    struct glint_spot s = {.size_q8 = glint_region_radius_q8(sum),
                            .area = sum->area,
                            .n_clipped = sum->n_clipped,
                            .flux_q16 = sum->w_q14 * 4};
 
-    mean_colour(s.rgb_q15, sum);
+    glint_region_centroid(sum, &s.x_q8, &s.y_q8);
+    s.x_q8 += 128;
+    s.y_q8 += 128;
+    glint_region_colour(sum, s.rgb_q15);
     return s;
 }
 

@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/regions.h"
+
+#include "base/arena.h"
+#include "base/q.h"
+
+/* --------------------------------------------------------------------- sums */
+
+static int64_t luminance(int64_t r, int64_t g, int64_t b)
+{
+    return q_shift(r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
+                       b * Q_CONST(0.0722, 15),
+                   15);
+}
+
+void glint_region_add_pixel(struct glint_region *sum, const int32_t rgb_q20[3],
+                            int x, int y)
+{
+    const int64_t seen_q14 =
+        q_shift(luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]), 20 - 14);
+    const int64_t w_q14 = seen_q14 > 1 ? seen_q14 : 1;
+
+    sum->w_q14 += w_q14;
+    sum->wx_q14 += w_q14 * x;
+    sum->wy_q14 += w_q14 * y;
+    sum->wr2_q14 += (uint64_t)w_q14 * (uint64_t)(x * x + y * y);
+    for (int i = 0; i < 3; i++)
+        sum->rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
+}
+
+void glint_region_add_rim(struct glint_region *sum, const int32_t rgb_q20[3])
+{
+    for (int i = 0; i < 3; i++)
+        sum->rim_rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
+}
+
+void glint_region_absorb(struct glint_region *sum,
+                         const struct glint_region *other)
+{
+    if (other->first < sum->first)
+        sum->first = other->first;
+    sum->area += other->area;
+    sum->n_clipped += other->n_clipped;
+    sum->w_q14 += other->w_q14;
+    sum->wx_q14 += other->wx_q14;
+    sum->wy_q14 += other->wy_q14;
+    sum->wr2_q14 += other->wr2_q14;
+    for (int i = 0; i < 3; i++) {
+        sum->rgb_q14[i] += other->rgb_q14[i];
+        sum->rim_rgb_q14[i] += other->rim_rgb_q14[i];
+    }
+}
+
+/* A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 - FRAC).
+ */
+static int64_t quotient(uint64_t a, int64_t b, int frac)
+{
+    const uint64_t d = (uint64_t)b;
+
+    return (int64_t)((a / d << frac) + (((a % d) << frac) + d / 2) / d);
+}
+
+static int32_t mean_q8(int64_t wx_q14, int64_t w_q14)
+{
+    return q_narrow(quotient((uint64_t)wx_q14, w_q14, 8));
+}
+
+void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
+                           int32_t *y_q8)
+{
+    *x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
+    *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
+}
+
+static uint32_t square_root(uint64_t x)
+{
+    uint64_t root = 0;
+
+    for (uint64_t bit = UINT64_C(1) << 31; bit; bit >>= 1)
+        if ((root | bit) * (root | bit) <= x)
+            root |= bit;
+    return (uint32_t)root;
+}
+
+/* The sums are moved to the pixel nearest to the centroid first, exactly,
+ * modulo 2^64. */
+int32_t glint_region_radius_q8(const struct glint_region *sum)
+{
+    const int32_t x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
+    const int32_t y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
+    const int32_t x = (x_q8 + 128) >> 8, y = (y_q8 + 128) >> 8;
+    const int64_t fx_q8 = x_q8 - x * 256, fy_q8 = y_q8 - y * 256;
+    const uint64_t about =
+        sum->wr2_q14 - 2 * (uint64_t)x * (uint64_t)sum->wx_q14 -
+        2 * (uint64_t)y * (uint64_t)sum->wy_q14 +
+        ((uint64_t)x * (uint64_t)x + (uint64_t)y * (uint64_t)y) *
+            (uint64_t)sum->w_q14;
+    const int64_t mean_q16 =
+        quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
+
+    return (int32_t)square_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
+}
+
+/* A clipped pixel tells little, so it counts 1/64: the rim decides where there
+ * is one worth the name, and white comes out where everything is clipped to
+ * white, without a step in between. */
+void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
+{
+    int64_t c[3], y;
+
+    for (int i = 0; i < 3; i++)
+        c[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
+    y = luminance(c[0], c[1], c[2]);
+    for (int i = 0; i < 3; i++)
+        rgb_q15[i] =
+            y > 0 ? q_narrow(quotient((uint64_t)c[i], y, 15)) : 1 << 15;
+}
+
+/* ---------------------------------------------------------------- labelling */
+
+void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
+                         int width)
+{
+    const size_t n_runs = ((size_t)width + 1) / 2;
+
+    r->width = width;
+    r->above.run = glint_arena_take(arena, n_runs, sizeof *r->above.run);
+    r->here.run = glint_arena_take(arena, n_runs, sizeof *r->here.run);
+    r->component = glint_arena_take(arena, 2 * n_runs, sizeof *r->component);
+    r->active = glint_arena_take(arena, 2 * n_runs, sizeof *r->active);
+    r->idle = glint_arena_take(arena, 2 * n_runs, sizeof *r->idle);
+}
+
+void glint_regions_begin(struct glint_regions *r)
+{
+    r->n_active = r->n_idle = 0;
+    r->above.n_runs = r->here.n_runs = 0;
+    for (int label = 2 * ((r->width + 1) / 2); label > 0; label--)
+        r->idle[r->n_idle++] = label - 1;
+}
+
+static int32_t find_root(struct glint_component *c, int32_t label)
+{
+    while (c[label].parent != label) {
+        c[label].parent = c[c[label].parent].parent;
+        label = c[label].parent;
+    }
+    return label;
+}
+
+static int32_t unite(struct glint_component *c, int32_t a, int32_t b)
+{
+    a = find_root(c, a);
+    b = find_root(c, b);
+    if (a == b)
+        return a;
+    glint_region_absorb(&c[a].sum, &c[b].sum);
+    c[b].parent = a;
+    return a;
+}
+
+static int32_t new_label(struct glint_regions *r, int32_t first)
+{
+    const int32_t label = r->idle[--r->n_idle];
+
+    r->component[label] =
+        (struct glint_component){.sum = {.first = first}, .parent = label};
+    r->active[r->n_active++] = label;
+    return label;
+}
+
+static void find_runs(struct glint_run_row *row, const uint8_t *luma, int width,
+                      int low)
+{
+    int x = 0;
+
+    row->n_runs = 0;
+    for (;;) {
+        struct glint_run *run = &row->run[row->n_runs];
+
+        while (x < width && luma[x] < low)
+            x++;
+        if (x == width)
+            return;
+        run->x0 = x;
+        while (x < width && luma[x] >= low)
+            x++;
+        run->x1 = x;
+        row->n_runs++;
+    }
+}
+
+/* Gives the runs of row Y the labels of what they touch. */
+static void link_runs(struct glint_regions *r, int y)
+{
+    const struct glint_run_row *above = &r->above;
+    int first = 0; /* of the runs above that may touch this one or a later */
+
+    for (int i = 0; i < r->here.n_runs; i++) {
+        struct glint_run *run = &r->here.run[i];
+        int32_t label = -1;
+
+        while (first < above->n_runs && above->run[first].x1 < run->x0)
+            first++;
+        for (int j = first; j < above->n_runs && above->run[j].x0 <= run->x1;
+             j++)
+            label = label < 0 ? find_root(r->component, above->run[j].label)
+                              : unite(r->component, label, above->run[j].label);
+        if (label < 0)
+            label = new_label(r, y * r->width + run->x0);
+        r->component[label].last_row = y;
+        run->label = label;
+    }
+}
+
+void glint_regions_link_row(struct glint_regions *r, const uint8_t *luma,
+                            int low, int y)
+{
+    find_runs(&r->here, luma, r->width, low);
+    link_runs(r, y);
+}
+
+struct glint_region *glint_regions_of_run(struct glint_regions *r, int i)
+{
+    return &r->component[find_root(r->component, r->here.run[i].label)].sum;
+}
+
+static void swap_rows(struct glint_regions *r)
+{
+    const struct glint_run_row here = r->here;
+
+    r->here = r->above;
+    r->above = here;
+    r->here.n_runs = 0;
+}
+
+void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
+                           void *ctx, int y)
+{
+    const int n_before = r->n_active;
+
+    for (int i = 0; i < r->here.n_runs; i++)
+        r->here.run[i].label = find_root(r->component, r->here.run[i].label);
+    r->n_active = 0;
+    for (int i = 0; i < n_before; i++) {
+        const int32_t label = r->active[i];
+        const struct glint_component *c = &r->component[label];
+
+        if (c->parent == label && c->last_row == y) {
+            r->active[r->n_active++] = label;
+            continue;
+        }
+        if (c->parent == label)
+            done(ctx, &c->sum);
+        r->idle[r->n_idle++] = label;
+    }
+    swap_rows(r);
+}
