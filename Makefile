@@ -90,8 +90,9 @@ define link
 endef
 
 all: build/glint
-build/glint: $(OUT)/glint
-	$(Q)cp -f $< $@.tmp && mv -f $@.tmp $@
+build/glint: $(OUT)/glint always
+	$(Q)cmp -s $< $@ || { cp -f $< $@.tmp && mv -f $@.tmp $@; }
+always:
 $(OUT)/glint: $(OUT)/tools/glint.o $(libs)
 	$(link)
 
@@ -176,9 +177,8 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all oiio demo inputs table check run-check golden-update fuzz format \
+.PHONY: all always oiio demo inputs table check run-check golden-update fuzz format \
         lint install clean
-.SECONDARY:
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
 -include $(shell find $(OUT) -name '*.d' 2>/dev/null)

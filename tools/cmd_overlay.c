@@ -30,10 +30,11 @@ static const char help[] =
     "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"
     "                      frame,x,y,power[,r,g,b[,size]] or JSON lines with\n"
     "                      these keys; x, y in pixels from the top left, also\n"
-    "                      outside; frame * is every frame; size is read and\n"
-    "                      not used yet\n"
+    "                      outside; frames count from 0, * is every frame; "
+    "size\n"
+    "                      is read and not used yet\n"
     "  --light LIST        one by hand, as of glint render, for all frames;\n"
-    "                      repeatable; replaces auto\n"
+    "                      repeatable; replaces auto, adds to a FILE\n"
     "  --threshold H[,L]   luma code that makes a light, and the one down to\n"
     "                      which it extends\n"
     "  --max-lights N      the N strongest of a frame, 1 to 1024 (default 16)\n"
@@ -510,7 +511,7 @@ static int run(struct tool *tool, struct overlay *o)
     o->started = tool_seconds();
     if (is_y4m(o->input))
         code = run_video(tool, o);
-    else if (strchr(o->input, '%'))
+    else if (strchr(o->input, '%') && access(o->input, F_OK) != 0)
         code = run_sequence(tool, o);
     else
         code = run_picture(tool, o, o->input, o->output);

@@ -2,6 +2,8 @@
  *
  * glint - the command: finds the subcommand and runs it.
  */
+#include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -34,7 +36,26 @@ static const struct command commands[] = {
     {"overlay", cmd_overlay}, {"compare", cmd_compare},
 };
 
-int main(int argc, char **argv)
+static volatile sig_atomic_t reader_gone;
+
+static void note_reader(int signal_number)
+{
+    (void)signal_number;
+    reader_gone = 1;
+}
+
+/* What was printed must have arrived, unless the reader has had enough. */
+static int close_output(int code)
+{
+    errno = 0;
+    if ((fflush(stdout) == 0 && !ferror(stdout)) || reader_gone)
+        return code;
+    fprintf(stderr, "glint: standard output: %s\n",
+            errno ? strerror(errno) : "write failed");
+    return code == EXIT_OK ? EXIT_OUTPUT : code;
+}
+
+static int run(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
 
@@ -54,4 +75,10 @@ int main(int argc, char **argv)
         fprintf(stderr, "glint: no command '%s'\n", name);
     fputs(*name ? "Try 'glint --help'.\n" : help, stderr);
     return EXIT_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+    signal(SIGPIPE, note_reader); /* the write fails, too */
+    return close_output(run(argc, argv));
 }

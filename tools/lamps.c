@@ -34,8 +34,8 @@ static const char *check_row(const double *v)
         return "frame must be a whole number from 0, or *";
     if (fabs(v[1]) > 1e6 || fabs(v[2]) > 1e6)
         return "x and y must be within a million pixels";
-    if (v[3] < 0)
-        return "power must not be negative";
+    if (v[3] < 0 || v[3] > 1e30)
+        return "power must be 0 to 1e30";
     for (int c = 4; c < 7; c++)
         if (v[c] < 0)
             return "r, g and b must not be negative";

@@ -10,6 +10,8 @@
 
 enum { SCENE_MAX_LAMPS = 1024 };
 
+#define SCENE_MAX_POWER 1e30 /* of a lamp: still finite in every output */
+
 struct scene {
     struct glint_prescription lens;
     struct glint_setup setup;

@@ -14,7 +14,7 @@
 
 #include "glint/bake.h"
 
-enum { GLINT_MAX_CUTS = 16, GLINT_MAX_PIECE = 160 };
+enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
 
 /* Channels of a node; from CUT on, x and y over the semi-diameter for each
  * barrel that may cut. */

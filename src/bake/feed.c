@@ -89,9 +89,20 @@ static double energy_unit(const struct glint_feed *feed)
     return 1.5 * feed->pupil.energy;
 }
 
-static int32_t colour_q14(double x)
+/* The colour of the bundle, and what it takes to bring its largest channel to
+ * 1: saturated lamps exceed the range of the format by far. */
+static double colour_of(const struct glint_setup *s,
+                        const struct glint_feed *feed, double rgb[3])
 {
-    return (int32_t)lrint(fmax(-4, fmin(x, 4)) * 16384);
+    double largest = 0;
+
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = s->rgb[feed->wavelength][c] * feed->lamp->rgb[c];
+        largest = fmax(largest, fabs(rgb[c]));
+    }
+    for (int c = 0; c < 3 && largest > 0; c++)
+        rgb[c] /= largest;
+    return largest;
 }
 
 void glint_feed_bundle(const struct glint_feed_config *cfg,
@@ -102,7 +113,9 @@ void glint_feed_bundle(const struct glint_feed_config *cfg,
     const struct glint_pupil *p = &feed->pupil;
     const double n = feed->n_cells;
     const double area = (p->x1_mm - p->x0_mm) / n * (2 * p->y1_mm / n);
-    const double flux = cfg->scale * feed->lamp->power *
+    double rgb[3];
+    const double flux = colour_of(s, feed, rgb) * cfg->scale *
+                        feed->lamp->power *
                         glint_cos_deg(feed->lamp->theta_deg) * area *
                         energy_unit(feed) / s->unit_flux[feed->wavelength];
     int exponent = 0;
@@ -113,8 +126,7 @@ void glint_feed_bundle(const struct glint_feed_config *cfg,
     bundle->flux_q31 = (int32_t)floor(mantissa * 0x1p31);
     bundle->flux_exponent = exponent;
     for (int c = 0; c < 3; c++)
-        bundle->rgb_q14[c] =
-            colour_q14(s->rgb[feed->wavelength][c] * feed->lamp->rgb[c]);
+        bundle->rgb_q14[c] = (int32_t)lrint(rgb[c] * 16384);
 }
 
 /* Nothing outside these ranges may become a vertex: geometry never saturates.

@@ -76,9 +76,11 @@ struct glint_box glint_corners_pixel(const struct glint_corners *corners,
         x_q8 += corners->at[i]->x_q8;
         y_q8 += corners->at[i]->y_q8;
     }
-    x = (int)((x_q8 / corners->n) >> 8);
-    y = (int)((y_q8 / corners->n) >> 8);
-    if (x < 0 || y < 0 || x >= width || y >= height)
+    if (x_q8 < 0 || y_q8 < 0)
+        return (struct glint_box){0, 0, 0, 0};
+    x = (int)(x_q8 / corners->n) >> 8;
+    y = (int)(y_q8 / corners->n) >> 8;
+    if (x >= width || y >= height)
         return (struct glint_box){0, 0, 0, 0};
     return (struct glint_box){x, y, x + 1, y + 1};
 }
