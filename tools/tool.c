@@ -219,9 +219,16 @@ int tool_lens(const struct tool *tool, const char *argument,
     uint8_t *text = NULL;
     size_t bytes = 0;
 
-    if (!strchr(argument, '/') && access(argument, F_OK) != 0 &&
-        find_table(argument, path, sizeof path))
+    if (!strchr(argument, '/') && access(argument, F_OK) != 0) {
+        if (!find_table(argument, path, sizeof path)) {
+            fprintf(stderr,
+                    "glint %s: %s: neither a file nor a lens that comes with "
+                    "glint (try heliar-tronnier)\n",
+                    tool->name, argument);
+            return EXIT_LENS;
+        }
         file = path;
+    }
     status = glint_input_slurp(&text, &bytes, file, 1 << 20, &error);
     if (status == GLINT_OK)
         status = glint_prescription_parse(lens, (const char *)text, bytes, file,

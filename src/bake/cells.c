@@ -348,27 +348,25 @@ bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
 
 double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm)
 {
-    struct glint_path *path = malloc(sizeof *path);
     struct glint_piece piece;
     struct glint_cells cells;
+    struct glint_path path;
     double sum = 0;
 
-    if (!path)
+    glint_path_init(&path, setup->lens, NULL, wavelength_nm);
+    if (!glint_cells_init(&cells, setup, &path, 0, 0, 256))
         return 0;
-    glint_path_init(path, setup->lens, NULL, wavelength_nm);
-    if (glint_cells_init(&cells, setup, path, 0, 0, 256) &&
-        (cells.node = malloc(glint_cells_bytes(&cells)))) {
-        for (int j = 0; j <= cells.n / 2; j++)
-            glint_cells_trace(&cells, j);
-        for (int k = 0; k < 2 * cells.n * cells.n; k++) {
-            glint_cells_clip(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1,
-                             &piece);
-            if (piece.n)
-                sum += piece.share * piece.energy;
-        }
-        sum *= 0.5 * glint_cells_area(&cells);
-        free(cells.node);
+    cells.node = malloc(glint_cells_bytes(&cells));
+    if (!cells.node)
+        return -1;
+    for (int j = 0; j <= cells.n / 2; j++)
+        glint_cells_trace(&cells, j);
+    for (int k = 0; k < 2 * cells.n * cells.n; k++) {
+        glint_cells_clip(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1,
+                         &piece);
+        if (piece.n)
+            sum += piece.share * piece.energy;
     }
-    free(path);
-    return sum;
+    free(cells.node);
+    return sum * 0.5 * glint_cells_area(&cells);
 }

@@ -73,7 +73,7 @@ bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
 /* Pupil area of a cell, mm^2. */
 double glint_cells_area(const struct glint_cells *cells);
 
-/* Flux of the direct image at angle 0 for irradiance 1, mm^2. */
+/* Flux of the direct image at angle 0 for irradiance 1, mm^2; -1: no memory. */
 double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm);
 
 #endif

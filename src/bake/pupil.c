@@ -12,7 +12,6 @@
 #include "glint/bake.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "bake/degrees.h"
 
@@ -190,7 +189,7 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm,
                       const struct glint_pupil *near)
 {
-    struct search *s = malloc(sizeof *s);
+    struct search s; /* 120 KB: the offline half has the stack for it */
     struct glint_pupil p;
     const struct glint_event *front = NULL;
     bool found = true;
@@ -198,29 +197,26 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
     for (int k = 0; k < path->n_events && !front; k++)
         if (path->event[k].kind != GLINT_STOP)
             front = &path->event[k];
-    if (!s || !front) {
-        free(s);
+    if (!front)
         return false;
-    }
-    s->path = path;
-    s->direction[0] = glint_sin_deg(theta_deg);
-    s->direction[1] = 0;
-    s->direction[2] = glint_cos_deg(theta_deg);
-    s->stop_mm = stop_radius_mm;
-    p = whole_front(front, s->direction);
+    s.path = path;
+    s.direction[0] = glint_sin_deg(theta_deg);
+    s.direction[1] = 0;
+    s.direction[2] = glint_cos_deg(theta_deg);
+    s.stop_mm = stop_radius_mm;
+    p = whole_front(front, s.direction);
     if (near)
         p = surroundings(near, &p);
     for (int round = 0; round < ROUNDS && found; round++) {
         const double before = extent(&p);
 
-        s->across = round || near ? NEXT_ACROSS : ACROSS;
-        s->down = round || near ? NEXT_DOWN : DOWN;
-        found = shrink(s, &p);
+        s.across = round || near ? NEXT_ACROSS : ACROSS;
+        s.down = round || near ? NEXT_DOWN : DOWN;
+        found = shrink(&s, &p);
         if (round > 0 && extent(&p) > 0.8 * before)
             break;
     }
     if (found)
         *pupil = p;
-    free(s);
     return found;
 }

@@ -129,6 +129,10 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
     set_colours(setup);
     for (int i = 0; i < n; i++) {
         setup->direct_flux[i] = glint_direct_flux(setup, wavelength_nm[i]);
+        if (setup->direct_flux[i] < 0) {
+            snprintf(error->text, sizeof error->text, "not enough memory");
+            return GLINT_E_MEMORY;
+        }
         if (!(setup->direct_flux[i] > 0)) {
             snprintf(error->text, sizeof error->text,
                      "%s: no light of %g nm gets through to the sensor",
