@@ -44,6 +44,20 @@ static inline int32_t q_mul(int32_t a, int32_t b, int s)
     return q_narrow(q_shift((int64_t)a * b, s));
 }
 
+/* The root of X, rounded down: of a Q(2 n) it is a Q(n). */
+static inline uint32_t q_root(uint64_t x)
+{
+    uint64_t root = 0;
+
+    for (int bit = 31; bit >= 0; bit--) {
+        const uint64_t trial = root | (UINT64_C(1) << bit);
+
+        if (trial * trial <= x)
+            root = trial;
+    }
+    return (uint32_t)root;
+}
+
 /* X held to LO .. HI: for light, never for geometry. */
 static inline int32_t q_clamp_sat(int64_t x, int32_t lo, int32_t hi)
 {

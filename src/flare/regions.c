@@ -72,16 +72,6 @@ void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
     *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
 }
 
-static uint32_t square_root(uint64_t x)
-{
-    uint64_t root = 0;
-
-    for (uint64_t bit = UINT64_C(1) << 31; bit; bit >>= 1)
-        if ((root | bit) * (root | bit) <= x)
-            root |= bit;
-    return (uint32_t)root;
-}
-
 /* The sums are moved to the pixel nearest to the centroid first, exactly,
  * modulo 2^64. */
 int32_t glint_region_radius_q8(const struct glint_region *sum)
@@ -98,7 +88,7 @@ int32_t glint_region_radius_q8(const struct glint_region *sum)
     const int64_t mean_q16 =
         quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
 
-    return (int32_t)square_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
+    return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }
 
 /* A clipped pixel tells little, so it counts 1/64: the rim decides where there

@@ -6,19 +6,6 @@
 
 enum { FAR_Q8 = 1 << 30, MARGIN_Q8 = 192 };
 
-static uint32_t square_root(uint64_t x)
-{
-    uint64_t root = 0;
-
-    for (int bit = (bit_length(x) + 1) / 2; bit >= 0; bit--) {
-        const uint64_t trial = root | (UINT64_C(1) << bit);
-
-        if (trial < (UINT64_C(1) << 32) && trial * trial <= x)
-            root = trial;
-    }
-    return (uint32_t)root;
-}
-
 static uint64_t magnitude(int64_t x)
 {
     return x < 0 ? (uint64_t)-x : (uint64_t)x;
@@ -75,8 +62,8 @@ static void to_pixels(const struct glint_corners *c, const int64_t *value_q16,
     const uint64_t ny = magnitude(g * fx - f * gx);
     const int wide = bit_length(nx | ny);
     const int down = wide > 31 ? wide - 31 : 0;
-    const uint64_t slope = (uint64_t)square_root((nx >> down) * (nx >> down) +
-                                                 (ny >> down) * (ny >> down));
+    const uint64_t slope = (uint64_t)q_root((nx >> down) * (nx >> down) +
+                                            (ny >> down) * (ny >> down));
     struct scale scale;
 
     if (slope == 0) { /* the same everywhere: all in or all out */
@@ -195,7 +182,7 @@ static int32_t field_scale_q16(const struct glint_corners *c)
         return INT32_MAX;
     else
         ratio_q16 <<= -up;
-    return q_clamp_sat((int64_t)square_root(ratio_q16), 1, INT32_MAX);
+    return q_clamp_sat((int64_t)q_root(ratio_q16), 1, INT32_MAX);
 }
 
 int32_t glint_clip_field_q16(const struct glint_stop *stop, int32_t x_q16,

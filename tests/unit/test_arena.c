@@ -55,6 +55,10 @@ static void test_rounding(void **state)
     assert_int_equal(q_mul(-1, 1, 1), 0);
     assert_int_equal(q_clamp_sat(1000, -5, 5), 5);
     assert_int_equal(Q_CONST(-0.5, 3), -4);
+    assert_int_equal(q_root(0), 0);
+    assert_int_equal(q_root(24), 4);
+    assert_int_equal(q_root(25), 5);
+    assert_true(q_root(UINT64_MAX) == UINT32_MAX);
     assert_int_equal(bit_length(0), 0);
     assert_int_equal(bit_length(UINT64_MAX), 64);
     assert_int_equal(bit_length(1 << 8), 9);
