@@ -184,7 +184,8 @@ double tool_seconds(void)
 
 /* -------------------------------------------------------------------- lens */
 
-/* lenses/ beside the directory of the executable, or what was installed. */
+/* lenses/ above the executable in a source tree, share/glint/lenses above it
+ * when installed anywhere, or where it was to be installed. */
 static bool find_table(const char *name, char *path, size_t bytes)
 {
     char self[512];
@@ -201,6 +202,9 @@ static bool find_table(const char *name, char *path, size_t bytes)
         for (int up = 0; up < 3 && strrchr(self, '/'); up++) {
             *strrchr(self, '/') = '\0';
             snprintf(path, bytes, "%s/lenses/%s.lens", self, name);
+            if (access(path, R_OK) == 0)
+                return true;
+            snprintf(path, bytes, "%s/share/glint/lenses/%s.lens", self, name);
             if (access(path, R_OK) == 0)
                 return true;
         }
