@@ -79,6 +79,8 @@ static int run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    signal(SIGPIPE, note_reader); /* the write fails, too */
+    struct sigaction note = {.sa_handler = note_reader};
+
+    sigaction(SIGPIPE, &note, NULL); /* the write fails, too */
     return close_output(run(argc, argv));
 }
