@@ -34,7 +34,7 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
 TOOLS := tool measure lamps frame scene cmd_info cmd_trace cmd_render \
         cmd_overlay cmd_compare
 UNIT := arena prescription optics trace pupil exact transfer resolve lights \
-        flare pnm y4m picture output workers measure
+        flare pnm y4m picture output workers measure lamps
 FUZZ := lens y4m pnm
 
 core_o     := $(CORE:%=$(OUT)/src/%.o)

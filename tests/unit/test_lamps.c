@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From lamps in a picture or a list to lights at infinity: place and power.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "lamps.h"
+#include "support/lens_check.h"
+
+enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
+
+/* A white square of 10 x 10 pixels on black: its middle is at (225, 45), its
+ * flux 100, and each pixel stands for 2^3 times white. */
+static void test_found_lamp(void **state)
+{
+    static uint8_t rgb[3 * WIDTH * HEIGHT];
+    const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
+    struct glint_image image = {.format = GLINT_RGB24,
+                                .width = WIDTH,
+                                .height = HEIGHT,
+                                .range = GLINT_RANGE_FULL};
+    struct lamp_finder finder = {.headroom_ev = 3, .max = 8};
+    struct glint_lights_config cfg;
+    struct glint_lamp lamp[8];
+    double x, y;
+
+    (void)state;
+    glint_image_place(&image, rgb);
+    for (int i = 0; i < SIDE; i++)
+        memset(rgb + 3 * ((Y0 + i) * WIDTH + X0), 255, 3 * SIDE);
+    glint_lights_defaults(&cfg, WIDTH, HEIGHT);
+    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    assert_int_equal(lamp_finder_frame(&finder, &image, &view, 50, lamp), 1);
+    lamp_finder_close(&finder);
+    glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
+    assert_near(x, 225, 0.02);
+    assert_near(y, 45, 0.02);
+    assert_near(lamp[0].power, 800, 1);
+    /* right of the middle and above it; film 36 mm wide, 65 and 55 pixels off
+     */
+    assert_near(lamp[0].phi_deg, 40.236, 0.01);
+    assert_near(lamp[0].theta_deg, 10.845, 0.01);
+}
+
+static void read_text(struct lamp_list *list, const char *text)
+{
+    char path[] = "/tmp/glint-lamps-XXXXXX";
+    struct glint_error error;
+    FILE *file = fdopen(mkstemp(path), "w");
+
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    assert_int_equal(lamp_list_read(list, path, &error), GLINT_OK);
+    remove(path);
+}
+
+/* CSV and JSON lines say the same; rows belong to their frame or to all. */
+static void test_lists(void **state)
+{
+    static const char *const texts[2] = {
+        "frame,x,y,power\n# a lamp\n0,10,20,5\r\n\n*,-30,40,6,1,0.5,0.25\n"
+        "2,1,2,3,1,1,1,4\n",
+        "{\"frame\": 0, \"x\": 10, \"y\": 20, \"power\": 5}\n"
+        "{\"x\":-30,\"y\":40,\"power\":6,\"r\":1,\"g\":0.5,\"b\":0.25}\n"
+        "{\"frame\":2,\"x\":1,\"y\":2,\"power\":3,\"size\":4}\n"};
+    const struct glint_view view = {WIDTH, HEIGHT, 36};
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct lamp_list list;
+        struct glint_lamp lamp[4];
+        double x, y;
+
+        read_text(&list, texts[k]);
+        assert_int_equal(list.n, 3);
+        assert_int_equal(lamp_list_frame(&list, 1, &view, 50, lamp, 4), 1);
+        glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
+        assert_near(x, -30, 1e-9);
+        assert_near(y, 40, 1e-9);
+        assert_true(lamp[0].power == 6 && lamp[0].rgb[1] == 0.5);
+        assert_int_equal(lamp_list_frame(&list, 2, &view, 50, lamp, 4), 2);
+        assert_true(lamp[1].power == 3 && list.row[2].size == 4);
+        lamp_list_free(&list);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_found_lamp),
+        cmocka_unit_test(test_lists),
+    };
+
+    return cmocka_run_group_tests_name("lamps", tests, NULL, NULL);
+}
