@@ -118,6 +118,8 @@ static bool take(struct scene *s, int option, const char *value)
         return true;
     case OPT_DITHER:
         return s->dither = true;
+    case OPT_BALANCE:
+        return s->balance = true;
     default:
         return tool_word(value, parts) >= 0;
     }
@@ -169,6 +171,8 @@ int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
                              scene->n_wavelengths, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
+    if (scene->balance)
+        glint_setup_balance(&scene->setup);
     if (scene->only_ghost >= scene->setup.n_ghosts)
         return tool_usage(tool, "%s has %d ghosts, there is no %d",
                           scene->lens.name, scene->setup.n_ghosts,

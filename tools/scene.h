@@ -27,7 +27,7 @@ struct scene {
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma;
     enum glint_weights weights;
-    bool uniform, antialias, dither, has_exposure;
+    bool uniform, antialias, dither, has_exposure, balance;
 };
 
 /* Long options of this file, for a command's array; all above 1000. */
@@ -48,6 +48,7 @@ enum scene_option {
     OPT_MASK,
     OPT_NO_ANTIALIAS,
     OPT_DITHER,
+    OPT_BALANCE,
     OPT_ONLY,
     OPT_LAST
 };
@@ -69,6 +70,7 @@ enum scene_option {
         {"mask", required_argument, NULL, OPT_MASK},               \
         {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},     \
         {"dither", no_argument, NULL, OPT_DITHER},                 \
+        {"balance", no_argument, NULL, OPT_BALANCE},               \
     {                                                              \
         "only", required_argument, NULL, OPT_ONLY                  \
     }
@@ -91,6 +93,9 @@ enum scene_option {
     "Brightness\n"                                                             \
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"          \
     "  --gain G            and times G (default 1)\n"                          \
+    "  --balance           measure each wavelength by its own direct image, "  \
+    "as\n"                                                                     \
+    "                      a camera balanced to white behind this lens\n"      \
     "Speed and accuracy of the integer engine\n"                               \
     "  --grid N            cells a side for the largest ghosts, 4 to 1024\n"   \
     "                      (default 64; the exact engine: 512)\n"              \
