@@ -293,19 +293,25 @@ struct glint_feed_config {
     bool uniform;  /* all ghosts get max_cells */
 };
 
-/* One ghost, light and wavelength, and the grid chosen for it. */
+enum { GLINT_FEED_CUTS = 8 };
+
+/* One ghost, light and wavelength, the grid chosen for it and the barrels that
+ * cut. A vertex holds the first barrel's value and the largest of the others'.
+ */
 struct glint_feed {
     const struct glint_lamp *lamp;
     int ghost, wavelength;
     struct glint_pupil pupil;
     bool found;  /* something gets through: PUPIL means something */
     int n_cells; /* 0: nothing of it is in the picture */
+    int n_cuts;  /* barrels that may cut inside the stop */
+    int cut_event[GLINT_FEED_CUTS]; /* the one that cuts most comes first */
 };
 
-/* Finds the pupil and chooses the grid by the ghost's size on the sensor:
- * n = max clamp(sqrt(ghost area / sensor area), 0.05, 1), a multiple of 4 and
- * at least 8, over the pupil and a pixel more on each side. [Bodonyi23]. Lamp,
- * ghost and wavelength are set already. */
+/* Finds the pupil and the barrels, and chooses the grid by the ghost's size on
+ * the sensor: n = max clamp(sqrt(ghost area / sensor area), 0.05, 1), a
+ * multiple of 4 and at least 8, over the pupil and a pixel more on each side.
+ * [Bodonyi23]. Lamp, ghost and wavelength are set already. */
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed, const struct glint_feed *near);
 

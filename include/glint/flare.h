@@ -53,8 +53,10 @@ struct glint_vertex {
     int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
     int32_t stop_x_q16, stop_y_q16; /* stop radii, within +-2^14 */
-    int32_t radius_q16;             /* relative radius, 0 .. 2^14; above 1 the
-                                       barrel cuts */
+    /* Two barrels that may cut, each (1 + r^2) / 2 with the relative radius r
+     * where the ray passes it: 1 at the barrel, above 1 cut, as steep as r
+     * there and smooth everywhere. 0 .. 2^14; 0: no such barrel. */
+    int32_t barrel_q16[2];
     int32_t energy_q16; /* 0 .. 65536, in units of the bundle; below 0: the ray
                            was lost, and the rest means nothing */
 };

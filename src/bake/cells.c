@@ -4,59 +4,20 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bake/cuts.h"
 #include "bake/degrees.h"
 
 enum { SURVEY = 96 }; /* rays a side that decide which barrels matter */
 
-/* A barrel cuts if it stops a ray that everything else lets pass, with a margin
- * for what lies between the rays of the survey. */
-static void mark_cuts(const struct glint_cells *c, double stop_r,
-                      double (*hits)[2], bool *cuts)
-{
-    const double margin = 1.1;
-    double worst = stop_r, second = 0;
-    int at = -1;
-
-    for (int k = 0; k < c->path->n_events; k++) {
-        const struct glint_event *e = &c->path->event[k];
-        const double r = e->kind == GLINT_STOP
-                             ? 0
-                             : hypot(hits[k][0], hits[k][1]) / e->semi_mm;
-
-        if (r > worst) {
-            second = worst;
-            worst = r;
-            at = k;
-        } else if (r > second) {
-            second = r;
-        }
-    }
-    if (at >= 0 && worst > 0.99 && second < margin)
-        cuts[at] = true;
-}
-
 static void find_cuts(struct glint_cells *c)
 {
-    const struct glint_pupil *p = &c->pupil;
-    const double stop_mm = c->setup->optics.stop_radius_mm;
-    bool cuts[GLINT_MAX_EVENTS + 1] = {false};
-    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct glint_cuts cuts;
 
-    for (int j = 0; j <= SURVEY / 2; j++)
-        for (int i = 0; i <= SURVEY; i++) {
-            const double x = p->x0_mm + (p->x1_mm - p->x0_mm) * i / SURVEY;
-            const double y = p->y1_mm * j / (SURVEY / 2);
-            struct glint_ray ray;
-
-            if (glint_trace(c->path, x, y, c->direction, &ray, hits) ==
-                GLINT_RAY_OK)
-                mark_cuts(c, hypot(ray.stop_x_mm, ray.stop_y_mm) / stop_mm,
-                          hits, cuts);
-        }
-    c->n_cuts = 0;
-    for (int k = 0; k < c->path->n_events && c->n_cuts < GLINT_MAX_CUTS; k++)
-        if (cuts[k])
-            c->cut_event[c->n_cuts++] = k;
+    glint_cuts_find(&cuts, c->path, &c->pupil, c->direction,
+                    c->setup->optics.stop_radius_mm, SURVEY);
+    c->n_cuts = cuts.n < GLINT_MAX_CUTS ? cuts.n : GLINT_MAX_CUTS;
+    for (int k = 0; k < c->n_cuts; k++)
+        c->cut_event[k] = cuts.event[k];
 }
 
 bool glint_cells_init(struct glint_cells *cells,

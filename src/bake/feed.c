@@ -8,8 +8,11 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "bake/cuts.h"
 #include "bake/degrees.h"
 #include "glint/flare.h"
+
+enum { SURVEY = 32 }; /* rays a side that decide which barrels matter */
 
 /* The ghost's box on the sensor, turned by the light's azimuth, meets the
  * picture. */
@@ -64,6 +67,46 @@ static int choose_cells(const struct glint_feed_config *cfg,
     return enough < cfg->max_cells ? enough : cfg->max_cells;
 }
 
+static void light_direction(const struct glint_feed *feed, double direction[3])
+{
+    direction[0] = glint_sin_deg(feed->lamp->theta_deg);
+    direction[1] = 0;
+    direction[2] = glint_cos_deg(feed->lamp->theta_deg);
+}
+
+/* The barrels that cut, the one that stops most rays first: the maximum over
+ * the others may have kinks. */
+static void choose_cuts(const struct glint_feed_config *cfg,
+                        const struct glint_path *path, struct glint_feed *feed)
+{
+    double direction[3];
+    struct glint_cuts cuts;
+
+    light_direction(feed, direction);
+    glint_cuts_find(&cuts, path, &feed->pupil, direction,
+                    cfg->setup->optics.stop_radius_mm, SURVEY);
+    for (feed->n_cuts = 0; feed->n_cuts < GLINT_FEED_CUTS; feed->n_cuts++) {
+        int most = 0;
+
+        for (int k = 1; k < cuts.n; k++)
+            if (cuts.rays[k] > cuts.rays[most])
+                most = k;
+        if (cuts.n == 0 || cuts.rays[most] == 0)
+            break;
+        cuts.rays[most] = 0;
+        feed->cut_event[feed->n_cuts] = cuts.event[most];
+    }
+}
+
+/* Between wavelengths the barrels that cut do not change by more than the
+ * survey's margin. */
+static void take_cuts(struct glint_feed *feed, const struct glint_feed *near)
+{
+    feed->n_cuts = near->n_cuts;
+    for (int k = 0; k < near->n_cuts; k++)
+        feed->cut_event[k] = near->cut_event[k];
+}
+
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed, const struct glint_feed *near)
 {
@@ -77,6 +120,10 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
                                    s->optics.stop_radius_mm,
                                    near && near->found ? &near->pupil : NULL);
     if (feed->found && in_view(cfg, feed)) {
+        if (near && near->n_cells > 0)
+            take_cuts(feed, near);
+        else
+            choose_cuts(cfg, &path, feed);
         add_rim(cfg, feed);
         feed->n_cells = choose_cells(cfg, feed);
     }
@@ -129,39 +176,75 @@ void glint_feed_bundle(const struct glint_feed_config *cfg,
         bundle->rgb_q14[c] = (int32_t)lrint(rgb[c] * 16384);
 }
 
-/* Nothing outside these ranges may become a vertex: geometry never saturates.
- */
-static bool in_range(const double at[5])
+/* (1 + r^2) / 2 at the barrel of event K. */
+static double barrel_value(const struct glint_path *path, int k,
+                           double (*hits)[2])
 {
-    return fabs(at[0]) < 0x1p20 && fabs(at[1]) < 0x1p20 &&
-           fabs(at[2]) < 0x1p14 && fabs(at[3]) < 0x1p14 && at[4] < 0x1p14;
+    const double semi = path->event[k].semi_mm;
+    const double x = hits[k][0] / semi, y = hits[k][1] / semi;
+
+    return 0.5 * (1 + x * x + y * y);
 }
 
-static void quantise(const struct glint_feed_config *cfg,
-                     const struct glint_feed *feed, const struct glint_ray *ray,
-                     struct glint_vertex *v)
+static void barrel_values(const struct glint_feed *feed,
+                          const struct glint_path *path, double (*hits)[2],
+                          double value[2])
+{
+    value[0] = value[1] = 0;
+    for (int k = 0; k < feed->n_cuts; k++) {
+        double *into = &value[k > 0];
+
+        *into = fmax(*into, barrel_value(path, feed->cut_event[k], hits));
+    }
+}
+
+/* Where a ray goes, as the vertex will hold it. */
+struct landing {
+    double x, y, stop_x, stop_y, energy, barrel[2];
+};
+
+/* Nothing outside these ranges may become a vertex: geometry never saturates.
+ */
+static bool in_range(const struct landing *l)
+{
+    return fabs(l->x) < 0x1p20 && fabs(l->y) < 0x1p20 &&
+           fabs(l->stop_x) < 0x1p14 && fabs(l->stop_y) < 0x1p14 &&
+           l->barrel[0] < 0x1p14 && l->barrel[1] < 0x1p14;
+}
+
+static void quantise(const struct landing *l, struct glint_vertex *v)
+{
+    if (!in_range(l))
+        return;
+    v->x_q8 = (int32_t)lrint(l->x * 256);
+    v->y_q8 = (int32_t)lrint(l->y * 256);
+    v->stop_x_q16 = (int32_t)lrint(l->stop_x * 65536);
+    v->stop_y_q16 = (int32_t)lrint(l->stop_y * 65536);
+    for (int k = 0; k < 2; k++)
+        v->barrel_q16[k] = (int32_t)lrint(l->barrel[k] * 65536);
+    v->energy_q16 = (int32_t)lrint(l->energy * 65536);
+}
+
+/* From the light's frame to the picture; MIRROR -1 is the ray on the other side
+ * of the light's plane. */
+static struct landing land(const struct glint_feed_config *cfg,
+                           const struct glint_feed *feed,
+                           const struct glint_ray *ray, double mirror)
 {
     const double scale = cfg->view.width / cfg->view.sensor_width_mm;
     const double stop = cfg->setup->optics.stop_radius_mm;
     const double c = glint_cos_deg(feed->lamp->phi_deg);
     const double s = glint_sin_deg(feed->lamp->phi_deg);
-    const double at[5] = {
-        0.5 * cfg->view.width +
-            scale * (ray->sensor_x_mm * c - ray->sensor_y_mm * s),
-        0.5 * cfg->view.height -
-            scale * (ray->sensor_x_mm * s + ray->sensor_y_mm * c),
-        (ray->stop_x_mm * c - ray->stop_y_mm * s) / stop,
-        (ray->stop_x_mm * s + ray->stop_y_mm * c) / stop, ray->rel_radius};
+    const double sensor_y = mirror * ray->sensor_y_mm;
+    const double stop_y = mirror * ray->stop_y_mm;
 
-    if (!in_range(at))
-        return;
-    v->x_q8 = (int32_t)lrint(at[0] * 256);
-    v->y_q8 = (int32_t)lrint(at[1] * 256);
-    v->stop_x_q16 = (int32_t)lrint(at[2] * 65536);
-    v->stop_y_q16 = (int32_t)lrint(at[3] * 65536);
-    v->radius_q16 = (int32_t)lrint(at[4] * 65536);
-    v->energy_q16 =
-        (int32_t)lrint(fmin(1, ray->energy / energy_unit(feed)) * 65536);
+    return (struct landing){.x = 0.5 * cfg->view.width +
+                                 scale * (ray->sensor_x_mm * c - sensor_y * s),
+                            .y = 0.5 * cfg->view.height -
+                                 scale * (ray->sensor_x_mm * s + sensor_y * c),
+                            .stop_x = (ray->stop_x_mm * c - stop_y * s) / stop,
+                            .stop_y = (ray->stop_x_mm * s + stop_y * c) / stop,
+                            .energy = fmin(1, ray->energy / energy_unit(feed))};
 }
 
 static void trace_row(const struct glint_feed_config *cfg,
@@ -170,22 +253,26 @@ static void trace_row(const struct glint_feed_config *cfg,
                       struct glint_vertex *row, struct glint_vertex *mirrored)
 {
     const struct glint_pupil *p = &feed->pupil;
-    const double direction[3] = {glint_sin_deg(feed->lamp->theta_deg), 0,
-                                 glint_cos_deg(feed->lamp->theta_deg)};
     const int n = feed->n_cells;
+    double direction[3];
 
+    light_direction(feed, direction);
     for (int i = 0; i <= n; i++) {
+        double hits[GLINT_MAX_EVENTS + 1][2];
+        struct landing here, there;
         struct glint_ray ray;
 
         row[i].energy_q16 = mirrored[i].energy_q16 = -1;
         if (glint_trace(path, p->x0_mm + (p->x1_mm - p->x0_mm) * i / n,
                         p->y1_mm * (2.0 * j - n) / n, direction, &ray,
-                        NULL) != GLINT_RAY_OK)
+                        hits) != GLINT_RAY_OK)
             continue;
-        quantise(cfg, feed, &ray, &row[i]);
-        ray.sensor_y_mm = -ray.sensor_y_mm;
-        ray.stop_y_mm = -ray.stop_y_mm;
-        quantise(cfg, feed, &ray, &mirrored[i]);
+        here = land(cfg, feed, &ray, 1);
+        there = land(cfg, feed, &ray, -1);
+        barrel_values(feed, path, hits, here.barrel);
+        barrel_values(feed, path, hits, there.barrel);
+        quantise(&here, &row[i]);
+        quantise(&there, &mirrored[i]);
     }
 }
 

@@ -70,21 +70,26 @@ static int edges_agree(const struct glint_vertex *a,
     return dx * dx + dy * dy <= allowed + 2; /* two steps of rounding */
 }
 
+/* B is the mean of A and C within GAMMA. */
+static int halfway(int32_t a, int32_t b, int32_t c, int32_t gamma)
+{
+    const int64_t off = (int64_t)a + c - 2 * (int64_t)b;
+
+    return off <= gamma && -off <= gamma;
+}
+
 /* B is the mean of A and C within GAMMA, where a cut may run: what clips must
  * be as straight as what is drawn. */
 static int cuts_agree(const struct glint_vertex *a,
                       const struct glint_vertex *b,
                       const struct glint_vertex *c, int32_t gamma_q16)
 {
-    const int64_t r =
-        (int64_t)a->radius_q16 + c->radius_q16 - 2 * (int64_t)b->radius_q16;
-    const int64_t x =
-        (int64_t)a->stop_x_q16 + c->stop_x_q16 - 2 * (int64_t)b->stop_x_q16;
-    const int64_t y =
-        (int64_t)a->stop_y_q16 + c->stop_y_q16 - 2 * (int64_t)b->stop_y_q16;
-
-    return r <= gamma_q16 && -r <= gamma_q16 && x <= gamma_q16 &&
-           -x <= gamma_q16 && y <= gamma_q16 && -y <= gamma_q16;
+    for (int k = 0; k < 2; k++)
+        if (!halfway(a->barrel_q16[k], b->barrel_q16[k], c->barrel_q16[k],
+                     gamma_q16))
+            return 0;
+    return halfway(a->stop_x_q16, b->stop_x_q16, c->stop_x_q16, gamma_q16) &&
+           halfway(a->stop_y_q16, b->stop_y_q16, c->stop_y_q16, gamma_q16);
 }
 
 /* The three rows and columns of nodes of a block are straight enough. */

@@ -90,10 +90,11 @@ static void side_values(const struct glint_corners *c,
                                  q_shift(ny * c->at[i]->stop_y_q16, 30));
 }
 
-static void barrel_values(const struct glint_corners *c, int64_t *value_q16)
+static void barrel_values(const struct glint_corners *c, int barrel,
+                          int64_t *value_q16)
 {
     for (int i = 0; i < 4; i++)
-        value_q16[i] = (INT64_C(1) << 16) - c->at[i]->radius_q16;
+        value_q16[i] = (INT64_C(1) << 16) - c->at[i]->barrel_q16[barrel];
 }
 
 static int64_t lowest(const int64_t *v)
@@ -289,12 +290,17 @@ int glint_clip_classify(const struct glint_corners *corners,
 {
     int64_t value[4];
     const int64_t reach = reach_q8(corners);
-    enum side at_barrel, at_stop;
+    enum side at_barrel = INSIDE, at_stop;
 
-    barrel_values(corners, value);
-    at_barrel = side_of(corners, value, reach);
-    if (at_barrel == OUTSIDE)
-        return -1;
+    for (int barrel = 0; barrel < 2; barrel++) {
+        enum side s;
+
+        barrel_values(corners, barrel, value);
+        s = side_of(corners, value, reach);
+        if (s == OUTSIDE)
+            return -1;
+        at_barrel = s < at_barrel ? s : at_barrel;
+    }
     at_stop = stop_side(corners, stop, reach);
     if (at_stop == OUTSIDE)
         return -1;
@@ -316,9 +322,11 @@ int glint_clip_middle(const struct glint_corners *corners,
 {
     int64_t value[4], x[4], y[4];
 
-    barrel_values(corners, value);
-    if (mean(value, corners->n) < 0)
-        return 0;
+    for (int barrel = 0; barrel < 2; barrel++) {
+        barrel_values(corners, barrel, value);
+        if (mean(value, corners->n) < 0)
+            return 0;
+    }
     for (int i = 0; i < 4; i++) {
         x[i] = corners->at[i]->stop_x_q16;
         y[i] = corners->at[i]->stop_y_q16;
@@ -350,8 +358,8 @@ void glint_clip_init(struct glint_clip *clip,
 
     clip->n = 0;
     clip->field = 0;
-    if (cut & GLINT_CUT_BARREL) {
-        barrel_values(corners, value);
+    for (int barrel = 0; cut & GLINT_CUT_BARREL && barrel < 2; barrel++) {
+        barrel_values(corners, barrel, value);
         add_linear(clip, corners, value, reach);
     }
     if (!(cut & GLINT_CUT_STOP))

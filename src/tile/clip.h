@@ -5,7 +5,7 @@
  * A clip is a function over the primitive, positive inside the opening, linear
  * between the corners, and scaled to pixels: its value at a pixel's centre is
  * the distance to the cut, so that cover = value + 1/2, held to 0 .. 1. The
- * sides of a polygonal stop and the relative radius are such functions; a
+ * sides of a polygonal stop and the barrels are such functions; a
  * circle and a mask are looked up at the interpolated stop position instead and
  * share one scale.
  */
@@ -18,7 +18,7 @@
 
 struct glint_clip {
     int n;                                  /* linear functions */
-    int32_t at_q8[GLINT_MAX_BLADES + 1][4]; /* pixels, at each corner */
+    int32_t at_q8[GLINT_MAX_BLADES + 2][4]; /* pixels, at each corner */
     int field;         /* the stop is looked up per pixel */
     int32_t field_q16; /* pixels per stop radius, for the lookup */
 };

@@ -12,7 +12,7 @@
 
 enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross it */
-    GLINT_CUT_BARREL = 2, /* relative radius 1 may cross it */
+    GLINT_CUT_BARREL = 2, /* a barrel may cross it */
     GLINT_POINT = 4       /* far smaller than a pixel: all its light goes to the
                              pixel its middle lies in */
 };

@@ -66,13 +66,13 @@ static struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j)
     const int64_t bent = (sx * sx / 65536 + sx * sy / 131072) * g->bend / 1000;
     const int64_t bx = sx + 65536 * g->barrel_shift / 1000;
     const int64_t r2 = (bx * bx + sy * sy) / 65536;
-    struct glint_vertex v = {0, 0, 0, 0, 0, 0};
+    struct glint_vertex v = {0, 0, 0, 0, {0, 0}, 0};
 
     v.x_q8 = (int32_t)(g->cx * 256 + (sx + bent) * g->size * g->mirror / 256);
     v.y_q8 = (int32_t)(g->cy * 256 - (sy + sx / 5) * g->size / 256);
     v.stop_x_q16 = (int32_t)sx;
     v.stop_y_q16 = (int32_t)sy;
-    v.radius_q16 = (int32_t)((r2 + 65536) / 2); /* about r, 1 at r = 1 */
+    v.barrel_q16[0] = (int32_t)((r2 + 65536) / 2);
     v.energy_q16 = (int32_t)(50000 + sx / 8);
     return v;
 }
@@ -282,7 +282,7 @@ static void test_hostile_bundles(void **state)
 
     (void)state;
     for (int i = 0; i < 25; i++)
-        v[i] = (struct glint_vertex){5000, 5000, 0, 0, 0, 65536};
+        v[i] = (struct glint_vertex){5000, 5000, 0, 0, {0, 0}, 65536};
     v = glint_flare_add(f, &b);
     for (int i = 0; i < 25; i++) {
         v[i] = ghost_vertex(&(struct ghost){4, 50, 50, 9, 0, 1, 0, 0, {0}},
@@ -293,7 +293,8 @@ static void test_hostile_bundles(void **state)
     b.flux_exponent = -900;
     v = glint_flare_add(f, &b);
     for (int i = 0; i < 25; i++) {
-        v[i] = (struct glint_vertex){0, 0, 1 << 30, -(1 << 30), 1 << 30, 1};
+        v[i] = (struct glint_vertex){
+            0, 0, 1 << 30, -(1 << 30), {1 << 30, 1 << 29}, 1};
         v[i].x_q8 = (i % 5 - 2) * (GLINT_VERTEX_LIMIT_Q8 / 2 - 1);
         v[i].y_q8 = (i / 5 - 2) * (GLINT_VERTEX_LIMIT_Q8 / 2 - 1);
     }
