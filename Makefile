@@ -23,9 +23,9 @@ OUT  := build/$(ARCH)-$(notdir $(CC))-$(CONFIG)
 export DEPS OUT
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/image base/workers flare/regions \
+CORE := base/status base/arena base/q base/image base/workers lens/transfer flare/regions \
         flare/lights tile/primitive tile/clip flare/ghost_grid tile/bins \
-        tile/raster tile/transfer tile/resolve flare/flare
+        tile/raster tile/curve tile/resolve flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/cuts bake/cells \
         bake/setup bake/exact bake/feed
@@ -33,7 +33,7 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool measure lamps frame scene cmd_info cmd_trace cmd_render \
         cmd_overlay cmd_compare
-UNIT := arena prescription optics trace pupil exact transfer resolve lights \
+UNIT := arena prescription optics trace pupil exact curve resolve lights \
         flare pnm y4m picture output workers measure lamps
 FUZZ := lens y4m pnm
 

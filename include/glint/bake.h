@@ -285,6 +285,12 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm,
                       const struct glint_pupil *near);
 
+/* The same for what also lands within FIELD_MM of the sensor's centre. */
+bool glint_pupil_find_within(struct glint_pupil *pupil,
+                             const struct glint_path *path, double theta_deg,
+                             double stop_radius_mm, double field_mm,
+                             const struct glint_pupil *near);
+
 struct glint_feed_config {
     const struct glint_setup *setup;
     struct glint_view view;

@@ -21,7 +21,7 @@ enum glint_pixel_format {
 
 enum glint_range { GLINT_RANGE_FULL, GLINT_RANGE_LIMITED };
 enum glint_matrix { GLINT_MATRIX_BT601, GLINT_MATRIX_BT709 };
-enum glint_transfer { GLINT_TRANSFER_SRGB, GLINT_TRANSFER_BT709 };
+enum glint_tone { GLINT_TONE_SRGB, GLINT_TONE_BT709 };
 
 /* A picture. Chroma planes of subsampled formats have (side + 1) / 2 samples,
  * so odd sizes are fine. Strides may exceed the row and may be negative. */
@@ -32,7 +32,7 @@ struct glint_image {
     ptrdiff_t stride_bytes[3];
     enum glint_range range;       /* of the codes; RGB24: always full */
     enum glint_matrix matrix;     /* of Y, Cb, Cr; ignored for RGB24 */
-    enum glint_transfer transfer; /* from codes to linear light */
+    enum glint_tone transfer; /* from codes to linear light */
 };
 
 /* Number of planes of FORMAT, 1 or 3. */

@@ -83,7 +83,7 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
                                          .width = pixels.width,
                                          .height = pixels.height,
                                          .range = GLINT_RANGE_FULL,
-                                         .transfer = GLINT_TRANSFER_SRGB};
+                                         .transfer = GLINT_TONE_SRGB};
     glint_image_place(&loaded->image, pixels.rgb);
     return GLINT_OK;
 }
@@ -193,7 +193,7 @@ static enum glint_status to_rgb24(struct glint_image *image,
         .width = rgb ? from->floats.width : from->image.width,
         .height = rgb ? from->floats.height : from->image.height,
         .range = GLINT_RANGE_FULL,
-        .transfer = GLINT_TRANSFER_SRGB};
+        .transfer = GLINT_TONE_SRGB};
     const size_t n = glint_image_bytes(GLINT_RGB24, made.width, made.height);
     uint8_t *const mem = malloc(n);
 

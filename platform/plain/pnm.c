@@ -111,7 +111,7 @@ enum glint_status glint_pnm_read(struct glint_image *image, const void *data,
     struct cursor c = {.at = data};
     struct glint_image made = {.range = GLINT_RANGE_FULL,
                                .matrix = GLINT_MATRIX_BT601,
-                               .transfer = GLINT_TRANSFER_SRGB};
+                               .transfer = GLINT_TONE_SRGB};
     int maximum;
     size_t n_samples, need;
     enum glint_status status;

@@ -363,7 +363,7 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
         .height = h->height,
         .range = h->range,
         .matrix = h->matrix,
-        .transfer = GLINT_TRANSFER_BT709,
+        .transfer = GLINT_TONE_BT709,
     };
     glint_image_place(&r->frame, r->mem);
     return GLINT_OK;

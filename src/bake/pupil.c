@@ -28,7 +28,7 @@ struct sample {
 struct search {
     const struct glint_path *path;
     double direction[3];
-    double stop_mm;
+    double stop_mm, field_mm;
     int across, down; /* cells of this round */
     struct sample node[DOWN + 1][ACROSS + 1];
 };
@@ -80,18 +80,21 @@ static double from_zero(double low, double high)
 static bool may_pass(const struct search *s, const struct bounds *b)
 {
     const double more = b->n == 4 ? 0.5 : 1;
-    double low[3], high[3];
+    double low[5], high[5];
 
     if (b->n == 0)
         return false;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 5; k++) {
         const double grow = more * (b->high[k] - b->low[k]);
 
         low[k] = b->low[k] - grow;
         high[k] = b->high[k] + grow;
     }
-    return low[2] <= 1 && hypot(from_zero(low[0], high[0]),
-                                from_zero(low[1], high[1])) <= s->stop_mm;
+    return low[2] <= 1 &&
+           hypot(from_zero(low[0], high[0]), from_zero(low[1], high[1])) <=
+               s->stop_mm &&
+           hypot(from_zero(low[3], high[3]), from_zero(low[4], high[4])) <=
+               s->field_mm;
 }
 
 /* Tallies one kept cell: where it is, its energy and its light's extent. */
@@ -189,6 +192,15 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm,
                       const struct glint_pupil *near)
 {
+    return glint_pupil_find_within(pupil, path, theta_deg, stop_radius_mm,
+                                   HUGE_VAL, near);
+}
+
+bool glint_pupil_find_within(struct glint_pupil *pupil,
+                             const struct glint_path *path, double theta_deg,
+                             double stop_radius_mm, double field_mm,
+                             const struct glint_pupil *near)
+{
     struct search s; /* 120 KB: the offline half has the stack for it */
     struct glint_pupil p;
     const struct glint_event *front = NULL;
@@ -204,6 +216,7 @@ bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
     s.direction[1] = 0;
     s.direction[2] = glint_cos_deg(theta_deg);
     s.stop_mm = stop_radius_mm;
+    s.field_mm = field_mm;
     p = whole_front(front, s.direction);
     if (near)
         p = surroundings(near, &p);

@@ -10,7 +10,7 @@
 #include "base/arena.h"
 #include "base/q.h"
 #include "flare/regions.h"
-#include "tile/transfer.h"
+#include "tile/curve.h"
 
 #define N_CANDIDATES 2048 /* at least the 1024 that find may be asked for */
 #define MAX_SPOTS    1024

@@ -28,7 +28,7 @@
 #include <stdint.h>
 
 #include "glint/image.h"
-#include "tile/transfer.h"
+#include "tile/curve.h"
 
 struct glint_resolve { /* 6.4 KiB: too much for a stack */
     struct glint_curve curve;

@@ -853,7 +853,7 @@ static void test_ycc_formats(void **state)
         struct glint_lights_config cfg = plain_config(&image, 200, 250);
 
         image.range = GLINT_RANGE_LIMITED;
-        image.transfer = GLINT_TRANSFER_BT709;
+        image.transfer = GLINT_TONE_BT709;
         fill_grey(&image, 0, 0, 41, 31, 16);
         for (int i = 1; i < 3; i++)
             memset(image.plane[i], 128,

@@ -67,7 +67,7 @@ static void expect_pnm(const char *data, size_t bytes,
     assert_int_equal(image.width, width);
     assert_int_equal(image.height, height);
     assert_int_equal(image.range, GLINT_RANGE_FULL);
-    assert_int_equal(image.transfer, GLINT_TRANSFER_SRGB);
+    assert_int_equal(image.transfer, GLINT_TONE_SRGB);
     assert_memory_equal(image.plane[0], samples,
                         glint_image_bytes(format, width, height));
     free(image.plane[0]);

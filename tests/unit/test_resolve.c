@@ -147,7 +147,7 @@ static double light_of(double v)
 {
     if (v < 0)
         return -light_of(-v);
-    if (fixture.image.transfer == GLINT_TRANSFER_SRGB)
+    if (fixture.image.transfer == GLINT_TONE_SRGB)
         return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
 }
@@ -158,7 +158,7 @@ static double code_of(double light)
         return -code_of(-light);
     if (light > 1)
         return 1;
-    if (fixture.image.transfer == GLINT_TRANSFER_SRGB)
+    if (fixture.image.transfer == GLINT_TONE_SRGB)
         return light <= 0.0031308 ? 12.92 * light
                                   : 1.055 * pow(light, 1 / 2.4) - 0.055;
     return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
@@ -330,7 +330,7 @@ static void fill_light(void)
 /* Sets one of the 16 codings of a format. */
 static void set_coding(int k)
 {
-    fixture.image.transfer = k & 1 ? GLINT_TRANSFER_BT709 : GLINT_TRANSFER_SRGB;
+    fixture.image.transfer = k & 1 ? GLINT_TONE_BT709 : GLINT_TONE_SRGB;
     fixture.image.range = k & 2 ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
     fixture.image.matrix = k & 4 ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 }

@@ -225,7 +225,7 @@ static void test_frames(void **state)
         assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error),
                          GLINT_OK);
         assert_int_equal(frame->format, GLINT_I420);
-        assert_int_equal(frame->transfer, GLINT_TRANSFER_BT709);
+        assert_int_equal(frame->transfer, GLINT_TONE_BT709);
         assert_int_equal(frame->stride_bytes[0], 3);
         assert_int_equal(frame->stride_bytes[1], 2);
         assert_memory_equal(frame->plane[0], "abcdefghi", 9);

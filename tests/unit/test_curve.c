@@ -3,7 +3,7 @@
  * Curves against libm over every code and every step of light; matrices against
  * the colours that the standards give.
  */
-#include "tile/transfer.h"
+#include "tile/curve.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -13,20 +13,20 @@
 
 #include <cmocka.h>
 
-static const enum glint_transfer transfers[2] = {GLINT_TRANSFER_SRGB,
-                                                 GLINT_TRANSFER_BT709};
+static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB,
+                                                 GLINT_TONE_BT709};
 
 /* Standards: IEC 61966-2-1 and ITU-R BT.709, inverse. */
-static double light_of(enum glint_transfer transfer, double v)
+static double light_of(enum glint_tone transfer, double v)
 {
-    if (transfer == GLINT_TRANSFER_SRGB)
+    if (transfer == GLINT_TONE_SRGB)
         return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
 }
 
-static double code_of(enum glint_transfer transfer, double light)
+static double code_of(enum glint_tone transfer, double light)
 {
-    if (transfer == GLINT_TRANSFER_SRGB)
+    if (transfer == GLINT_TONE_SRGB)
         return light <= 0.04045 / 12.92 ? 12.92 * light
                                         : 1.055 * pow(light, 1 / 2.4) - 0.055;
     return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
@@ -37,12 +37,12 @@ static void test_codes_by_hand(void **state)
     struct glint_curve curve;
 
     (void)state;
-    glint_curve_init(&curve, GLINT_TRANSFER_SRGB);
+    glint_curve_init(&curve, GLINT_TONE_SRGB);
     assert_int_equal(curve.decode_q20[0], 0);
     assert_int_equal(curve.decode_q20[10], 3183);    /* 10 / 255 / 12.92 */
     assert_int_equal(curve.decode_q20[128], 226346); /* 0.2158605 */
     assert_int_equal(curve.decode_q20[255], 1 << 20);
-    glint_curve_init(&curve, GLINT_TRANSFER_BT709);
+    glint_curve_init(&curve, GLINT_TONE_BT709);
     assert_int_equal(curve.decode_q20[0], 0);
     assert_int_equal(curve.decode_q20[20], 18276); /* 20 / 255 / 4.5 */
     assert_int_equal(curve.decode_q20[255], 1 << 20);
@@ -82,7 +82,7 @@ static void test_encode_inverts_decode(void **state)
 
 /* Worst error of encode in codes, over all steps of light but those of BT.709
  * where its two pieces miss each other by 0.06 code: below 0.018. */
-static double encode_error(enum glint_transfer transfer)
+static double encode_error(enum glint_tone transfer)
 {
     struct glint_curve curve;
     int32_t before_q7 = 0;
@@ -105,8 +105,8 @@ static double encode_error(enum glint_transfer transfer)
 
 static void test_encode_error(void **state)
 {
-    const double srgb = encode_error(GLINT_TRANSFER_SRGB);
-    const double bt709 = encode_error(GLINT_TRANSFER_BT709);
+    const double srgb = encode_error(GLINT_TONE_SRGB);
+    const double bt709 = encode_error(GLINT_TONE_BT709);
 
     (void)state;
     print_message("encode is within %.4f (sRGB), %.4f (BT.709) code\n", srgb,
@@ -120,7 +120,7 @@ static void test_encode_saturates_and_is_odd(void **state)
     struct glint_curve curve;
 
     (void)state;
-    glint_curve_init(&curve, GLINT_TRANSFER_SRGB);
+    glint_curve_init(&curve, GLINT_TONE_SRGB);
     assert_int_equal(curve_encode(&curve, LINEAR_WHITE_Q20 + 1), CODE_WHITE_Q7);
     assert_int_equal(curve_encode(&curve, INT32_MAX), CODE_WHITE_Q7);
     assert_int_equal(curve_encode(&curve, -INT32_MAX), -CODE_WHITE_Q7);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "tile/transfer.h"
+#include "tile/curve.h"
 
 #include "base/compiler.h"
 
@@ -59,9 +59,9 @@ static int32_t light_of_code_q20(const struct standard *s, int code)
                      10);
 }
 
-void glint_curve_init(struct glint_curve *curve, enum glint_transfer transfer)
+void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer)
 {
-    const struct standard *s = transfer == GLINT_TRANSFER_SRGB ? &srgb : &bt709;
+    const struct standard *s = transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
     int code = 0;
 
     for (int i = 0; i < 256; i++)

@@ -18,8 +18,8 @@
  *
  * Integers only, the same on every CPU; no division but in init.
  */
-#ifndef GLINT_TILE_TRANSFER_H
-#define GLINT_TILE_TRANSFER_H
+#ifndef GLINT_TILE_CURVE_H
+#define GLINT_TILE_CURVE_H
 
 #include <stdint.h>
 
@@ -37,7 +37,7 @@ struct glint_curve {
 };
 
 /* Fills CURVE for TRANSFER: 256 roots by bit search. */
-void glint_curve_init(struct glint_curve *curve, enum glint_transfer transfer);
+void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
 
 /* Light of CODE_Q7, +-CODE_WHITE_Q7. */
 static inline int32_t curve_decode(const struct glint_curve *curve,

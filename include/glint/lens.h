@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/lens.h - a baked lens: its model file, and rays through it in integers.
+ *
+ *     status = glint_lens_open(&lens, data, bytes, &reason);    once
+ *     glint_transfer_init(&transfer, &lens, ghost, sine_q30, wave_q24);
+ *     glint_transfer_ray(&transfer, u_q30, v_q30, &out);        or
+ *     glint_transfer_grid(&transfer, &place, n_cells, vertices);
+ *
+ * A model holds, for every ghost, sparse polynomials from the pupil to the stop,
+ * the sensor, the barrels and the energy. It is one block of 32-bit words that
+ * is used where it lies, in ROM or a mapped file: nothing is copied, nothing is
+ * allocated. After glint_lens_open() has accepted it nothing can go wrong.
+ *
+ * Variables of a polynomial, each -1 .. 1:
+ *   u, v   place in the ghost's box on the vertex plane of the first surface,
+ *          u in the plane of the light, v across; everything is symmetric in v
+ *   s      sine of the light's angle within the range of the system
+ *   w      1 / wavelength^2 within the band of the system
+ * s and w are the same for a whole bundle: init puts them in and leaves
+ * polynomials in u and v. Method after [Bodonyi25], in coordinates in which
+ * ghosts are tame.
+ */
+#ifndef GLINT_LENS_H
+#define GLINT_LENS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/status.h"
+
+struct glint_vertex;
+
+/* ------------------------------------------------------------- model file
+ *
+ * Little-endian 32-bit words; offsets ("_at") are bytes from the start of the
+ * file, multiples of 4. Header first, then in any order what it points to. */
+
+#define GLINT_MODEL_MAGIC   UINT32_C(0x544e4c47) /* "GLNT" */
+#define GLINT_MODEL_VERSION 1
+
+/* mantissa * 2^exponent; mantissa 0, or 2^30 .. 2^31 - 1 in magnitude;
+ * exponent within +-200. */
+struct glint_real {
+    int32_t mantissa;
+    int32_t exponent;
+};
+
+enum glint_basis {
+    GLINT_BASIS_AUTO,  /* u, v, s, w as above */
+    GLINT_BASIS_SPARSE /* x, y, r and 1 - r, [Bodonyi25]; x and y are u and v
+                          of one box for all angles, r = sqrt((x^2 + y^2) / 2) */
+};
+
+struct glint_model_header {
+    uint32_t magic, version;
+    uint32_t bytes; /* of the whole file */
+    uint32_t crc32; /* of all after this word: polynomial 0xedb88320,
+                       reflected, begun and ended with all ones */
+    uint32_t basis; /* enum glint_basis */
+    uint32_t key[2]; /* of lens table and options, low word first */
+    char name[64];   /* of the lens, terminated */
+    struct glint_real focal_mm, back_focal_mm, entrance_radius_mm,
+        stop_radius_mm, f_number, film_width_mm, film_height_mm;
+    struct glint_real field_mm;   /* light farther from the sensor's centre was
+                                     not asked to be right */
+    struct glint_real front_mm;   /* semi-diameter of the first surface */
+    int32_t wave_lo_q24, wave_hi_q24; /* the band, 1 / wavelength^2, um^-2 */
+    int32_t sine_hi_q30;              /* of the largest angle looked at */
+    /* Flux of the direct image at angle 0 for irradiance 1, mm^2: coefficients
+     * of powers of w over the band. */
+    struct glint_real direct_flux[6];
+    uint32_t n_surfaces;
+    uint32_t n_ghosts, ghost_at;   /* struct glint_model_ghost */
+    uint32_t n_systems, system_at; /* struct glint_model_system */
+};
+
+/* Systems of one ghost follow each other: by rising wave_lo, of one band by
+ * rising angle, without overlap. No systems: the ghost is never seen. */
+struct glint_model_ghost {
+    uint32_t i, j; /* reflecting surfaces, i < j */
+    uint32_t first_system, n_systems;
+};
+
+/* Polynomials for a range of angles and a band of wavelengths.
+ *
+ * n_knots = 0: the coefficients are good for the whole range, and s and w are
+ * among the variables. n_knots >= 2: there is a set of coefficients at each of
+ * so many angles, rising, and between two neighbours they are interpolated
+ * linearly in the sine; the variables are those of the basis alone. */
+struct glint_model_system {
+    int32_t sine_lo_q30, sine_hi_q30; /* of the light's angle, 0 .. 2^30 */
+    int32_t wave_lo_q24, wave_hi_q24; /* the same twice: one wavelength */
+    uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots] */
+    /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
+     * Without knots GLINT_BOX_POWERS coefficients of powers of s each,
+     * [3][GLINT_BOX_POWERS]; with knots [n_knots][3]. */
+    uint32_t box_at;
+    int32_t box_exponent;
+    uint32_t n_outputs, output_at; /* struct glint_model_output, kinds rising */
+};
+
+enum { GLINT_BOX_POWERS = 6, GLINT_MAX_POWER = 9, GLINT_MAX_MODEL_TERMS = 64 };
+
+enum glint_output_kind {
+    GLINT_OUT_SENSOR_X, /* mm, in the light's frame; odd kinds are odd in v */
+    GLINT_OUT_SENSOR_Y,
+    GLINT_OUT_STOP_X, /* stop radii */
+    GLINT_OUT_STOP_Y,
+    GLINT_OUT_ENERGY,
+    GLINT_OUT_RADIUS,   /* the largest relative radius [Bodonyi25] */
+    GLINT_OUT_BARREL_0, /* (1 + r^2) / 2, r = relative radius at a barrel that
+                           cuts: above 1 it does */
+    GLINT_OUT_BARREL_1,
+    GLINT_OUT_BARREL_2,
+    GLINT_OUT_BARREL_3,
+    GLINT_OUT_KINDS
+};
+
+/* The first five kinds are in every system; sensor x and y have the same
+ * exponent, and so have stop x and y. */
+struct glint_model_output {
+    uint32_t kind;
+    uint32_t n_terms, term_at; /* uint16 [n_terms], padded to whole words:
+                                  powers of u, v, s, w (or x, y, r, 1 - r), four
+                                  bits each, the first lowest */
+    uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
+    int32_t exponent; /* a value is integer * 2^exponent */
+    uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
+    uint32_t rounding_q8; /* proven: integers stray from the polynomial by no
+                             more than so many steps */
+    /* Measured against exact rays through the run-time arithmetic, q20: pixels
+     * of a film 1920 wide, stop radii, share of the energy, relative radius. */
+    uint32_t rms_q20, p50_q20, p99_q20, max_q20;
+};
+
+/* ------------------------------------------------------------------ opening */
+
+struct glint_lens {
+    const struct glint_model_header *header;
+    const struct glint_model_ghost *ghost;
+    const struct glint_model_system *system;
+};
+
+/* Checks DATA[BYTES], aligned to 4, all of it, and points LENS into it; it is
+ * kept and must not change. GLINT_E_LENS: *REASON (a constant text) says what
+ * is wrong. Takes time in proportion to BYTES. */
+enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
+                                  size_t bytes, const char **reason);
+
+/* CRC of BYTES bytes as in the header. */
+uint32_t glint_model_crc32(const void *data, size_t bytes);
+
+/* ----------------------------------------------------------------- transfer */
+
+/* The polynomials of one bundle: one ghost, light and wavelength. */
+struct glint_transfer {
+    const struct glint_model_system *system;
+    uint32_t outputs; /* bit KIND is set where there is that output */
+    int32_t exponent[GLINT_OUT_KINDS];
+    int32_t box[3]; /* middle, half width, half height at this angle */
+    int32_t box_exponent;
+    enum glint_basis basis;
+    union {
+        /* of u^a v^b: [b][a] */
+        int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1]
+                     [GLINT_MAX_POWER + 1];
+        struct {
+            int32_t n_terms;
+            uint16_t power[GLINT_MAX_MODEL_TERMS];
+            int32_t coef[GLINT_MAX_MODEL_TERMS];
+        } sparse[GLINT_OUT_KINDS];
+    } of;
+    uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
+};
+
+/* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 0 .. 2^30,
+ * WAVE_Q24 within the band (else held to it). Returns 0 where nothing of the
+ * ghost gets through. */
+int glint_transfer_init(struct glint_transfer *transfer,
+                        const struct glint_lens *lens, int ghost,
+                        int32_t sine_q30, int32_t wave_q24);
+
+/* Where the ray at (U, V), each within +-2^30, goes: integers by kind, to be
+ * scaled by 2^exponent; 0 for outputs that are not there. */
+struct glint_outputs {
+    int32_t at[GLINT_OUT_KINDS];
+};
+void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
+                        int32_t v_q30, struct glint_outputs *out);
+
+/* Where the bundle lies in the picture. */
+struct glint_place {
+    int32_t cos_q30, sin_q30; /* of the light's azimuth */
+    struct glint_real pixels_per_mm;
+    int32_t middle_x_q8, middle_y_q8; /* the sensor's centre, pixels */
+};
+
+/* Fills the vertices of a grid of N_CELLS a side over the whole box, row by
+ * row, [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a
+ * vertex is 2^(exponent[ENERGY] + 29). What does not fit a vertex is lost. */
+void glint_transfer_grid(const struct glint_transfer *transfer,
+                         const struct glint_place *place, int n_cells,
+                         struct glint_vertex *vertices);
+
+#endif

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a fit leaves behind, in double precision, before it is made integers:
+ * the shape of glint/lens.h without its formats.
+ */
+#ifndef GLINT_BAKE_FITTED_H
+#define GLINT_BAKE_FITTED_H
+
+#include "bake/regress.h"
+#include "glint/lens.h"
+
+/* One output. COEF is [sets][n_terms], sets as the system says; owned. */
+struct glint_fitted_output {
+    enum glint_output_kind kind;
+    int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
+    uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
+    double *coef;
+    bool met; /* the tolerance */
+};
+
+struct glint_fitted_system {
+    int ghost;
+    double sine_lo, sine_hi;
+    double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
+    int n_knots;             /* 0, or as many sets of coefficients */
+    double *knot;            /* sines, rising; owned */
+    double *box;             /* mm, as in the model; owned */
+    double radius_mm;        /* of the sparse basis; else unused */
+    int n_outputs;
+    struct glint_fitted_output output[GLINT_OUT_KINDS]; /* kinds rising */
+    bool met;
+};
+
+/* All systems of one ghost, in the order of the model; owned. */
+struct glint_fitted_ghost {
+    int n_systems;
+    struct glint_fitted_system *system;
+    bool out_of_memory;
+};
+
+void glint_fitted_finish(struct glint_fitted_ghost *ghost);
+
+#endif

@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/hunt.h"
+
+#include <math.h>
+
+#include "bake/degrees.h"
+
+enum { SCAN_DEG = 1, BISECTIONS = 8 };
+
+void glint_hunt_path(const struct glint_hunt *hunt, double w,
+                     struct glint_path *path)
+{
+    const double wave = 0.5 * (hunt->wave_lo + hunt->wave_hi) +
+                        0.5 * w * (hunt->wave_hi - hunt->wave_lo);
+
+    glint_path_init(path, hunt->setup->lens, &hunt->setup->ghost[hunt->ghost],
+                    1e3 / sqrt(wave));
+}
+
+void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,
+                     int ghost, double field_mm, const double band_nm[2])
+{
+    hunt->setup = setup;
+    hunt->ghost = ghost;
+    hunt->field_mm = field_mm;
+    hunt->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
+    hunt->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
+    for (int k = 0; k < GLINT_HUNT_WAVES; k++)
+        glint_hunt_path(hunt, -cos(GLINT_PI * k / (GLINT_HUNT_WAVES - 1)),
+                        &hunt->path[k]);
+}
+
+bool glint_hunt_visible(const struct glint_hunt *hunt,
+                        const struct glint_ray *ray)
+{
+    return ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+               hunt->setup->optics.stop_radius_mm &&
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= hunt->field_mm;
+}
+
+/* -------------------------------------------------------------------- boxes */
+
+/* Columns and rows of a grid that hold rays that get through. */
+struct extent {
+    int i0, i1, j1;
+};
+
+static bool survey(const struct glint_hunt *h, const struct glint_path *path,
+                   double sine, int across, int down,
+                   const struct glint_pupil *box, struct extent *extent)
+{
+    const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+    const double dx = (box->x1_mm - box->x0_mm) / across;
+    const double dy = box->y1_mm / down, x0 = box->x0_mm;
+
+    *extent = (struct extent){across + 1, -1, -1};
+    for (int j = 0; j <= down; j++)
+        for (int i = 0; i <= across; i++) {
+            struct glint_ray ray;
+
+            if (glint_trace(path, x0 + i * dx, j * dy, direction, &ray, NULL) !=
+                    GLINT_RAY_OK ||
+                !glint_hunt_visible(h, &ray))
+                continue;
+            extent->i0 = i < extent->i0 ? i : extent->i0;
+            extent->i1 = i > extent->i1 ? i : extent->i1;
+            extent->j1 = j;
+        }
+    return extent->i1 >= 0;
+}
+
+/* Shrinks BOX to the rays of a grid that get through and a cell around them.
+ * Returns whether there are any. */
+static bool shrink(const struct glint_hunt *h, const struct glint_path *path,
+                   double sine, int across, int down, struct glint_pupil *box)
+{
+    const double dx = (box->x1_mm - box->x0_mm) / across;
+    const double dy = box->y1_mm / down, x0 = box->x0_mm;
+    struct extent e;
+
+    if (!survey(h, path, sine, across, down, box, &e))
+        return false;
+    box->x0_mm = x0 + fmax(e.i0 - 1, 0) * dx;
+    box->x1_mm = x0 + fmin(e.i1 + 1, across) * dx;
+    box->y1_mm = fmin(e.j1 + 1, down) * dy;
+    return true;
+}
+
+/* Grows BOX on every side that light comes through, until none does. */
+static bool enclose(const struct glint_hunt *h, const struct glint_path *path,
+                    double sine, struct glint_pupil *box)
+{
+    enum { ACROSS = 16, DOWN = 8, ROUNDS = 8 };
+
+    for (int round = 0; round < ROUNDS; round++) {
+        const double more = 0.5 * (box->x1_mm - box->x0_mm);
+        struct extent e;
+
+        if (!survey(h, path, sine, ACROSS, DOWN, box, &e))
+            return false;
+        if (e.i0 > 0 && e.i1 < ACROSS && e.j1 < DOWN)
+            return true;
+        box->x0_mm -= e.i0 == 0 ? more : 0;
+        box->x1_mm += e.i1 == ACROSS ? more : 0;
+        box->y1_mm *= e.j1 == DOWN ? 1.5 : 1;
+    }
+    return false;
+}
+
+/* The box of the rays that get through, from one that holds it. */
+static bool tighten(const struct glint_hunt *h, const struct glint_path *path,
+                    double sine, struct glint_pupil *box)
+{
+    bool found = shrink(h, path, sine, 24, 12, box) ||
+                 shrink(h, path, sine, 64, 32, box);
+
+    for (int round = 0; round < 5 && found; round++) {
+        const double before = (box->x1_mm - box->x0_mm) * box->y1_mm;
+
+        if (!shrink(h, path, sine, 24, 12, box) ||
+            (box->x1_mm - box->x0_mm) * box->y1_mm > 0.8 * before)
+            break;
+    }
+    return found;
+}
+
+static double degrees_of(double sine)
+{
+    return asin(sine) * (180 / GLINT_PI);
+}
+
+static bool find_box(const struct glint_hunt *h, const struct glint_path *path,
+                     double sine, struct glint_pupil *box)
+{
+    return glint_pupil_find_within(box, path, degrees_of(sine),
+                                   h->setup->optics.stop_radius_mm,
+                                   h->field_mm, NULL) &&
+           tighten(h, path, sine, box);
+}
+
+/* The same, looked for around NEAR first. */
+static bool follow_box(const struct glint_hunt *h,
+                       const struct glint_path *path, double sine,
+                       const struct glint_pupil *near, struct glint_pupil *box)
+{
+    const double more = 0.2 * (near->x1_mm - near->x0_mm);
+
+    *box = *near;
+    box->x0_mm -= more;
+    box->x1_mm += more;
+    box->y1_mm *= 1.25;
+    return (enclose(h, path, sine, box) && tighten(h, path, sine, box)) ||
+           find_box(h, path, sine, box);
+}
+
+/* ------------------------------------------------------------------- angles */
+
+static bool passes(const struct glint_hunt *h, double sine)
+{
+    struct glint_pupil box;
+
+    return find_box(h, &h->path[GLINT_HUNT_WAVES / 2], sine, &box);
+}
+
+/* The last sine at which something gets through, from one that has it towards
+ * one that has not. */
+static double edge(const struct glint_hunt *h, double with, double without)
+{
+    for (int k = 0; k < BISECTIONS; k++) {
+        const double middle = 0.5 * (with + without);
+
+        if (passes(h, middle))
+            with = middle;
+        else
+            without = middle;
+    }
+    return with;
+}
+
+int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
+                      double (*range)[2])
+{
+    const int steps = (int)ceil(max_deg / SCAN_DEG);
+    double before = 0;
+    bool inside = false;
+    int n = 0;
+
+    for (int k = 0; k <= steps; k++) {
+        const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
+        const bool now = passes(hunt, sine);
+
+        if (now && !inside && n == GLINT_MAX_RANGES)
+            break;
+        if (now && !inside)
+            range[n][0] = k ? edge(hunt, sine, before) : 0;
+        if (!now && inside)
+            range[n++][1] = edge(hunt, before, sine);
+        inside = now;
+        before = sine;
+    }
+    if (inside)
+        range[n++][1] = before;
+    return n;
+}
+
+static void join(struct glint_pupil *a, const struct glint_pupil *b)
+{
+    a->x0_mm = fmin(a->x0_mm, b->x0_mm);
+    a->x1_mm = fmax(a->x1_mm, b->x1_mm);
+    a->y1_mm = fmax(a->y1_mm, b->y1_mm);
+}
+
+/* BOX moved on from BEFORE by as much as it had moved to get there. */
+static struct glint_pupil predict(const struct glint_pupil *before,
+                                  const struct glint_pupil *box, double ratio)
+{
+    const double step = 0.5 * ratio *
+                        (box->x0_mm + box->x1_mm - before->x0_mm -
+                         before->x1_mm);
+    struct glint_pupil p = *box;
+
+    p.x0_mm += step;
+    p.x1_mm += step;
+    return p;
+}
+
+/* Adds what the path of one end of the band lets through. */
+static void add_boxes(const struct glint_hunt *h, const struct glint_path *path,
+                      struct glint_profile *p, bool *found)
+{
+    struct glint_pupil box = {.y1_mm = 0}, before = box;
+    int have = 0; /* boxes in a row */
+
+    for (int k = 0; k < GLINT_PROFILE; k++) {
+        const double *s = p->sine + k;
+        struct glint_pupil near = box;
+        bool now;
+
+        if (have > 1)
+            near = predict(&before, &box, (s[0] - s[-1]) / (s[-1] - s[-2]));
+        before = box;
+        now = have ? follow_box(h, path, *s, &near, &box)
+                   : find_box(h, path, *s, &box);
+        have = now ? have + 1 : 0;
+        if (now && found[k])
+            join(&p->box[k], &box);
+        else if (now)
+            p->box[k] = box;
+        found[k] |= now;
+    }
+}
+
+void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
+                        struct glint_profile *profile)
+{
+    bool found[GLINT_PROFILE] = {false};
+
+    for (int k = 0; k < GLINT_PROFILE; k++) {
+        const double t = sin(0.5 * GLINT_PI * k / (GLINT_PROFILE - 1));
+
+        profile->sine[k] = range[0] + t * (range[1] - range[0]);
+    }
+    add_boxes(hunt, &hunt->path[0], profile, found);
+    add_boxes(hunt, &hunt->path[GLINT_HUNT_WAVES - 1], profile, found);
+    profile->n = 0;
+    for (int k = 0; k < GLINT_PROFILE; k++)
+        if (found[k]) {
+            profile->sine[profile->n] = profile->sine[k];
+            profile->box[profile->n++] = profile->box[k];
+        }
+}

@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/regress.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* A column this much shorter than it was is a combination of others. */
+#define DEPENDENT 1e-9
+
+struct column {
+    uint8_t power[GLINT_VARIABLES];
+    bool dead;
+    double length;               /* before it was made orthogonal */
+    double on[GLINT_MAX_TERMS];  /* its shares of the chosen directions */
+    double *at;                  /* [n], orthogonal to the chosen ones */
+};
+
+struct search {
+    const struct glint_samples *s;
+    const struct glint_degrees *degrees;
+    int n_chosen, n_columns;
+    int chosen[GLINT_MAX_TERMS]; /* columns, in the order they entered */
+    struct column column[GLINT_MAX_CANDIDATES];
+    double *residual, *memory;
+};
+
+size_t glint_regress_doubles(int n)
+{
+    return (size_t)n * (GLINT_MAX_CANDIDATES + 1);
+}
+
+/* Four sums at once: shorter chains of dependent additions. */
+static double dot(const double *a, const double *b, int n)
+{
+    double s[4] = {0, 0, 0, 0};
+    int i = 0;
+
+    for (; i + 4 <= n; i += 4)
+        for (int k = 0; k < 4; k++)
+            s[k] += a[i + k] * b[i + k];
+    for (; i < n; i++)
+        s[0] += a[i] * b[i];
+    return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
+static void subtract(double *a, double k, const double *b, int n)
+{
+    for (int i = 0; i < n; i++)
+        a[i] -= k * b[i];
+}
+
+static bool allowed(const struct glint_degrees *d, const uint8_t *power)
+{
+    int total = 0;
+
+    for (int k = 0; k < GLINT_VARIABLES; k++) {
+        if (power[k] > d->most[k])
+            return false;
+        total += power[k] * d->weight[k];
+    }
+    return total <= d->total && (d->parity < 0 || power[1] % 2 == d->parity);
+}
+
+/* COLUMN loses what it has of the chosen direction of rank RANK. */
+static void remove_share(const struct search *s, struct column *column,
+                         int rank)
+{
+    const double *q = s->column[s->chosen[rank]].at;
+    const double share = dot(q, column->at, s->s->n);
+
+    subtract(column->at, share, q, s->s->n);
+    column->on[rank] += share;
+}
+
+static void fill(const struct search *s, struct column *column)
+{
+    const struct glint_samples *v = s->s;
+
+    memcpy(column->at, v->weight, (size_t)v->n * sizeof *column->at);
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        for (int p = 0; p < column->power[k]; p++)
+            for (int i = 0; i < v->n; i++)
+                column->at[i] *= v->x[k][i];
+    column->length = sqrt(dot(column->at, column->at, v->n));
+}
+
+static void add_candidate(struct search *s, const uint8_t *power)
+{
+    struct column *column = &s->column[s->n_columns];
+
+    if (s->n_columns == GLINT_MAX_CANDIDATES || !allowed(s->degrees, power))
+        return;
+    for (int i = 0; i < s->n_columns; i++)
+        if (memcmp(s->column[i].power, power, GLINT_VARIABLES) == 0)
+            return;
+    *column = (struct column){
+        .at = s->memory + (size_t)s->n_columns * (size_t)s->s->n};
+    memcpy(column->power, power, GLINT_VARIABLES);
+    fill(s, column);
+    for (int rank = 0; rank < s->n_chosen; rank++)
+        remove_share(s, column, rank);
+    s->n_columns++;
+}
+
+/* All terms one power up; in a variable with parity, two. */
+static void add_neighbours(struct search *s, const struct column *column)
+{
+    for (int k = 0; k < GLINT_VARIABLES; k++) {
+        uint8_t power[GLINT_VARIABLES];
+
+        memcpy(power, column->power, sizeof power);
+        power[k] =
+            (uint8_t)(power[k] + (k == 1 && s->degrees->parity >= 0 ? 2 : 1));
+        add_candidate(s, power);
+    }
+}
+
+static bool is_chosen(const struct search *s, int column)
+{
+    for (int i = 0; i < s->n_chosen; i++)
+        if (s->chosen[i] == column)
+            return true;
+    return false;
+}
+
+/* The candidate that explains most of the residual, or -1. */
+static int best_candidate(struct search *s)
+{
+    double most = 0;
+    int best = -1;
+
+    for (int i = 0; i < s->n_columns; i++) {
+        struct column *c = &s->column[i];
+        double length2, share;
+
+        if (c->dead || is_chosen(s, i))
+            continue;
+        length2 = dot(c->at, c->at, s->s->n);
+        if (!(length2 > DEPENDENT * DEPENDENT * c->length * c->length)) {
+            c->dead = true;
+            continue;
+        }
+        share = dot(c->at, s->residual, s->s->n);
+        if (share * share / length2 > most) {
+            most = share * share / length2;
+            best = i;
+        }
+    }
+    return best;
+}
+
+static void choose(struct search *s, int index)
+{
+    struct column *c = &s->column[index];
+    const int n = s->s->n, rank = s->n_chosen;
+    double length, share;
+
+    for (int k = 0; k < rank; k++) /* once more, against rounding */
+        remove_share(s, c, k);
+    length = sqrt(dot(c->at, c->at, n));
+    for (int i = 0; i < n; i++)
+        c->at[i] /= length;
+    c->on[rank] = length;
+    s->chosen[s->n_chosen++] = index;
+    share = dot(c->at, s->residual, n);
+    subtract(s->residual, share, c->at, n);
+    for (int i = 0; i < s->n_columns; i++)
+        if (!s->column[i].dead && !is_chosen(s, i))
+            remove_share(s, &s->column[i], rank);
+    add_neighbours(s, c);
+}
+
+static bool good_enough(const struct search *s, double rms, double peak)
+{
+    const double sum2 = dot(s->residual, s->residual, s->s->n);
+    double most = 0;
+
+    if (sum2 > rms * rms * s->s->n)
+        return false;
+    for (int i = 0; i < s->s->n; i++)
+        most = fmax(most, fabs(s->residual[i]));
+    return most <= peak;
+}
+
+/* From shares of orthogonal directions back to coefficients of the terms. */
+static void solve(const struct search *s, const double *y,
+                  struct glint_poly *poly)
+{
+    poly->n = s->n_chosen;
+    for (int k = s->n_chosen - 1; k >= 0; k--) {
+        const struct column *q = &s->column[s->chosen[k]];
+        double share = 0;
+
+        for (int i = 0; i < s->s->n; i++)
+            share += q->at[i] * s->s->weight[i] * y[i];
+        for (int m = k + 1; m < s->n_chosen; m++)
+            share -= s->column[s->chosen[m]].on[k] * poly->coef[m];
+        poly->coef[k] = share / q->on[k];
+        memcpy(poly->power[k], q->power, GLINT_VARIABLES);
+    }
+}
+
+bool glint_regress_fit(double *scratch, const struct glint_samples *samples,
+                       const double *y, const struct glint_degrees *degrees,
+                       double rms, double peak, struct glint_poly *poly)
+{
+    struct search s = {.s = samples,
+                       .degrees = degrees,
+                       .residual = scratch,
+                       .memory = scratch + samples->n};
+    const uint8_t first[GLINT_VARIABLES] = {
+        0, (uint8_t)(degrees->parity > 0), 0, 0};
+    bool good;
+
+    for (int i = 0; i < samples->n; i++)
+        s.residual[i] = samples->weight[i] * y[i];
+    add_candidate(&s, first);
+    while (!(good = good_enough(&s, rms, peak)) &&
+           s.n_chosen < degrees->terms) {
+        const int best = best_candidate(&s);
+
+        if (best < 0)
+            break;
+        choose(&s, best);
+    }
+    solve(&s, y, poly);
+    return good;
+}
+
+double glint_poly_at(const struct glint_poly *poly, const double *x)
+{
+    double sum = 0;
+
+    for (int i = 0; i < poly->n; i++) {
+        double term = poly->coef[i];
+
+        for (int k = 0; k < GLINT_VARIABLES; k++)
+            for (int p = 0; p < poly->power[i][k]; p++)
+                term *= x[k];
+        sum += term;
+    }
+    return sum;
+}

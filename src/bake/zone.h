@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A range of angles of one ghost, and the rays that are fitted over it.
+ *
+ *   in   a ghost's paths at a few wavelengths, a range of the light's angle
+ *   out  a pupil box that follows the visible part through the range, and
+ *        samples inside it in coordinates of -1 .. 1:
+ *          u, v  place in the box, the light's plane along u
+ *          s     the sine of the light's angle within the range
+ *          w     1 / wavelength^2 within the band
+ *
+ * In these coordinates a ghost is tame, and symmetric in v, so v >= 0 is all
+ * that is traced.
+ */
+#ifndef GLINT_BAKE_ZONE_H
+#define GLINT_BAKE_ZONE_H
+
+#include "bake/hunt.h"
+#include "bake/regress.h"
+
+enum {
+    GLINT_ZONE_SINES = 6,
+    GLINT_ZONE_RAYS = 2048,
+    GLINT_BOX_TERMS = 6,
+    GLINT_MAX_BARRELS = 4
+};
+
+struct glint_zone {
+    double lo, hi; /* sine of the angle */
+    double middle[GLINT_BOX_TERMS]; /* of powers of s, mm */
+    double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
+    double fill; /* mean share of the box that the ghost needs */
+};
+
+/* A polynomial of the box at S. */
+double glint_zone_at(const double poly[GLINT_BOX_TERMS], double s);
+
+/* Sets the box for LO .. HI of PROFILE. */
+void glint_zone_init(struct glint_zone *zone,
+                     const struct glint_profile *profile, double lo,
+                     double hi);
+
+/* Node K of N over -1 .. 1, the ends among them. */
+double glint_zone_node(int k, int n);
+
+/* Channels of a sample. */
+enum {
+    RAY_SENSOR_X, /* mm */
+    RAY_SENSOR_Y,
+    RAY_STOP_X, /* stop radii */
+    RAY_STOP_Y,
+    RAY_ENERGY,
+    RAY_EXCESS, /* the largest of all relative radii, stop and field too */
+    RAY_CHANNELS
+};
+
+struct glint_rays {
+    int n;
+    double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
+    double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
+    /* relative radius at each barrel that limits the zone */
+    int n_barrels;
+    int barrel[GLINT_MAX_BARRELS]; /* events of the path */
+    double radius[GLINT_MAX_BARRELS][GLINT_ZONE_RAYS];
+    double missed_cut; /* how far past a barrel that is not among them a ray
+                          gets at most, relative */
+};
+
+/* Chooses the barrels and traces the samples. */
+void glint_zone_trace(const struct glint_zone *zone,
+                      const struct glint_hunt *hunt, struct glint_rays *rays);
+
+#endif

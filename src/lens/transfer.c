@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rays through a bundle's polynomials. The C definition of the kernels.
+ *
+ * Formats: variables are q30 and within +-2^30; coefficients and every
+ * intermediate of an output are integers of that output's own unit, below 2^30
+ * as bake has proven (bound in struct glint_model_output). So each product of
+ * the two is below 2^60, and rounds to its unit by a shift of 30.
+ */
+#include "glint/lens.h"
+
+#include "base/compiler.h"
+#include "base/q.h"
+#include "glint/flare.h"
+
+enum { ONE_LOG2 = 30, MAX_EXPONENT = 15 /* of any variable */ };
+
+#define ONE_Q30 (INT32_C(1) << ONE_LOG2)
+
+/* ------------------------------------------------------------------- tables */
+
+static const void *at(const struct glint_lens *lens, uint32_t offset)
+{
+    return (const unsigned char *)lens->header + offset;
+}
+
+/* X of LO .. HI as -1 .. 1. */
+static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
+{
+    const int64_t span = (int64_t)hi - lo;
+
+    if (x <= lo)
+        return -ONE_Q30;
+    if (x >= hi)
+        return ONE_Q30;
+    return (int32_t)((2 * (int64_t)x - lo - hi) * ONE_Q30 / span);
+}
+
+static void powers_q30(int32_t x_q30, int n, int32_t *power_q30)
+{
+    power_q30[0] = ONE_Q30;
+    for (int k = 1; k <= n; k++)
+        power_q30[k] = q_mul(power_q30[k - 1], x_q30, 30);
+}
+
+/* How far WAVE lies outside of the system's band. */
+static int64_t off_band(const struct glint_model_system *s, int32_t wave_q24)
+{
+    const int64_t below = (int64_t)s->wave_lo_q24 - wave_q24;
+    const int64_t above = (int64_t)wave_q24 - s->wave_hi_q24;
+
+    return below > 0 ? below : above > 0 ? above : 0;
+}
+
+static const struct glint_model_system *
+find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
+            int32_t wave_q24)
+{
+    const struct glint_model_ghost *g = &lens->ghost[ghost];
+    const struct glint_model_system *best = NULL;
+
+    for (uint32_t k = 0; k < g->n_systems; k++) {
+        const struct glint_model_system *s =
+            &lens->system[g->first_system + k];
+
+        if (sine_q30 < s->sine_lo_q30 || sine_q30 > s->sine_hi_q30)
+            continue;
+        if (!best || off_band(s, wave_q24) < off_band(best, wave_q24))
+            best = s;
+    }
+    return best;
+}
+
+/* Angle and wavelength of a bundle within its system. */
+struct setting {
+    uint32_t knot; /* the lower one */
+    int32_t part_q30;
+    int32_t s_q30[MAX_EXPONENT + 1], w_q30[MAX_EXPONENT + 1];
+};
+
+static void settle(struct setting *set, const struct glint_lens *lens,
+                   const struct glint_model_system *s, int32_t sine_q30,
+                   int32_t wave_q24)
+{
+    set->knot = 0;
+    set->part_q30 = 0;
+    if (s->n_knots) {
+        const int32_t *knot_q30 = at(lens, s->knot_at);
+        uint32_t k = 0;
+
+        while (k + 2 < s->n_knots && sine_q30 >= knot_q30[k + 1])
+            k++;
+        set->knot = k;
+        set->part_q30 =
+            within_q30(sine_q30, knot_q30[k], knot_q30[k + 1]) / 2 +
+            ONE_Q30 / 2;
+        return;
+    }
+    powers_q30(within_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
+               MAX_EXPONENT, set->s_q30);
+    powers_q30(within_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24),
+               MAX_EXPONENT, set->w_q30);
+}
+
+static int32_t between(int32_t a, int32_t b, int32_t part_q30)
+{
+    return a + q_mul(b - a, part_q30, 30);
+}
+
+static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
+                    const struct setting *set)
+{
+    const struct glint_model_system *s = t->system;
+    const int32_t *box = at(lens, s->box_at);
+
+    t->box_exponent = s->box_exponent;
+    for (int k = 0; k < 3; k++) {
+        const int32_t *p = box + k * GLINT_BOX_POWERS;
+        int32_t sum = p[GLINT_BOX_POWERS - 1];
+
+        if (s->n_knots) {
+            const int32_t *low = box + 3 * set->knot;
+
+            t->box[k] = between(low[k], low[3 + k], set->part_q30);
+            continue;
+        }
+        for (int m = GLINT_BOX_POWERS - 2; m >= 0; m--)
+            sum = q_mul(sum, set->s_q30[1], 30) + p[m];
+        t->box[k] = sum;
+    }
+}
+
+static int32_t coefficient(const struct glint_lens *lens,
+                           const struct glint_model_output *o,
+                           const struct setting *set, int knots, uint32_t term)
+{
+    const int32_t *coef = at(lens, o->coef_at);
+    const uint16_t *power = at(lens, o->term_at);
+    const int c = power[term] >> 8 & 15, d = power[term] >> 12;
+    int32_t value = coef[term];
+
+    if (knots) {
+        coef += set->knot * o->n_terms;
+        return between(coef[term], coef[o->n_terms + term], set->part_q30);
+    }
+    if (c)
+        value = q_mul(value, set->s_q30[c], 30);
+    return d ? q_mul(value, set->w_q30[d], 30) : value;
+}
+
+static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
+                       const struct glint_model_output *o,
+                       const struct setting *set)
+{
+    const uint16_t *power = at(lens, o->term_at);
+    const int knots = t->system->n_knots > 0;
+
+    t->outputs |= UINT32_C(1) << o->kind;
+    t->exponent[o->kind] = o->exponent;
+    if (t->basis == GLINT_BASIS_SPARSE)
+        t->of.sparse[o->kind].n_terms = (int32_t)o->n_terms;
+    for (uint32_t k = 0; k < o->n_terms; k++) {
+        const int32_t value = coefficient(lens, o, set, knots, k);
+        const int a = power[k] & 15, b = power[k] >> 4 & 15;
+
+        if (t->basis == GLINT_BASIS_SPARSE) {
+            t->of.sparse[o->kind].power[k] = power[k];
+            t->of.sparse[o->kind].coef[k] = value;
+            continue;
+        }
+        t->of.table[o->kind][b][a] += value;
+        if (a > t->degree_u[o->kind])
+            t->degree_u[o->kind] = (uint8_t)a;
+        if (b > t->degree_v[o->kind])
+            t->degree_v[o->kind] = (uint8_t)b;
+    }
+}
+
+static void clear(struct glint_transfer *t)
+{
+    t->outputs = 0;
+    for (int k = 0; k < GLINT_OUT_KINDS; k++) {
+        t->exponent[k] = 0;
+        t->degree_u[k] = t->degree_v[k] = 0;
+        for (int b = 0; b <= GLINT_MAX_POWER; b++)
+            for (int a = 0; a <= GLINT_MAX_POWER; a++)
+                t->of.table[k][b][a] = 0;
+    }
+}
+
+int glint_transfer_init(struct glint_transfer *transfer,
+                        const struct glint_lens *lens, int ghost,
+                        int32_t sine_q30, int32_t wave_q24)
+{
+    const struct glint_model_system *system =
+        find_system(lens, ghost, sine_q30, wave_q24);
+    const struct glint_model_output *output;
+    struct setting set;
+
+    if (!system)
+        return 0;
+    clear(transfer);
+    transfer->system = system;
+    transfer->basis = (enum glint_basis)lens->header->basis;
+    settle(&set, lens, system, sine_q30, wave_q24);
+    set_box(transfer, lens, &set);
+    output = at(lens, system->output_at);
+    for (uint32_t k = 0; k < system->n_outputs; k++)
+        set_output(transfer, lens, &output[k], &set);
+    return 1;
+}
+
+/* --------------------------------------------------------------------- rays */
+
+/* An output's polynomial in u along one row of the grid. */
+struct row {
+    int32_t of_u[GLINT_MAX_POWER + 1];
+};
+
+static void set_row(const struct glint_transfer *t, int kind, int32_t v_q30,
+                    int32_t v2_q30, struct row *row)
+{
+    const int odd = kind & 1 && kind < GLINT_OUT_ENERGY;
+    const int top = t->degree_v[kind];
+
+    for (int a = 0; a <= t->degree_u[kind]; a++) {
+        int32_t sum = t->of.table[kind][top][a];
+
+        for (int b = top - 2; b >= 0; b -= 2)
+            sum = q_mul(sum, v2_q30, 30) + t->of.table[kind][b][a];
+        row->of_u[a] = odd ? q_mul(sum, v_q30, 30) : sum;
+    }
+}
+
+static int32_t along(const struct row *row, int degree, int32_t u_q30)
+{
+    int32_t sum = row->of_u[degree];
+
+    for (int a = degree - 1; a >= 0; a--)
+        sum = q_mul(sum, u_q30, 30) + row->of_u[a];
+    return sum;
+}
+
+static int has(const struct glint_transfer *t, int kind)
+{
+    return (t->outputs >> kind & 1) != 0;
+}
+
+static void set_rows(const struct glint_transfer *t, int32_t v_q30,
+                     struct row rows[GLINT_OUT_KINDS])
+{
+    const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
+
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (has(t, kind))
+            set_row(t, kind, v_q30, v2_q30, &rows[kind]);
+}
+
+static void ray_of_rows(const struct glint_transfer *t,
+                        const struct row rows[GLINT_OUT_KINDS], int32_t u_q30,
+                        struct glint_outputs *out)
+{
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        out->at[kind] = has(t, kind)
+                            ? along(&rows[kind], t->degree_u[kind], u_q30)
+                            : 0;
+}
+
+static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
+                         int32_t v_q30, struct glint_outputs *out)
+{
+    int32_t x[4][MAX_EXPONENT + 1];
+    const int32_t px_q30 = t->box[0] + q_mul(t->box[1], u_q30, 30);
+    const int32_t py_q30 = q_mul(t->box[2], v_q30, 30);
+    const int64_t r2_q60 =
+        (int64_t)px_q30 * px_q30 + (int64_t)py_q30 * py_q30;
+    const int32_t r_q30 =
+        q_clamp_sat(q_root((uint64_t)r2_q60), 0, ONE_Q30);
+
+    powers_q30(px_q30, MAX_EXPONENT, x[0]);
+    powers_q30(py_q30, MAX_EXPONENT, x[1]);
+    powers_q30(r_q30, MAX_EXPONENT, x[2]);
+    powers_q30(ONE_Q30 - r_q30, MAX_EXPONENT, x[3]);
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        int32_t sum = 0;
+
+        for (int k = 0; has(t, kind) && k < t->of.sparse[kind].n_terms; k++) {
+            int32_t value = t->of.sparse[kind].coef[k];
+
+            for (int i = 0; i < 4; i++) {
+                const int e = t->of.sparse[kind].power[k] >> (4 * i) & 15;
+
+                value = e ? q_mul(value, x[i][e], 30) : value;
+            }
+            sum += value;
+        }
+        out->at[kind] = sum;
+    }
+}
+
+void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
+                        int32_t v_q30, struct glint_outputs *out)
+{
+    struct row rows[GLINT_OUT_KINDS];
+
+    if (transfer->basis == GLINT_BASIS_SPARSE) {
+        ray_of_terms(transfer, u_q30, v_q30, out);
+        return;
+    }
+    set_rows(transfer, v_q30, rows);
+    ray_of_rows(transfer, rows, u_q30, out);
+}
+
+/* ----------------------------------------------------------------- vertices */
+
+/* Shifts that bring each kind of output to the formats of a vertex. */
+struct shifts {
+    int sensor, stop, barrel, radius;
+};
+
+/* X / 2^SHIFT if that is below LIMIT in magnitude; else *LOST. */
+static int32_t scaled(int64_t x, int shift, int32_t limit, int *lost)
+{
+    int64_t y;
+
+    if (shift > 62)
+        return 0;
+    if (shift < 0 && (shift < -31 || bit_length((uint64_t)(x < 0 ? -x : x)) -
+                                             shift >
+                                         32)) {
+        *lost |= x != 0;
+        return 0;
+    }
+    y = shift < 0 ? x * (INT64_C(1) << -shift) : q_shift(x, shift);
+    if (y >= limit || y <= -limit) {
+        *lost = 1;
+        return 0;
+    }
+    return (int32_t)y;
+}
+
+enum { LIMIT_Q16 = 1 << 30 };
+
+static int32_t barrel_of(const struct glint_outputs *out, int kind, int shift,
+                         int *lost)
+{
+    const int32_t value_q16 = scaled(out->at[kind], shift, LIMIT_Q16, lost);
+
+    *lost |= value_q16 < 0;
+    return value_q16;
+}
+
+static void set_barrels(const struct glint_transfer *t,
+                        const struct glint_outputs *out,
+                        struct glint_vertex *v, int *lost)
+{
+    int32_t more;
+
+    v->barrel_q16[0] = v->barrel_q16[1] = 0;
+    if (has(t, GLINT_OUT_RADIUS)) {
+        more = scaled(out->at[GLINT_OUT_RADIUS],
+                      -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23, lost);
+        v->barrel_q16[0] = (int32_t)(((INT64_C(1) << 16) +
+                                      q_shift((int64_t)more * more, 16)) /
+                                     2);
+    }
+    for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
+        int32_t *to = &v->barrel_q16[kind > GLINT_OUT_BARREL_0];
+
+        if (!has(t, kind))
+            continue;
+        more = barrel_of(out, kind, -(t->exponent[kind] + 16), lost);
+        *to = more > *to ? more : *to;
+    }
+}
+
+/* MIRROR is -1 for the ray on the other side of the light's plane. */
+static void set_vertex(const struct glint_transfer *t,
+                       const struct glint_place *p,
+                       const struct glint_outputs *out, int mirror,
+                       struct glint_vertex *v)
+{
+    const int64_t x = out->at[GLINT_OUT_SENSOR_X];
+    const int64_t y = (int64_t)mirror * out->at[GLINT_OUT_SENSOR_Y];
+    const int64_t a = out->at[GLINT_OUT_STOP_X];
+    const int64_t b = (int64_t)mirror * out->at[GLINT_OUT_STOP_Y];
+    const int64_t c = p->cos_q30, s = p->sin_q30;
+    const int to_q8 = -(t->exponent[GLINT_OUT_SENSOR_X] +
+                        p->pixels_per_mm.exponent + 8);
+    const int to_q16 = -(t->exponent[GLINT_OUT_STOP_X] + 16);
+    int lost = 0;
+
+    /* Turned coordinates are below 2^30.5, times a mantissa below 2^61.5. */
+    v->x_q8 = p->middle_x_q8 +
+              scaled(q_shift(x * c - y * s, 30) * p->pixels_per_mm.mantissa,
+                     to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
+    v->y_q8 = p->middle_y_q8 -
+              scaled(q_shift(x * s + y * c, 30) * p->pixels_per_mm.mantissa,
+                     to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
+    v->stop_x_q16 =
+        scaled(q_shift(a * c - b * s, 30), to_q16, LIMIT_Q16, &lost);
+    v->stop_y_q16 =
+        scaled(q_shift(a * s + b * c, 30), to_q16, LIMIT_Q16, &lost);
+    set_barrels(t, out, v, &lost);
+    v->energy_q16 =
+        lost ? -1
+             : q_clamp_sat(q_shift(out->at[GLINT_OUT_ENERGY], 13), 0, 1 << 16);
+}
+
+static int32_t node_q30(int k, int n_cells)
+{
+    return (int32_t)((int64_t)(2 * k - n_cells) * ONE_Q30 / n_cells);
+}
+
+void glint_transfer_grid(const struct glint_transfer *transfer,
+                         const struct glint_place *place, int n_cells,
+                         struct glint_vertex *vertices)
+{
+    const int nodes = n_cells + 1;
+    const int symmetric = transfer->basis != GLINT_BASIS_SPARSE;
+
+    for (int j = 0; j < nodes && !(symmetric && 2 * j > n_cells); j++) {
+        struct glint_vertex *row = vertices + (ptrdiff_t)j * nodes;
+        struct glint_vertex *mirrored =
+            vertices + (ptrdiff_t)(n_cells - j) * nodes;
+        const int32_t v_q30 = node_q30(j, n_cells);
+        struct row rows[GLINT_OUT_KINDS];
+
+        if (symmetric)
+            set_rows(transfer, v_q30, rows);
+        for (int i = 0; i < nodes; i++) {
+            const int32_t u_q30 = node_q30(i, n_cells);
+            struct glint_outputs out;
+
+            if (!symmetric) {
+                ray_of_terms(transfer, u_q30, v_q30, &out);
+            } else {
+                ray_of_rows(transfer, rows, u_q30, &out);
+                set_vertex(transfer, place, &out, -1, &mirrored[i]);
+            }
+            set_vertex(transfer, place, &out, 1, &row[i]);
+        }
+    }
+}
