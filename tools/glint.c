@@ -33,7 +33,7 @@ struct command {
 
 static const struct command commands[] = {
     {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
-    {"overlay", cmd_overlay}, {"compare", cmd_compare},
+    {"overlay", cmd_overlay}, {"compare", cmd_compare}, {"bake", cmd_bake},
 };
 
 static volatile sig_atomic_t reader_gone;

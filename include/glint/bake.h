@@ -255,6 +255,47 @@ struct glint_exact_config {
 enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
                                      double *rgb);
 
+/* ------------------------------------------------------------------- bake */
+
+struct glint_bake_options {
+    int basis;         /* enum glint_basis */
+    double band_nm[2]; /* shortest and longest wavelength, 300 .. 1100 */
+    double max_deg;    /* largest angle of a light, above 0, up to 89 */
+    double field_mm;   /* radius on the sensor within which light counts; 0: a
+                          tenth more than the film's corners */
+    double tolerance;  /* scale of all errors aimed at, 0.1 .. 100; at 1 the
+                          root mean squares are 0.06 pixels of a film 1920
+                          wide, 0.0002 stop radii, 0.0004 of a barrel, 0.5 % of
+                          energy */
+    struct glint_workers *workers; /* never changes the model */
+    glint_progress_fn *progress;   /* NULL: silent */
+    void *progress_ctx;
+};
+
+void glint_bake_defaults(struct glint_bake_options *options);
+
+/* What a model of LENS by OPTIONS is known by. */
+uint64_t glint_bake_key(const struct glint_prescription *lens,
+                        const struct glint_bake_options *options);
+
+/* What cannot be read from a model. */
+struct glint_bake_report {
+    int rays;      /* measured */
+    int intruders; /* of these, cut in truth, but passed by the model, by more
+                      than 3 % of a radius */
+    int unmet;     /* systems that the tolerance was too tight for */
+};
+
+/* Bakes LENS into *MODEL of *BYTES, to be freed by the caller: a file as in
+ * glint/lens.h. The same lens and options give the same bytes.
+ * GLINT_E_ARGUMENT, GLINT_E_LENS (no light gets through, or the proof that no
+ * integer overflows fails) with ERROR, GLINT_E_MEMORY. */
+enum glint_status glint_bake(const struct glint_prescription *lens,
+                             const struct glint_bake_options *options,
+                             unsigned char **model, size_t *bytes,
+                             struct glint_bake_report *report,
+                             struct glint_error *error);
+
 /* ------------------------------------------------ feeding the run-time half */
 
 struct glint_stop;

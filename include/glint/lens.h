@@ -102,7 +102,7 @@ struct glint_model_system {
 
 enum { GLINT_BOX_POWERS = 6, GLINT_MAX_POWER = 9, GLINT_MAX_MODEL_TERMS = 64 };
 
-enum glint_output_kind {
+enum glint_channel {
     GLINT_OUT_SENSOR_X, /* mm, in the light's frame; odd kinds are odd in v */
     GLINT_OUT_SENSOR_Y,
     GLINT_OUT_STOP_X, /* stop radii */

@@ -11,7 +11,7 @@
 
 /* One output. COEF is [sets][n_terms], sets as the system says; owned. */
 struct glint_fitted_output {
-    enum glint_output_kind kind;
+    enum glint_channel kind;
     int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
@@ -35,7 +35,6 @@ struct glint_fitted_system {
 struct glint_fitted_ghost {
     int n_systems;
     struct glint_fitted_system *system;
-    bool out_of_memory;
 };
 
 void glint_fitted_finish(struct glint_fitted_ghost *ghost);

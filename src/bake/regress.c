@@ -171,16 +171,15 @@ static void choose(struct search *s, int index)
     add_neighbours(s, c);
 }
 
-static bool good_enough(const struct search *s, double rms, double peak)
+/* What is left, in units of what may be. */
+static double excess(const struct search *s, double rms, double peak)
 {
     const double sum2 = dot(s->residual, s->residual, s->s->n);
     double most = 0;
 
-    if (sum2 > rms * rms * s->s->n)
-        return false;
     for (int i = 0; i < s->s->n; i++)
         most = fmax(most, fabs(s->residual[i]));
-    return most <= peak;
+    return fmax(sqrt(sum2 / s->s->n) / rms, most / peak);
 }
 
 /* From shares of orthogonal directions back to coefficients of the terms. */
@@ -201,7 +200,7 @@ static void solve(const struct search *s, const double *y,
     }
 }
 
-bool glint_regress_fit(double *scratch, const struct glint_samples *samples,
+double glint_regress_fit(double *scratch, const struct glint_samples *samples,
                        const double *y, const struct glint_degrees *degrees,
                        double rms, double peak, struct glint_poly *poly)
 {
@@ -211,12 +210,12 @@ bool glint_regress_fit(double *scratch, const struct glint_samples *samples,
                        .memory = scratch + samples->n};
     const uint8_t first[GLINT_VARIABLES] = {
         0, (uint8_t)(degrees->parity > 0), 0, 0};
-    bool good;
+    double left;
 
     for (int i = 0; i < samples->n; i++)
         s.residual[i] = samples->weight[i] * y[i];
     add_candidate(&s, first);
-    while (!(good = good_enough(&s, rms, peak)) &&
+    while ((left = excess(&s, rms, peak)) > 1 &&
            s.n_chosen < degrees->terms) {
         const int best = best_candidate(&s);
 
@@ -225,7 +224,7 @@ bool glint_regress_fit(double *scratch, const struct glint_samples *samples,
         choose(&s, best);
     }
     solve(&s, y, poly);
-    return good;
+    return left;
 }
 
 double glint_poly_at(const struct glint_poly *poly, const double *x)

@@ -47,10 +47,11 @@ struct glint_samples {
 size_t glint_regress_doubles(int n);
 
 /* Fits Y. Stops where the weighted residual is at most RMS in the mean and PEAK
- * everywhere, or where nothing more helps. Returns whether it got there. */
-bool glint_regress_fit(double *scratch, const struct glint_samples *samples,
-                       const double *y, const struct glint_degrees *degrees,
-                       double rms, double peak, struct glint_poly *poly);
+ * everywhere, or where nothing more helps. Returns how much of these is left,
+ * the larger ratio: up to 1 it got there. */
+double glint_regress_fit(double *scratch, const struct glint_samples *samples,
+                         const double *y, const struct glint_degrees *degrees,
+                         double rms, double peak, struct glint_poly *poly);
 
 double glint_poly_at(const struct glint_poly *poly, const double *x);
 

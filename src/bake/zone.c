@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "bake/degrees.h"
+#include "base/compiler.h"
 
 
 /* -------------------------------------------------------------------- boxes */
@@ -128,7 +129,8 @@ void glint_zone_init(struct glint_zone *zone,
 /* ------------------------------------------------------------------ barrels */
 
 enum { SURVEY_S = 5, SURVEY_U = 32, SURVEY_V = 16 };
-enum { SURVEY = SURVEY_S * (SURVEY_U + 1) * (SURVEY_V + 1) };
+STATIC_ASSERT(GLINT_SURVEY_RAYS ==
+              SURVEY_S * (SURVEY_U + 1) * (SURVEY_V + 1));
 
 /* What a ray of the survey says: how far past each barrel it is. */
 struct survey {
@@ -195,7 +197,7 @@ static void run_survey(const struct glint_zone *z, const struct glint_hunt *h,
 
     survey->n = 0;
     survey->n_events = path->n_events;
-    for (int k = 0; k < SURVEY; k++) {
+    for (int k = 0; k < GLINT_SURVEY_RAYS; k++) {
         const int i = k % (SURVEY_U + 1);
         const int j = k / (SURVEY_U + 1) % (SURVEY_V + 1);
         const int m = k / (SURVEY_U + 1) / (SURVEY_V + 1);
@@ -349,12 +351,12 @@ static void trace_samples(const struct glint_zone *zone,
 }
 
 void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, struct glint_rays *rays)
+                      const struct glint_hunt *hunt, glint_survey *survey,
+                      struct glint_rays *rays)
 {
-    double radius[SURVEY][GLINT_MAX_EVENTS + 1];
-    struct survey survey = {.radius = radius};
+    struct survey s = {.radius = *survey};
 
-    run_survey(zone, hunt, &survey);
-    choose_barrels(&survey, rays);
+    run_survey(zone, hunt, &s);
+    choose_barrels(&s, rays);
     trace_samples(zone, hunt, rays);
 }

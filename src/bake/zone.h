@@ -66,8 +66,13 @@ struct glint_rays {
                           gets at most, relative */
 };
 
+/* Room for the survey that chooses the barrels. */
+enum { GLINT_SURVEY_RAYS = 5 * 33 * 17 };
+typedef double glint_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
+
 /* Chooses the barrels and traces the samples. */
 void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, struct glint_rays *rays);
+                      const struct glint_hunt *hunt, glint_survey *survey,
+                      struct glint_rays *rays);
 
 #endif

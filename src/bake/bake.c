@@ -1,0 +1,370 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From a lens table to its model: fit, quantise, prove, write, measure.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/cells.h"
+#include "bake/fit.h"
+#include "bake/write_model.h"
+
+enum { FLUX_POWERS = 6 };
+
+/* Everything one model takes. */
+struct kitchen {
+    const struct glint_prescription *lens;
+    struct glint_bake_options options;
+    struct glint_setup setup;
+    struct glint_fitted_ghost *fitted;          /* [n_ghosts] */
+    struct glint_quantised_system **quantised;  /* [n_ghosts][n_systems] */
+    enum glint_status *status;                  /* [n_ghosts] */
+    struct glint_draft draft;
+    int *first;          /* system of each ghost */
+    int *intruders;      /* of each ghost */
+    int *rays;
+    int first_job;       /* of a batch */
+    struct glint_error *error;
+};
+
+/* ----------------------------------------------------------------- options */
+
+void glint_bake_defaults(struct glint_bake_options *options)
+{
+    *options = (struct glint_bake_options){.basis = GLINT_BASIS_AUTO,
+                                           .band_nm = {400, 700},
+                                           .max_deg = 60,
+                                           .tolerance = 1};
+}
+
+static enum glint_status check(const struct glint_bake_options *o,
+                               struct glint_error *error)
+{
+    const char *wrong =
+        !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
+          o->band_nm[0] + 1 <= o->band_nm[1])
+            ? "the band must lie within 300 and 1100 nm"
+        : !(o->max_deg > 0 && o->max_deg <= 89)
+            ? "the largest angle must be above 0 and at most 89 degrees"
+        : !(o->field_mm >= 0 && o->field_mm < 1e6)
+            ? "the field must be a length"
+        : !(o->tolerance >= 0.1 && o->tolerance <= 100)
+            ? "the tolerance must be 0.1 to 100"
+            : NULL;
+
+    if (wrong)
+        snprintf(error->text, sizeof error->text, "%s", wrong);
+    return wrong ? GLINT_E_ARGUMENT : GLINT_OK;
+}
+
+static double field_of(const struct glint_prescription *lens,
+                       const struct glint_bake_options *o)
+{
+    return o->field_mm > 0
+               ? o->field_mm
+               : 0.55 * hypot(lens->film_width_mm, lens->film_height_mm);
+}
+
+/* FNV-1a over the bytes of a number. */
+static void mix(uint64_t *key, double value)
+{
+    unsigned char byte[sizeof value];
+
+    memcpy(byte, &value, sizeof value);
+    for (size_t i = 0; i < sizeof byte; i++)
+        *key = (*key ^ byte[i]) * UINT64_C(0x100000001b3);
+}
+
+uint64_t glint_bake_key(const struct glint_prescription *lens,
+                        const struct glint_bake_options *options)
+{
+    uint64_t key = UINT64_C(0xcbf29ce484222325);
+
+    mix(&key, GLINT_MODEL_VERSION);
+    mix(&key, options->basis);
+    mix(&key, options->band_nm[0]);
+    mix(&key, options->band_nm[1]);
+    mix(&key, options->max_deg);
+    mix(&key, field_of(lens, options));
+    mix(&key, options->tolerance);
+    mix(&key, lens->f_number);
+    mix(&key, lens->film_width_mm);
+    mix(&key, lens->film_height_mm);
+    mix(&key, lens->stop_after);
+    mix(&key, lens->stop_thickness_mm);
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        const struct glint_surface *s = &lens->surface[k];
+
+        mix(&key, s->radius_mm);
+        mix(&key, s->thickness_mm);
+        mix(&key, s->semi_mm);
+        mix(&key, s->nd);
+        mix(&key, s->vd);
+        mix(&key, s->coating_nm);
+        mix(&key, s->coating_n);
+    }
+    for (const char *c = lens->name; *c; c++)
+        mix(&key, *c);
+    return key;
+}
+
+/* ------------------------------------------------------------------- header */
+
+/* The direct image's flux as a polynomial in w. */
+static enum glint_status set_flux(const struct kitchen *k,
+                                  struct glint_model_header *h)
+{
+    enum { NODES = 9 };
+    static const double zero[NODES];
+    double w[NODES], flux[NODES], one[NODES];
+    double scratch[NODES * (GLINT_MAX_CANDIDATES + 1)];
+    const struct glint_samples samples = {NODES, {zero, zero, zero, w}, one};
+    const struct glint_degrees degrees = {.most = {0, 0, 0, FLUX_POWERS - 1},
+                                          .weight = {1, 1, 1, 1},
+                                          .total = FLUX_POWERS - 1,
+                                          .parity = -1,
+                                          .terms = FLUX_POWERS};
+    const double *band = k->options.band_nm;
+    const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
+    struct glint_poly poly;
+
+    for (int i = 0; i < NODES; i++) {
+        w[i] = 2.0 * i / (NODES - 1) - 1;
+        one[i] = 1;
+        flux[i] = glint_direct_flux(
+            &k->setup, 1 / sqrt(0.5 * (lo + hi) + 0.5 * w[i] * (hi - lo)));
+        if (flux[i] < 0)
+            return GLINT_E_MEMORY;
+    }
+    glint_regress_fit(scratch, &samples, flux, &degrees, 1e-7 * flux[0],
+                      1e-7 * flux[0], &poly);
+    for (int i = 0; i < poly.n; i++)
+        h->direct_flux[poly.power[i][3]] = glint_real_of(poly.coef[i]);
+    return GLINT_OK;
+}
+
+static enum glint_status set_header(const struct kitchen *k,
+                                    struct glint_model_header *h)
+{
+    const struct glint_optics *o = &k->setup.optics;
+    const double *band = k->options.band_nm;
+    const uint64_t key = glint_bake_key(k->lens, &k->options);
+
+    *h = (struct glint_model_header){
+        .magic = GLINT_MODEL_MAGIC,
+        .version = GLINT_MODEL_VERSION,
+        .basis = (uint32_t)k->options.basis,
+        .key = {(uint32_t)key, (uint32_t)(key >> 32)},
+        .focal_mm = glint_real_of(o->focal_mm),
+        .back_focal_mm = glint_real_of(o->back_focal_mm),
+        .entrance_radius_mm = glint_real_of(o->entrance_radius_mm),
+        .stop_radius_mm = glint_real_of(o->stop_radius_mm),
+        .f_number = glint_real_of(k->lens->f_number),
+        .film_width_mm = glint_real_of(k->lens->film_width_mm),
+        .film_height_mm = glint_real_of(k->lens->film_height_mm),
+        .field_mm = glint_real_of(field_of(k->lens, &k->options)),
+        .front_mm = glint_real_of(k->lens->surface[0].semi_mm),
+        .wave_lo_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[1] * band[1])),
+        .wave_hi_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[0] * band[0])),
+        .sine_hi_q30 = (int32_t)lrint(
+            0x1p30 * sin(k->options.max_deg * 0.017453292519943295)),
+        .n_surfaces = (uint32_t)k->lens->n_surfaces};
+    snprintf(h->name, sizeof h->name, "%s", k->lens->name);
+    return set_flux(k, h);
+}
+
+/* --------------------------------------------------------------------- jobs */
+
+static void hunt_init(const struct kitchen *k, int ghost,
+                      struct glint_hunt *hunt)
+{
+    glint_hunt_init(hunt, &k->setup, ghost, field_of(k->lens, &k->options),
+                    k->options.band_nm);
+}
+
+static enum glint_status quantise_ghost(struct kitchen *k, int ghost)
+{
+    const struct glint_fitted_ghost *f = &k->fitted[ghost];
+    enum glint_status status = GLINT_OK;
+
+    k->quantised[ghost] =
+        calloc((size_t)f->n_systems + 1, sizeof **k->quantised);
+    if (!k->quantised[ghost])
+        return GLINT_E_MEMORY;
+    for (int i = 0; i < f->n_systems && status == GLINT_OK; i++)
+        status = glint_quantise(&f->system[i], &k->quantised[ghost][i]);
+    return status;
+}
+
+static void fit_job(void *ctx, int job, int worker)
+{
+    struct kitchen *k = ctx;
+    const int ghost = k->first_job + job;
+    const double film = k->lens->film_width_mm, t = k->options.tolerance;
+    const struct glint_tolerance tolerance = {0.06 * t * film / 1920, 2e-4 * t,
+                                              5e-3 * t, 4e-4 * t};
+    struct glint_hunt *hunt = malloc(sizeof *hunt);
+
+    (void)worker;
+    k->status[ghost] = GLINT_E_MEMORY;
+    if (!hunt)
+        return;
+    hunt_init(k, ghost, hunt);
+    k->status[ghost] = glint_fit_ghost(hunt, k->options.max_deg, &tolerance,
+                                       &k->fitted[ghost]);
+    if (k->status[ghost] == GLINT_OK)
+        k->status[ghost] = quantise_ghost(k, ghost);
+    free(hunt);
+}
+
+static void measure_job(void *ctx, int job, int worker)
+{
+    struct kitchen *k = ctx;
+    const int ghost = k->first_job + job;
+    const struct glint_lens lens = glint_draft_lens(&k->draft);
+    struct glint_hunt *hunt = malloc(sizeof *hunt);
+
+    (void)worker;
+    k->status[ghost] = GLINT_E_MEMORY;
+    if (!hunt)
+        return;
+    hunt_init(k, ghost, hunt);
+    for (int i = 0; i < k->fitted[ghost].n_systems; i++) {
+        struct glint_measured m;
+
+        glint_measure_system(hunt, &lens, k->first[ghost] + i, &m);
+        glint_draft_note(&k->draft, k->first[ghost] + i, &m);
+        k->intruders[ghost] += m.intruders;
+        k->rays[ghost] += m.rays;
+    }
+    k->status[ghost] = GLINT_OK;
+    free(hunt);
+}
+
+/* Runs JOB for every ghost, in batches that progress can be told between. */
+static enum glint_status for_ghosts(struct kitchen *k, glint_job_fn *job,
+                                    double from, double to)
+{
+    const int n = k->setup.n_ghosts;
+    const int batch = 4 * glint_workers_count(k->options.workers);
+
+    for (k->first_job = 0; k->first_job < n; k->first_job += batch) {
+        const int left = n - k->first_job, now = left < batch ? left : batch;
+
+        glint_workers_run(k->options.workers, now, job, k);
+        if (k->options.progress)
+            k->options.progress(k->options.progress_ctx,
+                                from + (to - from) * (k->first_job + now) / n);
+        for (int i = k->first_job; i < k->first_job + now; i++)
+            if (k->status[i] != GLINT_OK)
+                return k->status[i];
+    }
+    return GLINT_OK;
+}
+
+/* ----------------------------------------------------------------- pipeline */
+
+static enum glint_status reserve(struct kitchen *k)
+{
+    const size_t n = (size_t)k->setup.n_ghosts + 1;
+
+    k->fitted = calloc(n, sizeof *k->fitted);
+    k->quantised = calloc(n, sizeof *k->quantised);
+    k->status = calloc(n, sizeof *k->status);
+    k->first = calloc(n, sizeof *k->first);
+    k->intruders = calloc(n, sizeof *k->intruders);
+    k->rays = calloc(n, sizeof *k->rays);
+    return k->fitted && k->quantised && k->status && k->first &&
+                   k->intruders && k->rays
+               ? GLINT_OK
+               : GLINT_E_MEMORY;
+}
+
+static void clear(struct kitchen *k)
+{
+    for (int g = 0; g < k->setup.n_ghosts && k->fitted && k->quantised; g++) {
+        for (int i = 0; i < k->fitted[g].n_systems && k->quantised[g]; i++)
+            glint_quantised_finish(&k->quantised[g][i]);
+        free(k->quantised[g]);
+        glint_fitted_finish(&k->fitted[g]);
+    }
+    free(k->fitted);
+    free(k->quantised);
+    free(k->status);
+    free(k->first);
+    free(k->intruders);
+    free(k->rays);
+    free(k->draft.data);
+}
+
+static enum glint_status cook(struct kitchen *k)
+{
+    struct glint_model_header header;
+    enum glint_status status = reserve(k);
+
+    if (status == GLINT_OK)
+        status = set_header(k, &header);
+    if (status == GLINT_OK)
+        status = for_ghosts(k, fit_job, 0, 0.9);
+    if (status == GLINT_OK)
+        status = glint_draft_write(&k->draft, &k->setup, &header, k->fitted,
+                                   k->quantised);
+    if (status != GLINT_OK)
+        return status;
+    for (int g = 1; g < k->setup.n_ghosts; g++)
+        k->first[g] = k->first[g - 1] + k->fitted[g - 1].n_systems;
+    status = for_ghosts(k, measure_job, 0.9, 1);
+    if (status == GLINT_OK)
+        glint_draft_close(&k->draft);
+    return status;
+}
+
+static void sum_up(const struct kitchen *k, struct glint_bake_report *r)
+{
+    *r = (struct glint_bake_report){0, 0, 0};
+    for (int g = 0; g < k->setup.n_ghosts; g++) {
+        r->rays += k->rays[g];
+        r->intruders += k->intruders[g];
+        for (int i = 0; i < k->fitted[g].n_systems; i++)
+            r->unmet += !k->fitted[g].system[i].met;
+    }
+}
+
+enum glint_status glint_bake(const struct glint_prescription *lens,
+                             const struct glint_bake_options *options,
+                             unsigned char **model, size_t *bytes,
+                             struct glint_bake_report *report,
+                             struct glint_error *error)
+{
+    const double middle_nm = 0.5 * (options->band_nm[0] + options->band_nm[1]);
+    struct kitchen *k = calloc(1, sizeof *k);
+    enum glint_status status;
+
+    error->text[0] = 0;
+    if (!k)
+        return GLINT_E_MEMORY;
+    k->lens = lens;
+    k->options = *options;
+    status = check(options, error);
+    if (status == GLINT_OK)
+        status =
+            glint_setup_init(&k->setup, lens, 0, 0, &middle_nm, 1, error);
+    if (status == GLINT_OK) {
+        status = cook(k);
+        if (status == GLINT_E_LENS)
+            snprintf(error->text, sizeof error->text,
+                     "%s: no proof that its integers cannot overflow",
+                     lens->name);
+        if (status == GLINT_OK) {
+            sum_up(k, report);
+            *model = k->draft.data;
+            *bytes = k->draft.bytes;
+            k->draft.data = NULL;
+        }
+        clear(k);
+    }
+    free(k);
+    return status;
+}

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/measure_model.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "bake/degrees.h"
+
+enum { RAYS = 400, TRIES = 1600, PER_BUNDLE = 16 };
+
+struct random {
+    uint64_t state;
+};
+
+/* -1 .. 1 [Steele14] */
+static double next(struct random *r)
+{
+    uint64_t z = r->state += UINT64_C(0x9e3779b97f4a7c15);
+
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+}
+
+/* A bundle and its exact counterpart. */
+struct bench {
+    const struct glint_hunt *hunt;
+    struct glint_transfer transfer;
+    struct glint_path path;
+    double direction[3];
+    int n;
+    double *error[GLINT_OUT_KINDS]; /* [RAYS] */
+    int n_of[GLINT_OUT_KINDS];
+    struct glint_measured *out;
+};
+
+static double value(const struct bench *b, const struct glint_outputs *o,
+                    int kind)
+{
+    return ldexp(o->at[kind], b->transfer.exponent[kind]);
+}
+
+static bool has(const struct bench *b, int kind)
+{
+    return (b->transfer.outputs >> kind & 1) != 0;
+}
+
+static void note(struct bench *b, int kind, double error)
+{
+    b->error[kind][b->n_of[kind]++] = fabs(error);
+}
+
+/* Barrels count where they cut: the error of r is that of (1 + r^2) / 2 there.
+ * The barrel is the one whose exact value is nearest. */
+static void note_barrels(struct bench *b, const struct glint_outputs *o,
+                         double (*hits)[2])
+{
+    for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
+        double least = HUGE_VAL;
+
+        for (int k = 0; has(b, kind) && k < b->path.n_events; k++) {
+            const struct glint_event *e = &b->path.event[k];
+            const double r = hypot(hits[k][0], hits[k][1]) / e->semi_mm;
+            const double off = value(b, o, kind) - 0.5 * (1 + r * r);
+
+            if (e->kind != GLINT_STOP && fabs(r - 1) < 0.2 &&
+                fabs(off) < fabs(least))
+                least = off;
+        }
+        if (isfinite(least))
+            note(b, kind, least);
+    }
+}
+
+static void note_ray(struct bench *b, const struct glint_ray *ray,
+                     const struct glint_outputs *o, double (*hits)[2])
+{
+    const struct glint_setup *s = b->hunt->setup;
+    const double px = 1920 / s->lens->film_width_mm;
+    const double stop = s->optics.stop_radius_mm;
+
+    b->n++;
+    note(b, GLINT_OUT_SENSOR_X,
+         px * (value(b, o, GLINT_OUT_SENSOR_X) - ray->sensor_x_mm));
+    note(b, GLINT_OUT_SENSOR_Y,
+         px * (value(b, o, GLINT_OUT_SENSOR_Y) - ray->sensor_y_mm));
+    note(b, GLINT_OUT_STOP_X,
+         value(b, o, GLINT_OUT_STOP_X) - ray->stop_x_mm / stop);
+    note(b, GLINT_OUT_STOP_Y,
+         value(b, o, GLINT_OUT_STOP_Y) - ray->stop_y_mm / stop);
+    note(b, GLINT_OUT_ENERGY, value(b, o, GLINT_OUT_ENERGY) / ray->energy - 1);
+    if (has(b, GLINT_OUT_RADIUS))
+        note(b, GLINT_OUT_RADIUS,
+             value(b, o, GLINT_OUT_RADIUS) - ray->rel_radius);
+    note_barrels(b, o, hits);
+}
+
+static bool passes(const struct bench *b, const struct glint_outputs *o)
+{
+    bool clear = hypot(value(b, o, GLINT_OUT_STOP_X),
+                       value(b, o, GLINT_OUT_STOP_Y)) <= 1 &&
+                 hypot(value(b, o, GLINT_OUT_SENSOR_X),
+                       value(b, o, GLINT_OUT_SENSOR_Y)) <= b->hunt->field_mm;
+
+    for (int kind = GLINT_OUT_RADIUS; kind < GLINT_OUT_KINDS; kind++)
+        clear &= !has(b, kind) || value(b, o, kind) <= 1;
+    return clear;
+}
+
+/* Farther out than what any tolerance explains. */
+static bool well_outside(const struct bench *b, enum glint_ray_status status,
+                         const struct glint_ray *ray)
+{
+    return status != GLINT_RAY_OK || ray->rel_radius > 1.03 ||
+           hypot(ray->stop_x_mm, ray->stop_y_mm) >
+               1.03 * b->hunt->setup->optics.stop_radius_mm;
+}
+
+static void try_ray(struct bench *b, double u, double v)
+{
+    const double scale = ldexp(1, b->transfer.box_exponent);
+    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct glint_outputs o;
+    struct glint_ray ray;
+    const enum glint_ray_status status = glint_trace(
+        &b->path, scale * (b->transfer.box[0] + u * b->transfer.box[1]),
+        scale * v * b->transfer.box[2], b->direction, &ray, hits);
+
+    glint_transfer_ray(&b->transfer, (int32_t)lrint(u * 0x1p30),
+                       (int32_t)lrint(v * 0x1p30), &o);
+    if (status == GLINT_RAY_OK && glint_hunt_visible(b->hunt, &ray))
+        note_ray(b, &ray, &o, hits);
+    else if (well_outside(b, status, &ray) && passes(b, &o))
+        b->out->intruders++;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+static struct glint_errors errors_of(double *error, int n)
+{
+    struct glint_errors e = {0, 0, 0, 0};
+
+    if (n == 0)
+        return e;
+    qsort(error, (size_t)n, sizeof *error, by_size);
+    for (int i = 0; i < n; i++)
+        e.rms += error[i] * error[i] / n;
+    e.rms = sqrt(e.rms);
+    e.p50 = error[n / 2];
+    e.p99 = error[(n - 1) * 99 / 100];
+    e.max = error[n - 1];
+    return e;
+}
+
+/* A bundle at a random angle and wavelength of the system. */
+static bool set_bundle(struct bench *b, const struct glint_lens *lens,
+                       const struct glint_model_system *s, struct random *r)
+{
+    const double part = 0.5 + 0.5 * next(r), w = next(r);
+    const double wave = 0.5 * ((double)s->wave_lo_q24 + s->wave_hi_q24) +
+                        0.5 * w * ((double)s->wave_hi_q24 - s->wave_lo_q24);
+    const int32_t sine_q30 =
+        s->sine_lo_q30 +
+        (int32_t)(part * ((double)s->sine_hi_q30 - s->sine_lo_q30));
+    const int32_t wave_q24 = (int32_t)lrint(wave);
+
+    if (!glint_transfer_init(&b->transfer, lens, b->hunt->ghost, sine_q30,
+                             wave_q24) ||
+        b->transfer.system != s)
+        return false; /* on a border: the other side's */
+    b->direction[0] = sine_q30 * 0x1p-30;
+    b->direction[1] = 0;
+    b->direction[2] = sqrt(1 - b->direction[0] * b->direction[0]);
+    glint_path_init(&b->path, b->hunt->setup->lens,
+                    &b->hunt->setup->ghost[b->hunt->ghost],
+                    1e3 / sqrt(wave_q24 * 0x1p-24));
+    return true;
+}
+
+void glint_measure_system(const struct glint_hunt *hunt,
+                          const struct glint_lens *lens, int system,
+                          struct glint_measured *out)
+{
+    struct random random = {(uint64_t)system * 977 + 1};
+    double error[GLINT_OUT_KINDS][RAYS];
+    struct bench b = {.hunt = hunt, .out = out};
+
+    *out = (struct glint_measured){0};
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        b.error[kind] = error[kind];
+    for (int k = 0; k < TRIES / PER_BUNDLE && b.n < RAYS; k++) {
+        if (!set_bundle(&b, lens, &lens->system[system], &random))
+            continue;
+        for (int i = 0; i < PER_BUNDLE && b.n < RAYS; i++) {
+            const double u = next(&random);
+
+            try_ray(&b, u, 0.5 + 0.5 * next(&random));
+        }
+    }
+    out->rays = b.n;
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        out->of[kind] = errors_of(error[kind], b.n_of[kind]);
+}

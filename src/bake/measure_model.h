@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A model's errors, measured: random rays that get through, traced exactly and
+ * taken through the integers of the run time.
+ */
+#ifndef GLINT_BAKE_MEASURE_MODEL_H
+#define GLINT_BAKE_MEASURE_MODEL_H
+
+#include "bake/hunt.h"
+#include "glint/lens.h"
+
+struct glint_errors {
+    double rms, p50, p99, max;
+};
+
+struct glint_measured {
+    int rays;                 /* that got through */
+    int intruders;            /* rays that are cut, well outside of every edge,
+                                 but pass in the model */
+    struct glint_errors of[GLINT_OUT_KINDS]; /* units as in the model file */
+};
+
+/* Measures system SYSTEM of GHOST. Deterministic. */
+void glint_measure_system(const struct glint_hunt *hunt,
+                          const struct glint_lens *lens, int system,
+                          struct glint_measured *out);
+
+#endif

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/write_model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/compiler.h"
+
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error models are little-endian, and so are the machines glint runs on
+#endif
+
+STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
+STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
+STATIC_ASSERT(sizeof(struct glint_model_output) == 44);
+
+/* Adds BYTES from DATA (zeros where it is NULL) at a multiple of 4. Returns
+ * where they are. */
+static uint32_t put(struct glint_draft *d, const void *data, size_t bytes)
+{
+    const size_t padded = (bytes + 3) / 4 * 4, where = d->bytes;
+
+    if (d->out_of_memory || where + padded > UINT32_MAX / 2) {
+        d->out_of_memory = true;
+        return 0;
+    }
+    if (where + padded > d->room) {
+        const size_t room = 2 * (where + padded);
+        unsigned char *more = realloc(d->data, room);
+
+        if (!more) {
+            d->out_of_memory = true;
+            return 0;
+        }
+        d->data = more;
+        d->room = room;
+    }
+    memset(d->data + where, 0, padded);
+    if (data)
+        memcpy(d->data + where, data, bytes);
+    d->bytes += padded;
+    return (uint32_t)where;
+}
+
+/* Overwrites what was put at WHERE. */
+static void amend(struct glint_draft *d, uint32_t where, const void *data,
+                  size_t bytes)
+{
+    if (!d->out_of_memory)
+        memcpy(d->data + where, data, bytes);
+}
+
+static uint32_t put_terms(struct glint_draft *d,
+                          const struct glint_fitted_output *o)
+{
+    uint16_t power[GLINT_MAX_MODEL_TERMS];
+
+    for (int k = 0; k < o->n_terms; k++)
+        power[k] = (uint16_t)(o->power[k][0] | o->power[k][1] << 4 |
+                              o->power[k][2] << 8 | o->power[k][3] << 12);
+    return put(d, power, (size_t)o->n_terms * sizeof *power);
+}
+
+static uint32_t put_outputs(struct glint_draft *d,
+                            const struct glint_fitted_system *f,
+                            const struct glint_quantised_system *q)
+{
+    const size_t sets = f->n_knots ? (size_t)f->n_knots : 1;
+    struct glint_model_output out[GLINT_OUT_KINDS];
+
+    for (int k = 0; k < f->n_outputs; k++) {
+        const struct glint_fitted_output *o = &f->output[k];
+        const size_t n = sets * (size_t)o->n_terms;
+
+        const uint32_t term_at = put_terms(d, o);
+
+        out[k] = (struct glint_model_output){
+            .kind = (uint32_t)o->kind,
+            .n_terms = (uint32_t)o->n_terms,
+            .term_at = term_at,
+            .coef_at = put(d, q->output[k].coef, n * sizeof(int32_t)),
+            .exponent = q->output[k].exponent,
+            .bound = q->output[k].bound,
+            .rounding_q8 = q->output[k].rounding_q8};
+    }
+    return put(d, out, (size_t)f->n_outputs * sizeof *out);
+}
+
+static int32_t to_q30(double x)
+{
+    return (int32_t)lrint(x * 0x1p30);
+}
+
+static uint32_t put_knots(struct glint_draft *d,
+                          const struct glint_fitted_system *f)
+{
+    uint32_t where = (uint32_t)d->bytes;
+
+    for (int k = 0; k < f->n_knots; k++) {
+        const int32_t sine_q30 = to_q30(f->knot[k]);
+
+        put(d, &sine_q30, sizeof sine_q30);
+    }
+    return where;
+}
+
+static void write_system(struct glint_draft *d, uint32_t where,
+                         const struct glint_fitted_system *f,
+                         const struct glint_quantised_system *q)
+{
+    /* one after the other: the order is part of the file */
+    const uint32_t knot_at = put_knots(d, f);
+    const uint32_t box_at = put(d, q->box, (size_t)q->n_box * sizeof *q->box);
+    const uint32_t output_at = put_outputs(d, f, q);
+    const struct glint_model_system system = {
+        .sine_lo_q30 = to_q30(f->sine_lo),
+        .sine_hi_q30 = to_q30(f->sine_hi),
+        .wave_lo_q24 = (int32_t)lrint(f->wave_lo * 0x1p24),
+        .wave_hi_q24 = (int32_t)lrint(f->wave_hi * 0x1p24),
+        .n_knots = (uint32_t)f->n_knots,
+        .knot_at = knot_at,
+        .box_at = box_at,
+        .box_exponent = q->box_exponent,
+        .n_outputs = (uint32_t)f->n_outputs,
+        .output_at = output_at};
+
+    amend(d, where, &system, sizeof system);
+}
+
+enum glint_status
+glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
+                  const struct glint_model_header *header,
+                  const struct glint_fitted_ghost *fitted,
+                  struct glint_quantised_system *const *quantised)
+{
+    struct glint_model_header h = *header;
+    uint32_t n = 0;
+
+    *draft = (struct glint_draft){0};
+    put(draft, NULL, sizeof h);
+    h.n_ghosts = (uint32_t)setup->n_ghosts;
+    h.ghost_at = (uint32_t)draft->bytes;
+    for (int k = 0; k < setup->n_ghosts; k++) {
+        const struct glint_model_ghost ghost = {
+            (uint32_t)setup->ghost[k].i, (uint32_t)setup->ghost[k].j, n,
+            (uint32_t)fitted[k].n_systems};
+
+        put(draft, &ghost, sizeof ghost);
+        n += ghost.n_systems;
+    }
+    h.n_systems = n;
+    h.system_at =
+        put(draft, NULL, n * sizeof(struct glint_model_system));
+    n = 0;
+    for (int k = 0; k < setup->n_ghosts; k++)
+        for (int m = 0; m < fitted[k].n_systems; m++, n++)
+            write_system(draft,
+                         h.system_at +
+                             n * (uint32_t)sizeof(struct glint_model_system),
+                         &fitted[k].system[m], &quantised[k][m]);
+    h.bytes = (uint32_t)draft->bytes;
+    amend(draft, 0, &h, sizeof h);
+    return draft->out_of_memory ? GLINT_E_MEMORY : GLINT_OK;
+}
+
+struct glint_lens glint_draft_lens(const struct glint_draft *draft)
+{
+    const struct glint_model_header *h = (const void *)draft->data;
+
+    return (struct glint_lens){h, (const void *)(draft->data + h->ghost_at),
+                               (const void *)(draft->data + h->system_at)};
+}
+
+static uint32_t to_q20(double x)
+{
+    return (uint32_t)fmin(UINT32_MAX, ceil(x * 0x1p20));
+}
+
+void glint_draft_note(struct glint_draft *draft, int system,
+                      const struct glint_measured *measured)
+{
+    const struct glint_lens lens = glint_draft_lens(draft);
+    const struct glint_model_system *s = &lens.system[system];
+    struct glint_model_output *o = (void *)(draft->data + s->output_at);
+
+    for (uint32_t k = 0; k < s->n_outputs; k++, o++) {
+        const struct glint_errors *e = &measured->of[o->kind];
+
+        o->rms_q20 = to_q20(e->rms);
+        o->p50_q20 = to_q20(e->p50);
+        o->p99_q20 = to_q20(e->p99);
+        o->max_q20 = to_q20(e->max);
+    }
+}
+
+void glint_draft_close(struct glint_draft *draft)
+{
+    struct glint_model_header *h = (void *)draft->data;
+    const size_t from = offsetof(struct glint_model_header, basis);
+
+    h->crc32 = glint_model_crc32(draft->data + from, draft->bytes - from);
+}
