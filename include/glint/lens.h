@@ -78,7 +78,8 @@ struct glint_model_header {
 };
 
 /* Systems of one ghost follow each other: by rising wave_lo, of one band by
- * rising angle, without overlap. No systems: the ghost is never seen. */
+ * rising angle, without overlap; so do the ghosts' lists. No systems: the ghost
+ * is never seen. */
 struct glint_model_ghost {
     uint32_t i, j; /* reflecting surfaces, i < j */
     uint32_t first_system, n_systems;
