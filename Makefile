@@ -23,9 +23,10 @@ OUT  := build/$(ARCH)-$(notdir $(CC))-$(CONFIG)
 export DEPS OUT
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/image base/workers lens/transfer flare/regions \
-        flare/lights tile/primitive tile/clip flare/ghost_grid tile/bins \
-        tile/raster tile/curve tile/resolve flare/flare
+CORE := base/status base/arena base/q base/image base/workers lens/model \
+        lens/transfer flare/regions flare/lights tile/primitive tile/clip \
+        flare/ghost_grid tile/bins tile/raster tile/curve tile/resolve \
+        flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/cuts bake/cells \
         bake/setup bake/exact bake/feed bake/hunt bake/regress bake/zone bake/fit \

@@ -30,8 +30,8 @@ struct glint_image {
     int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
     uint8_t *plane[3]; /* first sample of the top row; unused ones NULL */
     ptrdiff_t stride_bytes[3];
-    enum glint_range range;       /* of the codes; RGB24: always full */
-    enum glint_matrix matrix;     /* of Y, Cb, Cr; ignored for RGB24 */
+    enum glint_range range;   /* of the codes; RGB24: always full */
+    enum glint_matrix matrix; /* of Y, Cb, Cr; ignored for RGB24 */
     enum glint_tone transfer; /* from codes to linear light */
 };
 

@@ -7,10 +7,11 @@
  *     glint_transfer_ray(&transfer, u_q30, v_q30, &out);        or
  *     glint_transfer_grid(&transfer, &place, n_cells, vertices);
  *
- * A model holds, for every ghost, sparse polynomials from the pupil to the stop,
- * the sensor, the barrels and the energy. It is one block of 32-bit words that
- * is used where it lies, in ROM or a mapped file: nothing is copied, nothing is
- * allocated. After glint_lens_open() has accepted it nothing can go wrong.
+ * A model holds, for every ghost, sparse polynomials from the pupil to the
+ * stop, the sensor, the barrels and the energy. It is one block of 32-bit words
+ * that is used where it lies, in ROM or a mapped file: nothing is copied,
+ * nothing is allocated. After glint_lens_open() has accepted it nothing can go
+ * wrong.
  *
  * Variables of a polynomial, each -1 .. 1:
  *   u, v   place in the ghost's box on the vertex plane of the first surface,
@@ -49,22 +50,23 @@ struct glint_real {
 enum glint_basis {
     GLINT_BASIS_AUTO,  /* u, v, s, w as above */
     GLINT_BASIS_SPARSE /* x, y, r and 1 - r, [Bodonyi25]; x and y are u and v
-                          of one box for all angles, r = sqrt((x^2 + y^2) / 2) */
+                          of one box for all angles, r = sqrt((x^2 + y^2) / 2)
+                        */
 };
 
 struct glint_model_header {
     uint32_t magic, version;
-    uint32_t bytes; /* of the whole file */
-    uint32_t crc32; /* of all after this word: polynomial 0xedb88320,
-                       reflected, begun and ended with all ones */
-    uint32_t basis; /* enum glint_basis */
+    uint32_t bytes;  /* of the whole file */
+    uint32_t crc32;  /* of all after this word: polynomial 0xedb88320,
+                        reflected, begun and ended with all ones */
+    uint32_t basis;  /* enum glint_basis */
     uint32_t key[2]; /* of lens table and options, low word first */
     char name[64];   /* of the lens, terminated */
     struct glint_real focal_mm, back_focal_mm, entrance_radius_mm,
         stop_radius_mm, f_number, film_width_mm, film_height_mm;
-    struct glint_real field_mm;   /* light farther from the sensor's centre was
-                                     not asked to be right */
-    struct glint_real front_mm;   /* semi-diameter of the first surface */
+    struct glint_real field_mm; /* light farther from the sensor's centre was
+                                   not asked to be right */
+    struct glint_real front_mm; /* semi-diameter of the first surface */
     int32_t wave_lo_q24, wave_hi_q24; /* the band, 1 / wavelength^2, um^-2 */
     int32_t sine_hi_q30;              /* of the largest angle looked at */
     /* Flux of the direct image at angle 0 for irradiance 1, mm^2: coefficients
@@ -76,7 +78,8 @@ struct glint_model_header {
 };
 
 /* Systems of one ghost follow each other: by rising wave_lo, of one band by
- * rising angle, without overlap. No systems: the ghost is never seen. */
+ * rising angle, without overlap; so do the ghosts' lists. No systems: the ghost
+ * is never seen. */
 struct glint_model_ghost {
     uint32_t i, j; /* reflecting surfaces, i < j */
     uint32_t first_system, n_systems;
@@ -124,9 +127,9 @@ struct glint_model_output {
     uint32_t n_terms, term_at; /* uint16 [n_terms], padded to whole words:
                                   powers of u, v, s, w (or x, y, r, 1 - r), four
                                   bits each, the first lowest */
-    uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
-    int32_t exponent; /* a value is integer * 2^exponent */
-    uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
+    uint32_t coef_at;     /* int32 [n_terms], with knots [n_knots][n_terms] */
+    int32_t exponent;     /* a value is integer * 2^exponent */
+    uint32_t bound;       /* proven: no intermediate is larger; < 2^30 */
     uint32_t rounding_q8; /* proven: integers stray from the polynomial by no
                              more than so many steps */
     /* Measured against exact rays through the run-time arithmetic, q20: pixels

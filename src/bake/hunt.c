@@ -134,8 +134,8 @@ static bool find_box(const struct glint_hunt *h, const struct glint_path *path,
                      double sine, struct glint_pupil *box)
 {
     return glint_pupil_find_within(box, path, degrees_of(sine),
-                                   h->setup->optics.stop_radius_mm,
-                                   h->field_mm, NULL) &&
+                                   h->setup->optics.stop_radius_mm, h->field_mm,
+                                   NULL) &&
            tighten(h, path, sine, box);
 }
 
@@ -215,9 +215,8 @@ static void join(struct glint_pupil *a, const struct glint_pupil *b)
 static struct glint_pupil predict(const struct glint_pupil *before,
                                   const struct glint_pupil *box, double ratio)
 {
-    const double step = 0.5 * ratio *
-                        (box->x0_mm + box->x1_mm - before->x0_mm -
-                         before->x1_mm);
+    const double step =
+        0.5 * ratio * (box->x0_mm + box->x1_mm - before->x0_mm - before->x1_mm);
     struct glint_pupil p = *box;
 
     p.x0_mm += step;

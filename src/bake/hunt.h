@@ -26,7 +26,7 @@ struct glint_hunt {
     const struct glint_setup *setup;
     int ghost;
     double field_mm; /* light beyond this radius on the sensor is no loss */
-    double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
+    double wave_lo, wave_hi;                  /* 1 / wavelength^2, um^-2 */
     struct glint_path path[GLINT_HUNT_WAVES]; /* from wave_lo to wave_hi */
 };
 

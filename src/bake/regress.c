@@ -11,9 +11,9 @@
 struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead;
-    double length;               /* before it was made orthogonal */
-    double on[GLINT_MAX_TERMS];  /* its shares of the chosen directions */
-    double *at;                  /* [n], orthogonal to the chosen ones */
+    double length;              /* before it was made orthogonal */
+    double on[GLINT_MAX_TERMS]; /* its shares of the chosen directions */
+    double *at;                 /* [n], orthogonal to the chosen ones */
 };
 
 struct search {
@@ -94,8 +94,8 @@ static void add_candidate(struct search *s, const uint8_t *power)
     for (int i = 0; i < s->n_columns; i++)
         if (memcmp(s->column[i].power, power, GLINT_VARIABLES) == 0)
             return;
-    *column = (struct column){
-        .at = s->memory + (size_t)s->n_columns * (size_t)s->s->n};
+    *column = (struct column){.at = s->memory +
+                                    (size_t)s->n_columns * (size_t)s->s->n};
     memcpy(column->power, power, GLINT_VARIABLES);
     fill(s, column);
     for (int rank = 0; rank < s->n_chosen; rank++)
@@ -208,8 +208,8 @@ double glint_regress_fit(double *scratch, const struct glint_samples *samples,
                        .degrees = degrees,
                        .residual = scratch,
                        .memory = scratch + samples->n};
-    const uint8_t first[GLINT_VARIABLES] = {
-        0, (uint8_t)(degrees->parity > 0), 0, 0};
+    const uint8_t first[GLINT_VARIABLES] = {0, (uint8_t)(degrees->parity > 0),
+                                            0, 0};
     double left;
 
     for (int i = 0; i < samples->n; i++)

@@ -6,7 +6,6 @@
 #include "bake/degrees.h"
 #include "base/compiler.h"
 
-
 /* -------------------------------------------------------------------- boxes */
 
 double glint_zone_node(int k, int n)
@@ -32,12 +31,11 @@ static void follow(int n, const double *s, const double *value, int degree,
     double scratch[GLINT_PROFILE * (GLINT_MAX_CANDIDATES + 1)];
     double weight[GLINT_PROFILE];
     const struct glint_samples samples = {n, {zero, zero, s, zero}, weight};
-    const struct glint_degrees degrees = {
-        .most = {0, 0, (uint8_t)degree, 0},
-        .weight = {1, 1, 1, 1},
-        .total = degree,
-        .parity = -1,
-        .terms = degree + 1};
+    const struct glint_degrees degrees = {.most = {0, 0, (uint8_t)degree, 0},
+                                          .weight = {1, 1, 1, 1},
+                                          .total = degree,
+                                          .parity = -1,
+                                          .terms = degree + 1};
     struct glint_poly fit;
 
     for (int i = 0; i < n; i++)
@@ -156,16 +154,16 @@ static enum glint_ray_status ray_of(const struct glint_zone *z,
     direction_of(z, s, d);
     for (int k = 0; k < path->n_events; k++)
         hits[k][0] = hits[k][1] = -1;
-    return glint_trace(path,
-                       glint_zone_at(z->middle, s) +
-                           u * glint_zone_at(z->half_x, s),
-                       v * glint_zone_at(z->half_y, s), d, ray, hits);
+    return glint_trace(
+        path, glint_zone_at(z->middle, s) + u * glint_zone_at(z->half_x, s),
+        v * glint_zone_at(z->half_y, s), d, ray, hits);
 }
 
 /* Notes the ray's radius at every event if the stop and the field let it pass,
  * so that only barrels can stop it. Radius 0 of the last entry marks a ray that
  * was lost on the way. */
-static bool survey_ray(const struct glint_hunt *h, const struct glint_path *path,
+static bool survey_ray(const struct glint_hunt *h,
+                       const struct glint_path *path,
                        enum glint_ray_status status,
                        const struct glint_ray *ray, double (*hits)[2],
                        double *radius)
@@ -177,9 +175,10 @@ static bool survey_ray(const struct glint_hunt *h, const struct glint_path *path
         const struct glint_event *e = &path->event[k];
         const double r = hypot(hits[k][0], hits[k][1]);
 
-        radius[k] = e->kind == GLINT_STOP || (hits[k][0] == -1 && hits[k][1] == -1)
-                        ? 0
-                        : r / e->semi_mm;
+        radius[k] =
+            e->kind == GLINT_STOP || (hits[k][0] == -1 && hits[k][1] == -1)
+                ? 0
+                : r / e->semi_mm;
         most = fmax(most, radius[k]);
     }
     if (most <= 1)
@@ -206,8 +205,8 @@ static void run_survey(const struct glint_zone *z, const struct glint_hunt *h,
             ray_of(z, path, 2.0 * i / SURVEY_U - 1, (double)j / SURVEY_V,
                    glint_zone_node(m, SURVEY_S), &ray, hits);
 
-        survey->n += survey_ray(h, path, status, &ray, hits,
-                                survey->radius[survey->n]);
+        survey->n +=
+            survey_ray(h, path, status, &ray, hits, survey->radius[survey->n]);
     }
 }
 
@@ -287,10 +286,10 @@ static void add_ray(const struct glint_hunt *h, const struct glint_path *path,
     rays->at[RAY_STOP_X][i] = ray->stop_x_mm / stop;
     rays->at[RAY_STOP_Y][i] = ray->stop_y_mm / stop;
     rays->at[RAY_ENERGY][i] = ray->energy;
-    rays->at[RAY_EXCESS][i] = fmax(
-        ray->rel_radius,
-        fmax(hypot(ray->stop_x_mm, ray->stop_y_mm) / stop,
-             hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm));
+    rays->at[RAY_EXCESS][i] =
+        fmax(ray->rel_radius,
+             fmax(hypot(ray->stop_x_mm, ray->stop_y_mm) / stop,
+                  hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm));
     for (int k = 0; k < rays->n_barrels; k++) {
         const int e = rays->barrel[k];
 
@@ -312,9 +311,8 @@ static void trace_plane(const struct glint_zone *zone,
     for (int j = 0; j <= DOWN; j += stride)
         for (int i = 0; i <= ACROSS; i += stride) {
             const double x[GLINT_VARIABLES] = {
-                glint_zone_node(i, ACROSS + 1),
-                sin(0.5 * GLINT_PI * j / DOWN), glint_zone_node(sine, SINES),
-                glint_zone_node(wave, WAVES)};
+                glint_zone_node(i, ACROSS + 1), sin(0.5 * GLINT_PI * j / DOWN),
+                glint_zone_node(sine, SINES), glint_zone_node(wave, WAVES)};
             struct glint_ray ray;
 
             if (rays->n == GLINT_ZONE_RAYS ||
@@ -322,7 +320,8 @@ static void trace_plane(const struct glint_zone *zone,
                     GLINT_RAY_OK)
                 continue;
             add_ray(hunt, path, x, &ray, hits, rays);
-            if (stride == 1 && (i + j) % 3 && rays->at[RAY_EXCESS][rays->n - 1] > 1.1)
+            if (stride == 1 && (i + j) % 3 &&
+                rays->at[RAY_EXCESS][rays->n - 1] > 1.1)
                 rays->n--;
         }
 }

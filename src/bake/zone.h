@@ -26,7 +26,7 @@ enum {
 };
 
 struct glint_zone {
-    double lo, hi; /* sine of the angle */
+    double lo, hi;                  /* sine of the angle */
     double middle[GLINT_BOX_TERMS]; /* of powers of s, mm */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     double fill; /* mean share of the box that the ghost needs */
@@ -37,8 +37,7 @@ double glint_zone_at(const double poly[GLINT_BOX_TERMS], double s);
 
 /* Sets the box for LO .. HI of PROFILE. */
 void glint_zone_init(struct glint_zone *zone,
-                     const struct glint_profile *profile, double lo,
-                     double hi);
+                     const struct glint_profile *profile, double lo, double hi);
 
 /* Node K of N over -1 .. 1, the ends among them. */
 double glint_zone_node(int k, int n);

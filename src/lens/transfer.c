@@ -60,8 +60,7 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
     const struct glint_model_system *best = NULL;
 
     for (uint32_t k = 0; k < g->n_systems; k++) {
-        const struct glint_model_system *s =
-            &lens->system[g->first_system + k];
+        const struct glint_model_system *s = &lens->system[g->first_system + k];
 
         if (sine_q30 < s->sine_lo_q30 || sine_q30 > s->sine_hi_q30)
             continue;
@@ -91,9 +90,8 @@ static void settle(struct setting *set, const struct glint_lens *lens,
         while (k + 2 < s->n_knots && sine_q30 >= knot_q30[k + 1])
             k++;
         set->knot = k;
-        set->part_q30 =
-            within_q30(sine_q30, knot_q30[k], knot_q30[k + 1]) / 2 +
-            ONE_Q30 / 2;
+        set->part_q30 = within_q30(sine_q30, knot_q30[k], knot_q30[k + 1]) / 2 +
+                        ONE_Q30 / 2;
         return;
     }
     powers_q30(within_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30),
@@ -261,9 +259,8 @@ static void ray_of_rows(const struct glint_transfer *t,
                         struct glint_outputs *out)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        out->at[kind] = has(t, kind)
-                            ? along(&rows[kind], t->degree_u[kind], u_q30)
-                            : 0;
+        out->at[kind] =
+            has(t, kind) ? along(&rows[kind], t->degree_u[kind], u_q30) : 0;
 }
 
 static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
@@ -272,10 +269,8 @@ static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
     int32_t x[4][MAX_EXPONENT + 1];
     const int32_t px_q30 = t->box[0] + q_mul(t->box[1], u_q30, 30);
     const int32_t py_q30 = q_mul(t->box[2], v_q30, 30);
-    const int64_t r2_q60 =
-        (int64_t)px_q30 * px_q30 + (int64_t)py_q30 * py_q30;
-    const int32_t r_q30 =
-        q_clamp_sat(q_root((uint64_t)r2_q60), 0, ONE_Q30);
+    const int64_t r2_q60 = (int64_t)px_q30 * px_q30 + (int64_t)py_q30 * py_q30;
+    const int32_t r_q30 = q_clamp_sat(q_root((uint64_t)r2_q60), 0, ONE_Q30);
 
     powers_q30(px_q30, MAX_EXPONENT, x[0]);
     powers_q30(py_q30, MAX_EXPONENT, x[1]);
@@ -325,9 +320,8 @@ static int32_t scaled(int64_t x, int shift, int32_t limit, int *lost)
 
     if (shift > 62)
         return 0;
-    if (shift < 0 && (shift < -31 || bit_length((uint64_t)(x < 0 ? -x : x)) -
-                                             shift >
-                                         32)) {
+    if (shift < 0 &&
+        (shift < -31 || bit_length((uint64_t)(x < 0 ? -x : x)) - shift > 32)) {
         *lost |= x != 0;
         return 0;
     }
@@ -351,8 +345,8 @@ static int32_t barrel_of(const struct glint_outputs *out, int kind, int shift,
 }
 
 static void set_barrels(const struct glint_transfer *t,
-                        const struct glint_outputs *out,
-                        struct glint_vertex *v, int *lost)
+                        const struct glint_outputs *out, struct glint_vertex *v,
+                        int *lost)
 {
     int32_t more;
 
@@ -360,9 +354,9 @@ static void set_barrels(const struct glint_transfer *t,
     if (has(t, GLINT_OUT_RADIUS)) {
         more = scaled(out->at[GLINT_OUT_RADIUS],
                       -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23, lost);
-        v->barrel_q16[0] = (int32_t)(((INT64_C(1) << 16) +
-                                      q_shift((int64_t)more * more, 16)) /
-                                     2);
+        v->barrel_q16[0] =
+            (int32_t)(((INT64_C(1) << 16) + q_shift((int64_t)more * more, 16)) /
+                      2);
     }
     for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
         int32_t *to = &v->barrel_q16[kind > GLINT_OUT_BARREL_0];
@@ -385,8 +379,8 @@ static void set_vertex(const struct glint_transfer *t,
     const int64_t a = out->at[GLINT_OUT_STOP_X];
     const int64_t b = (int64_t)mirror * out->at[GLINT_OUT_STOP_Y];
     const int64_t c = p->cos_q30, s = p->sin_q30;
-    const int to_q8 = -(t->exponent[GLINT_OUT_SENSOR_X] +
-                        p->pixels_per_mm.exponent + 8);
+    const int to_q8 =
+        -(t->exponent[GLINT_OUT_SENSOR_X] + p->pixels_per_mm.exponent + 8);
     const int to_q16 = -(t->exponent[GLINT_OUT_STOP_X] + 16);
     int lost = 0;
 

@@ -13,8 +13,7 @@
 
 #include <cmocka.h>
 
-static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB,
-                                                 GLINT_TONE_BT709};
+static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB, GLINT_TONE_BT709};
 
 /* Standards: IEC 61966-2-1 and ITU-R BT.709, inverse. */
 static double light_of(enum glint_tone transfer, double v)
