@@ -8,8 +8,7 @@ static const char *const names[GLINT_OUT_KINDS] = {
     "sensor_x", "sensor_y", "stop_x",   "stop_y",   "energy",
     "radius",   "barrel_0", "barrel_1", "barrel_2", "barrel_3"};
 static const char *const units[GLINT_OUT_KINDS] = {
-    "px", "px", "stop radii", "stop radii", "of itself",
-    "",   "",   "",           "",           ""};
+    "px", "px", "stop radii", "stop radii", "of itself", "", "", "", "", ""};
 
 /* Errors at the 99th percentile beyond which a ghost is pointed out: a quarter
  * of a pixel of 1920, and what is worth as much elsewhere. */
@@ -151,8 +150,8 @@ void model_report_text(const struct glint_lens *lens, double seconds,
     for (uint32_t k = 0; k < h->n_ghosts; k++) {
         struct sum sum[GLINT_OUT_KINDS] = {{0}};
 
-        sum_systems(lens, lens->ghost[k].first_system,
-                    lens->ghost[k].n_systems, sum);
+        sum_systems(lens, lens->ghost[k].first_system, lens->ghost[k].n_systems,
+                    sum);
         missed += misses(sum);
         if (lens->ghost[k].n_systems && (all || misses(sum)))
             print_ghost(lens, (int)k, sum);

@@ -264,9 +264,9 @@ struct glint_bake_options {
     double field_mm;   /* radius on the sensor within which light counts; 0: a
                           tenth more than the film's corners */
     double tolerance;  /* scale of all errors aimed at, 0.1 .. 100; at 1 the
-                          root mean squares are 0.06 pixels of a film 1920
-                          wide, 0.0002 stop radii, 0.0004 of a barrel, 0.5 % of
-                          energy */
+                          root mean squares are 0.065 pixels of a film 1920
+                          wide, 0.00025 stop radii, 0.0004 of a barrel, 0.7 %
+                          of energy */
     struct glint_workers *workers; /* never changes the model */
     glint_progress_fn *progress;   /* NULL: silent */
     void *progress_ctx;

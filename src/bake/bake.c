@@ -18,14 +18,14 @@ struct kitchen {
     const struct glint_prescription *lens;
     struct glint_bake_options options;
     struct glint_setup setup;
-    struct glint_fitted_ghost *fitted;          /* [n_ghosts] */
-    struct glint_quantised_system **quantised;  /* [n_ghosts][n_systems] */
-    enum glint_status *status;                  /* [n_ghosts] */
+    struct glint_fitted_ghost *fitted;         /* [n_ghosts] */
+    struct glint_quantised_system **quantised; /* [n_ghosts][n_systems] */
+    enum glint_status *status;                 /* [n_ghosts] */
     struct glint_draft draft;
-    int *first;          /* system of each ghost */
-    int *intruders;      /* of each ghost */
+    int *first;     /* system of each ghost */
+    int *intruders; /* of each ghost */
     int *rays;
-    int first_job;       /* of a batch */
+    int first_job; /* of a batch */
     struct glint_error *error;
 };
 
@@ -203,8 +203,8 @@ static void fit_job(void *ctx, int job, int worker)
     struct kitchen *k = ctx;
     const int ghost = k->first_job + job;
     const double film = k->lens->film_width_mm, t = k->options.tolerance;
-    const struct glint_tolerance tolerance = {0.06 * t * film / 1920, 2e-4 * t,
-                                              5e-3 * t, 4e-4 * t};
+    const struct glint_tolerance tolerance = {0.065 * t * film / 1920,
+                                              2.5e-4 * t, 7e-3 * t, 4e-4 * t};
     struct glint_hunt *hunt = malloc(sizeof *hunt);
 
     (void)worker;
@@ -234,7 +234,8 @@ static void measure_job(void *ctx, int job, int worker)
     for (int i = 0; i < k->fitted[ghost].n_systems; i++) {
         struct glint_measured m;
 
-        glint_measure_system(hunt, &lens, k->first[ghost] + i, &m);
+        glint_measure_system(hunt, &lens, k->first[ghost] + i,
+                             &k->fitted[ghost].system[i], &m);
         glint_draft_note(&k->draft, k->first[ghost] + i, &m);
         k->intruders[ghost] += m.intruders;
         k->rays[ghost] += m.rays;
@@ -248,7 +249,7 @@ static enum glint_status for_ghosts(struct kitchen *k, glint_job_fn *job,
                                     double from, double to)
 {
     const int n = k->setup.n_ghosts;
-    const int batch = 4 * glint_workers_count(k->options.workers);
+    const int batch = 8 * glint_workers_count(k->options.workers);
 
     for (k->first_job = 0; k->first_job < n; k->first_job += batch) {
         const int left = n - k->first_job, now = left < batch ? left : batch;
@@ -276,8 +277,8 @@ static enum glint_status reserve(struct kitchen *k)
     k->first = calloc(n, sizeof *k->first);
     k->intruders = calloc(n, sizeof *k->intruders);
     k->rays = calloc(n, sizeof *k->rays);
-    return k->fitted && k->quantised && k->status && k->first &&
-                   k->intruders && k->rays
+    return k->fitted && k->quantised && k->status && k->first && k->intruders &&
+                   k->rays
                ? GLINT_OK
                : GLINT_E_MEMORY;
 }
@@ -349,8 +350,7 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     k->options = *options;
     status = check(options, error);
     if (status == GLINT_OK)
-        status =
-            glint_setup_init(&k->setup, lens, 0, 0, &middle_nm, 1, error);
+        status = glint_setup_init(&k->setup, lens, 0, 0, &middle_nm, 1, error);
     if (status == GLINT_OK) {
         status = cook(k);
         if (status == GLINT_E_LENS)

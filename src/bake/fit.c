@@ -9,20 +9,22 @@
 #include "bake/zone.h"
 
 #define PEAK       5.0  /* times the root mean square */
-#define LEAST_FILL 0.5  /* of a box; below it the grids waste their cells */
-#define LEAST_DEG  0.3  /* of a zone */
-#define STUCK      0.75 /* half a zone that is left with so much of the whole
-                           one's error gains nothing from halving... */
-#define STUCK_DEG  2.5  /* ...once it is this narrow */
+#define LEAST_FILL 0.45 /* of a box; below it the grids waste their cells */
+#define FILL_DEG   0.6  /* narrower zones need not care for that */
+#define LEAST_DEG  0.45 /* of a zone that may be halved */
+#define STUCK                                                               \
+    0.75              /* half a zone that is left with so much of the whole \
+                         one's error gains nothing from halving... */
+#define STUCK_DEG 1.2 /* ...once it is this narrow */
 
 struct fitter {
     const struct glint_hunt *hunt;
     const struct glint_tolerance *tolerance;
     struct glint_profile profile;
-    struct glint_rays rays;
+    struct glint_rays rays, energies;
     glint_survey survey;
-    double weight[GLINT_ZONE_RAYS], channel_weight[GLINT_ZONE_RAYS],
-        value[GLINT_ZONE_RAYS];
+    double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
+    double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
     double *scratch;
     struct glint_fitted_ghost *out;
 };
@@ -30,21 +32,43 @@ struct fitter {
 /* ----------------------------------------------------------------- outputs */
 
 static const struct glint_degrees position_degrees = {
-    .most = {GLINT_MAX_POWER, 8, 5, 3},
+    .most = {GLINT_MAX_POWER, 8, 5, 4},
     .weight = {1, 1, 1, 2},
-    .total = 10,
+    .total = 12,
     .terms = GLINT_MAX_TERMS};
 
 static const struct glint_degrees energy_degrees = {
-    .most = {4, 4, 4, 3}, .weight = {1, 1, 1, 1}, .total = 6, .terms = 30};
+    .most = {6, 4, 4, 6}, .weight = {1, 1, 1, 1}, .total = 8, .terms = 48};
 
 /* Full weight a little past the edge, where cells straddle it; hardly any where
  * nothing is seen, which only has to stay unseen. */
-static double weight_of(double excess)
+static double weight_past_edge(double excess)
 {
     const double past = (excess - 1.02) / 0.05;
 
     return past <= 0 ? 1 : fmax(0.002, exp(-past * past));
+}
+
+/* Light beyond the field only has to stay there: it may be off by a fifth of
+ * how far it is out. */
+static double weight_past_field(const struct fitter *f, double fields)
+{
+    const double out_mm = (fields - 1.01) * f->hunt->field_mm;
+
+    return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->tolerance->sensor_mm);
+}
+
+static void set_weights(struct fitter *f)
+{
+    const struct glint_rays *r = &f->rays;
+
+    for (int i = 0; i < r->n; i++) {
+        f->weight[i] = weight_past_edge(r->at[RAY_EXCESS][i]);
+        f->sensor_weight[i] =
+            f->weight[i] * weight_past_field(f, r->at[RAY_FIELD][i]);
+        if (r->at[RAY_FIELD][i] > 1.05)
+            f->weight[i] *= 0.1;
+    }
 }
 
 static enum glint_status keep(struct glint_fitted_system *system,
@@ -65,13 +89,14 @@ static enum glint_status keep(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-/* Fits VALUE with CHANNEL_WEIGHT; *WORST becomes what is left, if larger. */
+/* Fits VALUE over RAYS with CHANNEL_WEIGHT; *WORST becomes what is left, if
+ * larger. */
 static enum glint_status fit_output(struct fitter *f,
+                                    const struct glint_rays *r,
                                     enum glint_channel kind, double rms,
                                     struct glint_fitted_system *system,
                                     double *worst)
 {
-    const struct glint_rays *r = &f->rays;
     const struct glint_samples samples = {
         r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->channel_weight};
     struct glint_degrees degrees =
@@ -93,27 +118,31 @@ static enum glint_status fit_channel(struct fitter *f, int channel, double rms,
     const size_t bytes = (size_t)f->rays.n * sizeof *f->value;
 
     memcpy(f->value, f->rays.at[channel], bytes);
-    memcpy(f->channel_weight, f->weight, bytes);
-    return fit_output(f, (enum glint_channel)channel, rms, system, worst);
+    memcpy(f->channel_weight,
+           channel <= RAY_SENSOR_Y ? f->sensor_weight : f->weight, bytes);
+    return fit_output(f, &f->rays, (enum glint_channel)channel, rms, system,
+                      worst);
 }
 
-/* Energy counts by its share. */
-static enum glint_status fit_energy(struct fitter *f,
-                                    struct glint_fitted_system *system,
-                                    double *worst)
+/* Energy counts by its share, down to a tenth of the most that is seen. */
+static enum glint_status
+fit_energy(struct fitter *f, struct glint_fitted_system *system, double *worst)
 {
-    const struct glint_rays *r = &f->rays;
-    double most = 0;
+    const struct glint_rays *r = &f->energies;
+    double most = 1e-30;
 
     for (int i = 0; i < r->n; i++)
-        if (r->at[RAY_EXCESS][i] <= 1)
+        if (fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]) <= 1.1)
             most = fmax(most, r->at[RAY_ENERGY][i]);
     for (int i = 0; i < r->n; i++) {
+        const double out = fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]);
+
         f->value[i] = r->at[RAY_ENERGY][i];
         f->channel_weight[i] =
-            f->weight[i] / fmax(f->value[i], fmax(0.1 * most, 1e-30));
+            fmax(weight_past_edge(out), 0.02) / fmax(f->value[i], 0.1 * most);
     }
-    return fit_output(f, GLINT_OUT_ENERGY, f->tolerance->energy, system, worst);
+    return fit_output(f, r, GLINT_OUT_ENERGY, f->tolerance->energy, system,
+                      worst);
 }
 
 /* Where the barrel cuts is what counts. */
@@ -128,22 +157,20 @@ static enum glint_status fit_barrel(struct fitter *f, int barrel,
         const double off = (radius - 1) / 0.15;
 
         f->value[i] = 0.5 * (1 + radius * radius);
-        f->channel_weight[i] =
-            f->weight[i] * fmax(0.05, 1 / (1 + off * off));
+        f->channel_weight[i] = f->weight[i] * fmax(0.05, 1 / (1 + off * off));
     }
-    return fit_output(f, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
+    system->output[system->n_outputs].event = r->barrel[barrel];
+    return fit_output(f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
                       f->tolerance->barrel, system, worst);
 }
 
-static enum glint_status fit_outputs(struct fitter *f,
-                                     struct glint_fitted_system *system,
-                                     double *worst)
+static enum glint_status
+fit_outputs(struct fitter *f, struct glint_fitted_system *system, double *worst)
 {
     const struct glint_tolerance *t = f->tolerance;
     enum glint_status status = GLINT_OK;
 
-    for (int i = 0; i < f->rays.n; i++)
-        f->weight[i] = weight_of(f->rays.at[RAY_EXCESS][i]);
+    set_weights(f);
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++)
         status = fit_channel(f, c, c <= RAY_SENSOR_Y ? t->sensor_mm : t->stop,
                              system, worst);
@@ -152,6 +179,56 @@ static enum glint_status fit_outputs(struct fitter *f,
     for (int b = 0; b < f->rays.n_barrels && status == GLINT_OK; b++)
         status = fit_barrel(f, b, system, worst);
     return status;
+}
+
+/* ------------------------------------------------------------------ checks */
+
+/* What may be left of rays that were not fitted, in tolerances. */
+#define CHECK_RMS 1.6
+
+/* The root mean square error of one output over the rays that get through, in
+ * units of RMS. */
+static double check_output(const struct fitter *f,
+                           const struct glint_fitted_output *o,
+                           const double *value, double rms)
+{
+    const struct glint_rays *r = &f->rays;
+    double sum2 = 0;
+    int n = 0;
+
+    for (int i = 0; i < r->n; i++) {
+        const double x[GLINT_VARIABLES] = {r->x[0][i], r->x[1][i], r->x[2][i],
+                                           r->x[3][i]};
+        double error;
+
+        if (r->at[RAY_EXCESS][i] > 1.02 || r->at[RAY_FIELD][i] > 1)
+            continue;
+        error = glint_poly_at(o->n_terms, o->power, o->coef, x) - value[i];
+        sum2 += error * error;
+        n++;
+    }
+    return n ? sqrt(sum2 / n) / rms : 0;
+}
+
+/* How much worse than it may be the zone is at rays between those that were
+ * fitted: a fit can be good at every node and nowhere else. */
+static double check_zone(struct fitter *f, const struct glint_zone *zone,
+                         const struct glint_fitted_system *system)
+{
+    const struct glint_tolerance *t = f->tolerance;
+    double worst = 0;
+
+    glint_zone_check(zone, f->hunt, &f->rays);
+    for (int k = 0; k < system->n_outputs; k++) {
+        const struct glint_fitted_output *o = &system->output[k];
+
+        if (o->kind <= GLINT_OUT_STOP_Y)
+            worst = fmax(worst, check_output(f, o, f->rays.at[o->kind],
+                                             o->kind <= GLINT_OUT_SENSOR_Y
+                                                 ? t->sensor_mm
+                                                 : t->stop));
+    }
+    return worst / CHECK_RMS;
 }
 
 /* ------------------------------------------------------------------- zones */
@@ -214,30 +291,30 @@ struct pending {
 static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
                                   bool *done, double *left)
 {
-    const bool least = degrees_between(p->lo, p->hi) < 2 * LEAST_DEG;
-    struct glint_fitted_system system = {
-        .ghost = f->hunt->ghost,
-        .sine_lo = p->lo,
-        .sine_hi = p->hi,
-        .wave_lo = f->hunt->wave_lo,
-        .wave_hi = f->hunt->wave_hi};
+    const double width = degrees_between(p->lo, p->hi);
+    struct glint_fitted_system system = {.ghost = f->hunt->ghost,
+                                         .sine_lo = p->lo,
+                                         .sine_hi = p->hi,
+                                         .wave_lo = f->hunt->wave_lo,
+                                         .wave_hi = f->hunt->wave_hi};
     struct glint_zone zone;
     enum glint_status status;
 
     *done = false;
     *left = HUGE_VAL;
     glint_zone_init(&zone, &f->profile, p->lo, p->hi);
-    if (zone.fill < LEAST_FILL && !least)
+    if (zone.fill < LEAST_FILL && width > FILL_DEG)
         return GLINT_OK;
-    glint_zone_trace(&zone, f->hunt, &f->survey, &f->rays);
+    glint_zone_trace(&zone, f->hunt, &f->survey, &f->rays, &f->energies);
     *left = 0;
     status = set_box(&system, &zone);
     if (status == GLINT_OK)
         status = fit_outputs(f, &system, left);
+    if (status == GLINT_OK)
+        *left = fmax(*left, check_zone(f, &zone, &system));
     system.met = *left <= 1;
-    *done = system.met || least ||
-            (*left > STUCK * p->before &&
-             degrees_between(p->lo, p->hi) < STUCK_DEG);
+    *done = system.met || width < LEAST_DEG ||
+            (*left > STUCK * p->before && width < STUCK_DEG);
     if (status == GLINT_OK && *done)
         status = append(f->out, &system);
     if (status != GLINT_OK || !*done)
@@ -248,7 +325,7 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
 /* Zones from the lowest angle up; the upper halves wait on a stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    enum { DEEP = 24 }; /* halvings from 90 degrees down to LEAST_DEG: 10 */
+    enum { DEEP = 24 }; /* halvings from 90 degrees down to LEAST_DEG: 11 */
     struct pending stack[DEEP] = {{range[0], range[1], HUGE_VAL}};
     enum glint_status status = GLINT_OK;
     int n = 1;

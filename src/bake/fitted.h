@@ -15,7 +15,8 @@ struct glint_fitted_output {
     int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
-    bool met; /* the tolerance */
+    int event; /* of the path, for a barrel */
+    bool met;  /* the tolerance */
 };
 
 struct glint_fitted_system {

@@ -25,11 +25,13 @@ static double next(struct random *r)
 /* A bundle and its exact counterpart. */
 struct bench {
     const struct glint_hunt *hunt;
+    const struct glint_fitted_system *fitted;
     struct glint_transfer transfer;
     struct glint_path path;
     double direction[3];
     int n;
     double *error[GLINT_OUT_KINDS]; /* [RAYS] */
+    double *energy;                 /* [RAYS] */
     int n_of[GLINT_OUT_KINDS];
     struct glint_measured *out;
 };
@@ -51,24 +53,21 @@ static void note(struct bench *b, int kind, double error)
 }
 
 /* Barrels count where they cut: the error of r is that of (1 + r^2) / 2 there.
- * The barrel is the one whose exact value is nearest. */
+ */
 static void note_barrels(struct bench *b, const struct glint_outputs *o,
                          double (*hits)[2])
 {
-    for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
-        double least = HUGE_VAL;
+    for (int k = 0; k < b->fitted->n_outputs; k++) {
+        const struct glint_fitted_output *f = &b->fitted->output[k];
+        double r;
 
-        for (int k = 0; has(b, kind) && k < b->path.n_events; k++) {
-            const struct glint_event *e = &b->path.event[k];
-            const double r = hypot(hits[k][0], hits[k][1]) / e->semi_mm;
-            const double off = value(b, o, kind) - 0.5 * (1 + r * r);
-
-            if (e->kind != GLINT_STOP && fabs(r - 1) < 0.2 &&
-                fabs(off) < fabs(least))
-                least = off;
-        }
-        if (isfinite(least))
-            note(b, kind, least);
+        if (f->kind < GLINT_OUT_BARREL_0)
+            continue;
+        r = hypot(hits[f->event][0], hits[f->event][1]) /
+            b->path.event[f->event].semi_mm;
+        if (fabs(r - 1) < 0.2)
+            note(b, (int)f->kind,
+                 value(b, o, (int)f->kind) - 0.5 * (1 + r * r));
     }
 }
 
@@ -79,7 +78,6 @@ static void note_ray(struct bench *b, const struct glint_ray *ray,
     const double px = 1920 / s->lens->film_width_mm;
     const double stop = s->optics.stop_radius_mm;
 
-    b->n++;
     note(b, GLINT_OUT_SENSOR_X,
          px * (value(b, o, GLINT_OUT_SENSOR_X) - ray->sensor_x_mm));
     note(b, GLINT_OUT_SENSOR_Y,
@@ -88,7 +86,8 @@ static void note_ray(struct bench *b, const struct glint_ray *ray,
          value(b, o, GLINT_OUT_STOP_X) - ray->stop_x_mm / stop);
     note(b, GLINT_OUT_STOP_Y,
          value(b, o, GLINT_OUT_STOP_Y) - ray->stop_y_mm / stop);
-    note(b, GLINT_OUT_ENERGY, value(b, o, GLINT_OUT_ENERGY) / ray->energy - 1);
+    note(b, GLINT_OUT_ENERGY, value(b, o, GLINT_OUT_ENERGY) - ray->energy);
+    b->energy[b->n++] = ray->energy;
     if (has(b, GLINT_OUT_RADIUS))
         note(b, GLINT_OUT_RADIUS,
              value(b, o, GLINT_OUT_RADIUS) - ray->rel_radius);
@@ -132,6 +131,17 @@ static void try_ray(struct bench *b, double u, double v)
         note_ray(b, &ray, &o, hits);
     else if (well_outside(b, status, &ray) && passes(b, &o))
         b->out->intruders++;
+}
+
+/* Energy counts by its share, down to a tenth of the most. */
+static void divide_energy(struct bench *b)
+{
+    double most = 1e-30;
+
+    for (int i = 0; i < b->n; i++)
+        most = fmax(most, b->energy[i]);
+    for (int i = 0; i < b->n; i++)
+        b->error[GLINT_OUT_ENERGY][i] /= fmax(b->energy[i], 0.1 * most);
 }
 
 static int by_size(const void *a, const void *b)
@@ -184,11 +194,13 @@ static bool set_bundle(struct bench *b, const struct glint_lens *lens,
 
 void glint_measure_system(const struct glint_hunt *hunt,
                           const struct glint_lens *lens, int system,
+                          const struct glint_fitted_system *fitted,
                           struct glint_measured *out)
 {
     struct random random = {(uint64_t)system * 977 + 1};
-    double error[GLINT_OUT_KINDS][RAYS];
-    struct bench b = {.hunt = hunt, .out = out};
+    double error[GLINT_OUT_KINDS][RAYS], energy[RAYS];
+    struct bench b = {
+        .hunt = hunt, .fitted = fitted, .energy = energy, .out = out};
 
     *out = (struct glint_measured){0};
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
@@ -203,6 +215,7 @@ void glint_measure_system(const struct glint_hunt *hunt,
         }
     }
     out->rays = b.n;
+    divide_energy(&b);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         out->of[kind] = errors_of(error[kind], b.n_of[kind]);
 }

@@ -6,6 +6,7 @@
 #ifndef GLINT_BAKE_MEASURE_MODEL_H
 #define GLINT_BAKE_MEASURE_MODEL_H
 
+#include "bake/fitted.h"
 #include "bake/hunt.h"
 #include "glint/lens.h"
 
@@ -14,15 +15,16 @@ struct glint_errors {
 };
 
 struct glint_measured {
-    int rays;                 /* that got through */
-    int intruders;            /* rays that are cut, well outside of every edge,
-                                 but pass in the model */
+    int rays;      /* that got through */
+    int intruders; /* rays that are cut, well outside of every edge,
+                      but pass in the model */
     struct glint_errors of[GLINT_OUT_KINDS]; /* units as in the model file */
 };
 
-/* Measures system SYSTEM of GHOST. Deterministic. */
+/* Measures system SYSTEM of LENS, made from FITTED. Deterministic. */
 void glint_measure_system(const struct glint_hunt *hunt,
                           const struct glint_lens *lens, int system,
+                          const struct glint_fitted_system *fitted,
                           struct glint_measured *out);
 
 #endif

@@ -158,7 +158,8 @@ static void prove_auto(struct proof *p, const struct glint_fitted_output *o,
 {
     struct range table[GLINT_MAX_POWER + 1][GLINT_MAX_POWER + 1] = {
         {{0, 0, 0}}};
-    const int odd = o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
+    const int odd =
+        o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
     const struct range v2 = {0, 1, 0.5};
 
     prove_table(p, o, coef, table);
@@ -181,9 +182,9 @@ static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
 
         for (int i = 0; i < 4; i++)
             if (o->power[k][i])
-                value = times(p, value,
-                              power_of(i < 2 ? both_ways : upwards,
-                                       o->power[k][i]));
+                value = times(
+                    p, value,
+                    power_of(i < 2 ? both_ways : upwards, o->power[k][i]));
         *result = plus(p, *result, value);
     }
 }
@@ -200,8 +201,7 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
         prove_auto(&p, o, out->coef, &result);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p20;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
-    out->rounding_q8 =
-        out->proven ? (uint32_t)ceil(256 * result.error) : 0;
+    out->rounding_q8 = out->proven ? (uint32_t)ceil(256 * result.error) : 0;
 }
 
 /* ------------------------------------------------------------------ systems */
@@ -209,7 +209,7 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
 /* Exponents of x and y are one, so that they can be turned. */
 static int paired(enum glint_channel kind)
 {
-    return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X ? 1
+    return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1
            : kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y ? -1
                                                                     : 0;
 }

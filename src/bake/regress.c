@@ -201,8 +201,8 @@ static void solve(const struct search *s, const double *y,
 }
 
 double glint_regress_fit(double *scratch, const struct glint_samples *samples,
-                       const double *y, const struct glint_degrees *degrees,
-                       double rms, double peak, struct glint_poly *poly)
+                         const double *y, const struct glint_degrees *degrees,
+                         double rms, double peak, struct glint_poly *poly)
 {
     struct search s = {.s = samples,
                        .degrees = degrees,
@@ -215,8 +215,7 @@ double glint_regress_fit(double *scratch, const struct glint_samples *samples,
     for (int i = 0; i < samples->n; i++)
         s.residual[i] = samples->weight[i] * y[i];
     add_candidate(&s, first);
-    while ((left = excess(&s, rms, peak)) > 1 &&
-           s.n_chosen < degrees->terms) {
+    while ((left = excess(&s, rms, peak)) > 1 && s.n_chosen < degrees->terms) {
         const int best = best_candidate(&s);
 
         if (best < 0)
@@ -227,15 +226,16 @@ double glint_regress_fit(double *scratch, const struct glint_samples *samples,
     return left;
 }
 
-double glint_poly_at(const struct glint_poly *poly, const double *x)
+double glint_poly_at(int n, const uint8_t (*power)[GLINT_VARIABLES],
+                     const double *coef, const double *x)
 {
     double sum = 0;
 
-    for (int i = 0; i < poly->n; i++) {
-        double term = poly->coef[i];
+    for (int i = 0; i < n; i++) {
+        double term = coef[i];
 
         for (int k = 0; k < GLINT_VARIABLES; k++)
-            for (int p = 0; p < poly->power[i][k]; p++)
+            for (int p = 0; p < power[i][k]; p++)
                 term *= x[k];
         sum += term;
     }

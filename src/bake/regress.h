@@ -20,7 +20,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { GLINT_VARIABLES = 4, GLINT_MAX_TERMS = 48, GLINT_MAX_CANDIDATES = 96 };
+enum { GLINT_VARIABLES = 4, GLINT_MAX_TERMS = 64, GLINT_MAX_CANDIDATES = 140 };
 
 struct glint_poly {
     int n;
@@ -53,6 +53,8 @@ double glint_regress_fit(double *scratch, const struct glint_samples *samples,
                          const double *y, const struct glint_degrees *degrees,
                          double rms, double peak, struct glint_poly *poly);
 
-double glint_poly_at(const struct glint_poly *poly, const double *x);
+/* The polynomial of N terms at X. */
+double glint_poly_at(int n, const uint8_t (*power)[GLINT_VARIABLES],
+                     const double *coef, const double *x);
 
 #endif

@@ -142,16 +142,15 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
     h.n_ghosts = (uint32_t)setup->n_ghosts;
     h.ghost_at = (uint32_t)draft->bytes;
     for (int k = 0; k < setup->n_ghosts; k++) {
-        const struct glint_model_ghost ghost = {
-            (uint32_t)setup->ghost[k].i, (uint32_t)setup->ghost[k].j, n,
-            (uint32_t)fitted[k].n_systems};
+        const struct glint_model_ghost ghost = {(uint32_t)setup->ghost[k].i,
+                                                (uint32_t)setup->ghost[k].j, n,
+                                                (uint32_t)fitted[k].n_systems};
 
         put(draft, &ghost, sizeof ghost);
         n += ghost.n_systems;
     }
     h.n_systems = n;
-    h.system_at =
-        put(draft, NULL, n * sizeof(struct glint_model_system));
+    h.system_at = put(draft, NULL, n * sizeof(struct glint_model_system));
     n = 0;
     for (int k = 0; k < setup->n_ghosts; k++)
         for (int m = 0; m < fitted[k].n_systems; m++, n++)

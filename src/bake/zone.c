@@ -127,8 +127,7 @@ void glint_zone_init(struct glint_zone *zone,
 /* ------------------------------------------------------------------ barrels */
 
 enum { SURVEY_S = 5, SURVEY_U = 32, SURVEY_V = 16 };
-STATIC_ASSERT(GLINT_SURVEY_RAYS ==
-              SURVEY_S * (SURVEY_U + 1) * (SURVEY_V + 1));
+STATIC_ASSERT(GLINT_SURVEY_RAYS == SURVEY_S * (SURVEY_U + 1) * (SURVEY_V + 1));
 
 /* What a ray of the survey says: how far past each barrel it is. */
 struct survey {
@@ -287,9 +286,9 @@ static void add_ray(const struct glint_hunt *h, const struct glint_path *path,
     rays->at[RAY_STOP_Y][i] = ray->stop_y_mm / stop;
     rays->at[RAY_ENERGY][i] = ray->energy;
     rays->at[RAY_EXCESS][i] =
-        fmax(ray->rel_radius,
-             fmax(hypot(ray->stop_x_mm, ray->stop_y_mm) / stop,
-                  hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm));
+        fmax(ray->rel_radius, hypot(ray->stop_x_mm, ray->stop_y_mm) / stop);
+    rays->at[RAY_FIELD][i] =
+        hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
     for (int k = 0; k < rays->n_barrels; k++) {
         const int e = rays->barrel[k];
 
@@ -298,30 +297,35 @@ static void add_ray(const struct glint_hunt *h, const struct glint_path *path,
     }
 }
 
-enum { SINES = 6, WAVES = GLINT_HUNT_WAVES, ACROSS = 20, DOWN = 10 };
+/* More nodes than powers in every variable, or a fit would be perfect at the
+ * nodes and nowhere else. */
+enum { SINES = 9, ACROSS = 24, DOWN = 12 };
 
-/* Every third ray of those far outside of what is seen is enough. */
+/* Rays at one angle and wavelength. Every third of those far outside of what is
+ * seen is enough. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_hunt *hunt, int sine, int wave,
                         int stride, struct glint_rays *rays)
 {
+    const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
     const struct glint_path *path = &hunt->path[wave];
     double hits[GLINT_MAX_EVENTS + 1][2];
 
     for (int j = 0; j <= DOWN; j += stride)
-        for (int i = 0; i <= ACROSS; i += stride) {
+        for (int i = 0; i <= ACROSS && rays->n < full; i += stride) {
             const double x[GLINT_VARIABLES] = {
                 glint_zone_node(i, ACROSS + 1), sin(0.5 * GLINT_PI * j / DOWN),
-                glint_zone_node(sine, SINES), glint_zone_node(wave, WAVES)};
+                glint_zone_node(sine, SINES),
+                glint_zone_node(wave, GLINT_HUNT_WAVES)};
             struct glint_ray ray;
 
-            if (rays->n == GLINT_ZONE_RAYS ||
-                ray_of(zone, path, x[0], x[1], x[2], &ray, hits) !=
-                    GLINT_RAY_OK)
+            if (ray_of(zone, path, x[0], x[1], x[2], &ray, hits) !=
+                GLINT_RAY_OK)
                 continue;
             add_ray(hunt, path, x, &ray, hits, rays);
             if (stride == 1 && (i + j) % 3 &&
-                rays->at[RAY_EXCESS][rays->n - 1] > 1.1)
+                fmax(rays->at[RAY_EXCESS][rays->n - 1],
+                     rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
                 rays->n--;
         }
 }
@@ -331,31 +335,91 @@ static int count_visible(const struct glint_rays *rays)
     int n = 0;
 
     for (int i = 0; i < rays->n; i++)
-        n += rays->at[RAY_EXCESS][i] <= 1;
+        n += rays->at[RAY_EXCESS][i] <= 1 && rays->at[RAY_FIELD][i] <= 1;
     return n;
 }
 
-/* A coarse grid first; a fine one where few of its rays got through. */
-static void trace_samples(const struct glint_zone *zone,
-                          const struct glint_hunt *hunt,
-                          struct glint_rays *rays)
+/* Positions are tame in w: four wavelengths at each angle, in turn, are enough.
+ * A coarse grid first; a fine one where few of its rays got through.
+ */
+static void trace_positions(const struct glint_zone *zone,
+                            const struct glint_hunt *hunt,
+                            struct glint_rays *rays)
 {
+    static const int shift[] = {0, 2, 3, 5};
+
     for (int stride = 2; stride > 0; stride--) {
         rays->n = 0;
-        for (int k = 0; k < SINES * WAVES; k++)
-            trace_plane(zone, hunt, k / WAVES, k % WAVES, stride, rays);
+        for (int k = 0; k < 4 * SINES; k++)
+            trace_plane(zone, hunt, k / 4,
+                        (k / 4 + shift[k % 4]) % GLINT_HUNT_WAVES, stride,
+                        rays);
         if (count_visible(rays) > 500)
             break;
     }
 }
 
+/* Energy hardly changes over the pupil, but films make it swing with the
+ * wavelength. */
+static void trace_energies(const struct glint_zone *zone,
+                           const struct glint_hunt *hunt,
+                           struct glint_rays *rays)
+{
+    enum { STRIDE = 4 };
+
+    rays->n = 0;
+    for (int k = 0; k < SINES * GLINT_HUNT_WAVES; k++)
+        trace_plane(zone, hunt, k / GLINT_HUNT_WAVES, k % GLINT_HUNT_WAVES,
+                    STRIDE, rays);
+}
+
 void glint_zone_trace(const struct glint_zone *zone,
                       const struct glint_hunt *hunt, glint_survey *survey,
-                      struct glint_rays *rays)
+                      struct glint_rays *rays, struct glint_rays *energies)
 {
     struct survey s = {.radius = *survey};
 
     run_survey(zone, hunt, &s);
     choose_barrels(&s, rays);
-    trace_samples(zone, hunt, rays);
+    trace_positions(zone, hunt, rays);
+    energies->n_barrels = 0;
+    trace_energies(zone, hunt, energies);
+}
+
+/* Low-discrepancy numbers -1 .. 1: multiples of powers of the root of
+ * x^5 = x + 1, which fill four dimensions evenly. */
+static void between(int k, double x[GLINT_VARIABLES])
+{
+    const double root = 1.16730397826141868426;
+    double step = 1;
+
+    for (int i = 0; i < GLINT_VARIABLES; i++) {
+        step /= root;
+        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
+    }
+}
+
+void glint_zone_check(const struct glint_zone *zone,
+                      const struct glint_hunt *hunt, struct glint_rays *rays)
+{
+    enum { BUNDLES = 24, RAYS = 16 };
+    double hits[GLINT_MAX_EVENTS + 1][2];
+    double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
+    struct glint_path path;
+
+    rays->n = rays->n_barrels = 0;
+    for (int k = 0; k < BUNDLES * RAYS; k++) {
+        struct glint_ray ray;
+
+        between(k, x);
+        if (k % RAYS == 0) {
+            between(k / RAYS, bundle);
+            glint_hunt_path(hunt, bundle[3], &path);
+        }
+        x[1] = fabs(x[1]);
+        x[2] = bundle[2];
+        x[3] = bundle[3];
+        if (ray_of(zone, &path, x[0], x[1], x[2], &ray, hits) == GLINT_RAY_OK)
+            add_ray(hunt, &path, x, &ray, hits, rays);
+    }
 }

@@ -20,7 +20,7 @@
 
 enum {
     GLINT_ZONE_SINES = 6,
-    GLINT_ZONE_RAYS = 2048,
+    GLINT_ZONE_RAYS = 36 * 120,
     GLINT_BOX_TERMS = 6,
     GLINT_MAX_BARRELS = 4
 };
@@ -49,7 +49,8 @@ enum {
     RAY_STOP_X, /* stop radii */
     RAY_STOP_Y,
     RAY_ENERGY,
-    RAY_EXCESS, /* the largest of all relative radii, stop and field too */
+    RAY_EXCESS, /* the largest of all relative radii, the stop's too */
+    RAY_FIELD,  /* distance from the sensor's centre, fields */
     RAY_CHANNELS
 };
 
@@ -69,9 +70,15 @@ struct glint_rays {
 enum { GLINT_SURVEY_RAYS = 5 * 33 * 17 };
 typedef double glint_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
 
-/* Chooses the barrels and traces the samples. */
+/* Chooses the barrels and traces the samples: RAYS for positions, ENERGIES at
+ * fewer places but more wavelengths. */
 void glint_zone_trace(const struct glint_zone *zone,
                       const struct glint_hunt *hunt, glint_survey *survey,
-                      struct glint_rays *rays);
+                      struct glint_rays *rays, struct glint_rays *energies);
+
+/* Random rays of the zone, at angles and wavelengths between those of the
+ * samples. Barrels are not looked at. Deterministic. */
+void glint_zone_check(const struct glint_zone *zone,
+                      const struct glint_hunt *hunt, struct glint_rays *rays);
 
 #endif
