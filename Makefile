@@ -34,9 +34,9 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool measure lamps frame scene cmd_info cmd_trace cmd_render \
         cmd_overlay cmd_compare
-UNIT := arena prescription optics trace pupil exact curve resolve lights \
+UNIT := arena model prescription optics trace pupil exact curve resolve lights \
         flare pnm y4m picture output workers measure lamps
-FUZZ := lens y4m pnm
+FUZZ := lens model y4m pnm
 
 core_o     := $(CORE:%=$(OUT)/src/%.o)
 bake_o     := $(BAKE:%=$(OUT)/src/%.o)
