@@ -32,8 +32,8 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/setup bake/exact bake/feed
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
-TOOLS := tool measure lamps frame scene cmd_info cmd_trace cmd_render \
-        cmd_overlay cmd_compare
+TOOLS := tool model_file info_model measure lamps frame scene cmd_info \
+        cmd_trace cmd_render cmd_overlay cmd_compare
 UNIT := arena model prescription optics trace pupil exact curve resolve lights \
         flare pnm y4m picture output workers measure lamps
 FUZZ := lens model y4m pnm
