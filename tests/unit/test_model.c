@@ -16,6 +16,7 @@
 #include "glint/flare.h"
 #include "glint/lens.h"
 #include "support/model_builder.h"
+#include "support/shuffle.h"
 
 /* NULL: accepted. */
 static const char *reason_of(const void *data, size_t bytes)
@@ -540,6 +541,67 @@ static void test_sparse_rays(void **state)
     free(m.data);
 }
 
+/* Every coefficient as large as it may be, the box too, signs by SEED. */
+static void fill_up(struct model_image *m, uint32_t *seed)
+{
+    const struct glint_model_header *h = model_header(m);
+    const struct glint_model_system *s = (const void *)(m->data + h->system_at);
+    const struct glint_model_output *o = (const void *)(m->data + s->output_at);
+    int32_t *box = (void *)(m->data + s->box_at);
+    uint32_t n_sets = s->n_knots ? s->n_knots : 1;
+
+    for (uint32_t k = 0; k < s->n_outputs; k++) {
+        int32_t *coef = (void *)(m->data + o[k].coef_at);
+        int32_t left = ONE - 1;
+
+        for (uint32_t c = 0; c < n_sets * o[k].n_terms; c++) {
+            const int last = (c + 1) % o[k].n_terms == 0;
+            const int32_t size =
+                last ? left : (int32_t)(shuffle_next(seed) % (uint32_t)left);
+
+            coef[c] = shuffle_next(seed) % 2 ? size : -size;
+            left = last ? ONE - 1 : left - size;
+        }
+    }
+    for (uint32_t k = 0; k < s->n_knots; k++) {
+        box[3 * k + 1] = (int32_t)(shuffle_next(seed) % ONE);
+        box[3 * k] = shuffle_next(seed) % 2 ? ONE - box[3 * k + 1]
+                                            : box[3 * k + 1] - ONE;
+        box[3 * k + 2] = ONE;
+    }
+    model_seal(m);
+}
+
+/* Nothing leaves its range; CONFIG=qcheck looks at every step. */
+static void test_extremes(void **state)
+{
+    struct model_image m[2] = {model_auto(), model_sparse()};
+    static struct glint_transfer t;
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int k = 0; k < 20000; k++) {
+        const int32_t sine_q30 = (int32_t)(shuffle_next(&seed) % (ONE / 4));
+        const int32_t wave_q24 = (int32_t)(shuffle_next(&seed) >> 4);
+        const int32_t u_q30 = k % 3 ? ONE * (k % 3 * 2 - 3) : sine_q30;
+        const int32_t v_q30 = k % 5 ? -ONE : sine_q30 * 2;
+        struct glint_outputs out;
+        struct glint_lens lens;
+
+        if (k % 20 < 2)
+            fill_up(&m[k % 2], &seed);
+        lens = open_image(&m[k % 2]);
+        assert_int_equal(glint_transfer_init(&t, &lens, 0, sine_q30, wave_q24),
+                         1);
+        out = ray(&t, u_q30, v_q30);
+        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+            assert_in_range((int64_t)out.at[kind] + 2 * (int64_t)ONE,
+                            (uint64_t)ONE - 8, 3 * (uint64_t)ONE + 8);
+    }
+    free(m[0].data);
+    free(m[1].data);
+}
+
 /* ----------------------------------------------------------------- vertices */
 
 /* 64 pixels a millimetre about (1000, 500). */
@@ -682,6 +744,7 @@ int main(void)
         cmocka_unit_test(test_rays),
         cmocka_unit_test(test_init),
         cmocka_unit_test(test_sparse_rays),
+        cmocka_unit_test(test_extremes),
         cmocka_unit_test(test_grid),
         cmocka_unit_test(test_sparse_grid),
         cmocka_unit_test(test_lost),
