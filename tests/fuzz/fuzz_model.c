@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Any bytes as a model. Magic, version, size and checksum are put right first,
+ * so that the rest is reached. What is accepted must carry rays: at the ends
+ * of every range of angles, between them and outside of them, over the corners
+ * of the pupil, to places near and far; no integer leaves the range that the
+ * rays rely on.
+ *
+ *     make fuzz TARGET=model SECONDS=120
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/flare.h"
+#include "glint/lens.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { ONE = 1 << 30, SLACK = 64 /* steps, between two knots */ };
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+static void check_rays(const struct glint_transfer *t)
+{
+    static const int32_t at_q30[] = {-ONE, -ONE / 3, 0, 1, ONE};
+
+    for (int k = 0; k < 25; k++) {
+        struct glint_outputs out;
+
+        glint_transfer_ray(t, at_q30[k % 5], at_q30[k / 5], &out);
+        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+            require(out.at[kind] <= ONE + SLACK &&
+                    out.at[kind] >= -ONE - SLACK);
+    }
+}
+
+static void check_vertex(const struct glint_vertex *v)
+{
+    if (v->energy_q16 < 0)
+        return;
+    require(v->energy_q16 <= 1 << 16);
+    require(abs(v->x_q8) <= GLINT_VERTEX_LIMIT_Q8 &&
+            abs(v->y_q8) <= GLINT_VERTEX_LIMIT_Q8);
+    require(abs(v->stop_x_q16) <= ONE && abs(v->stop_y_q16) <= ONE);
+    for (int k = 0; k < 2; k++)
+        require(v->barrel_q16[k] >= 0 && v->barrel_q16[k] <= ONE);
+}
+
+static void check_grids(const struct glint_transfer *t)
+{
+    static const int32_t exponent[] = {-200, -25, 0, 200};
+    static const int32_t turn_q30[][2] = {
+        {ONE, 0}, {0, -ONE}, {-759250125, 759250125}};
+    struct glint_vertex v[16];
+
+    for (int k = 0; k < 12; k++) {
+        const struct glint_place place = {
+            turn_q30[k % 3][0],
+            turn_q30[k % 3][1],
+            {k < 6 ? INT32_MAX : 1 << 30, exponent[k % 4]},
+            960 << 8,
+            540 << 8};
+        const int n_cells = 1 + k % 3;
+
+        memset(v, 0, sizeof v);
+        glint_transfer_grid(t, &place, n_cells, v);
+        for (int m = 0; m < (n_cells + 1) * (n_cells + 1); m++)
+            check_vertex(&v[m]);
+    }
+}
+
+static void check_bundle(const struct glint_lens *lens, int ghost,
+                         int32_t sine_q30, int32_t wave_q24)
+{
+    static struct glint_transfer t;
+
+    if (sine_q30 < 0 || sine_q30 > ONE)
+        return;
+    memset(&t, 0xa5, sizeof t);
+    if (!glint_transfer_init(&t, lens, ghost, sine_q30, wave_q24))
+        return;
+    require(t.outputs >> GLINT_OUT_KINDS == 0 && (t.outputs & 31) == 31);
+    check_rays(&t);
+    check_grids(&t);
+}
+
+static void check_ghost(const struct glint_lens *lens, int ghost)
+{
+    const struct glint_model_ghost *g = &lens->ghost[ghost];
+    const int32_t lo = lens->header->wave_lo_q24;
+    const int32_t hi = lens->header->wave_hi_q24;
+
+    check_bundle(lens, ghost, 0, lo);
+    check_bundle(lens, ghost, ONE, hi);
+    for (uint32_t k = 0; k < g->n_systems && k < 4; k++) {
+        const struct glint_model_system *s = &lens->system[g->first_system + k];
+        const int32_t a = s->sine_lo_q30, b = s->sine_hi_q30;
+
+        check_bundle(lens, ghost, a - 1, lo);
+        check_bundle(lens, ghost, a, s->wave_lo_q24);
+        check_bundle(lens, ghost, a + (b - a) / 3, lo + (hi - lo) / 3);
+        check_bundle(lens, ghost, b, s->wave_hi_q24);
+        check_bundle(lens, ghost, b + 1, INT32_MIN);
+        check_bundle(lens, ghost, b, INT32_MAX);
+    }
+}
+
+/* As a maker of files would. */
+static void seal(uint32_t *word, size_t size)
+{
+    if (size < 16)
+        return;
+    word[0] = GLINT_MODEL_MAGIC;
+    word[1] = GLINT_MODEL_VERSION;
+    word[2] = (uint32_t)size;
+    word[3] = glint_model_crc32(word + 4, size - 16);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    void *copy = malloc(size ? size : 1); /* exact, so that an overrun shows */
+    struct glint_lens lens;
+    const char *reason = NULL;
+
+    require(copy != NULL);
+    if (size)
+        memcpy(copy, data, size);
+    seal(copy, size);
+    if (glint_lens_open(&lens, copy, size, &reason) == GLINT_OK) {
+        require(lens.header->n_ghosts <= INT32_MAX);
+        for (uint32_t k = 0; k < lens.header->n_ghosts && k < 8; k++)
+            check_ghost(&lens, (int)k);
+    } else {
+        require(reason && *reason);
+    }
+    free(copy);
+    return 0;
+}

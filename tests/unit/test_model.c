@@ -1,0 +1,755 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The model file's gate, rule by rule, and rays whose integers are worked out
+ * by hand.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/flare.h"
+#include "glint/lens.h"
+#include "support/model_builder.h"
+#include "support/shuffle.h"
+
+/* NULL: accepted. */
+static const char *reason_of(const void *data, size_t bytes)
+{
+    struct glint_lens lens = {NULL, NULL, NULL};
+    const char *reason = NULL;
+
+    if (glint_lens_open(&lens, data, bytes, &reason) == GLINT_OK) {
+        assert_ptr_equal(lens.header, data);
+        assert_null(reason);
+        return NULL;
+    }
+    assert_non_null(reason);
+    assert_null(lens.header); /* untouched */
+    return reason;
+}
+
+static struct glint_lens open_image(const struct model_image *m)
+{
+    struct glint_lens lens;
+    const char *reason = NULL;
+
+    if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK)
+        fail_msg("%s", reason);
+    return lens;
+}
+
+static void test_crc(void **state)
+{
+    (void)state;
+    assert_true(glint_model_crc32("123456789", 9) == UINT32_C(0xcbf43926));
+    assert_true(glint_model_crc32("", 0) == 0);
+}
+
+static void test_accepted(void **state)
+{
+    struct model_image a = model_auto(), s = model_sparse();
+    struct glint_lens lens = open_image(&a);
+
+    (void)state;
+    assert_int_equal(lens.header->n_ghosts, 3);
+    assert_int_equal(lens.ghost[2].j, 3);
+    assert_int_equal(lens.system[1].sine_lo_q30, 1 << 28);
+    lens = open_image(&s);
+    assert_int_equal(lens.system[0].n_knots, 3);
+    free(a.data);
+    free(s.data);
+}
+
+/* ------------------------------------------------------------------- damage */
+
+/* Each in memory of exactly its size, so that an overrun shows. */
+static void test_truncated(void **state)
+{
+    struct model_image m = model_auto();
+
+    (void)state;
+    for (size_t bytes = 0; bytes < m.bytes; bytes++) {
+        void *copy = malloc(bytes ? bytes : 1);
+        const char *expected =
+            bytes < 8 ? "this is no glint model" : "the model is truncated";
+
+        memcpy(copy, m.data, bytes);
+        assert_string_equal(reason_of(copy, bytes), expected);
+        free(copy);
+    }
+    assert_string_equal(reason_of(m.data, m.bytes + 4),
+                        "the model goes on after its end");
+    free(m.data);
+}
+
+static void check_flips(struct model_image m)
+{
+    for (size_t bit = 0; bit < 8 * (size_t)m.bytes; bit++) {
+        m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
+        assert_non_null(reason_of(m.data, m.bytes));
+        m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
+    }
+    assert_null(reason_of(m.data, m.bytes));
+    free(m.data);
+}
+
+static void test_flipped_bits(void **state)
+{
+    (void)state;
+    check_flips(model_auto());
+    check_flips(model_sparse());
+}
+
+static void test_not_a_model(void **state)
+{
+    struct model_image m = model_auto();
+    uint32_t *word = (uint32_t *)(void *)m.data;
+    char text[8192] = "";
+    FILE *file = fopen("lenses/heliar-tronnier.lens", "rb");
+    uint32_t *copy = malloc(sizeof text);
+    size_t bytes;
+
+    (void)state;
+    assert_non_null(file);
+    bytes = fread(text, 1, sizeof text, file);
+    fclose(file);
+    memcpy(copy, text, bytes);
+    assert_string_equal(reason_of(copy, bytes), "this is no glint model");
+    free(copy);
+    memmove(m.data + 2, m.data, m.bytes);
+    assert_string_equal(reason_of(m.data + 2, m.bytes),
+                        "the model is not aligned to 4 bytes");
+    memmove(m.data, m.data + 2, m.bytes);
+    word[1] = GLINT_MODEL_VERSION + 1;
+    assert_string_equal(reason_of(m.data, m.bytes),
+                        "the model was made by a newer glint");
+    assert_string_equal(reason_of(m.data, 8),
+                        "the model was made by a newer glint");
+    word[1] = 0;
+    assert_string_equal(reason_of(m.data, m.bytes),
+                        "no glint ever made models of this version");
+    free(m.data);
+}
+
+/* -------------------------------------------------------------------- rules */
+
+enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX, KNOT };
+
+/* A word that is changed, and what is then said. Outputs are of system 0,
+ * terms and coefficients of output 0. */
+struct rule {
+    enum table table;
+    size_t at;
+    int64_t value;
+    const char *reason;
+};
+
+#define HEADER_(field) HEADER, offsetof(struct glint_model_header, field)
+#define GHOST_(k, field) \
+    GHOST, k * 16 + offsetof(struct glint_model_ghost, field)
+#define SYSTEM_(k, field) \
+    SYSTEM, k * 40 + offsetof(struct glint_model_system, field)
+#define OUTPUT_(k, field) \
+    OUTPUT, k * 44 + offsetof(struct glint_model_output, field)
+
+static const char outside[] = "a table lies outside of the file",
+                  unnormal[] = "a number of the header is not normalised",
+                  not_above[] = "a length or the f-number is not above 0",
+                  no_band[] = "the band of wavelengths is empty or not above 0",
+                  no_angle[] = "the largest angle is out of range",
+                  bad_pair[] = "a ghost's surfaces are out of range",
+                  no_systems[] = "a ghost's systems are out of range",
+                  shared[] =
+                      "two ghosts share a system, or their lists do not rise",
+                  overlap[] = "a ghost's systems overlap in angle or do not "
+                              "rise",
+                  bands[] = "a ghost's bands overlap or do not rise",
+                  bad_angles[] = "a system's angles are out of range",
+                  bad_band[] = "a system's band is out of range",
+                  no_knots[] = "knots do not go with the basis",
+                  not_rising[] = "a system's knots do not rise",
+                  not_covering[] = "a system's knots do not cover its angles",
+                  far_box[] = "a box reaches too far",
+                  small_box[] = "a box has a size below 0",
+                  box_exponent[] = "the exponent of a box is out of range",
+                  n_outputs[] = "a system has too few outputs or too many",
+                  lacking[] =
+                      "a system lacks an output, or its kinds do not rise",
+                  bad_kind[] =
+                      "an output's kind is unknown, or kinds do not rise",
+                  n_terms[] = "an output has no terms or too many",
+                  exponent[] = "the exponent of an output is out of range",
+                  xy_exponent[] = "x and y of an output differ in exponent",
+                  bound[] = "the bound of an output is too large",
+                  power[] = "a power of u or v is too high",
+                  parity[] = "a power of v has the wrong parity",
+                  twice[] = "an output has a term twice",
+                  coefs[] = "the coefficients of an output are too large";
+
+/* clang-format off */
+static const struct rule auto_rules[] = {
+    {HEADER_(basis), 2, "the basis is unknown"},
+    {HEADER_(basis), 1, no_knots},
+    {HEADER_(name), 0, "the name is empty"},
+    {HEADER_(name), 0x1b, "the name has a control character"},
+    {HEADER_(name), 0x7f, "the name has a control character"},
+    {HEADER_(focal_mm.mantissa), 0, "the focal length is 0"},
+    {HEADER_(focal_mm.mantissa), (1 << 30) - 1, unnormal},
+    {HEADER_(focal_mm.mantissa), 1 - (1 << 30), unnormal},
+    {HEADER_(focal_mm.mantissa), INT32_MIN, unnormal},
+    {HEADER_(focal_mm.mantissa), -(1 << 30), NULL},
+    {HEADER_(focal_mm.mantissa), INT32_MAX, NULL},
+    {HEADER_(focal_mm.exponent), 201, unnormal},
+    {HEADER_(focal_mm.exponent), -201, unnormal},
+    {HEADER_(focal_mm.exponent), 200, NULL},
+    {HEADER_(focal_mm.exponent), -200, NULL},
+    {HEADER_(focal_mm.exponent), INT32_MIN, unnormal},
+    {HEADER_(back_focal_mm.mantissa), 5, unnormal},
+    {HEADER_(back_focal_mm.mantissa), 0, NULL},
+    {HEADER_(entrance_radius_mm.mantissa), 0, not_above},
+    {HEADER_(stop_radius_mm.mantissa), 0, not_above},
+    {HEADER_(stop_radius_mm.mantissa), -(1 << 30), not_above},
+    {HEADER_(stop_radius_mm.exponent), 201, unnormal},
+    {HEADER_(f_number.mantissa), -(1 << 30), not_above},
+    {HEADER_(film_width_mm.mantissa), 0, not_above},
+    {HEADER_(film_height_mm.mantissa), 0, not_above},
+    {HEADER_(field_mm.mantissa), 0, not_above},
+    {HEADER_(front_mm.mantissa), 0, not_above},
+    {HEADER_(wave_lo_q24), 0, no_band},
+    {HEADER_(wave_lo_q24), MODEL_WAVE_HI_Q24, no_band},
+    {HEADER_(wave_hi_q24), INT32_MIN, no_band},
+    {HEADER_(sine_hi_q30), 0, no_angle},
+    {HEADER_(sine_hi_q30), (1 << 30) + 1, no_angle},
+    {HEADER_(direct_flux[5].mantissa), 1,
+        "the flux of the direct image is not normalised"},
+    {HEADER_(n_surfaces), 3, bad_pair},
+    {HEADER_(n_ghosts), 1 << 28, outside},
+    {HEADER_(n_ghosts), UINT32_MAX, outside},
+    {HEADER_(ghost_at), 246, outside},
+    {HEADER_(ghost_at), 240, outside},
+    {HEADER_(ghost_at), UINT32_MAX - 3, outside},
+    {HEADER_(n_systems), 5, outside},
+    {HEADER_(n_systems), UINT32_MAX, outside},
+    {HEADER_(n_systems), 3, no_systems},
+    {HEADER_(n_systems), 1, no_systems},
+    {HEADER_(system_at), 0, outside},
+    {GHOST_(0, i), 1, bad_pair},
+    {GHOST_(0, j), 4, bad_pair},
+    {GHOST_(0, i), UINT32_MAX, bad_pair},
+    {GHOST_(0, n_systems), 5, no_systems},
+    {GHOST_(0, first_system), UINT32_MAX, no_systems},
+    {GHOST_(2, n_systems), UINT32_MAX, no_systems},
+    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* it has none */
+    {GHOST_(2, first_system), 1, shared},
+    {GHOST_(0, n_systems), 1, NULL},
+    {SYSTEM_(0, sine_lo_q30), -1, bad_angles},
+    {SYSTEM_(0, sine_lo_q30), 1 << 28, bad_angles},
+    {SYSTEM_(1, sine_hi_q30), (1 << 30) + 1, bad_angles},
+    {SYSTEM_(1, sine_hi_q30), 1 << 30, NULL},
+    {SYSTEM_(1, sine_lo_q30), (1 << 28) - 1, overlap},
+    {SYSTEM_(1, sine_lo_q30), (1 << 28) + 1, NULL},
+    {SYSTEM_(0, sine_hi_q30), (1 << 28) + 1, overlap},
+    {SYSTEM_(0, wave_lo_q24), 0, bad_band},
+    {SYSTEM_(0, wave_lo_q24), MODEL_WAVE_HI_Q24 + 1, bad_band},
+    {SYSTEM_(0, wave_lo_q24), MODEL_WAVE_HI_Q24, bands},
+    {SYSTEM_(0, wave_hi_q24), MODEL_WAVE_LO_Q24, NULL},
+    {SYSTEM_(2, wave_hi_q24), MODEL_WAVE_HI_Q24, bands},
+    {SYSTEM_(3, wave_lo_q24), MODEL_WAVE_LO_Q24, bands},
+    {SYSTEM_(0, n_knots), 2, no_knots},
+    {SYSTEM_(3, n_knots), UINT32_MAX, no_knots},
+    {SYSTEM_(0, box_at), 2, outside},
+    {SYSTEM_(0, box_at), 0x7ffffffc, outside},
+    {SYSTEM_(0, box_exponent), 41, box_exponent},
+    {SYSTEM_(0, box_exponent), -81, box_exponent},
+    {SYSTEM_(0, n_outputs), 4, n_outputs},
+    {SYSTEM_(0, n_outputs), 11, n_outputs},
+    {SYSTEM_(0, n_outputs), UINT32_MAX, n_outputs},
+    {SYSTEM_(0, output_at), 0x7ffffffd, outside},
+    {BOX, 0, INT32_MIN, far_box},
+    {BOX, 0, (1 << 30) - (1 << 19), far_box},
+    {BOX, 0, (1 << 30) - (1 << 19) - 1, NULL},
+    {BOX, 6 * 4, 0, small_box}, /* half width -s */
+    {BOX, 6 * 4, 1 << 20, NULL}, /* 1 - s */
+    {BOX, 6 * 4, (1 << 20) - 1, small_box},
+    {BOX, 12 * 4, -1, small_box},
+    {OUTPUT_(0, kind), 1, lacking},
+    {OUTPUT_(4, kind), 5, lacking},
+    {OUTPUT_(5, kind), GLINT_OUT_KINDS, bad_kind},
+    {OUTPUT_(5, kind), UINT32_MAX, bad_kind},
+    {OUTPUT_(5, kind), GLINT_OUT_ENERGY, bad_kind},
+    {OUTPUT_(5, kind), GLINT_OUT_RADIUS, NULL},
+    {OUTPUT_(0, n_terms), 0, n_terms},
+    {OUTPUT_(0, n_terms), GLINT_MAX_MODEL_TERMS + 1, n_terms},
+    {OUTPUT_(0, n_terms), UINT32_MAX, n_terms},
+    {OUTPUT_(0, term_at), 0x7ffffffc, outside},
+    {OUTPUT_(0, coef_at), 0x7ffffffc, outside},
+    {OUTPUT_(0, coef_at), 243, outside},
+    {OUTPUT_(4, exponent), 41, exponent},
+    {OUTPUT_(4, exponent), 40, NULL},
+    {OUTPUT_(4, exponent), -80, NULL},
+    {OUTPUT_(4, exponent), -81, exponent},
+    {OUTPUT_(0, exponent), -27, xy_exponent},
+    {OUTPUT_(3, exponent), -27, xy_exponent},
+    {OUTPUT_(0, bound), 1 << 30, bound},
+    {OUTPUT_(0, bound), UINT32_MAX, bound},
+    {OUTPUT_(0, rounding_q8), UINT32_MAX, NULL},
+    /* two terms a word, the first low */
+    {TERM, 0, MODEL_POWER(10, 0, 0, 0), power},
+    {TERM, 0, MODEL_POWER(0, 10, 0, 0), power},
+    {TERM, 0, MODEL_POWER(9, 8, 15, 15), NULL},
+    {TERM, 0, MODEL_POWER(1, 1, 0, 0), parity},
+    {TERM, 0, 0, twice},
+    {TERM, 0, MODEL_POWER(0, 2, 1, 0), twice},
+    {COEF, 0, INT32_MIN, coefs},
+    {COEF, 0, (1 << 30) - (1 << 27) - (1 << 25), coefs},
+    {COEF, 0, (1 << 30) - (1 << 27) - (1 << 25) - 1, NULL},
+    {COEF, 4, -(1 << 30), coefs},
+};
+
+static const struct rule sparse_rules[] = {
+    {HEADER_(basis), 0, no_knots},
+    {SYSTEM_(0, n_knots), 0, no_knots},
+    {SYSTEM_(0, n_knots), 1, "a system has a single knot"},
+    {SYSTEM_(0, n_knots), 2, not_covering},
+    {SYSTEM_(0, n_knots), UINT32_MAX, outside},
+    {SYSTEM_(0, n_knots), 1 << 30, outside},
+    {SYSTEM_(0, knot_at), 4, outside},
+    {SYSTEM_(0, sine_hi_q30), (1 << 29) + 1, not_covering},
+    {KNOT, 0, -1, not_covering},
+    {KNOT, 0, 1, not_covering},
+    {KNOT, 4, 0, not_rising},
+    {KNOT, 4, INT32_MIN, not_rising},
+    {KNOT, 8, 1 << 28, not_rising},
+    {KNOT, 8, INT32_MAX, not_covering},
+    {KNOT, 8, 1 << 30, NULL},
+    {BOX, 3 * 4, (1 << 29) + 1, far_box},
+    {BOX, 3 * 4, -(1 << 29), NULL},
+    {BOX, 3 * 4, INT32_MIN, far_box},
+    {BOX, 4 * 4, -1, small_box},
+    {BOX, 8 * 4, INT32_MIN, small_box},
+    {BOX, 8 * 4, (1 << 30) + 1, far_box},
+    {TERM, 0, MODEL_POWER(15, 15, 15, 15), NULL},
+    {COEF, 2 * 4, (1 << 30) - (1 << 26), coefs},
+    {COEF, 4 * 4, INT32_MIN, coefs},
+    {COEF, 4 * 4, (1 << 30) - (1 << 26) - 1, NULL},
+};
+/* clang-format on */
+
+static size_t place_of(const struct model_image *m, enum table t)
+{
+    const struct glint_model_header *h = model_header(m);
+    const struct glint_model_system *s = (const void *)(m->data + h->system_at);
+    const struct glint_model_output *o = (const void *)(m->data + s->output_at);
+    const size_t at[] = {0,          h->ghost_at, h->system_at, s->output_at,
+                         o->term_at, o->coef_at,  s->box_at,    s->knot_at};
+
+    return at[t];
+}
+
+static void check_rule(struct model_image m, const struct rule *r,
+                       size_t number)
+{
+    const uint32_t value = (uint32_t)r->value;
+    const char *reason;
+
+    memcpy(m.data + place_of(&m, r->table) + r->at, &value, 4);
+    if (r->table == TERM && !r->reason) { /* the first of two */
+        const uint16_t second = MODEL_POWER(1, 0, 0, 0);
+
+        memcpy(m.data + place_of(&m, TERM) + 2, &second, 2);
+    }
+    model_seal(&m);
+    reason = reason_of(m.data, m.bytes);
+    if (reason != r->reason &&
+        (!reason || !r->reason || strcmp(reason, r->reason) != 0))
+        fail_msg("rule %d: '%s', not '%s'", (int)number,
+                 reason ? reason : "accepted",
+                 r->reason ? r->reason : "accepted");
+    free(m.data);
+}
+
+static void test_rules(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof auto_rules / sizeof *auto_rules; k++)
+        check_rule(model_auto(), &auto_rules[k], k);
+    for (size_t k = 0; k < sizeof sparse_rules / sizeof *sparse_rules; k++)
+        check_rule(model_sparse(), &sparse_rules[k], 1000 + k);
+}
+
+static void test_endless_name(void **state)
+{
+    struct model_image m = model_auto();
+
+    (void)state;
+    memset(model_header(&m)->name, 'x', 64);
+    model_seal(&m);
+    assert_string_equal(reason_of(m.data, m.bytes), "the name does not end");
+    free(m.data);
+}
+
+static void test_no_ghosts(void **state)
+{
+    struct model_image m = model_auto();
+
+    (void)state;
+    model_header(&m)->n_ghosts = model_header(&m)->n_systems = 0;
+    model_seal(&m);
+    assert_null(reason_of(m.data, m.bytes));
+    free(m.data);
+}
+
+/* Many systems over the same tables would take quadratic time. */
+static void test_shared_tables(void **state)
+{
+    enum { N = 1000 };
+    static struct glint_model_system s[N];
+    const struct glint_model_ghost ghost = {0, 1, 0, N};
+    struct model_image m;
+
+    (void)state;
+    model_begin(&m, GLINT_BASIS_AUTO, "shared");
+    for (int k = 0; k < N; k++) {
+        s[k] = k ? s[0]
+                 : model_auto_system(&m, 0, 0, MODEL_WAVE_LO_Q24,
+                                     MODEL_WAVE_HI_Q24, 0);
+        s[k].sine_lo_q30 = 1000 * k;
+        s[k].sine_hi_q30 = 1000 * (k + 1);
+    }
+    model_end(&m, &ghost, 1, s, N);
+    assert_string_equal(reason_of(m.data, m.bytes),
+                        "systems share too many tables");
+    free(m.data);
+}
+
+/* --------------------------------------------------------------------- rays */
+
+enum { ONE = MODEL_ONE_Q30 };
+
+static struct glint_outputs ray(const struct glint_transfer *t, int32_t u,
+                                int32_t v)
+{
+    struct glint_outputs out;
+
+    glint_transfer_ray(t, u, v, &out);
+    return out;
+}
+
+/* The first range, s from -1 to 1 over the sines 0 .. 1/4. */
+static void test_rays(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    static struct glint_transfer t;
+    struct glint_outputs out;
+
+    (void)state;
+    /* s = -1, w = -1: sensor x is 0.25 + 0.5 u + 0.125 v^2 */
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24),
+                     1);
+    out = ray(&t, 0, 0);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 1 << 26);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 0);
+    assert_int_equal(out.at[GLINT_OUT_ENERGY], 1 << 27); /* 0.5 - 0.25 */
+    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 1 << 27);
+    assert_int_equal(out.at[GLINT_OUT_BARREL_1], 0);
+    assert_int_equal(out.at[GLINT_OUT_RADIUS], 0);
+    out = ray(&t, ONE, ONE);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 234881024); /* 0.875 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 */
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], 268435456);   /* 0.5 */
+    assert_int_equal(out.at[GLINT_OUT_STOP_Y], 201326592);   /* 0.375 */
+    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456); /* 1 */
+    out = ray(&t, -ONE, ONE / 2);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 */
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], -268435456);
+    assert_int_equal(out.at[GLINT_OUT_STOP_Y], 125829120); /* 0.234375 */
+    /* s = 0, w = 1 */
+    glint_transfer_init(&t, &lens, 0, ONE / 8, MODEL_WAVE_HI_Q24);
+    out = ray(&t, ONE, -ONE);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -201326592); /* -0.75 */
+    assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 27);
+    free(m.data);
+}
+
+/* Ranges, bands, and the box. */
+static void test_init(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    static struct glint_transfer t;
+    const int32_t middle = (MODEL_WAVE_LO_Q24 + MODEL_WAVE_HI_Q24) / 2;
+
+    (void)state;
+    assert_int_equal(
+        glint_transfer_init(&t, &lens, 0, ONE / 2 + 1, MODEL_WAVE_LO_Q24), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE, middle), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 1, 0, middle), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8 - 1, middle), 0);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle + 1), 1);
+    assert_ptr_equal(t.system, &lens.system[3]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, INT32_MIN), 1);
+    assert_ptr_equal(t.system, &lens.system[2]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 2, middle), 1);
+    assert_ptr_equal(t.system, &lens.system[1]);
+    /* s = 1, w = 0, coefficients halved */
+    assert_int_equal(ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X], 5 << 24);
+    assert_int_equal(ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
+    assert_int_equal(t.box[0], 3 << 19); /* 1.5 mm */
+    assert_int_equal(t.box[1], 3 << 20);
+    assert_int_equal(t.box[2], 3 << 20);
+    assert_int_equal(t.box_exponent, -20);
+    free(m.data);
+}
+
+static void test_sparse_rays(void **state)
+{
+    struct model_image m = model_sparse();
+    const struct glint_lens lens = open_image(&m);
+    static struct glint_transfer t;
+    struct glint_outputs out;
+
+    (void)state;
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, 1), 1);
+    out = ray(&t, ONE, ONE);                                 /* x = y = r = 1 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592); /* 0.75 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 134217728);
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], 0);
+    out = ray(&t, ONE / 2, ONE / 2);                         /* r = 1/2 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 100663296); /* 0.375 */
+    assert_int_equal(out.at[GLINT_OUT_STOP_X], 134217728);   /* 0.25 */
+    assert_int_equal(out.at[GLINT_OUT_STOP_Y], 134217728);
+    assert_int_equal(out.at[GLINT_OUT_RADIUS], 134217728);
+    /* between the knots of 1/4 and 1/2: middle 0.375, halves 0.5, 0.75 */
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, 3 * (ONE / 8), 1), 1);
+    assert_int_equal(t.box[0], 3 * (ONE / 8));
+    assert_int_equal(t.box[1], ONE / 2);
+    assert_int_equal(t.box[2], 3 * (ONE / 4));
+    out = ray(&t, -3 * (ONE / 4), 0); /* x = y = 0 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 0);
+    assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 26);
+    out = ray(&t, -3 * (ONE / 4), -ONE);
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -100663296); /* -0.375 */
+    free(m.data);
+}
+
+/* Every coefficient as large as it may be, the box too, signs by SEED. */
+static void fill_up(struct model_image *m, uint32_t *seed)
+{
+    const struct glint_model_header *h = model_header(m);
+    const struct glint_model_system *s = (const void *)(m->data + h->system_at);
+    const struct glint_model_output *o = (const void *)(m->data + s->output_at);
+    int32_t *box = (void *)(m->data + s->box_at);
+    uint32_t n_sets = s->n_knots ? s->n_knots : 1;
+
+    for (uint32_t k = 0; k < s->n_outputs; k++) {
+        int32_t *coef = (void *)(m->data + o[k].coef_at);
+        int32_t left = ONE - 1;
+
+        for (uint32_t c = 0; c < n_sets * o[k].n_terms; c++) {
+            const int last = (c + 1) % o[k].n_terms == 0;
+            const int32_t size =
+                last ? left : (int32_t)(shuffle_next(seed) % (uint32_t)left);
+
+            coef[c] = shuffle_next(seed) % 2 ? size : -size;
+            left = last ? ONE - 1 : left - size;
+        }
+    }
+    for (uint32_t k = 0; k < s->n_knots; k++) {
+        box[3 * k + 1] = (int32_t)(shuffle_next(seed) % ONE);
+        box[3 * k] = shuffle_next(seed) % 2 ? ONE - box[3 * k + 1]
+                                            : box[3 * k + 1] - ONE;
+        box[3 * k + 2] = ONE;
+    }
+    model_seal(m);
+}
+
+/* Nothing leaves its range; CONFIG=qcheck looks at every step. */
+static void test_extremes(void **state)
+{
+    struct model_image m[2] = {model_auto(), model_sparse()};
+    static struct glint_transfer t;
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int k = 0; k < 20000; k++) {
+        const int32_t sine_q30 = (int32_t)(shuffle_next(&seed) % (ONE / 4));
+        const int32_t wave_q24 = (int32_t)(shuffle_next(&seed) >> 4);
+        const int32_t u_q30 = k % 3 ? ONE * (k % 3 * 2 - 3) : sine_q30;
+        const int32_t v_q30 = k % 5 ? -ONE : sine_q30 * 2;
+        struct glint_outputs out;
+        struct glint_lens lens;
+
+        if (k % 20 < 2)
+            fill_up(&m[k % 2], &seed);
+        lens = open_image(&m[k % 2]);
+        assert_int_equal(glint_transfer_init(&t, &lens, 0, sine_q30, wave_q24),
+                         1);
+        out = ray(&t, u_q30, v_q30);
+        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+            assert_in_range((int64_t)out.at[kind] + 2 * (int64_t)ONE,
+                            (uint64_t)ONE - 8, 3 * (uint64_t)ONE + 8);
+    }
+    free(m[0].data);
+    free(m[1].data);
+}
+
+/* ----------------------------------------------------------------- vertices */
+
+/* 64 pixels a millimetre about (1000, 500). */
+static struct glint_place upright(void)
+{
+    const struct glint_place place = {.cos_q30 = ONE,
+                                      .pixels_per_mm = {1 << 30, -24},
+                                      .middle_x_q8 = 1000 << 8,
+                                      .middle_y_q8 = 500 << 8};
+
+    return place;
+}
+
+static void test_grid(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    struct glint_place place = upright();
+    static struct glint_transfer t;
+    struct glint_vertex v[9], turned[9];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
+    glint_transfer_grid(&t, &place, 2, v);
+    /* u = v = 1: sensor (0.875, 0.75) mm, stop (0.5, 0.375) */
+    assert_int_equal(v[8].x_q8, (1000 + 56) << 8);
+    assert_int_equal(v[8].y_q8, (500 - 48) << 8);
+    assert_int_equal(v[8].stop_x_q16, 32768);
+    assert_int_equal(v[8].stop_y_q16, 24576);
+    assert_int_equal(v[8].barrel_q16[0], 65536);
+    assert_int_equal(v[8].barrel_q16[1], 0);
+    assert_int_equal(v[8].energy_q16, 49152);
+    /* u = -1, v = 1: (-0.125, 0.25); rows are of rising v */
+    assert_int_equal(v[6].x_q8, (1000 - 8) << 8);
+    assert_int_equal(v[6].y_q8, (500 - 16) << 8);
+    /* mirrored in the light's plane */
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(v[i].x_q8, v[6 + i].x_q8);
+        assert_int_equal(v[i].y_q8 - (500 << 8), (500 << 8) - v[6 + i].y_q8);
+        assert_int_equal(v[i].stop_x_q16, v[6 + i].stop_x_q16);
+        assert_int_equal(v[i].stop_y_q16, -v[6 + i].stop_y_q16);
+        assert_int_equal(v[3 + i].y_q8, 500 << 8);
+    }
+    place.cos_q30 = 0;
+    place.sin_q30 = ONE; /* the light above: x becomes up, y becomes left */
+    glint_transfer_grid(&t, &place, 2, turned);
+    for (int k = 0; k < 9; k++) {
+        assert_int_equal(turned[k].x_q8 - (1000 << 8), v[k].y_q8 - (500 << 8));
+        assert_int_equal(turned[k].y_q8 - (500 << 8), (1000 << 8) - v[k].x_q8);
+        assert_int_equal(turned[k].stop_x_q16, -v[k].stop_y_q16);
+        assert_int_equal(turned[k].stop_y_q16, v[k].stop_x_q16);
+        assert_int_equal(turned[k].energy_q16, v[k].energy_q16);
+    }
+    free(m.data);
+}
+
+/* The sparse basis has no mirror, and squares its radius. */
+static void test_sparse_grid(void **state)
+{
+    struct model_image m = model_sparse();
+    const struct glint_lens lens = open_image(&m);
+    const struct glint_place place = upright();
+    static struct glint_transfer t;
+    struct glint_vertex v[4];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, 1);
+    glint_transfer_grid(&t, &place, 1, v);
+    for (int k = 0; k < 4; k++) {
+        assert_int_equal(v[k].barrel_q16[0], 65536);
+        assert_int_equal(v[k].energy_q16, 65536);
+        assert_int_equal(v[k].y_q8, (500 + (k < 2 ? 32 : -32)) << 8);
+        assert_int_equal(v[k].x_q8, (1000 + (k % 2 ? 48 : -16)) << 8);
+    }
+    free(m.data);
+}
+
+static void test_lost(void **state)
+{
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    struct glint_place place = upright();
+    static struct glint_transfer t;
+    struct glint_vertex v[4];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
+    place.pixels_per_mm.exponent = -10; /* 2^20 pixels a millimetre */
+    glint_transfer_grid(&t, &place, 1, v);
+    assert_true(v[1].energy_q16 < 0 && v[3].energy_q16 < 0);
+    assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0); /* 0.25 mm */
+    for (int e = -200; e <= 200; e++) {
+        place.pixels_per_mm.exponent = e;
+        glint_transfer_grid(&t, &place, 1, v);
+        assert_true((v[3].energy_q16 < 0) == (e >= -10));
+    }
+    free(m.data);
+}
+
+/* ------------------------------------------------------------------- corpus */
+
+static void check_corpus(const char *path, struct model_image m)
+{
+    const int update = getenv("GLINT_GOLDEN_UPDATE") != NULL;
+    FILE *file = fopen(path, update ? "wb" : "rb");
+    static unsigned char kept[MODEL_ROOM];
+
+    assert_non_null(file);
+    if (update) {
+        assert_int_equal(fwrite(m.data, 1, m.bytes, file), m.bytes);
+    } else {
+        assert_int_equal(fread(kept, 1, sizeof kept, file), m.bytes);
+        assert_memory_equal(kept, m.data, m.bytes);
+    }
+    fclose(file);
+    free(m.data);
+}
+
+/* What the fuzzer starts from is of today's layout; GLINT_GOLDEN_UPDATE=1
+ * writes it anew. */
+static void test_corpus(void **state)
+{
+    (void)state;
+    check_corpus("tests/fuzz/corpus/model/auto", model_auto());
+    check_corpus("tests/fuzz/corpus/model/sparse", model_sparse());
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_crc),
+        cmocka_unit_test(test_accepted),
+        cmocka_unit_test(test_truncated),
+        cmocka_unit_test(test_flipped_bits),
+        cmocka_unit_test(test_not_a_model),
+        cmocka_unit_test(test_rules),
+        cmocka_unit_test(test_endless_name),
+        cmocka_unit_test(test_no_ghosts),
+        cmocka_unit_test(test_shared_tables),
+        cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_init),
+        cmocka_unit_test(test_sparse_rays),
+        cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_grid),
+        cmocka_unit_test(test_sparse_grid),
+        cmocka_unit_test(test_lost),
+        cmocka_unit_test(test_corpus),
+    };
+
+    return cmocka_run_group_tests_name("model", tests, NULL, NULL);
+}
