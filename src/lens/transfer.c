@@ -269,8 +269,7 @@ static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
     int32_t x[4][MAX_EXPONENT + 1];
     const int32_t px_q30 = t->box[0] + q_mul(t->box[1], u_q30, 30);
     const int32_t py_q30 = q_mul(t->box[2], v_q30, 30);
-    const int64_t r2_q60 =
-        ((int64_t)px_q30 * px_q30 + (int64_t)py_q30 * py_q30) / 2;
+    const int64_t r2_q60 = (int64_t)px_q30 * px_q30 + (int64_t)py_q30 * py_q30;
     const int32_t r_q30 = q_clamp_sat(q_root((uint64_t)r2_q60), 0, ONE_Q30);
 
     powers_q30(px_q30, MAX_EXPONENT, x[0]);
