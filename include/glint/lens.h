@@ -49,8 +49,9 @@ struct glint_real {
 
 enum glint_basis {
     GLINT_BASIS_AUTO,  /* u, v, s, w as above */
-    GLINT_BASIS_SPARSE /* x, y, r and 1 - r, [Bodonyi25]; x and y are u and v
-                          of one box for all angles, r = sqrt((x^2 + y^2) / 2)
+    GLINT_BASIS_SPARSE /* x, y, r and 1 - r, [Bodonyi25]: the place on the
+                          vertex plane over 2^(30 + box_exponent) mm, a
+                          radius that holds all boxes of the system
                         */
 };
 

@@ -85,9 +85,9 @@ static double mean_fill(const struct glint_zone *z, int n, const double *s,
 
 static double smallest(int n, const double *value)
 {
-    double least = value[0];
+    double least = HUGE_VAL;
 
-    for (int i = 1; i < n; i++)
+    for (int i = 0; i < n; i++)
         least = fmin(least, value[i]);
     return least;
 }
@@ -105,7 +105,7 @@ void glint_zone_init(struct glint_zone *zone,
         first++;
     while (last - 1 > first && profile->sine[last - 1] >= hi)
         last--;
-    for (int k = first; k <= last; k++) {
+    for (int k = first; k <= last; k++) { /* at least once */
         const struct glint_pupil *b = &profile->box[k];
 
         s[n] = (2 * profile->sine[k] - lo - hi) / (hi - lo);
