@@ -28,13 +28,14 @@ CORE := base/status base/arena base/q base/image base/workers lens/transfer flar
         tile/raster tile/curve tile/resolve flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/cuts bake/cells \
-        bake/setup bake/exact bake/feed
+        bake/setup bake/exact bake/feed bake/hunt bake/fitted \
+        bake/shared_zone bake/shared_basis bake/published
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool measure lamps frame scene cmd_info cmd_trace cmd_render \
         cmd_overlay cmd_compare
 UNIT := arena prescription optics trace pupil exact curve resolve lights \
-        flare pnm y4m picture output workers measure lamps
+        flare pnm y4m picture output workers measure lamps published
 FUZZ := lens y4m pnm
 
 core_o     := $(CORE:%=$(OUT)/src/%.o)
