@@ -241,13 +241,6 @@ static void system_finish(struct glint_fitted_system *system)
     free(system->box);
 }
 
-void glint_fitted_finish(struct glint_fitted_ghost *ghost)
-{
-    for (int k = 0; k < ghost->n_systems; k++)
-        system_finish(&ghost->system[k]);
-    free(ghost->system);
-}
-
 static enum glint_status append(struct glint_fitted_ghost *ghost,
                                 const struct glint_fitted_system *system)
 {
