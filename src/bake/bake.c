@@ -9,6 +9,7 @@
 
 #include "bake/cells.h"
 #include "bake/fit.h"
+#include "bake/published.h"
 #include "bake/write_model.h"
 
 enum { FLUX_POWERS = 6 };
@@ -198,25 +199,44 @@ static enum glint_status quantise_ghost(struct kitchen *k, int ghost)
     return status;
 }
 
-static void fit_job(void *ctx, int job, int worker)
+static enum glint_status fit_published(struct kitchen *k, int ghost)
 {
-    struct kitchen *k = ctx;
-    const int ghost = k->first_job + job;
+    struct glint_published_options options;
+
+    glint_published_defaults(&options, &k->setup);
+    options.max_deg = k->options.max_deg;
+    options.field_mm = field_of(k->lens, &k->options);
+    return glint_published_fit(&k->setup, ghost, &options, &k->fitted[ghost]);
+}
+
+static enum glint_status fit_auto(struct kitchen *k, int ghost)
+{
     const double film = k->lens->film_width_mm, t = k->options.tolerance;
     const struct glint_tolerance tolerance = {0.065 * t * film / 1920,
                                               2.5e-4 * t, 7e-3 * t, 4e-4 * t};
     struct glint_hunt *hunt = malloc(sizeof *hunt);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (hunt) {
+        hunt_init(k, ghost, hunt);
+        status = glint_fit_ghost(hunt, k->options.max_deg, &tolerance,
+                                 &k->fitted[ghost]);
+    }
+    free(hunt);
+    return status;
+}
+
+static void fit_job(void *ctx, int job, int worker)
+{
+    struct kitchen *k = ctx;
+    const int ghost = k->first_job + job;
 
     (void)worker;
-    k->status[ghost] = GLINT_E_MEMORY;
-    if (!hunt)
-        return;
-    hunt_init(k, ghost, hunt);
-    k->status[ghost] = glint_fit_ghost(hunt, k->options.max_deg, &tolerance,
-                                       &k->fitted[ghost]);
+    k->status[ghost] = k->options.basis == GLINT_BASIS_SPARSE
+                           ? fit_published(k, ghost)
+                           : fit_auto(k, ghost);
     if (k->status[ghost] == GLINT_OK)
         k->status[ghost] = quantise_ghost(k, ghost);
-    free(hunt);
 }
 
 static void measure_job(void *ctx, int job, int worker)
@@ -339,7 +359,7 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                              struct glint_bake_report *report,
                              struct glint_error *error)
 {
-    const double middle_nm = 0.5 * (options->band_nm[0] + options->band_nm[1]);
+    static const double rgb_nm[] = {650, 532, 450};
     struct kitchen *k = calloc(1, sizeof *k);
     enum glint_status status;
 
@@ -350,7 +370,7 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
     k->options = *options;
     status = check(options, error);
     if (status == GLINT_OK)
-        status = glint_setup_init(&k->setup, lens, 0, 0, &middle_nm, 1, error);
+        status = glint_setup_init(&k->setup, lens, 0, 0, rgb_nm, 3, error);
     if (status == GLINT_OK) {
         status = cook(k);
         if (status == GLINT_E_LENS)

@@ -300,9 +300,9 @@ static void find_bases(struct job *job)
     const int n = trace_some(job);
 
     for (int kind = 0; kind < GLINT_SHARED_OUTPUTS; kind++)
-        glint_shared_search(
-            job->zone, job->rays, n, (enum glint_channel)kind,
-            job->options->max_terms, tolerance[kind], &job->basis[kind]);
+        glint_shared_search(job->zone, job->rays, n, (enum glint_channel)kind,
+                            job->options->max_terms, tolerance[kind],
+                            &job->basis[kind]);
 }
 
 /* ------------------------------------------------------------------ systems */
@@ -440,6 +440,5 @@ glint_published_fit(const struct glint_setup *setup, int ghost,
     free(job.zone);
     if (status != GLINT_OK)
         glint_fitted_finish(out);
-    out->out_of_memory = status == GLINT_E_MEMORY;
     return status;
 }

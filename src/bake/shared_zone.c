@@ -129,8 +129,7 @@ void glint_shared_begin(struct glint_shared_zone *z,
 }
 
 static void weigh(struct glint_shared_zone *z,
-                  const struct glint_shared_rays *rays,
-                  enum glint_channel kind)
+                  const struct glint_shared_rays *rays, enum glint_channel kind)
 {
     /* a zone in which next to nothing gets through counts less */
     const double count = fmax(z->seen, 0.05 * z->n);

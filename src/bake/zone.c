@@ -95,8 +95,8 @@ static double smallest(int n, const double *value)
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_profile *profile, double lo, double hi)
 {
-    double s[GLINT_PROFILE], middle[GLINT_PROFILE], half_x[GLINT_PROFILE],
-        half_y[GLINT_PROFILE];
+    double s[GLINT_PROFILE] = {0}, middle[GLINT_PROFILE] = {0};
+    double half_x[GLINT_PROFILE] = {0}, half_y[GLINT_PROFILE] = {0};
     struct glint_pupil box[GLINT_PROFILE];
     int n = 0, first = 0, last = profile->n - 1, degree;
 
