@@ -27,7 +27,7 @@ CORE := base/status base/arena base/q base/image base/workers flare/regions \
         flare/lights tile/primitive tile/clip flare/ghost_grid tile/bins \
         tile/raster tile/transfer tile/resolve flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
-        bake/paraxial bake/ghosts bake/trace bake/pupil bake/cuts bake/cells \
+        bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
         bake/setup bake/exact bake/feed
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
