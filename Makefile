@@ -28,7 +28,7 @@ CORE := base/status base/arena base/q base/image base/workers lens/model \
         flare/ghost_grid tile/bins tile/raster tile/curve tile/resolve \
         flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
-        bake/paraxial bake/ghosts bake/trace bake/pupil bake/cuts bake/cells \
+        bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
         bake/setup bake/exact bake/feed bake/hunt bake/regress bake/zone \
         bake/fitted bake/fit bake/shared_zone bake/shared_basis bake/published \
         bake/quantise bake/measure_model bake/write_model bake/bake

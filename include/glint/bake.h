@@ -336,8 +336,8 @@ struct glint_feed_config {
     const struct glint_setup *setup;
     struct glint_view view;
     double scale;  /* of all light: gain times 2^EV */
-    int max_cells; /* per side of the largest ghosts, 1 .. 1024 */
-    bool uniform;  /* all ghosts get max_cells */
+    int max_cells; /* fineness of the grids, 1 .. 1024: see glint_feed_plan */
+    bool uniform;  /* all ghosts get max_cells a side */
 };
 
 enum { GLINT_FEED_CUTS = 8 };
@@ -355,10 +355,11 @@ struct glint_feed {
     int cut_event[GLINT_FEED_CUTS]; /* the one that cuts most comes first */
 };
 
-/* Finds the pupil and the barrels, and chooses the grid by the ghost's size on
- * the sensor: n = max clamp(sqrt(ghost area / sensor area), 0.05, 1), a
- * multiple of 4 and at least 8, over the pupil and a pixel more on each side.
- * [Bodonyi23]. Lamp, ghost and wavelength are set already. */
+/* Finds the pupil and the barrels, and chooses the grid by how much the ghost's
+ * light bends in pixels: off by 0.01 px (RMS) with 64 for max_cells, and by the
+ * square of it less with more; a multiple of 4 from 8 to 2 max_cells, 4
+ * max_cells where light folds, over the pupil and a pixel more on each side.
+ * Lamp, ghost and wavelength are set already. */
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed, const struct glint_feed *near);
 

@@ -4,20 +4,20 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/cuts.h"
+#include "bake/survey.h"
 #include "bake/degrees.h"
 
 enum { SURVEY = 96 }; /* rays a side that decide which barrels matter */
 
 static void find_cuts(struct glint_cells *c)
 {
-    struct glint_cuts cuts;
+    struct glint_survey survey;
 
-    glint_cuts_find(&cuts, c->path, &c->pupil, c->direction,
-                    c->setup->optics.stop_radius_mm, SURVEY);
-    c->n_cuts = cuts.n < GLINT_MAX_CUTS ? cuts.n : GLINT_MAX_CUTS;
+    glint_survey_run(&survey, c->path, &c->pupil, c->direction,
+                     c->setup->optics.stop_radius_mm, SURVEY);
+    c->n_cuts = survey.n_cuts < GLINT_MAX_CUTS ? survey.n_cuts : GLINT_MAX_CUTS;
     for (int k = 0; k < c->n_cuts; k++)
-        c->cut_event[k] = cuts.event[k];
+        c->cut_event[k] = survey.cut_event[k];
 }
 
 bool glint_cells_init(struct glint_cells *cells,

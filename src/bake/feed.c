@@ -8,11 +8,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/cuts.h"
+#include "bake/survey.h"
 #include "bake/degrees.h"
 #include "glint/flare.h"
 
-enum { SURVEY = 32 }; /* rays a side that decide which barrels matter */
+enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
 
 /* The ghost's box on the sensor, turned by the light's azimuth, meets the
  * picture. */
@@ -52,19 +52,21 @@ static void add_rim(const struct glint_feed_config *cfg,
     s[3] *= 1 + 2 * y;
 }
 
+/* As many cells as keep what is straight between rays within a hundredth of a
+ * pixel of what bends, at 64: along a bright fold even a tenth shows. */
 static int choose_cells(const struct glint_feed_config *cfg,
-                        const struct glint_feed *feed)
+                        const struct glint_survey *survey)
 {
-    const double *s = feed->pupil.sensor_mm;
-    const double sensor = cfg->view.sensor_width_mm *
-                          cfg->view.sensor_width_mm * cfg->view.height /
-                          cfg->view.width;
-    const double share = (s[1] - s[0]) * (s[3] - s[2]) / sensor;
-    const double part = cfg->uniform ? 1 : fmin(1, fmax(0.05, sqrt(share)));
-    const int n = (int)ceil(cfg->max_cells * part / 4) * 4;
-    const int enough = n > 8 ? n : 8;
+    const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
+    const double error =
+        0.01 * (64.0 / cfg->max_cells) * (64.0 / cfg->max_cells);
+    const double most =
+        fmin((survey->folds ? 4.0 : 2.0) * cfg->max_cells, GLINT_MAX_CELLS);
+    const double n = sqrt(survey->bend_mm * pixels / (8 * error));
 
-    return enough < cfg->max_cells ? enough : cfg->max_cells;
+    if (cfg->uniform)
+        return cfg->max_cells;
+    return (int)ceil(fmin(most, fmax(8, n)) / 4) * 4;
 }
 
 static void light_direction(const struct glint_feed *feed, double direction[3])
@@ -74,44 +76,30 @@ static void light_direction(const struct glint_feed *feed, double direction[3])
     direction[2] = glint_cos_deg(feed->lamp->theta_deg);
 }
 
-/* The barrels that cut, the one that stops most rays first: the maximum over
- * the others may have kinks. */
-static void choose_cuts(const struct glint_feed_config *cfg,
-                        const struct glint_path *path, struct glint_feed *feed)
+/* The barrels that cut, the one that is most of the outline first: the maximum
+ * over the others may have kinks. */
+static void choose_cuts(struct glint_feed *feed, struct glint_survey *survey)
 {
-    double direction[3];
-    struct glint_cuts cuts;
-
-    light_direction(feed, direction);
-    glint_cuts_find(&cuts, path, &feed->pupil, direction,
-                    cfg->setup->optics.stop_radius_mm, SURVEY);
     for (feed->n_cuts = 0; feed->n_cuts < GLINT_FEED_CUTS; feed->n_cuts++) {
         int most = 0;
 
-        for (int k = 1; k < cuts.n; k++)
-            if (cuts.rays[k] > cuts.rays[most])
+        for (int k = 1; k < survey->n_cuts; k++)
+            if (survey->cut_weight[k] > survey->cut_weight[most])
                 most = k;
-        if (cuts.n == 0 || cuts.rays[most] == 0)
+        if (survey->n_cuts == 0 || survey->cut_weight[most] == 0)
             break;
-        cuts.rays[most] = 0;
-        feed->cut_event[feed->n_cuts] = cuts.event[most];
+        survey->cut_weight[most] = 0;
+        feed->cut_event[feed->n_cuts] = survey->cut_event[most];
     }
-}
-
-/* Between wavelengths the barrels that cut do not change by more than the
- * survey's margin. */
-static void take_cuts(struct glint_feed *feed, const struct glint_feed *near)
-{
-    feed->n_cuts = near->n_cuts;
-    for (int k = 0; k < near->n_cuts; k++)
-        feed->cut_event[k] = near->cut_event[k];
 }
 
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed, const struct glint_feed *near)
 {
     const struct glint_setup *s = cfg->setup;
+    struct glint_survey survey;
     struct glint_path path;
+    double direction[3];
 
     glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
                     s->wavelength_nm[feed->wavelength]);
@@ -120,12 +108,12 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
                                    s->optics.stop_radius_mm,
                                    near && near->found ? &near->pupil : NULL);
     if (feed->found && in_view(cfg, feed)) {
-        if (near && near->n_cells > 0)
-            take_cuts(feed, near);
-        else
-            choose_cuts(cfg, &path, feed);
+        light_direction(feed, direction);
+        glint_survey_run(&survey, &path, &feed->pupil, direction,
+                         s->optics.stop_radius_mm, SURVEY);
+        choose_cuts(feed, &survey);
+        feed->n_cells = choose_cells(cfg, &survey);
         add_rim(cfg, feed);
-        feed->n_cells = choose_cells(cfg, feed);
     }
 }
 

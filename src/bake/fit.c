@@ -22,7 +22,7 @@ struct fitter {
     const struct glint_tolerance *tolerance;
     struct glint_profile profile;
     struct glint_rays rays, energies;
-    glint_survey survey;
+    glint_zone_survey survey;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
     double *scratch;

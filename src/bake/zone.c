@@ -374,7 +374,7 @@ static void trace_energies(const struct glint_zone *zone,
 }
 
 void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, glint_survey *survey,
+                      const struct glint_hunt *hunt, glint_zone_survey *survey,
                       struct glint_rays *rays, struct glint_rays *energies)
 {
     struct survey s = {.radius = *survey};

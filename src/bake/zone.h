@@ -68,12 +68,12 @@ struct glint_rays {
 
 /* Room for the survey that chooses the barrels. */
 enum { GLINT_SURVEY_RAYS = 5 * 33 * 17 };
-typedef double glint_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
+typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
 
 /* Chooses the barrels and traces the samples: RAYS for positions, ENERGIES at
  * fewer places but more wavelengths. */
 void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, glint_survey *survey,
+                      const struct glint_hunt *hunt, glint_zone_survey *survey,
                       struct glint_rays *rays, struct glint_rays *energies);
 
 /* Random rays of the zone, at angles and wavelengths between those of the

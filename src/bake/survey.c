@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/survey.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+/* Weight of a ray that shows a cut, against one that only suggests it. */
+enum { SHOWN = 1000 };
+
+/* A ray of the survey. */
+struct probe {
+    bool traced, inside;
+    double x_mm, y_mm; /* on the sensor */
+    double stop_r2;
+    double r2[GLINT_MAX_EVENTS + 1]; /* relative radius, squared */
+};
+
+static void probe_ray(struct probe *p, const struct glint_path *path, double x,
+                      double y, const double direction[3],
+                      double stop_radius_mm)
+{
+    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct glint_ray ray;
+    double sx, sy;
+
+    p->traced = glint_trace(path, x, y, direction, &ray, hits) == GLINT_RAY_OK;
+    if (!p->traced)
+        return;
+    p->x_mm = ray.sensor_x_mm;
+    p->y_mm = ray.sensor_y_mm;
+    sx = ray.stop_x_mm / stop_radius_mm;
+    sy = ray.stop_y_mm / stop_radius_mm;
+    p->stop_r2 = sx * sx + sy * sy;
+    p->inside = p->stop_r2 <= 1 && ray.rel_radius <= 1;
+    for (int k = 0; k < path->n_events; k++) {
+        const struct glint_event *e = &path->event[k];
+        const double hx = hits[k][0] / e->semi_mm, hy = hits[k][1] / e->semi_mm;
+
+        p->r2[k] = e->kind == GLINT_STOP ? 0 : hx * hx + hy * hy;
+    }
+}
+
+/* A barrel may cut if it stops a ray that everything else lets pass, with a
+ * margin for what lies between the rays; and where many barrels stop a ray that
+ * the stop lets pass, as beyond a fold, the tightest must be there to do it. */
+static void mark_alone(const struct probe *p, int n, int *weight)
+{
+    const double margin = 1.1;
+    double worst = p->stop_r2, second = 0;
+    int at = -1;
+
+    for (int k = 0; k < n && p->traced; k++) {
+        const double r2 = p->r2[k];
+
+        if (r2 > worst) {
+            second = worst;
+            worst = r2;
+            at = k;
+        } else if (r2 > second) {
+            second = r2;
+        }
+    }
+    if (at >= 0 && worst > 0.99 * 0.99 &&
+        (second < margin * margin || p->stop_r2 < margin * margin))
+        weight[at]++;
+}
+
+/* How far from IN (inside) to OUT the way to A = 1 is; 2 where it is further.
+ */
+static double crossing(double in, double out)
+{
+    return out > 1 ? (1 - in) / (out - in) : 2;
+}
+
+/* Between a ray that passes and one that does not, the barrel that is met first
+ * cuts, and so may those that are met little later. */
+static void mark_between(const struct probe *a, const struct probe *b, int n,
+                         int *weight)
+{
+    const struct probe *in = a->inside ? a : b, *out = a->inside ? b : a;
+    double first;
+
+    if (!a->traced || !b->traced || a->inside == b->inside)
+        return;
+    first = crossing(in->stop_r2, out->stop_r2);
+    for (int k = 0; k < n; k++)
+        first = fmin(first, crossing(in->r2[k], out->r2[k]));
+    for (int k = 0; k < n; k++) {
+        const double at = crossing(in->r2[k], out->r2[k]);
+
+        if (at <= first)
+            weight[k] += SHOWN;
+        else if (at < first + 0.2)
+            weight[k]++;
+    }
+}
+
+/* --------------------------------------------------------------------- bend
+ */
+
+struct bend {
+    double sum_mm2; /* of second differences, squared */
+    int n;
+    int up, down; /* cells by the way they are turned */
+};
+
+/* B in the middle of A and C. */
+static void add_bend(struct bend *bend, const struct probe *a,
+                     const struct probe *b, const struct probe *c)
+{
+    double x, y;
+
+    if (!b->traced || !b->inside || !a->traced || !c->traced)
+        return;
+    x = a->x_mm - 2 * b->x_mm + c->x_mm;
+    y = a->y_mm - 2 * b->y_mm + c->y_mm;
+    bend->sum_mm2 += x * x + y * y;
+    bend->n++;
+}
+
+/* A cell whose first corner is A, with B beside and C below it. */
+static void add_turn(struct bend *bend, const struct probe *a,
+                     const struct probe *b, const struct probe *c)
+{
+    double turn;
+
+    if (!a->traced || !b->traced || !c->traced ||
+        !(a->inside || b->inside || c->inside))
+        return;
+    turn = (b->x_mm - a->x_mm) * (c->y_mm - a->y_mm) -
+           (b->y_mm - a->y_mm) * (c->x_mm - a->x_mm);
+    bend->up += turn > 0;
+    bend->down += turn < 0;
+}
+
+/* ------------------------------------------------------------------- survey
+ */
+
+struct rows {
+    struct probe row[3][GLINT_MAX_SURVEY + 1]; /* the last three, in turn */
+};
+
+static void look_back(const struct rows *r, int i, int j, int n_events,
+                      int *weight, struct bend *bend)
+{
+    const struct probe *here = &r->row[j % 3][i];
+    const struct probe *above = &r->row[(j + 2) % 3][i];
+
+    mark_alone(here, n_events, weight);
+    if (i > 0)
+        mark_between(here - 1, here, n_events, weight);
+    if (j > 0)
+        mark_between(above, here, n_events, weight);
+    if (i > 1)
+        add_bend(bend, here - 2, here - 1, here);
+    if (j > 1)
+        add_bend(bend, &r->row[(j + 1) % 3][i], above, here);
+    if (i > 0 && j > 0)
+        add_turn(bend, above - 1, above, here - 1);
+}
+
+void glint_survey_run(struct glint_survey *survey,
+                      const struct glint_path *path,
+                      const struct glint_pupil *p, const double direction[3],
+                      double stop_radius_mm, int side)
+{
+    int weight[GLINT_MAX_EVENTS + 1] = {0};
+    struct bend bend = {0, 0, 0, 0};
+    struct rows r; /* 350 KB: the offline half has the stack for it */
+
+    for (int j = 0; j <= side / 2; j++)
+        for (int i = 0; i <= side; i++) {
+            probe_ray(&r.row[j % 3][i], path,
+                      p->x0_mm + (p->x1_mm - p->x0_mm) * i / side,
+                      p->y1_mm * j / (side / 2), direction, stop_radius_mm);
+            look_back(&r, i, j, path->n_events, weight, &bend);
+        }
+    survey->bend_mm = bend.n ? sqrt(bend.sum_mm2 / bend.n) * side * side : 0;
+    survey->folds = bend.up > 0 && bend.down > 0;
+    survey->n_cuts = 0;
+    for (int k = 0; k < path->n_events && survey->n_cuts < GLINT_MAX_EVENTS;
+         k++)
+        if (weight[k]) {
+            survey->cut_event[survey->n_cuts] = k;
+            survey->cut_weight[survey->n_cuts++] = weight[k];
+        }
+}
