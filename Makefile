@@ -29,12 +29,12 @@ CORE := base/status base/arena base/q base/image base/workers lens/model \
         flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
-        bake/setup bake/exact bake/feed bake/hunt bake/regress bake/zone \
+        bake/setup bake/exact bake/feed bake/feed_model bake/hunt bake/regress bake/zone \
         bake/fitted bake/fit bake/shared_zone bake/shared_basis bake/published \
         bake/quantise bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
-TOOLS := tool model_file info_model model_report measure lamps frame scene \
+TOOLS := tool model_file model_cache info_model model_report measure lamps frame scene \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
 UNIT := arena model prescription optics trace pupil published exact curve \
         resolve lights flare pnm y4m picture output workers measure lamps

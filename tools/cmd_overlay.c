@@ -26,7 +26,7 @@ static const char help[] =
     "                      glint overlay - -o - | ffmpeg -i - out.mp4\n"
     "\n"
     "  -o, --output OUT\n"
-    "  --lens LENS         default heliar-tronnier\n"
+    "  --lens LENS         table or baked model (default heliar-tronnier)\n"
     "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"
     "                      frame,x,y,power[,r,g,b[,size]] or JSON lines with\n"
     "                      these keys; x, y in pixels from the top left, also\n"
@@ -43,9 +43,8 @@ static const char help[] =
     "  --layer WHAT        composite | flare: the flare alone on black\n"
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
-    "  --start-number N    first of a sequence (default: 0 or 1, as found)\n"
-    "  --quality Q         0 to 1, or draft, default, high: sets "
-    "--grid\n" SCENE_HELP COMMON_HELP;
+    "  --start-number N    first of a sequence (default: 0 or 1, as "
+    "found)\n" SCENE_HELP COMMON_HELP;
 
 struct overlay {
     struct scene scene;
@@ -74,18 +73,6 @@ struct overlay {
 };
 
 /* ------------------------------------------------------------------ options */
-
-static bool take_quality(const char *text, int *grid)
-{
-    static const char *const words[] = {"draft", "default", "high", NULL};
-    const int word = tool_word(text, words);
-    double q = 0.25 * (word + 1);
-
-    if (word < 0 && (!tool_number(text, &q) || q < 0 || q > 1))
-        return false;
-    *grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
-    return true;
-}
 
 static bool take_threshold(const char *text, int threshold[2])
 {
@@ -130,8 +117,6 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_word(value, matrices, &o->matrix);
     case 'n':
         return tool_integer(value, 0, 1000000000, &o->start_number);
-    case 'Q':
-        return take_quality(value, &o->scene.grid);
     default: /* 'y' */
         if (!take_word(value, layers, &layer))
             return false;
@@ -152,7 +137,6 @@ static const struct option options[] = {
     {"range", required_argument, NULL, 'r'},
     {"matrix", required_argument, NULL, 'x'},
     {"start-number", required_argument, NULL, 'n'},
-    {"quality", required_argument, NULL, 'Q'},
     SCENE_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
@@ -545,6 +529,7 @@ int cmd_overlay(int argc, char **argv)
         lamp_finder_close(&o->finder);
         frame_finish(&o->frame);
     }
+    scene_close(&o->scene);
     free(o);
     return code;
 }

@@ -11,9 +11,13 @@
 #include "scene.h"
 
 static const char help[] =
-    "glint render LENS -o OUT --light THETA,PHI[,POWER[,R,G,B]]... [options]\n"
+    "glint render LENS|MODEL -o OUT --light THETA,PHI[,POWER[,R,G,B]]... "
+    "[options]\n"
     "\n"
-    "Draws the ghosts of LENS alone. Values are linear: 1 is what a light of\n"
+    "Draws the ghosts of a lens alone, from its table or its baked model "
+    "(which\n"
+    "a table gets when it is first drawn, see 'glint bake'). Values are "
+    "linear: 1 is what a light of\n"
     "POWER 1 would give if its in-focus image fell on one pixel. OUT is .pfm,\n"
     "or with the image plug-in .exr, .hdr: linear as it stands. A .ppm, .png\n"
     "or .jpg is for the eye: sRGB, the 99.9th percentile of luminance at 1\n"
@@ -56,8 +60,11 @@ static int take(struct tool *tool, struct render *r, int c)
     case 'l':
         if (r->n_lamps == SCENE_MAX_LAMPS)
             return tool_usage(tool, "more than %d lights", SCENE_MAX_LAMPS);
-        if (scene_lamp(optarg, &r->lamp[r->n_lamps++]))
+        if (scene_lamp(optarg, &r->lamp[r->n_lamps++])) {
+            r->scene.max_deg =
+                fmax(r->scene.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
             return -1;
+        }
         return tool_usage(tool,
                           "--light takes THETA,PHI[,POWER[,R,G,B]] with THETA "
                           "0 to 89.9, not '%s'",
@@ -65,6 +72,8 @@ static int take(struct tool *tool, struct render *r, int c)
     case 'e':
         word = tool_word(optarg, engines);
         r->exact = word == 1;
+        if (r->exact)
+            r->scene.rays = SCENE_RAYS_EXACT;
         return word >= 0
                    ? -1
                    : tool_usage(tool, "no engine '%s': model or exact", optarg);
@@ -258,6 +267,7 @@ int cmd_render(int argc, char **argv)
             code = run(&tool, r, argv[optind]);
         tool_finish(&tool);
     }
+    scene_close(&r->scene);
     free(r);
     return code;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame's flare, end to end: lamps -> grids of exact rays -> run-time half.
+ * A frame's flare, end to end: lamps -> grids of rays -> run-time half.
  *
  *     frame_init(&frame, &setup, view, workers);    then set options
  *     frame_draw(&frame, lamps, n, scale, &image, &report);
@@ -16,6 +16,7 @@
 
 struct frame {
     const struct glint_setup *setup;
+    const struct glint_lens *lens; /* its model; NULL: exact rays */
     struct glint_view view;
     struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop;
                                       capacities are the frame's own */

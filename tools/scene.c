@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model_cache.h"
+
 void scene_defaults(struct scene *scene)
 {
     *scene = (struct scene){.n_blades = 8,
@@ -71,10 +73,23 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
+static bool take_quality(const char *text, int *grid)
+{
+    static const char *const words[] = {"draft", "default", "high", NULL};
+    const int word = tool_word(text, words);
+    double q = 0.25 * (word + 1);
+
+    if (word < 0 && (!tool_number(text, &q) || q < 0 || q > 1))
+        return false;
+    *grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
+    return true;
+}
+
 static bool take(struct scene *s, int option, const char *value)
 {
     static const char *const weights[] = {"loop-derose", "wachspress", NULL};
     static const char *const parts[] = {"ghosts", "all", NULL};
+    static const char *const rays[] = {"model", "exact", NULL};
     int word;
 
     switch (option) {
@@ -118,6 +133,12 @@ static bool take(struct scene *s, int option, const char *value)
         return true;
     case OPT_DITHER:
         return s->dither = true;
+    case OPT_QUALITY:
+        return take_quality(value, &s->grid);
+    case OPT_RAYS:
+        word = tool_word(value, rays);
+        s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
+        return word >= 0;
     case OPT_BALANCE:
         return s->balance = true;
     default:
@@ -153,31 +174,140 @@ bool scene_lamp(const char *text, struct glint_lamp *lamp)
     return true;
 }
 
-int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
+/* ------------------------------------------------------------------ opening */
+
+static int check_band(const struct tool *tool, const struct scene *scene)
+{
+    const struct glint_model_header *h = scene->model.lens.header;
+    const double lo = 1e3 / sqrt(h->wave_hi_q24 * 0x1p-24);
+    const double hi = 1e3 / sqrt(h->wave_lo_q24 * 0x1p-24);
+
+    for (int i = 0; i < scene->n_wavelengths; i++)
+        if (scene->wavelength_nm[i] < lo - 0.5 ||
+            scene->wavelength_nm[i] > hi + 0.5)
+            return tool_usage(tool,
+                              "%g nm lies outside of the %.0f to %.0f nm that "
+                              "the model of %s was baked for (bake --band)",
+                              scene->wavelength_nm[i], lo, hi, h->name);
+    return EXIT_OK;
+}
+
+/* Says what the picture asks of the model that it was not baked for. */
+static void warn_field(const struct tool *tool, const struct scene *scene)
+{
+    const double field = model_real_of(scene->model.lens.header->field_mm);
+    const double *mm = scene->sensor_mm;
+
+    if (!tool->quiet && 0.5 * hypot(mm[0], mm[1]) > field)
+        fprintf(stderr,
+                "glint %s: the model was baked for a field of %.1f mm around "
+                "the middle; corners beyond are left to chance (bake --field)"
+                "\n",
+                tool->name, field);
+}
+
+static int open_model(const struct tool *tool, struct scene *scene,
+                      const char *path)
+{
+    const struct glint_model_header *h;
+    int code;
+
+    if (scene->rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "%s is a model: exact rays need the lens table",
+                          path);
+    if (scene->f_number > 0)
+        return tool_usage(tool,
+                          "%s is a model, baked for one f-number: "
+                          "--f-number needs the lens table",
+                          path);
+    code = tool_model(tool, path, &scene->model);
+    if (code != EXIT_OK)
+        return code;
+    h = scene->model.lens.header;
+    snprintf(scene->lens.name, sizeof scene->lens.name, "%s", h->name);
+    scene->lens.film_width_mm = model_real_of(h->film_width_mm);
+    scene->lens.film_height_mm = model_real_of(h->film_height_mm);
+    warn_field(tool, scene);
+    return EXIT_OK;
+}
+
+/* The options under which a model serves this scene. */
+static struct glint_bake_options bake_options(const struct scene *scene)
+{
+    const struct glint_prescription *l = &scene->lens;
+    const double film = hypot(l->film_width_mm, l->film_height_mm);
+    const double sensor = hypot(scene->sensor_mm[0], scene->sensor_mm[1]);
+    struct glint_bake_options o;
+
+    glint_bake_defaults(&o);
+    for (int i = 0; i < scene->n_wavelengths; i++) {
+        const double nm = scene->wavelength_nm[i];
+
+        o.band_nm[0] = fmin(o.band_nm[0], fmax(300, 10 * floor(nm / 10)));
+        o.band_nm[1] = fmax(o.band_nm[1], fmin(1100, 10 * ceil(nm / 10)));
+    }
+    if (sensor > film)
+        o.field_mm = 0.55 * sensor;
+    if (scene->max_deg > o.max_deg)
+        o.max_deg = 89;
+    return o;
+}
+
+static int open_table(const struct tool *tool, struct scene *scene,
+                      const char *name)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
-    const int code = tool_lens(tool, lens, &scene->lens);
+    const int code = tool_lens(tool, name, &scene->lens);
 
     if (code != EXIT_OK)
         return code;
     if (scene->f_number > 0)
         status = glint_prescription_set_f_number(&scene->lens, scene->f_number,
                                                  &error);
-    if (status == GLINT_OK)
-        status =
-            glint_setup_init(&scene->setup, &scene->lens, scene->n_blades,
-                             scene->blade_rotation_deg, scene->wavelength_nm,
-                             scene->n_wavelengths, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (scene->balance)
-        glint_setup_balance(&scene->setup);
-    if (scene->only_ghost >= scene->setup.n_ghosts)
+    return scene->rays == SCENE_RAYS_EXACT
+               ? EXIT_OK
+               : model_cached(tool, &scene->lens, bake_options(scene),
+                              &scene->model);
+}
+
+static int set_up(const struct tool *tool, struct scene *s)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        s->model.data
+            ? glint_setup_from_model(&s->setup, &s->model.lens, s->n_blades,
+                                     s->blade_rotation_deg, s->wavelength_nm,
+                                     s->n_wavelengths, &error)
+            : glint_setup_init(&s->setup, &s->lens, s->n_blades,
+                               s->blade_rotation_deg, s->wavelength_nm,
+                               s->n_wavelengths, &error);
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    if (s->balance)
+        glint_setup_balance(&s->setup);
+    if (s->only_ghost >= s->setup.n_ghosts)
         return tool_usage(tool, "%s has %d ghosts, there is no %d",
-                          scene->lens.name, scene->setup.n_ghosts,
-                          scene->only_ghost);
+                          s->lens.name, s->setup.n_ghosts, s->only_ghost);
     return EXIT_OK;
+}
+
+int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
+{
+    int code = tool_is_model(lens) ? open_model(tool, scene, lens)
+                                   : open_table(tool, scene, lens);
+
+    if (code == EXIT_OK && scene->model.data)
+        code = check_band(tool, scene);
+    return code == EXIT_OK ? set_up(tool, scene) : code;
+}
+
+void scene_close(struct scene *scene)
+{
+    model_file_close(&scene->model);
 }
 
 struct glint_view scene_view(const struct scene *scene, int width, int height)
@@ -193,6 +323,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
                 struct glint_view view, struct frame *frame)
 {
     frame_init(frame, &scene->setup, view, tool->workers);
+    frame->lens = scene->model.data ? &scene->model.lens : NULL;
     frame->max_cells = scene->grid ? scene->grid : 64;
     frame->uniform = scene->uniform;
     frame->only_ghost = scene->only_ghost;

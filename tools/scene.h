@@ -6,14 +6,21 @@
 #define GLINT_TOOLS_SCENE_H
 
 #include "frame.h"
+#include "model_file.h"
 #include "tool.h"
 
 enum { SCENE_MAX_LAMPS = 1024 };
 
 #define SCENE_MAX_POWER 1e30 /* of a lamp: still finite in every output */
 
+/* What the integer engine's rays come from. */
+enum scene_rays { SCENE_RAYS_MODEL, SCENE_RAYS_EXACT };
+
 struct scene {
-    struct glint_prescription lens;
+    struct glint_prescription lens; /* of a model: name and film only */
+    struct model_file model;        /* closed for exact rays */
+    enum scene_rays rays;
+    double max_deg; /* of the lamps that a model is baked for */
     struct glint_setup setup;
     double f_number; /* 0: as the table says */
     int n_blades;
@@ -48,6 +55,8 @@ enum scene_option {
     OPT_MASK,
     OPT_NO_ANTIALIAS,
     OPT_DITHER,
+    OPT_QUALITY,
+    OPT_RAYS,
     OPT_BALANCE,
     OPT_ONLY,
     OPT_LAST
@@ -70,6 +79,8 @@ enum scene_option {
         {"mask", required_argument, NULL, OPT_MASK},               \
         {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},     \
         {"dither", no_argument, NULL, OPT_DITHER},                 \
+        {"quality", required_argument, NULL, OPT_QUALITY},         \
+        {"rays", required_argument, NULL, OPT_RAYS},               \
         {"balance", no_argument, NULL, OPT_BALANCE},               \
     {                                                              \
         "only", required_argument, NULL, OPT_ONLY                  \
@@ -97,6 +108,9 @@ enum scene_option {
     "as\n"                                                                     \
     "                      a camera balanced to white behind this lens\n"      \
     "Speed and accuracy of the integer engine\n"                               \
+    "  --quality Q         0 to 1, or draft, default, high: sets the grid\n"   \
+    "  --rays R            model: the lens's baked polynomials (default);\n"   \
+    "                      exact: traced for every frame\n"                    \
     "  --grid N            cells a side for the largest ghosts, 4 to 1024\n"   \
     "                      (default 64; the exact engine: 512)\n"              \
     "  --uniform-grid      that many for every ghost\n"                        \
@@ -124,8 +138,12 @@ int scene_option(const struct tool *tool, struct scene *scene, int option,
 /* "THETA,PHI[,POWER[,R,G,B]]" */
 bool scene_lamp(const char *text, struct glint_lamp *lamp);
 
-/* Reads LENS and prepares it. Returns an exit code. */
+/* Reads LENS, a table or a model, and prepares it. Of a table the model is
+ * baked where there is none yet, unless rays are exact. Returns an exit code.
+ */
 int scene_open(const struct tool *tool, struct scene *scene, const char *lens);
+
+void scene_close(struct scene *scene);
 
 struct glint_view scene_view(const struct scene *scene, int width, int height);
 

@@ -171,7 +171,7 @@ double glint_reflectance(double n_from, double n_to, double cos_from,
 /* A lens made ready for drawing: everything that no light and no frame
  * changes. */
 struct glint_setup {
-    const struct glint_prescription *lens; /* kept */
+    const struct glint_prescription *lens; /* kept; NULL: made from a model */
     struct glint_optics optics;
     int n_ghosts;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
@@ -198,6 +198,16 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
                                    int n_blades, double blade_rotation_deg,
                                    const double *wavelength_nm, int n,
                                    struct glint_error *error);
+
+/* The same from a model, without its lens table: everything but exact rays. A
+ * wavelength outside of the model's band counts as the nearest one inside. */
+struct glint_lens;
+enum glint_status glint_setup_from_model(struct glint_setup *setup,
+                                         const struct glint_lens *lens,
+                                         int n_blades,
+                                         double blade_rotation_deg,
+                                         const double *wavelength_nm, int n,
+                                         struct glint_error *error);
 
 /* Measures each wavelength by its own direct image, as a camera does that is
  * balanced to white behind this lens. Otherwise the lens's own tint shows in
@@ -265,8 +275,9 @@ struct glint_bake_options {
                           tenth more than the film's corners */
     double tolerance;  /* scale of all errors aimed at, 0.1 .. 100; at 1 the
                           root mean squares are 0.065 pixels of a film 1920
-                          wide, 0.00025 stop radii, 0.0004 of a barrel, 0.7 %
-                          of energy */
+                          wide, 0.0003 stop radii, 0.0005 of a barrel (less
+                          where that moves the outline by more than 0.05
+                          pixels), 0.2 % of energy */
     struct glint_workers *workers; /* never changes the model */
     glint_progress_fn *progress;   /* NULL: silent */
     void *progress_ctx;
@@ -300,6 +311,7 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
 
 struct glint_stop;
 struct glint_bundle;
+struct glint_lens;
 struct glint_vertex;
 
 /* The stop of SETUP as the run-time half takes it. */
@@ -334,6 +346,7 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
 
 struct glint_feed_config {
     const struct glint_setup *setup;
+    const struct glint_lens *lens; /* its model; NULL: exact rays */
     struct glint_view view;
     double scale;  /* of all light: gain times 2^EV */
     int max_cells; /* fineness of the grids, 1 .. 1024: see glint_feed_plan */
@@ -353,6 +366,7 @@ struct glint_feed {
     int n_cells; /* 0: nothing of it is in the picture */
     int n_cuts;  /* barrels that may cut inside the stop */
     int cut_event[GLINT_FEED_CUTS]; /* the one that cuts most comes first */
+    double energy_unit;             /* energy 65536 of a vertex */
 };
 
 /* Finds the pupil and the barrels, and chooses the grid by how much the ghost's

@@ -212,8 +212,12 @@ static enum glint_status fit_published(struct kitchen *k, int ghost)
 static enum glint_status fit_auto(struct kitchen *k, int ghost)
 {
     const double film = k->lens->film_width_mm, t = k->options.tolerance;
-    const struct glint_tolerance tolerance = {0.065 * t * film / 1920,
-                                              2.5e-4 * t, 7e-3 * t, 4e-4 * t};
+    const struct glint_tolerance tolerance = {.sensor_mm =
+                                                  0.065 * t * film / 1920,
+                                              .edge_mm = 0.05 * t * film / 1920,
+                                              .stop = 3e-4 * t,
+                                              .barrel = 5e-4 * t,
+                                              .energy = 2e-3 * t};
     struct glint_hunt *hunt = malloc(sizeof *hunt);
     enum glint_status status = GLINT_E_MEMORY;
 

@@ -1,23 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * Exact rays for the run-time half: the one place where doubles become its
- * integers. Later the polynomials take this place.
+ * Exact rays for the run-time half, where a model's are not wanted.
  */
-#include "glint/bake.h"
+#include "bake/feed.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/survey.h"
 #include "bake/degrees.h"
+#include "bake/survey.h"
 #include "glint/flare.h"
 
 enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
 
-/* The ghost's box on the sensor, turned by the light's azimuth, meets the
- * picture. */
-static bool in_view(const struct glint_feed_config *cfg,
-                    const struct glint_feed *feed)
+bool glint_feed_in_view(const struct glint_feed_config *cfg,
+                        const struct glint_feed *feed)
 {
     const double *s = feed->pupil.sensor_mm;
     const double half_w = 0.5 * cfg->view.sensor_width_mm;
@@ -54,15 +51,15 @@ static void add_rim(const struct glint_feed_config *cfg,
 
 /* As many cells as keep what is straight between rays within a hundredth of a
  * pixel of what bends, at 64: along a bright fold even a tenth shows. */
-static int choose_cells(const struct glint_feed_config *cfg,
-                        const struct glint_survey *survey)
+int glint_feed_cells(const struct glint_feed_config *cfg, double bend_mm,
+                     bool folds)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
     const double error =
         0.01 * (64.0 / cfg->max_cells) * (64.0 / cfg->max_cells);
     const double most =
-        fmin((survey->folds ? 4.0 : 2.0) * cfg->max_cells, GLINT_MAX_CELLS);
-    const double n = sqrt(survey->bend_mm * pixels / (8 * error));
+        fmin((folds ? 4.0 : 2.0) * cfg->max_cells, GLINT_MAX_CELLS);
+    const double n = sqrt(bend_mm * pixels / (8 * error));
 
     if (cfg->uniform)
         return cfg->max_cells;
@@ -101,27 +98,26 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
     struct glint_path path;
     double direction[3];
 
+    if (cfg->lens) {
+        glint_feed_plan_model(cfg, feed);
+        return;
+    }
     glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
                     s->wavelength_nm[feed->wavelength]);
     feed->n_cells = 0;
     feed->found = glint_pupil_find(&feed->pupil, &path, feed->lamp->theta_deg,
                                    s->optics.stop_radius_mm,
                                    near && near->found ? &near->pupil : NULL);
-    if (feed->found && in_view(cfg, feed)) {
+    /* some head-room over what the search for the pupil saw */
+    feed->energy_unit = 1.5 * feed->pupil.energy;
+    if (feed->found && glint_feed_in_view(cfg, feed)) {
         light_direction(feed, direction);
         glint_survey_run(&survey, &path, &feed->pupil, direction,
                          s->optics.stop_radius_mm, SURVEY);
         choose_cuts(feed, &survey);
-        feed->n_cells = choose_cells(cfg, &survey);
+        feed->n_cells = glint_feed_cells(cfg, survey.bend_mm, survey.folds);
         add_rim(cfg, feed);
     }
-}
-
-/* The energy that a vertex's 65536 stands for: some head-room over what the
- * search for the pupil saw. */
-static double energy_unit(const struct glint_feed *feed)
-{
-    return 1.5 * feed->pupil.energy;
 }
 
 /* The colour of the bundle, and what it takes to bring its largest channel to
@@ -152,7 +148,7 @@ void glint_feed_bundle(const struct glint_feed_config *cfg,
     const double flux = colour_of(s, feed, rgb) * cfg->scale *
                         feed->lamp->power *
                         glint_cos_deg(feed->lamp->theta_deg) * area *
-                        energy_unit(feed) / s->unit_flux[feed->wavelength];
+                        feed->energy_unit / s->unit_flux[feed->wavelength];
     int exponent = 0;
     const double mantissa =
         flux > 0 && isfinite(flux) ? frexp(flux, &exponent) : 0;
@@ -232,7 +228,7 @@ static struct landing land(const struct glint_feed_config *cfg,
                                  scale * (ray->sensor_x_mm * s + sensor_y * c),
                             .stop_x = (ray->stop_x_mm * c - stop_y * s) / stop,
                             .stop_y = (ray->stop_x_mm * s + stop_y * c) / stop,
-                            .energy = fmin(1, ray->energy / energy_unit(feed))};
+                            .energy = fmin(1, ray->energy / feed->energy_unit)};
 }
 
 static void trace_row(const struct glint_feed_config *cfg,
@@ -272,6 +268,10 @@ void glint_feed_trace(const struct glint_feed_config *cfg,
     const int n = feed->n_cells;
     struct glint_path path;
 
+    if (cfg->lens) {
+        glint_feed_trace_model(cfg, feed, vertex);
+        return;
+    }
     glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
                     s->wavelength_nm[feed->wavelength]);
     for (int j = 0; j <= n / 2; j++)

@@ -27,6 +27,7 @@ struct fitter {
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
     double *scratch;
     struct glint_fitted_ghost *out;
+    double stop, barrel; /* tolerances of this zone */
 };
 
 /* ----------------------------------------------------------------- outputs */
@@ -56,6 +57,34 @@ static double weight_past_field(const struct fitter *f, double fields)
     const double out_mm = (fields - 1.01) * f->hunt->field_mm;
 
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->tolerance->sensor_mm);
+}
+
+/* How far the light moves on the sensor while the stop is crossed by its
+ * radius. */
+static double sensor_per_stop(const struct glint_rays *r)
+{
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+
+    for (int i = 0; i < r->n; i++) {
+        if (r->at[RAY_EXCESS][i] > 1 || r->at[RAY_FIELD][i] > 1)
+            continue;
+        for (int k = 0; k < 2; k++) {
+            const double x = r->at[k ? RAY_STOP_X : RAY_SENSOR_X][i];
+
+            low[k] = fmin(low[k], x);
+            high[k] = fmax(high[k], x);
+        }
+    }
+    return high[1] > low[1] ? (high[0] - low[0]) / (high[1] - low[1]) : 0;
+}
+
+static void set_tolerances(struct fitter *f)
+{
+    const struct glint_tolerance *t = f->tolerance;
+    const double edge = t->edge_mm / fmax(1e-12, sensor_per_stop(&f->rays));
+
+    f->stop = fmax(0.2 * t->stop, fmin(t->stop, edge));
+    f->barrel = fmax(0.2 * t->barrel, fmin(t->barrel, edge));
 }
 
 static void set_weights(struct fitter *f)
@@ -161,7 +190,7 @@ static enum glint_status fit_barrel(struct fitter *f, int barrel,
     }
     system->output[system->n_outputs].event = r->barrel[barrel];
     return fit_output(f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
-                      f->tolerance->barrel, system, worst);
+                      f->barrel, system, worst);
 }
 
 static enum glint_status
@@ -170,9 +199,10 @@ fit_outputs(struct fitter *f, struct glint_fitted_system *system, double *worst)
     const struct glint_tolerance *t = f->tolerance;
     enum glint_status status = GLINT_OK;
 
+    set_tolerances(f);
     set_weights(f);
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++)
-        status = fit_channel(f, c, c <= RAY_SENSOR_Y ? t->sensor_mm : t->stop,
+        status = fit_channel(f, c, c <= RAY_SENSOR_Y ? t->sensor_mm : f->stop,
                              system, worst);
     if (status == GLINT_OK)
         status = fit_energy(f, system, worst);
@@ -226,7 +256,7 @@ static double check_zone(struct fitter *f, const struct glint_zone *zone,
             worst = fmax(worst, check_output(f, o, f->rays.at[o->kind],
                                              o->kind <= GLINT_OUT_SENSOR_Y
                                                  ? t->sensor_mm
-                                                 : t->stop));
+                                                 : f->stop));
     }
     return worst / CHECK_RMS;
 }

@@ -19,9 +19,11 @@
 #include "glint/status.h"
 
 /* The root mean square that is aimed at; single rays may be off by five times
- * as much. */
+ * as much. Stop and barrel positions draw the outline: EDGE_MM is what they may
+ * shift it on the sensor, but neither is asked for less than STOP (stop radii)
+ * and BARREL (of its radius), or more than a fifth of it. */
 struct glint_tolerance {
-    double sensor_mm, stop, energy, barrel;
+    double sensor_mm, edge_mm, stop, barrel, energy;
 };
 
 /* OUT is to be finished in any case. GLINT_E_MEMORY. */

@@ -11,6 +11,7 @@
 
 #include "bake/cells.h"
 #include "bake/degrees.h"
+#include "bake/quantise.h"
 #include "glint/flare.h"
 
 /* A Gaussian with one width on either side. */
@@ -106,6 +107,38 @@ static enum glint_status check(int n_blades, double rotation_deg,
     return GLINT_E_ARGUMENT;
 }
 
+/* Stop and wavelengths, checked already. */
+static void set_common(struct glint_setup *s, int n_blades, double rotation_deg,
+                       const double *wavelength_nm, int n)
+{
+    s->n_blades = n_blades;
+    s->blade_rotation_deg = rotation_deg;
+    s->n_wavelengths = n;
+    memcpy(s->wavelength_nm, wavelength_nm, (size_t)n * sizeof *wavelength_nm);
+    set_colours(s);
+}
+
+/* Light is measured by the mean over the wavelengths. */
+static enum glint_status set_units(struct glint_setup *s, const char *name,
+                                   struct glint_error *error)
+{
+    const int n = s->n_wavelengths;
+    double mean = 0;
+
+    for (int i = 0; i < n; i++) {
+        if (!(s->direct_flux[i] > 0)) {
+            snprintf(error->text, sizeof error->text,
+                     "%s: no light of %g nm gets through to the sensor", name,
+                     s->wavelength_nm[i]);
+            return GLINT_E_LENS;
+        }
+        mean += s->direct_flux[i] / n;
+    }
+    for (int i = 0; i < n; i++)
+        s->unit_flux[i] = mean;
+    return GLINT_OK;
+}
+
 enum glint_status glint_setup_init(struct glint_setup *setup,
                                    const struct glint_prescription *lens,
                                    int n_blades, double blade_rotation_deg,
@@ -114,36 +147,78 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
 {
     const enum glint_status status =
         check(n_blades, blade_rotation_deg, wavelength_nm, n, error);
-    double mean = 0;
 
     if (status != GLINT_OK)
         return status;
     setup->lens = lens;
     glint_optics_of(lens, &setup->optics);
     setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);
-    setup->n_blades = n_blades;
-    setup->blade_rotation_deg = blade_rotation_deg;
-    setup->n_wavelengths = n;
-    memcpy(setup->wavelength_nm, wavelength_nm,
-           (size_t)n * sizeof *wavelength_nm);
-    set_colours(setup);
+    set_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
     for (int i = 0; i < n; i++) {
         setup->direct_flux[i] = glint_direct_flux(setup, wavelength_nm[i]);
         if (setup->direct_flux[i] < 0) {
             snprintf(error->text, sizeof error->text, "not enough memory");
             return GLINT_E_MEMORY;
         }
-        if (!(setup->direct_flux[i] > 0)) {
-            snprintf(error->text, sizeof error->text,
-                     "%s: no light of %g nm gets through to the sensor",
-                     lens->name, wavelength_nm[i]);
-            return GLINT_E_LENS;
-        }
-        mean += setup->direct_flux[i] / n;
     }
+    return set_units(setup, lens->name, error);
+}
+
+/* Area of the stop as a share of its circle's: the direct light is even enough
+ * over it for a ten-thousandth. */
+static double opening(int n_blades)
+{
+    return n_blades ? 0.5 * n_blades * sin(2 * GLINT_PI / n_blades) / GLINT_PI
+                    : 1;
+}
+
+/* What the model's polynomial gives for a wavelength held to its band. */
+static double model_flux(const struct glint_model_header *h, double nm)
+{
+    const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;
+    const double wave = 0x1p24 * 1e6 / (nm * nm);
+    const double w = fmax(-1, fmin(1, (2 * wave - lo - hi) / fmax(1, hi - lo)));
+    const int n = (int)(sizeof h->direct_flux / sizeof *h->direct_flux);
+    double flux = 0;
+
+    for (int k = n - 1; k >= 0; k--)
+        flux = flux * w + glint_real_value(h->direct_flux[k]);
+    return flux;
+}
+
+enum glint_status glint_setup_from_model(struct glint_setup *setup,
+                                         const struct glint_lens *lens,
+                                         int n_blades,
+                                         double blade_rotation_deg,
+                                         const double *wavelength_nm, int n,
+                                         struct glint_error *error)
+{
+    const struct glint_model_header *h = lens->header;
+    const enum glint_status status =
+        check(n_blades, blade_rotation_deg, wavelength_nm, n, error);
+
+    if (status != GLINT_OK)
+        return status;
+    if (h->n_ghosts > GLINT_MAX_GHOSTS) {
+        snprintf(error->text, sizeof error->text, "%s has %lu ghosts", h->name,
+                 (unsigned long)h->n_ghosts);
+        return GLINT_E_LENS;
+    }
+    setup->lens = NULL;
+    setup->optics = (struct glint_optics){
+        .focal_mm = glint_real_value(h->focal_mm),
+        .back_focal_mm = glint_real_value(h->back_focal_mm),
+        .entrance_radius_mm = glint_real_value(h->entrance_radius_mm),
+        .stop_radius_mm = glint_real_value(h->stop_radius_mm)};
+    setup->n_ghosts = (int)h->n_ghosts;
+    for (int k = 0; k < setup->n_ghosts; k++)
+        setup->ghost[k] =
+            (struct glint_ghost){(int)lens->ghost[k].i, (int)lens->ghost[k].j};
+    set_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
     for (int i = 0; i < n; i++)
-        setup->unit_flux[i] = mean;
-    return GLINT_OK;
+        setup->direct_flux[i] =
+            opening(n_blades) * model_flux(h, wavelength_nm[i]);
+    return set_units(setup, h->name, error);
 }
 
 void glint_setup_balance(struct glint_setup *setup)

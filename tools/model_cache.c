@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+#include "model_cache.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "posix/input.h"
+#include "posix/output.h"
+
+enum { PATH_BYTES = 1024, MAX_BYTES = 1 << 28 };
+
+/* PATH becomes where models are kept. False: nowhere. */
+static bool cache_folder(char *path, size_t bytes)
+{
+    const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    int n = 0;
+
+    if (cache && cache[0] == '/')
+        n = snprintf(path, bytes, "%s/glint", cache);
+    else if (home && home[0] == '/')
+        n = snprintf(path, bytes, "%s/.cache/glint", home);
+    return n > 0 && (size_t)n < bytes;
+}
+
+static bool model_path(char *path, size_t bytes, const char *lens, uint64_t key)
+{
+    size_t used;
+    char safe[GLINT_NAME_BYTES];
+
+    if (!cache_folder(path, bytes))
+        return false;
+    snprintf(safe, sizeof safe, "%s", lens);
+    for (char *c = safe; *c; c++)
+        if (!isalnum((unsigned char)*c) && !strchr("-_.", *c))
+            *c = '_';
+    used = strlen(path);
+    return (size_t)snprintf(path + used, bytes - used, "/%s-%08lx%08lx.glint",
+                            safe, (unsigned long)(key >> 32),
+                            (unsigned long)(key & 0xffffffff)) < bytes - used;
+}
+
+static uint64_t key_of(const struct glint_lens *lens)
+{
+    return lens->header->key[0] | (uint64_t)lens->header->key[1] << 32;
+}
+
+/* A kept model that is whole and the right one. */
+static bool load(const char *path, uint64_t key, struct model_file *model)
+{
+    struct glint_error error;
+    uint8_t *data = NULL;
+    const char *reason;
+
+    *model = (struct model_file){.data = NULL};
+    if (glint_input_slurp(&data, &model->bytes, path, MAX_BYTES, &error) !=
+        GLINT_OK)
+        return false;
+    model->data = data;
+    if (glint_lens_open(&model->lens, data, model->bytes, &reason) ==
+            GLINT_OK &&
+        key_of(&model->lens) == key)
+        return true;
+    model_file_close(model);
+    return false;
+}
+
+/* Makes the folders above PATH. */
+static void make_folders(char *path)
+{
+    for (char *c = path + 1; *c; c++)
+        if (*c == '/') {
+            *c = 0;
+            mkdir(path, 0755); /* if it fails, so will writing the file */
+            *c = '/';
+        }
+}
+
+static void keep(const struct tool *tool, char *path,
+                 const struct model_file *model)
+{
+    struct glint_error error = {""};
+    struct glint_output out;
+    enum glint_status status;
+
+    make_folders(path);
+    status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error);
+    if (status == GLINT_OK) {
+        status = glint_output_write(&out, model->data, model->bytes, &error);
+        if (status == GLINT_OK)
+            status = glint_output_commit(&out, &error);
+        else
+            glint_output_abort(&out);
+    }
+    if (status != GLINT_OK && !tool->quiet)
+        fprintf(stderr, "glint %s: the model is not kept: %s\n", tool->name,
+                error.text);
+}
+
+int model_cached(const struct tool *tool, const struct glint_prescription *lens,
+                 struct glint_bake_options options, struct model_file *model)
+{
+    const uint64_t key = glint_bake_key(lens, &options);
+    char path[PATH_BYTES];
+    const bool kept = model_path(path, sizeof path, lens->name, key);
+    struct glint_error error = {""};
+    struct glint_bake_report report;
+    struct tool_progress progress;
+    unsigned char *data = NULL;
+    enum glint_status status;
+    const char *reason = "";
+
+    if (kept && load(path, key, model))
+        return EXIT_OK;
+    if (!tool->quiet)
+        fprintf(stderr, "glint %s: baking %s, once%s%s\n", tool->name,
+                lens->name, kept ? "; kept as " : "", kept ? path : "");
+    options.workers = tool->workers;
+    options.progress = tool_progress_show;
+    options.progress_ctx = &progress;
+    tool_progress_start(&progress, tool, "bake");
+    status = glint_bake(lens, &options, &data, &model->bytes, &report, &error);
+    tool_progress_end(&progress);
+    model->data = data;
+    if (status == GLINT_OK) {
+        status = glint_lens_open(&model->lens, data, model->bytes, &reason);
+        if (status != GLINT_OK)
+            snprintf(error.text, sizeof error.text, "%s: %.70s", lens->name,
+                     reason);
+    }
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    if (kept)
+        keep(tool, path, model);
+    return EXIT_OK;
+}
