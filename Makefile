@@ -24,8 +24,8 @@ export DEPS OUT
 
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/image base/workers flare/regions \
-        flare/lights tile/primitive tile/clip flare/ghost_grid tile/bins \
-        tile/raster tile/transfer tile/resolve flare/flare
+        flare/lights tile/primitive tile/clip tile/outline flare/ghost_grid \
+        tile/bins tile/raster tile/edges tile/transfer tile/resolve flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
         bake/setup bake/exact bake/feed
