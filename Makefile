@@ -25,17 +25,17 @@ export DEPS OUT
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/image base/workers lens/model \
         lens/transfer flare/regions flare/lights tile/primitive tile/clip \
-        flare/ghost_grid tile/bins tile/raster tile/curve tile/resolve \
-        flare/flare
+        tile/outline flare/ghost_grid tile/bins tile/raster tile/edges \
+        tile/curve tile/resolve flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
-        bake/setup bake/exact bake/feed bake/feed_model bake/hunt bake/regress bake/zone \
-        bake/fitted bake/fit bake/shared_zone bake/shared_basis bake/published \
-        bake/quantise bake/measure_model bake/write_model bake/bake
+        bake/setup bake/exact bake/feed bake/feed_model bake/hunt bake/regress \
+        bake/zone bake/fitted bake/fit bake/shared_zone bake/shared_basis \
+        bake/published bake/quantise bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
-TOOLS := tool model_file model_cache info_model model_report measure lamps frame scene \
-        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
+TOOLS := tool model_file model_cache info_model model_report measure lamps \
+        frame scene cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
 UNIT := arena model prescription optics trace pupil published exact curve \
         resolve lights flare pnm y4m picture output workers measure lamps
 FUZZ := lens model y4m pnm

@@ -14,8 +14,7 @@ void scene_defaults(struct scene *scene)
                             .n_wavelengths = 3,
                             .gain = 1,
                             .only_ghost = -1,
-                            .tile_log2 = 3,
-                            .coarse_log2 = 7,
+                            .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .antialias = true};
 }
@@ -88,6 +87,7 @@ static bool take_quality(const char *text, int *grid)
 static bool take(struct scene *s, int option, const char *value)
 {
     static const char *const weights[] = {"loop-derose", "wachspress", NULL};
+    static const char *const rasters[] = {"edges", "cells", NULL};
     static const char *const parts[] = {"ghosts", "all", NULL};
     static const char *const rays[] = {"model", "exact", NULL};
     int word;
@@ -118,13 +118,17 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_MERGE:
         return parse_merge(value, s);
     case OPT_TILE:
-        return parse_side(value, 3, 5, &s->tile_log2);
+        return parse_side(value, 3, 6, &s->tile_log2);
     case OPT_COARSE:
         return parse_side(value, 6, 8, &s->coarse_log2);
     case OPT_WEIGHTS:
         word = tool_word(value, weights);
         s->weights =
             word == 0 ? GLINT_WEIGHTS_LOOP_DEROSE : GLINT_WEIGHTS_WACHSPRESS;
+        return word >= 0;
+    case OPT_RASTER:
+        word = tool_word(value, rasters);
+        s->raster = word == 1 ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
         return word >= 0;
     case OPT_MASK:
         return tool_integer(value, 2, 4096, &s->mask_nodes);
@@ -328,7 +332,10 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->uniform = scene->uniform;
     frame->only_ghost = scene->only_ghost;
     frame->cfg.tile_log2 = scene->tile_log2;
-    frame->cfg.coarse_log2 = scene->coarse_log2;
+    /* no larger than the small ones: one level, and the same picture */
+    frame->cfg.coarse_log2 =
+        scene->coarse_log2 > scene->tile_log2 ? scene->coarse_log2 : 0;
+    frame->cfg.raster = scene->raster;
     frame->cfg.weights = scene->weights;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);

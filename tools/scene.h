@@ -33,6 +33,7 @@ struct scene {
 
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma;
+    enum glint_raster raster;
     enum glint_weights weights;
     bool uniform, antialias, dither, has_exposure, balance;
 };
@@ -51,6 +52,7 @@ enum scene_option {
     OPT_MERGE,
     OPT_TILE,
     OPT_COARSE,
+    OPT_RASTER,
     OPT_WEIGHTS,
     OPT_MASK,
     OPT_NO_ANTIALIAS,
@@ -75,6 +77,7 @@ enum scene_option {
         {"merge", required_argument, NULL, OPT_MERGE},             \
         {"tile", required_argument, NULL, OPT_TILE},               \
         {"coarse", required_argument, NULL, OPT_COARSE},           \
+        {"raster", required_argument, NULL, OPT_RASTER},           \
         {"weights", required_argument, NULL, OPT_WEIGHTS},         \
         {"mask", required_argument, NULL, OPT_MASK},               \
         {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},     \
@@ -111,14 +114,23 @@ enum scene_option {
     "  --quality Q         0 to 1, or draft, default, high: sets the grid\n"   \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
-    "  --grid N            cells a side for the largest ghosts, 4 to 1024\n"   \
-    "                      (default 64; the exact engine: 512)\n"              \
-    "  --uniform-grid      that many for every ghost\n"                        \
+    "  --grid N            fineness of the ray grids, 4 to 1024: ghosts get "  \
+    "as\n"                                                                     \
+    "                      many cells a side as their bending asks for, 8 "    \
+    "to\n"                                                                     \
+    "                      4 N (default 64); the exact engine: N for all "     \
+    "(512)\n"                                                                  \
+    "  --uniform-grid      N cells a side for every ghost\n"                   \
     "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
     "                      where edges agree within GAMMA (default 0,0)\n"     \
-    "  --tile N            small tiles of 8, 16 or 32 pixels (default 8)\n"    \
-    "  --coarse N          large tiles of 64, 128 or 256, or 0 for none\n"     \
-    "                      (default 128)\n"                                    \
+    "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \
+    "64)\n"                                                                    \
+    "  --coarse N          large tiles of 64, 128 or 256 to sort into first, " \
+    "or\n"                                                                     \
+    "                      0 for none (default)\n"                             \
+    "  --raster R          edges: exact areas (default); cells: pixel "        \
+    "centres,\n"                                                               \
+    "                      which the following three need\n"                   \
     "  --weights W         wachspress | loop-derose (default wachspress)\n"    \
     "  --mask N            look the stop up in N x N signed distances\n"       \
     "  --no-antialias      a pixel's centre decides, as published\n"           \

@@ -78,19 +78,26 @@ struct glint_bundle {
 
 /* ------------------------------------------------------------------ drawing */
 
+/* By edges: the exact area that each cell covers, one irradiance a cell; folds
+ * and slivers keep their light. By cells: interpolation at pixel centres,
+ * [Bodonyi23]; a stop with a mask always takes this one. */
+enum glint_raster { GLINT_RASTER_EDGES, GLINT_RASTER_CELLS };
+
 enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
 
 struct glint_flare_config {
     struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
     int width, height;             /* of the picture, 1 .. GLINT_MAX_SIDE */
-    int tile_log2;   /* small tiles of 2^n pixels square, 3 .. 5 */
+    int tile_log2;   /* small tiles of 2^n pixels square, 3 .. 6 */
     int coarse_log2; /* large tiles, tile_log2 + 1 .. 8; 0: one level only */
-    enum glint_weights weights;
-    int merge_steps;         /* blocks of 2^n cells may become one, 0 .. 4 */
-    int32_t merge_gamma_q16; /* how far edges may disagree, relative */
-    int antialias;           /* 0: a pixel's centre decides, as published */
-    int dither;              /* when encoding to 8 bits; deterministic */
-    struct glint_stop stop;  /* copied; its mask is kept */
+    enum glint_raster raster;
+    enum glint_weights weights; /* by cells */
+    int merge_steps;            /* blocks of 2^n cells may become one, 0 .. 4 */
+    int32_t merge_gamma_q16;    /* how far edges may disagree, relative */
+    int antialias;              /* by cells; 0: a pixel's centre decides, as
+                                   published */
+    int dither;                 /* when encoding to 8 bits; deterministic */
+    struct glint_stop stop;     /* copied; its mask is kept */
 
     /* Capacities. glint_flare_bin() reports what a frame needed. */
     int max_bundles;

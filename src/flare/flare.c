@@ -4,14 +4,16 @@
 #include "base/arena.h"
 #include "flare/ghost_grid.h"
 #include "tile/bins.h"
+#include "tile/edges.h"
 #include "tile/raster.h"
 #include "tile/resolve.h"
 
 /* What one worker needs while it draws. */
 struct worker {
-    int64_t *acc_q20; /* [3][side * side], one small tile's sums */
-    struct glint_clip *clip;
-    int32_t *start; /* small tiles of one large tile */
+    int64_t *acc_q20;              /* [3][side * side], one small tile's sums */
+    struct glint_clip *clip;       /* by cells */
+    struct glint_outline *outline; /* by edges */
+    int32_t *start;                /* small tiles of one large tile */
     int32_t *ref;
     int n_tiles; /* small tiles that it drew */
 };
@@ -20,6 +22,7 @@ struct bundle_slot {
     int first_vertex;
     int first_primitive;
     int n_primitives, n_dropped, n_merged;
+    int64_t light_q8; /* the most that it can add to a pixel */
 };
 
 struct glint_flare {
@@ -32,12 +35,19 @@ struct glint_flare {
     struct glint_vertex *vertex;
     uint8_t *level; /* one per vertex: what merge found */
     struct glint_primitive *primitive;
+    int32_t limit_q8;       /* of what a primitive adds to a pixel */
     struct glint_bins bins; /* first level */
     struct worker *worker;
     struct glint_resolve *resolve; /* tables for the picture drawn last */
 };
 
 /* ------------------------------------------------------------------- memory */
+
+/* Texture is looked up at pixel centres. */
+static enum glint_raster raster_of(const struct glint_flare_config *c)
+{
+    return c->stop.mask_q13 ? GLINT_RASTER_CELLS : c->raster;
+}
 
 static int first_level_log2(const struct glint_flare_config *c)
 {
@@ -60,7 +70,10 @@ static void carve_worker(struct worker *w, struct glint_arena *a,
         c->coarse_log2 ? (size_t)1 << (2 * (c->coarse_log2 - c->tile_log2)) : 0;
 
     w->acc_q20 = glint_arena_take(a, 3 * pixels, sizeof *w->acc_q20);
-    w->clip = glint_arena_take(a, 1, sizeof *w->clip);
+    w->clip = glint_arena_take(a, raster_of(c) == GLINT_RASTER_CELLS,
+                               sizeof *w->clip);
+    w->outline = glint_arena_take(a, raster_of(c) == GLINT_RASTER_EDGES,
+                                  sizeof *w->outline);
     w->start = glint_arena_take(a, tiles + 1, sizeof *w->start);
     w->ref = glint_arena_take(a, (size_t)c->max_tile_refs, sizeof *w->ref);
 }
@@ -108,11 +121,13 @@ static int config_ok(const struct glint_flare_config *c)
 
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
-           c->tile_log2 <= 5 &&
+           c->tile_log2 <= 6 &&
            (c->coarse_log2 == 0 ||
             (c->coarse_log2 > c->tile_log2 && c->coarse_log2 <= 8)) &&
            c->merge_steps >= 0 && c->merge_steps <= 4 &&
            c->merge_gamma_q16 >= 0 && c->merge_gamma_q16 <= 1 << 16 &&
+           (c->raster == GLINT_RASTER_EDGES ||
+            c->raster == GLINT_RASTER_CELLS) &&
            (c->weights == GLINT_WEIGHTS_LOOP_DEROSE ||
             c->weights == GLINT_WEIGHTS_WACHSPRESS) &&
            c->max_bundles >= 0 && c->max_bundles <= 65535 &&
@@ -198,6 +213,7 @@ static struct glint_ghost_grid grid_of(const struct glint_flare *f, int bundle)
         .first = slot->first_vertex,
         .bundle = &f->bundle[bundle],
         .stop = &f->cfg.stop,
+        .raster = raster_of(&f->cfg),
         .width = f->cfg.width,
         .height = f->cfg.height,
         .merge_steps = f->cfg.merge_steps,
@@ -218,6 +234,7 @@ static void count_job(void *ctx, int job, int worker)
     slot->n_primitives = grid.n_primitives;
     slot->n_dropped = grid.n_dropped;
     slot->n_merged = grid.n_merged;
+    slot->light_q8 = grid.light_q8;
 }
 
 static void emit_job(void *ctx, int job, int worker)
@@ -257,7 +274,10 @@ static struct glint_box primitive_box(const struct glint_flare *f, int index)
     const struct glint_primitive *p = &f->primitive[index];
     struct glint_corners corners;
 
-    glint_corners_gather(&corners, f->vertex, p->vertex, p->n_corners);
+    glint_corners_gather(&corners, f->vertex, p->vertex,
+                         glint_primitive_corners(p));
+    if (raster_of(&f->cfg) == GLINT_RASTER_EDGES)
+        return glint_corners_reach(&corners, f->cfg.width, f->cfg.height);
     return glint_primitive_box(p, &corners, f->cfg.width, f->cfg.height);
 }
 
@@ -329,6 +349,21 @@ static void count_tile_refs(struct glint_flare *f)
                              : f->cfg.max_tile_refs;
 }
 
+/* Sums of q38 light and colours up to 4 stay below 2^62 while all primitives
+ * together could bring no pixel beyond 2^22. They never come near in a picture;
+ * if they do, each one's share is cut down to what they may have together. */
+static void limit_light(struct glint_flare *f)
+{
+    const int64_t most_q8 = INT64_C(1) << (22 + 8);
+    int64_t light_q8 = 0;
+
+    for (int i = 0; i < f->n_drawn; i++)
+        light_q8 += f->slot[i].light_q8;
+    f->limit_q8 = light_q8 <= most_q8
+                      ? GLINT_LIMIT_Q8
+                      : (int32_t)(most_q8 / (f->stats.primitives + 1));
+}
+
 /* Drops what the bins did not keep from the totals. */
 static void total(struct glint_flare *f)
 {
@@ -354,6 +389,7 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
     glint_workers_run(workers, flare->n_drawn, emit_job, flare);
     count_refs(flare);
     total(flare);
+    limit_light(flare);
     fill_bins(flare);
     if (flare->cfg.coarse_log2)
         count_tile_refs(flare);
@@ -365,24 +401,41 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 struct draw {
     struct glint_flare *flare;
     const struct glint_image *image;
-    struct glint_raster raster;
+    enum glint_raster raster;
+    struct glint_edges edges;
+    struct glint_cell_raster cells;
 };
+
+static void add_primitives(const struct draw *d, const struct worker *w,
+                           struct glint_box tile, const int32_t *ref,
+                           int n_refs)
+{
+    if (d->raster == GLINT_RASTER_CELLS) {
+        for (int i = 0; i < n_refs; i++)
+            glint_cell_raster_primitive(&d->cells, ref[i], tile, w->clip,
+                                        w->acc_q20);
+        return;
+    }
+    for (int i = 0; i < n_refs; i++)
+        glint_edges_primitive(&d->edges, ref[i], tile, w->outline,
+                              (uint64_t *)w->acc_q20);
+    glint_edges_finish(&d->edges, tile, w->acc_q20);
+}
 
 /* The tile pass: clear, every primitive, resolve. */
 static void draw_tile(struct draw *d, struct worker *w, struct glint_box tile,
                       const int32_t *ref, int n_refs)
 {
-    const int sums = 3 << (2 * d->raster.tile_log2);
+    const int log2 = d->flare->cfg.tile_log2, sums = 3 << (2 * log2);
 
     if (n_refs == 0)
         return;
     for (int i = 0; i < sums; i++)
         w->acc_q20[i] = 0;
-    for (int i = 0; i < n_refs; i++)
-        glint_raster_primitive(&d->raster, ref[i], tile, w->clip, w->acc_q20);
+    add_primitives(d, w, tile, ref, n_refs);
     w->n_tiles++;
     glint_resolve_tile(d->flare->resolve, d->image, tile.x0, tile.y0, tile.x1,
-                       tile.y1, d->raster.tile_log2, w->acc_q20);
+                       tile.y1, log2, w->acc_q20);
 }
 
 static void draw_tiles(struct draw *d, struct worker *w,
@@ -438,13 +491,20 @@ void glint_flare_draw(struct glint_flare *flare,
     const struct glint_flare_config *c = &flare->cfg;
     struct draw d = {.flare = flare,
                      .image = image,
-                     .raster = {.vertex = flare->vertex,
-                                .primitive = flare->primitive,
-                                .bundle = flare->bundle,
-                                .stop = &c->stop,
-                                .weights = c->weights,
-                                .antialias = c->antialias,
-                                .tile_log2 = c->tile_log2}};
+                     .raster = raster_of(c),
+                     .edges = {.vertex = flare->vertex,
+                               .primitive = flare->primitive,
+                               .bundle = flare->bundle,
+                               .stop = &c->stop,
+                               .limit_q8 = flare->limit_q8,
+                               .tile_log2 = c->tile_log2},
+                     .cells = {.vertex = flare->vertex,
+                               .primitive = flare->primitive,
+                               .bundle = flare->bundle,
+                               .stop = &c->stop,
+                               .weights = c->weights,
+                               .antialias = c->antialias,
+                               .tile_log2 = c->tile_log2}};
 
     glint_resolve_init(flare->resolve, image, c->dither);
     for (int i = 0; i < glint_workers_count(c->workers); i++)

@@ -4,6 +4,7 @@
 #include "base/compiler.h"
 #include "base/q.h"
 #include "tile/clip.h"
+#include "tile/outline.h"
 
 /* Marks of a cell: the size of the block that starts here, as a power of two,
  * or that a larger block has it. */
@@ -121,7 +122,17 @@ static int block_cut(const struct glint_ghost_grid *g, const int32_t *q)
     glint_corners_gather(&corners, g->vertex, q, 4);
     if (corners.area2_q16 < 0)
         corners.area2_q16 = -corners.area2_q16;
+    if (g->raster == GLINT_RASTER_EDGES)
+        return glint_outline_classify(&corners, g->stop);
     return glint_clip_classify(&corners, g->stop);
+}
+
+static int block_thin(const struct glint_ghost_grid *g, const int32_t *q)
+{
+    struct glint_corners corners;
+
+    glint_corners_gather(&corners, g->vertex, q, 4);
+    return g->raster == GLINT_RASTER_EDGES && glint_corners_thin(&corners);
 }
 
 /* The block of 2^SIZE_LOG2 cells at (I, J) can be one primitive: its quarters
@@ -138,7 +149,7 @@ static int block_merges(const struct glint_ghost_grid *g, int i, int j,
         if (!vertex_valid(&g->vertex[q[k]]))
             return 0;
     turn = convexity(g->vertex, q);
-    if (turn == 0)
+    if (turn == 0 || block_thin(g, q))
         return 0;
     for (int k = 0; k < 4; k++) {
         const int ci = i + (k & 1) * half, cj = j + (k >> 1) * half;
@@ -186,34 +197,15 @@ void glint_ghost_grid_merge(struct glint_ghost_grid *grid)
         grid->n_merged += grid->level[k] != 0;
 }
 
-/* MANTISSA * 2^UP, held to what an int32 takes: it is light. */
-static int32_t scaled_sat(int64_t mantissa, int up)
+/* Light, q22, as a primitive holds it. */
+static int32_t held_q20(int64_t light_q22)
 {
-    if (mantissa == 0 || up < -62)
-        return 0;
-    if (up <= 0)
-        return q_clamp_sat(q_shift(mantissa, -up), 0, INT32_MAX);
-    return up + bit_length((uint64_t)mantissa) > 31 ? INT32_MAX
-                                                    : (int32_t)(mantissa << up);
-}
-
-/* Irradiance of SHARE_LOG2 cells (-1: half of one) spread over AREA2, display
- * white. Flux and area are brought to 31 bits before they divide. */
-static int32_t irradiance_q20(const struct glint_bundle *b, int share_log2,
-                              int64_t area2_q16)
-{
-    const int lift = 62 - bit_length((uint64_t)area2_q16);
-    const int64_t area = (area2_q16 << lift) >> 31; /* 2^30 .. 2^31 - 1 */
-    const int64_t ratio = ((int64_t)b->flux_q31 << 31) / area;
-
-    /* flux 2^(e - 31), area2 = area 2^(31 - lift - 17), result q20 */
-    return scaled_sat(ratio, b->flux_exponent - 31 + share_log2 + lift - 31 +
-                                 17 - 31 + 20);
+    return q_clamp_sat(q_shift(light_q22, 2), 0, INT32_MAX);
 }
 
 /* A primitive far smaller than a pixel, given the flux of its cells. */
 static int emit_point(struct glint_ghost_grid *g,
-                      const struct glint_corners *corners, int share_log2,
+                      const struct glint_corners *corners,
                       struct glint_primitive *p, struct glint_primitive *out)
 {
     if (glint_box_empty(glint_corners_pixel(corners, g->width, g->height)) ||
@@ -221,13 +213,67 @@ static int emit_point(struct glint_ghost_grid *g,
         return 0;
     if (out) {
         p->flags = GLINT_POINT;
-        p->irradiance_q20 =
-            scaled_sat(g->bundle->flux_q31,
-                       g->bundle->flux_exponent - 31 + share_log2 + 20);
+        p->irradiance_q20 = held_q20(glint_irradiance_q22(
+            g->bundle, p->share_log2, 1, 0, GLINT_LIMIT_Q8));
         out[g->n_primitives] = *p;
     }
     g->n_primitives++;
     return 0;
+}
+
+/* Adds what pixel centres can see; returns whether light was dropped. */
+static int emit_cell(struct glint_ghost_grid *g,
+                     const struct glint_corners *corners,
+                     struct glint_primitive *p, struct glint_primitive *out)
+{
+    int cut;
+
+    if (g->focused && glint_corners_tiny(corners, 2))
+        return emit_point(g, corners, p, out);
+    if (corners->area2_q16 == 0)
+        return 1;
+    if (glint_box_empty(glint_corners_box(corners, g->width, g->height)))
+        return 0;
+    cut = glint_clip_classify(corners, g->stop);
+    if (cut < 0)
+        return 0;
+    if (out) {
+        p->flags = (uint8_t)cut;
+        p->irradiance_q20 = held_q20(
+            glint_irradiance_q22(g->bundle, p->share_log2, corners->area2_q16,
+                                 2 * GLINT_VERTEX_FRAC + 1, GLINT_LIMIT_Q8));
+        out[g->n_primitives] = *p;
+    }
+    g->n_primitives++;
+    return 0;
+}
+
+/* Adds what is drawn by its edges: nothing is too thin. */
+static void emit_edges(struct glint_ghost_grid *g,
+                       const struct glint_corners *corners,
+                       struct glint_primitive *p, struct glint_primitive *out)
+{
+    const int64_t pixel2 = INT64_C(1) << (2 * GLINT_VERTEX_FRAC + 1);
+    const int64_t area2 =
+        corners->area2_q16 < pixel2 ? pixel2 : corners->area2_q16;
+    int cut;
+
+    if (glint_box_empty(glint_corners_reach(corners, g->width, g->height)))
+        return;
+    cut = glint_outline_classify(corners, g->stop);
+    if (cut < 0)
+        return;
+    if (out) {
+        p->flags =
+            (uint8_t)(cut | (glint_corners_thin(corners) ? GLINT_THIN : 0));
+        out[g->n_primitives] = *p;
+    }
+    /* the most that a pixel can get of it */
+    g->light_q8 +=
+        glint_irradiance_q22(g->bundle, p->share_log2, area2,
+                             2 * GLINT_VERTEX_FRAC + 1, GLINT_LIMIT_Q8) >>
+        14;
+    g->n_primitives++;
 }
 
 /* Adds one primitive with the corners Q if anything of it can be seen. Returns
@@ -236,9 +282,8 @@ static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
                     int n, int share_log2, struct glint_primitive *out)
 {
     struct glint_primitive p = {.bundle = (uint16_t)bundle,
-                                .n_corners = (uint8_t)n};
+                                .share_log2 = (int8_t)share_log2};
     struct glint_corners corners;
-    int cut;
 
     glint_corners_gather(&corners, g->vertex, q, n);
     for (int i = 0; i < n; i++)
@@ -246,22 +291,9 @@ static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
     if (n == 3)
         p.vertex[3] = -1;
     glint_corners_gather(&corners, g->vertex, p.vertex, n);
-    if (g->focused && glint_corners_tiny(&corners))
-        return emit_point(g, &corners, share_log2, &p, out);
-    if (corners.area2_q16 == 0)
-        return 1;
-    if (glint_box_empty(glint_corners_box(&corners, g->width, g->height)))
-        return 0;
-    cut = glint_clip_classify(&corners, g->stop);
-    if (cut < 0)
-        return 0;
-    if (out) {
-        p.flags = (uint8_t)cut;
-        p.irradiance_q20 =
-            irradiance_q20(g->bundle, share_log2, corners.area2_q16);
-        out[g->n_primitives] = p;
-    }
-    g->n_primitives++;
+    if (g->raster == GLINT_RASTER_CELLS)
+        return emit_cell(g, &corners, &p, out);
+    emit_edges(g, &corners, &p, out);
     return 0;
 }
 
@@ -288,12 +320,15 @@ static int emit_triangles(struct glint_ghost_grid *g, int bundle,
     return dropped;
 }
 
+/* Too small to show that it is folded. */
 static int block_tiny(const struct glint_ghost_grid *g, const int32_t *q)
 {
     struct glint_corners corners;
 
     glint_corners_gather(&corners, g->vertex, q, 4);
-    return g->focused && glint_corners_tiny(&corners);
+    return g->raster == GLINT_RASTER_EDGES
+               ? glint_corners_tiny(&corners, 16)
+               : g->focused && glint_corners_tiny(&corners, 2);
 }
 
 static int emit_block(struct glint_ghost_grid *g, int bundle, int i, int j,
@@ -333,9 +368,10 @@ void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
 {
     const int n = grid->bundle->n_cells;
 
-    grid->focused = is_focused(grid);
+    grid->focused = grid->raster == GLINT_RASTER_CELLS && is_focused(grid);
     grid->n_primitives = 0;
     grid->n_dropped = 0;
+    grid->light_q8 = 0;
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++)
             if (grid->level[j * n + i] != COVERED)

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "tile/primitive.h"
 
+#include "base/compiler.h"
+#include "base/q.h"
+
 void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n)
@@ -59,11 +62,69 @@ struct glint_box glint_corners_box(const struct glint_corners *corners,
                               clamp(first_centre(e.y1 + 1), height)};
 }
 
-int glint_corners_tiny(const struct glint_corners *corners)
+int glint_corners_tiny(const struct glint_corners *corners, int part)
 {
+    const int size = (1 << GLINT_VERTEX_FRAC) / part;
     const struct glint_box e = extent_q8(corners);
 
-    return e.x1 - e.x0 <= 128 && e.y1 - e.y0 <= 128;
+    return e.x1 - e.x0 <= size && e.y1 - e.y0 <= size;
+}
+
+int glint_corners_thin(const struct glint_corners *corners)
+{
+    const struct glint_box e = extent_q8(corners);
+    const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;
+    const int64_t area2 =
+        corners->area2_q16 < 0 ? -corners->area2_q16 : corners->area2_q16;
+
+    return area2 < 2 * (1 << GLINT_VERTEX_FRAC) / 16 * (x > y ? x : y) ||
+           area2 == 0;
+}
+
+/* Grown by half a strip, and a step for what rounding may add. */
+struct glint_box glint_corners_reach(const struct glint_corners *corners,
+                                     int width, int height)
+{
+    const int grow = (1 << GLINT_VERTEX_FRAC) / 32 + 1;
+    const struct glint_box e = extent_q8(corners);
+
+    return (struct glint_box){
+        clamp((e.x0 - grow) >> GLINT_VERTEX_FRAC, width),
+        clamp((e.y0 - grow) >> GLINT_VERTEX_FRAC, height),
+        clamp(((e.x1 + grow) >> GLINT_VERTEX_FRAC) + 1, width),
+        clamp(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
+}
+
+/* MANTISSA * 2^UP, held to LIMIT: it is light. */
+static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit)
+{
+    int64_t x;
+
+    if (mantissa == 0 || up < -62)
+        return 0;
+    if (up > 0 && up + bit_length((uint64_t)mantissa) > 62)
+        return limit;
+    x = up > 0 ? mantissa << up : q_shift(mantissa, -up);
+    return x < limit ? x : limit;
+}
+
+int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
+                             int64_t area, int frac, int32_t limit_q8)
+{
+    /* flux and area are brought to 31 bits before they divide */
+    const int lift = 62 - bit_length((uint64_t)area);
+    const int64_t area_31 = (area << lift) >> 31; /* 2^30 .. 2^31 - 1 */
+    const int64_t ratio = ((int64_t)bundle->flux_q31 << 31) / area_31;
+    /* light over less than a pixel: limit_q8 below 2^20, area at least 2^-33 */
+    const int64_t limit_q22 =
+        (area >> frac ? (int64_t)limit_q8 : ((int64_t)limit_q8 << frac) / area)
+        << 14;
+
+    /* flux 2^(e - 31), area = area_31 2^(31 - lift - frac), result q22 */
+    return scaled_sat(ratio,
+                      bundle->flux_exponent - 31 + share_log2 + lift - 31 +
+                          frac - 31 + 22,
+                      limit_q22);
 }
 
 struct glint_box glint_corners_pixel(const struct glint_corners *corners,

@@ -13,8 +13,10 @@
 enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross it */
     GLINT_CUT_BARREL = 2, /* a barrel may cross it */
-    GLINT_POINT = 4       /* far smaller than a pixel: all its light goes to the
+    GLINT_POINT = 4,      /* far smaller than a pixel: all its light goes to the
                              pixel its middle lies in */
+    GLINT_THIN = 8 /* thinner than a sixteenth of a pixel: drawn as a strip
+                      of that width */
 };
 
 struct glint_primitive {
@@ -23,9 +25,15 @@ struct glint_primitive {
     int32_t irradiance_q20; /* display white, at energy 1; of a point: what it
                                adds to its pixel */
     uint16_t bundle;
-    uint8_t n_corners; /* 3 or 4 */
-    uint8_t flags;     /* GLINT_CUT_ and GLINT_POINT */
+    int8_t share_log2; /* cells whose light it has; -1: half of one */
+    uint8_t flags;     /* GLINT_CUT_, GLINT_POINT, GLINT_THIN */
 };
+
+/* Largest light of a primitive in a pixel, display white. */
+enum { GLINT_LIMIT_Q8 = 1 << 19 };
+
+/* Fraction bits of a vertex position. */
+enum { GLINT_VERTEX_FRAC = 8 };
 
 /* A primitive's corners, gathered. */
 struct glint_corners {
@@ -47,13 +55,25 @@ static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
     return (int64_t)(bx - ax) * (py - ay) - (int64_t)(by - ay) * (px - ax);
 }
 
+/* Irradiance of 2^SHARE_LOG2 cells spread over AREA / 2^FRAC pixels, FRAC up to
+ * 33 and AREA at least 1; held so that no pixel gets more than LIMIT. */
+int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
+                             int64_t area, int frac, int32_t limit_q8);
+
+/* Whether CORNERS are thinner than a sixteenth of a pixel. */
+int glint_corners_thin(const struct glint_corners *corners);
+
+/* Every pixel that CORNERS, or the strip in their place, may cover. */
+struct glint_box glint_corners_reach(const struct glint_corners *corners,
+                                     int width, int height);
+
 /* Gathers the N (3 or 4) corners VERTEX of V. */
 void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n);
 
-/* Whether all corners lie within half a pixel of each other. */
-int glint_corners_tiny(const struct glint_corners *corners);
+/* Whether all corners lie within 1/PART of a pixel of each other. */
+int glint_corners_tiny(const struct glint_corners *corners, int part);
 
 /* The pixel that the mean of CORNERS lies in, as a box; empty outside. */
 struct glint_box glint_corners_pixel(const struct glint_corners *corners,
@@ -67,6 +87,11 @@ struct glint_box glint_corners_box(const struct glint_corners *corners,
 struct glint_box glint_primitive_box(const struct glint_primitive *p,
                                      const struct glint_corners *corners,
                                      int width, int height);
+
+static inline int glint_primitive_corners(const struct glint_primitive *p)
+{
+    return p->vertex[3] < 0 ? 3 : 4;
+}
 
 static inline struct glint_box glint_box_cut(struct glint_box a,
                                              struct glint_box b)

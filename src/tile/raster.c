@@ -95,7 +95,7 @@ static void corner_weights(const struct edges *e, int32_t *weight_q16)
 
 /* Share of the pixel, q16, that the clips leave: distances in pixels become
  * cover by half a pixel on either side, or a step at 0. */
-static int32_t cover_of(const struct glint_raster *r,
+static int32_t cover_of(const struct glint_cell_raster *r,
                         const struct glint_clip *clip,
                         const struct glint_corners *c, const int32_t *w_q16)
 {
@@ -152,7 +152,7 @@ static void next_row(struct edges *e)
 }
 
 /* All the light of a point, to the one pixel it has. */
-static void add_point(const struct glint_raster *raster,
+static void add_point(const struct glint_cell_raster *raster,
                       const struct glint_primitive *p,
                       const struct glint_corners *c, int64_t *acc_q20)
 {
@@ -166,9 +166,9 @@ static void add_point(const struct glint_raster *raster,
               q_shift(p->irradiance_q20 * energy_q16, 16));
 }
 
-void glint_raster_primitive(const struct glint_raster *raster, int primitive,
-                            struct glint_box tile, struct glint_clip *clip,
-                            int64_t *acc_q20)
+void glint_cell_raster_primitive(const struct glint_cell_raster *raster,
+                                 int primitive, struct glint_box tile,
+                                 struct glint_clip *clip, int64_t *acc_q20)
 {
     const struct glint_primitive *p = &raster->primitive[primitive];
     const int32_t *rgb_q14 = raster->bundle[p->bundle].rgb_q14;
@@ -177,7 +177,8 @@ void glint_raster_primitive(const struct glint_raster *raster, int primitive,
     struct glint_box box;
     struct edges e;
 
-    glint_corners_gather(&c, raster->vertex, p->vertex, p->n_corners);
+    glint_corners_gather(&c, raster->vertex, p->vertex,
+                         glint_primitive_corners(p));
     box = glint_box_cut(
         glint_primitive_box(p, &c, GLINT_MAX_SIDE, GLINT_MAX_SIDE), tile);
     if (glint_box_empty(box))

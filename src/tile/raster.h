@@ -18,7 +18,7 @@
 #include "tile/clip.h"
 #include "tile/primitive.h"
 
-struct glint_raster {
+struct glint_cell_raster {
     const struct glint_vertex *vertex;
     const struct glint_primitive *primitive;
     const struct glint_bundle *bundle;
@@ -30,8 +30,8 @@ struct glint_raster {
 
 /* Adds PRIMITIVE to ACC_Q20, the [3][side * side] sums of the tile whose pixels
  * are TILE. CLIP is scratch. */
-void glint_raster_primitive(const struct glint_raster *raster, int primitive,
-                            struct glint_box tile, struct glint_clip *clip,
-                            int64_t *acc_q20);
+void glint_cell_raster_primitive(const struct glint_cell_raster *raster,
+                                 int primitive, struct glint_box tile,
+                                 struct glint_clip *clip, int64_t *acc_q20);
 
 #endif

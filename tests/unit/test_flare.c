@@ -175,10 +175,15 @@ static void test_energy(void **state)
     (void)state;
     /* the barrel is as wide as the stop's corners: cut it out of the way */
     c.stop.apothem_q16 = 60547;
-    draw_list(c, &g, 1, pixels);
-    assert_true(total(pixels, 0) > 0.995 * flux);
-    assert_true(total(pixels, 0) < 1.005 * flux);
-    assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
+    for (int raster = 0; raster < 2; raster++) {
+        const double off = raster == GLINT_RASTER_EDGES ? 0.001 : 0.005;
+
+        c.raster = raster;
+        draw_list(c, &g, 1, pixels);
+        assert_true(total(pixels, 0) > (1 - off) * flux);
+        assert_true(total(pixels, 0) < (1 + off) * flux);
+        assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
+    }
 }
 
 /* Twice as large, mirrored, other weights, merged or not: the same light. */
@@ -189,6 +194,7 @@ static void test_energy_is_kept(void **state)
     double first;
 
     (void)state;
+    c.raster = GLINT_RASTER_CELLS;
     draw_list(c, &g, 1, pixels);
     first = total(pixels, 0);
     g.size = 50;
@@ -212,13 +218,15 @@ static void test_focused_light_arrives(void **state)
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
 
     (void)state;
-    for (int k = 0; k < 16; k++) {
-        const struct ghost g = {16, 50 + k, 70,           1, 9 * k, 1,
-                                0,  0,      {16384, 0, 0}};
+    for (int k = 0; k < 32; k++) {
+        const struct ghost g = {16, 50 + k / 2, 70,           1, 4 * k, 1,
+                                0,  0,          {16384, 0, 0}};
+        const double off = k & 1 ? 0.1 : 0.001;
 
+        c.raster = k & 1 ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
         draw_list(c, &g, 1, pixels);
-        assert_true(total(pixels, 0) > 0.9 * flux);
-        assert_true(total(pixels, 0) < 1.1 * flux);
+        assert_true(total(pixels, 0) > (1 - off) * flux);
+        assert_true(total(pixels, 0) < (1 + off) * flux);
     }
 }
 
@@ -237,6 +245,7 @@ static void test_flat_inside(void **state)
     struct glint_flare_config c = base_config();
 
     (void)state;
+    c.raster = GLINT_RASTER_CELLS;
     draw_list(c, &g, 1, pixels);
     for (int y = 65; y < 85; y++) {
         /* energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40 */
@@ -250,6 +259,157 @@ static void test_flat_inside(void **state)
         }
     }
     assert_int_equal(at(pixels, 100, 2), 0);
+}
+
+/* By edges a cell is even: the energy is that of its middle, at most half a
+ * cell away. */
+static void test_edges_agree_with_cells(void **state)
+{
+    const struct ghost g = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
+    struct glint_flare_config c = base_config();
+    double off = 0, all = 0;
+
+    (void)state;
+    draw_list(c, &g, 1, pixels);
+    c.raster = GLINT_RASTER_CELLS;
+    draw_list(c, &g, 1, want);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        off += abs(pixels[i] - want[i]);
+        all += want[i];
+    }
+    assert_true(off < 0.006 * all);
+    assert_true(total(pixels, 0) > 0.999 * total(want, 0));
+    assert_true(total(pixels, 0) < 1.001 * total(want, 0));
+}
+
+/* ------------------------------------------------------- polygons by hand */
+
+/* One cell of flux 64 and energy 1, corners in order round it, in 1/256 px. */
+struct quad {
+    int32_t at[4][2];
+    int32_t barrel_q16[4];
+    int lost; /* bits of corners that were lost */
+};
+
+static struct glint_flare_stats draw_quad(const struct quad *q)
+{
+    static const int corner[4] = {0, 1, 3, 2}; /* the grid goes row by row */
+    struct glint_flare_config c = base_config();
+    const struct glint_image image = linear_image(pixels);
+    const struct glint_bundle b = {.n_cells = 1,
+                                   .flux_q31 = 1 << 30,
+                                   .flux_exponent = 7,
+                                   .rgb_q14 = {16384, 0, 0}};
+    struct glint_flare_stats stats;
+    void *mem;
+    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_vertex *v = glint_flare_add(f, &b);
+
+    for (int i = 0; i < 4; i++) {
+        const int k = corner[i];
+
+        v[i] =
+            (struct glint_vertex){.x_q8 = q->at[k][0],
+                                  .y_q8 = q->at[k][1],
+                                  .barrel_q16 = {q->barrel_q16[k], 0},
+                                  .energy_q16 = q->lost >> k & 1 ? -1 : 65536};
+    }
+    glint_flare_bin(f, &stats);
+    glint_flare_draw(f, &image);
+    free(mem);
+    return stats;
+}
+
+static void assert_light(int x, int y, double light)
+{
+    const double got = at(pixels, x, y) / 1048576.0;
+
+    if (got < light - 1e-4 || got > light + 1e-4)
+        print_message("pixel %d,%d: %f, not %f\n", x, y, got, light);
+    assert_true(got > light - 1e-4 && got < light + 1e-4);
+}
+
+static void assert_flux(double flux)
+{
+    assert_true(total(pixels, 0) > 0.999 * flux);
+    assert_true(total(pixels, 0) < 1.001 * flux);
+}
+
+/* 10.25 .. 14.25 by 10.5 .. 12.5: eight pixels of area, 8 of light each. */
+static void test_rectangle_by_hand(void **state)
+{
+    struct quad q = {{{2624, 2688}, {3648, 2688}, {3648, 3200}, {2624, 3200}},
+                     {0, 0, 0, 0},
+                     0};
+
+    (void)state;
+    draw_quad(&q);
+    assert_light(9, 11, 0);
+    assert_light(10, 10, 3);
+    assert_light(11, 10, 4);
+    assert_light(14, 10, 1);
+    assert_light(15, 11, 0);
+    assert_light(10, 11, 6);
+    assert_light(13, 11, 8);
+    assert_light(14, 12, 1);
+    assert_light(12, 13, 0);
+    /* a barrel from 0.5 on the left to 1.5 on the right leaves half */
+    q.barrel_q16[0] = q.barrel_q16[3] = 32768;
+    q.barrel_q16[1] = q.barrel_q16[2] = 98304;
+    draw_quad(&q);
+    assert_light(10, 11, 6);
+    assert_light(11, 11, 8);
+    assert_light(12, 11, 2);
+    assert_light(13, 11, 0);
+}
+
+/* A triangle of legs 8: area 32 and half of the flux, so that all is 1. */
+static void test_triangle_by_hand(void **state)
+{
+    const struct quad q = {
+        {{2048, 2048}, {4096, 2048}, {9, 9}, {2048, 4096}}, {0, 0, 0, 0}, 4};
+
+    (void)state;
+    assert_int_equal(draw_quad(&q).dropped_cells, 1);
+    assert_light(8, 8, 1);
+    assert_light(10, 12, 1);
+    for (int x = 8; x < 16; x++) {
+        assert_light(x, 23 - x, 0.5);
+        assert_light(x, 24 - x, 0);
+    }
+    assert_flux(32);
+}
+
+/* Slivers, folds, lines and points keep their light, wherever they lie. */
+static void test_thin_light_arrives(void **state)
+{
+    static const struct quad quads[] = {
+        /* a step wide, 80 px long: upright, lying, aslant */
+        {{{5000, 5000}, {5001, 5000}, {5001, 25480}, {5000, 25480}}, {0}, 0},
+        {{{5000, 5000}, {25480, 5000}, {25480, 5001}, {5000, 5001}}, {0}, 0},
+        {{{5000, 5000}, {5001, 5000}, {19001, 25480}, {19000, 25480}}, {0}, 0},
+        /* no area at all: a line, a line there and back, a point */
+        {{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}}, {0}, 0},
+        {{{5000, 5000}, {9000, 5000}, {5000, 5000}, {9000, 5000}}, {0}, 0},
+        {{{5120, 5120}, {5120, 5120}, {5120, 5120}, {5120, 5120}}, {0}, 0},
+        /* turned over: a bow tie, one with a dent */
+        {{{5000, 5000}, {9000, 5000}, {5000, 9000}, {9000, 9000}}, {0}, 0},
+        {{{5000, 5000}, {9000, 5000}, {6000, 6000}, {5000, 9000}}, {0}, 0},
+        /* two steps wide, tiny */
+        {{{5000, 5000}, {5002, 5000}, {5002, 5002}, {5000, 5002}}, {0}, 0},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof quads / sizeof *quads; i++) {
+        assert_int_equal(draw_quad(&quads[i]).dropped_cells, 0);
+        assert_flux(64);
+    }
+    /* half of a line, cut by a barrel */
+    draw_quad(
+        &(struct quad){{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}},
+                       {32768, 98304, 98304, 32768},
+                       0});
+    assert_flux(32);
 }
 
 /* Light is linear: twice the flux is twice the picture, within rounding. */
@@ -317,29 +477,34 @@ static void same_as_want(struct glint_flare_config c)
 
 static void test_tiles_do_not_matter(void **state)
 {
-    static const int levels[][2] = {{3, 0}, {4, 0}, {5, 0}, {3, 6}, {3, 7},
-                                    {4, 7}, {5, 8}, {5, 6}, {4, 5}, {3, 4}};
+    static const int levels[][2] = {{3, 0}, {4, 0}, {5, 0}, {3, 6},
+                                    {3, 7}, {4, 7}, {5, 8}, {5, 6},
+                                    {6, 0}, {6, 8}, {3, 4}};
+
+    struct glint_flare_config c = base_config();
 
     (void)state;
-    draw_scene(base_config(), want);
-    assert_true(total(want, 0) > 1);
-    for (size_t i = 0; i < sizeof levels / sizeof *levels; i++) {
-        struct glint_flare_config c = base_config();
-
-        c.tile_log2 = levels[i][0];
-        c.coarse_log2 = levels[i][1];
-        same_as_want(c);
+    for (int raster = 0; raster < 2; raster++) {
+        c.raster = raster;
+        draw_scene(c, want);
+        assert_true(total(want, 0) > 1);
+        for (size_t i = 0; i < sizeof levels / sizeof *levels; i++) {
+            c.tile_log2 = levels[i][0];
+            c.coarse_log2 = levels[i][1];
+            same_as_want(c);
+        }
     }
 }
 
 static void test_threads_do_not_matter(void **state)
 {
     (void)state;
-    draw_scene(base_config(), want);
-    for (int n = 1; n <= 8; n++) {
+    for (int n = 0; n < 16; n++) {
         struct glint_flare_config c = base_config();
 
-        assert_int_equal(glint_pool_create(&c.workers, n), GLINT_OK);
+        c.raster = n / 8;
+        draw_scene(c, want);
+        assert_int_equal(glint_pool_create(&c.workers, n % 8 + 1), GLINT_OK);
         same_as_want(c);
         c.coarse_log2 = 0;
         same_as_want(c);
@@ -350,11 +515,12 @@ static void test_threads_do_not_matter(void **state)
 static void test_order_does_not_matter(void **state)
 {
     (void)state;
-    draw_scene(base_config(), want);
-    for (uint32_t seed = 1; seed <= 8; seed++) {
+    for (uint32_t seed = 1; seed <= 16; seed++) {
         struct glint_flare_config c = base_config();
         struct shuffle shuffle;
 
+        c.raster = seed > 8;
+        draw_scene(c, want);
         shuffle_init(&shuffle, 5, seed);
         c.workers = &shuffle.workers;
         c.coarse_log2 = seed & 1 ? 7 : 0;
@@ -369,9 +535,14 @@ static void test_bundle_order_does_not_matter(void **state)
     (void)state;
     for (int i = 0; i < N_SCENE; i++)
         turned[i] = scene[N_SCENE - 1 - i];
-    draw_scene(base_config(), want);
-    draw_list(base_config(), turned, N_SCENE, pixels);
-    assert_memory_equal(pixels, want, sizeof pixels);
+    for (int raster = 0; raster < 2; raster++) {
+        struct glint_flare_config c = base_config();
+
+        c.raster = raster;
+        draw_scene(c, want);
+        draw_list(c, turned, N_SCENE, pixels);
+        assert_memory_equal(pixels, want, sizeof pixels);
+    }
 }
 
 /* In place on 8 bits: what no ghost touches keeps its bytes, and padding too.
@@ -466,7 +637,10 @@ static void test_config_is_checked(void **state)
 
     (void)state;
     assert_int_not_equal(glint_flare_bytes(&c), 0);
-    c.tile_log2 = 6;
+    c.tile_log2 = 7;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.raster = 2;
     assert_int_equal(glint_flare_bytes(&c), 0);
     c = base_config();
     c.coarse_log2 = 3;
@@ -519,16 +693,27 @@ static void test_golden(void **state)
 
     (void)state;
     assert_non_null(file);
-    golden_case(file, update, "default", c);
+    golden_case(file, update, "edges", c);
+    c.merge_steps = 4;
+    c.merge_gamma_q16 = 6554;
+    golden_case(file, update, "edges-merged", c);
+    c = base_config();
+    c.stop.n_blades = 0;
+    golden_case(file, update, "edges-circle", c);
+    c = base_config();
+    c.raster = GLINT_RASTER_CELLS;
+    golden_case(file, update, "wachspress", c);
     c.weights = GLINT_WEIGHTS_LOOP_DEROSE;
     golden_case(file, update, "loop-derose", c);
     c.antialias = 0;
     golden_case(file, update, "pixel-centre", c);
     c = base_config();
+    c.raster = GLINT_RASTER_CELLS;
     c.merge_steps = 4;
     c.merge_gamma_q16 = 6554;
     golden_case(file, update, "merged", c);
     c = base_config();
+    c.raster = GLINT_RASTER_CELLS;
     c.stop.n_blades = 0;
     golden_case(file, update, "circle", c);
     fclose(file);
@@ -541,6 +726,10 @@ int main(void)
         cmocka_unit_test(test_energy_is_kept),
         cmocka_unit_test(test_focused_light_arrives),
         cmocka_unit_test(test_flat_inside),
+        cmocka_unit_test(test_edges_agree_with_cells),
+        cmocka_unit_test(test_rectangle_by_hand),
+        cmocka_unit_test(test_triangle_by_hand),
+        cmocka_unit_test(test_thin_light_arrives),
         cmocka_unit_test(test_linear_in_light),
         cmocka_unit_test(test_hostile_bundles),
         cmocka_unit_test(test_tiles_do_not_matter),
