@@ -274,10 +274,10 @@ struct glint_bake_options {
     double field_mm;   /* radius on the sensor within which light counts; 0: a
                           tenth more than the film's corners */
     double tolerance;  /* scale of all errors aimed at, 0.1 .. 100; at 1 the
-                          root mean squares are 0.065 pixels of a film 1920
-                          wide, 0.0003 stop radii, 0.0005 of a barrel (less
-                          where that moves the outline by more than 0.05
-                          pixels), 0.2 % of energy */
+                          root mean squares for ghosts that are as bright as
+                          counts are 0.03 pixels of a film 1920 wide, as much
+                          for the outline, and 0.06 % of energy; for faint
+                          ones up to 0.065 and 0.24 pixels and 0.5 % */
     struct glint_workers *workers; /* never changes the model */
     glint_progress_fn *progress;   /* NULL: silent */
     void *progress_ctx;

@@ -134,8 +134,8 @@ struct glint_model_output {
     uint32_t rounding_q8; /* proven: integers stray from the polynomial by no
                              more than so many steps */
     /* Measured against exact rays through the run-time arithmetic, q20: pixels
-     * of a film 1920 wide, stop radii, share of the energy (of at least a tenth
-     * of the most in the system), relative radius. */
+     * of a film 1920 wide, stop radii, share of the energy (of at least a
+     * fiftieth of the most in the system), relative radius. */
     uint32_t rms_q20, p50_q20, p99_q20, max_q20;
 };
 

@@ -27,7 +27,7 @@ struct fitter {
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
     double *scratch;
     struct glint_fitted_ghost *out;
-    double stop, barrel; /* tolerances of this zone */
+    double sensor_mm, stop, barrel, energy; /* tolerances of this zone */
 };
 
 /* ----------------------------------------------------------------- outputs */
@@ -39,7 +39,7 @@ static const struct glint_degrees position_degrees = {
     .terms = GLINT_MAX_TERMS};
 
 static const struct glint_degrees energy_degrees = {
-    .most = {6, 4, 4, 6}, .weight = {1, 1, 1, 1}, .total = 8, .terms = 48};
+    .most = {6, 4, 4, 8}, .weight = {1, 1, 1, 1}, .total = 9, .terms = 56};
 
 /* Full weight a little past the edge, where cells straddle it; hardly any where
  * nothing is seen, which only has to stay unseen. */
@@ -56,35 +56,67 @@ static double weight_past_field(const struct fitter *f, double fields)
 {
     const double out_mm = (fields - 1.01) * f->hunt->field_mm;
 
-    return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->tolerance->sensor_mm);
+    return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->sensor_mm);
 }
 
-/* How far the light moves on the sensor while the stop is crossed by its
- * radius. */
-static double sensor_per_stop(const struct glint_rays *r)
+/* Light that is seen: where, and how strong on average. */
+struct sight {
+    int n, n_all;
+    double low[3], high[3]; /* sensor x and y, stop x */
+    double energy;
+};
+
+static struct sight look(const struct glint_rays *r)
 {
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    static const int channel[3] = {RAY_SENSOR_X, RAY_SENSOR_Y, RAY_STOP_X};
+    struct sight s = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
+                      .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
+                      .n_all = r->n};
 
     for (int i = 0; i < r->n; i++) {
         if (r->at[RAY_EXCESS][i] > 1 || r->at[RAY_FIELD][i] > 1)
             continue;
-        for (int k = 0; k < 2; k++) {
-            const double x = r->at[k ? RAY_STOP_X : RAY_SENSOR_X][i];
-
-            low[k] = fmin(low[k], x);
-            high[k] = fmax(high[k], x);
+        for (int k = 0; k < 3; k++) {
+            s.low[k] = fmin(s.low[k], r->at[channel[k]][i]);
+            s.high[k] = fmax(s.high[k], r->at[channel[k]][i]);
         }
+        s.energy += r->at[RAY_ENERGY][i];
+        s.n++;
     }
-    return high[1] > low[1] ? (high[0] - low[0]) / (high[1] - low[1]) : 0;
+    s.energy /= s.n > 0 ? s.n : 1;
+    return s;
 }
 
-static void set_tolerances(struct fitter *f)
+/* How much worse a zone may be than one that is as bright as counts. */
+static double ease_of(const struct fitter *f, const struct glint_zone *zone,
+                      const struct sight *s)
+{
+    const double level = glint_brightness_at(f->tolerance->brightness,
+                                             0.5 * (zone->lo + zone->hi));
+    const double pupil = 4 * zone->half_x[0] * zone->half_y[0] *
+                         fmax(s->n, 1) / fmax(s->n_all, 1);
+    const double y =
+        fmax(fabs(s->low[1]), fabs(s->high[1])); /* mirrored */
+    const double sensor = fmax(1e-9, (s->high[0] - s->low[0]) * 2 * y * 0.8);
+    const double share = s->energy * pupil / sensor / fmax(level, 1e-30);
+
+    return s->n ? fmin(f->tolerance->ease, fmax(1, pow(share, -0.42)))
+                : f->tolerance->ease;
+}
+
+static void set_tolerances(struct fitter *f, const struct glint_zone *zone)
 {
     const struct glint_tolerance *t = f->tolerance;
-    const double edge = t->edge_mm / fmax(1e-12, sensor_per_stop(&f->rays));
+    const struct sight s = look(&f->rays);
+    const double ease = ease_of(f, zone, &s);
+    const double per_stop =
+        s.n > 1 ? (s.high[0] - s.low[0]) / (s.high[2] - s.low[2] + 1e-12) : 0;
+    const double edge = ease * t->edge_mm / fmax(1e-12, per_stop);
 
-    f->stop = fmax(0.2 * t->stop, fmin(t->stop, edge));
-    f->barrel = fmax(0.2 * t->barrel, fmin(t->barrel, edge));
+    f->sensor_mm = fmin(ease * t->sensor_mm, t->faint_sensor_mm);
+    f->stop = fmax(0.06 * t->stop, fmin(t->stop, edge));
+    f->barrel = fmax(0.06 * t->barrel, fmin(t->barrel, edge));
+    f->energy = ease * t->energy;
 }
 
 static void set_weights(struct fitter *f)
@@ -153,7 +185,8 @@ static enum glint_status fit_channel(struct fitter *f, int channel, double rms,
                       worst);
 }
 
-/* Energy counts by its share, down to a tenth of the most that is seen. */
+/* Energy counts by its share, down to a fiftieth of the most that is
+ * seen. */
 static enum glint_status
 fit_energy(struct fitter *f, struct glint_fitted_system *system, double *worst)
 {
@@ -168,10 +201,9 @@ fit_energy(struct fitter *f, struct glint_fitted_system *system, double *worst)
 
         f->value[i] = r->at[RAY_ENERGY][i];
         f->channel_weight[i] =
-            fmax(weight_past_edge(out), 0.02) / fmax(f->value[i], 0.1 * most);
+            fmax(weight_past_edge(out), 0.02) / fmax(f->value[i], 0.02 * most);
     }
-    return fit_output(f, r, GLINT_OUT_ENERGY, f->tolerance->energy, system,
-                      worst);
+    return fit_output(f, r, GLINT_OUT_ENERGY, f->energy, system, worst);
 }
 
 /* Where the barrel cuts is what counts. */
@@ -194,15 +226,15 @@ static enum glint_status fit_barrel(struct fitter *f, int barrel,
 }
 
 static enum glint_status
-fit_outputs(struct fitter *f, struct glint_fitted_system *system, double *worst)
+fit_outputs(struct fitter *f, const struct glint_zone *zone,
+            struct glint_fitted_system *system, double *worst)
 {
-    const struct glint_tolerance *t = f->tolerance;
     enum glint_status status = GLINT_OK;
 
-    set_tolerances(f);
+    set_tolerances(f, zone);
     set_weights(f);
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++)
-        status = fit_channel(f, c, c <= RAY_SENSOR_Y ? t->sensor_mm : f->stop,
+        status = fit_channel(f, c, c <= RAY_SENSOR_Y ? f->sensor_mm : f->stop,
                              system, worst);
     if (status == GLINT_OK)
         status = fit_energy(f, system, worst);
@@ -245,7 +277,6 @@ static double check_output(const struct fitter *f,
 static double check_zone(struct fitter *f, const struct glint_zone *zone,
                          const struct glint_fitted_system *system)
 {
-    const struct glint_tolerance *t = f->tolerance;
     double worst = 0;
 
     glint_zone_check(zone, f->hunt, &f->rays);
@@ -255,7 +286,7 @@ static double check_zone(struct fitter *f, const struct glint_zone *zone,
         if (o->kind <= GLINT_OUT_STOP_Y)
             worst = fmax(worst, check_output(f, o, f->rays.at[o->kind],
                                              o->kind <= GLINT_OUT_SENSOR_Y
-                                                 ? t->sensor_mm
+                                                 ? f->sensor_mm
                                                  : f->stop));
     }
     return worst / CHECK_RMS;
@@ -332,7 +363,7 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
     *left = 0;
     status = set_box(&system, &zone);
     if (status == GLINT_OK)
-        status = fit_outputs(f, &system, left);
+        status = fit_outputs(f, &zone, &system, left);
     if (status == GLINT_OK)
         *left = fmax(*left, check_zone(f, &zone, &system));
     system.met = *left <= 1;

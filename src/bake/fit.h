@@ -14,6 +14,7 @@
 #ifndef GLINT_BAKE_FIT_H
 #define GLINT_BAKE_FIT_H
 
+#include "bake/brightness.h"
 #include "bake/fitted.h"
 #include "bake/hunt.h"
 #include "glint/status.h"
@@ -21,9 +22,16 @@
 /* The root mean square that is aimed at; single rays may be off by five times
  * as much. Stop and barrel positions draw the outline: EDGE_MM is what they may
  * shift it on the sensor, but neither is asked for less than STOP (stop radii)
- * and BARREL (of its radius), or more than a fifth of it. */
+ * and BARREL (of its radius), or more than a sixteenth of it.
+ *
+ * For ghosts of the brightness that counts; sRGB shows an error in a ghost of a
+ * share v of that by v^0.42 as much, so edges and energy may be off by more
+ * there, up to EASE times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, barrel, energy;
+    double faint_sensor_mm; /* the most for any ghost */
+    double ease;
+    const struct glint_brightness *brightness;
 };
 
 /* OUT is to be finished in any case. GLINT_E_MEMORY. */

@@ -16,7 +16,7 @@
 #include "glint/bake.h"
 
 enum {
-    GLINT_HUNT_WAVES = 7,
+    GLINT_HUNT_WAVES = 11,
     GLINT_MAX_RANGES = 8,
     GLINT_PROFILE = 49 /* boxes over a range */
 };

@@ -133,7 +133,7 @@ static void try_ray(struct bench *b, double u, double v)
         b->out->intruders++;
 }
 
-/* Energy counts by its share, down to a tenth of the most. */
+/* Energy counts by its share, down to a fiftieth of the most. */
 static void divide_energy(struct bench *b)
 {
     double most = 1e-30;
@@ -141,7 +141,7 @@ static void divide_energy(struct bench *b)
     for (int i = 0; i < b->n; i++)
         most = fmax(most, b->energy[i]);
     for (int i = 0; i < b->n; i++)
-        b->error[GLINT_OUT_ENERGY][i] /= fmax(b->energy[i], 0.1 * most);
+        b->error[GLINT_OUT_ENERGY][i] /= fmax(b->energy[i], 0.02 * most);
 }
 
 static int by_size(const void *a, const void *b)

@@ -346,7 +346,7 @@ static void trace_positions(const struct glint_zone *zone,
                             const struct glint_hunt *hunt,
                             struct glint_rays *rays)
 {
-    static const int shift[] = {0, 2, 3, 5};
+    static const int shift[] = {0, 3, 5, 8};
 
     for (int stride = 2; stride > 0; stride--) {
         rays->n = 0;
