@@ -126,10 +126,7 @@ static int report(const struct tool *tool, const void *model, size_t bytes,
 
     if (glint_lens_open(&lens, model, bytes, &reason) != GLINT_OK)
         return tool_fail(tool, GLINT_E_LENS, reason);
-    if (tool->json)
-        model_report_json(&lens, seconds, r);
-    else if (!tool->quiet)
-        model_report_text(&lens, seconds, r, tool->verbose > 0);
+    model_report_bake(tool, &lens, seconds, r);
     return EXIT_OK;
 }
 

@@ -4,8 +4,8 @@
  */
 #include <stdlib.h>
 
-#include "info_model.h"
 #include "model_file.h"
+#include "model_report.h"
 #include "tool.h"
 
 static const char help[] =
@@ -18,11 +18,11 @@ static const char help[] =
     "\n"
     "Of a baked model also: band of wavelengths, angles, what each ghost\n"
     "takes, and how far its integers are from exact rays: rms and p50 are\n"
-    "means over the systems (rms of squares), p99, max, bound and rounding\n"
-    "the worst system's. Sensor in pixels of a film 1920 wide.\n"
+    "means over the zones (rms of squares), p99, max, bound and rounding\n"
+    "the worst zone's. Sensor in pixels of a film 1920 wide.\n"
     "\n"
     "  --f-number N   stop the lens to f/N first; not of a model\n"
-    "  -v             of a model: each system\n"
+    "  -v             of a model: each zone\n"
     "  --json         one JSON object\n";
 
 struct info {
@@ -82,6 +82,18 @@ static void print_text(const struct info *info)
     printf("\n");
 }
 
+static int info_of_model(const struct tool *tool, const char *path)
+{
+    struct model_file model;
+    const int code = tool_model(tool, path, &model);
+
+    if (code != EXIT_OK)
+        return code;
+    model_report_info(tool, &model);
+    model_file_close(&model);
+    return EXIT_OK;
+}
+
 static int parse(struct tool *tool, int argc, char **argv, double *f_number)
 {
     static const struct option options[] = {
@@ -118,7 +130,7 @@ int cmd_info(int argc, char **argv)
     if (tool_is_model(argv[optind]))
         return f_number != 0 ? tool_usage(&tool, "the f-number of a model was "
                                                  "chosen when it was baked")
-                             : info_model(&tool, argv[optind]);
+                             : info_of_model(&tool, argv[optind]);
     info = calloc(1, sizeof *info);
     if (!info)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint trace: exact rays as a table.
+ * glint trace: rays as a table, exact or by a model.
  */
 #include <stdlib.h>
 #include <string.h>
 #include <math.h>
 
+#include "model_file.h"
 #include "tool.h"
 
 static const char help[] =
     "glint trace LENS --ghost K --angle DEG --wavelength NM --grid N [--csv]\n"
+    "            [--model MODEL]\n"
     "\n"
     "Prints one line a ray, over an N x N grid that spans the clear square of\n"
     "the front element, x fastest:\n"
@@ -22,9 +24,18 @@ static const char help[] =
     "  --angle DEG      off the axis, below 90 (default 0)\n"
     "  --wavelength NM  default 532\n"
     "  --grid N         1 to 4096 rays a side (default 17)\n"
+    "  --model MODEL    the same rays by a model that was baked from LENS: "
+    "its\n"
+    "                   integers as render and overlay use them. Status 1\n"
+    "                   outside of the box and of the angles of the ghost;\n"
+    "                   rel_radius is that of the barrels that limit it, 0\n"
+    "                   where none does\n"
     "  --csv            the format above; there is no other\n";
 
+#define PI 3.14159265358979323846
+
 struct options {
+    const char *model;
     int ghost, grid;
     double angle_deg, wavelength_nm;
 };
@@ -36,6 +47,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         {"angle", required_argument, NULL, 'a'},
         {"wavelength", required_argument, NULL, 'w'},
         {"grid", required_argument, NULL, 'n'},
+        {"model", required_argument, NULL, 'm'},
         {"csv", no_argument, NULL, 'c'},
         TOOL_COMMON_OPTIONS};
     int c, code;
@@ -53,6 +65,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
                  o->wavelength_nm >= 300 && o->wavelength_nm <= 1100;
         else if (c == 'n')
             ok = tool_integer(optarg, 1, 4096, &o->grid);
+        else if (c == 'm')
+            o->model = optarg;
         else if (c != 'c' && (code = tool_option(tool, c, optarg)) >= 0)
             return code;
         if (!ok)
@@ -63,13 +77,115 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
     return -1;
 }
 
-static void print_rays(const struct options *o,
-                       const struct glint_prescription *lens,
-                       const struct glint_path *path)
+/* ----------------------------------------------------------------- by rays */
+
+/* What takes a ray from (PX, PY) on the front's vertex plane to the sensor. */
+struct tracer {
+    enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
+                                   double py_mm, struct glint_ray *ray);
+    double angle_deg;
+    struct glint_path path; /* exact */
+    struct glint_transfer transfer;
+    bool seen; /* the model has the ghost at this angle */
+    double stop_radius_mm;
+};
+
+static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
+                                        double py_mm, struct glint_ray *ray)
 {
-    const double angle = o->angle_deg * 3.14159265358979323846 / 180;
+    const double angle = t->angle_deg * PI / 180;
     const double direction[3] = {sin(angle), 0, cos(angle)};
-    const double semi = lens->surface[0].semi_mm;
+
+    return glint_trace(&t->path, px_mm, py_mm, direction, ray, NULL);
+}
+
+/* ---------------------------------------------------------------- by a model
+ */
+
+static double output(const struct tracer *t, const struct glint_outputs *out,
+                     int kind)
+{
+    return ldexp(out->at[kind], t->transfer.exponent[kind]);
+}
+
+static double rel_radius(const struct tracer *t,
+                         const struct glint_outputs *out)
+{
+    double most = output(t, out, GLINT_OUT_RADIUS);
+
+    for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++)
+        if (t->transfer.outputs >> kind & 1)
+            most = fmax(most, sqrt(fmax(0, 2 * output(t, out, kind) - 1)));
+    return most;
+}
+
+/* Lights on the other side of the axis and rays on the other side of its plane
+ * are mirrored. */
+static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
+                                         double py_mm, struct glint_ray *ray)
+{
+    const double side_x = t->angle_deg < 0 ? -1 : 1,
+                 side_y = py_mm < 0 ? -1 : 1;
+    const int32_t *box = t->transfer.box;
+    const double unit = ldexp(1, t->transfer.box_exponent);
+    const double u = (side_x * px_mm / unit - box[0]) / box[1];
+    const double v = fabs(py_mm) / unit / box[2];
+    const double stop = t->stop_radius_mm;
+    struct glint_outputs out;
+
+    if (!t->seen || !(fabs(u) <= 1 && v <= 1))
+        return GLINT_RAY_MISSED;
+    glint_transfer_ray(&t->transfer, (int32_t)lrint(ldexp(u, 30)),
+                       (int32_t)lrint(ldexp(v, 30)), &out);
+    *ray = (struct glint_ray){
+        .stop_x_mm = side_x * stop * output(t, &out, GLINT_OUT_STOP_X),
+        .stop_y_mm = side_y * stop * output(t, &out, GLINT_OUT_STOP_Y),
+        .sensor_x_mm = side_x * output(t, &out, GLINT_OUT_SENSOR_X),
+        .sensor_y_mm = side_y * output(t, &out, GLINT_OUT_SENSOR_Y),
+        .energy = output(t, &out, GLINT_OUT_ENERGY),
+        .rel_radius = rel_radius(t, &out)};
+    return GLINT_RAY_OK;
+}
+
+/* The number of a model, which has 31 bits of it, is that of the lens. */
+static bool agrees(struct glint_real a, double b)
+{
+    return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);
+}
+
+static int prepare_model(const struct tool *tool, const struct options *o,
+                         const struct glint_prescription *lens, int n_ghosts,
+                         const struct glint_lens *model, struct tracer *tracer)
+{
+    const struct glint_model_header *h = model->header;
+    const int32_t wave_q24 =
+        (int32_t)lrint(ldexp(1e6 / (o->wavelength_nm * o->wavelength_nm), 24));
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    if (!agrees(h->focal_mm, optics.focal_mm) ||
+        h->n_ghosts != (uint32_t)n_ghosts)
+        return tool_fail(tool, GLINT_E_LENS,
+                         "the model was baked from another lens");
+    if (o->ghost < 0)
+        return tool_usage(tool, "a model has no direct path");
+    if (wave_q24 < h->wave_lo_q24 || wave_q24 > h->wave_hi_q24)
+        return tool_usage(tool, "%g nm is outside of the model's band",
+                          o->wavelength_nm);
+    tracer->trace = trace_model;
+    tracer->stop_radius_mm = model_real_of(h->stop_radius_mm);
+    tracer->seen = glint_transfer_init(
+        &tracer->transfer, model, o->ghost,
+        (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * PI / 180), 30)),
+        wave_q24);
+    return EXIT_OK;
+}
+
+/* --------------------------------------------------------------------- both */
+
+static void print_rays(const struct options *o, double semi,
+                       const struct tracer *tracer)
+{
     const int last = o->grid - 1;
 
     printf("px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n");
@@ -78,8 +194,7 @@ static void print_rays(const struct options *o,
         const double x = last ? semi * (2.0 * i - last) / last : 0;
         const double y = last ? semi * (2.0 * j - last) / last : 0;
         struct glint_ray ray;
-        const enum glint_ray_status status =
-            glint_trace(path, x, y, direction, &ray, NULL);
+        const enum glint_ray_status status = tracer->trace(tracer, x, y, &ray);
 
         printf("%.12g,%.12g,%d,", x, y, (int)status);
         if (status == GLINT_RAY_OK)
@@ -91,27 +206,41 @@ static void print_rays(const struct options *o,
     }
 }
 
+static int trace(const struct tool *tool, const struct options *o,
+                 const struct glint_prescription *lens)
+{
+    static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
+    static struct tracer tracer;
+    const int n = glint_ghost_list(lens, ghosts, GLINT_MAX_GHOSTS);
+    struct model_file model = {.data = NULL};
+    int code = EXIT_OK;
+
+    if (o->ghost >= n)
+        return tool_usage(tool, "%s has %d ghosts, there is no %d", lens->name,
+                          n, o->ghost);
+    tracer.angle_deg = o->angle_deg;
+    tracer.trace = trace_path;
+    glint_path_init(&tracer.path, lens, o->ghost < 0 ? NULL : &ghosts[o->ghost],
+                    o->wavelength_nm);
+    if (o->model)
+        code = tool_model(tool, o->model, &model);
+    if (o->model && code == EXIT_OK)
+        code = prepare_model(tool, o, lens, n, &model.lens, &tracer);
+    if (code == EXIT_OK)
+        print_rays(o, lens->surface[0].semi_mm, &tracer);
+    model_file_close(&model);
+    return code;
+}
+
 int cmd_trace(int argc, char **argv)
 {
     static struct glint_prescription lens;
-    static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
-    static struct glint_path path;
     struct tool tool = {.name = "trace", .help = help};
-    struct options o = {0, 17, 0, 532};
-    int n, code = parse(&tool, argc, argv, &o);
+    struct options o = {NULL, 0, 17, 0, 532};
+    int code = parse(&tool, argc, argv, &o);
 
-    if (code < 0)
-        code = tool_lens(&tool, argv[optind], &lens);
-    else
+    if (code >= 0)
         return code;
-    if (code != EXIT_OK)
-        return code;
-    n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
-    if (o.ghost >= n)
-        return tool_usage(&tool, "%s has %d ghosts, there is no %d", lens.name,
-                          n, o.ghost);
-    glint_path_init(&path, &lens, o.ghost < 0 ? NULL : &ghosts[o.ghost],
-                    o.wavelength_nm);
-    print_rays(&o, &lens, &path);
-    return EXIT_OK;
+    code = tool_lens(&tool, argv[optind], &lens);
+    return code == EXIT_OK ? trace(&tool, &o, &lens) : code;
 }

@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a fresh model is like, for people and for programs.
+ * What a baked lens is, for people and, after --json, for programs.
  */
 #ifndef GLINT_TOOLS_MODEL_REPORT_H
 #define GLINT_TOOLS_MODEL_REPORT_H
 
-#include "glint/glint.h"
+#include "model_file.h"
+#include "tool.h"
 
-void model_report_text(const struct glint_lens *lens, double seconds,
-                       const struct glint_bake_report *report, bool all);
-void model_report_json(const struct glint_lens *lens, double seconds,
-                       const struct glint_bake_report *report);
+/* All that the file says; after -v each system. */
+void model_report_info(const struct tool *tool, const struct model_file *model);
+
+/* A model just made in SECONDS: the ghosts that miss a target (after -v all),
+ * and the sums. Nothing after -q. */
+void model_report_bake(const struct tool *tool, const struct glint_lens *lens,
+                       double seconds, const struct glint_bake_report *report);
 
 #endif

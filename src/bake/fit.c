@@ -134,7 +134,8 @@ static void set_weights(struct fitter *f)
 
 static enum glint_status keep(struct glint_fitted_system *system,
                               enum glint_channel kind,
-                              const struct glint_poly *poly, bool met)
+                              const struct glint_poly *poly, double rms,
+                              bool met)
 {
     struct glint_fitted_output *o = &system->output[system->n_outputs];
 
@@ -143,6 +144,7 @@ static enum glint_status keep(struct glint_fitted_system *system,
         return GLINT_E_MEMORY;
     o->kind = kind;
     o->n_terms = poly->n;
+    o->grain = rms / 16; /* a few dozen of these stay below a half */
     o->met = met;
     memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
     memcpy(o->coef, poly->coef, (size_t)poly->n * sizeof *o->coef);
@@ -163,13 +165,16 @@ static enum glint_status fit_output(struct fitter *f,
     struct glint_degrees degrees =
         kind == GLINT_OUT_ENERGY ? energy_degrees : position_degrees;
     struct glint_poly poly;
-    double left;
+    double left, grain = rms; /* energy's is a share */
 
     degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
     left = glint_regress_fit(f->scratch, &samples, f->value, &degrees, rms,
                              PEAK * rms, &poly);
     *worst = fmax(*worst, left);
-    return keep(system, kind, &poly, left <= 1);
+    if (kind == GLINT_OUT_ENERGY)
+        for (int i = 0; i < r->n; i++)
+            grain = fmin(grain, rms / f->channel_weight[i]);
+    return keep(system, kind, &poly, grain, left <= 1);
 }
 
 static enum glint_status fit_channel(struct fitter *f, int channel, double rms,

@@ -15,7 +15,8 @@ struct glint_fitted_output {
     int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
-    int event; /* of the path, for a barrel */
+    double grain; /* rounding of a coefficient that does no harm; 0: none */
+    int event;    /* of the path, for a barrel */
     bool met;  /* the tolerance */
 };
 

@@ -124,10 +124,11 @@ static struct range power_of(struct range x, int n)
 static const struct range both_ways = {-1, 1, 0}, upwards = {0, 1, 0};
 
 /* Coefficient K: itself, or anything between the sets. Rounding it to an
- * integer is part of the error. */
-static struct range coefficient(const int32_t *coef, int sets, int n, int k)
+ * integer, or to a multiple of 2^SHIFT, is part of the error. */
+static struct range coefficient(const int32_t *coef, int sets, int n, int k,
+                                int shift)
 {
-    struct range r = {coef[k], coef[k], 0.5};
+    struct range r = {coef[k], coef[k], ldexp(0.5, shift)};
 
     for (int set = 1; set < sets; set++) {
         r.lo = fmin(r.lo, coef[set * n + k]);
@@ -139,22 +140,26 @@ static struct range coefficient(const int32_t *coef, int sets, int n, int k)
 
 /* Angle and wavelength go in: the table of what stays with u and v. */
 static void prove_table(struct proof *p, const struct glint_fitted_output *o,
-                        const int32_t *coef,
+                        const struct glint_quantised_output *q,
                         struct range table[][GLINT_MAX_POWER + 1])
 {
-    for (int k = 0; k < o->n_terms; k++) {
-        struct range value = seen(p, coefficient(coef, 1, o->n_terms, k));
+    for (int i = 0; i < o->n_terms; i++) {
+        const int k = q->order[i];
+        const int shift = i < o->n_terms - q->n_narrow ? 0 : q->shift;
+        struct range value =
+            seen(p, coefficient(q->coef, 1, o->n_terms, k, shift));
         struct range *to = &table[o->power[k][1]][o->power[k][0]];
 
-        for (int i = 2; i < 4; i++)
-            if (o->power[k][i])
-                value = times(p, value, power_of(both_ways, o->power[k][i]));
+        for (int x = 2; x < 4; x++)
+            if (o->power[k][x])
+                value = times(p, value, power_of(both_ways, o->power[k][x]));
         *to = plus(p, *to, value);
     }
 }
 
 static void prove_auto(struct proof *p, const struct glint_fitted_output *o,
-                       const int32_t *coef, struct range *result)
+                       const struct glint_quantised_output *q,
+                       struct range *result)
 {
     struct range table[GLINT_MAX_POWER + 1][GLINT_MAX_POWER + 1] = {
         {{0, 0, 0}}};
@@ -162,7 +167,7 @@ static void prove_auto(struct proof *p, const struct glint_fitted_output *o,
         o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
     const struct range v2 = {0, 1, 0.5};
 
-    prove_table(p, o, coef, table);
+    prove_table(p, o, q, table);
     for (int a = GLINT_MAX_POWER; a >= 0; a--) {
         struct range sum = {0, 0, 0};
 
@@ -178,7 +183,7 @@ static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
                          const int32_t *coef, int sets, struct range *result)
 {
     for (int k = 0; k < o->n_terms; k++) {
-        struct range value = seen(p, coefficient(coef, sets, o->n_terms, k));
+        struct range value = seen(p, coefficient(coef, sets, o->n_terms, k, 0));
 
         for (int i = 0; i < 4; i++)
             if (o->power[k][i])
@@ -198,10 +203,36 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
     if (knots)
         prove_sparse(&p, o, out->coef, sets, &result);
     else
-        prove_auto(&p, o, out->coef, &result);
+        prove_auto(&p, o, out, &result);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p20;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
     out->rounding_q8 = out->proven ? (uint32_t)ceil(256 * result.error) : 0;
+}
+
+/* ------------------------------------------------------------------- narrow */
+
+/* Moves the coefficients that 16 bits are enough for to the end of the order.
+ */
+static void narrow(const struct glint_fitted_output *o,
+                   struct glint_quantised_output *out)
+{
+    const double steps = ldexp(o->grain, -out->exponent);
+    int n_wide = 0, end = o->n_terms;
+
+    for (out->shift = 0; out->shift < 20 && ldexp(1, out->shift + 1) <= steps;)
+        out->shift++;
+    for (int k = 0; k < o->n_terms; k++) {
+        const int32_t step = INT32_C(1) << out->shift;
+        const double part = rint((double)out->coef[k] / step);
+
+        if (out->shift < 4 || fabs(part) > INT16_MAX) {
+            out->order[n_wide++] = (uint8_t)k;
+            continue;
+        }
+        out->coef[k] = (int32_t)part * step;
+        out->order[--end] = (uint8_t)k;
+    }
+    out->n_narrow = o->n_terms - n_wide;
 }
 
 /* ------------------------------------------------------------------ systems */
@@ -240,7 +271,11 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
         out->exponent = out->exponent > other ? out->exponent : other;
     }
     status = to_integers(o->coef, n, out->exponent, &out->coef);
+    for (int i = 0; i < o->n_terms; i++)
+        out->order[i] = (uint8_t)i;
     if (status == GLINT_OK) {
+        if (s->n_knots == 0)
+            narrow(o, out);
         prove(o, sets_of(s), s->n_knots > 0, out);
         status = out->proven ? GLINT_OK : GLINT_E_LENS;
     }

@@ -20,9 +20,13 @@
 /* The largest sum of coefficients' magnitudes, and of intermediates. */
 #define GLINT_COEF_LIMIT (INT64_C(1) << 29)
 
+/* The last N_NARROW of ORDER fit 16 bits when divided by 2^SHIFT; their
+ * integers here are multiples of it. */
 struct glint_quantised_output {
     int32_t exponent;
     int32_t *coef; /* [sets][n_terms]; owned */
+    int n_narrow, shift;
+    uint8_t order[GLINT_MAX_MODEL_TERMS]; /* terms as the file has them */
     uint32_t bound, rounding_q8;
     bool proven;
 };

@@ -13,7 +13,7 @@
 
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
-STATIC_ASSERT(sizeof(struct glint_model_output) == 44);
+STATIC_ASSERT(sizeof(struct glint_model_output) == 48);
 
 /* Adds BYTES from DATA (zeros where it is NULL) at a multiple of 4. Returns
  * where they are. */
@@ -52,38 +52,71 @@ static void amend(struct glint_draft *d, uint32_t where, const void *data,
 }
 
 static uint32_t put_terms(struct glint_draft *d,
-                          const struct glint_fitted_output *o)
+                          const struct glint_fitted_output *o,
+                          const struct glint_quantised_output *q)
 {
     uint16_t power[GLINT_MAX_MODEL_TERMS];
 
-    for (int k = 0; k < o->n_terms; k++)
-        power[k] = (uint16_t)(o->power[k][0] | o->power[k][1] << 4 |
-                              o->power[k][2] << 8 | o->power[k][3] << 12);
+    for (int k = 0; k < o->n_terms; k++) {
+        const uint8_t *p = o->power[q->order[k]];
+
+        power[k] = (uint16_t)(p[0] | p[1] << 4 | p[2] << 8 | p[3] << 12);
+    }
     return put(d, power, (size_t)o->n_terms * sizeof *power);
+}
+
+/* One set: the wide coefficients, and behind them the narrow ones. */
+static uint32_t put_coefficients(struct glint_draft *d,
+                                 const struct glint_fitted_output *o,
+                                 const struct glint_quantised_output *q)
+{
+    const int n_wide = o->n_terms - q->n_narrow;
+    int32_t wide[GLINT_MAX_MODEL_TERMS];
+    int16_t narrow[GLINT_MAX_MODEL_TERMS];
+    uint32_t where;
+
+    for (int k = 0; k < o->n_terms; k++) {
+        const int32_t coef = q->coef[q->order[k]];
+
+        if (k < n_wide)
+            wide[k] = coef;
+        else
+            narrow[k - n_wide] = (int16_t)(coef / (INT32_C(1) << q->shift));
+    }
+    where = put(d, wide, (size_t)n_wide * sizeof *wide);
+    put(d, narrow, (size_t)q->n_narrow * sizeof *narrow);
+    return where;
+}
+
+static struct glint_model_output
+put_output(struct glint_draft *d, const struct glint_fitted_output *o,
+           const struct glint_quantised_output *q, int n_sets)
+{
+    const uint32_t term_at = put_terms(d, o, q);
+    const uint32_t coef_at =
+        n_sets ? put(d, q->coef,
+                     (size_t)n_sets * (size_t)o->n_terms * sizeof *q->coef)
+               : put_coefficients(d, o, q);
+
+    return (struct glint_model_output){
+        .kind = (uint32_t)o->kind,
+        .n_terms = (uint32_t)o->n_terms,
+        .term_at = term_at,
+        .coef_at = coef_at,
+        .narrow = q->n_narrow ? (uint32_t)(q->n_narrow | q->shift << 8) : 0,
+        .exponent = q->exponent,
+        .bound = q->bound,
+        .rounding_q8 = q->rounding_q8};
 }
 
 static uint32_t put_outputs(struct glint_draft *d,
                             const struct glint_fitted_system *f,
                             const struct glint_quantised_system *q)
 {
-    const size_t sets = f->n_knots ? (size_t)f->n_knots : 1;
     struct glint_model_output out[GLINT_OUT_KINDS];
 
-    for (int k = 0; k < f->n_outputs; k++) {
-        const struct glint_fitted_output *o = &f->output[k];
-        const size_t n = sets * (size_t)o->n_terms;
-
-        const uint32_t term_at = put_terms(d, o);
-
-        out[k] = (struct glint_model_output){
-            .kind = (uint32_t)o->kind,
-            .n_terms = (uint32_t)o->n_terms,
-            .term_at = term_at,
-            .coef_at = put(d, q->output[k].coef, n * sizeof(int32_t)),
-            .exponent = q->output[k].exponent,
-            .bound = q->output[k].bound,
-            .rounding_q8 = q->output[k].rounding_q8};
-    }
+    for (int k = 0; k < f->n_outputs; k++)
+        out[k] = put_output(d, &f->output[k], &q->output[k], f->n_knots);
     return put(d, out, (size_t)f->n_outputs * sizeof *out);
 }
 

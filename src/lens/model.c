@@ -29,11 +29,12 @@ STATIC_ASSERT(sizeof(struct glint_real) == 8);
 STATIC_ASSERT(sizeof(struct glint_model_header) == 244);
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
-STATIC_ASSERT(sizeof(struct glint_model_output) == 44);
+STATIC_ASSERT(sizeof(struct glint_model_output) == 48);
 
 enum {
     LIMIT = 1 << 30, /* of sums of magnitudes; also 1 as a q30 */
     MAX_REAL_EXPONENT = 200,
+    MAX_SHIFT = 20, /* of narrow coefficients */
     MIN_EXPONENT = -80, /* of outputs and boxes */
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
@@ -367,17 +368,44 @@ static const char *check_terms(struct check *c,
     return NULL;
 }
 
+/* Coefficients in two sizes: see narrow in struct glint_model_output. */
+static const char *check_narrow(struct check *c,
+                                const struct glint_model_output *o)
+{
+    static const char too_large[] =
+        "the coefficients of an output are too large";
+    const uint32_t n_narrow = o->narrow & 0xff, shift = o->narrow >> 8;
+    const uint32_t n_wide = o->n_terms - n_narrow;
+    const int32_t *wide;
+    const int16_t *narrow;
+    int64_t sum;
+
+    if (n_narrow > o->n_terms || shift > MAX_SHIFT)
+        return "an output has no such narrow coefficients";
+    if (!inside(c, o->coef_at, n_wide + (n_narrow + 1) / 2, sizeof *wide))
+        return outside;
+    wide = table(c, o->coef_at);
+    narrow = (const int16_t *)(const void *)(wide + n_wide);
+    sum = magnitudes(wide, n_wide);
+    for (uint32_t k = 0; k < n_narrow; k++)
+        sum += magnitude(narrow[k]) * (INT64_C(1) << shift);
+    return sum < LIMIT ? NULL : too_large;
+}
+
 static const char *check_coefficients(struct check *c,
                                       const struct glint_model_system *s,
                                       const struct glint_model_output *o)
 {
-    const uint32_t n_sets = s->n_knots ? s->n_knots : 1;
     const int32_t *coef;
 
-    if (!inside(c, o->coef_at, (uint64_t)n_sets * o->n_terms, sizeof *coef))
+    if (s->n_knots == 0)
+        return check_narrow(c, o);
+    if (o->narrow)
+        return "an output has no such narrow coefficients";
+    if (!inside(c, o->coef_at, (uint64_t)s->n_knots * o->n_terms, sizeof *coef))
         return outside;
     coef = table(c, o->coef_at);
-    for (uint32_t k = 0; k < n_sets; k++, coef += o->n_terms)
+    for (uint32_t k = 0; k < s->n_knots; k++, coef += o->n_terms)
         if (magnitudes(coef, o->n_terms) >= LIMIT)
             return "the coefficients of an output are too large";
     return NULL;

@@ -135,7 +135,11 @@ static int32_t coefficient(const struct glint_lens *lens,
     const int32_t *coef = at(lens, o->coef_at);
     const uint16_t *power = at(lens, o->term_at);
     const int c = power[term] >> 8 & 15, d = power[term] >> 12;
-    int32_t value = coef[term];
+    const uint32_t n_wide = o->n_terms - (o->narrow & 0xff);
+    const int16_t *narrow = (const int16_t *)(const void *)(coef + n_wide);
+    int32_t value = term < n_wide ? coef[term]
+                                  : narrow[term - n_wide] *
+                                        (INT32_C(1) << (o->narrow >> 8));
 
     if (knots) {
         coef += set->knot * o->n_terms;
