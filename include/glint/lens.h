@@ -128,9 +128,12 @@ struct glint_model_output {
     uint32_t n_terms, term_at; /* uint16 [n_terms], padded to whole words:
                                   powers of u, v, s, w (or x, y, r, 1 - r), four
                                   bits each, the first lowest */
-    uint32_t coef_at;     /* int32 [n_terms], with knots [n_knots][n_terms] */
-    int32_t exponent;     /* a value is integer * 2^exponent */
-    uint32_t bound;       /* proven: no intermediate is larger; < 2^30 */
+    uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
+    uint32_t narrow;  /* low byte N: the last N coefficients are int16 instead,
+                         padded to whole words, and count 2^S times as much; S
+                         is the next byte, at most 20. With knots 0 */
+    int32_t exponent; /* a value is integer * 2^exponent */
+    uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
     uint32_t rounding_q8; /* proven: integers stray from the polynomial by no
                              more than so many steps */
     /* Measured against exact rays through the run-time arithmetic, q20: pixels

@@ -215,12 +215,12 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
     const double film = k->lens->film_width_mm, t = k->options.tolerance;
     const struct glint_tolerance tolerance = {
         .sensor_mm = 0.03 * t * film / 1920,
-        .faint_sensor_mm = 0.065 * t * film / 1920,
+        .faint_sensor_mm = 0.068 * t * film / 1920,
         .edge_mm = 0.03 * t * film / 1920,
         .stop = 3e-4 * t,
         .barrel = 5e-4 * t,
         .energy = 6e-4 * t,
-        .ease = 8,
+        .ease = 10,
         .brightness = &k->brightness};
     struct glint_hunt *hunt = malloc(sizeof *hunt);
     enum glint_status status = GLINT_E_MEMORY;
@@ -336,9 +336,9 @@ static enum glint_status cook(struct kitchen *k)
     if (status == GLINT_OK)
         status = set_header(k, &header);
     if (status == GLINT_OK)
-        status = glint_brightness_find(
-            &k->brightness, &k->setup, field_of(k->lens, &k->options),
-            k->options.band_nm, k->options.workers);
+        status = glint_brightness_find(&k->brightness, &k->setup,
+                                       field_of(k->lens, &k->options),
+                                       k->options.band_nm, k->options.workers);
     if (status == GLINT_OK)
         status = for_ghosts(k, fit_job, 0, 0.9);
     if (status == GLINT_OK)

@@ -32,10 +32,9 @@ static struct patch patch_of(const struct glint_ray *a,
                              const struct glint_ray *b,
                              const struct glint_ray *c, double pupil_mm2)
 {
-    const double area = fabs((b->sensor_x_mm - a->sensor_x_mm) *
-                                 (c->sensor_y_mm - a->sensor_y_mm) -
-                             (b->sensor_y_mm - a->sensor_y_mm) *
-                                 (c->sensor_x_mm - a->sensor_x_mm));
+    const double area = fabs(
+        (b->sensor_x_mm - a->sensor_x_mm) * (c->sensor_y_mm - a->sensor_y_mm) -
+        (b->sensor_y_mm - a->sensor_y_mm) * (c->sensor_x_mm - a->sensor_x_mm));
 
     /* the other half of the picture is the same */
     return (struct patch){a->energy * pupil_mm2 / fmax(area, 1e-12), 2 * area};
@@ -64,11 +63,10 @@ static int add_ghost(const struct task *t, int ghost, double sine,
         for (int i = 0; i <= ACROSS; i++) {
             const int now = j & 1, before = now ^ 1;
 
-            ok[now][i] =
-                glint_trace(&path, p.x0_mm + i * dx, j * dy, direction,
-                            &ray[now][i], NULL) == GLINT_RAY_OK;
-            if (i && j && ok[before][i - 1] && ok[before][i] && ok[now][i - 1] &&
-                is_seen(t, &ray[before][i - 1]))
+            ok[now][i] = glint_trace(&path, p.x0_mm + i * dx, j * dy, direction,
+                                     &ray[now][i], NULL) == GLINT_RAY_OK;
+            if (i && j && ok[before][i - 1] && ok[before][i] &&
+                ok[now][i - 1] && is_seen(t, &ray[before][i - 1]))
                 patch[n++] = patch_of(&ray[before][i - 1], &ray[before][i],
                                       &ray[now][i - 1], dx * dy);
         }
@@ -88,8 +86,7 @@ static void angle_job(void *ctx, int job, int worker)
     struct task *t = ctx;
     const int ghosts = t->setup->n_ghosts;
     const double enough = 0.001 * GLINT_PI * t->field_mm * t->field_mm;
-    struct patch *patch =
-        malloc(((size_t)ghosts * CELLS + 1) * sizeof *patch);
+    struct patch *patch = malloc(((size_t)ghosts * CELLS + 1) * sizeof *patch);
     double covered = 0;
     int n = 0;
 
@@ -119,8 +116,11 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
 {
     static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {0,  4,  9, 15,
                                                             22, 32, 45};
-    struct task t = {brightness, setup, field_mm,
-                     0.5 * (band_nm[0] + band_nm[1]), {GLINT_OK}};
+    struct task t = {brightness,
+                     setup,
+                     field_mm,
+                     0.5 * (band_nm[0] + band_nm[1]),
+                     {GLINT_OK}};
 
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         brightness->sine[k] = glint_sin_deg(degrees[k]);

@@ -9,7 +9,7 @@
 #include "bake/zone.h"
 
 #define PEAK       5.0  /* times the root mean square */
-#define LEAST_FILL 0.45 /* of a box; below it the grids waste their cells */
+#define LEAST_FILL 0.4 /* of a box; below it the grids waste their cells */
 #define FILL_DEG   0.6  /* narrower zones need not care for that */
 #define LEAST_DEG  0.45 /* of a zone that may be halved */
 #define STUCK                                                               \
@@ -93,10 +93,9 @@ static double ease_of(const struct fitter *f, const struct glint_zone *zone,
 {
     const double level = glint_brightness_at(f->tolerance->brightness,
                                              0.5 * (zone->lo + zone->hi));
-    const double pupil = 4 * zone->half_x[0] * zone->half_y[0] *
-                         fmax(s->n, 1) / fmax(s->n_all, 1);
-    const double y =
-        fmax(fabs(s->low[1]), fabs(s->high[1])); /* mirrored */
+    const double pupil = 4 * zone->half_x[0] * zone->half_y[0] * fmax(s->n, 1) /
+                         fmax(s->n_all, 1);
+    const double y = fmax(fabs(s->low[1]), fabs(s->high[1])); /* mirrored */
     const double sensor = fmax(1e-9, (s->high[0] - s->low[0]) * 2 * y * 0.8);
     const double share = s->energy * pupil / sensor / fmax(level, 1e-30);
 
@@ -230,9 +229,10 @@ static enum glint_status fit_barrel(struct fitter *f, int barrel,
                       f->barrel, system, worst);
 }
 
-static enum glint_status
-fit_outputs(struct fitter *f, const struct glint_zone *zone,
-            struct glint_fitted_system *system, double *worst)
+static enum glint_status fit_outputs(struct fitter *f,
+                                     const struct glint_zone *zone,
+                                     struct glint_fitted_system *system,
+                                     double *worst)
 {
     enum glint_status status = GLINT_OK;
 

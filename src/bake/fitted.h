@@ -17,7 +17,7 @@ struct glint_fitted_output {
     double *coef;
     double grain; /* rounding of a coefficient that does no harm; 0: none */
     int event;    /* of the path, for a barrel */
-    bool met;  /* the tolerance */
+    bool met;     /* the tolerance */
 };
 
 struct glint_fitted_system {

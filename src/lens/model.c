@@ -34,7 +34,7 @@ STATIC_ASSERT(sizeof(struct glint_model_output) == 48);
 enum {
     LIMIT = 1 << 30, /* of sums of magnitudes; also 1 as a q30 */
     MAX_REAL_EXPONENT = 200,
-    MAX_SHIFT = 20, /* of narrow coefficients */
+    MAX_SHIFT = 20,     /* of narrow coefficients */
     MIN_EXPONENT = -80, /* of outputs and boxes */
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
