@@ -277,7 +277,7 @@ struct glint_bake_options {
                           root mean squares for ghosts that are as bright as
                           counts are 0.03 pixels of a film 1920 wide, as much
                           for the outline, and 0.06 % of energy; for faint
-                          ones up to 0.068 and 0.3 pixels and 0.6 % */
+                          ones up to 0.058 and 0.3 pixels and 0.6 % */
     struct glint_workers *workers; /* never changes the model */
     glint_progress_fn *progress;   /* NULL: silent */
     void *progress_ctx;

@@ -215,10 +215,10 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
     const double film = k->lens->film_width_mm, t = k->options.tolerance;
     const struct glint_tolerance tolerance = {
         .sensor_mm = 0.03 * t * film / 1920,
-        .faint_sensor_mm = 0.068 * t * film / 1920,
+        .faint_sensor_mm = 0.058 * t * film / 1920,
         .edge_mm = 0.03 * t * film / 1920,
-        .stop = 3e-4 * t,
-        .barrel = 5e-4 * t,
+        .stop = 4e-4 * t,
+        .barrel = 6e-4 * t,
         .energy = 6e-4 * t,
         .ease = 10,
         .brightness = &k->brightness};

@@ -9,7 +9,7 @@
 #include "bake/zone.h"
 
 #define PEAK       5.0  /* times the root mean square */
-#define LEAST_FILL 0.4 /* of a box; below it the grids waste their cells */
+#define LEAST_FILL 0.4  /* of a box; below it the grids waste their cells */
 #define FILL_DEG   0.6  /* narrower zones need not care for that */
 #define LEAST_DEG  0.45 /* of a zone that may be halved */
 #define STUCK                                                               \
