@@ -53,16 +53,17 @@ static void add_rim(const struct glint_feed_config *cfg,
 }
 
 /* As many cells as keep what is straight between rays within a hundredth of a
- * pixel of what bends, at 64: along a bright fold even a tenth shows. */
+ * pixel of what bends, at 64, and outlines within a tenth: light piles up along
+ * folds, but not along cuts. */
 static int choose_cells(const struct glint_feed_config *cfg,
                         const struct glint_survey *survey)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
-    const double error =
-        0.01 * (64.0 / cfg->max_cells) * (64.0 / cfg->max_cells);
+    const double bend = fmax(survey->bend_mm, 0.1 * survey->outline_mm);
+    const double finer = cfg->max_cells / 64.0;
+    const double n = finer * sqrt(bend * pixels / (8 * 0.01));
     const double most =
-        fmin((survey->folds ? 4.0 : 2.0) * cfg->max_cells, GLINT_MAX_CELLS);
-    const double n = sqrt(survey->bend_mm * pixels / (8 * error));
+        fmin((survey->folds ? 4 : 2) * cfg->max_cells, GLINT_MAX_CELLS);
 
     if (cfg->uniform)
         return cfg->max_cells;
