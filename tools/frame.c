@@ -146,7 +146,7 @@ double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
         return 1;
     for (int i = 0; i < frame->n_feeds; i++)
         brightest = fmax(brightest, mean_irradiance(frame, &frame->feed[i]));
-    return brightest > 0 ? exp2(3 - ceil(log2(brightest))) : 1;
+    return brightest > 0 ? exp2(5 - ceil(log2(brightest))) : 1;
 }
 
 /* ------------------------------------------------------------------- memory */

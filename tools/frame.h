@@ -49,7 +49,8 @@ void frame_init(struct frame *frame, const struct glint_setup *setup,
 enum glint_status frame_use_mask(struct frame *frame, int nodes);
 
 /* Plans LAMPS and returns the power of two that brings the brightest ghost near
- * 8 times display white: the scale for pictures in linear light. */
+ * 32 times display white, of the 2048 that it may reach: the scale for pictures
+ * in linear light. */
 double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
                         int n_lamps);
 

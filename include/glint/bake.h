@@ -370,10 +370,10 @@ struct glint_feed {
 };
 
 /* Finds the pupil and the barrels, and chooses the grid by how much the ghost's
- * light bends in pixels: off by 0.01 px (RMS) with 64 for max_cells, and by the
- * square of it less with more; a multiple of 4 from 8 to 2 max_cells, 4
- * max_cells where light folds, over the pupil and a pixel more on each side.
- * Lamp, ghost and wavelength are set already. */
+ * light bends in pixels: off by 0.01 px (RMS), outlines by 0.1, with 64 for
+ * max_cells, and by the square of it less with more; a multiple of 4 from 8 to
+ * 2 max_cells, 4 max_cells where light folds, over the pupil and a pixel more
+ * on each side. Lamp, ghost and wavelength are set already. */
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed, const struct glint_feed *near);
 

@@ -50,16 +50,16 @@ static void add_rim(const struct glint_feed_config *cfg,
 }
 
 /* As many cells as keep what is straight between rays within a hundredth of a
- * pixel of what bends, at 64: along a bright fold even a tenth shows. */
+ * pixel of what bends, at 64, and outlines within a tenth: light piles up along
+ * folds, but not along cuts. */
 int glint_feed_cells(const struct glint_feed_config *cfg, double bend_mm,
-                     bool folds)
+                     double outline_mm, bool folds)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
-    const double error =
-        0.01 * (64.0 / cfg->max_cells) * (64.0 / cfg->max_cells);
-    const double most =
-        fmin((folds ? 4.0 : 2.0) * cfg->max_cells, GLINT_MAX_CELLS);
-    const double n = sqrt(bend_mm * pixels / (8 * error));
+    const double bend = fmax(bend_mm, 0.1 * outline_mm);
+    const double finer = cfg->max_cells / 64.0;
+    const double n = finer * sqrt(bend * pixels / (8 * 0.01));
+    const double most = fmin((folds ? 4 : 2) * cfg->max_cells, GLINT_MAX_CELLS);
 
     if (cfg->uniform)
         return cfg->max_cells;
@@ -115,7 +115,8 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
         glint_survey_run(&survey, &path, &feed->pupil, direction,
                          s->optics.stop_radius_mm, SURVEY);
         choose_cuts(feed, &survey);
-        feed->n_cells = glint_feed_cells(cfg, survey.bend_mm, survey.folds);
+        feed->n_cells = glint_feed_cells(cfg, survey.bend_mm, survey.outline_mm,
+                                         survey.folds);
         add_rim(cfg, feed);
     }
 }

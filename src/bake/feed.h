@@ -12,9 +12,10 @@
 bool glint_feed_in_view(const struct glint_feed_config *cfg,
                         const struct glint_feed *feed);
 
-/* The grid for a ghost that bends by BEND_MM (struct glint_survey). */
+/* The grid for a ghost that bends by BEND_MM and whose outlines bend by
+ * OUTLINE_MM (struct glint_survey). */
 int glint_feed_cells(const struct glint_feed_config *cfg, double bend_mm,
-                     bool folds);
+                     double outline_mm, bool folds);
 
 /* glint_feed_plan and _trace of a model. */
 void glint_feed_plan_model(const struct glint_feed_config *cfg,

@@ -35,9 +35,9 @@ static bool transfer_of(const struct glint_feed_config *cfg,
 
 /* ------------------------------------------------------------------- survey */
 
-/* One ray, in mm and stop radii. */
+/* One ray: values by kind. */
 struct probe {
-    double x, y, energy;
+    double at[GLINT_OUT_KINDS];
     bool inside; /* of the stop and the barrels, and a little around */
 };
 
@@ -67,38 +67,78 @@ static void probe_ray(const struct glint_transfer *t, int i, int j,
 
     glint_transfer_ray(t, (int32_t)((2.0 * i / ACROSS - 1) * one_q30),
                        (int32_t)((double)j / DOWN * one_q30), &out);
-    p->x = value(t, &out, GLINT_OUT_SENSOR_X);
-    p->y = value(t, &out, GLINT_OUT_SENSOR_Y);
-    p->energy = value(t, &out, GLINT_OUT_ENERGY);
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        p->at[kind] = value(t, &out, kind);
     p->inside = is_inside(t, &out);
 }
+
+/* How a quantity changes from ray to ray: sums of squares. */
+struct change {
+    double first, second;
+};
 
 /* What the rays of a coarse grid say of the bundle. */
 struct survey {
     struct probe at[DOWN + 1][ACROSS + 1];
-    double bend2_mm2; /* of second differences, squared */
+    struct change change[GLINT_OUT_KINDS];
     int n_bends;
     int up, down; /* cells by the way they are turned */
 };
 
+/* B between A and C, STEPS of which fit the box. */
 static void add_bend(struct survey *s, const struct probe *a,
                      const struct probe *b, const struct probe *c, double steps)
 {
-    const double x = steps * (a->x - 2 * b->x + c->x);
-    const double y = steps * (a->y - 2 * b->y + c->y);
-
     if (!b->inside)
         return;
-    s->bend2_mm2 += x * x + y * y;
+    for (int k = 0; k < GLINT_OUT_KINDS; k++) {
+        const double first = 0.5 * steps * (c->at[k] - a->at[k]);
+        const double second =
+            steps * steps * (a->at[k] - 2 * b->at[k] + c->at[k]);
+
+        s->change[k].first += first * first;
+        s->change[k].second += second * second;
+    }
     s->n_bends++;
+}
+
+static double bend_mm(const struct survey *s)
+{
+    return s->n_bends ? sqrt((s->change[GLINT_OUT_SENSOR_X].second +
+                              s->change[GLINT_OUT_SENSOR_Y].second) /
+                             s->n_bends)
+                      : 0;
+}
+
+/* What the bend of the kinds FROM .. TO, which cut, is worth on the sensor. */
+static double cut_mm(const struct survey *s, int from, int to)
+{
+    const double sensor = s->change[GLINT_OUT_SENSOR_X].first +
+                          s->change[GLINT_OUT_SENSOR_Y].first;
+    double first = 0, second = 0;
+
+    for (int k = from; k <= to; k++) {
+        first += s->change[k].first;
+        second += s->change[k].second;
+    }
+    return first > 0 ? sqrt(second / s->n_bends * sensor / first) : 0;
+}
+
+static double outline_mm(const struct survey *s)
+{
+    double most = cut_mm(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
+
+    for (int k = GLINT_OUT_RADIUS; k < GLINT_OUT_KINDS; k++)
+        most = fmax(most, cut_mm(s, k, k));
+    return most;
 }
 
 static void add_turn(struct survey *s, int i, int j)
 {
     const struct probe *a = &s->at[j][i], *b = &s->at[j][i + 1];
     const struct probe *c = &s->at[j + 1][i];
-    const double turn =
-        (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
+    const double turn = (b->at[0] - a->at[0]) * (c->at[1] - a->at[1]) -
+                        (b->at[1] - a->at[1]) * (c->at[0] - a->at[0]);
 
     if (!(a->inside || b->inside || c->inside))
         return;
@@ -108,8 +148,9 @@ static void add_turn(struct survey *s, int i, int j)
 
 static void run_survey(struct survey *s, const struct glint_transfer *t)
 {
-    s->bend2_mm2 = 0;
     s->n_bends = s->up = s->down = 0;
+    for (int k = 0; k < GLINT_OUT_KINDS; k++)
+        s->change[k] = (struct change){0, 0};
     for (int j = 0; j <= DOWN; j++)
         for (int i = 0; i <= ACROSS; i++)
             probe_ray(t, i, j, &s->at[j][i]);
@@ -117,10 +158,10 @@ static void run_survey(struct survey *s, const struct glint_transfer *t)
         for (int i = 0; i <= ACROSS; i++) {
             if (i > 0 && i < ACROSS)
                 add_bend(s, &s->at[j][i - 1], &s->at[j][i], &s->at[j][i + 1],
-                         ACROSS * ACROSS);
+                         ACROSS);
             if (j > 0 && j < DOWN)
                 add_bend(s, &s->at[j - 1][i], &s->at[j][i], &s->at[j + 1][i],
-                         4 * DOWN * DOWN);
+                         2 * DOWN);
             if (i < ACROSS && j < DOWN)
                 add_turn(s, i, j);
         }
@@ -138,10 +179,10 @@ static bool set_extent(const struct survey *s, struct glint_pupil *p)
 
         if (!a->inside)
             continue;
-        low = fmin(low, a->x);
-        high = fmax(high, a->x);
-        y = fmax(y, fabs(a->y));
-        p->energy = fmax(p->energy, a->energy);
+        low = fmin(low, a->at[GLINT_OUT_SENSOR_X]);
+        high = fmax(high, a->at[GLINT_OUT_SENSOR_X]);
+        y = fmax(y, fabs(a->at[GLINT_OUT_SENSOR_Y]));
+        p->energy = fmax(p->energy, a->at[GLINT_OUT_ENERGY]);
     }
     p->sensor_mm[0] = low - 0.1 * (high - low);
     p->sensor_mm[1] = high + 0.1 * (high - low);
@@ -157,7 +198,7 @@ void glint_feed_plan_model(const struct glint_feed_config *cfg,
 {
     struct glint_pupil *p = &feed->pupil;
     struct glint_transfer t;
-    struct survey s; /* 10 KB */
+    struct survey s; /* 30 KB */
     double unit;
 
     feed->n_cells = 0;

@@ -11,7 +11,7 @@ enum { SHOWN = 1000 };
 struct probe {
     bool traced, inside;
     double x_mm, y_mm; /* on the sensor */
-    double stop_r2;
+    double stop_x, stop_y, stop_r2;
     double r2[GLINT_MAX_EVENTS + 1]; /* relative radius, squared */
 };
 
@@ -30,6 +30,8 @@ static void probe_ray(struct probe *p, const struct glint_path *path, double x,
     p->y_mm = ray.sensor_y_mm;
     sx = ray.stop_x_mm / stop_radius_mm;
     sy = ray.stop_y_mm / stop_radius_mm;
+    p->stop_x = sx;
+    p->stop_y = sy;
     p->stop_r2 = sx * sx + sy * sy;
     p->inside = p->stop_r2 <= 1 && ray.rel_radius <= 1;
     for (int k = 0; k < path->n_events; k++) {
@@ -98,24 +100,58 @@ static void mark_between(const struct probe *a, const struct probe *b, int n,
 /* --------------------------------------------------------------------- bend
  */
 
-struct bend {
-    double sum_mm2; /* of second differences, squared */
-    int n;
-    int up, down; /* cells by the way they are turned */
+/* How a quantity changes along the grid's lines: sums of squares. */
+struct change {
+    double first, second;
 };
+
+struct bend {
+    int n;
+    struct change sensor; /* mm */
+    struct change stop;
+    struct change barrel[GLINT_MAX_EVENTS + 1]; /* of r^2 / 2 */
+    int up, down; /* cells by how they are turned */
+};
+
+static void add_change(struct change *change, double a, double b, double c)
+{
+    change->first += 0.25 * (c - a) * (c - a);
+    change->second += (a - 2 * b + c) * (a - 2 * b + c);
+}
 
 /* B in the middle of A and C. */
 static void add_bend(struct bend *bend, const struct probe *a,
-                     const struct probe *b, const struct probe *c)
+                     const struct probe *b, const struct probe *c, int n_events)
 {
-    double x, y;
-
     if (!b->traced || !b->inside || !a->traced || !c->traced)
         return;
-    x = a->x_mm - 2 * b->x_mm + c->x_mm;
-    y = a->y_mm - 2 * b->y_mm + c->y_mm;
-    bend->sum_mm2 += x * x + y * y;
+    add_change(&bend->sensor, a->x_mm, b->x_mm, c->x_mm);
+    add_change(&bend->sensor, a->y_mm, b->y_mm, c->y_mm);
+    add_change(&bend->stop, a->stop_x, b->stop_x, c->stop_x);
+    add_change(&bend->stop, a->stop_y, b->stop_y, c->stop_y);
+    for (int k = 0; k < n_events; k++)
+        add_change(&bend->barrel[k], 0.5 * a->r2[k], 0.5 * b->r2[k],
+                   0.5 * c->r2[k]);
     bend->n++;
+}
+
+/* What the bend of CUT is worth on the sensor, over one step of the survey. */
+static double on_sensor_mm(const struct bend *bend, const struct change *cut)
+{
+    return cut->first > 0
+               ? sqrt(cut->second / bend->n * bend->sensor.first / cut->first)
+               : 0;
+}
+
+static double outline_bend_mm(const struct bend *bend, const int *weight,
+                              int n_events)
+{
+    double most = on_sensor_mm(bend, &bend->stop);
+
+    for (int k = 0; k < n_events; k++)
+        if (weight[k] >= SHOWN)
+            most = fmax(most, on_sensor_mm(bend, &bend->barrel[k]));
+    return most;
 }
 
 /* A cell whose first corner is A, with B beside and C below it. */
@@ -152,9 +188,9 @@ static void look_back(const struct rows *r, int i, int j, int n_events,
     if (j > 0)
         mark_between(above, here, n_events, weight);
     if (i > 1)
-        add_bend(bend, here - 2, here - 1, here);
+        add_bend(bend, here - 2, here - 1, here, n_events);
     if (j > 1)
-        add_bend(bend, &r->row[(j + 1) % 3][i], above, here);
+        add_bend(bend, &r->row[(j + 1) % 3][i], above, here, n_events);
     if (i > 0 && j > 0)
         add_turn(bend, above - 1, above, here - 1);
 }
@@ -165,7 +201,7 @@ void glint_survey_run(struct glint_survey *survey,
                       double stop_radius_mm, int side)
 {
     int weight[GLINT_MAX_EVENTS + 1] = {0};
-    struct bend bend = {0, 0, 0, 0};
+    struct bend bend = {.n = 0};
     struct rows r; /* 350 KB: the offline half has the stack for it */
 
     for (int j = 0; j <= side / 2; j++)
@@ -175,7 +211,12 @@ void glint_survey_run(struct glint_survey *survey,
                       p->y1_mm * j / (side / 2), direction, stop_radius_mm);
             look_back(&r, i, j, path->n_events, weight, &bend);
         }
-    survey->bend_mm = bend.n ? sqrt(bend.sum_mm2 / bend.n) * side * side : 0;
+    survey->bend_mm = survey->outline_mm = 0;
+    if (bend.n) {
+        survey->bend_mm = sqrt(bend.sensor.second / bend.n) * side * side;
+        survey->outline_mm =
+            outline_bend_mm(&bend, weight, path->n_events) * side * side;
+    }
     survey->folds = bend.up > 0 && bend.down > 0;
     survey->n_cuts = 0;
     for (int k = 0; k < path->n_events && survey->n_cuts < GLINT_MAX_EVENTS;

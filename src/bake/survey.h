@@ -23,10 +23,12 @@ struct glint_survey {
     int cut_event[GLINT_MAX_EVENTS];  /* index into the path, rising */
     int cut_weight[GLINT_MAX_EVENTS]; /* the larger, the more of the outline it
                                          is */
-    double bend_mm; /* second difference of the sensor position over one step
-                       that spans the pupil's box, RMS of the rays that pass:
-                       a grid of n cells is off by bend / (8 n^2) */
-    bool folds;     /* some light arrives turned over, some does not */
+    double bend_mm;    /* second difference of the sensor position over one step
+                          that spans the pupil's box, RMS of the rays that pass:
+                          a grid of n cells is off by bend / (8 n^2) */
+    double outline_mm; /* the same of what the stop and the barrels cut by, the
+                          one that bends most */
+    bool folds;        /* some light arrives turned over, some does not */
 };
 
 /* Asks a grid of SIDE cells a side (even, up to GLINT_MAX_SURVEY) over PUPIL.
