@@ -36,7 +36,7 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool model_file model_report measure lamps frame scene \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
-UNIT := arena model prescription optics trace pupil published quantise \
+UNIT := arena model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare pnm y4m picture output workers \
         measure lamps
 FUZZ := lens model y4m pnm
