@@ -34,10 +34,11 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/published bake/quantise bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
-TOOLS := tool model_file model_cache model_report measure lamps \
-        frame scene cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
-UNIT := arena model prescription optics trace pupil published exact curve \
-        resolve lights flare pnm y4m picture output workers measure lamps
+TOOLS := tool model_file model_cache model_report measure lamps frame scene \
+        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
+UNIT := arena model prescription optics trace pupil published quantise bake \
+        exact curve resolve lights flare pnm y4m picture output workers \
+        measure lamps
 FUZZ := lens model y4m pnm
 
 core_o     := $(CORE:%=$(OUT)/src/%.o)

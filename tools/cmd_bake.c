@@ -20,6 +20,7 @@ static const char help[] =
     "The same lens and options give the same bytes.\n"
     "\n"
     "  -o, --output MODEL\n"
+    "                    - is standard output; no report then\n"
     "  --f-number N      stop the lens to f/N first\n"
     "  --basis B         auto: place in the ghost's own box, zones of angles "
     "as\n"
@@ -159,7 +160,7 @@ static int run(struct tool *tool, struct bake *b, const char *name)
         code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
     if (code == EXIT_OK)
         code = save(tool, b->output, model, bytes);
-    if (code == EXIT_OK)
+    if (code == EXIT_OK && strcmp(b->output, "-"))
         code = report(tool, model, bytes, tool_seconds() - start, &r);
     free(model);
     free(lens);

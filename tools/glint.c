@@ -13,7 +13,7 @@ static const char help[] =
     "glint: lens flare of real lenses, on pictures and video, without a GPU\n"
     "\n"
     "  glint info LENS                 what a lens is: focal length, ghosts\n"
-    "  glint trace LENS --ghost K ...  exact rays as a table\n"
+    "  glint trace LENS --ghost K ...  rays as a table\n"
     "  glint render LENS -o OUT ...    the flare alone\n"
     "  glint overlay IN -o OUT ...     the flare of the lamps in a picture or\n"
     "                                  video, on top of it\n"

@@ -45,8 +45,10 @@ static enum glint_status check(const struct glint_bake_options *o,
                                struct glint_error *error)
 {
     const char *wrong =
-        !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
-          o->band_nm[0] + 1 <= o->band_nm[1])
+        o->basis != GLINT_BASIS_AUTO && o->basis != GLINT_BASIS_SPARSE
+            ? "the basis is unknown"
+        : !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
+            o->band_nm[0] + 1 <= o->band_nm[1])
             ? "the band must lie within 300 and 1100 nm"
         : !(o->max_deg > 0 && o->max_deg <= 89)
             ? "the largest angle must be above 0 and at most 89 degrees"
@@ -328,6 +330,20 @@ static void clear(struct kitchen *k)
     free(k->draft.data);
 }
 
+/* What no reader would take is not handed out. */
+static enum glint_status check_draft(const struct kitchen *k)
+{
+    struct glint_lens lens;
+    const char *reason;
+
+    if (glint_lens_open(&lens, k->draft.data, k->draft.bytes, &reason) ==
+        GLINT_OK)
+        return GLINT_OK;
+    snprintf(k->error->text, sizeof k->error->text, "%s: %s", k->lens->name,
+             reason);
+    return GLINT_E_LENS;
+}
+
 static enum glint_status cook(struct kitchen *k)
 {
     struct glint_model_header header;
@@ -349,9 +365,10 @@ static enum glint_status cook(struct kitchen *k)
     for (int g = 1; g < k->setup.n_ghosts; g++)
         k->first[g] = k->first[g - 1] + k->fitted[g - 1].n_systems;
     status = for_ghosts(k, measure_job, 0.9, 1);
-    if (status == GLINT_OK)
-        glint_draft_close(&k->draft);
-    return status;
+    if (status != GLINT_OK)
+        return status;
+    glint_draft_close(&k->draft);
+    return check_draft(k);
 }
 
 static void sum_up(const struct kitchen *k, struct glint_bake_report *r)
@@ -380,12 +397,13 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
         return GLINT_E_MEMORY;
     k->lens = lens;
     k->options = *options;
+    k->error = error;
     status = check(options, error);
     if (status == GLINT_OK)
         status = glint_setup_init(&k->setup, lens, 0, 0, rgb_nm, 3, error);
     if (status == GLINT_OK) {
         status = cook(k);
-        if (status == GLINT_E_LENS)
+        if (status == GLINT_E_LENS && !error->text[0])
             snprintf(error->text, sizeof error->text,
                      "%s: no proof that its integers cannot overflow",
                      lens->name);

@@ -213,9 +213,8 @@ void glint_feed_plan_model(const struct glint_feed_config *cfg,
     run_survey(&s, &t);
     feed->found = set_extent(&s, p);
     if (feed->found && glint_feed_in_view(cfg, feed))
-        feed->n_cells =
-            glint_feed_cells(cfg, s.n_bends ? sqrt(s.bend2_mm2 / s.n_bends) : 0,
-                             s.up > 0 && s.down > 0);
+        feed->n_cells = glint_feed_cells(cfg, bend_mm(&s), outline_mm(&s),
+                                         s.up > 0 && s.down > 0);
 }
 
 void glint_feed_trace_model(const struct glint_feed_config *cfg,

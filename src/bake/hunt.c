@@ -194,13 +194,17 @@ int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
             break;
         if (now && !inside)
             range[n][0] = k ? edge(hunt, sine, before) : 0;
-        if (!now && inside)
-            range[n++][1] = edge(hunt, before, sine);
+        if (!now && inside) {
+            range[n][1] = edge(hunt, before, sine);
+            n += range[n][1] > range[n][0]; /* not for a moment only */
+        }
         inside = now;
         before = sine;
     }
-    if (inside)
-        range[n++][1] = before;
+    if (inside) {
+        range[n][1] = before;
+        n += range[n][1] > range[n][0];
+    }
     return n;
 }
 

@@ -42,19 +42,43 @@ static double largest_sum(const double *value, int sets, int n)
     return most;
 }
 
+enum { LEAST_EXPONENT = -80 }; /* that a model may have */
+
+/* The sum of the N values' largest magnitudes over the sets: a bound on any sum
+ * of values between those of the sets. */
+static double hull_sum(const double *value, int sets, int n)
+{
+    double sum = 0;
+
+    for (int i = 0; i < n; i++) {
+        double most = 0;
+
+        for (int k = 0; k < sets; k++)
+            most = fmax(most, fabs(value[k * n + i]));
+        sum += most;
+    }
+    return sum;
+}
+
 /* The exponent at which a sum of N values of magnitude SUM, each rounded, stays
  * below the limit. */
 static int exponent_for(double sum, int n)
 {
     int exponent;
 
-    if (!(sum > 0))
-        return -60;
     frexp(sum, &exponent);
-    exponent -= 29;
+    exponent = exponent - 29 > LEAST_EXPONENT ? exponent - 29 : LEAST_EXPONENT;
     while (ldexp(sum, -exponent) + n > (double)GLINT_COEF_LIMIT)
         exponent++;
     return exponent;
+}
+
+static bool all_finite(const double *value, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!isfinite(value[i]))
+            return false;
+    return true;
 }
 
 static enum glint_status to_integers(const double *value, int n, int exponent,
@@ -249,8 +273,7 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
 {
     const struct glint_fitted_output *o = &s->output[k];
 
-    return exponent_for(largest_sum(o->coef, sets_of(s), o->n_terms),
-                        o->n_terms);
+    return exponent_for(hull_sum(o->coef, sets_of(s), o->n_terms), o->n_terms);
 }
 
 static enum glint_status quantise_output(const struct glint_fitted_system *s,
@@ -261,9 +284,6 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
     const int pair = paired(o->kind), n = sets_of(s) * o->n_terms;
     enum glint_status status;
 
-    for (int i = 0; i < n; i++)
-        if (!isfinite(o->coef[i]))
-            return GLINT_E_LENS;
     out->exponent = output_exponent(s, k);
     if (pair) {
         const int other = output_exponent(s, k + pair);
@@ -282,19 +302,35 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
     return status;
 }
 
+/* Whether there is something to quantise: numbers everywhere. */
+static bool is_sound(const struct glint_fitted_system *s)
+{
+    const int n_box = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_POWERS);
+
+    for (int k = 0; k < s->n_outputs; k++) {
+        const struct glint_fitted_output *o = &s->output[k];
+
+        if (o->n_terms < 1 || !all_finite(o->coef, sets_of(s) * o->n_terms))
+            return false;
+    }
+    return all_finite(s->box, n_box) &&
+           (s->n_knots == 0 || (s->radius_mm > 0 && isfinite(s->radius_mm)));
+}
+
 enum glint_status glint_quantise(const struct glint_fitted_system *system,
                                  struct glint_quantised_system *out)
 {
     enum glint_status status;
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
+    out->n_box = 3 * (system->n_knots ? system->n_knots : GLINT_BOX_POWERS);
+    if (!is_sound(system))
+        return GLINT_E_LENS;
     if (system->n_knots) {
-        out->n_box = 3 * system->n_knots;
         out->box_exponent = (int)lrint(log2(system->radius_mm)) - 30;
         if (ldexp(system->radius_mm, -out->box_exponent) != 0x1p30)
             return GLINT_E_LENS; /* not a power of two */
     } else {
-        out->n_box = 3 * GLINT_BOX_POWERS;
         out->box_exponent = exponent_for(
             largest_sum(system->box, 3, GLINT_BOX_POWERS), GLINT_BOX_POWERS);
     }

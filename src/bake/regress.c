@@ -222,6 +222,8 @@ double glint_regress_fit(double *scratch, const struct glint_samples *samples,
             break;
         choose(&s, best);
     }
+    if (s.n_chosen == 0 && s.column[0].length > 0)
+        choose(&s, 0); /* a polynomial has a term, however little is asked */
     solve(&s, y, poly);
     return left;
 }

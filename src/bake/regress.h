@@ -47,7 +47,8 @@ struct glint_samples {
 size_t glint_regress_doubles(int n);
 
 /* Fits Y. Stops where the weighted residual is at most RMS in the mean and PEAK
- * everywhere, or where nothing more helps. Returns how much of these is left,
+ * everywhere, or where nothing more helps; there is a term at least, unless all
+ * weights are 0. Returns how much of these is left,
  * the larger ratio: up to 1 it got there. */
 double glint_regress_fit(double *scratch, const struct glint_samples *samples,
                          const double *y, const struct glint_degrees *degrees,

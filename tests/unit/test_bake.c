@@ -1,0 +1,583 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Whole models: the same bytes whatever must not matter, nothing missing, and
+ * errors as they are said to be.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/measure_model.h"
+#include "bake/quantise.h"
+#include "support/lens_check.h"
+#include "support/shuffle.h"
+
+#define TOLERANCE 20
+#define MAX_DEG   12
+
+struct baked {
+    unsigned char *data;
+    size_t bytes;
+    struct glint_bake_report report;
+    struct glint_lens lens;
+};
+
+static struct glint_prescription heliar;
+static struct glint_setup setup;
+static struct glint_bake_options options;
+static struct baked model;
+static double field_mm;
+
+static void bake(struct baked *b, const struct glint_prescription *lens,
+                 const struct glint_bake_options *o)
+{
+    struct glint_error error;
+    const char *reason = "";
+
+    *b = (struct baked){.data = NULL};
+    if (glint_bake(lens, o, &b->data, &b->bytes, &b->report, &error))
+        fail_msg("%s", error.text);
+    if (glint_lens_open(&b->lens, b->data, b->bytes, &reason))
+        fail_msg("%s", reason);
+}
+
+static int load(void **state)
+{
+    (void)state;
+    load_setup(&setup, &heliar, "heliar-tronnier");
+    glint_bake_defaults(&options);
+    options.tolerance = TOLERANCE;
+    options.max_deg = MAX_DEG;
+    bake(&model, &heliar, &options);
+    field_mm = glint_real_value(model.lens.header->field_mm);
+    return 0;
+}
+
+static int unload(void **state)
+{
+    (void)state;
+    free(model.data);
+    return 0;
+}
+
+static void parse(struct glint_prescription *lens, const char *text)
+{
+    struct glint_error error;
+
+    if (glint_prescription_parse(lens, text, strlen(text), "test", &error))
+        fail_msg("%s", error.text);
+}
+
+/* One pair of surfaces. */
+static void make_singlet(struct glint_prescription *lens)
+{
+    parse(lens, "name singlet\n"
+                "source none\n"
+                "f-number 8\n"
+                "film 36 24\n"
+                "surface 51.68 5 12 1.5168 64.17\n"
+                "surface flat 2 12 air\n"
+                "stop 94 10\n");
+}
+
+static void make_doublet(struct glint_prescription *lens)
+{
+    parse(lens, "name doublet\n"
+                "source none\n"
+                "f-number 5.6\n"
+                "film 36 24\n"
+                "surface 61.47 6 13 1.5168 64.17\n"
+                "surface -44.64 2.5 13 1.6727 32.21\n"
+                "surface -129.94 2 13 air\n"
+                "stop 93 10\n");
+}
+
+/* -------------------------------------------------------------------- bytes */
+
+static void same_bytes(const struct glint_prescription *lens,
+                       const struct glint_bake_options *o,
+                       const struct baked *expected, int workers, uint32_t seed)
+{
+    struct glint_bake_options shuffled = *o;
+    struct shuffle shuffle;
+    struct baked b;
+
+    shuffle_init(&shuffle, workers, seed);
+    shuffled.workers = workers ? &shuffle.workers : NULL;
+    bake(&b, lens, &shuffled);
+    assert_int_equal(b.bytes, expected->bytes);
+    assert_memory_equal(b.data, expected->data, b.bytes);
+    assert_memory_equal(&b.report, &expected->report, sizeof b.report);
+    free(b.data);
+}
+
+static void test_workers(void **state)
+{
+    (void)state;
+    same_bytes(&heliar, &options, &model, 3, 11);
+}
+
+static void test_twice(void **state)
+{
+    static struct glint_prescription lens;
+    struct glint_bake_options o = options;
+    struct baked b;
+
+    (void)state;
+    make_singlet(&lens);
+    for (int basis = GLINT_BASIS_AUTO; basis <= GLINT_BASIS_SPARSE; basis++) {
+        o.basis = basis;
+        bake(&b, &lens, &o);
+        assert_int_equal(b.lens.header->n_ghosts, 1);
+        assert_true(b.lens.header->n_systems >= 1);
+        same_bytes(&lens, &o, &b, basis == GLINT_BASIS_AUTO ? 0 : 3, 5);
+        free(b.data);
+    }
+}
+
+/* ------------------------------------------------------------------- header */
+
+static void test_header(void **state)
+{
+    const struct glint_model_header *h = model.lens.header;
+    const uint64_t key = glint_bake_key(&heliar, &options);
+
+    (void)state;
+    assert_string_equal(h->name, "heliar-tronnier");
+    assert_near(glint_real_value(h->focal_mm), setup.optics.focal_mm, 1e-6);
+    assert_near(glint_real_value(h->stop_radius_mm),
+                setup.optics.stop_radius_mm, 1e-8);
+    assert_near(glint_real_value(h->front_mm), 14.5, 1e-7);
+    assert_near(field_mm, 0.55 * hypot(36, 24), 1e-6);
+    assert_near(h->sine_hi_q30 * 0x1p-30, sin(MAX_DEG * 3.14159265358979 / 180),
+                1e-9);
+    assert_near(1e3 / sqrt(h->wave_lo_q24 * 0x1p-24), 700, 1e-3);
+    assert_near(1e3 / sqrt(h->wave_hi_q24 * 0x1p-24), 400, 1e-3);
+    assert_int_equal(h->key[0], (uint32_t)key);
+    assert_int_equal(h->key[1], (uint32_t)(key >> 32));
+    assert_int_equal(h->n_surfaces, 8);
+    assert_int_equal(h->n_ghosts, 13);
+    for (int k = 0; k < 13; k++) {
+        assert_int_equal(model.lens.ghost[k].i, setup.ghost[k].i);
+        assert_int_equal(model.lens.ghost[k].j, setup.ghost[k].j);
+    }
+}
+
+/* The polynomial of the direct image, against the flux itself. */
+static void test_flux(void **state)
+{
+    static const double nm[] = {400, 450, 532, 650, 700};
+    const struct glint_model_header *h = model.lens.header;
+    static struct glint_setup five;
+    struct glint_error error;
+
+    (void)state;
+    assert_int_equal(glint_setup_init(&five, &heliar, 0, 0, nm, 5, &error),
+                     GLINT_OK);
+    for (int k = 0; k < 5; k++) {
+        const double lo = 1 / (700.0 * 700), hi = 1 / (400.0 * 400);
+        const double w = (2 / (nm[k] * nm[k]) - lo - hi) / (hi - lo);
+        double sum = 0;
+
+        for (int i = 5; i >= 0; i--)
+            sum = sum * w + glint_real_value(h->direct_flux[i]);
+        assert_near(sum / five.direct_flux[k], 1, 5e-5);
+    }
+}
+
+/* ------------------------------------------------------------------- ghosts */
+
+static bool covered(const struct glint_lens *lens, int ghost, double theta_deg,
+                    double nm)
+{
+    static struct glint_transfer t;
+    const double sine = sin(theta_deg * 3.14159265358979323846 / 180);
+
+    return glint_transfer_init(&t, lens, ghost, (int32_t)lrint(sine * 0x1p30),
+                               (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
+}
+
+/* Found by the search that draws pictures: the bake must have it. */
+static void test_nothing_missing(void **state)
+{
+    static const double deg[] = {0, 3, 7, 11};
+    int seen = 0, lost_in_field = 0;
+
+    (void)state;
+    for (int g = 0; g < setup.n_ghosts; g++)
+        for (int k = 0; k < 4; k++) {
+            struct glint_path path;
+            struct glint_pupil box;
+
+            glint_path_init(&path, &heliar, &setup.ghost[g], 532);
+            if (!glint_pupil_find_within(&box, &path, deg[k],
+                                         setup.optics.stop_radius_mm, field_mm,
+                                         NULL))
+                continue;
+            seen++;
+            if (!covered(&model.lens, g, deg[k], 532)) {
+                print_error("ghost %d at %g degrees is missing\n", g, deg[k]);
+                lost_in_field++;
+            }
+        }
+    assert_in_range(seen, 45, 52);
+    assert_int_equal(lost_in_field, 0);
+    assert_false(covered(&model.lens, 0, MAX_DEG + 0.01, 532));
+}
+
+/* ------------------------------------------------------------------- errors */
+
+enum { TRIED = GLINT_OUT_ENERGY + 1, BUNDLES = 300, PER_BUNDLE = 12 };
+
+struct tally {
+    long n;
+    double sum2[TRIED], energy_error[BUNDLES * PER_BUNDLE],
+        energy[BUNDLES * PER_BUNDLE], most;
+};
+
+static bool passes(const struct glint_ray *ray)
+{
+    return ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+               setup.optics.stop_radius_mm &&
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= field_mm;
+}
+
+static void try_ray(struct tally *tally, const struct glint_transfer *t,
+                    const struct glint_path *path, const double direction[3],
+                    uint32_t *seed)
+{
+    const int32_t u_q30 = (int32_t)shuffle_next(seed) / 2;
+    const int32_t v_q30 = (int32_t)shuffle_next(seed) / 2;
+    const double unit = ldexp(1, t->box_exponent),
+                 stop = setup.optics.stop_radius_mm;
+    const double x = unit * (t->box[0] + t->box[1] * (u_q30 * 0x1p-30));
+    const double y = unit * t->box[2] * (v_q30 * 0x1p-30);
+    struct glint_outputs out;
+    struct glint_ray ray;
+
+    if (glint_trace(path, x, y, direction, &ray, NULL) || !passes(&ray))
+        return;
+    glint_transfer_ray(t, u_q30, v_q30, &out);
+    {
+        const double truth[TRIED] = {ray.sensor_x_mm, ray.sensor_y_mm,
+                                     ray.stop_x_mm / stop, ray.stop_y_mm / stop,
+                                     ray.energy};
+
+        for (int kind = 0; kind < TRIED; kind++) {
+            const double unit_of = kind <= GLINT_OUT_SENSOR_Y ? 1920 / 36.0 : 1;
+            const double error =
+                unit_of *
+                (ldexp(out.at[kind], t->exponent[kind]) - truth[kind]);
+
+            tally->sum2[kind] += error * error;
+            tally->energy_error[tally->n] = error;
+        }
+        tally->energy[tally->n++] = ray.energy;
+        tally->most = fmax(tally->most, ray.energy);
+    }
+}
+
+/* Root mean square errors of SYSTEM of GHOST in the file's units, without help
+ * of the bake. */
+static long measure(const struct glint_lens *lens, int ghost, int system,
+                    double rms[TRIED])
+{
+    static struct glint_transfer t;
+    static struct tally tally;
+    const struct glint_model_system *s = &lens->system[system];
+    uint32_t seed = 4711 + (uint32_t)system;
+
+    tally = (struct tally){.n = 0};
+    for (int k = 0; k < BUNDLES; k++) {
+        const double a = shuffle_next(&seed) * 0x1p-32;
+        const double b = shuffle_next(&seed) * 0x1p-32;
+        const int32_t sine_q30 =
+            s->sine_lo_q30 + 1 +
+            (int32_t)(a * (s->sine_hi_q30 - s->sine_lo_q30 - 2));
+        const int32_t wave_q24 =
+            s->wave_lo_q24 + (int32_t)(b * (s->wave_hi_q24 - s->wave_lo_q24));
+        const double sine = sine_q30 * 0x1p-30;
+        const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+        struct glint_path path;
+
+        assert_true(glint_transfer_init(&t, lens, ghost, sine_q30, wave_q24));
+        assert_ptr_equal(t.system, s);
+        glint_path_init(&path, &heliar, &setup.ghost[ghost],
+                        1e3 / sqrt(wave_q24 * 0x1p-24));
+        for (int i = 0; i < PER_BUNDLE; i++)
+            try_ray(&tally, &t, &path, direction, &seed);
+    }
+    tally.sum2[GLINT_OUT_ENERGY] = 0;
+    for (long k = 0; k < tally.n; k++) {
+        const double share =
+            tally.energy_error[k] / fmax(tally.energy[k], 0.1 * tally.most);
+
+        tally.sum2[GLINT_OUT_ENERGY] += share * share;
+    }
+    for (int kind = 0; kind < TRIED; kind++)
+        rms[kind] = tally.n ? sqrt(tally.sum2[kind] / (double)tally.n) : 0;
+    return tally.n;
+}
+
+static const struct glint_model_output *outputs_of(const struct baked *b,
+                                                   int system)
+{
+    return (const void *)(b->data + b->lens.system[system].output_at);
+}
+
+/* What the file says is what is there. */
+static void test_errors_are_true(void **state)
+{
+    (void)state;
+    for (int g = 0; g < setup.n_ghosts; g++)
+        for (uint32_t k = 0; k < model.lens.ghost[g].n_systems; k++) {
+            const int system = (int)(model.lens.ghost[g].first_system + k);
+            const struct glint_model_output *o = outputs_of(&model, system);
+            double rms[TRIED];
+
+            assert_true(measure(&model.lens, g, system, rms) > 300);
+            for (int kind = 0; kind < TRIED; kind++) {
+                const double said = o[kind].rms_q20 * 0x1p-20;
+
+                if (fabs(rms[kind] - said) > 0.3 * said)
+                    fail_msg("system %d: output %d is off by %g, the file says "
+                             "%g",
+                             system, kind, rms[kind], said);
+                assert_true(o[kind].p50_q20 <= o[kind].p99_q20);
+                assert_true(o[kind].p99_q20 <= o[kind].max_q20);
+                assert_true(o[kind].rms_q20 <= o[kind].max_q20);
+            }
+        }
+}
+
+/* And it is what was asked for. */
+static void test_errors_are_small(void **state)
+{
+    static const double aim[TRIED] = {0.065, 0.065, 2.5e-4, 2.5e-4, 7e-3};
+
+    (void)state;
+    assert_int_equal(model.report.unmet, 0);
+    assert_true(model.report.rays > 300 * (int)model.lens.header->n_systems);
+    assert_true(model.report.intruders < model.report.rays / 1000);
+    for (uint32_t k = 0; k < model.lens.header->n_systems; k++) {
+        const struct glint_model_output *o = outputs_of(&model, (int)k);
+
+        for (int kind = 0; kind < TRIED; kind++)
+            assert_true(o[kind].rms_q20 * 0x1p-20 <=
+                        1.6 * TOLERANCE * aim[kind]);
+    }
+}
+
+/* One coefficient's sign: both measurements tell, or they could not fail. */
+static void test_planted_error(void **state)
+{
+    static const struct glint_fitted_system no_barrels;
+    static const double band_nm[2] = {400, 700};
+    static struct glint_hunt hunt;
+    struct baked b = model;
+    const struct glint_model_output *o;
+    struct glint_measured before, after;
+    double rms[TRIED];
+    int32_t *coef;
+    uint32_t largest = 0;
+
+    (void)state;
+    b.data = malloc(model.bytes);
+    assert_non_null(b.data);
+    memcpy(b.data, model.data, model.bytes);
+    b.lens.header = (const void *)b.data;
+    b.lens.ghost = (const void *)(b.data + b.lens.header->ghost_at);
+    b.lens.system = (const void *)(b.data + b.lens.header->system_at);
+    glint_hunt_init(&hunt, &setup, 0, field_mm, band_nm);
+    glint_measure_system(&hunt, &b.lens, 0, &no_barrels, &before);
+    o = outputs_of(&b, 0);
+    assert_near(before.of[0].rms, o->rms_q20 * 0x1p-20, 1e-6);
+    coef = (void *)(b.data + o->coef_at);
+    for (uint32_t k = 1; k < o->n_terms; k++)
+        largest = labs(coef[k]) > labs(coef[largest]) ? k : largest;
+    coef[largest] = -coef[largest];
+    glint_measure_system(&hunt, &b.lens, 0, &no_barrels, &after);
+    measure(&b.lens, 0, 0, rms);
+    assert_true(after.of[0].rms > 50 * before.of[0].rms);
+    assert_true(after.of[0].max > 50 * before.of[0].max);
+    assert_true(rms[0] > 50 * before.of[0].rms);
+    assert_near(after.of[1].rms, before.of[1].rms, 0); /* y is as it was */
+    free(b.data);
+}
+
+/* ------------------------------------------------------------- key, refusals
+ */
+
+static void other_key(const struct glint_prescription *lens,
+                      const struct glint_bake_options *o)
+{
+    assert_true(glint_bake_key(lens, o) != glint_bake_key(&heliar, &options));
+}
+
+static void test_key(void **state)
+{
+    struct glint_prescription lens = heliar;
+    struct glint_bake_options o = options;
+    double *const of_lens[] = {&lens.f_number, &lens.film_width_mm,
+                               &lens.film_height_mm, &lens.stop_thickness_mm};
+    double *const of_options[] = {&o.band_nm[0], &o.band_nm[1], &o.max_deg,
+                                  &o.field_mm, &o.tolerance};
+
+    (void)state;
+    assert_true(glint_bake_key(&lens, &o) == glint_bake_key(&heliar, &options));
+    for (size_t k = 0; k < sizeof of_lens / sizeof *of_lens; k++) {
+        lens = heliar;
+        *of_lens[k] = nextafter(*of_lens[k], 1000);
+        other_key(&lens, &o);
+    }
+    for (int s = 0; s < heliar.n_surfaces; s++)
+        for (int k = 0; k < 7; k++) {
+            struct glint_surface *f = &lens.surface[s];
+            double *const number[] = {
+                &f->radius_mm, &f->thickness_mm, &f->semi_mm,  &f->nd,
+                &f->vd,        &f->coating_nm,   &f->coating_n};
+
+            lens = heliar;
+            *number[k] = nextafter(*number[k], 1000);
+            other_key(&lens, &o);
+        }
+    lens = heliar;
+    lens.stop_after--;
+    other_key(&lens, &o);
+    lens = heliar;
+    lens.name[0]++;
+    other_key(&lens, &o);
+    lens = heliar;
+    for (size_t k = 0; k < sizeof of_options / sizeof *of_options; k++) {
+        o = options;
+        *of_options[k] = nextafter(*of_options[k], 1000);
+        other_key(&lens, &o);
+    }
+    o = options;
+    o.basis = GLINT_BASIS_SPARSE;
+    other_key(&lens, &o);
+    /* but not with what never changes the model */
+    o = options;
+    o.workers = (void *)&lens;
+    o.progress_ctx = &lens;
+    lens.source[0]++;
+    assert_true(glint_bake_key(&lens, &o) == glint_bake_key(&heliar, &options));
+}
+
+static void test_refusals(void **state)
+{
+    static const double numbers[] = {NAN, -1, 1e9, HUGE_VAL, -HUGE_VAL};
+
+    (void)state;
+    for (int k = 0; k < 5 * 5 + 3; k++) {
+        struct glint_bake_options o = options;
+        double *const of_options[] = {&o.band_nm[0], &o.band_nm[1], &o.max_deg,
+                                      &o.field_mm, &o.tolerance};
+        struct glint_bake_report report = {7, 7, 7};
+        unsigned char *data = NULL;
+        struct glint_error error = {"?"};
+        size_t bytes = 7;
+
+        if (k < 25)
+            *of_options[k / 5] = numbers[k % 5];
+        else if (k == 25)
+            o.max_deg = 0;
+        else if (k == 26)
+            o.band_nm[1] = o.band_nm[0];
+        else
+            o.basis = GLINT_BASIS_SPARSE + 1;
+        assert_int_equal(
+            glint_bake(&heliar, &o, &data, &bytes, &report, &error),
+            GLINT_E_ARGUMENT);
+        assert_true(strlen(error.text) > 10);
+        assert_null(data);
+        assert_int_equal(bytes, 7);
+        assert_int_equal(report.rays, 7);
+    }
+}
+
+/* ------------------------------------------------------------- odd requests */
+
+static void test_no_ghosts(void **state)
+{
+    static struct glint_prescription lens;
+    struct baked b;
+
+    (void)state;
+    make_singlet(&lens);
+    lens.n_surfaces = 1; /* into glass, and the sensor in it */
+    lens.stop_after = 1;
+    bake(&b, &lens, &options);
+    assert_int_equal(b.lens.header->n_ghosts, 0);
+    assert_int_equal(b.lens.header->n_systems, 0);
+    assert_int_equal(b.report.rays, 0);
+    free(b.data);
+}
+
+/* However little is asked for. */
+static void test_loosest(void **state)
+{
+    static struct glint_prescription lens;
+    struct glint_bake_options o = options;
+    struct baked b;
+
+    (void)state;
+    make_singlet(&lens);
+    o.tolerance = 100;
+    bake(&b, &lens, &o);
+    for (uint32_t k = 0; k < b.lens.header->n_systems; k++)
+        assert_in_range(outputs_of(&b, (int)k)->n_terms, 1,
+                        GLINT_MAX_MODEL_TERMS);
+    free(b.data);
+}
+
+/* So little of the sensor counts that a ghost shows at angle 0 alone. */
+static void test_ranges_have_width(void **state)
+{
+    static const double band_nm[2] = {400, 700};
+    static struct glint_prescription lens;
+    static struct glint_setup doublet;
+    static struct glint_hunt hunt;
+    double range[GLINT_MAX_RANGES][2];
+    struct glint_error error;
+
+    (void)state;
+    make_doublet(&lens);
+    assert_int_equal(
+        glint_setup_init(&doublet, &lens, 0, 0, band_nm, 2, &error), GLINT_OK);
+    for (int g = 0; g < doublet.n_ghosts; g++) {
+        int n;
+
+        glint_hunt_init(&hunt, &doublet, g, 1e-3, band_nm);
+        n = glint_hunt_ranges(&hunt, 15, range);
+        for (int k = 0; k < n; k++)
+            assert_true(range[k][1] > range[k][0]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_workers),
+        cmocka_unit_test(test_twice),
+        cmocka_unit_test(test_header),
+        cmocka_unit_test(test_flux),
+        cmocka_unit_test(test_nothing_missing),
+        cmocka_unit_test(test_errors_are_true),
+        cmocka_unit_test(test_errors_are_small),
+        cmocka_unit_test(test_planted_error),
+        cmocka_unit_test(test_key),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_no_ghosts),
+        cmocka_unit_test(test_loosest),
+        cmocka_unit_test(test_ranges_have_width),
+    };
+
+    return cmocka_run_group_tests(tests, load, unload);
+}
