@@ -228,7 +228,7 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
         prove_sparse(&p, o, out->coef, sets, &result);
     else
         prove_auto(&p, o, out, &result);
-    out->proven = p.bound < 0x1p30 && result.error < 0x1p20;
+    out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
     out->rounding_q8 = out->proven ? (uint32_t)ceil(256 * result.error) : 0;
 }
@@ -243,7 +243,7 @@ static void narrow(const struct glint_fitted_output *o,
     const double steps = ldexp(o->grain, -out->exponent);
     int n_wide = 0, end = o->n_terms;
 
-    for (out->shift = 0; out->shift < 20 && ldexp(1, out->shift + 1) <= steps;)
+    for (out->shift = 0; out->shift < 16 && ldexp(1, out->shift + 1) <= steps;)
         out->shift++;
     for (int k = 0; k < o->n_terms; k++) {
         const int32_t step = INT32_C(1) << out->shift;

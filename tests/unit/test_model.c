@@ -155,8 +155,9 @@ struct rule {
     GHOST, k * 16 + offsetof(struct glint_model_ghost, field)
 #define SYSTEM_(k, field) \
     SYSTEM, k * 40 + offsetof(struct glint_model_system, field)
-#define OUTPUT_(k, field) \
-    OUTPUT, k * 44 + offsetof(struct glint_model_output, field)
+#define OUTPUT_(k, field)                           \
+    OUTPUT, k * sizeof(struct glint_model_output) + \
+                offsetof(struct glint_model_output, field)
 
 static const char outside[] = "a table lies outside of the file",
                   unnormal[] = "a number of the header is not normalised",
