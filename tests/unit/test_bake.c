@@ -472,7 +472,7 @@ static void test_key(void **state)
 
 static void test_refusals(void **state)
 {
-    static const double numbers[] = {NAN, -1, 1e9, HUGE_VAL, -HUGE_VAL};
+    static const double numbers[] = {(double)NAN, -1, 1e9, HUGE_VAL, -HUGE_VAL};
 
     (void)state;
     for (int k = 0; k < 5 * 5 + 3; k++) {

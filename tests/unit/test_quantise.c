@@ -408,7 +408,7 @@ static void test_reals(void **state)
 
 static void test_odd_reals(void **state)
 {
-    static const double odd[] = {0, -0.0, HUGE_VAL, -HUGE_VAL, NAN};
+    static const double odd[] = {0, -0.0, HUGE_VAL, -HUGE_VAL, (double)NAN};
 
     (void)state;
     for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
@@ -497,7 +497,7 @@ static void refused(struct made *m)
 
 static void test_not_finite(void **state)
 {
-    static const double odd[] = {NAN, HUGE_VAL, -HUGE_VAL};
+    static const double odd[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
 
     (void)state;
     for (int k = 0; k < 6 * KINDS; k++) {
@@ -528,7 +528,7 @@ static void test_no_terms(void **state)
 
 static void test_box_of_no_power_of_two(void **state)
 {
-    static const double odd[] = {3, 1.0000001, 0, -2, NAN, HUGE_VAL};
+    static const double odd[] = {3, 1.0000001, 0, -2, (double)NAN, HUGE_VAL};
 
     (void)state;
     for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
