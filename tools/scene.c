@@ -13,6 +13,7 @@ void scene_defaults(struct scene *scene)
                             .wavelength_nm = {650, 532, 450},
                             .n_wavelengths = 3,
                             .gain = 1,
+                            .tolerance = 1,
                             .only_ghost = -1,
                             .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
@@ -72,7 +73,8 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
-static bool take_quality(const char *text, int *grid)
+/* Sets the grid, and how exact a model is that is baked for it. */
+static bool take_quality(const char *text, struct scene *s)
 {
     static const char *const words[] = {"draft", "default", "high", NULL};
     const int word = tool_word(text, words);
@@ -80,7 +82,8 @@ static bool take_quality(const char *text, int *grid)
 
     if (word < 0 && (!tool_number(text, &q) || q < 0 || q > 1))
         return false;
-    *grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
+    s->grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
+    s->tolerance = q <= 0.25 ? 4 : q < 0.75 ? 1 : 0.4;
     return true;
 }
 
@@ -138,7 +141,7 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_DITHER:
         return s->dither = true;
     case OPT_QUALITY:
-        return take_quality(value, &s->grid);
+        return take_quality(value, s);
     case OPT_RAYS:
         word = tool_word(value, rays);
         s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
@@ -244,6 +247,7 @@ static struct glint_bake_options bake_options(const struct scene *scene)
     struct glint_bake_options o;
 
     glint_bake_defaults(&o);
+    o.tolerance = scene->tolerance;
     for (int i = 0; i < scene->n_wavelengths; i++) {
         const double nm = scene->wavelength_nm[i];
 

@@ -20,7 +20,8 @@ struct scene {
     struct glint_prescription lens; /* of a model: name and film only */
     struct model_file model;        /* closed for exact rays */
     enum scene_rays rays;
-    double max_deg; /* of the lamps that a model is baked for */
+    double max_deg;   /* of the lamps that a model is baked for */
+    double tolerance; /* it is baked with */
     struct glint_setup setup;
     double f_number; /* 0: as the table says */
     int n_blades;
