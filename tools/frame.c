@@ -140,13 +140,22 @@ static double mean_irradiance(const struct frame *f,
 double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
                         int n_lamps)
 {
-    double brightest = 0;
+    double brightest = 0, together = 0;
 
     if (plan(frame, lamps, n_lamps) != GLINT_OK)
         return 1;
-    for (int i = 0; i < frame->n_feeds; i++)
-        brightest = fmax(brightest, mean_irradiance(frame, &frame->feed[i]));
-    return brightest > 0 ? exp2(5 - ceil(log2(brightest))) : 1;
+    for (int i = 0; i < frame->n_feeds; i++) {
+        const double light = mean_irradiance(frame, &frame->feed[i]);
+        const double n = frame->feed[i].n_cells;
+
+        brightest = fmax(brightest, light);
+        together += n * n * light;
+    }
+    /* Sums are safe while all cells together bring no pixel beyond 2^22: a
+     * quarter of that leaves room for caustics. */
+    return brightest > 0 ? exp2(fmin(5 - ceil(log2(brightest)),
+                                     20 - ceil(log2(together))))
+                         : 1;
 }
 
 /* ------------------------------------------------------------------- memory */
