@@ -178,7 +178,7 @@ static void test_energy(void **state)
     for (int raster = 0; raster < 2; raster++) {
         const double off = raster == GLINT_RASTER_EDGES ? 0.001 : 0.005;
 
-        c.raster = raster;
+        c.raster = (enum glint_raster)raster;
         draw_list(c, &g, 1, pixels);
         assert_true(total(pixels, 0) > (1 - off) * flux);
         assert_true(total(pixels, 0) < (1 + off) * flux);
@@ -485,7 +485,7 @@ static void test_tiles_do_not_matter(void **state)
 
     (void)state;
     for (int raster = 0; raster < 2; raster++) {
-        c.raster = raster;
+        c.raster = (enum glint_raster)raster;
         draw_scene(c, want);
         assert_true(total(want, 0) > 1);
         for (size_t i = 0; i < sizeof levels / sizeof *levels; i++) {
@@ -502,7 +502,7 @@ static void test_threads_do_not_matter(void **state)
     for (int n = 0; n < 16; n++) {
         struct glint_flare_config c = base_config();
 
-        c.raster = n / 8;
+        c.raster = (enum glint_raster)(n / 8);
         draw_scene(c, want);
         assert_int_equal(glint_pool_create(&c.workers, n % 8 + 1), GLINT_OK);
         same_as_want(c);
@@ -538,7 +538,7 @@ static void test_bundle_order_does_not_matter(void **state)
     for (int raster = 0; raster < 2; raster++) {
         struct glint_flare_config c = base_config();
 
-        c.raster = raster;
+        c.raster = (enum glint_raster)raster;
         draw_scene(c, want);
         draw_list(c, turned, N_SCENE, pixels);
         assert_memory_equal(pixels, want, sizeof pixels);
