@@ -5,7 +5,8 @@
 #   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
-#   also: oiio table inputs fuzz format golden-update clean
+#   also: oiio table bake-table accuracy-table inputs fuzz format
+#         golden-update clean
 
 MAKEFLAGS += -r
 .DEFAULT_GOAL := all
@@ -119,6 +120,10 @@ inputs:
 	@tools/inputs
 table: all
 	@tools/raster-table
+bake-table: all
+	@tools/bake-table
+accuracy-table: all
+	@tools/accuracy-table
 
 # ------------------------------------------------------------------- to test
 test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
@@ -181,7 +186,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table check run-check golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table check run-check golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -102,8 +102,12 @@ static bool take(struct overlay *o, int option, const char *value)
 
     switch (option) {
     case 'l':
-        return o->n_hand < SCENE_MAX_LAMPS &&
-               scene_lamp(value, &o->hand[o->n_hand++]);
+        if (o->n_hand == SCENE_MAX_LAMPS ||
+            !scene_lamp(value, &o->hand[o->n_hand]))
+            return false;
+        o->scene.max_deg =
+            fmax(o->scene.max_deg, o->hand[o->n_hand++].theta_deg);
+        return true;
     case 't':
         return take_threshold(value, o->threshold);
     case 'm':

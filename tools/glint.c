@@ -12,9 +12,10 @@
 static const char help[] =
     "glint: lens flare of real lenses, on pictures and video, without a GPU\n"
     "\n"
-    "  glint info LENS                 what a lens is: focal length, ghosts\n"
+    "  glint info LENS|MODEL           what a lens is: focal length, ghosts\n"
+    "  glint bake LENS -o MODEL        polynomials of its ghosts, in integers\n"
     "  glint trace LENS --ghost K ...  rays as a table\n"
-    "  glint render LENS -o OUT ...    the flare alone\n"
+    "  glint render LENS|MODEL -o OUT  the flare alone\n"
     "  glint overlay IN -o OUT ...     the flare of the lamps in a picture or\n"
     "                                  video, on top of it\n"
     "  glint compare A B               how far two pictures are apart\n"
@@ -24,7 +25,7 @@ static const char help[] =
     "\n"
     "LENS is a .lens file or the name of one that comes with glint, such as\n"
     "heliar-tronnier. Exit codes: 0 ok, 1 run-time failure, 2 usage, 3 input\n"
-    "or format, 4 device, 5 lens data, 6 output.\n";
+    "or format, 4 device, 5 lens or model data, 6 output.\n";
 
 struct command {
     const char *name;

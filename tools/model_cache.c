@@ -94,7 +94,11 @@ static void keep(const struct tool *tool, char *path,
         else
             glint_output_abort(&out);
     }
-    if (status != GLINT_OK && !tool->quiet)
+    if (tool->quiet)
+        return;
+    if (status == GLINT_OK)
+        fprintf(stderr, "glint %s: kept as %s\n", tool->name, path);
+    else
         fprintf(stderr, "glint %s: the model is not kept: %s\n", tool->name,
                 error.text);
 }
@@ -115,8 +119,7 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     if (kept && load(path, key, model))
         return EXIT_OK;
     if (!tool->quiet)
-        fprintf(stderr, "glint %s: baking %s, once%s%s\n", tool->name,
-                lens->name, kept ? "; kept as " : "", kept ? path : "");
+        fprintf(stderr, "glint %s: baking %s, once\n", tool->name, lens->name);
     options.workers = tool->workers;
     options.progress = tool_progress_show;
     options.progress_ctx = &progress;

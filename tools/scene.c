@@ -199,7 +199,21 @@ static int check_band(const struct tool *tool, const struct scene *scene)
     return EXIT_OK;
 }
 
-/* Says what the picture asks of the model that it was not baked for. */
+/* Says what the lamps ask of the model that it was not baked for. */
+static void warn_angle(const struct tool *tool, const struct scene *scene)
+{
+    const double most =
+        asin(fmin(1, scene->model.lens.header->sine_hi_q30 * 0x1p-30)) * 180 /
+        3.14159265358979323846;
+
+    if (!tool->quiet && scene->max_deg > most + 1e-6)
+        fprintf(stderr,
+                "glint %s: the model was baked for lights up to %.0f degrees; "
+                "those beyond give nothing (bake --max-angle)\n",
+                tool->name, most);
+}
+
+/* The same of the picture. */
 static void warn_field(const struct tool *tool, const struct scene *scene)
 {
     const double field = model_real_of(scene->model.lens.header->field_mm);
@@ -235,6 +249,7 @@ static int open_model(const struct tool *tool, struct scene *scene,
     scene->lens.film_width_mm = model_real_of(h->film_width_mm);
     scene->lens.film_height_mm = model_real_of(h->film_height_mm);
     warn_field(tool, scene);
+    warn_angle(tool, scene);
     return EXIT_OK;
 }
 

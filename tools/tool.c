@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "tool.h"
 
+#include "model_file.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -232,6 +234,12 @@ int tool_lens(const struct tool *tool, const char *argument,
             return EXIT_LENS;
         }
         file = path;
+    }
+    if (tool_is_model(file)) {
+        fprintf(stderr,
+                "glint %s: %s: a baked model; this needs the lens table\n",
+                tool->name, file);
+        return EXIT_LENS;
     }
     status = glint_input_slurp(&text, &bytes, file, 1 << 20, &error);
     if (status == GLINT_OK)

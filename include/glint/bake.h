@@ -277,7 +277,7 @@ struct glint_bake_options {
                           root mean squares for ghosts that are as bright as
                           counts are 0.03 pixels of a film 1920 wide, as much
                           for the outline, and 0.06 % of energy; for faint
-                          ones up to 0.058 and 0.3 pixels and 0.6 % */
+                          ones up to 0.056 and 0.3 pixels and 0.6 % */
     struct glint_workers *workers; /* never changes the model */
     glint_progress_fn *progress;   /* NULL: silent */
     void *progress_ctx;
@@ -373,7 +373,8 @@ struct glint_feed {
  * light bends in pixels: off by 0.01 px (RMS), outlines by 0.1, with 64 for
  * max_cells, and by the square of it less with more; a multiple of 4 from 8 to
  * 2 max_cells, 4 max_cells where light folds, over the pupil and a pixel more
- * on each side. Lamp, ghost and wavelength are set already. */
+ * on each side. Lamp, ghost and wavelength are set already. Of a
+ * model the pupil is its box as it is, and no barrels are set. */
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed, const struct glint_feed *near);
 

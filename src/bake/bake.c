@@ -12,7 +12,10 @@
 #include "bake/published.h"
 #include "bake/write_model.h"
 
-enum { FLUX_POWERS = 6 };
+enum {
+    FLUX_POWERS = 6,
+    REVISION = 1 /* of what is made of a lens: raised when models change */
+};
 
 /* Everything one model takes. */
 struct kitchen {
@@ -49,7 +52,12 @@ static enum glint_status check(const struct glint_bake_options *o,
             ? "the basis is unknown"
         : !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
             o->band_nm[0] + 1 <= o->band_nm[1])
-            ? "the band must lie within 300 and 1100 nm"
+            ? "the band must rise by 1 nm or more within 300 to 1100 nm"
+        : o->basis == GLINT_BASIS_SPARSE &&
+                (o->band_nm[0] != 400 || o->band_nm[1] != 700 ||
+                 o->tolerance != 1)
+            ? "the sparse basis is for 650, 532 and 450 nm and its own "
+              "tolerance, as published"
         : !(o->max_deg > 0 && o->max_deg <= 89)
             ? "the largest angle must be above 0 and at most 89 degrees"
         : !(o->field_mm >= 0 && o->field_mm < 1e6)
@@ -87,6 +95,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
     uint64_t key = UINT64_C(0xcbf29ce484222325);
 
     mix(&key, GLINT_MODEL_VERSION);
+    mix(&key, REVISION);
     mix(&key, options->basis);
     mix(&key, options->band_nm[0]);
     mix(&key, options->band_nm[1]);
@@ -110,7 +119,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
         mix(&key, s->coating_n);
     }
     for (const char *c = lens->name; *c; c++)
-        mix(&key, *c);
+        mix(&key, (unsigned char)*c);
     return key;
 }
 
@@ -217,10 +226,10 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
     const double film = k->lens->film_width_mm, t = k->options.tolerance;
     const struct glint_tolerance tolerance = {
         .sensor_mm = 0.03 * t * film / 1920,
-        .faint_sensor_mm = 0.058 * t * film / 1920,
+        .faint_sensor_mm = 0.056 * t * film / 1920,
         .edge_mm = 0.03 * t * film / 1920,
-        .stop = 4e-4 * t,
-        .barrel = 6e-4 * t,
+        .stop = 4.5e-4 * t,
+        .barrel = 7e-4 * t,
         .energy = 6e-4 * t,
         .ease = 10,
         .brightness = &k->brightness};

@@ -5,13 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/compiler.h"
 #include "bake/degrees.h"
 #include "bake/zone.h"
 
+STATIC_ASSERT((int)GLINT_BOX_TERMS == (int)GLINT_BOX_POWERS);
+STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
+
 #define PEAK       5.0  /* times the root mean square */
-#define LEAST_FILL 0.4  /* of a box; below it the grids waste their cells */
+#define LEAST_FILL 0.33 /* of a box; below it the grids waste their cells */
 #define FILL_DEG   0.6  /* narrower zones need not care for that */
-#define LEAST_DEG  0.45 /* of a zone that may be halved */
+#define LEAST_DEG  0.7  /* of a zone that may be halved */
 #define STUCK                                                               \
     0.75              /* half a zone that is left with so much of the whole \
                          one's error gains nothing from halving... */
@@ -38,8 +42,10 @@ static const struct glint_degrees position_degrees = {
     .total = 12,
     .terms = GLINT_MAX_TERMS};
 
-static const struct glint_degrees energy_degrees = {
-    .most = {6, 4, 4, 8}, .weight = {1, 1, 1, 1}, .total = 9, .terms = 56};
+static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
+                                                    .weight = {1, 1, 1, 1},
+                                                    .total = 10,
+                                                    .terms = GLINT_MAX_TERMS};
 
 /* Full weight a little past the edge, where cells straddle it; hardly any where
  * nothing is seen, which only has to stay unseen. */
@@ -143,7 +149,7 @@ static enum glint_status keep(struct glint_fitted_system *system,
         return GLINT_E_MEMORY;
     o->kind = kind;
     o->n_terms = poly->n;
-    o->grain = rms / 16; /* a few dozen of these stay below a half */
+    o->grain = rms / 8; /* a few dozen of these stay below a quarter of it */
     o->met = met;
     memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
     memcpy(o->coef, poly->coef, (size_t)poly->n * sizeof *o->coef);
@@ -198,14 +204,14 @@ fit_energy(struct fitter *f, struct glint_fitted_system *system, double *worst)
     double most = 1e-30;
 
     for (int i = 0; i < r->n; i++)
-        if (fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]) <= 1.1)
+        if (fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]) <= 1)
             most = fmax(most, r->at[RAY_ENERGY][i]);
     for (int i = 0; i < r->n; i++) {
         const double out = fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]);
 
         f->value[i] = r->at[RAY_ENERGY][i];
-        f->channel_weight[i] =
-            fmax(weight_past_edge(out), 0.02) / fmax(f->value[i], 0.02 * most);
+        f->channel_weight[i] = fmax(weight_past_edge(out), 0.001) /
+                               fmax(f->value[i], 0.005 * most);
     }
     return fit_output(f, r, GLINT_OUT_ENERGY, f->energy, system, worst);
 }
@@ -384,7 +390,7 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
 /* Zones from the lowest angle up; the upper halves wait on a stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    enum { DEEP = 24 }; /* halvings from 90 degrees down to LEAST_DEG: 11 */
+    enum { DEEP = 24 }; /* halvings of a sine down to LEAST_DEG: 13 at most */
     struct pending stack[DEEP] = {{range[0], range[1], HUGE_VAL}};
     enum glint_status status = GLINT_OK;
     int n = 1;

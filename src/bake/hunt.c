@@ -5,7 +5,11 @@
 
 #include "bake/degrees.h"
 
-enum { SCAN_DEG = 1, BISECTIONS = 8 };
+enum {
+    SCAN_DEG = 1,
+    BISECTIONS = 8,
+    FARTHER = 4 /* steps that the ends of the band may outlast its middle */
+};
 
 void glint_hunt_path(const struct glint_hunt *hunt, double w,
                      struct glint_path *path)
@@ -156,21 +160,36 @@ static bool follow_box(const struct glint_hunt *h,
 
 /* ------------------------------------------------------------------- angles */
 
-static bool passes(const struct glint_hunt *h, double sine)
+/* Ends and middle of the band. */
+static const int waves[] = {GLINT_HUNT_WAVES / 2, 0, GLINT_HUNT_WAVES - 1};
+
+/* Something gets through at the first N of these wavelengths. */
+static bool passes(const struct glint_hunt *h, double sine, int n)
 {
     struct glint_pupil box;
 
-    return find_box(h, &h->path[GLINT_HUNT_WAVES / 2], sine, &box);
+    for (int k = 0; k < n; k++)
+        if (find_box(h, &h->path[waves[k]], sine, &box))
+            return true;
+    return false;
 }
 
-/* The last sine at which something gets through, from one that has it towards
- * one that has not. */
+/* The last sine at which something of any colour gets through, from one that
+ * has it at the middle of the band towards one that has not. */
 static double edge(const struct glint_hunt *h, double with, double without)
 {
+    for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
+        const double next = without + (without - with);
+
+        if (!passes(h, without, 3))
+            break;
+        with = without;
+        without = fmin(1, fmax(0, next));
+    }
     for (int k = 0; k < BISECTIONS; k++) {
         const double middle = 0.5 * (with + without);
 
-        if (passes(h, middle))
+        if (passes(h, middle, 3))
             with = middle;
         else
             without = middle;
@@ -188,7 +207,7 @@ int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
 
     for (int k = 0; k <= steps; k++) {
         const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
-        const bool now = passes(hunt, sine);
+        const bool now = passes(hunt, sine, 1);
 
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
@@ -228,9 +247,9 @@ static struct glint_pupil predict(const struct glint_pupil *before,
     return p;
 }
 
-/* Adds what the path of one end of the band lets through. */
+/* Adds what one wavelength lets through at the angles that WANTED names. */
 static void add_boxes(const struct glint_hunt *h, const struct glint_path *path,
-                      struct glint_profile *p, bool *found)
+                      const bool *wanted, struct glint_profile *p, int *found)
 {
     struct glint_pupil box = {.y1_mm = 0}, before = box;
     int have = 0; /* boxes in a row */
@@ -240,6 +259,10 @@ static void add_boxes(const struct glint_hunt *h, const struct glint_path *path,
         struct glint_pupil near = box;
         bool now;
 
+        if (!wanted[k]) {
+            have = 0;
+            continue;
+        }
         if (have > 1)
             near = predict(&before, &box, (s[0] - s[-1]) / (s[-1] - s[-2]));
         before = box;
@@ -250,22 +273,30 @@ static void add_boxes(const struct glint_hunt *h, const struct glint_path *path,
             join(&p->box[k], &box);
         else if (now)
             p->box[k] = box;
-        found[k] |= now;
+        found[k] += now;
     }
 }
 
 void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
                         struct glint_profile *profile)
 {
-    bool found[GLINT_PROFILE] = {false};
+    int found[GLINT_PROFILE] = {0};
+    bool wanted[GLINT_PROFILE];
 
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const double t = sin(0.5 * GLINT_PI * k / (GLINT_PROFILE - 1));
 
         profile->sine[k] = range[0] + t * (range[1] - range[0]);
+        wanted[k] = true;
     }
-    add_boxes(hunt, &hunt->path[0], profile, found);
-    add_boxes(hunt, &hunt->path[GLINT_HUNT_WAVES - 1], profile, found);
+    for (int k = 0; k < 3; k++)
+        add_boxes(hunt, &hunt->path[waves[k]], wanted, profile, found);
+    /* Where only some colours get through, boxes of others may lie between. */
+    for (int k = 0; k < GLINT_PROFILE; k++)
+        wanted[k] = found[k] < 3;
+    for (int k = 1; k < GLINT_HUNT_WAVES - 1; k++)
+        if (k != GLINT_HUNT_WAVES / 2)
+            add_boxes(hunt, &hunt->path[k], wanted, profile, found);
     profile->n = 0;
     for (int k = 0; k < GLINT_PROFILE; k++)
         if (found[k]) {

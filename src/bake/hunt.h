@@ -7,8 +7,8 @@
  *   out  ranges of angles, and boxes on the pupil at many angles of a range
  *
  * A ghost may appear, vanish and come back. Limits: ranges narrower than the
- * step of the scan can be missed, and so can a visible part that is smaller
- * than a thirtieth of its own box.
+ * step of the scan, or without the middle of the band, can be missed, and so
+ * can a visible part that is smaller than a thirtieth of its own box.
  */
 #ifndef GLINT_BAKE_HUNT_H
 #define GLINT_BAKE_HUNT_H

@@ -135,24 +135,30 @@ static struct range times(struct proof *p, struct range a, struct range x)
                               0.5});
 }
 
-/* X to the power N as the run time makes it, from a variable that is exact. */
+/* X to the power N as the run time makes it, from a variable with an error of
+ * its own. */
 static struct range power_of(struct range x, int n)
 {
-    struct range r = {n % 2 ? x.lo : fmax(0, x.lo), 1, n > 1 ? 0.5 * n : 0};
+    struct range r = {n % 2 ? x.lo : fmax(0, x.lo), 1,
+                      n * x.error + (n > 1 ? 0.5 * n : 0)};
 
     if (n % 2 == 0 && x.lo >= 0)
         r.lo = 0;
     return r;
 }
 
-static const struct range both_ways = {-1, 1, 0}, upwards = {0, 1, 0};
+static const struct range both_ways = {-1, 1, 0};
+
+/* x, y, r and 1 - r of the sparse basis, rounded from the box and u, v. */
+static const struct range place[4] = {
+    {-1, 1, 1.5}, {-1, 1, 1.5}, {0, 1, 4}, {0, 1, 4}};
 
 /* Coefficient K: itself, or anything between the sets. Rounding it to an
  * integer, or to a multiple of 2^SHIFT, is part of the error. */
 static struct range coefficient(const int32_t *coef, int sets, int n, int k,
                                 int shift)
 {
-    struct range r = {coef[k], coef[k], ldexp(0.5, shift)};
+    struct range r = {coef[k], coef[k], 0.5 + (shift ? ldexp(0.5, shift) : 0)};
 
     for (int set = 1; set < sets; set++) {
         r.lo = fmin(r.lo, coef[set * n + k]);
@@ -211,9 +217,7 @@ static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
 
         for (int i = 0; i < 4; i++)
             if (o->power[k][i])
-                value = times(
-                    p, value,
-                    power_of(i < 2 ? both_ways : upwards, o->power[k][i]));
+                value = times(p, value, power_of(place[i], o->power[k][i]));
         *result = plus(p, *result, value);
     }
 }

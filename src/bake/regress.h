@@ -10,8 +10,7 @@
  * weighted residual most enters. All columns are kept orthogonal to the chosen
  * ones, so the basis grows together with its QR factors: a candidate that is
  * nearly a combination of chosen terms has no length left and is passed over,
- * which makes the factorisation rank revealing. Terms that are not needed in
- * the end leave again.
+ * which makes the factorisation rank revealing.
  */
 #ifndef GLINT_BAKE_REGRESS_H
 #define GLINT_BAKE_REGRESS_H

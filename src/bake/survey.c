@@ -79,11 +79,15 @@ static double crossing(double in, double out)
 static void mark_between(const struct probe *a, const struct probe *b, int n,
                          int *weight)
 {
-    const struct probe *in = a->inside ? a : b, *out = a->inside ? b : a;
+    const struct probe *in = a, *out = b;
     double first;
 
     if (!a->traced || !b->traced || a->inside == b->inside)
         return;
+    if (b->inside) {
+        in = b;
+        out = a;
+    }
     first = crossing(in->stop_r2, out->stop_r2);
     for (int k = 0; k < n; k++)
         first = fmin(first, crossing(in->r2[k], out->r2[k]));

@@ -142,7 +142,7 @@ static void direction_of(const struct glint_zone *z, double s, double d[3])
     d[2] = sqrt(1 - d[0] * d[0]);
 }
 
-/* Traces one ray of the zone; HITS of events it did not reach are far out. */
+/* Traces one ray of the zone; HITS of events it did not reach are -1, -1. */
 static enum glint_ray_status ray_of(const struct glint_zone *z,
                                     const struct glint_path *path, double u,
                                     double v, double s, struct glint_ray *ray,
@@ -159,8 +159,7 @@ static enum glint_ray_status ray_of(const struct glint_zone *z,
 }
 
 /* Notes the ray's radius at every event if the stop and the field let it pass,
- * so that only barrels can stop it. Radius 0 of the last entry marks a ray that
- * was lost on the way. */
+ * so that only barrels can stop it. */
 static bool survey_ray(const struct glint_hunt *h,
                        const struct glint_path *path,
                        enum glint_ray_status status,

@@ -284,7 +284,9 @@ static const char *check_box_at_knot(const int32_t box[3])
 {
     if (box[1] < 0 || box[2] < 0)
         return "a box has a size below 0";
-    if (magnitude(box[0]) + box[1] > LIMIT || box[2] > LIMIT)
+    /* and neighbours' differences stay within an int32 */
+    if (magnitude(box[0]) >= LIMIT || magnitude(box[0]) + box[1] > LIMIT ||
+        box[2] > LIMIT)
         return "a box reaches too far";
     return NULL;
 }
