@@ -152,9 +152,9 @@ double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
         together += n * n * light;
     }
     /* Sums are safe while all cells together bring no pixel beyond 2^22: a
-     * quarter of that leaves room for caustics. */
+     * sixteenth of that leaves room for caustics. */
     return brightest > 0 ? exp2(fmin(5 - ceil(log2(brightest)),
-                                     20 - ceil(log2(together))))
+                                     18 - ceil(log2(together))))
                          : 1;
 }
 
