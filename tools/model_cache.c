@@ -94,11 +94,7 @@ static void keep(const struct tool *tool, char *path,
         else
             glint_output_abort(&out);
     }
-    if (tool->quiet)
-        return;
-    if (status == GLINT_OK)
-        fprintf(stderr, "glint %s: kept as %s\n", tool->name, path);
-    else
+    if (status != GLINT_OK && !tool->quiet)
         fprintf(stderr, "glint %s: the model is not kept: %s\n", tool->name,
                 error.text);
 }
@@ -119,7 +115,8 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     if (kept && load(path, key, model))
         return EXIT_OK;
     if (!tool->quiet)
-        fprintf(stderr, "glint %s: baking %s, once\n", tool->name, lens->name);
+        fprintf(stderr, "glint %s: baking %s, once%s%s\n", tool->name,
+                lens->name, kept ? ", for " : "", kept ? path : "");
     options.workers = tool->workers;
     options.progress = tool_progress_show;
     options.progress_ctx = &progress;
