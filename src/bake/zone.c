@@ -126,7 +126,7 @@ void glint_zone_init(struct glint_zone *zone,
 
 /* ------------------------------------------------------------------ barrels */
 
-enum { SURVEY_S = 5, SURVEY_U = 32, SURVEY_V = 16 };
+enum { SURVEY_S = 9, SURVEY_U = 32, SURVEY_V = 16 };
 STATIC_ASSERT(GLINT_SURVEY_RAYS == SURVEY_S * (SURVEY_U + 1) * (SURVEY_V + 1));
 
 /* What a ray of the survey says: how far past each barrel it is. */
