@@ -97,14 +97,19 @@ struct glint_model_system {
     int32_t wave_lo_q24, wave_hi_q24; /* the same twice: one wavelength */
     uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots] */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
-     * Without knots GLINT_BOX_POWERS coefficients of powers of s each,
-     * [3][GLINT_BOX_POWERS]; with knots [n_knots][3]. */
+     * Without knots GLINT_BOX_TERMS coefficients each, of s^0, s^1 .. and then
+     * of w and s w: [3][GLINT_BOX_TERMS]; with knots [n_knots][3]. */
     uint32_t box_at;
     int32_t box_exponent;
     uint32_t n_outputs, output_at; /* struct glint_model_output, kinds rising */
 };
 
-enum { GLINT_BOX_POWERS = 6, GLINT_MAX_POWER = 9, GLINT_MAX_MODEL_TERMS = 64 };
+enum {
+    GLINT_BOX_POWERS = 6, /* of s alone, the 0th among them */
+    GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
+    GLINT_MAX_POWER = 9,
+    GLINT_MAX_MODEL_TERMS = 64
+};
 
 enum glint_channel {
     GLINT_OUT_SENSOR_X, /* mm, in the light's frame; odd kinds are odd in v */

@@ -9,13 +9,12 @@
 #include "bake/degrees.h"
 #include "bake/zone.h"
 
-STATIC_ASSERT((int)GLINT_BOX_TERMS == (int)GLINT_BOX_POWERS);
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
 #define PEAK       5.0  /* times the root mean square */
 #define LEAST_FILL 0.33 /* of a box; below it the grids waste their cells */
 #define FILL_DEG   0.6  /* narrower zones need not care for that */
-#define LEAST_DEG  0.7  /* of a zone that may be halved */
+#define LEAST_DEG  0.7
 #define STUCK                                                               \
     0.75              /* half a zone that is left with so much of the whole \
                          one's error gains nothing from halving... */
@@ -346,52 +345,61 @@ static double degrees_between(double lo, double hi)
     return (asin(hi) - asin(lo)) * (180 / GLINT_PI);
 }
 
-/* A zone to be fitted; BEFORE is what was left of the one it is half of. */
+/* A zone to be fitted, with a box that follows its colours or one for all; BEFORE
+ * is what was left of it at the last attempt. */
 struct pending {
     double lo, hi, before;
+    bool by_colour;
 };
 
-/* Fits a zone. *DONE: it is kept, because it is good or because halving does
- * not help; else *LEFT says how bad it was. */
-static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
-                                  bool *done, double *left)
+/* Fits a zone; *LEFT becomes how bad it is: at most 1 if good. */
+static enum glint_status try_zone(struct fitter *f, const struct pending *p,
+                                  struct glint_fitted_system *system,
+                                  double *left)
 {
-    const double width = degrees_between(p->lo, p->hi);
-    struct glint_fitted_system system = {.ghost = f->hunt->ghost,
-                                         .sine_lo = p->lo,
-                                         .sine_hi = p->hi,
-                                         .wave_lo = f->hunt->wave_lo,
-                                         .wave_hi = f->hunt->wave_hi};
-    struct glint_zone zone;
     enum glint_status status;
+    struct glint_zone zone;
 
-    *done = false;
+    *system = (struct glint_fitted_system){.ghost = f->hunt->ghost,
+                                           .sine_lo = p->lo,
+                                           .sine_hi = p->hi,
+                                           .wave_lo = f->hunt->wave_lo,
+                                           .wave_hi = f->hunt->wave_hi};
     *left = HUGE_VAL;
-    glint_zone_init(&zone, &f->profile, p->lo, p->hi);
-    if (zone.fill < LEAST_FILL && width > FILL_DEG)
+    glint_zone_init(&zone, &f->profile, p->lo, p->hi, p->by_colour);
+    if (!p->by_colour && zone.fill < LEAST_FILL &&
+        degrees_between(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
     glint_zone_trace(&zone, f->hunt, &f->survey, &f->rays, &f->energies);
     *left = 0;
-    status = set_box(&system, &zone);
+    status = set_box(system, &zone);
     if (status == GLINT_OK)
-        status = fit_outputs(f, &zone, &system, left);
+        status = fit_outputs(f, &zone, system, left);
     if (status == GLINT_OK)
-        *left = fmax(*left, check_zone(f, &zone, &system));
-    system.met = *left <= 1;
-    *done = system.met || width < LEAST_DEG ||
-            (*left > STUCK * p->before && width < STUCK_DEG);
-    if (status == GLINT_OK && *done)
-        status = append(f->out, &system);
-    if (status != GLINT_OK || !*done)
-        system_finish(&system);
+        *left = fmax(*left, check_zone(f, &zone, system));
+    system->met = *left <= 1;
     return status;
+}
+
+/* What to do about a zone that is left with LEFT. */
+enum next { KEEP, HALVE, COLOURS };
+
+static enum next next_step(const struct pending *p, double left)
+{
+    const double width = degrees_between(p->lo, p->hi);
+    const bool stuck = width < LEAST_DEG ||
+                       (left > STUCK * p->before && width < STUCK_DEG);
+
+    if (left <= 1 || p->by_colour)
+        return KEEP;
+    return stuck && left < HUGE_VAL ? COLOURS : HALVE;
 }
 
 /* Zones from the lowest angle up; the upper halves wait on a stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
     enum { DEEP = 24 }; /* halvings of a sine down to LEAST_DEG: 13 at most */
-    struct pending stack[DEEP] = {{range[0], range[1], HUGE_VAL}};
+    struct pending stack[DEEP] = {{range[0], range[1], HUGE_VAL, false}};
     enum glint_status status = GLINT_OK;
     int n = 1;
 
@@ -399,16 +407,27 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
     if (f->profile.n == 0)
         return GLINT_OK;
     while (n > 0 && status == GLINT_OK) {
-        const struct pending p = stack[--n];
+        struct pending p = stack[--n];
         const double middle = 0.5 * (p.lo + p.hi);
+        struct glint_fitted_system system;
+        enum next next = KEEP;
         double left;
-        bool done;
 
-        status = fit_zone(f, &p, &done, &left);
-        if (done)
-            continue;
-        stack[n++] = (struct pending){middle, p.hi, left};
-        stack[n++] = (struct pending){p.lo, middle, left};
+        status = try_zone(f, &p, &system, &left);
+        if (status == GLINT_OK)
+            next = next_step(&p, left);
+        if (status == GLINT_OK && next == KEEP)
+            status = append(f->out, &system);
+        if (status != GLINT_OK || next != KEEP)
+            system_finish(&system);
+        p.before = left;
+        if (next == HALVE) {
+            stack[n++] = (struct pending){middle, p.hi, left, p.by_colour};
+            stack[n++] = (struct pending){p.lo, middle, left, p.by_colour};
+        } else if (next == COLOURS) {
+            p.by_colour = true;
+            stack[n++] = p;
+        }
     }
     return status;
 }

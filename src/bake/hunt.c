@@ -197,6 +197,22 @@ static double edge(const struct glint_hunt *h, double with, double without)
     return with;
 }
 
+/* Ends range N - 1 of N at HI. Returns how many there are now: light that comes
+ * through for a moment only is none, and where one range begins before the last
+ * one has ended, they are one. */
+static int end_range(double (*range)[2], int n, double hi)
+{
+    double *last = range[n - 1];
+
+    last[1] = hi;
+    if (last[1] <= last[0])
+        return n - 1;
+    if (n == 1 || last[0] > range[n - 2][1])
+        return n;
+    range[n - 2][1] = last[1];
+    return n - 1;
+}
+
 int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
                       double (*range)[2])
 {
@@ -212,19 +228,13 @@ int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
         if (now && !inside)
-            range[n][0] = k ? edge(hunt, sine, before) : 0;
-        if (!now && inside) {
-            range[n][1] = edge(hunt, before, sine);
-            n += range[n][1] > range[n][0]; /* not for a moment only */
-        }
+            range[n++][0] = k ? edge(hunt, sine, before) : 0;
+        if (!now && inside)
+            n = end_range(range, n, edge(hunt, before, sine));
         inside = now;
         before = sine;
     }
-    if (inside) {
-        range[n][1] = before;
-        n += range[n][1] > range[n][0];
-    }
-    return n;
+    return inside ? end_range(range, n, before) : n;
 }
 
 static void join(struct glint_pupil *a, const struct glint_pupil *b)
@@ -247,15 +257,22 @@ static struct glint_pupil predict(const struct glint_pupil *before,
     return p;
 }
 
-/* Adds what one wavelength lets through at the angles that WANTED names. */
-static void add_boxes(const struct glint_hunt *h, const struct glint_path *path,
-                      const bool *wanted, struct glint_profile *p, int *found)
+/* What gets through by angle and wavelength. */
+struct glimpses {
+    bool seen[GLINT_PROFILE][GLINT_HUNT_WAVES];
+    struct glint_pupil box[GLINT_PROFILE][GLINT_HUNT_WAVES];
+};
+
+/* Looks at one wavelength, at the angles that WANTED names. */
+static void look(const struct glint_hunt *h, const double *sine,
+                 const bool *wanted, int wave, struct glimpses *g)
 {
+    const struct glint_path *path = &h->path[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
     int have = 0; /* boxes in a row */
 
     for (int k = 0; k < GLINT_PROFILE; k++) {
-        const double *s = p->sine + k;
+        const double *s = sine + k;
         struct glint_pupil near = box;
         bool now;
 
@@ -269,38 +286,53 @@ static void add_boxes(const struct glint_hunt *h, const struct glint_path *path,
         now = have ? follow_box(h, path, *s, &near, &box)
                    : find_box(h, path, *s, &box);
         have = now ? have + 1 : 0;
-        if (now && found[k])
-            join(&p->box[k], &box);
-        else if (now)
-            p->box[k] = box;
-        found[k] += now;
+        g->seen[k][wave] = now;
+        g->box[k][wave] = box;
     }
+}
+
+static void add_angle(struct glint_profile *p, double sine,
+                      const struct glimpses *g, int k)
+{
+    const int first = p->n_glimpses;
+
+    for (int wave = 0; wave < GLINT_HUNT_WAVES; wave++)
+        if (g->seen[k][wave])
+            p->glimpse[p->n_glimpses++] = (struct glint_glimpse){
+                sine, -cos(GLINT_PI * wave / (GLINT_HUNT_WAVES - 1)),
+                g->box[k][wave]};
+    if (p->n_glimpses == first)
+        return;
+    p->sine[p->n] = sine;
+    p->box[p->n] = p->glimpse[first].box;
+    for (int i = first + 1; i < p->n_glimpses; i++)
+        join(&p->box[p->n], &p->glimpse[i].box);
+    p->n++;
 }
 
 void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
                         struct glint_profile *profile)
 {
-    int found[GLINT_PROFILE] = {0};
+    struct glimpses g = {.seen = {{false}}};
+    double sine[GLINT_PROFILE];
     bool wanted[GLINT_PROFILE];
 
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const double t = sin(0.5 * GLINT_PI * k / (GLINT_PROFILE - 1));
 
-        profile->sine[k] = range[0] + t * (range[1] - range[0]);
+        sine[k] = range[0] + t * (range[1] - range[0]);
         wanted[k] = true;
     }
-    for (int k = 0; k < 3; k++)
-        add_boxes(hunt, &hunt->path[waves[k]], wanted, profile, found);
+    for (int i = 0; i < 3; i++)
+        look(hunt, sine, wanted, waves[i], &g);
     /* Where only some colours get through, boxes of others may lie between. */
     for (int k = 0; k < GLINT_PROFILE; k++)
-        wanted[k] = found[k] < 3;
-    for (int k = 1; k < GLINT_HUNT_WAVES - 1; k++)
-        if (k != GLINT_HUNT_WAVES / 2)
-            add_boxes(hunt, &hunt->path[k], wanted, profile, found);
-    profile->n = 0;
+        wanted[k] = !(g.seen[k][waves[0]] && g.seen[k][waves[1]] &&
+                      g.seen[k][waves[2]]);
+    for (int wave = 1; wave < GLINT_HUNT_WAVES - 1; wave++)
+        if (wave != GLINT_HUNT_WAVES / 2)
+            look(hunt, sine, wanted, wave, &g);
+    profile->n = profile->n_glimpses = 0;
     for (int k = 0; k < GLINT_PROFILE; k++)
-        if (found[k]) {
-            profile->sine[profile->n] = profile->sine[k];
-            profile->box[profile->n++] = profile->box[k];
-        }
+        add_angle(profile, sine[k], &g, k);
 }

@@ -42,11 +42,19 @@ void glint_hunt_path(const struct glint_hunt *hunt, double w,
 int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
                       double (*range)[2]);
 
-/* Boxes that hold what gets through anywhere in the band. */
+/* What gets through at one angle and wavelength. */
+struct glint_glimpse {
+    double sine, w; /* w: -1 .. 1 over the band */
+    struct glint_pupil box;
+};
+
+/* Boxes over a range: at each angle, the one that holds what gets through
+ * anywhere in the band, and those of single wavelengths, by rising angle. */
 struct glint_profile {
-    int n;
+    int n, n_glimpses;
     double sine[GLINT_PROFILE];
     struct glint_pupil box[GLINT_PROFILE];
+    struct glint_glimpse glimpse[GLINT_PROFILE * GLINT_HUNT_WAVES];
 };
 
 void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],

@@ -309,7 +309,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
 /* Whether there is something to quantise: numbers everywhere. */
 static bool is_sound(const struct glint_fitted_system *s)
 {
-    const int n_box = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_POWERS);
+    const int n_box = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const struct glint_fitted_output *o = &s->output[k];
@@ -327,7 +327,7 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
     enum glint_status status;
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
-    out->n_box = 3 * (system->n_knots ? system->n_knots : GLINT_BOX_POWERS);
+    out->n_box = 3 * (system->n_knots ? system->n_knots : GLINT_BOX_TERMS);
     if (!is_sound(system))
         return GLINT_E_LENS;
     if (system->n_knots) {
@@ -336,7 +336,7 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
             return GLINT_E_LENS; /* not a power of two */
     } else {
         out->box_exponent = exponent_for(
-            largest_sum(system->box, 3, GLINT_BOX_POWERS), GLINT_BOX_POWERS);
+            largest_sum(system->box, 3, GLINT_BOX_TERMS), GLINT_BOX_TERMS);
     }
     status = to_integers(system->box, out->n_box, out->box_exponent, &out->box);
     for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)

@@ -8,120 +8,162 @@
 
 /* -------------------------------------------------------------------- boxes */
 
+/* Of a box; a fuller one is not worth the higher powers of s it takes, which
+ * everything that is seen through it has to undo. */
+#define ENOUGH_FILL 0.6
+
 double glint_zone_node(int k, int n)
 {
     return n == 1 ? 0 : -cos(GLINT_PI * k / (n - 1));
 }
 
-double glint_zone_at(const double poly[GLINT_BOX_TERMS], double s)
+double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w)
 {
     double value = 0;
 
-    for (int k = GLINT_BOX_TERMS - 1; k >= 0; k--)
-        value = value * s + poly[k];
-    return value;
+    for (int k = GLINT_BOX_POWERS - 1; k >= 0; k--)
+        value = value * s + side[k];
+    return value + w * (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
-/* Coefficients of the polynomial of at most DEGREE in s that follows N values
- * within TOLERANCE, or as well as it can. */
-static void follow(int n, const double *s, const double *value, int degree,
-                   double tolerance, double poly[GLINT_BOX_TERMS])
+/* What a zone's box has to hold, with s and w for the zone. */
+enum { ROOM = GLINT_PROFILE * GLINT_HUNT_WAVES };
+
+struct seen {
+    int n, n_angles;
+    double s[ROOM], w[ROOM];
+    double middle[ROOM], half_x[ROOM], half_y[ROOM];
+    double narrowest;
+};
+
+static void add(struct seen *seen, double s, double w,
+                const struct glint_pupil *box)
 {
-    static const double zero[GLINT_PROFILE];
-    double scratch[GLINT_PROFILE * (GLINT_MAX_CANDIDATES + 1)];
-    double weight[GLINT_PROFILE];
-    const struct glint_samples samples = {n, {zero, zero, s, zero}, weight};
-    const struct glint_degrees degrees = {.most = {0, 0, (uint8_t)degree, 0},
-                                          .weight = {1, 1, 1, 1},
-                                          .total = degree,
-                                          .parity = -1,
-                                          .terms = degree + 1};
+    const int i = seen->n++;
+
+    seen->s[i] = s;
+    seen->w[i] = w;
+    seen->middle[i] = 0.5 * (box->x0_mm + box->x1_mm);
+    seen->half_x[i] = 0.5 * (box->x1_mm - box->x0_mm);
+    seen->half_y[i] = box->y1_mm;
+    seen->narrowest = fmin(seen->narrowest, seen->half_x[i]);
+}
+
+/* One angle beyond each end, too, so that the ends are covered. */
+static void gather(const struct glint_profile *p, double lo, double hi,
+                   bool by_colour, struct seen *seen)
+{
+    int first = 0, last = p->n - 1;
+
+    while (first + 1 < last && p->sine[first + 1] <= lo)
+        first++;
+    while (last - 1 > first && p->sine[last - 1] >= hi)
+        last--;
+    seen->n = 0;
+    seen->n_angles = last - first + 1;
+    seen->narrowest = HUGE_VAL;
+    for (int k = first; k <= last && !by_colour; k++)
+        add(seen, (2 * p->sine[k] - lo - hi) / (hi - lo), 0, &p->box[k]);
+    for (int k = 0; k < p->n_glimpses && by_colour; k++) {
+        const struct glint_glimpse *g = &p->glimpse[k];
+
+        if (g->sine >= p->sine[first] && g->sine <= p->sine[last])
+            add(seen, (2 * g->sine - lo - hi) / (hi - lo), g->w, &g->box);
+    }
+}
+
+/* The polynomial that follows VALUE within TOLERANCE, or as well as it can with
+ * powers of s up to DEGREE, and, BY_COLOUR, w and s w. */
+static void follow(const struct seen *seen, const double *value, int degree,
+                   bool by_colour, double tolerance,
+                   double side[GLINT_BOX_TERMS])
+{
+    static const double zero[ROOM];
+    double scratch[ROOM * (GLINT_BOX_TERMS + 1)], weight[ROOM];
+    const struct glint_samples samples = {
+        seen->n, {zero, zero, seen->s, seen->w}, weight};
+    const int total = degree < 2 ? 2 : degree;
+    const struct glint_degrees degrees = {
+        .most = {0, 0, (uint8_t)degree, by_colour},
+        .weight = {1, 1, 1, (uint8_t)(total - 1)},
+        .total = total,
+        .parity = -1,
+        .terms = GLINT_BOX_TERMS};
     struct glint_poly fit;
 
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < seen->n; i++)
         weight[i] = 1;
     for (int k = 0; k < GLINT_BOX_TERMS; k++)
-        poly[k] = 0;
+        side[k] = 0;
     glint_regress_fit(scratch, &samples, value, &degrees, tolerance,
                       4 * tolerance, &fit);
     for (int k = 0; k < fit.n; k++)
-        poly[fit.power[k][2]] = fit.coef[k];
+        side[fit.power[k][3] ? GLINT_BOX_POWERS + fit.power[k][2]
+                             : fit.power[k][2]] = fit.coef[k];
 }
 
-/* Widens the box until it holds all that was found, and a hundredth more. */
-static void widen(struct glint_zone *z, int n, const double *s,
-                  const struct glint_pupil *p)
+/* What HALF lacks to be above 0 everywhere. */
+static double lacks(const double half[GLINT_BOX_TERMS])
 {
-    double more_x = 0, more_y = 0, lowest_x = HUGE_VAL, lowest_y = HUGE_VAL;
+    double lowest = HUGE_VAL;
 
-    for (int i = 0; i < n; i++) {
-        const double x = glint_zone_at(z->middle, s[i]);
-        const double hx = glint_zone_at(z->half_x, s[i]);
+    for (int k = -8; k <= 8; k++)
+        lowest = fmin(lowest, fmin(glint_zone_at(half, k / 8.0, -1),
+                                   glint_zone_at(half, k / 8.0, 1)));
+    return -lowest;
+}
 
-        more_x = fmax(more_x, fmax(p[i].x1_mm - x, x - p[i].x0_mm) - hx);
-        more_y = fmax(more_y, p[i].y1_mm - glint_zone_at(z->half_y, s[i]));
+/* Widens the box until it holds all that was seen, and a hundredth more. */
+static void widen(struct glint_zone *z, const struct seen *seen)
+{
+    double more_x = 0, more_y = 0;
+
+    for (int i = 0; i < seen->n; i++) {
+        const double s = seen->s[i], w = seen->w[i];
+        const double off = fabs(seen->middle[i] - glint_zone_at(z->middle, s, w));
+
+        more_x = fmax(more_x, seen->half_x[i] + off -
+                                  glint_zone_at(z->half_x, s, w));
+        more_y = fmax(more_y, seen->half_y[i] - glint_zone_at(z->half_y, s, w));
     }
     z->half_x[0] += more_x;
     z->half_y[0] += more_y;
-    for (int k = -8; k <= 8; k++) {
-        lowest_x = fmin(lowest_x, glint_zone_at(z->half_x, k / 8.0));
-        lowest_y = fmin(lowest_y, glint_zone_at(z->half_y, k / 8.0));
-    }
-    z->half_x[0] += fmax(0.01 * z->half_x[0], -1.1 * lowest_x);
-    z->half_y[0] += fmax(0.01 * z->half_y[0], -1.1 * lowest_y);
+    z->half_x[0] += fmax(0.01 * z->half_x[0], 1.1 * lacks(z->half_x));
+    z->half_y[0] += fmax(0.01 * z->half_y[0], 1.1 * lacks(z->half_y));
 }
 
-static double mean_fill(const struct glint_zone *z, int n, const double *s,
-                        const struct glint_pupil *p)
+static double mean_fill(const struct glint_zone *z, const struct seen *seen)
 {
     double sum = 0;
 
-    for (int i = 0; i < n; i++)
-        sum += (p[i].x1_mm - p[i].x0_mm) * p[i].y1_mm /
-               (2 * glint_zone_at(z->half_x, s[i]) *
-                glint_zone_at(z->half_y, s[i]));
-    return sum / n;
-}
-
-static double smallest(int n, const double *value)
-{
-    double least = HUGE_VAL;
-
-    for (int i = 0; i < n; i++)
-        least = fmin(least, value[i]);
-    return least;
+    for (int i = 0; i < seen->n; i++)
+        sum += seen->half_x[i] * seen->half_y[i] /
+               (glint_zone_at(z->half_x, seen->s[i], seen->w[i]) *
+                glint_zone_at(z->half_y, seen->s[i], seen->w[i]));
+    return sum / seen->n;
 }
 
 void glint_zone_init(struct glint_zone *zone,
-                     const struct glint_profile *profile, double lo, double hi)
+                     const struct glint_profile *profile, double lo, double hi,
+                     bool by_colour)
 {
-    double s[GLINT_PROFILE] = {0}, middle[GLINT_PROFILE] = {0};
-    double half_x[GLINT_PROFILE] = {0}, half_y[GLINT_PROFILE] = {0};
-    struct glint_pupil box[GLINT_PROFILE];
-    int n = 0, first = 0, last = profile->n - 1, degree;
+    struct seen seen;
+    int degree, most;
 
-    /* one beyond each end, so that the ends are covered */
-    while (first + 1 < last && profile->sine[first + 1] <= lo)
-        first++;
-    while (last - 1 > first && profile->sine[last - 1] >= hi)
-        last--;
-    for (int k = first; k <= last; k++) { /* at least once */
-        const struct glint_pupil *b = &profile->box[k];
+    gather(profile, lo, hi, by_colour, &seen);
+    most = seen.n_angles > 12 ? GLINT_BOX_POWERS - 1 : (seen.n_angles - 1) / 2;
+    degree = most < 1 ? most : 1;
+    do {
+        const double tolerance = 0.02 * seen.narrowest;
+        const int tame = degree < 2 ? degree : 2;
 
-        s[n] = (2 * profile->sine[k] - lo - hi) / (hi - lo);
-        middle[n] = 0.5 * (b->x0_mm + b->x1_mm);
-        half_x[n] = 0.5 * (b->x1_mm - b->x0_mm);
-        half_y[n] = b->y1_mm;
-        box[n++] = *b;
-    }
-    *zone = (struct glint_zone){.lo = lo, .hi = hi};
-    degree = n > 12 ? GLINT_BOX_TERMS - 1 : (n - 1) / 2;
-    follow(n, s, middle, degree, 0.02 * smallest(n, half_x), zone->middle);
-    degree = degree < 2 ? degree : 2;
-    follow(n, s, half_x, degree, 0.02 * smallest(n, half_x), zone->half_x);
-    follow(n, s, half_y, degree, 0.02 * smallest(n, half_y), zone->half_y);
-    widen(zone, n, s, box);
-    zone->fill = mean_fill(zone, n, s, box);
+        *zone = (struct glint_zone){.lo = lo, .hi = hi};
+        follow(&seen, seen.middle, degree, by_colour, tolerance, zone->middle);
+        follow(&seen, seen.half_x, tame, by_colour, tolerance, zone->half_x);
+        follow(&seen, seen.half_y, tame, by_colour, tolerance, zone->half_y);
+        widen(zone, &seen);
+        zone->fill = mean_fill(zone, &seen);
+    } while (zone->fill < ENOUGH_FILL && ++degree <= most);
 }
 
 /* ------------------------------------------------------------------ barrels */
@@ -142,20 +184,23 @@ static void direction_of(const struct glint_zone *z, double s, double d[3])
     d[2] = sqrt(1 - d[0] * d[0]);
 }
 
-/* Traces one ray of the zone; HITS of events it did not reach are -1, -1. */
+/* Traces the ray at X of the zone, PATH being that of its w; HITS of events it
+ * did not reach are -1, -1. */
 static enum glint_ray_status ray_of(const struct glint_zone *z,
-                                    const struct glint_path *path, double u,
-                                    double v, double s, struct glint_ray *ray,
-                                    double (*hits)[2])
+                                    const struct glint_path *path,
+                                    const double x[GLINT_VARIABLES],
+                                    struct glint_ray *ray, double (*hits)[2])
 {
+    const double s = x[2], w = x[3];
     double d[3];
 
     direction_of(z, s, d);
     for (int k = 0; k < path->n_events; k++)
         hits[k][0] = hits[k][1] = -1;
-    return glint_trace(
-        path, glint_zone_at(z->middle, s) + u * glint_zone_at(z->half_x, s),
-        v * glint_zone_at(z->half_y, s), d, ray, hits);
+    return glint_trace(path,
+                       glint_zone_at(z->middle, s, w) +
+                           x[0] * glint_zone_at(z->half_x, s, w),
+                       x[1] * glint_zone_at(z->half_y, s, w), d, ray, hits);
 }
 
 /* Notes the ray's radius at every event if the stop and the field let it pass,
@@ -189,22 +234,26 @@ static bool survey_ray(const struct glint_hunt *h,
 static void run_survey(const struct glint_zone *z, const struct glint_hunt *h,
                        struct survey *survey)
 {
-    const struct glint_path *path = &h->path[GLINT_HUNT_WAVES / 2];
+    static const int waves[] = {GLINT_HUNT_WAVES / 2, 0, GLINT_HUNT_WAVES - 1};
     double hits[GLINT_MAX_EVENTS + 1][2];
 
     survey->n = 0;
-    survey->n_events = path->n_events;
+    survey->n_events = h->path[0].n_events;
     for (int k = 0; k < GLINT_SURVEY_RAYS; k++) {
         const int i = k % (SURVEY_U + 1);
         const int j = k / (SURVEY_U + 1) % (SURVEY_V + 1);
         const int m = k / (SURVEY_U + 1) / (SURVEY_V + 1);
+        const int wave = waves[m % 3];
+        const double x[GLINT_VARIABLES] = {
+            2.0 * i / SURVEY_U - 1, (double)j / SURVEY_V,
+            glint_zone_node(m, SURVEY_S),
+            glint_zone_node(wave, GLINT_HUNT_WAVES)};
         struct glint_ray ray;
         const enum glint_ray_status status =
-            ray_of(z, path, 2.0 * i / SURVEY_U - 1, (double)j / SURVEY_V,
-                   glint_zone_node(m, SURVEY_S), &ray, hits);
+            ray_of(z, &h->path[wave], x, &ray, hits);
 
-        survey->n +=
-            survey_ray(h, path, status, &ray, hits, survey->radius[survey->n]);
+        survey->n += survey_ray(h, &h->path[wave], status, &ray, hits,
+                                survey->radius[survey->n]);
     }
 }
 
@@ -318,7 +367,7 @@ static void trace_plane(const struct glint_zone *zone,
                 glint_zone_node(wave, GLINT_HUNT_WAVES)};
             struct glint_ray ray;
 
-            if (ray_of(zone, path, x[0], x[1], x[2], &ray, hits) !=
+            if (ray_of(zone, path, x, &ray, hits) !=
                 GLINT_RAY_OK)
                 continue;
             add_ray(hunt, path, x, &ray, hits, rays);
@@ -418,7 +467,7 @@ void glint_zone_check(const struct glint_zone *zone,
         x[1] = fabs(x[1]);
         x[2] = bundle[2];
         x[3] = bundle[3];
-        if (ray_of(zone, &path, x[0], x[1], x[2], &ray, hits) == GLINT_RAY_OK)
+        if (ray_of(zone, &path, x, &ray, hits) == GLINT_RAY_OK)
             add_ray(hunt, &path, x, &ray, hits, rays);
     }
 }

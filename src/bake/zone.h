@@ -17,27 +17,29 @@
 
 #include "bake/hunt.h"
 #include "bake/regress.h"
+#include "glint/lens.h"
 
 enum {
     GLINT_ZONE_SINES = 6,
     GLINT_ZONE_RAYS = 36 * 120,
-    GLINT_BOX_TERMS = 6,
     GLINT_MAX_BARRELS = 4
 };
 
 struct glint_zone {
     double lo, hi;                  /* sine of the angle */
-    double middle[GLINT_BOX_TERMS]; /* of powers of s, mm */
+    double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     double fill; /* mean share of the box that the ghost needs */
 };
 
-/* A polynomial of the box at S. */
-double glint_zone_at(const double poly[GLINT_BOX_TERMS], double s);
+/* One of these at S and W. */
+double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
 
-/* Sets the box for LO .. HI of PROFILE. */
+/* Sets the box for LO .. HI of PROFILE: one for all colours, or one that moves
+ * with them and takes more terms. */
 void glint_zone_init(struct glint_zone *zone,
-                     const struct glint_profile *profile, double lo, double hi);
+                     const struct glint_profile *profile, double lo, double hi,
+                     bool by_colour);
 
 /* Node K of N over -1 .. 1, the ends among them. */
 double glint_zone_node(int k, int n);

@@ -23,6 +23,7 @@
 
 #include "base/compiler.h"
 #include "base/q.h"
+#include "lens/box.h"
 
 /* The file is used in place: its layout is what these structs are. */
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
@@ -292,16 +293,13 @@ static const char *check_box_at_knot(const int32_t box[3])
 }
 
 /* Whether the polynomial of a half size is below 0 anywhere on a grid of
- * angles. */
-static int shrinks_below_0(const int32_t p[GLINT_BOX_POWERS])
+ * angles, at either end of the band. */
+static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
 {
     for (int32_t k = 0; k <= 1 << BOX_NODES_LOG2; k++) {
         const int32_t s_q30 = k * (LIMIT >> (BOX_NODES_LOG2 - 1)) - LIMIT;
-        int32_t sum = p[GLINT_BOX_POWERS - 1];
 
-        for (int m = GLINT_BOX_POWERS - 2; m >= 0; m--)
-            sum = q_mul(sum, s_q30, 30) + p[m];
-        if (sum < 0)
+        if (box_side(p, s_q30, -LIMIT) < 0 || box_side(p, s_q30, LIMIT) < 0)
             return 1;
     }
     return 0;
@@ -311,7 +309,7 @@ static const char *check_box(struct check *c,
                              const struct glint_model_system *s)
 {
     const uint64_t n =
-        s->n_knots ? 3 * (uint64_t)s->n_knots : 3 * GLINT_BOX_POWERS;
+        s->n_knots ? 3 * (uint64_t)s->n_knots : 3 * GLINT_BOX_TERMS;
     const int32_t *box;
 
     if (s->box_exponent < MIN_EXPONENT || s->box_exponent > MAX_EXPONENT)
@@ -325,8 +323,8 @@ static const char *check_box(struct check *c,
         if (reason)
             return reason;
     }
-    for (int k = 0; k < 3 && s->n_knots == 0; k++, box += GLINT_BOX_POWERS) {
-        if (magnitudes(box, GLINT_BOX_POWERS) >= LIMIT)
+    for (int k = 0; k < 3 && s->n_knots == 0; k++, box += GLINT_BOX_TERMS) {
+        if (magnitudes(box, GLINT_BOX_TERMS) >= LIMIT)
             return "a box reaches too far";
         if (k > 0 && shrinks_below_0(box))
             return "a box has a size below 0";

@@ -12,6 +12,7 @@
 #include "base/compiler.h"
 #include "base/q.h"
 #include "glint/flare.h"
+#include "lens/box.h"
 
 enum { ONE_LOG2 = 30, MAX_EXPONENT = 15 /* of any variable */ };
 
@@ -113,8 +114,7 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
 
     t->box_exponent = s->box_exponent;
     for (int k = 0; k < 3; k++) {
-        const int32_t *p = box + k * GLINT_BOX_POWERS;
-        int32_t sum = p[GLINT_BOX_POWERS - 1];
+        const int32_t *p = box + k * GLINT_BOX_TERMS;
 
         if (s->n_knots) {
             const int32_t *low = box + 3 * set->knot;
@@ -122,9 +122,7 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
             t->box[k] = between(low[k], low[3 + k], set->part_q30);
             continue;
         }
-        for (int m = GLINT_BOX_POWERS - 2; m >= 0; m--)
-            sum = q_mul(sum, set->s_q30[1], 30) + p[m];
-        t->box[k] = sum;
+        t->box[k] = box_side(p, set->s_q30[1], set->w_q30[1]);
     }
 }
 

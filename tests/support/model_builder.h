@@ -187,7 +187,7 @@ model_auto_system(struct model_image *m, int32_t sine_lo_q30,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(2, 0, 0, 0)},
          {{1 << 27, 1 << 27}}},
     };
-    static const int32_t box[3][GLINT_BOX_POWERS] = {
+    static const int32_t box[3][GLINT_BOX_TERMS] = {
         {1 << 20, 1 << 19}, {1 << 22, -(1 << 20)}, {3 << 20}};
     struct glint_model_system s = {.sine_lo_q30 = sine_lo_q30,
                                    .sine_hi_q30 = sine_hi_q30,

@@ -88,7 +88,7 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
 
 static void make_box(struct glint_fitted_system *s)
 {
-    const int n = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_POWERS);
+    const int n = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
 
     s->box = malloc((size_t)n * sizeof *s->box);
     assert_non_null(s->box);
@@ -104,8 +104,8 @@ static void make_box(struct glint_fitted_system *s)
     if (s->n_knots == 0) {
         s->box[0] = 7 * random_unit();
         s->box[1] = random_unit();
-        s->box[GLINT_BOX_POWERS] = 3 + random_unit();
-        s->box[2 * GLINT_BOX_POWERS] = 5;
+        s->box[GLINT_BOX_TERMS] = 3 + random_unit();
+        s->box[2 * GLINT_BOX_TERMS] = 5;
     }
 }
 

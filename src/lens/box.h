@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The box of a system without knots: its middle or a half size as a polynomial
+ * of angle and wavelength, for the run time and for the check of a model alike.
+ */
+#ifndef GLINT_LENS_BOX_H
+#define GLINT_LENS_BOX_H
+
+#include "base/q.h"
+#include "glint/lens.h"
+
+/* P at S_Q30 and W_Q30, each within +-2^30. */
+static inline int32_t box_side(const int32_t p[GLINT_BOX_TERMS], int32_t s_q30,
+                               int32_t w_q30)
+{
+    const int32_t *of_w = p + GLINT_BOX_POWERS;
+    int32_t sum = p[GLINT_BOX_POWERS - 1];
+
+    for (int m = GLINT_BOX_POWERS - 2; m >= 0; m--)
+        sum = q_mul(sum, s_q30, 30) + p[m];
+    return sum + q_mul(q_mul(of_w[1], s_q30, 30) + of_w[0], w_q30, 30);
+}
+
+#endif
