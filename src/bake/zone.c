@@ -11,6 +11,7 @@
 /* Of a box; a fuller one is not worth the higher powers of s it takes, which
  * everything that is seen through it has to undo. */
 #define ENOUGH_FILL 0.6
+#define FULLER      1.25 /* what another power has to gain */
 
 double glint_zone_node(int k, int n)
 {
@@ -143,27 +144,37 @@ static double mean_fill(const struct glint_zone *z, const struct seen *seen)
     return sum / seen->n;
 }
 
+static void set_box(struct glint_zone *z, const struct seen *seen, int degree,
+                    bool by_colour)
+{
+    const double tolerance = 0.02 * seen->narrowest;
+    const int tame = degree < 2 ? degree : 2;
+
+    follow(seen, seen->middle, degree, by_colour, tolerance, z->middle);
+    follow(seen, seen->half_x, tame, by_colour, tolerance, z->half_x);
+    follow(seen, seen->half_y, tame, by_colour, tolerance, z->half_y);
+    widen(z, seen);
+    z->fill = mean_fill(z, seen);
+}
+
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_profile *profile, double lo, double hi,
                      bool by_colour)
 {
     struct seen seen;
-    int degree, most;
+    int most;
 
     gather(profile, lo, hi, by_colour, &seen);
     most = seen.n_angles > 12 ? GLINT_BOX_POWERS - 1 : (seen.n_angles - 1) / 2;
-    degree = most < 1 ? most : 1;
-    do {
-        const double tolerance = 0.02 * seen.narrowest;
-        const int tame = degree < 2 ? degree : 2;
+    *zone = (struct glint_zone){.fill = 0};
+    for (int degree = most < 1 ? most : 1;
+         degree <= most && zone->fill < ENOUGH_FILL; degree++) {
+        struct glint_zone z = {.lo = lo, .hi = hi};
 
-        *zone = (struct glint_zone){.lo = lo, .hi = hi};
-        follow(&seen, seen.middle, degree, by_colour, tolerance, zone->middle);
-        follow(&seen, seen.half_x, tame, by_colour, tolerance, zone->half_x);
-        follow(&seen, seen.half_y, tame, by_colour, tolerance, zone->half_y);
-        widen(zone, &seen);
-        zone->fill = mean_fill(zone, &seen);
-    } while (zone->fill < ENOUGH_FILL && ++degree <= most);
+        set_box(&z, &seen, degree, by_colour);
+        if (z.fill > FULLER * zone->fill)
+            *zone = z;
+    }
 }
 
 /* ------------------------------------------------------------------ barrels */
