@@ -8,15 +8,16 @@
 
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN };
 
-/* A cell's irradiance and its area on the sensor. */
+/* A cell on the sensor, and its mirror image at -y. */
 struct patch {
-    double irradiance, area_mm2;
+    double irradiance, area_mm2, x_mm, y_mm;
 };
 
 struct task {
     struct glint_brightness *out;
     const struct glint_setup *setup;
     double field_mm, nm;
+    double half_mm[2]; /* of the picture */
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
 };
 
@@ -36,8 +37,8 @@ static struct patch patch_of(const struct glint_ray *a,
         (b->sensor_x_mm - a->sensor_x_mm) * (c->sensor_y_mm - a->sensor_y_mm) -
         (b->sensor_y_mm - a->sensor_y_mm) * (c->sensor_x_mm - a->sensor_x_mm));
 
-    /* the other half of the picture is the same */
-    return (struct patch){a->energy * pupil_mm2 / fmax(area, 1e-12), 2 * area};
+    return (struct patch){a->energy * pupil_mm2 / fmax(area, 1e-12), area,
+                          a->sensor_x_mm, a->sensor_y_mm};
 }
 
 /* Adds the patches of one ghost; returns how many. */
@@ -81,13 +82,42 @@ static int brighter_first(const void *a, const void *b)
     return (x < y) - (x > y);
 }
 
+/* Whether X, Y lies in the picture when the light's azimuth is PHI. */
+static bool in_picture(const struct task *t, double x, double y, double phi)
+{
+    const double c = cos(phi), s = sin(phi);
+
+    return fabs(c * x - s * y) <= t->half_mm[0] &&
+           fabs(s * x + c * y) <= t->half_mm[1];
+}
+
+/* The irradiance that a thousandth of the picture exceeds, PATCH being sorted;
+ * if there is less light than that, infinity. */
+static double level_at(const struct task *t, const struct patch *patch, int n,
+                       double phi)
+{
+    double left = 0.001 * 4 * t->half_mm[0] * t->half_mm[1];
+
+    for (int k = 0; k < n; k++) {
+        const struct patch *p = &patch[k];
+
+        left -= p->area_mm2 * (in_picture(t, p->x_mm, p->y_mm, phi) +
+                               in_picture(t, p->x_mm, -p->y_mm, phi));
+        if (left <= 0)
+            return p->irradiance;
+    }
+    return HUGE_VAL;
+}
+
+/* The least level of all azimuths: the brightest ghosts may lie outside of the
+ * picture, which is then exposed for others. */
 static void angle_job(void *ctx, int job, int worker)
 {
+    enum { AZIMUTHS = 7 }; /* 0 to 90 degrees */
     struct task *t = ctx;
     const int ghosts = t->setup->n_ghosts;
-    const double enough = 0.001 * GLINT_PI * t->field_mm * t->field_mm;
     struct patch *patch = malloc(((size_t)ghosts * CELLS + 1) * sizeof *patch);
-    double covered = 0;
+    double level = HUGE_VAL;
     int n = 0;
 
     (void)worker;
@@ -97,14 +127,12 @@ static void angle_job(void *ctx, int job, int worker)
     for (int k = 0; k < ghosts; k++)
         n += add_ghost(t, k, t->out->sine[job], patch + n);
     qsort(patch, (size_t)n, sizeof *patch, brighter_first);
-    t->out->level[job] = n ? patch[n - 1].irradiance : 0;
-    for (int k = 0; k < n; k++) {
-        covered += patch[k].area_mm2;
-        if (covered >= enough) {
-            t->out->level[job] = patch[k].irradiance;
-            break;
-        }
-    }
+    for (int k = 0; k < AZIMUTHS; k++)
+        level = fmin(level, level_at(t, patch, n,
+                                     0.5 * GLINT_PI * k / (AZIMUTHS - 1)));
+    t->out->level[job] = level < HUGE_VAL ? level
+                         : n              ? patch[n - 1].irradiance
+                                          : 0;
     free(patch);
 }
 
@@ -114,13 +142,18 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const double band_nm[2],
                                         struct glint_workers *workers)
 {
-    static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {0,  4,  9, 15,
-                                                            22, 32, 45};
-    struct task t = {brightness,
-                     setup,
-                     field_mm,
-                     0.5 * (band_nm[0] + band_nm[1]),
-                     {GLINT_OK}};
+    static const double degrees[GLINT_BRIGHTNESS_ANGLES] = {
+        0, 3, 6, 9, 12, 15, 18, 22, 27, 34, 45};
+    const struct glint_prescription *lens = setup->lens;
+    const double scale =
+        field_mm / (1.1 * hypot(lens->film_width_mm, lens->film_height_mm));
+    struct task t = {
+        brightness,
+        setup,
+        field_mm,
+        0.5 * (band_nm[0] + band_nm[1]),
+        {scale * lens->film_width_mm, scale * lens->film_height_mm},
+        {GLINT_OK}};
 
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
         brightness->sine[k] = glint_sin_deg(degrees[k]);
@@ -134,11 +167,9 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
 double glint_brightness_at(const struct glint_brightness *brightness,
                            double sine)
 {
-    int best = 0;
+    int k = 0;
 
-    for (int k = 1; k < GLINT_BRIGHTNESS_ANGLES; k++)
-        if (fabs(brightness->sine[k] - sine) <
-            fabs(brightness->sine[best] - sine))
-            best = k;
-    return brightness->level[best];
+    while (k + 2 < GLINT_BRIGHTNESS_ANGLES && brightness->sine[k + 1] < sine)
+        k++;
+    return fmin(brightness->level[k], brightness->level[k + 1]);
 }

@@ -3,8 +3,8 @@
  * How bright a ghost must be to count.
  *
  *   in   a lens, the field, the band
- *   out  for a few angles the irradiance that a thousandth of the field has or
- *        exceeds: what an exposure goes by
+ *   out  for a few angles the irradiance that a thousandth of the picture has or
+ *        exceeds, at the azimuth where it is least: what an exposure goes by
  *
  * A ghost far below it may be off by more before anybody sees it. Ghosts count
  * one by one, not summed where they overlap, which is near enough for that.
@@ -14,7 +14,7 @@
 
 #include "glint/bake.h"
 
-enum { GLINT_BRIGHTNESS_ANGLES = 7 };
+enum { GLINT_BRIGHTNESS_ANGLES = 11 };
 
 struct glint_brightness {
     double sine[GLINT_BRIGHTNESS_ANGLES];
@@ -29,7 +29,7 @@ enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const double band_nm[2],
                                         struct glint_workers *workers);
 
-/* The level at the nearest of the angles. */
+/* The lower level of the two angles around SINE. */
 double glint_brightness_at(const struct glint_brightness *brightness,
                            double sine);
 

@@ -11,7 +11,7 @@
 /* Of a box; a fuller one is not worth the higher powers of s it takes, which
  * everything that is seen through it has to undo. */
 #define ENOUGH_FILL 0.6
-#define FULLER      1.25 /* what another power has to gain */
+#define FULLER      1.6 /* what another power has to gain */
 
 double glint_zone_node(int k, int n)
 {
