@@ -70,7 +70,7 @@ static size_t bytes_of(const struct glint_lens *lens, struct span span)
         sum += n_knots ? 4 * (1 + 3) * n_knots : 4 * 3 * GLINT_BOX_TERMS;
         for (uint32_t m = 0; m < s->n_outputs; m++)
             sum += 4 * sets * o[m].n_terms + (o[m].n_terms + 1) / 2 * 4 -
-                   2 * ((o[m].narrow & 0xff) & ~UINT32_C(1));
+                   2 * (o[m].n_narrow & ~1u);
     }
     return sum;
 }

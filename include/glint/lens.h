@@ -134,11 +134,16 @@ struct glint_model_output {
                                   powers of u, v, s, w (or x, y, r, 1 - r), four
                                   bits each, the first lowest */
     uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
-    uint32_t narrow;  /* low byte N: the last N coefficients are int16 instead,
-                         padded to whole words, and count 2^S times as much; S
-                         is the next byte, at most 20. With knots 0 */
-    int32_t exponent; /* a value is integer * 2^exponent */
-    uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
+    uint8_t n_narrow; /* so many of the coefficients, the last ones, are int16
+                         instead, padded to whole words, */
+    uint8_t narrow_shift; /* and count 2^so many times as much, at most 20; with
+                             knots 0 */
+    /* Of the energy, where not 0: its polynomial P is at most 2^(29 - head)
+     * where light gets through, head at most 28, and more means as much; the
+     * energy is P squared so many times, roots at most 2, 0 for P below 0. */
+    uint8_t head, roots;
+    int32_t exponent;     /* a polynomial's value is integer * 2^exponent */
+    uint32_t bound;       /* proven: no intermediate is larger; < 2^30 */
     uint32_t rounding_q8; /* proven: integers stray from the polynomial by no
                              more than so many steps */
     /* Measured against exact rays through the run-time arithmetic, q20: pixels
@@ -170,7 +175,8 @@ uint32_t glint_model_crc32(const void *data, size_t bytes);
 struct glint_transfer {
     const struct glint_model_system *system;
     uint32_t outputs; /* bit KIND is set where there is that output */
-    int32_t exponent[GLINT_OUT_KINDS];
+    int32_t exponent[GLINT_OUT_KINDS]; /* of what comes out */
+    uint8_t head, roots;               /* of the energy */
     int32_t box[3]; /* middle, half width, half height at this angle */
     int32_t box_exponent;
     enum glint_basis basis;

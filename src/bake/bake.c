@@ -14,7 +14,7 @@
 
 enum {
     FLUX_POWERS = 6,
-    REVISION = 1 /* of what is made of a lens: raised when models change */
+    REVISION = 2 /* of what is made of a lens: raised when models change */
 };
 
 /* Everything one model takes. */
@@ -229,7 +229,7 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
         .faint_sensor_mm = 0.056 * t * film / 1920,
         .edge_mm = 0.03 * t * film / 1920,
         .stop = 4.5e-4 * t,
-        .barrel = 7e-4 * t,
+        .barrel = 4e-4 * t,
         .energy = 6e-4 * t,
         .ease = 10,
         .brightness = &k->brightness};

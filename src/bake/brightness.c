@@ -128,8 +128,8 @@ static void angle_job(void *ctx, int job, int worker)
         n += add_ghost(t, k, t->out->sine[job], patch + n);
     qsort(patch, (size_t)n, sizeof *patch, brighter_first);
     for (int k = 0; k < AZIMUTHS; k++)
-        level = fmin(level, level_at(t, patch, n,
-                                     0.5 * GLINT_PI * k / (AZIMUTHS - 1)));
+        level = fmin(
+            level, level_at(t, patch, n, 0.5 * GLINT_PI * k / (AZIMUTHS - 1)));
     t->out->level[job] = level < HUGE_VAL ? level
                          : n              ? patch[n - 1].irradiance
                                           : 0;

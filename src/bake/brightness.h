@@ -3,8 +3,8 @@
  * How bright a ghost must be to count.
  *
  *   in   a lens, the field, the band
- *   out  for a few angles the irradiance that a thousandth of the picture has or
- *        exceeds, at the azimuth where it is least: what an exposure goes by
+ *   out  for a few angles the irradiance that a thousandth of the picture has
+ * or exceeds, at the azimuth where it is least: what an exposure goes by
  *
  * A ghost far below it may be off by more before anybody sees it. Ghosts count
  * one by one, not summed where they overlap, which is near enough for that.

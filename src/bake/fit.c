@@ -11,10 +11,14 @@
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
-#define PEAK       5.0  /* times the root mean square */
-#define LEAST_FILL 0.33 /* of a box; below it the grids waste their cells */
-#define FILL_DEG   0.6  /* narrower zones need not care for that */
-#define LEAST_DEG  0.7
+#define PEAK        5.0  /* times the root mean square */
+#define WIDE_ENERGY 60   /* most over least energy of which to take a root */
+#define LEAST_FILL  0.33 /* of a box; below it the grids waste their cells */
+#define CROWD_DEG                                                            \
+    1.5               /* a vertex has room for two barrels: more make a zone \
+                         worth halving down to here */
+#define FILL_DEG  0.6 /* narrower zones need not care for that */
+#define LEAST_DEG 0.7
 #define STUCK                                                               \
     0.75              /* half a zone that is left with so much of the whole \
                          one's error gains nothing from halving... */
@@ -30,7 +34,8 @@ struct fitter {
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
     double *scratch;
     struct glint_fitted_ghost *out;
-    double sensor_mm, stop, barrel, energy; /* tolerances of this zone */
+    double sensor_mm, edge_mm, stop, energy; /* tolerances of this zone */
+    bool by_all_means;
 };
 
 /* ----------------------------------------------------------------- outputs */
@@ -64,26 +69,31 @@ static double weight_past_field(const struct fitter *f, double fields)
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->sensor_mm);
 }
 
-/* Light that is seen: where, and how strong on average. */
+static bool is_seen(const struct glint_rays *r, int i)
+{
+    return r->at[RAY_EXCESS][i] <= 1 && r->at[RAY_FIELD][i] <= 1;
+}
+
+/* The rays of one angle and wavelength from FIRST on: what is seen of them. */
 struct sight {
     int n, n_all;
-    double low[3], high[3]; /* sensor x and y, stop x */
-    double energy;
+    double low[2], high[2]; /* on the sensor */
+    double energy;          /* mean */
 };
 
-static struct sight look(const struct glint_rays *r)
+static struct sight look(const struct glint_rays *r, int first)
 {
-    static const int channel[3] = {RAY_SENSOR_X, RAY_SENSOR_Y, RAY_STOP_X};
-    struct sight s = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
-                      .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
-                      .n_all = r->n};
+    struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
+                      .high = {-HUGE_VAL, -HUGE_VAL}};
 
-    for (int i = 0; i < r->n; i++) {
-        if (r->at[RAY_EXCESS][i] > 1 || r->at[RAY_FIELD][i] > 1)
+    for (int i = first; i < r->n && r->x[2][i] == r->x[2][first] &&
+                        r->x[3][i] == r->x[3][first];
+         i++, s.n_all++) {
+        if (!is_seen(r, i))
             continue;
-        for (int k = 0; k < 3; k++) {
-            s.low[k] = fmin(s.low[k], r->at[channel[k]][i]);
-            s.high[k] = fmax(s.high[k], r->at[channel[k]][i]);
+        for (int k = 0; k < 2; k++) {
+            s.low[k] = fmin(s.low[k], r->at[RAY_SENSOR_X + k][i]);
+            s.high[k] = fmax(s.high[k], r->at[RAY_SENSOR_X + k][i]);
         }
         s.energy += r->at[RAY_ENERGY][i];
         s.n++;
@@ -92,34 +102,76 @@ static struct sight look(const struct glint_rays *r)
     return s;
 }
 
-/* How much worse a zone may be than one that is as bright as counts. */
-static double ease_of(const struct fitter *f, const struct glint_zone *zone,
-                      const struct sight *s)
+/* How bright the ghost is at its brightest in the zone, as a share of what is
+ * as bright as counts. */
+static double share_of(const struct fitter *f, const struct glint_zone *zone)
 {
-    const double level = glint_brightness_at(f->tolerance->brightness,
-                                             0.5 * (zone->lo + zone->hi));
-    const double pupil = 4 * zone->half_x[0] * zone->half_y[0] * fmax(s->n, 1) /
-                         fmax(s->n_all, 1);
-    const double y = fmax(fabs(s->low[1]), fabs(s->high[1])); /* mirrored */
-    const double sensor = fmax(1e-9, (s->high[0] - s->low[0]) * 2 * y * 0.8);
-    const double share = s->energy * pupil / sensor / fmax(level, 1e-30);
+    enum { FEW = 4 }; /* rays have no area to speak of */
+    const struct glint_rays *r = &f->rays;
+    double most = 0;
 
-    return s->n ? fmin(f->tolerance->ease, fmax(1, pow(share, -0.42)))
-                : f->tolerance->ease;
+    for (int i = 0, next; i < r->n; i = next) {
+        const struct sight v = look(r, i);
+        const double s = r->x[2][i], w = r->x[3][i];
+        const double pupil = 4 * glint_zone_at(zone->half_x, s, w) *
+                             glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
+        const double level = glint_brightness_at(
+            f->tolerance->brightness,
+            0.5 * (zone->lo + zone->hi) + 0.5 * s * (zone->hi - zone->lo));
+        const double y = fmax(fabs(v.low[1]), fabs(v.high[1])); /* mirrored */
+
+        next = i + v.n_all;
+        if (v.n >= FEW)
+            most = fmax(most, v.energy * pupil /
+                                  fmax(1e-9, (v.high[0] - v.low[0]) * 1.6 * y) /
+                                  fmax(level, 1e-30));
+    }
+    return most;
+}
+
+/* Sensor millimetres for a unit of the place A, B (or A alone), root mean
+ * square over neighbours; of barrels only where they cut. */
+static double stretch_of(const struct glint_rays *r, const double *a,
+                         const double *b, double near)
+{
+    double moved2 = 0, change2 = 0;
+
+    for (int i = 1; i < r->n; i++) {
+        const double *x = r->at[RAY_SENSOR_X], *y = r->at[RAY_SENSOR_Y];
+
+        if (r->x[1][i] != r->x[1][i - 1] || r->x[2][i] != r->x[2][i - 1] ||
+            r->x[3][i] != r->x[3][i - 1] || !is_seen(r, i) ||
+            !is_seen(r, i - 1) || a[i] < near)
+            continue;
+        moved2 += (x[i] - x[i - 1]) * (x[i] - x[i - 1]) +
+                  (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
+        change2 += (a[i] - a[i - 1]) * (a[i] - a[i - 1]);
+        if (b)
+            change2 += (b[i] - b[i - 1]) * (b[i] - b[i - 1]);
+    }
+    return change2 > 0 ? sqrt(moved2 / change2) : 0;
+}
+
+/* What an outline may be off, in units of which STRETCH_MM are a millimetre. */
+static double outline_tolerance(const struct fitter *f, double most,
+                                double stretch_mm)
+{
+    return fmax(0.06 * most, fmin(most, f->edge_mm / fmax(1e-12, stretch_mm)));
 }
 
 static void set_tolerances(struct fitter *f, const struct glint_zone *zone)
 {
     const struct glint_tolerance *t = f->tolerance;
-    const struct sight s = look(&f->rays);
-    const double ease = ease_of(f, zone, &s);
-    const double per_stop =
-        s.n > 1 ? (s.high[0] - s.low[0]) / (s.high[2] - s.low[2] + 1e-12) : 0;
-    const double edge = ease * t->edge_mm / fmax(1e-12, per_stop);
+    const struct glint_rays *r = &f->rays;
+    const double share = share_of(f, zone);
+    const double ease =
+        share > 0 ? fmin(t->ease, fmax(1, pow(share, -0.42))) : t->ease;
 
+    f->edge_mm = ease * t->edge_mm;
     f->sensor_mm = fmin(ease * t->sensor_mm, t->faint_sensor_mm);
-    f->stop = fmax(0.06 * t->stop, fmin(t->stop, edge));
-    f->barrel = fmax(0.06 * t->barrel, fmin(t->barrel, edge));
+    f->stop = outline_tolerance(
+        f, t->stop,
+        stretch_of(r, r->at[RAY_STOP_X], r->at[RAY_STOP_Y], -HUGE_VAL));
     f->energy = ease * t->energy;
 }
 
@@ -194,23 +246,32 @@ static enum glint_status fit_channel(struct fitter *f, int channel, double rms,
                       worst);
 }
 
-/* Energy counts by its share, down to a fiftieth of the most that is
- * seen. */
+/* Energy counts by its share, down to a two-hundredth of the most that is seen.
+ * Towards total reflection it grows a thousandfold; its fourth root is as tame
+ * as a position. */
 static enum glint_status
 fit_energy(struct fitter *f, struct glint_fitted_system *system, double *worst)
 {
     const struct glint_rays *r = &f->energies;
-    double most = 1e-30;
+    struct glint_fitted_output *o = &system->output[system->n_outputs];
+    double least = HUGE_VAL, most = 1e-30;
 
     for (int i = 0; i < r->n; i++)
-        if (fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]) <= 1)
+        if (fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]) <= 1) {
+            least = fmin(least, r->at[RAY_ENERGY][i]);
             most = fmax(most, r->at[RAY_ENERGY][i]);
+        }
+    o->roots = f->by_all_means && most > WIDE_ENERGY * least ? 2 : 0;
+    o->most = least > most ? 0 : o->roots ? sqrt(sqrt(most)) : most;
     for (int i = 0; i < r->n; i++) {
         const double out = fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]);
+        const double energy = r->at[RAY_ENERGY][i];
+        const double share = fmax(energy, 0.005 * most);
 
-        f->value[i] = r->at[RAY_ENERGY][i];
+        /* an error of the root is a quarter of the energy's */
+        f->value[i] = o->roots ? sqrt(sqrt(energy)) : energy;
         f->channel_weight[i] = fmax(weight_past_edge(out), 0.001) /
-                               fmax(f->value[i], 0.005 * most);
+                               (o->roots ? 0.25 * sqrt(sqrt(share)) : share);
     }
     return fit_output(f, r, GLINT_OUT_ENERGY, f->energy, system, worst);
 }
@@ -221,6 +282,7 @@ static enum glint_status fit_barrel(struct fitter *f, int barrel,
                                     double *worst)
 {
     const struct glint_rays *r = &f->rays;
+    double stretch;
 
     for (int i = 0; i < r->n; i++) {
         const double radius = r->radius[barrel][i];
@@ -229,9 +291,11 @@ static enum glint_status fit_barrel(struct fitter *f, int barrel,
         f->value[i] = 0.5 * (1 + radius * radius);
         f->channel_weight[i] = f->weight[i] * fmax(0.05, 1 / (1 + off * off));
     }
+    stretch = stretch_of(r, f->value, NULL, 0.8);
     system->output[system->n_outputs].event = r->barrel[barrel];
     return fit_output(f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
-                      f->barrel, system, worst);
+                      outline_tolerance(f, f->tolerance->barrel, stretch),
+                      system, worst);
 }
 
 static enum glint_status fit_outputs(struct fitter *f,
@@ -345,11 +409,11 @@ static double degrees_between(double lo, double hi)
     return (asin(hi) - asin(lo)) * (180 / GLINT_PI);
 }
 
-/* A zone to be fitted, with a box that follows its colours or one for all; BEFORE
- * is what was left of it at the last attempt. */
+/* A zone to be fitted; BEFORE is what was left of it at the last attempt. By
+ * all means: with a box that follows the colours, and a root of the energy. */
 struct pending {
     double lo, hi, before;
-    bool by_colour;
+    bool by_all_means;
 };
 
 /* Fits a zone; *LEFT becomes how bad it is: at most 1 if good. */
@@ -365,12 +429,15 @@ static enum glint_status try_zone(struct fitter *f, const struct pending *p,
                                            .sine_hi = p->hi,
                                            .wave_lo = f->hunt->wave_lo,
                                            .wave_hi = f->hunt->wave_hi};
+    f->by_all_means = p->by_all_means;
     *left = HUGE_VAL;
-    glint_zone_init(&zone, &f->profile, p->lo, p->hi, p->by_colour);
-    if (!p->by_colour && zone.fill < LEAST_FILL &&
+    glint_zone_init(&zone, &f->profile, p->lo, p->hi, p->by_all_means);
+    if (!p->by_all_means && zone.fill < LEAST_FILL &&
         degrees_between(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
     glint_zone_trace(&zone, f->hunt, &f->survey, &f->rays, &f->energies);
+    if (f->rays.n_barrels > 2 && degrees_between(p->lo, p->hi) > CROWD_DEG)
+        return GLINT_OK;
     *left = 0;
     status = set_box(system, &zone);
     if (status == GLINT_OK)
@@ -382,17 +449,17 @@ static enum glint_status try_zone(struct fitter *f, const struct pending *p,
 }
 
 /* What to do about a zone that is left with LEFT. */
-enum next { KEEP, HALVE, COLOURS };
+enum next { KEEP, HALVE, ALL_MEANS };
 
 static enum next next_step(const struct pending *p, double left)
 {
     const double width = degrees_between(p->lo, p->hi);
-    const bool stuck = width < LEAST_DEG ||
-                       (left > STUCK * p->before && width < STUCK_DEG);
+    const bool stuck =
+        width < LEAST_DEG || (left > STUCK * p->before && width < STUCK_DEG);
 
-    if (left <= 1 || p->by_colour)
+    if (left <= 1 || p->by_all_means)
         return KEEP;
-    return stuck && left < HUGE_VAL ? COLOURS : HALVE;
+    return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
 }
 
 /* Zones from the lowest angle up; the upper halves wait on a stack. */
@@ -422,10 +489,10 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
             system_finish(&system);
         p.before = left;
         if (next == HALVE) {
-            stack[n++] = (struct pending){middle, p.hi, left, p.by_colour};
-            stack[n++] = (struct pending){p.lo, middle, left, p.by_colour};
-        } else if (next == COLOURS) {
-            p.by_colour = true;
+            stack[n++] = (struct pending){middle, p.hi, left, p.by_all_means};
+            stack[n++] = (struct pending){p.lo, middle, left, p.by_all_means};
+        } else if (next == ALL_MEANS) {
+            p.by_all_means = true;
             stack[n++] = p;
         }
     }

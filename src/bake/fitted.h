@@ -17,6 +17,9 @@ struct glint_fitted_output {
     double *coef;
     double grain; /* rounding of a coefficient that does no harm; 0: none */
     int event;    /* of the path, for a barrel */
+    int roots;    /* the energy is the polynomial squared so many times */
+    double most;  /* of the polynomial of the energy, where light gets through;
+                     0: unknown */
     bool met;     /* the tolerance */
 };
 

@@ -222,6 +222,18 @@ static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
     }
 }
 
+/* What the run time makes of the polynomial of the energy. */
+static struct range energy_of(struct range x, int head, int roots)
+{
+    if (head || roots)
+        x = (struct range){0, fmin(fmax(0, ldexp(x.hi, head)), 0x1p29),
+                           ldexp(x.error, head)};
+    for (int k = 0; k < roots; k++)
+        x = (struct range){0, x.hi * x.hi * 0x1p-29,
+                           (2 * x.hi + x.error) * x.error * 0x1p-29 + 0.5};
+    return x;
+}
+
 static void prove(const struct glint_fitted_output *o, int sets, bool knots,
                   struct glint_quantised_output *out)
 {
@@ -232,6 +244,9 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
         prove_sparse(&p, o, out->coef, sets, &result);
     else
         prove_auto(&p, o, out, &result);
+    while (out->head > 0 && ldexp(result.error, out->head) >= 0x1p22)
+        out->head--; /* nothing but rounding up there */
+    result = energy_of(result, out->head, o->roots);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
     out->rounding_q8 = out->proven ? (uint32_t)ceil(256 * result.error) : 0;
@@ -280,6 +295,17 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
     return exponent_for(hull_sum(o->coef, sets_of(s), o->n_terms), o->n_terms);
 }
 
+/* How many bits above what it is where light gets through a polynomial could
+ * reach. */
+static int head_of(const struct glint_fitted_output *o, int exponent)
+{
+    int head = 0;
+
+    while (o->most > 0 && head < 28 && ldexp(o->most, head - exponent) < 0x1p28)
+        head++;
+    return head;
+}
+
 static enum glint_status quantise_output(const struct glint_fitted_system *s,
                                          int k,
                                          struct glint_quantised_output *out)
@@ -294,6 +320,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
 
         out->exponent = out->exponent > other ? out->exponent : other;
     }
+    out->head = head_of(o, out->exponent);
     status = to_integers(o->coef, n, out->exponent, &out->coef);
     for (int i = 0; i < o->n_terms; i++)
         out->order[i] = (uint8_t)i;

@@ -26,6 +26,7 @@ struct glint_quantised_output {
     int32_t exponent;
     int32_t *coef; /* [sets][n_terms]; owned */
     int n_narrow, shift;
+    int head;                             /* as the file has it */
     uint8_t order[GLINT_MAX_MODEL_TERMS]; /* terms as the file has them */
     uint32_t bound, rounding_q8;
     bool proven;

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "bake/degrees.h"
-#include "base/compiler.h"
 
 /* -------------------------------------------------------------------- boxes */
 
@@ -24,7 +23,8 @@ double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w)
 
     for (int k = GLINT_BOX_POWERS - 1; k >= 0; k--)
         value = value * s + side[k];
-    return value + w * (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
+    return value +
+           w * (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
 /* What a zone's box has to hold, with s and w for the zone. */
@@ -121,10 +121,11 @@ static void widen(struct glint_zone *z, const struct seen *seen)
 
     for (int i = 0; i < seen->n; i++) {
         const double s = seen->s[i], w = seen->w[i];
-        const double off = fabs(seen->middle[i] - glint_zone_at(z->middle, s, w));
+        const double off =
+            fabs(seen->middle[i] - glint_zone_at(z->middle, s, w));
 
-        more_x = fmax(more_x, seen->half_x[i] + off -
-                                  glint_zone_at(z->half_x, s, w));
+        more_x = fmax(more_x,
+                      seen->half_x[i] + off - glint_zone_at(z->half_x, s, w));
         more_y = fmax(more_y, seen->half_y[i] - glint_zone_at(z->half_y, s, w));
     }
     z->half_x[0] += more_x;
@@ -179,8 +180,18 @@ void glint_zone_init(struct glint_zone *zone,
 
 /* ------------------------------------------------------------------ barrels */
 
-enum { SURVEY_S = 9, SURVEY_U = 32, SURVEY_V = 16 };
-STATIC_ASSERT(GLINT_SURVEY_RAYS == SURVEY_S * (SURVEY_U + 1) * (SURVEY_V + 1));
+/* Low-discrepancy numbers -1 .. 1: multiples of powers of the root of
+ * x^5 = x + 1, which fill four dimensions evenly. */
+static void between(int k, double x[GLINT_VARIABLES])
+{
+    const double root = 1.16730397826141868426;
+    double step = 1;
+
+    for (int i = 0; i < GLINT_VARIABLES; i++) {
+        step /= root;
+        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
+    }
+}
 
 /* What a ray of the survey says: how far past each barrel it is. */
 struct survey {
@@ -242,6 +253,8 @@ static bool survey_ray(const struct glint_hunt *h,
             hypot(ray->sensor_x_mm, ray->sensor_y_mm) < h->field_mm);
 }
 
+/* Rays at angles of their own: a barrel may cut between any two, and there
+ * only. */
 static void run_survey(const struct glint_zone *z, const struct glint_hunt *h,
                        struct survey *survey)
 {
@@ -251,20 +264,18 @@ static void run_survey(const struct glint_zone *z, const struct glint_hunt *h,
     survey->n = 0;
     survey->n_events = h->path[0].n_events;
     for (int k = 0; k < GLINT_SURVEY_RAYS; k++) {
-        const int i = k % (SURVEY_U + 1);
-        const int j = k / (SURVEY_U + 1) % (SURVEY_V + 1);
-        const int m = k / (SURVEY_U + 1) / (SURVEY_V + 1);
-        const int wave = waves[m % 3];
-        const double x[GLINT_VARIABLES] = {
-            2.0 * i / SURVEY_U - 1, (double)j / SURVEY_V,
-            glint_zone_node(m, SURVEY_S),
-            glint_zone_node(wave, GLINT_HUNT_WAVES)};
+        const int wave = waves[k % 3];
+        const struct glint_path *path = &h->path[wave];
+        double x[GLINT_VARIABLES];
         struct glint_ray ray;
-        const enum glint_ray_status status =
-            ray_of(z, &h->path[wave], x, &ray, hits);
+        enum glint_ray_status status;
 
-        survey->n += survey_ray(h, &h->path[wave], status, &ray, hits,
-                                survey->radius[survey->n]);
+        between(k, x);
+        x[1] = fabs(x[1]);
+        x[3] = glint_zone_node(wave, GLINT_HUNT_WAVES);
+        status = ray_of(z, path, x, &ray, hits);
+        survey->n +=
+            survey_ray(h, path, status, &ray, hits, survey->radius[survey->n]);
     }
 }
 
@@ -378,8 +389,7 @@ static void trace_plane(const struct glint_zone *zone,
                 glint_zone_node(wave, GLINT_HUNT_WAVES)};
             struct glint_ray ray;
 
-            if (ray_of(zone, path, x, &ray, hits) !=
-                GLINT_RAY_OK)
+            if (ray_of(zone, path, x, &ray, hits) != GLINT_RAY_OK)
                 continue;
             add_ray(hunt, path, x, &ray, hits, rays);
             if (stride == 1 && (i + j) % 3 &&
@@ -443,19 +453,6 @@ void glint_zone_trace(const struct glint_zone *zone,
     trace_positions(zone, hunt, rays);
     energies->n_barrels = 0;
     trace_energies(zone, hunt, energies);
-}
-
-/* Low-discrepancy numbers -1 .. 1: multiples of powers of the root of
- * x^5 = x + 1, which fill four dimensions evenly. */
-static void between(int k, double x[GLINT_VARIABLES])
-{
-    const double root = 1.16730397826141868426;
-    double step = 1;
-
-    for (int i = 0; i < GLINT_VARIABLES; i++) {
-        step /= root;
-        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
-    }
 }
 
 void glint_zone_check(const struct glint_zone *zone,

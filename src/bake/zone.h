@@ -69,7 +69,7 @@ struct glint_rays {
 };
 
 /* Room for the survey that chooses the barrels. */
-enum { GLINT_SURVEY_RAYS = 9 * 33 * 17 };
+enum { GLINT_SURVEY_RAYS = 6000 };
 typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
 
 /* Chooses the barrels and traces the samples: RAYS for positions, ENERGIES at

@@ -35,7 +35,9 @@ STATIC_ASSERT(sizeof(struct glint_model_output) == 48);
 enum {
     LIMIT = 1 << 30, /* of sums of magnitudes; also 1 as a q30 */
     MAX_REAL_EXPONENT = 200,
-    MAX_SHIFT = 20,     /* of narrow coefficients */
+    MAX_SHIFT = 20, /* of narrow coefficients */
+    MAX_ROOTS = 2,
+    MAX_HEAD = 28,
     MIN_EXPONENT = -80, /* of outputs and boxes */
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
@@ -368,13 +370,13 @@ static const char *check_terms(struct check *c,
     return NULL;
 }
 
-/* Coefficients in two sizes: see narrow in struct glint_model_output. */
+/* Coefficients in two sizes: see n_narrow in struct glint_model_output. */
 static const char *check_narrow(struct check *c,
                                 const struct glint_model_output *o)
 {
     static const char too_large[] =
         "the coefficients of an output are too large";
-    const uint32_t n_narrow = o->narrow & 0xff, shift = o->narrow >> 8;
+    const uint32_t n_narrow = o->n_narrow, shift = o->narrow_shift;
     const uint32_t n_wide = o->n_terms - n_narrow;
     const int32_t *wide;
     const int16_t *narrow;
@@ -400,7 +402,7 @@ static const char *check_coefficients(struct check *c,
 
     if (s->n_knots == 0)
         return check_narrow(c, o);
-    if (o->narrow)
+    if (o->n_narrow || o->narrow_shift)
         return "an output has no such narrow coefficients";
     if (!inside(c, o->coef_at, (uint64_t)s->n_knots * o->n_terms, sizeof *coef))
         return outside;
@@ -417,6 +419,9 @@ static const char *check_output(struct check *c,
 {
     const char *reason;
 
+    if ((o->roots || o->head) && (o->kind != GLINT_OUT_ENERGY || s->n_knots ||
+                                  o->roots > MAX_ROOTS || o->head > MAX_HEAD))
+        return "an output has no such roots or head";
     if (o->n_terms < 1 || o->n_terms > GLINT_MAX_MODEL_TERMS)
         return "an output has no terms or too many";
     if (o->exponent < MIN_EXPONENT || o->exponent > MAX_EXPONENT)

@@ -133,11 +133,11 @@ static int32_t coefficient(const struct glint_lens *lens,
     const int32_t *coef = at(lens, o->coef_at);
     const uint16_t *power = at(lens, o->term_at);
     const int c = power[term] >> 8 & 15, d = power[term] >> 12;
-    const uint32_t n_wide = o->n_terms - (o->narrow & 0xff);
+    const uint32_t n_wide = o->n_terms - o->n_narrow;
     const int16_t *narrow = (const int16_t *)(const void *)(coef + n_wide);
-    int32_t value = term < n_wide ? coef[term]
-                                  : narrow[term - n_wide] *
-                                        (INT32_C(1) << (o->narrow >> 8));
+    int32_t value =
+        term < n_wide ? coef[term]
+                      : narrow[term - n_wide] * (INT32_C(1) << o->narrow_shift);
 
     if (knots) {
         coef += set->knot * o->n_terms;
@@ -157,6 +157,13 @@ static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
 
     t->outputs |= UINT32_C(1) << o->kind;
     t->exponent[o->kind] = o->exponent;
+    if (o->kind == GLINT_OUT_ENERGY) {
+        t->head = o->head;
+        t->roots = o->roots;
+        t->exponent[o->kind] -= o->head;
+        for (int k = 0; k < o->roots; k++)
+            t->exponent[o->kind] = 2 * t->exponent[o->kind] + 29;
+    }
     if (t->basis == GLINT_BASIS_SPARSE)
         t->of.sparse[o->kind].n_terms = (int32_t)o->n_terms;
     for (uint32_t k = 0; k < o->n_terms; k++) {
@@ -179,6 +186,7 @@ static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
 static void clear(struct glint_transfer *t)
 {
     t->outputs = 0;
+    t->head = t->roots = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
         t->degree_u[k] = t->degree_v[k] = 0;
@@ -256,6 +264,18 @@ static void set_rows(const struct glint_transfer *t, int32_t v_q30,
             set_row(t, kind, v_q30, v2_q30, &rows[kind]);
 }
 
+static int32_t energy_of(const struct glint_transfer *t, int32_t polynomial)
+{
+    const int32_t most = (INT32_C(1) << 29) >> t->head;
+    int32_t e = polynomial;
+
+    if (t->head || t->roots)
+        e = (int32_t)(q_clamp_sat(e, 0, most) * (INT32_C(1) << t->head));
+    for (int k = 0; k < t->roots; k++)
+        e = q_mul(e, e, 29);
+    return e;
+}
+
 static void ray_of_rows(const struct glint_transfer *t,
                         const struct row rows[GLINT_OUT_KINDS], int32_t u_q30,
                         struct glint_outputs *out)
@@ -263,6 +283,7 @@ static void ray_of_rows(const struct glint_transfer *t,
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         out->at[kind] =
             has(t, kind) ? along(&rows[kind], t->degree_u[kind], u_q30) : 0;
+    out->at[GLINT_OUT_ENERGY] = energy_of(t, out->at[GLINT_OUT_ENERGY]);
 }
 
 static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,

@@ -170,6 +170,7 @@ static const char outside[] = "a table lies outside of the file",
                       "two ghosts share a system, or their lists do not rise",
                   overlap[] = "a ghost's systems overlap in angle or do not "
                               "rise",
+                  energy[] = "an output has no such roots or head",
                   bands[] = "a ghost's bands overlap or do not rise",
                   bad_angles[] = "a system's angles are out of range",
                   bad_band[] = "a system's band is out of range",
@@ -275,10 +276,14 @@ static const struct rule auto_rules[] = {
     {BOX, 0, INT32_MIN, far_box},
     {BOX, 0, (1 << 30) - (1 << 19), far_box},
     {BOX, 0, (1 << 30) - (1 << 19) - 1, NULL},
-    {BOX, 6 * 4, 0, small_box}, /* half width -s */
-    {BOX, 6 * 4, 1 << 20, NULL}, /* 1 - s */
-    {BOX, 6 * 4, (1 << 20) - 1, small_box},
-    {BOX, 12 * 4, -1, small_box},
+    {BOX, GLINT_BOX_TERMS * 4, 0, small_box}, /* half width -s */
+    {BOX, GLINT_BOX_TERMS * 4, 1 << 20, NULL}, /* 1 - s */
+    {BOX, GLINT_BOX_TERMS * 4, (1 << 20) - 1, small_box},
+    {BOX, (GLINT_BOX_TERMS + GLINT_BOX_POWERS) * 4, 3 << 20, NULL}, /* w */
+    {BOX, (GLINT_BOX_TERMS + GLINT_BOX_POWERS) * 4, (3 << 20) + 1, small_box},
+    {BOX, (GLINT_BOX_TERMS + GLINT_BOX_POWERS) * 4, -(3 << 20) - 1, small_box},
+    {BOX, (2 * GLINT_BOX_TERMS - 1) * 4, 3 << 20, NULL},
+    {BOX, 2 * GLINT_BOX_TERMS * 4, -1, small_box},
     {OUTPUT_(0, kind), 1, lacking},
     {OUTPUT_(4, kind), 5, lacking},
     {OUTPUT_(5, kind), GLINT_OUT_KINDS, bad_kind},
@@ -297,6 +302,11 @@ static const struct rule auto_rules[] = {
     {OUTPUT_(4, exponent), -81, exponent},
     {OUTPUT_(0, exponent), -27, xy_exponent},
     {OUTPUT_(3, exponent), -27, xy_exponent},
+    {OUTPUT_(4, n_narrow), UINT32_C(0x021c0000), NULL},
+    {OUTPUT_(4, n_narrow), UINT32_C(0x031c0000), energy},
+    {OUTPUT_(4, n_narrow), UINT32_C(0x021d0000), energy},
+    {OUTPUT_(3, n_narrow), UINT32_C(0x00010000), energy},
+    {OUTPUT_(5, n_narrow), UINT32_C(0x01000000), energy},
     {OUTPUT_(0, bound), 1 << 30, bound},
     {OUTPUT_(0, bound), UINT32_MAX, bound},
     {OUTPUT_(0, rounding_q8), UINT32_MAX, NULL},
