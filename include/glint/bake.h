@@ -125,6 +125,7 @@ struct glint_path {
     int n_events;
     struct glint_event event[GLINT_MAX_EVENTS + 1];
     double to_sensor_mm; /* last vertex to the sensor */
+    bool places_only;    /* energies stay 1, in a third less time */
 };
 
 /* Fills PATH for GHOST of LENS (NULL: the direct path). */

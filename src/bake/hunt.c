@@ -29,9 +29,12 @@ void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,
     hunt->field_mm = field_mm;
     hunt->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
     hunt->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
-    for (int k = 0; k < GLINT_HUNT_WAVES; k++)
+    for (int k = 0; k < GLINT_HUNT_WAVES; k++) {
         glint_hunt_path(hunt, -cos(GLINT_PI * k / (GLINT_HUNT_WAVES - 1)),
                         &hunt->path[k]);
+        hunt->scout[k] = hunt->path[k];
+        hunt->scout[k].places_only = true;
+    }
 }
 
 bool glint_hunt_visible(const struct glint_hunt *hunt,
@@ -169,7 +172,7 @@ static bool passes(const struct glint_hunt *h, double sine, int n)
     struct glint_pupil box;
 
     for (int k = 0; k < n; k++)
-        if (find_box(h, &h->path[waves[k]], sine, &box))
+        if (find_box(h, &h->scout[waves[k]], sine, &box))
             return true;
     return false;
 }
@@ -267,7 +270,7 @@ struct glimpses {
 static void look(const struct glint_hunt *h, const double *sine,
                  const bool *wanted, int wave, struct glimpses *g)
 {
-    const struct glint_path *path = &h->path[wave];
+    const struct glint_path *path = &h->scout[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
     int have = 0; /* boxes in a row */
 

@@ -26,8 +26,9 @@ struct glint_hunt {
     const struct glint_setup *setup;
     int ghost;
     double field_mm; /* light beyond this radius on the sensor is no loss */
-    double wave_lo, wave_hi;                  /* 1 / wavelength^2, um^-2 */
-    struct glint_path path[GLINT_HUNT_WAVES]; /* from wave_lo to wave_hi */
+    double wave_lo, wave_hi;                   /* 1 / wavelength^2, um^-2 */
+    struct glint_path path[GLINT_HUNT_WAVES];  /* from wave_lo to wave_hi */
+    struct glint_path scout[GLINT_HUNT_WAVES]; /* the same for places only */
 };
 
 void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,

@@ -87,6 +87,7 @@ void glint_path_init(struct glint_path *path,
     int e = 0;
 
     path->n_events = 0;
+    path->places_only = false;
     if (ghost && ghost->i >= 0) {
         const int near = surface_element(lens, ghost->i);
         const int far = surface_element(lens, ghost->j);
@@ -161,12 +162,13 @@ static inline double reflectance(const struct glint_event *e, double cos_in,
 
 /* Bends or mirrors the ray, which meets the surface of E at COSINE. */
 static inline enum glint_ray_status
-cross(struct beam *b, const struct glint_event *e, double cosine)
+cross(struct beam *b, const struct glint_event *e, double cosine, bool energies)
 {
     const double ratio = e->n_from / e->n_to;
     const double out2 = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
     const double out = out2 > 0.0 ? sqrt(out2) : 0.0;
-    const double part = out > 0.0 ? reflectance(e, fabs(cosine), out) : 1.0;
+    const double part =
+        energies && out > 0.0 ? reflectance(e, fabs(cosine), out) : 1.0;
     const double n = b->n;
 
     if (e->kind == GLINT_REFLECT) {
@@ -176,7 +178,7 @@ cross(struct beam *b, const struct glint_event *e, double cosine)
     }
     if (!(out > 0.0))
         return GLINT_RAY_TOTAL_REFLECTION;
-    b->energy *= 1.0 - part;
+    b->energy *= energies ? 1.0 - part : 1.0;
     turn(b, e->curvature, ratio, (n < 0.0 ? -out : out) - ratio * cosine);
     return n * b->n > 0.0 ? GLINT_RAY_OK : GLINT_RAY_MISSED;
 }
@@ -198,9 +200,11 @@ static inline void widen(struct largest *max, const struct beam *b,
     }
 }
 
-enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
-                                  double py_mm, const double direction[3],
-                                  struct glint_ray *ray, double (*hits)[2])
+static inline enum glint_ray_status trace(const struct glint_path *path,
+                                          double px_mm, double py_mm,
+                                          const double direction[3],
+                                          bool energies, struct glint_ray *ray,
+                                          double (*hits)[2])
 {
     struct beam b = {px_mm,        py_mm,        0.0, direction[0],
                      direction[1], direction[2], 1.0};
@@ -221,7 +225,7 @@ enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
             if (!meet(&b, e->curvature, &cosine))
                 return GLINT_RAY_MISSED;
             widen(&max, &b, e->semi_mm);
-            status = cross(&b, e, cosine);
+            status = cross(&b, e, cosine, energies);
         }
         if (hits) {
             hits[i][0] = b.x;
@@ -236,4 +240,13 @@ enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
     *ray = (struct glint_ray){stop_x, stop_y,   b.x,
                               b.y,    b.energy, sqrt(max.height2 / max.semi2)};
     return GLINT_RAY_OK;
+}
+
+enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
+                                  double py_mm, const double direction[3],
+                                  struct glint_ray *ray, double (*hits)[2])
+{
+    return path->places_only
+               ? trace(path, px_mm, py_mm, direction, false, ray, hits)
+               : trace(path, px_mm, py_mm, direction, true, ray, hits);
 }

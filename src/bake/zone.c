@@ -265,7 +265,7 @@ static void run_survey(const struct glint_zone *z, const struct glint_hunt *h,
     survey->n_events = h->path[0].n_events;
     for (int k = 0; k < GLINT_SURVEY_RAYS; k++) {
         const int wave = waves[k % 3];
-        const struct glint_path *path = &h->path[wave];
+        const struct glint_path *path = &h->scout[wave];
         double x[GLINT_VARIABLES];
         struct glint_ray ray;
         enum glint_ray_status status;
@@ -471,6 +471,7 @@ void glint_zone_check(const struct glint_zone *zone,
         if (k % RAYS == 0) {
             between(k / RAYS, bundle);
             glint_hunt_path(hunt, bundle[3], &path);
+            path.places_only = true;
         }
         x[1] = fabs(x[1]);
         x[2] = bundle[2];
