@@ -14,11 +14,13 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 #define PEAK        5.0  /* times the root mean square */
 #define WIDE_ENERGY 60   /* most over least energy of which to take a root */
 #define LEAST_FILL  0.33 /* of a box; below it the grids waste their cells */
-#define CROWD_DEG                                                            \
-    1.5               /* a vertex has room for two barrels: more make a zone \
-                         worth halving down to here */
-#define FILL_DEG  0.6 /* narrower zones need not care for that */
-#define LEAST_DEG 0.7
+#define CROWD_DEG                                                              \
+    1.5                 /* a vertex has room for two barrels: more make a zone \
+                           worth halving down to here */
+#define FILL_DEG    0.6 /* narrower zones need not care for that */
+#define LEAST_DEG   0.7
+#define BRIGHT_EASE 1.5 /* zones of ghosts as bright as that, */
+#define FAR         8.0 /* and those as far off, may be half as wide */
 #define STUCK                                                               \
     0.75              /* half a zone that is left with so much of the whole \
                          one's error gains nothing from halving... */
@@ -34,7 +36,8 @@ struct fitter {
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
     double *scratch;
     struct glint_fitted_ghost *out;
-    double sensor_mm, edge_mm, stop, energy; /* tolerances of this zone */
+    double ease; /* of this zone, and its tolerances: */
+    double sensor_mm, edge_mm, stop, energy;
     bool by_all_means;
 };
 
@@ -167,6 +170,7 @@ static void set_tolerances(struct fitter *f, const struct glint_zone *zone)
     const double ease =
         share > 0 ? fmin(t->ease, fmax(1, pow(share, -0.42))) : t->ease;
 
+    f->ease = ease;
     f->edge_mm = ease * t->edge_mm;
     f->sensor_mm = fmin(ease * t->sensor_mm, t->faint_sensor_mm);
     f->stop = outline_tolerance(
@@ -448,14 +452,16 @@ static enum glint_status try_zone(struct fitter *f, const struct pending *p,
     return status;
 }
 
-/* What to do about a zone that is left with LEFT. */
+/* What to do about a zone that is left with LEFT. Halves of BRIGHT ones are
+ * worth more. */
 enum next { KEEP, HALVE, ALL_MEANS };
 
-static enum next next_step(const struct pending *p, double left)
+static enum next next_step(const struct pending *p, double left, bool bright)
 {
-    const double width = degrees_between(p->lo, p->hi);
-    const bool stuck =
-        width < LEAST_DEG || (left > STUCK * p->before && width < STUCK_DEG);
+    const bool helped = left <= STUCK * p->before, far = left > FAR;
+    const double worth = far && helped ? 4 : far || bright ? 2 : 1;
+    const double width = degrees_between(p->lo, p->hi) * worth;
+    const bool stuck = width < LEAST_DEG || (!helped && width < STUCK_DEG);
 
     if (left <= 1 || p->by_all_means)
         return KEEP;
@@ -482,7 +488,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
 
         status = try_zone(f, &p, &system, &left);
         if (status == GLINT_OK)
-            next = next_step(&p, left);
+            next = next_step(&p, left, f->ease < BRIGHT_EASE);
         if (status == GLINT_OK && next == KEEP)
             status = append(f->out, &system);
         if (status != GLINT_OK || next != KEEP)
