@@ -459,7 +459,7 @@ enum next { KEEP, HALVE, ALL_MEANS };
 static enum next next_step(const struct pending *p, double left, bool bright)
 {
     const bool helped = left <= STUCK * p->before, far = left > FAR;
-    const double worth = far && helped ? 4 : far || bright ? 2 : 1;
+    const double worth = far ? 4 : bright ? 2 : 1;
     const double width = degrees_between(p->lo, p->hi) * worth;
     const bool stuck = width < LEAST_DEG || (!helped && width < STUCK_DEG);
 
