@@ -429,12 +429,14 @@ static void json_system(const struct glint_lens *lens, uint32_t ghost,
     const struct span span = {system, 1};
     const struct summary sum = summary_of(lens, span);
 
-    printf("{\"ghost\": %lu, \"angle_deg\": [%.6f, %.6f], \"band_nm\": "
-           "[%.3f, %.3f], \"knots\": %lu, \"terms\": %.0f, \"bytes\": %zu, ",
-           (unsigned long)ghost, degrees(s->sine_lo_q30),
-           degrees(s->sine_hi_q30), nanometres(s->wave_hi_q24),
-           nanometres(s->wave_lo_q24), (unsigned long)s->n_knots,
-           terms_of(&sum), bytes_of(lens, span));
+    printf(
+        "{\"ghost\": %lu, \"angle_deg\": [%.6f, %.6f], \"band_nm\": "
+        "[%.3f, %.3f], \"knots\": %lu, \"energy_roots\": %d, \"terms\": %.0f, "
+        "\"bytes\": %zu, ",
+        (unsigned long)ghost, degrees(s->sine_lo_q30), degrees(s->sine_hi_q30),
+        nanometres(s->wave_hi_q24), nanometres(s->wave_lo_q24),
+        (unsigned long)s->n_knots, outputs_of(lens, s)[GLINT_OUT_ENERGY].roots,
+        terms_of(&sum), bytes_of(lens, span));
     json_errors(&sum);
     printf("}");
 }
