@@ -83,7 +83,7 @@ static bool take_quality(const char *text, struct scene *s)
     if (word < 0 && (!tool_number(text, &q) || q < 0 || q > 1))
         return false;
     s->grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
-    s->tolerance = q <= 0.25 ? 4 : q < 0.75 ? 1 : 0.4;
+    s->tolerance = q <= 0.25 ? 4 : q < 0.75 ? 1 : 0.25;
     return true;
 }
 
