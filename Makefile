@@ -61,10 +61,14 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
 # Run-time half: no library, small stack frames.
 $(core_o): CFLAGS += -ffreestanding -Wframe-larger-than=1024
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits
+# rays in eights: errno and traps are all that these give away
+$(OUT)/src/bake/trace.o: CFLAGS += -O3 -fno-math-errno -fno-trapping-math
 ifeq ($(CONFIG),asan)
+CPPFLAGS += -DGLINT_SANITIZED
 CFLAGS += -O1 -fsanitize=address,undefined -fno-sanitize-recover=all
 $(core_o): CFLAGS += -Wno-frame-larger-than
 else ifeq ($(CONFIG),tsan)
+CPPFLAGS += -DGLINT_SANITIZED
 CFLAGS += -O1 -fsanitize=thread
 $(core_o): CFLAGS += -Wno-frame-larger-than
 else ifeq ($(CONFIG),qcheck)

@@ -45,32 +45,37 @@ static struct patch patch_of(const struct glint_ray *a,
 static int add_ghost(const struct task *t, int ghost, double sine,
                      struct patch *patch)
 {
-    const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+    struct glint_row row = {.n = ACROSS + 1,
+                            .direction = {sine, 0, sqrt(1 - sine * sine)}};
     struct glint_ray ray[2][ACROSS + 1];
-    bool ok[2][ACROSS + 1];
+    enum glint_ray_status status[2][ACROSS + 1];
     struct glint_pupil p;
     struct glint_path path;
-    double dx, dy;
+    double dy;
     int n = 0;
 
     glint_path_init(&path, t->setup->lens, &t->setup->ghost[ghost], t->nm);
+    path.places_only = true;
     if (!glint_pupil_find_within(&p, &path, asin(sine) * (180 / GLINT_PI),
                                  t->setup->optics.stop_radius_mm, t->field_mm,
                                  NULL))
         return 0;
-    dx = (p.x1_mm - p.x0_mm) / ACROSS;
+    path.places_only = false;
+    row.x0_mm = p.x0_mm;
+    row.step_mm = (p.x1_mm - p.x0_mm) / ACROSS;
     dy = p.y1_mm / DOWN;
-    for (int j = 0; j <= DOWN; j++)
-        for (int i = 0; i <= ACROSS; i++) {
-            const int now = j & 1, before = now ^ 1;
+    for (int j = 0; j <= DOWN; j++) {
+        const struct glint_ray *below = ray[~j & 1], *here = ray[j & 1];
 
-            ok[now][i] = glint_trace(&path, p.x0_mm + i * dx, j * dy, direction,
-                                     &ray[now][i], NULL) == GLINT_RAY_OK;
-            if (i && j && ok[before][i - 1] && ok[before][i] &&
-                ok[now][i - 1] && is_seen(t, &ray[before][i - 1]))
-                patch[n++] = patch_of(&ray[before][i - 1], &ray[before][i],
-                                      &ray[now][i - 1], dx * dy);
-        }
+        row.y_mm = j * dy;
+        glint_trace_row(&path, &row, ray[j & 1], status[j & 1], NULL);
+        for (int i = 0; i < ACROSS && j > 0; i++)
+            if (status[~j & 1][i] == GLINT_RAY_OK &&
+                status[~j & 1][i + 1] == GLINT_RAY_OK &&
+                status[j & 1][i] == GLINT_RAY_OK && is_seen(t, &below[i]))
+                patch[n++] = patch_of(&below[i], &below[i + 1], &here[i],
+                                      row.step_mm * dy);
+    }
     return n;
 }
 

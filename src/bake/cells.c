@@ -107,24 +107,36 @@ static void fill_node(const struct glint_cells *c, const struct glint_ray *ray,
 
 void glint_cells_trace(const struct glint_cells *cells, int row)
 {
+    enum { SOME = 8 };
     const struct glint_pupil *p = &cells->pupil;
+    const double *d = cells->direction;
     const int n = cells->n;
-    const double y = p->y1_mm * (2.0 * row - n) / n;
+    double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_ray ray[SOME];
+    enum glint_ray_status status[SOME];
+    struct glint_row rays = {0,
+                             0,
+                             (p->x1_mm - p->x0_mm) / n,
+                             p->y1_mm * (2.0 * row - n) / n,
+                             {d[0], d[1], d[2]}};
 
     for (int i = 0; i <= n; i++) {
-        const double x = p->x0_mm + (p->x1_mm - p->x0_mm) * i / n;
         double *node = node_at(cells, i, row);
         double *mirrored = node_at(cells, i, n - row);
-        double hits[GLINT_MAX_EVENTS + 1][2];
-        struct glint_ray ray;
+        const int k = i % SOME;
+        double(*h)[2] = hits + k * cells->path->n_events;
 
+        if (k == 0) {
+            rays.n = n + 1 - i < SOME ? n + 1 - i : SOME;
+            rays.x0_mm = p->x0_mm + i * rays.step_mm;
+            glint_trace_row(cells->path, &rays, ray, status, hits);
+        }
         node[NODE_STATE] = mirrored[NODE_STATE] = 0;
-        if (glint_trace(cells->path, x, y, cells->direction, &ray, hits) !=
-            GLINT_RAY_OK)
+        if (status[k] != GLINT_RAY_OK)
             continue;
-        fill_node(cells, &ray, hits, 1, node);
+        fill_node(cells, &ray[k], h, 1, node);
         if (mirrored != node)
-            fill_node(cells, &ray, hits, -1, mirrored);
+            fill_node(cells, &ray[k], h, -1, mirrored);
     }
 }
 

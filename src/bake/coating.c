@@ -11,8 +11,11 @@ double glint_reflectance(double n_from, double n_to, double cos_from,
 
     if (!(cos_from > 0.0 && cos2 > 0.0))
         return 1.0; /* grazing, or beyond the critical angle */
-    if (film_n > 0.0)
+    if (film_n > 0.0) {
+        const double inside = film_inside(n_from, cos_from, film_n);
+
         return film_reflectance(n_from, cos_from, n_to, sqrt(cos2), film_n,
-                                film_phase);
+                                inside, film_sine2(inside, film_phase));
+    }
     return bare_reflectance(n_from, cos_from, n_to, sqrt(cos2));
 }

@@ -38,18 +38,33 @@ static inline double bare_reflectance(double n1, double c1, double n2,
     return mean_ratio(s * s, s_all * s_all, p * p, p_all * p_all);
 }
 
-/* The same with a film of index NF; PHASE = 4 pi nf d / wavelength. */
-static inline double film_reflectance(double n1, double c1, double n2,
-                                      double c2, double nf, double phase)
+/* The square of the cosine inside a film of index NF, negative where there is
+ * none; never all but zero. */
+static inline double film_inside(double n1, double c1, double nf)
 {
     const double ratio = n1 / nf;
     const double inside = 1.0 - ratio * ratio * (1.0 - c1 * c1);
-    const double size = fabs(inside) > 1e-60 ? fabs(inside) : 1e-60;
-    const double half = 0.5 * phase * sqrt(size); /* |D| */
-    const double sign = inside < 0.0 ? -1.0 : 1.0;
+
+    return fabs(inside) > 1e-60 ? inside : 1e-60;
+}
+
+/* sin^2 D of PHASE = 4 pi nf d / wavelength, or sinh^2. */
+static inline double film_sine2(double inside, double phase)
+{
+    const double half = 0.5 * phase * sqrt(fabs(inside)); /* |D| */
     /* sinh(100) is a film that nothing passes, and far from overflow. */
     const double root = inside < 0.0 ? sinh(fmin(half, 100.0)) : sin(half);
-    const double sin2 = root * root;
+
+    return root * root;
+}
+
+/* The same as for a bare boundary, with a film of index NF and the two above.
+ */
+static inline double film_reflectance(double n1, double c1, double n2,
+                                      double c2, double nf, double inside,
+                                      double sin2)
+{
+    const double size = fabs(inside), sign = inside < 0.0 ? -1.0 : 1.0;
     const double cos2 = 1.0 - sign * sin2;
     /* s times f, p times f cos(t1) cos(t2); f^2 carries SIGN */
     const double f2_s = nf * nf * size, f2_p = nf * nf;

@@ -6,6 +6,7 @@
 #include "bake/degrees.h"
 
 enum {
+    ACROSS = 64, /* cells of the finest grid */
     SCAN_DEG = 1,
     BISECTIONS = 8,
     FARTHER = 4 /* steps that the ends of the band may outlast its middle */
@@ -57,23 +58,26 @@ static bool survey(const struct glint_hunt *h, const struct glint_path *path,
                    double sine, int across, int down,
                    const struct glint_pupil *box, struct extent *extent)
 {
-    const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
-    const double dx = (box->x1_mm - box->x0_mm) / across;
-    const double dy = box->y1_mm / down, x0 = box->x0_mm;
+    struct glint_row row = {across + 1,
+                            box->x0_mm,
+                            (box->x1_mm - box->x0_mm) / across,
+                            0,
+                            {sine, 0, sqrt(1 - sine * sine)}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
 
     *extent = (struct extent){across + 1, -1, -1};
-    for (int j = 0; j <= down; j++)
+    for (int j = 0; j <= down; j++) {
+        row.y_mm = box->y1_mm * j / down;
+        glint_trace_row(path, &row, ray, status, NULL);
         for (int i = 0; i <= across; i++) {
-            struct glint_ray ray;
-
-            if (glint_trace(path, x0 + i * dx, j * dy, direction, &ray, NULL) !=
-                    GLINT_RAY_OK ||
-                !glint_hunt_visible(h, &ray))
+            if (status[i] != GLINT_RAY_OK || !glint_hunt_visible(h, &ray[i]))
                 continue;
             extent->i0 = i < extent->i0 ? i : extent->i0;
             extent->i1 = i > extent->i1 ? i : extent->i1;
             extent->j1 = j;
         }
+    }
     return extent->i1 >= 0;
 }
 
@@ -98,18 +102,18 @@ static bool shrink(const struct glint_hunt *h, const struct glint_path *path,
 static bool enclose(const struct glint_hunt *h, const struct glint_path *path,
                     double sine, struct glint_pupil *box)
 {
-    enum { ACROSS = 16, DOWN = 8, ROUNDS = 8 };
+    enum { COARSE = 16, DOWN = 8, ROUNDS = 8 };
 
     for (int round = 0; round < ROUNDS; round++) {
         const double more = 0.5 * (box->x1_mm - box->x0_mm);
         struct extent e;
 
-        if (!survey(h, path, sine, ACROSS, DOWN, box, &e))
+        if (!survey(h, path, sine, COARSE, DOWN, box, &e))
             return false;
-        if (e.i0 > 0 && e.i1 < ACROSS && e.j1 < DOWN)
+        if (e.i0 > 0 && e.i1 < COARSE && e.j1 < DOWN)
             return true;
         box->x0_mm -= e.i0 == 0 ? more : 0;
-        box->x1_mm += e.i1 == ACROSS ? more : 0;
+        box->x1_mm += e.i1 == COARSE ? more : 0;
         box->y1_mm *= e.j1 == DOWN ? 1.5 : 1;
     }
     return false;
@@ -120,7 +124,7 @@ static bool tighten(const struct glint_hunt *h, const struct glint_path *path,
                     double sine, struct glint_pupil *box)
 {
     bool found = shrink(h, path, sine, 24, 12, box) ||
-                 shrink(h, path, sine, 64, 32, box);
+                 shrink(h, path, sine, ACROSS, 32, box);
 
     for (int round = 0; round < 5 && found; round++) {
         const double before = (box->x1_mm - box->x0_mm) * box->y1_mm;

@@ -20,17 +20,13 @@ enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
 /* Later rounds look at less and get by with a coarser grid. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
-struct sample {
-    bool valid;
-    struct glint_ray ray;
-};
-
 struct search {
     const struct glint_path *path;
     double direction[3];
     double stop_mm, field_mm;
     int across, down; /* cells of this round */
-    struct sample node[DOWN + 1][ACROSS + 1];
+    struct glint_ray ray[DOWN + 1][ACROSS + 1];
+    enum glint_ray_status status[DOWN + 1][ACROSS + 1];
 };
 
 static double column_x(const struct search *s, const struct glint_pupil *p,
@@ -41,14 +37,17 @@ static double column_x(const struct search *s, const struct glint_pupil *p,
 
 static void sample_grid(struct search *s, const struct glint_pupil *p)
 {
-    for (int j = 0; j <= s->down; j++)
-        for (int i = 0; i <= s->across; i++) {
-            struct sample *node = &s->node[j][i];
+    struct glint_row row = {
+        s->across + 1,
+        p->x0_mm,
+        (p->x1_mm - p->x0_mm) / s->across,
+        0,
+        {s->direction[0], s->direction[1], s->direction[2]}};
 
-            node->valid =
-                glint_trace(s->path, column_x(s, p, i), p->y1_mm * j / s->down,
-                            s->direction, &node->ray, NULL) == GLINT_RAY_OK;
-        }
+    for (int j = 0; j <= s->down; j++) {
+        row.y_mm = p->y1_mm * j / s->down;
+        glint_trace_row(s->path, &row, s->ray[j], s->status[j], NULL);
+    }
 }
 
 struct bounds {
@@ -56,13 +55,11 @@ struct bounds {
     double low[5], high[5]; /* stop x, y; radius; sensor x, y */
 };
 
-static void bounds_add(struct bounds *b, const struct sample *s)
+static void bounds_add(struct bounds *b, const struct glint_ray *ray)
 {
-    const double v[5] = {s->ray.stop_x_mm, s->ray.stop_y_mm, s->ray.rel_radius,
-                         s->ray.sensor_x_mm, s->ray.sensor_y_mm};
+    const double v[5] = {ray->stop_x_mm, ray->stop_y_mm, ray->rel_radius,
+                         ray->sensor_x_mm, ray->sensor_y_mm};
 
-    if (!s->valid)
-        return;
     for (int k = 0; k < 5; k++) {
         b->low[k] = b->n ? fmin(b->low[k], v[k]) : v[k];
         b->high[k] = b->n ? fmax(b->high[k], v[k]) : v[k];
@@ -119,10 +116,10 @@ static void keep(const struct search *s, int i, int j,
     }
     box->n++;
     for (int k = 0; k < 4; k++) {
-        const struct sample *node = &s->node[j + (k >> 1)][i + (k & 1)];
+        const int row = j + (k >> 1), column = i + (k & 1);
 
-        if (node->valid)
-            found->energy = fmax(found->energy, node->ray.energy);
+        if (s->status[row][column] == GLINT_RAY_OK)
+            found->energy = fmax(found->energy, s->ray[row][column].energy);
     }
 }
 
@@ -139,7 +136,8 @@ static bool shrink(struct search *s, struct glint_pupil *p)
             struct bounds cell = {.n = 0};
 
             for (int k = 0; k < 4; k++)
-                bounds_add(&cell, &s->node[j + (k >> 1)][i + (k & 1)]);
+                if (s->status[j + (k >> 1)][i + (k & 1)] == GLINT_RAY_OK)
+                    bounds_add(&cell, &s->ray[j + (k >> 1)][i + (k & 1)]);
             if (may_pass(s, &cell))
                 keep(s, i, j, &cell, &box, &found);
         }

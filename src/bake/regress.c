@@ -1,19 +1,28 @@
 /* SPDX-License-Identifier: MIT */
 #include "bake/regress.h"
 
+#include "base/compiler.h"
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
 /* A column this much shorter than it was is a combination of others. */
 #define DEPENDENT 1e-9
+/* A square this much smaller by differences has lost half of its digits. */
+#define DOUBTFUL 1e-8
 
+/* A candidate is told by three numbers, kept up to date by one product with
+ * each direction that is chosen. Only when it is chosen itself, or is left with
+ * so little that differences no longer tell, is it made orthogonal. */
 struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead;
-    double length;              /* before it was made orthogonal */
+    double length;              /* of the term */
     double on[GLINT_MAX_TERMS]; /* its shares of the chosen directions */
-    double *at;                 /* [n], orthogonal to the chosen ones */
+    int clean;                  /* so many of which AT has no longer */
+    double was2, left2;         /* squared length of AT, and without all */
+    double pull;                /* product with the residual */
+    double *at;                 /* [n] */
 };
 
 struct search {
@@ -31,7 +40,7 @@ size_t glint_regress_doubles(int n)
 }
 
 /* Four sums at once: shorter chains of dependent additions. */
-static double dot(const double *a, const double *b, int n)
+WIDE_VECTORS static double dot(const double *a, const double *b, int n)
 {
     double s[4] = {0, 0, 0, 0};
     int i = 0;
@@ -44,7 +53,7 @@ static double dot(const double *a, const double *b, int n)
     return (s[0] + s[1]) + (s[2] + s[3]);
 }
 
-static void subtract(double *a, double k, const double *b, int n)
+WIDE_VECTORS static void subtract(double *a, double k, const double *b, int n)
 {
     for (int i = 0; i < n; i++)
         a[i] -= k * b[i];
@@ -62,15 +71,33 @@ static bool allowed(const struct glint_degrees *d, const uint8_t *power)
     return total <= d->total && (d->parity < 0 || power[1] % 2 == d->parity);
 }
 
-/* COLUMN loses what it has of the chosen direction of rank RANK. */
-static void remove_share(const struct search *s, struct column *column,
-                         int rank)
+/* Notes what COLUMN has of the chosen direction of rank RANK. */
+static void note_share(const struct search *s, struct column *column, int rank)
 {
-    const double *q = s->column[s->chosen[rank]].at;
-    const double share = dot(q, column->at, s->s->n);
+    const double share =
+        dot(s->column[s->chosen[rank]].at, column->at, s->s->n);
 
-    subtract(column->at, share, q, s->s->n);
-    column->on[rank] += share;
+    column->on[rank] = share;
+    column->left2 -= share * share;
+}
+
+/* Frees COLUMN of all chosen directions, twice against rounding. */
+static void make_orthogonal(const struct search *s, struct column *column)
+{
+    const int n = s->s->n;
+
+    for (int k = column->clean; k < s->n_chosen; k++)
+        subtract(column->at, column->on[k], s->column[s->chosen[k]].at, n);
+    for (int k = 0; k < s->n_chosen; k++) {
+        const double *q = s->column[s->chosen[k]].at;
+        const double share = dot(q, column->at, n);
+
+        subtract(column->at, share, q, n);
+        column->on[k] += share;
+    }
+    column->clean = s->n_chosen;
+    column->was2 = column->left2 = dot(column->at, column->at, n);
+    column->pull = dot(column->at, s->residual, n);
 }
 
 static void fill(const struct search *s, struct column *column)
@@ -82,7 +109,9 @@ static void fill(const struct search *s, struct column *column)
         for (int p = 0; p < column->power[k]; p++)
             for (int i = 0; i < v->n; i++)
                 column->at[i] *= v->x[k][i];
-    column->length = sqrt(dot(column->at, column->at, v->n));
+    column->was2 = column->left2 = dot(column->at, column->at, v->n);
+    column->length = sqrt(column->left2);
+    column->pull = dot(column->at, s->residual, v->n);
 }
 
 static void add_candidate(struct search *s, const uint8_t *power)
@@ -99,7 +128,7 @@ static void add_candidate(struct search *s, const uint8_t *power)
     memcpy(column->power, power, GLINT_VARIABLES);
     fill(s, column);
     for (int rank = 0; rank < s->n_chosen; rank++)
-        remove_share(s, column, rank);
+        note_share(s, column, rank);
     s->n_columns++;
 }
 
@@ -132,18 +161,15 @@ static int best_candidate(struct search *s)
 
     for (int i = 0; i < s->n_columns; i++) {
         struct column *c = &s->column[i];
-        double length2, share;
+        const double dependent = DEPENDENT * c->length;
 
         if (c->dead || is_chosen(s, i))
             continue;
-        length2 = dot(c->at, c->at, s->s->n);
-        if (!(length2 > DEPENDENT * DEPENDENT * c->length * c->length)) {
-            c->dead = true;
-            continue;
-        }
-        share = dot(c->at, s->residual, s->s->n);
-        if (share * share / length2 > most) {
-            most = share * share / length2;
+        if (!(c->left2 > DOUBTFUL * c->was2))
+            make_orthogonal(s, c);
+        c->dead = !(c->left2 > dependent * dependent);
+        if (!c->dead && c->pull * c->pull / c->left2 > most) {
+            most = c->pull * c->pull / c->left2;
             best = i;
         }
     }
@@ -154,20 +180,23 @@ static void choose(struct search *s, int index)
 {
     struct column *c = &s->column[index];
     const int n = s->s->n, rank = s->n_chosen;
-    double length, share;
+    double share;
 
-    for (int k = 0; k < rank; k++) /* once more, against rounding */
-        remove_share(s, c, k);
-    length = sqrt(dot(c->at, c->at, n));
+    make_orthogonal(s, c);
+    c->on[rank] = sqrt(c->left2);
     for (int i = 0; i < n; i++)
-        c->at[i] /= length;
-    c->on[rank] = length;
+        c->at[i] /= c->on[rank];
     s->chosen[s->n_chosen++] = index;
-    share = dot(c->at, s->residual, n);
+    share = c->pull / c->on[rank];
     subtract(s->residual, share, c->at, n);
-    for (int i = 0; i < s->n_columns; i++)
-        if (!s->column[i].dead && !is_chosen(s, i))
-            remove_share(s, &s->column[i], rank);
+    for (int i = 0; i < s->n_columns; i++) {
+        struct column *other = &s->column[i];
+
+        if (other->dead || is_chosen(s, i))
+            continue;
+        note_share(s, other, rank);
+        other->pull -= share * other->on[rank];
+    }
     add_neighbours(s, c);
 }
 

@@ -206,23 +206,45 @@ static void direction_of(const struct glint_zone *z, double s, double d[3])
     d[2] = sqrt(1 - d[0] * d[0]);
 }
 
-/* Traces the ray at X of the zone, PATH being that of its w; HITS of events it
- * did not reach are -1, -1. */
-static enum glint_ray_status ray_of(const struct glint_zone *z,
-                                    const struct glint_path *path,
-                                    const double x[GLINT_VARIABLES],
-                                    struct glint_ray *ray, double (*hits)[2])
+/* Rays of one path that are traced together. */
+enum { TOGETHER = 32 };
+
+struct together {
+    const struct glint_path *path;
+    int n;
+    double x[TOGETHER][GLINT_VARIABLES]; /* in the zone */
+    struct glint_launch from[TOGETHER];
+    struct glint_ray ray[TOGETHER];
+    enum glint_ray_status status[TOGETHER];
+    double hits[TOGETHER * (GLINT_MAX_EVENTS + 1)][2]; /* -1: not reached */
+};
+
+/* Adds the ray at X of the zone, w being that of the path. */
+static void together_add(struct together *t, const struct glint_zone *z,
+                         const double x[GLINT_VARIABLES])
 {
     const double s = x[2], w = x[3];
-    double d[3];
+    struct glint_launch *from = &t->from[t->n];
 
-    direction_of(z, s, d);
-    for (int k = 0; k < path->n_events; k++)
-        hits[k][0] = hits[k][1] = -1;
-    return glint_trace(path,
-                       glint_zone_at(z->middle, s, w) +
-                           x[0] * glint_zone_at(z->half_x, s, w),
-                       x[1] * glint_zone_at(z->half_y, s, w), d, ray, hits);
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        t->x[t->n][k] = x[k];
+    from->x_mm =
+        glint_zone_at(z->middle, s, w) + x[0] * glint_zone_at(z->half_x, s, w);
+    from->y_mm = x[1] * glint_zone_at(z->half_y, s, w);
+    direction_of(z, s, from->direction);
+    t->n++;
+}
+
+static void together_trace(struct together *t)
+{
+    for (int k = 0; k < t->n * t->path->n_events; k++)
+        t->hits[k][0] = t->hits[k][1] = -1;
+    glint_trace_many(t->path, t->n, t->from, t->ray, t->status, t->hits);
+}
+
+static double (*hits_of(struct together *t, int k))[2]
+{
+    return t->hits + k * t->path->n_events;
 }
 
 /* Notes the ray's radius at every event if the stop and the field let it pass,
@@ -259,23 +281,25 @@ static void run_survey(const struct glint_zone *z, const struct glint_hunt *h,
                        struct survey *survey)
 {
     static const int waves[] = {GLINT_HUNT_WAVES / 2, 0, GLINT_HUNT_WAVES - 1};
-    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct together t;
 
     survey->n = 0;
     survey->n_events = h->path[0].n_events;
-    for (int k = 0; k < GLINT_SURVEY_RAYS; k++) {
+    for (int k = 0; k < GLINT_SURVEY_RAYS / TOGETHER; k++) {
         const int wave = waves[k % 3];
-        const struct glint_path *path = &h->scout[wave];
         double x[GLINT_VARIABLES];
-        struct glint_ray ray;
-        enum glint_ray_status status;
 
-        between(k, x);
-        x[1] = fabs(x[1]);
-        x[3] = glint_zone_node(wave, GLINT_HUNT_WAVES);
-        status = ray_of(z, path, x, &ray, hits);
-        survey->n +=
-            survey_ray(h, path, status, &ray, hits, survey->radius[survey->n]);
+        t.path = &h->scout[wave];
+        for (t.n = 0; t.n < TOGETHER;) {
+            between(k * TOGETHER + t.n, x);
+            x[1] = fabs(x[1]);
+            x[3] = glint_zone_node(wave, GLINT_HUNT_WAVES);
+            together_add(&t, z, x);
+        }
+        together_trace(&t);
+        for (int i = 0; i < TOGETHER; i++)
+            survey->n += survey_ray(h, t.path, t.status[i], &t.ray[i],
+                                    hits_of(&t, i), survey->radius[survey->n]);
     }
 }
 
@@ -378,25 +402,30 @@ static void trace_plane(const struct glint_zone *zone,
                         int stride, struct glint_rays *rays)
 {
     const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
-    const struct glint_path *path = &hunt->path[wave];
-    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct together t;
 
-    for (int j = 0; j <= DOWN; j += stride)
-        for (int i = 0; i <= ACROSS && rays->n < full; i += stride) {
+    t.path = &hunt->path[wave];
+    for (int j = 0; j <= DOWN; j += stride) {
+        t.n = 0;
+        for (int i = 0; i <= ACROSS; i += stride) {
             const double x[GLINT_VARIABLES] = {
                 glint_zone_node(i, ACROSS + 1), sin(0.5 * GLINT_PI * j / DOWN),
                 glint_zone_node(sine, SINES),
                 glint_zone_node(wave, GLINT_HUNT_WAVES)};
-            struct glint_ray ray;
 
-            if (ray_of(zone, path, x, &ray, hits) != GLINT_RAY_OK)
+            together_add(&t, zone, x);
+        }
+        together_trace(&t);
+        for (int i = 0; i < t.n && rays->n < full; i++) {
+            if (t.status[i] != GLINT_RAY_OK)
                 continue;
-            add_ray(hunt, path, x, &ray, hits, rays);
+            add_ray(hunt, t.path, t.x[i], &t.ray[i], hits_of(&t, i), rays);
             if (stride == 1 && (i + j) % 3 &&
                 fmax(rays->at[RAY_EXCESS][rays->n - 1],
                      rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
                 rays->n--;
         }
+    }
 }
 
 static int count_visible(const struct glint_rays *rays)
@@ -459,24 +488,26 @@ void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_hunt *hunt, struct glint_rays *rays)
 {
     enum { BUNDLES = 24, RAYS = 16 };
-    double hits[GLINT_MAX_EVENTS + 1][2];
     double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
     struct glint_path path;
+    struct together t;
 
+    t.path = &path;
     rays->n = rays->n_barrels = 0;
-    for (int k = 0; k < BUNDLES * RAYS; k++) {
-        struct glint_ray ray;
-
-        between(k, x);
-        if (k % RAYS == 0) {
-            between(k / RAYS, bundle);
-            glint_hunt_path(hunt, bundle[3], &path);
-            path.places_only = true;
+    for (int k = 0; k < BUNDLES; k++) {
+        between(k, bundle);
+        glint_hunt_path(hunt, bundle[3], &path);
+        path.places_only = true;
+        for (t.n = 0; t.n < RAYS;) {
+            between(k * RAYS + t.n, x);
+            x[1] = fabs(x[1]);
+            x[2] = bundle[2];
+            x[3] = bundle[3];
+            together_add(&t, zone, x);
         }
-        x[1] = fabs(x[1]);
-        x[2] = bundle[2];
-        x[3] = bundle[3];
-        if (ray_of(zone, &path, x, &ray, hits) == GLINT_RAY_OK)
-            add_ray(hunt, &path, x, &ray, hits, rays);
+        together_trace(&t);
+        for (int i = 0; i < RAYS; i++)
+            if (t.status[i] == GLINT_RAY_OK)
+                add_ray(hunt, &path, t.x[i], &t.ray[i], hits_of(&t, i), rays);
     }
 }

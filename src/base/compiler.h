@@ -27,4 +27,25 @@ static inline int bit_length(uint64_t x)
 #endif
 }
 
+static inline uint32_t bits_set(uint32_t x)
+{
+    uint32_t n = 0;
+
+    for (; x; x &= x - 1)
+        n++;
+    return n;
+}
+
+/* For functions that are made twice, once for wider vectors than every CPU of
+ * the architecture has, and chosen when the program is loaded; the bits are the
+ * same. WHOLLY_INLINE is for what they consist of. Sanitizers cannot have it,
+ * and clang would name the choosers of static functions for all the program. */
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
+    !defined(GLINT_SANITIZED)
+#define WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
+#else
+#define WIDE_VECTORS
+#endif
+#define WHOLLY_INLINE inline __attribute__((always_inline))
+
 #endif

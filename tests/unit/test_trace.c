@@ -404,6 +404,87 @@ static void test_hostile_rays(void **state)
     assert_int_equal(trace_one(&lens, 1e200, along, &ray), GLINT_RAY_MISSED);
 }
 
+/* --------------------------------------------------------------- many at once
+ */
+
+/* As one by one, to the bit, hits too; those that are not reached stay. */
+static void expect_same(const struct glint_path *path, int n,
+                        const struct glint_launch *from)
+{
+    enum { MOST = 40 };
+    static double all[MOST * (GLINT_MAX_EVENTS + 1)][2];
+    static double hits[GLINT_MAX_EVENTS + 1][2];
+    struct glint_ray ray[MOST], one;
+    enum glint_ray_status status[MOST];
+
+    assert_true(n <= MOST);
+    memset(all, 0, sizeof all);
+    glint_trace_many(path, n, from, ray, status, all);
+    for (int k = 0; k < n; k++) {
+        memset(hits, 0, sizeof hits);
+        assert_int_equal(glint_trace(path, from[k].x_mm, from[k].y_mm,
+                                     from[k].direction, &one, hits),
+                         status[k]);
+        if (status[k] == GLINT_RAY_OK)
+            assert_memory_equal(&one, &ray[k], sizeof one);
+        assert_memory_equal(hits, all + k * path->n_events,
+                            (size_t)path->n_events * sizeof *hits);
+    }
+}
+
+static void test_many_at_once(void **state)
+{
+    static const char *const names[] = {"heliar-tronnier", "canon-zoom-short"};
+    static struct glint_prescription lens;
+    static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
+    struct glint_path path;
+
+    (void)state;
+    for (int l = 0; l < 2; l++) {
+        load_lens(&lens, names[l]);
+        const int n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
+
+        for (int k = 0; k < 4 * n; k++) {
+            const int count = 1 + k % 40;
+            struct glint_launch from[40];
+
+            glint_path_init(&path, &lens, &ghosts[k % n], 400 + k % 300);
+            path.places_only = k / n % 2;
+            for (int i = 0; i < count; i++) {
+                const double sine = 0.02 * (i % 30) - 0.1;
+
+                from[i] = (struct glint_launch){
+                    1.1 * (i % 9 - 4) + 0.01 * k,
+                    1.7 * (i / 9),
+                    {sine, 0, i == 7 ? -1 : sqrt(1 - sine * sine)}};
+            }
+            expect_same(&path, count, from);
+        }
+    }
+}
+
+static void test_row(void **state)
+{
+    static struct glint_prescription lens;
+    const struct glint_ghost ghost = {1, 4};
+    const struct glint_row row = {21, -5, 0.4, 2.5, {0.1, 0, sqrt(0.99)}};
+    struct glint_ray ray[21], one;
+    enum glint_ray_status status[21];
+    struct glint_path path;
+
+    (void)state;
+    load_lens(&lens, "heliar-tronnier");
+    glint_path_init(&path, &lens, &ghost, 532);
+    glint_trace_row(&path, &row, ray, status, NULL);
+    for (int k = 0; k < 21; k++) {
+        assert_int_equal(
+            glint_trace(&path, -5 + 0.4 * k, 2.5, row.direction, &one, NULL),
+            status[k]);
+        if (status[k] == GLINT_RAY_OK)
+            assert_memory_equal(&one, &ray[k], sizeof one);
+    }
+}
+
 /* -------------------------------------------------------------- symmetries */
 
 static void test_axis_goes_straight(void **state)
@@ -534,6 +615,8 @@ int main(void)
         cmocka_unit_test(test_total_reflection),
         cmocka_unit_test(test_plate_ghost),
         cmocka_unit_test(test_hostile_rays),
+        cmocka_unit_test(test_many_at_once),
+        cmocka_unit_test(test_row),
         cmocka_unit_test(test_axis_goes_straight),
         cmocka_unit_test(test_symmetry_to_the_bit),
         cmocka_unit_test(test_direct_image),
