@@ -164,7 +164,7 @@ static int prepare_model(const struct tool *tool, const struct options *o,
 
     glint_optics_of(lens, &optics);
     if (!agrees(h->focal_mm, optics.focal_mm) ||
-        h->n_ghosts != (uint32_t)n_ghosts)
+        h->n_ghosts - h->n_parts != (uint32_t)n_ghosts)
         return tool_fail(tool, GLINT_E_LENS,
                          "the model was baked from another lens");
     if (o->ghost < 0)

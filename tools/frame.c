@@ -94,25 +94,32 @@ static enum glint_status reserve_feeds(struct frame *f, int n)
     return GLINT_OK;
 }
 
+/* Ghost or part GHOST is ghost NUMBER. */
+static bool is_ghost(const struct glint_setup *s, int ghost, int number)
+{
+    return s->ghost[ghost].i == s->ghost[number].i &&
+           s->ghost[ghost].j == s->ghost[number].j;
+}
+
 /* Every ghost, lamp and wavelength that reaches the picture. */
 static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
                               int n_lamps)
 {
     const struct glint_setup *s = f->setup;
-    const int first = f->only_ghost < 0 ? 0 : f->only_ghost;
-    const int last = f->only_ghost < 0 ? s->n_ghosts - 1 : f->only_ghost;
     struct job job = {f, feed_config(f, 1)};
     const enum glint_status status =
-        reserve_feeds(f, n_lamps * (last - first + 1) * s->n_wavelengths);
+        reserve_feeds(f, n_lamps * s->n_ghosts * s->n_wavelengths);
     int n = 0, kept = 0;
 
     if (status != GLINT_OK)
         return status;
     for (int lamp = 0; lamp < n_lamps; lamp++)
-        for (int ghost = first; ghost <= last; ghost++)
+        for (int ghost = 0; ghost < s->n_ghosts; ghost++)
             for (int wave = 0; wave < s->n_wavelengths; wave++)
-                f->feed[n++] = (struct glint_feed){
-                    .lamp = &lamps[lamp], .ghost = ghost, .wavelength = wave};
+                if (f->only_ghost < 0 || is_ghost(s, ghost, f->only_ghost))
+                    f->feed[n++] = (struct glint_feed){.lamp = &lamps[lamp],
+                                                       .ghost = ghost,
+                                                       .wavelength = wave};
     glint_workers_run(f->cfg.workers, n / s->n_wavelengths, plan_job, &job);
     for (int i = 0; i < n; i++)
         if (f->feed[i].n_cells > 0)
@@ -281,11 +288,12 @@ static int count_ghosts(const struct frame *f)
 {
     int n = 0;
 
-    for (int ghost = 0; ghost < f->setup->n_ghosts; ghost++) {
+    for (int ghost = 0; ghost < f->setup->n_ghosts - f->setup->n_parts;
+         ghost++) {
         bool seen = false;
 
         for (int i = 0; i < f->n_feeds && !seen; i++)
-            seen = f->feed[i].ghost == ghost;
+            seen = is_ghost(f->setup, f->feed[i].ghost, ghost);
         n += seen;
     }
     return n;

@@ -56,6 +56,16 @@ outputs_of(const struct glint_lens *lens, const struct glint_model_system *s)
     return (const void *)(base + s->output_at);
 }
 
+/* Words of a system's box and knots. */
+static size_t box_words(const struct glint_model_system *s)
+{
+    size_t n = 4 * (size_t)s->n_knots;
+
+    for (int k = 0; k < GLINT_BOX_TERMS; k++)
+        n += 3 * (s->box_terms >> k & 1U);
+    return n;
+}
+
 /* What a span takes in the file, without regard to sharing. */
 static size_t bytes_of(const struct glint_lens *lens, struct span span)
 {
@@ -64,13 +74,12 @@ static size_t bytes_of(const struct glint_lens *lens, struct span span)
     for (uint32_t k = span.first; k < span.first + span.n; k++) {
         const struct glint_model_system *s = &lens->system[k];
         const struct glint_model_output *o = outputs_of(lens, s);
-        const size_t n_knots = s->n_knots, sets = n_knots ? n_knots : 1;
+        const size_t sets = s->n_knots ? s->n_knots : 1;
 
-        sum += sizeof *s + s->n_outputs * sizeof *o;
-        sum += n_knots ? 4 * (1 + 3) * n_knots : 4 * 3 * GLINT_BOX_TERMS;
+        sum += sizeof *s + s->n_outputs * sizeof *o + 4 * box_words(s);
         for (uint32_t m = 0; m < s->n_outputs; m++)
-            sum += 4 * sets * o[m].n_terms + (o[m].n_terms + 1) / 2 * 4 -
-                   2 * (o[m].n_narrow & ~1u);
+            sum += 4 * sets * o[m].n_terms + (o[m].n_terms + 1U) / 2 * 4 -
+                   2 * (o[m].n_narrow & ~1U);
     }
     return sum;
 }

@@ -312,9 +312,10 @@ static int set_up(const struct tool *tool, struct scene *s)
         return tool_fail(tool, status, error.text);
     if (s->balance)
         glint_setup_balance(&s->setup);
-    if (s->only_ghost >= s->setup.n_ghosts)
+    if (s->only_ghost >= s->setup.n_ghosts - s->setup.n_parts)
         return tool_usage(tool, "%s has %d ghosts, there is no %d",
-                          s->lens.name, s->setup.n_ghosts, s->only_ghost);
+                          s->lens.name, s->setup.n_ghosts - s->setup.n_parts,
+                          s->only_ghost);
     return EXIT_OK;
 }
 

@@ -198,6 +198,8 @@ struct glint_setup {
     const struct glint_prescription *lens; /* kept; NULL: made from a model */
     struct glint_optics optics;
     int n_ghosts;
+    int n_parts; /* of a model: the last so many ghosts are further parts of the
+                    pupil of some of those before them */
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_blades;              /* of the stop; 0: circle */
     double blade_rotation_deg; /* of the first corner, from x towards y */

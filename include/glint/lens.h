@@ -38,7 +38,7 @@ struct glint_vertex;
  * file, multiples of 4. Header first, then in any order what it points to. */
 
 #define GLINT_MODEL_MAGIC   UINT32_C(0x544e4c47) /* "GLNT" */
-#define GLINT_MODEL_VERSION 1
+#define GLINT_MODEL_VERSION 2
 
 /* mantissa * 2^exponent; mantissa 0, or 2^30 .. 2^31 - 1 in magnitude;
  * exponent within +-200. */
@@ -74,7 +74,9 @@ struct glint_model_header {
      * stop, mm^2: coefficients of powers of w over the band. */
     struct glint_real direct_flux[6];
     uint32_t n_surfaces;
-    uint32_t n_ghosts, ghost_at;   /* struct glint_model_ghost */
+    uint32_t n_ghosts, ghost_at; /* struct glint_model_ghost */
+    uint32_t n_parts; /* so many of the ghosts, the last ones, are further parts
+                         of the pupil of some of those before them */
     uint32_t n_systems, system_at; /* struct glint_model_system */
 };
 
@@ -97,18 +99,23 @@ struct glint_model_system {
     int32_t wave_lo_q24, wave_hi_q24; /* the same twice: one wavelength */
     uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots] */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
-     * Without knots GLINT_BOX_TERMS coefficients each, of s^0, s^1 .. and then
-     * of w and s w: [3][GLINT_BOX_TERMS]; with knots [n_knots][3]. */
+     * Without knots each is a polynomial of GLINT_BOX_TERMS terms, s^0, s^1 ..
+     * and then w and s w, of which those are here whose bits are set in
+     * box_terms: [3][bits set]. With knots [n_knots][3], and box_terms 0. */
     uint32_t box_at;
     int32_t box_exponent;
-    uint32_t n_outputs, output_at; /* struct glint_model_output, kinds rising */
+    uint32_t output_at; /* struct glint_model_output, kinds rising */
+    uint8_t n_outputs, box_terms;
+    uint8_t hollow; /* 1: what is seen within -1/2 < v < 1/2 is another part's
+                       and not this one's; only without knots */
+    uint8_t zero;
 };
 
 enum {
     GLINT_BOX_POWERS = 6, /* of s alone, the 0th among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
-    GLINT_MAX_MODEL_TERMS = 64
+    GLINT_MAX_MODEL_TERMS = 120
 };
 
 enum glint_channel {
@@ -129,21 +136,22 @@ enum glint_channel {
 /* The first five kinds are in every system; sensor x and y have the same
  * exponent, and so have stop x and y. */
 struct glint_model_output {
-    uint32_t kind;
-    uint32_t n_terms, term_at; /* uint16 [n_terms], padded to whole words:
-                                  powers of u, v, s, w (or x, y, r, 1 - r), four
-                                  bits each, the first lowest */
-    uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
+    uint8_t kind, n_terms;
     uint8_t n_narrow; /* so many of the coefficients, the last ones, are int16
                          instead, padded to whole words, */
     uint8_t narrow_shift; /* and count 2^so many times as much, at most 20; with
                              knots 0 */
-    /* Of the energy, where not 0: its polynomial P is at most 2^(29 - head)
-     * where light gets through, head at most 28, and more means as much; the
-     * energy is P squared so many times, roots at most 2, 0 for P below 0. */
+    /* Of the energy, where not 0: its polynomial P counts as at most
+     * 2^(29 - head), head at most 28, far above what it is where light gets
+     * through; the energy is P squared so many times, roots at most 2, 0 for P
+     * below 0. */
     uint8_t head, roots;
-    int32_t exponent;     /* a polynomial's value is integer * 2^exponent */
-    uint32_t bound;       /* proven: no intermediate is larger; < 2^30 */
+    int16_t exponent; /* a polynomial's value is integer * 2^exponent */
+    uint32_t term_at; /* uint16 [n_terms], padded to whole words: powers of u,
+                         v, s, w (or x, y, r, 1 - r), four bits each, the first
+                         lowest */
+    uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
+    uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
     uint32_t rounding_q8; /* proven: integers stray from the polynomial by no
                              more than so many steps */
     /* Measured against exact rays through the run-time arithmetic, q20: pixels
@@ -179,6 +187,7 @@ struct glint_transfer {
     uint8_t head, roots;               /* of the energy */
     int32_t box[3]; /* middle, half width, half height at this angle */
     int32_t box_exponent;
+    uint8_t hollow;
     enum glint_basis basis;
     union {
         /* of u^a v^b: [b][a] */
@@ -217,7 +226,9 @@ struct glint_place {
 
 /* Fills the vertices of a grid of N_CELLS a side over the whole box, row by
  * row, [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a
- * vertex is 2^(exponent[ENERGY] + 29). What does not fit a vertex is lost. */
+ * vertex is 2^(exponent[ENERGY] + 29). What does not fit a vertex is lost, and
+ * so are a hollow one's rows within, whose rim is a row where N_CELLS is a
+ * multiple of 4. */
 void glint_transfer_grid(const struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);

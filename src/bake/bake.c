@@ -14,7 +14,7 @@
 
 enum {
     FLUX_POWERS = 6,
-    REVISION = 2 /* of what is made of a lens: raised when models change */
+    REVISION = 3 /* of what is made of a lens: raised when models change */
 };
 
 /* Everything one model takes. */
@@ -254,8 +254,15 @@ static void fit_job(void *ctx, int job, int worker)
     k->status[ghost] = k->options.basis == GLINT_BASIS_SPARSE
                            ? fit_published(k, ghost)
                            : fit_auto(k, ghost);
-    if (k->status[ghost] == GLINT_OK)
-        k->status[ghost] = quantise_ghost(k, ghost);
+}
+
+static void quantise_job(void *ctx, int job, int worker)
+{
+    struct kitchen *k = ctx;
+    const int ghost = k->first_job + job;
+
+    (void)worker;
+    k->status[ghost] = quantise_ghost(k, ghost);
 }
 
 static void measure_job(void *ctx, int job, int worker)
@@ -306,9 +313,46 @@ static enum glint_status for_ghosts(struct kitchen *k, glint_job_fn *job,
 
 /* ----------------------------------------------------------------- pipeline */
 
+static int parts_of(const struct glint_fitted_ghost *ghost)
+{
+    int n = 1;
+
+    for (int i = 0; i < ghost->n_systems; i++)
+        n = ghost->system[i].part >= n ? ghost->system[i].part + 1 : n;
+    return n;
+}
+
+/* Gives the further parts of parted ghosts places of their own behind all
+ * ghosts. */
+static enum glint_status part_ghosts(struct kitchen *k)
+{
+    struct glint_setup *s = &k->setup;
+    const int n = s->n_ghosts;
+    enum glint_status status = GLINT_OK;
+
+    for (int ghost = 0; ghost < n; ghost++) {
+        const int n_parts = parts_of(&k->fitted[ghost]);
+
+        for (int part = 1; part < n_parts && status == GLINT_OK; part++) {
+            if (s->n_ghosts == GLINT_MAX_GHOSTS) {
+                snprintf(k->error->text, sizeof k->error->text,
+                         "%s: more than %d ghosts and parts of ghosts",
+                         k->lens->name, GLINT_MAX_GHOSTS);
+                return GLINT_E_LENS;
+            }
+            s->ghost[s->n_ghosts] = s->ghost[ghost];
+            status = glint_fitted_part(&k->fitted[ghost], part,
+                                       &k->fitted[s->n_ghosts]);
+            s->n_ghosts++;
+            s->n_parts++;
+        }
+    }
+    return status;
+}
+
 static enum glint_status reserve(struct kitchen *k)
 {
-    const size_t n = (size_t)k->setup.n_ghosts + 1;
+    const size_t n = GLINT_MAX_GHOSTS;
 
     k->fitted = calloc(n, sizeof *k->fitted);
     k->quantised = calloc(n, sizeof *k->quantised);
@@ -365,7 +409,11 @@ static enum glint_status cook(struct kitchen *k)
                                        field_of(k->lens, &k->options),
                                        k->options.band_nm, k->options.workers);
     if (status == GLINT_OK)
-        status = for_ghosts(k, fit_job, 0, 0.9);
+        status = for_ghosts(k, fit_job, 0, 0.88);
+    if (status == GLINT_OK)
+        status = part_ghosts(k);
+    if (status == GLINT_OK)
+        status = for_ghosts(k, quantise_job, 0.88, 0.9);
     if (status == GLINT_OK)
         status = glint_draft_write(&k->draft, &k->setup, &header, k->fitted,
                                    k->quantised);

@@ -69,7 +69,7 @@ static void probe_ray(const struct glint_transfer *t, int i, int j,
                        (int32_t)((double)j / DOWN * one_q30), &out);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         p->at[kind] = value(t, &out, kind);
-    p->inside = is_inside(t, &out);
+    p->inside = is_inside(t, &out) && !(t->hollow && 2 * j < DOWN);
 }
 
 /* How a quantity changes from ray to ray: sums of squares. */

@@ -14,17 +14,25 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 #define PEAK        5.0  /* times the root mean square */
 #define WIDE_ENERGY 60   /* most over least energy of which to take a root */
 #define LEAST_FILL  0.33 /* of a box; below it the grids waste their cells */
-#define CROWD_DEG                                                              \
-    1.5                 /* a vertex has room for two barrels: more make a zone \
-                           worth halving down to here */
-#define FILL_DEG    0.6 /* narrower zones need not care for that */
-#define LEAST_DEG   0.7
-#define BRIGHT_EASE 1.5 /* zones of ghosts as bright as that, */
-#define FAR         8.0 /* and those as far off, may be half as wide */
+#define CROWD_DEG                                                            \
+    1.5               /* a vertex has room for two barrels: more make a zone \
+                         worth halving down to here */
+#define FILL_DEG  0.6 /* narrower zones need not care for that */
+#define LEAST_DEG 0.7
+#define BRIGHT_EASE                                         \
+    1.5 /* zones of ghosts as bright as that may be half as \
+           wide */
 #define STUCK                                                               \
     0.75              /* half a zone that is left with so much of the whole \
                          one's error gains nothing from halving... */
 #define STUCK_DEG 1.2 /* ...once it is this narrow */
+#define PART_LEFT 3.0 /* zones that show more than that are parted */
+
+enum {
+    FEW_TERMS = 64,
+    MANY_TERMS = 96, /* of places, by all means */
+    PART_DEPTH = 4   /* times that a zone's box is halved */
+};
 
 struct fitter {
     const struct glint_hunt *hunt;
@@ -36,9 +44,12 @@ struct fitter {
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
     double *scratch;
     struct glint_fitted_ghost *out;
-    double ease; /* of this zone, and its tolerances: */
-    double sensor_mm, edge_mm, stop, energy;
+    double ease; /* of this zone, its tolerances, and how far they are below
+                    what its ghost would show: */
+    double sensor_mm, edge_mm, stop, energy, hidden;
+    double off; /* how far places are off, in tolerances */
     bool by_all_means;
+    int n_parts; /* of the zone so far */
 };
 
 /* ----------------------------------------------------------------- outputs */
@@ -47,12 +58,12 @@ static const struct glint_degrees position_degrees = {
     .most = {GLINT_MAX_POWER, 8, 5, 4},
     .weight = {1, 1, 1, 2},
     .total = 12,
-    .terms = GLINT_MAX_TERMS};
+    .terms = FEW_TERMS};
 
 static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .weight = {1, 1, 1, 1},
                                                     .total = 10,
-                                                    .terms = GLINT_MAX_TERMS};
+                                                    .terms = FEW_TERMS};
 
 /* Full weight a little past the edge, where cells straddle it; hardly any where
  * nothing is seen, which only has to stay unseen. */
@@ -116,7 +127,8 @@ static double share_of(const struct fitter *f, const struct glint_zone *zone)
     for (int i = 0, next; i < r->n; i = next) {
         const struct sight v = look(r, i);
         const double s = r->x[2][i], w = r->x[3][i];
-        const double pupil = 4 * glint_zone_at(zone->half_x, s, w) *
+        const double pupil = (zone->hollow ? 2 : 4) *
+                             glint_zone_at(zone->half_x, s, w) *
                              glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
         const double level = glint_brightness_at(
             f->tolerance->brightness,
@@ -167,12 +179,13 @@ static void set_tolerances(struct fitter *f, const struct glint_zone *zone)
     const struct glint_tolerance *t = f->tolerance;
     const struct glint_rays *r = &f->rays;
     const double share = share_of(f, zone);
-    const double ease =
-        share > 0 ? fmin(t->ease, fmax(1, pow(share, -0.42))) : t->ease;
+    const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
+    const double ease = fmin(t->ease, shows);
 
     f->ease = ease;
     f->edge_mm = ease * t->edge_mm;
     f->sensor_mm = fmin(ease * t->sensor_mm, t->faint_sensor_mm);
+    f->hidden = shows * t->sensor_mm / f->sensor_mm;
     f->stop = outline_tolerance(
         f, t->stop,
         stretch_of(r, r->at[RAY_STOP_X], r->at[RAY_STOP_Y], -HUGE_VAL));
@@ -192,6 +205,42 @@ static void set_weights(struct fitter *f)
     }
 }
 
+/* The polynomials let ray I pass, which the lens stops by far. */
+static bool leaks(const struct glint_rays *r, int i,
+                  const struct glint_fitted_system *system, double field_mm)
+{
+    const double x[GLINT_VARIABLES] = {r->x[0][i], r->x[1][i], r->x[2][i],
+                                       r->x[3][i]};
+    double at[GLINT_OUT_KINDS] = {0};
+    bool passes = r->at[RAY_EXCESS][i] > 1.05;
+
+    for (int k = 0; k < system->n_outputs && passes; k++) {
+        const struct glint_fitted_output *o = &system->output[k];
+
+        if (o->kind != GLINT_OUT_ENERGY)
+            at[o->kind] = glint_poly_at(o->n_terms, o->power, o->coef, x);
+        if (o->kind >= GLINT_OUT_BARREL_0)
+            passes = at[o->kind] < 1;
+    }
+    return passes && hypot(at[GLINT_OUT_STOP_X], at[GLINT_OUT_STOP_Y]) < 1 &&
+           hypot(at[GLINT_OUT_SENSOR_X], at[GLINT_OUT_SENSOR_Y]) < field_mm;
+}
+
+/* Gives rays that leak a weight that they are heard with. Returns whether there
+ * are any. */
+static bool stop_leaks(struct fitter *f,
+                       const struct glint_fitted_system *system)
+{
+    bool any = false;
+
+    for (int i = 0; i < f->rays.n; i++)
+        if (leaks(&f->rays, i, system, f->hunt->field_mm)) {
+            f->weight[i] = fmax(f->weight[i], 0.1);
+            any = true;
+        }
+    return any;
+}
+
 static enum glint_status keep(struct glint_fitted_system *system,
                               enum glint_channel kind,
                               const struct glint_poly *poly, double rms,
@@ -204,7 +253,7 @@ static enum glint_status keep(struct glint_fitted_system *system,
         return GLINT_E_MEMORY;
     o->kind = kind;
     o->n_terms = poly->n;
-    o->grain = rms / 8; /* a few dozen of these stay below a quarter of it */
+    o->grain = rms / 6; /* a few dozen of these stay below a third of it */
     o->met = met;
     memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
     memcpy(o->coef, poly->coef, (size_t)poly->n * sizeof *o->coef);
@@ -227,6 +276,8 @@ static enum glint_status fit_output(struct fitter *f,
     struct glint_poly poly;
     double left, grain = rms; /* energy's is a share */
 
+    if (f->by_all_means && kind != GLINT_OUT_ENERGY)
+        degrees.terms = MANY_TERMS;
     degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
     left = glint_regress_fit(f->scratch, &samples, f->value, &degrees, rms,
                              PEAK * rms, &poly);
@@ -250,6 +301,16 @@ static enum glint_status fit_channel(struct fitter *f, int channel, double rms,
                       worst);
 }
 
+/* Least and most energy of what is seen. */
+static void energies_of(const struct glint_rays *r, double *least, double *most)
+{
+    for (int i = 0; i < r->n; i++)
+        if (is_seen(r, i)) {
+            *least = fmin(*least, r->at[RAY_ENERGY][i]);
+            *most = fmax(*most, r->at[RAY_ENERGY][i]);
+        }
+}
+
 /* Energy counts by its share, down to a two-hundredth of the most that is seen.
  * Towards total reflection it grows a thousandfold; its fourth root is as tame
  * as a position. */
@@ -260,11 +321,8 @@ fit_energy(struct fitter *f, struct glint_fitted_system *system, double *worst)
     struct glint_fitted_output *o = &system->output[system->n_outputs];
     double least = HUGE_VAL, most = 1e-30;
 
-    for (int i = 0; i < r->n; i++)
-        if (fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]) <= 1) {
-            least = fmin(least, r->at[RAY_ENERGY][i]);
-            most = fmax(most, r->at[RAY_ENERGY][i]);
-        }
+    energies_of(r, &least, &most);
+    energies_of(&f->rays, &least, &most);
     o->roots = f->by_all_means && most > WIDE_ENERGY * least ? 2 : 0;
     o->most = least > most ? 0 : o->roots ? sqrt(sqrt(most)) : most;
     for (int i = 0; i < r->n; i++) {
@@ -302,22 +360,27 @@ static enum glint_status fit_barrel(struct fitter *f, int barrel,
                       system, worst);
 }
 
-static enum glint_status fit_outputs(struct fitter *f,
-                                     const struct glint_zone *zone,
-                                     struct glint_fitted_system *system,
-                                     double *worst)
+static void drop_outputs(struct glint_fitted_system *system)
+{
+    while (system->n_outputs > 0)
+        free(system->output[--system->n_outputs].coef);
+}
+
+static enum glint_status
+fit_outputs(struct fitter *f, struct glint_fitted_system *system, double *worst)
 {
     enum glint_status status = GLINT_OK;
 
-    set_tolerances(f, zone);
-    set_weights(f);
+    *worst = 0;
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++)
         status = fit_channel(f, c, c <= RAY_SENSOR_Y ? f->sensor_mm : f->stop,
                              system, worst);
+    f->off = *worst;
     if (status == GLINT_OK)
         status = fit_energy(f, system, worst);
     for (int b = 0; b < f->rays.n_barrels && status == GLINT_OK; b++)
-        status = fit_barrel(f, b, system, worst);
+        status = fit_barrel(f, b, system, &f->off);
+    *worst = fmax(*worst, f->off);
     return status;
 }
 
@@ -413,14 +476,26 @@ static double degrees_between(double lo, double hi)
     return (asin(hi) - asin(lo)) * (180 / GLINT_PI);
 }
 
-/* A zone to be fitted; BEFORE is what was left of it at the last attempt. By
- * all means: with a box that follows the colours, and a root of the energy. */
+/* A zone, or a part of one, to be fitted; BEFORE is what was left of it at the
+ * last attempt. By all means: with a box that follows the colours, a root of
+ * the energy, and more terms. */
 struct pending {
     double lo, hi, before;
     bool by_all_means;
+    struct glint_part part;
+    int depth; /* of the part; 0: the whole zone */
 };
 
-/* Fits a zone; *LEFT becomes how bad it is: at most 1 if good. */
+static bool nothing_seen(const struct glint_rays *r)
+{
+    for (int i = 0; i < r->n; i++)
+        if (is_seen(r, i))
+            return false;
+    return true;
+}
+
+/* Fits a zone; *LEFT becomes how bad it is: at most 1 if good. A part that
+ * nothing comes through has no outputs afterwards. */
 static enum glint_status try_zone(struct fitter *f, const struct pending *p,
                                   struct glint_fitted_system *system,
                                   double *left)
@@ -429,6 +504,7 @@ static enum glint_status try_zone(struct fitter *f, const struct pending *p,
     struct glint_zone zone;
 
     *system = (struct glint_fitted_system){.ghost = f->hunt->ghost,
+                                           .hollow = p->part.hollow,
                                            .sine_lo = p->lo,
                                            .sine_hi = p->hi,
                                            .wave_lo = f->hunt->wave_lo,
@@ -439,40 +515,84 @@ static enum glint_status try_zone(struct fitter *f, const struct pending *p,
     if (!p->by_all_means && zone.fill < LEAST_FILL &&
         degrees_between(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
-    glint_zone_trace(&zone, f->hunt, &f->survey, &f->rays, &f->energies);
+    glint_zone_cut(&zone, &p->part);
+    glint_zone_survey_barrels(&zone, f->hunt, &f->survey, &f->rays);
     if (f->rays.n_barrels > 2 && degrees_between(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
-    *left = 0;
+    glint_zone_trace(&zone, f->hunt, &f->rays, &f->energies);
+    *left = f->off = 0;
+    if (p->depth > 0 && nothing_seen(&f->rays))
+        return GLINT_OK;
     status = set_box(system, &zone);
+    set_tolerances(f, &zone);
+    set_weights(f);
     if (status == GLINT_OK)
-        status = fit_outputs(f, &zone, system, left);
+        status = fit_outputs(f, system, left);
+    if (status == GLINT_OK && (p->by_all_means || *left <= 1) &&
+        stop_leaks(f, system)) {
+        drop_outputs(system);
+        status = fit_outputs(f, system, left);
+    }
     if (status == GLINT_OK)
-        *left = fmax(*left, check_zone(f, &zone, system));
+        f->off = fmax(f->off, check_zone(f, &zone, system));
+    *left = fmax(*left, f->off);
     system->met = *left <= 1;
     return status;
 }
 
-/* What to do about a zone that is left with LEFT. Halves of BRIGHT ones are
+/* What to do about a zone that is left with LEFT. Halves of bright ones are
  * worth more. */
-enum next { KEEP, HALVE, ALL_MEANS };
+enum next { KEEP, HALVE, ALL_MEANS, PART };
 
-static enum next next_step(const struct pending *p, double left, bool bright)
+static enum next next_step(const struct fitter *f, const struct pending *p,
+                           double left)
 {
-    const bool helped = left <= STUCK * p->before, far = left > FAR;
-    const double worth = far ? 4 : bright ? 2 : 1;
-    const double width = degrees_between(p->lo, p->hi) * worth;
+    const bool helped = left <= STUCK * p->before;
+    const double width =
+        degrees_between(p->lo, p->hi) * (f->ease < BRIGHT_EASE ? 2 : 1);
     const bool stuck = width < LEAST_DEG || (!helped && width < STUCK_DEG);
 
-    if (left <= 1 || p->by_all_means)
+    if (p->by_all_means)
+        return f->off > PART_LEFT * f->hidden && p->depth < PART_DEPTH ? PART
+                                                                       : KEEP;
+    if (left <= 1)
         return KEEP;
     return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
+}
+
+/* Puts the halves of P on the stack: along v first, so that what is seen
+ * through the middle gets apart from what is seen through the rim. Returns how
+ * many there are then. */
+static int push_halves(struct pending *stack, int n, struct pending p,
+                       enum next how)
+{
+    const double angle = 0.5 * (p.lo + p.hi);
+    const double u = 0.5 * (p.part.u0 + p.part.u1);
+    struct pending a = p, b = p;
+
+    if (how == HALVE) {
+        a.hi = b.lo = angle;
+    } else {
+        a.depth = b.depth = p.depth + 1;
+        if (p.depth % 2 || p.part.hollow) {
+            a.part.u1 = b.part.u0 = u;
+        } else {
+            a.part.top *= 0.5;
+            b.part.hollow = true;
+        }
+    }
+    stack[n] = b;
+    stack[n + 1] = a;
+    return n + 2;
 }
 
 /* Zones from the lowest angle up; the upper halves wait on a stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    enum { DEEP = 24 }; /* halvings of a sine down to LEAST_DEG: 13 at most */
-    struct pending stack[DEEP] = {{range[0], range[1], HUGE_VAL, false}};
+    /* halvings of a sine down to half of LEAST_DEG: 13 at most */
+    enum { DEEP = 24 + PART_DEPTH };
+    struct pending stack[DEEP] = {
+        {range[0], range[1], HUGE_VAL, false, {-1, 1, 1, false}, 0}};
     enum glint_status status = GLINT_OK;
     int n = 1;
 
@@ -481,25 +601,28 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         return GLINT_OK;
     while (n > 0 && status == GLINT_OK) {
         struct pending p = stack[--n];
-        const double middle = 0.5 * (p.lo + p.hi);
         struct glint_fitted_system system;
         enum next next = KEEP;
         double left;
 
         status = try_zone(f, &p, &system, &left);
         if (status == GLINT_OK)
-            next = next_step(&p, left, f->ease < BRIGHT_EASE);
-        if (status == GLINT_OK && next == KEEP)
+            next = next_step(f, &p, left);
+        if (p.depth == 0)
+            f->n_parts = 0;
+        system.part = f->n_parts;
+        if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
             status = append(f->out, &system);
-        if (status != GLINT_OK || next != KEEP)
+            f->n_parts++;
+        } else {
             system_finish(&system);
+        }
         p.before = left;
-        if (next == HALVE) {
-            stack[n++] = (struct pending){middle, p.hi, left, p.by_all_means};
-            stack[n++] = (struct pending){p.lo, middle, left, p.by_all_means};
-        } else if (next == ALL_MEANS) {
+        if (next == ALL_MEANS) {
             p.by_all_means = true;
             stack[n++] = p;
+        } else if (next != KEEP) {
+            n = push_halves(stack, n, p, next);
         }
     }
     return status;

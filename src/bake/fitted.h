@@ -8,6 +8,7 @@
 
 #include "bake/regress.h"
 #include "glint/lens.h"
+#include "glint/status.h"
 
 /* One output. COEF is [sets][n_terms], sets as the system says; owned. */
 struct glint_fitted_output {
@@ -24,7 +25,8 @@ struct glint_fitted_output {
 };
 
 struct glint_fitted_system {
-    int ghost;
+    int ghost, part; /* of the pupil: 0, 1 .. where it is parted */
+    bool hollow;     /* see struct glint_model_system */
     double sine_lo, sine_hi;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
     int n_knots;             /* 0, or as many sets of coefficients */
@@ -41,6 +43,10 @@ struct glint_fitted_ghost {
     int n_systems;
     struct glint_fitted_system *system;
 };
+
+/* Moves the systems of part PART to OUT, which is empty. GLINT_E_MEMORY. */
+enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
+                                    struct glint_fitted_ghost *out);
 
 void glint_fitted_finish(struct glint_fitted_ghost *ghost);
 

@@ -9,6 +9,7 @@ enum {
     ACROSS = 64, /* cells of the finest grid */
     SCAN_DEG = 1,
     BISECTIONS = 8,
+    AFRESH = 4, /* angles after which to look for what has appeared elsewhere */
     FARTHER = 4 /* steps that the ends of the band may outlast its middle */
 };
 
@@ -292,6 +293,12 @@ static void look(const struct glint_hunt *h, const double *sine,
         before = box;
         now = have ? follow_box(h, path, *s, &near, &box)
                    : find_box(h, path, *s, &box);
+        if (have && k % AFRESH == 0 && find_box(h, path, *s, &near)) {
+            if (now)
+                join(&near, &box);
+            box = near;
+            now = true;
+        }
         have = now ? have + 1 : 0;
         g->seen[k][wave] = now;
         g->box[k][wave] = box;

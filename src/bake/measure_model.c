@@ -209,9 +209,10 @@ void glint_measure_system(const struct glint_hunt *hunt,
         if (!set_bundle(&b, lens, &lens->system[system], &random))
             continue;
         for (int i = 0; i < PER_BUNDLE && b.n < RAYS; i++) {
-            const double u = next(&random);
+            const double u = next(&random), v = 0.5 + 0.5 * next(&random);
 
-            try_ray(&b, u, 0.5 + 0.5 * next(&random));
+            if (!fitted->hollow || v >= 0.5)
+                try_ray(&b, u, v);
         }
     }
     out->rays = b.n;

@@ -244,7 +244,8 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
         prove_sparse(&p, o, out->coef, sets, &result);
     else
         prove_auto(&p, o, out, &result);
-    while (out->head > 0 && ldexp(result.error, out->head) >= 0x1p22)
+    while (out->head > 0 &&
+           energy_of(result, out->head, o->roots).error >= 0x1p22)
         out->head--; /* nothing but rounding up there */
     result = energy_of(result, out->head, o->roots);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
@@ -295,13 +296,13 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
     return exponent_for(hull_sum(o->coef, sets_of(s), o->n_terms), o->n_terms);
 }
 
-/* How many bits above what it is where light gets through a polynomial could
- * reach. */
+/* How many bits above four times what it is where light gets through a
+ * polynomial could reach. */
 static int head_of(const struct glint_fitted_output *o, int exponent)
 {
     int head = 0;
 
-    while (o->most > 0 && head < 28 && ldexp(o->most, head - exponent) < 0x1p28)
+    while (o->most > 0 && head < 28 && ldexp(o->most, head - exponent) < 0x1p27)
         head++;
     return head;
 }

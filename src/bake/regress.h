@@ -19,7 +19,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { GLINT_VARIABLES = 4, GLINT_MAX_TERMS = 64, GLINT_MAX_CANDIDATES = 140 };
+enum { GLINT_VARIABLES = 4, GLINT_MAX_TERMS = 120, GLINT_MAX_CANDIDATES = 280 };
 
 struct glint_poly {
     int n;

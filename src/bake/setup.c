@@ -153,6 +153,7 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
     setup->lens = lens;
     glint_optics_of(lens, &setup->optics);
     setup->n_ghosts = glint_ghost_list(lens, setup->ghost, GLINT_MAX_GHOSTS);
+    setup->n_parts = 0;
     set_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
     for (int i = 0; i < n; i++) {
         setup->direct_flux[i] = glint_direct_flux(setup, wavelength_nm[i]);
@@ -211,6 +212,7 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
         .entrance_radius_mm = glint_real_value(h->entrance_radius_mm),
         .stop_radius_mm = glint_real_value(h->stop_radius_mm)};
     setup->n_ghosts = (int)h->n_ghosts;
+    setup->n_parts = (int)h->n_parts;
     for (int k = 0; k < setup->n_ghosts; k++)
         setup->ghost[k] =
             (struct glint_ghost){(int)lens->ghost[k].i, (int)lens->ghost[k].j};

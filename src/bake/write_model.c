@@ -13,7 +13,7 @@
 
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
-STATIC_ASSERT(sizeof(struct glint_model_output) == 48);
+STATIC_ASSERT(sizeof(struct glint_model_output) == 40);
 
 /* Adds BYTES from DATA (zeros where it is NULL) at a multiple of 4. Returns
  * where they are. */
@@ -99,15 +99,15 @@ put_output(struct glint_draft *d, const struct glint_fitted_output *o,
                : put_coefficients(d, o, q);
 
     return (struct glint_model_output){
-        .kind = (uint32_t)o->kind,
-        .n_terms = (uint32_t)o->n_terms,
-        .term_at = term_at,
-        .coef_at = coef_at,
+        .kind = (uint8_t)o->kind,
+        .n_terms = (uint8_t)o->n_terms,
         .n_narrow = (uint8_t)q->n_narrow,
         .narrow_shift = (uint8_t)(q->n_narrow ? q->shift : 0),
         .head = (uint8_t)q->head,
         .roots = (uint8_t)o->roots,
-        .exponent = q->exponent,
+        .exponent = (int16_t)q->exponent,
+        .term_at = term_at,
+        .coef_at = coef_at,
         .bound = q->bound,
         .rounding_q8 = q->rounding_q8};
 }
@@ -141,13 +141,34 @@ static uint32_t put_knots(struct glint_draft *d,
     return where;
 }
 
+/* Terms that are 0 in all three sides are left out. */
+static uint32_t put_box(struct glint_draft *d,
+                        const struct glint_quantised_system *q, bool knots,
+                        uint8_t *terms)
+{
+    int32_t packed[3 * GLINT_BOX_TERMS];
+    size_t n = 0;
+
+    *terms = 0;
+    if (knots)
+        return put(d, q->box, (size_t)q->n_box * sizeof *q->box);
+    for (int k = 0; k < q->n_box; k++)
+        if (q->box[k])
+            *terms |= (uint8_t)(1 << k % GLINT_BOX_TERMS);
+    for (int k = 0; k < q->n_box; k++)
+        if (*terms >> k % GLINT_BOX_TERMS & 1)
+            packed[n++] = q->box[k];
+    return put(d, packed, n * sizeof *packed);
+}
+
 static void write_system(struct glint_draft *d, uint32_t where,
                          const struct glint_fitted_system *f,
                          const struct glint_quantised_system *q)
 {
     /* one after the other: the order is part of the file */
     const uint32_t knot_at = put_knots(d, f);
-    const uint32_t box_at = put(d, q->box, (size_t)q->n_box * sizeof *q->box);
+    uint8_t box_terms;
+    const uint32_t box_at = put_box(d, q, f->n_knots > 0, &box_terms);
     const uint32_t output_at = put_outputs(d, f, q);
     const struct glint_model_system system = {
         .sine_lo_q30 = to_q30(f->sine_lo),
@@ -158,8 +179,10 @@ static void write_system(struct glint_draft *d, uint32_t where,
         .knot_at = knot_at,
         .box_at = box_at,
         .box_exponent = q->box_exponent,
-        .n_outputs = (uint32_t)f->n_outputs,
-        .output_at = output_at};
+        .output_at = output_at,
+        .n_outputs = (uint8_t)f->n_outputs,
+        .box_terms = box_terms,
+        .hollow = f->hollow};
 
     amend(d, where, &system, sizeof system);
 }
@@ -176,6 +199,7 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
     *draft = (struct glint_draft){0};
     put(draft, NULL, sizeof h);
     h.n_ghosts = (uint32_t)setup->n_ghosts;
+    h.n_parts = (uint32_t)setup->n_parts;
     h.ghost_at = (uint32_t)draft->bytes;
     for (int k = 0; k < setup->n_ghosts; k++) {
         const struct glint_model_ghost ghost = {(uint32_t)setup->ghost[k].i,

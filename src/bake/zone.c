@@ -178,6 +178,16 @@ void glint_zone_init(struct glint_zone *zone,
     }
 }
 
+void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part)
+{
+    for (int k = 0; k < GLINT_BOX_TERMS; k++) {
+        zone->middle[k] += 0.5 * (part->u0 + part->u1) * zone->half_x[k];
+        zone->half_x[k] *= 0.5 * (part->u1 - part->u0);
+        zone->half_y[k] *= part->top;
+    }
+    zone->hollow = part->hollow;
+}
+
 /* ------------------------------------------------------------------ barrels */
 
 /* Low-discrepancy numbers -1 .. 1: multiples of powers of the root of
@@ -219,7 +229,8 @@ struct together {
     double hits[TOGETHER * (GLINT_MAX_EVENTS + 1)][2]; /* -1: not reached */
 };
 
-/* Adds the ray at X of the zone, w being that of the path. */
+/* Adds the ray at X of the zone, w being that of the path and v 0 .. 1 from the
+ * inner end of what there is. */
 static void together_add(struct together *t, const struct glint_zone *z,
                          const double x[GLINT_VARIABLES])
 {
@@ -228,9 +239,11 @@ static void together_add(struct together *t, const struct glint_zone *z,
 
     for (int k = 0; k < GLINT_VARIABLES; k++)
         t->x[t->n][k] = x[k];
+    if (z->hollow)
+        t->x[t->n][1] = 0.5 + 0.5 * x[1];
     from->x_mm =
         glint_zone_at(z->middle, s, w) + x[0] * glint_zone_at(z->half_x, s, w);
-    from->y_mm = x[1] * glint_zone_at(z->half_y, s, w);
+    from->y_mm = t->x[t->n][1] * glint_zone_at(z->half_y, s, w);
     direction_of(z, s, from->direction);
     t->n++;
 }
@@ -409,7 +422,9 @@ static void trace_plane(const struct glint_zone *zone,
         t.n = 0;
         for (int i = 0; i <= ACROSS; i += stride) {
             const double x[GLINT_VARIABLES] = {
-                glint_zone_node(i, ACROSS + 1), sin(0.5 * GLINT_PI * j / DOWN),
+                glint_zone_node(i, ACROSS + 1),
+                zone->hollow ? 0.5 + 0.5 * glint_zone_node(j, DOWN + 1)
+                             : sin(0.5 * GLINT_PI * j / DOWN),
                 glint_zone_node(sine, SINES),
                 glint_zone_node(wave, GLINT_HUNT_WAVES)};
 
@@ -471,14 +486,21 @@ static void trace_energies(const struct glint_zone *zone,
                     STRIDE, rays);
 }
 
-void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, glint_zone_survey *survey,
-                      struct glint_rays *rays, struct glint_rays *energies)
+void glint_zone_survey_barrels(const struct glint_zone *zone,
+                               const struct glint_hunt *hunt,
+                               glint_zone_survey *survey,
+                               struct glint_rays *rays)
 {
     struct survey s = {.radius = *survey};
 
     run_survey(zone, hunt, &s);
     choose_barrels(&s, rays);
+}
+
+void glint_zone_trace(const struct glint_zone *zone,
+                      const struct glint_hunt *hunt, struct glint_rays *rays,
+                      struct glint_rays *energies)
+{
     trace_positions(zone, hunt, rays);
     energies->n_barrels = 0;
     trace_energies(zone, hunt, energies);

@@ -30,6 +30,13 @@ struct glint_zone {
     double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     double fill; /* mean share of the box that the ghost needs */
+    bool hollow; /* -1/2 < v < 1/2 is not part of it */
+};
+
+/* A part of a zone's box: U0 .. U1 of its u, up to TOP of its v. */
+struct glint_part {
+    double u0, u1, top;
+    bool hollow;
 };
 
 /* One of these at S and W. */
@@ -40,6 +47,9 @@ double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_profile *profile, double lo, double hi,
                      bool by_colour);
+
+/* Reduces the box to PART of it. */
+void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part);
 
 /* Node K of N over -1 .. 1, the ends among them. */
 double glint_zone_node(int k, int n);
@@ -72,11 +82,17 @@ struct glint_rays {
 enum { GLINT_SURVEY_RAYS = 6000 };
 typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
 
-/* Chooses the barrels and traces the samples: RAYS for positions, ENERGIES at
- * fewer places but more wavelengths. */
+/* Chooses the barrels of RAYS. */
+void glint_zone_survey_barrels(const struct glint_zone *zone,
+                               const struct glint_hunt *hunt,
+                               glint_zone_survey *survey,
+                               struct glint_rays *rays);
+
+/* Traces the samples: RAYS for positions and barrels, ENERGIES at fewer places
+ * but more wavelengths. */
 void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, glint_zone_survey *survey,
-                      struct glint_rays *rays, struct glint_rays *energies);
+                      const struct glint_hunt *hunt, struct glint_rays *rays,
+                      struct glint_rays *energies);
 
 /* Random rays of the zone, at angles and wavelengths between those of the
  * samples. Barrels are not looked at. Deterministic. */

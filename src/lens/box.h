@@ -9,6 +9,16 @@
 #include "base/q.h"
 #include "glint/lens.h"
 
+/* Takes a side out of a model, where it has the terms of the bits set in
+ * TERMS. Returns where the next one is. */
+static inline const int32_t *box_unpack(const int32_t *packed, uint32_t terms,
+                                        int32_t side[GLINT_BOX_TERMS])
+{
+    for (int m = 0; m < GLINT_BOX_TERMS; m++)
+        side[m] = terms >> m & 1 ? *packed++ : 0;
+    return packed;
+}
+
 /* P at S_Q30 and W_Q30, each within +-2^30. */
 static inline int32_t box_side(const int32_t p[GLINT_BOX_TERMS], int32_t s_q30,
                                int32_t w_q30)

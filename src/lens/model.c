@@ -27,10 +27,10 @@
 
 /* The file is used in place: its layout is what these structs are. */
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
-STATIC_ASSERT(sizeof(struct glint_model_header) == 244);
+STATIC_ASSERT(sizeof(struct glint_model_header) == 248);
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
-STATIC_ASSERT(sizeof(struct glint_model_output) == 48);
+STATIC_ASSERT(sizeof(struct glint_model_output) == 40);
 
 enum {
     LIMIT = 1 << 30, /* of sums of magnitudes; also 1 as a q30 */
@@ -219,6 +219,8 @@ static const char *check_ghosts(const struct check *c)
     const struct glint_model_header *h = c->header;
     uint32_t next = 0;
 
+    if (h->n_parts > h->n_ghosts)
+        return "there are more parts than ghosts";
     for (uint32_t k = 0; k < h->n_ghosts; k++) {
         const struct glint_model_ghost *g = &c->ghost[k];
 
@@ -310,13 +312,15 @@ static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
 static const char *check_box(struct check *c,
                              const struct glint_model_system *s)
 {
-    const uint64_t n =
-        s->n_knots ? 3 * (uint64_t)s->n_knots : 3 * GLINT_BOX_TERMS;
+    const uint64_t sides = s->n_knots ? s->n_knots : bits_set(s->box_terms);
     const int32_t *box;
+    int32_t side[GLINT_BOX_TERMS];
 
     if (s->box_exponent < MIN_EXPONENT || s->box_exponent > MAX_EXPONENT)
         return "the exponent of a box is out of range";
-    if (!inside(c, s->box_at, n, sizeof *box))
+    if (s->n_knots && s->box_terms)
+        return "a box at knots has terms";
+    if (!inside(c, s->box_at, 3 * sides, sizeof *box))
         return outside;
     box = table(c, s->box_at);
     for (uint32_t k = 0; k < s->n_knots; k++) {
@@ -325,10 +329,11 @@ static const char *check_box(struct check *c,
         if (reason)
             return reason;
     }
-    for (int k = 0; k < 3 && s->n_knots == 0; k++, box += GLINT_BOX_TERMS) {
-        if (magnitudes(box, GLINT_BOX_TERMS) >= LIMIT)
+    for (int k = 0; k < 3 && s->n_knots == 0; k++) {
+        box = box_unpack(box, s->box_terms, side);
+        if (magnitudes(side, GLINT_BOX_TERMS) >= LIMIT)
             return "a box reaches too far";
-        if (k > 0 && shrinks_below_0(box))
+        if (k > 0 && shrinks_below_0(side))
             return "a box has a size below 0";
     }
     return NULL;
@@ -353,7 +358,7 @@ static const char *check_terms(struct check *c,
 {
     const uint16_t *power;
 
-    if (!inside(c, o->term_at, (o->n_terms + 1) / 2, 2 * sizeof *power))
+    if (!inside(c, o->term_at, (o->n_terms + 1U) / 2, 2 * sizeof *power))
         return outside;
     power = table(c, o->term_at);
     for (uint32_t k = 0; k < o->n_terms; k++) {
@@ -363,7 +368,7 @@ static const char *check_terms(struct check *c,
 
         if (reason)
             return reason;
-        for (uint32_t m = 0; m < k; m++) /* at most 64 of them */
+        for (uint32_t m = 0; m < k; m++) /* at most 120 of them */
             if (power[m] == power[k])
                 return "an output has a term twice";
     }
@@ -467,6 +472,8 @@ static const char *check_system(struct check *c,
     if (s->sine_lo_q30 < 0 || s->sine_lo_q30 >= s->sine_hi_q30 ||
         s->sine_hi_q30 > LIMIT)
         return "a system's angles are out of range";
+    if (s->hollow > 1 || (s->hollow && s->n_knots) || s->zero)
+        return "a system is hollow in a way that there is not";
     if (s->wave_lo_q24 <= 0 || s->wave_lo_q24 > s->wave_hi_q24)
         return "a system's band is out of range";
     reason = check_knots(c, s);

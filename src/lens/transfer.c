@@ -110,19 +110,17 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
                     const struct setting *set)
 {
     const struct glint_model_system *s = t->system;
-    const int32_t *box = at(lens, s->box_at);
+    const int32_t *box = at(lens, s->box_at), *low = box + 3 * set->knot;
+    int32_t side[GLINT_BOX_TERMS];
 
     t->box_exponent = s->box_exponent;
     for (int k = 0; k < 3; k++) {
-        const int32_t *p = box + k * GLINT_BOX_TERMS;
-
         if (s->n_knots) {
-            const int32_t *low = box + 3 * set->knot;
-
             t->box[k] = between(low[k], low[3 + k], set->part_q30);
             continue;
         }
-        t->box[k] = box_side(p, set->s_q30[1], set->w_q30[1]);
+        box = box_unpack(box, s->box_terms, side);
+        t->box[k] = box_side(side, set->s_q30[1], set->w_q30[1]);
     }
 }
 
@@ -209,6 +207,7 @@ int glint_transfer_init(struct glint_transfer *transfer,
         return 0;
     clear(transfer);
     transfer->system = system;
+    transfer->hollow = (uint8_t)system->hollow;
     transfer->basis = (enum glint_basis)lens->header->basis;
     settle(&set, lens, system, sine_q30, wave_q24);
     set_box(transfer, lens, &set);
@@ -436,6 +435,8 @@ void glint_transfer_grid(const struct glint_transfer *transfer,
     const int nodes = n_cells + 1;
     const int symmetric = transfer->basis != GLINT_BASIS_SPARSE;
 
+    const int hidden = transfer->hollow ? n_cells / 4 : nodes;
+
     for (int j = 0; j < nodes && !(symmetric && 2 * j > n_cells); j++) {
         struct glint_vertex *row = vertices + (ptrdiff_t)j * nodes;
         struct glint_vertex *mirrored =
@@ -456,6 +457,8 @@ void glint_transfer_grid(const struct glint_transfer *transfer,
                 set_vertex(transfer, place, &out, -1, &mirrored[i]);
             }
             set_vertex(transfer, place, &out, 1, &row[i]);
+            if (j > hidden)
+                row[i].energy_q16 = mirrored[i].energy_q16 = -1;
         }
     }
 }

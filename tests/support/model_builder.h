@@ -19,7 +19,12 @@
 
 #include "glint/lens.h"
 
-enum { MODEL_ROOM = 1 << 17, MODEL_KNOTS = 3, MODEL_TERMS = 3 };
+enum {
+    MODEL_ROOM = 1 << 17,
+    MODEL_KNOTS = 3,
+    MODEL_TERMS = 3,
+    MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* of s^0, s^1, w */
+};
 
 struct model_image {
     unsigned char *data; /* malloc'ed */
@@ -29,9 +34,8 @@ struct model_image {
 #define MODEL_POWER(u, v, s, w) ((u) | (v) << 4 | (s) << 8 | (w) << 12)
 
 struct model_polynomial {
-    uint32_t kind;
-    int32_t exponent;
-    uint32_t n_terms;
+    uint8_t kind, n_terms;
+    int16_t exponent;
     uint16_t power[MODEL_TERMS];
     int32_t coef[MODEL_KNOTS][MODEL_TERMS]; /* without knots the first set */
 };
@@ -142,7 +146,7 @@ static inline void model_outputs(struct model_image *m,
         o[k].p99_q20 = (UINT32_C(1) << 20) << halved;
         o[k].max_q20 = (UINT32_C(1) << 21) << halved;
     }
-    s->n_outputs = n;
+    s->n_outputs = (uint8_t)n;
     s->output_at = model_put(m, o, n * sizeof *o);
 }
 
@@ -155,45 +159,46 @@ model_auto_system(struct model_image *m, int32_t sine_lo_q30,
     static const struct model_polynomial outputs[] = {
         /* 0.25 + 0.5 u - 0.125 v^2 s mm */
         {GLINT_OUT_SENSOR_X,
-         -28,
          3,
+         -28,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(1, 0, 0, 0),
           MODEL_POWER(0, 2, 1, 0)},
          {{1 << 26, 1 << 27, -(1 << 25)}}},
         /* 0.5 v + 0.25 u v mm */
         {GLINT_OUT_SENSOR_Y,
-         -28,
          2,
+         -28,
          {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(1, 1, 0, 0)},
          {{1 << 27, 1 << 26}}},
         /* 0.5 u^3 */
-        {GLINT_OUT_STOP_X, -29, 1, {MODEL_POWER(3, 0, 0, 0)}, {{1 << 28}}},
+        {GLINT_OUT_STOP_X, 1, -29, {MODEL_POWER(3, 0, 0, 0)}, {{1 << 28}}},
         /* 0.5 v - 0.125 v^3 */
         {GLINT_OUT_STOP_Y,
-         -29,
          2,
+         -29,
          {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(0, 3, 0, 0)},
          {{1 << 28, -(1 << 26)}}},
         /* 0.5 + 0.25 w, in 2^-6 */
         {GLINT_OUT_ENERGY,
-         -35,
          2,
+         -35,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(0, 0, 0, 1)},
          {{1 << 28, 1 << 27}}},
         /* 0.5 + u^2 / 2 */
         {GLINT_OUT_BARREL_0,
-         -28,
          2,
+         -28,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(2, 0, 0, 0)},
          {{1 << 27, 1 << 27}}},
     };
-    static const int32_t box[3][GLINT_BOX_TERMS] = {
-        {1 << 20, 1 << 19}, {1 << 22, -(1 << 20)}, {3 << 20}};
+    static const int32_t box[3][3] = {
+        {1 << 20, 1 << 19, 0}, {1 << 22, -(1 << 20), 0}, {3 << 20, 0, 0}};
     struct glint_model_system s = {.sine_lo_q30 = sine_lo_q30,
                                    .sine_hi_q30 = sine_hi_q30,
                                    .wave_lo_q24 = wave_lo_q24,
                                    .wave_hi_q24 = wave_hi_q24,
-                                   .box_exponent = -20};
+                                   .box_exponent = -20,
+                                   .box_terms = MODEL_BOX_TERMS};
 
     s.box_at = model_put(m, box, sizeof box);
     model_outputs(m, &s, outputs, sizeof outputs / sizeof *outputs, halved);
@@ -244,36 +249,36 @@ static inline struct model_image model_sparse(void)
     static const struct model_polynomial outputs[] = {
         /* a x + r / 4 mm, a = 1/2, 1/4, 0 at the knots */
         {GLINT_OUT_SENSOR_X,
-         -28,
          2,
+         -28,
          {MODEL_POWER(1, 0, 0, 0), MODEL_POWER(0, 0, 1, 0)},
          {{1 << 27, 1 << 26}, {1 << 26, 1 << 26}, {0, 1 << 26}}},
         /* y / 2 mm */
         {GLINT_OUT_SENSOR_Y,
-         -28,
          1,
+         -28,
          {MODEL_POWER(0, 1, 0, 0)},
          {{1 << 27}, {1 << 27}, {1 << 27}}},
         /* x (1 - r) */
         {GLINT_OUT_STOP_X,
-         -29,
          1,
+         -29,
          {MODEL_POWER(1, 0, 0, 1)},
          {{1 << 29}, {1 << 29}, {1 << 29}}},
         {GLINT_OUT_STOP_Y,
-         -29,
          1,
+         -29,
          {MODEL_POWER(0, 1, 0, 1)},
          {{1 << 29}, {1 << 29}, {1 << 29}}},
         {GLINT_OUT_ENERGY,
-         -35,
          1,
+         -35,
          {MODEL_POWER(0, 0, 0, 0)},
          {{1 << 29}, {1 << 28}, {1 << 27}}},
         /* r */
         {GLINT_OUT_RADIUS,
-         -28,
          1,
+         -28,
          {MODEL_POWER(0, 0, 1, 0)},
          {{1 << 28}, {1 << 28}, {1 << 28}}},
     };

@@ -141,23 +141,21 @@ static void test_not_a_model(void **state)
 
 enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX, KNOT };
 
-/* A word that is changed, and what is then said. Outputs are of system 0,
+/* Some bytes that are changed, and what is then said. Outputs are of system 0,
  * terms and coefficients of output 0. */
 struct rule {
     enum table table;
-    size_t at;
+    size_t at, bytes;
     int64_t value;
     const char *reason;
 };
 
-#define HEADER_(field) HEADER, offsetof(struct glint_model_header, field)
-#define GHOST_(k, field) \
-    GHOST, k * 16 + offsetof(struct glint_model_ghost, field)
-#define SYSTEM_(k, field) \
-    SYSTEM, k * 40 + offsetof(struct glint_model_system, field)
-#define OUTPUT_(k, field)                           \
-    OUTPUT, k * sizeof(struct glint_model_output) + \
-                offsetof(struct glint_model_output, field)
+#define FIELD_(type, field) \
+    offsetof(struct type, field), sizeof((struct type *)0)->field
+#define HEADER_(field)    HEADER, FIELD_(glint_model_header, field)
+#define GHOST_(k, field)  GHOST, k * 16 + FIELD_(glint_model_ghost, field)
+#define SYSTEM_(k, field) SYSTEM, k * 40 + FIELD_(glint_model_system, field)
+#define OUTPUT_(k, field) OUTPUT, k * 40 + FIELD_(glint_model_output, field)
 
 static const char outside[] = "a table lies outside of the file",
                   unnormal[] = "a number of the header is not normalised",
@@ -172,6 +170,7 @@ static const char outside[] = "a table lies outside of the file",
                               "rise",
                   energy[] = "an output has no such roots or head",
                   bands[] = "a ghost's bands overlap or do not rise",
+                  hollow[] = "a system is hollow in a way that there is not",
                   bad_angles[] = "a system's angles are out of range",
                   bad_band[] = "a system's band is out of range",
                   no_knots[] = "knots do not go with the basis",
@@ -198,9 +197,9 @@ static const char outside[] = "a table lies outside of the file",
 static const struct rule auto_rules[] = {
     {HEADER_(basis), 2, "the basis is unknown"},
     {HEADER_(basis), 1, no_knots},
-    {HEADER_(name), 0, "the name is empty"},
-    {HEADER_(name), 0x1b, "the name has a control character"},
-    {HEADER_(name), 0x7f, "the name has a control character"},
+    {HEADER_(name[0]), 0, "the name is empty"},
+    {HEADER_(name[0]), 0x1b, "the name has a control character"},
+    {HEADER_(name[0]), 0x7f, "the name has a control character"},
     {HEADER_(focal_mm.mantissa), 0, "the focal length is 0"},
     {HEADER_(focal_mm.mantissa), (1 << 30) - 1, unnormal},
     {HEADER_(focal_mm.mantissa), 1 - (1 << 30), unnormal},
@@ -233,6 +232,8 @@ static const struct rule auto_rules[] = {
     {HEADER_(n_surfaces), 3, bad_pair},
     {HEADER_(n_ghosts), 1 << 28, outside},
     {HEADER_(n_ghosts), UINT32_MAX, outside},
+    {HEADER_(n_parts), 4, "there are more parts than ghosts"},
+    {HEADER_(n_parts), 3, NULL},
     {HEADER_(ghost_at), 246, outside},
     {HEADER_(ghost_at), 240, outside},
     {HEADER_(ghost_at), UINT32_MAX - 3, outside},
@@ -265,34 +266,39 @@ static const struct rule auto_rules[] = {
     {SYSTEM_(3, wave_lo_q24), MODEL_WAVE_LO_Q24, bands},
     {SYSTEM_(0, n_knots), 2, no_knots},
     {SYSTEM_(3, n_knots), UINT32_MAX, no_knots},
+    {SYSTEM_(0, hollow), 1, NULL},
+    {SYSTEM_(3, hollow), 2, hollow},
+    {SYSTEM_(0, hollow), 255, hollow},
     {SYSTEM_(0, box_at), 2, outside},
     {SYSTEM_(0, box_at), 0x7ffffffc, outside},
     {SYSTEM_(0, box_exponent), 41, box_exponent},
     {SYSTEM_(0, box_exponent), -81, box_exponent},
     {SYSTEM_(0, n_outputs), 4, n_outputs},
     {SYSTEM_(0, n_outputs), 11, n_outputs},
-    {SYSTEM_(0, n_outputs), UINT32_MAX, n_outputs},
+    {SYSTEM_(0, n_outputs), 255, n_outputs},
     {SYSTEM_(0, output_at), 0x7ffffffd, outside},
-    {BOX, 0, INT32_MIN, far_box},
-    {BOX, 0, (1 << 30) - (1 << 19), far_box},
-    {BOX, 0, (1 << 30) - (1 << 19) - 1, NULL},
-    {BOX, GLINT_BOX_TERMS * 4, 0, small_box}, /* half width -s */
-    {BOX, GLINT_BOX_TERMS * 4, 1 << 20, NULL}, /* 1 - s */
-    {BOX, GLINT_BOX_TERMS * 4, (1 << 20) - 1, small_box},
-    {BOX, (GLINT_BOX_TERMS + GLINT_BOX_POWERS) * 4, 3 << 20, NULL}, /* w */
-    {BOX, (GLINT_BOX_TERMS + GLINT_BOX_POWERS) * 4, (3 << 20) + 1, small_box},
-    {BOX, (GLINT_BOX_TERMS + GLINT_BOX_POWERS) * 4, -(3 << 20) - 1, small_box},
-    {BOX, (2 * GLINT_BOX_TERMS - 1) * 4, 3 << 20, NULL},
-    {BOX, 2 * GLINT_BOX_TERMS * 4, -1, small_box},
+    {SYSTEM_(0, zero), 1, hollow},
+    {SYSTEM_(0, box_terms), 3, small_box},
+    {SYSTEM_(0, box_terms), 0, NULL},
+    {BOX, 0, 4, INT32_MIN, far_box},
+    {BOX, 0, 4, (1 << 30) - (1 << 19), far_box},
+    {BOX, 0, 4, (1 << 30) - (1 << 19) - 1, NULL},
+    {BOX, 3 * 4, 4, 0, small_box}, /* half width -s */
+    {BOX, 3 * 4, 4, 1 << 20, NULL}, /* 1 - s */
+    {BOX, 3 * 4, 4, (1 << 20) - 1, small_box},
+    {BOX, 5 * 4, 4, 3 << 20, NULL}, /* w */
+    {BOX, 5 * 4, 4, (3 << 20) + 1, small_box},
+    {BOX, 5 * 4, 4, -(3 << 20) - 1, small_box},
+    {BOX, 6 * 4, 4, -1, small_box},
     {OUTPUT_(0, kind), 1, lacking},
     {OUTPUT_(4, kind), 5, lacking},
     {OUTPUT_(5, kind), GLINT_OUT_KINDS, bad_kind},
-    {OUTPUT_(5, kind), UINT32_MAX, bad_kind},
+    {OUTPUT_(5, kind), 255, bad_kind},
     {OUTPUT_(5, kind), GLINT_OUT_ENERGY, bad_kind},
     {OUTPUT_(5, kind), GLINT_OUT_RADIUS, NULL},
     {OUTPUT_(0, n_terms), 0, n_terms},
     {OUTPUT_(0, n_terms), GLINT_MAX_MODEL_TERMS + 1, n_terms},
-    {OUTPUT_(0, n_terms), UINT32_MAX, n_terms},
+    {OUTPUT_(0, n_terms), 255, n_terms},
     {OUTPUT_(0, term_at), 0x7ffffffc, outside},
     {OUTPUT_(0, coef_at), 0x7ffffffc, outside},
     {OUTPUT_(0, coef_at), 243, outside},
@@ -302,25 +308,25 @@ static const struct rule auto_rules[] = {
     {OUTPUT_(4, exponent), -81, exponent},
     {OUTPUT_(0, exponent), -27, xy_exponent},
     {OUTPUT_(3, exponent), -27, xy_exponent},
-    {OUTPUT_(4, n_narrow), UINT32_C(0x021c0000), NULL},
-    {OUTPUT_(4, n_narrow), UINT32_C(0x031c0000), energy},
-    {OUTPUT_(4, n_narrow), UINT32_C(0x021d0000), energy},
-    {OUTPUT_(3, n_narrow), UINT32_C(0x00010000), energy},
-    {OUTPUT_(5, n_narrow), UINT32_C(0x01000000), energy},
+    {OUTPUT_(4, roots), 2, NULL},
+    {OUTPUT_(4, roots), 3, energy},
+    {OUTPUT_(4, head), 28, NULL},
+    {OUTPUT_(4, head), 29, energy},
+    {OUTPUT_(3, head), 1, energy},
+    {OUTPUT_(5, roots), 1, energy},
     {OUTPUT_(0, bound), 1 << 30, bound},
     {OUTPUT_(0, bound), UINT32_MAX, bound},
     {OUTPUT_(0, rounding_q8), UINT32_MAX, NULL},
-    /* two terms a word, the first low */
-    {TERM, 0, MODEL_POWER(10, 0, 0, 0), power},
-    {TERM, 0, MODEL_POWER(0, 10, 0, 0), power},
-    {TERM, 0, MODEL_POWER(9, 8, 15, 15), NULL},
-    {TERM, 0, MODEL_POWER(1, 1, 0, 0), parity},
-    {TERM, 0, 0, twice},
-    {TERM, 0, MODEL_POWER(0, 2, 1, 0), twice},
-    {COEF, 0, INT32_MIN, coefs},
-    {COEF, 0, (1 << 30) - (1 << 27) - (1 << 25), coefs},
-    {COEF, 0, (1 << 30) - (1 << 27) - (1 << 25) - 1, NULL},
-    {COEF, 4, -(1 << 30), coefs},
+    {TERM, 0, 2, MODEL_POWER(10, 0, 0, 0), power},
+    {TERM, 0, 2, MODEL_POWER(0, 10, 0, 0), power},
+    {TERM, 0, 2, MODEL_POWER(9, 8, 15, 15), NULL},
+    {TERM, 0, 2, MODEL_POWER(1, 1, 0, 0), parity},
+    {TERM, 0, 2, MODEL_POWER(1, 0, 0, 0), twice},
+    {TERM, 0, 2, MODEL_POWER(0, 2, 1, 0), twice},
+    {COEF, 0, 4, INT32_MIN, coefs},
+    {COEF, 0, 4, (1 << 30) - (1 << 27) - (1 << 25), coefs},
+    {COEF, 0, 4, (1 << 30) - (1 << 27) - (1 << 25) - 1, NULL},
+    {COEF, 4, 4, -(1 << 30), coefs},
 };
 
 static const struct rule sparse_rules[] = {
@@ -330,25 +336,27 @@ static const struct rule sparse_rules[] = {
     {SYSTEM_(0, n_knots), 2, not_covering},
     {SYSTEM_(0, n_knots), UINT32_MAX, outside},
     {SYSTEM_(0, n_knots), 1 << 30, outside},
+    {SYSTEM_(0, hollow), 1, hollow},
+    {SYSTEM_(0, box_terms), 1, "a box at knots has terms"},
     {SYSTEM_(0, knot_at), 4, outside},
     {SYSTEM_(0, sine_hi_q30), (1 << 29) + 1, not_covering},
-    {KNOT, 0, -1, not_covering},
-    {KNOT, 0, 1, not_covering},
-    {KNOT, 4, 0, not_rising},
-    {KNOT, 4, INT32_MIN, not_rising},
-    {KNOT, 8, 1 << 28, not_rising},
-    {KNOT, 8, INT32_MAX, not_covering},
-    {KNOT, 8, 1 << 30, NULL},
-    {BOX, 3 * 4, (1 << 29) + 1, far_box},
-    {BOX, 3 * 4, -(1 << 29), NULL},
-    {BOX, 3 * 4, INT32_MIN, far_box},
-    {BOX, 4 * 4, -1, small_box},
-    {BOX, 8 * 4, INT32_MIN, small_box},
-    {BOX, 8 * 4, (1 << 30) + 1, far_box},
-    {TERM, 0, MODEL_POWER(15, 15, 15, 15), NULL},
-    {COEF, 2 * 4, (1 << 30) - (1 << 26), coefs},
-    {COEF, 4 * 4, INT32_MIN, coefs},
-    {COEF, 4 * 4, (1 << 30) - (1 << 26) - 1, NULL},
+    {KNOT, 0, 4, -1, not_covering},
+    {KNOT, 0, 4, 1, not_covering},
+    {KNOT, 4, 4, 0, not_rising},
+    {KNOT, 4, 4, INT32_MIN, not_rising},
+    {KNOT, 8, 4, 1 << 28, not_rising},
+    {KNOT, 8, 4, INT32_MAX, not_covering},
+    {KNOT, 8, 4, 1 << 30, NULL},
+    {BOX, 3 * 4, 4, (1 << 29) + 1, far_box},
+    {BOX, 3 * 4, 4, -(1 << 29), NULL},
+    {BOX, 3 * 4, 4, INT32_MIN, far_box},
+    {BOX, 4 * 4, 4, -1, small_box},
+    {BOX, 8 * 4, 4, INT32_MIN, small_box},
+    {BOX, 8 * 4, 4, (1 << 30) + 1, far_box},
+    {TERM, 0, 2, MODEL_POWER(15, 15, 15, 15), NULL},
+    {COEF, 2 * 4, 4, (1 << 30) - (1 << 26), coefs},
+    {COEF, 4 * 4, 4, INT32_MIN, coefs},
+    {COEF, 4 * 4, 4, (1 << 30) - (1 << 26) - 1, NULL},
 };
 /* clang-format on */
 
@@ -366,15 +374,9 @@ static size_t place_of(const struct model_image *m, enum table t)
 static void check_rule(struct model_image m, const struct rule *r,
                        size_t number)
 {
-    const uint32_t value = (uint32_t)r->value;
     const char *reason;
 
-    memcpy(m.data + place_of(&m, r->table) + r->at, &value, 4);
-    if (r->table == TERM && !r->reason) { /* the first of two */
-        const uint16_t second = MODEL_POWER(1, 0, 0, 0);
-
-        memcpy(m.data + place_of(&m, TERM) + 2, &second, 2);
-    }
+    memcpy(m.data + place_of(&m, r->table) + r->at, &r->value, r->bytes);
     model_seal(&m);
     reason = reason_of(m.data, m.bytes);
     if (reason != r->reason &&
@@ -669,6 +671,33 @@ static void test_grid(void **state)
     free(m.data);
 }
 
+/* Within a hollow one nothing comes through, and on its rim it does. */
+static void test_hollow_grid(void **state)
+{
+    enum { N = 8, NODES = N + 1 };
+    struct model_image m = model_auto();
+    const struct glint_lens lens = open_image(&m);
+    const struct glint_place place = upright();
+    static struct glint_transfer t;
+    static struct glint_vertex whole[NODES][NODES], shell[NODES][NODES];
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
+    glint_transfer_grid(&t, &place, N, whole[0]);
+    t.hollow = 1;
+    glint_transfer_grid(&t, &place, N, shell[0]);
+    for (int j = 0; j < NODES; j++)
+        for (int i = 0; i < NODES; i++) {
+            const int within = j > N / 4 && j < N - N / 4;
+
+            assert_true(whole[j][i].energy_q16 > 0);
+            assert_int_equal(shell[j][i].energy_q16,
+                             within ? -1 : whole[j][i].energy_q16);
+            assert_int_equal(shell[j][i].x_q8, whole[j][i].x_q8);
+        }
+    free(m.data);
+}
+
 /* The sparse basis has no mirror, and squares its radius. */
 static void test_sparse_grid(void **state)
 {
@@ -757,6 +786,7 @@ int main(void)
         cmocka_unit_test(test_sparse_rays),
         cmocka_unit_test(test_extremes),
         cmocka_unit_test(test_grid),
+        cmocka_unit_test(test_hollow_grid),
         cmocka_unit_test(test_sparse_grid),
         cmocka_unit_test(test_lost),
         cmocka_unit_test(test_corpus),
