@@ -84,9 +84,10 @@ struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
     double angle_deg;
-    struct glint_path path; /* exact */
-    struct glint_transfer transfer;
-    bool seen; /* the model has the ghost at this angle */
+    struct glint_path path;      /* exact */
+    struct glint_transfer *part; /* of the pupil that the model has of the
+                                    ghost at this angle; owned */
+    int n_parts;
     double stop_radius_mm;
 };
 
@@ -102,21 +103,32 @@ static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
 /* ---------------------------------------------------------------- by a model
  */
 
-static double output(const struct tracer *t, const struct glint_outputs *out,
-                     int kind)
+static double output(const struct glint_transfer *t,
+                     const struct glint_outputs *out, int kind)
 {
-    return ldexp(out->at[kind], t->transfer.exponent[kind]);
+    return ldexp(out->at[kind], t->exponent[kind]);
 }
 
-static double rel_radius(const struct tracer *t,
+static double rel_radius(const struct glint_transfer *t,
                          const struct glint_outputs *out)
 {
     double most = output(t, out, GLINT_OUT_RADIUS);
 
     for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++)
-        if (t->transfer.outputs >> kind & 1)
+        if (t->outputs >> kind & 1)
             most = fmax(most, sqrt(fmax(0, 2 * output(t, out, kind) - 1)));
     return most;
+}
+
+/* U and V of a ray in the box of a part. Returns whether it is the part's. */
+static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
+                  double *u, double *v)
+{
+    const double unit = ldexp(1, t->box_exponent);
+
+    *u = (px_mm / unit - t->box[0]) / t->box[1];
+    *v = py_mm / unit / t->box[2];
+    return fabs(*u) <= 1 && fabs(*v) <= 1 && !(t->hollow && fabs(*v) < 0.5);
 }
 
 /* Lights on the other side of the axis and rays on the other side of its plane
@@ -126,24 +138,25 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
 {
     const double side_x = t->angle_deg < 0 ? -1 : 1,
                  side_y = py_mm < 0 ? -1 : 1;
-    const int32_t *box = t->transfer.box;
-    const double unit = ldexp(1, t->transfer.box_exponent);
-    const double u = (side_x * px_mm / unit - box[0]) / box[1];
-    const double v = fabs(py_mm) / unit / box[2];
     const double stop = t->stop_radius_mm;
+    const struct glint_transfer *p = t->part;
     struct glint_outputs out;
+    double u = 0, v = 0;
 
-    if (!t->seen || !(fabs(u) <= 1 && v <= 1))
+    while (p < t->part + t->n_parts &&
+           !is_in(p, side_x * px_mm, fabs(py_mm), &u, &v))
+        p++;
+    if (p == t->part + t->n_parts)
         return GLINT_RAY_MISSED;
-    glint_transfer_ray(&t->transfer, (int32_t)lrint(ldexp(u, 30)),
+    glint_transfer_ray(p, (int32_t)lrint(ldexp(u, 30)),
                        (int32_t)lrint(ldexp(v, 30)), &out);
     *ray = (struct glint_ray){
-        .stop_x_mm = side_x * stop * output(t, &out, GLINT_OUT_STOP_X),
-        .stop_y_mm = side_y * stop * output(t, &out, GLINT_OUT_STOP_Y),
-        .sensor_x_mm = side_x * output(t, &out, GLINT_OUT_SENSOR_X),
-        .sensor_y_mm = side_y * output(t, &out, GLINT_OUT_SENSOR_Y),
-        .energy = output(t, &out, GLINT_OUT_ENERGY),
-        .rel_radius = rel_radius(t, &out)};
+        .stop_x_mm = side_x * stop * output(p, &out, GLINT_OUT_STOP_X),
+        .stop_y_mm = side_y * stop * output(p, &out, GLINT_OUT_STOP_Y),
+        .sensor_x_mm = side_x * output(p, &out, GLINT_OUT_SENSOR_X),
+        .sensor_y_mm = side_y * output(p, &out, GLINT_OUT_SENSOR_Y),
+        .energy = output(p, &out, GLINT_OUT_ENERGY),
+        .rel_radius = rel_radius(p, &out)};
     return GLINT_RAY_OK;
 }
 
@@ -151,6 +164,34 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
 static bool agrees(struct glint_real a, double b)
 {
     return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);
+}
+
+static bool is_part(const struct glint_lens *model, uint32_t entry,
+                    uint32_t ghost)
+{
+    return model->ghost[entry].i == model->ghost[ghost].i &&
+           model->ghost[entry].j == model->ghost[ghost].j;
+}
+
+/* The parts of GHOST that there are at this angle. */
+static enum glint_status prepare_parts(const struct glint_lens *model,
+                                       uint32_t ghost, int32_t sine_q30,
+                                       int32_t wave_q24, struct tracer *tracer)
+{
+    const uint32_t end = model->header->n_ghosts;
+    size_t n = 0;
+
+    for (uint32_t k = ghost; k < end; k++)
+        n += is_part(model, k, ghost);
+    tracer->part = malloc(n * sizeof *tracer->part);
+    if (!tracer->part)
+        return GLINT_E_MEMORY;
+    for (uint32_t k = ghost; k < end; k++)
+        if (is_part(model, k, ghost))
+            tracer->n_parts +=
+                glint_transfer_init(&tracer->part[tracer->n_parts], model,
+                                    (int)k, sine_q30, wave_q24);
+    return GLINT_OK;
 }
 
 static int prepare_model(const struct tool *tool, const struct options *o,
@@ -174,10 +215,11 @@ static int prepare_model(const struct tool *tool, const struct options *o,
                           o->wavelength_nm);
     tracer->trace = trace_model;
     tracer->stop_radius_mm = model_real_of(h->stop_radius_mm);
-    tracer->seen = glint_transfer_init(
-        &tracer->transfer, model, o->ghost,
-        (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * PI / 180), 30)),
-        wave_q24);
+    if (prepare_parts(
+            model, (uint32_t)o->ghost,
+            (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * PI / 180), 30)),
+            wave_q24, tracer) != GLINT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
     return EXIT_OK;
 }
 
@@ -228,6 +270,7 @@ static int trace(const struct tool *tool, const struct options *o,
         code = prepare_model(tool, o, lens, n, &model.lens, &tracer);
     if (code == EXIT_OK)
         print_rays(o, lens->surface[0].semi_mm, &tracer);
+    free(tracer.part);
     model_file_close(&model);
     return code;
 }

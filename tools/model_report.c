@@ -171,14 +171,37 @@ static bool misses(const struct summary *sum)
     return false;
 }
 
+/* Ghosts without the further parts of their pupils. */
+static uint32_t count_ghosts(const struct glint_lens *lens)
+{
+    return lens->header->n_ghosts - lens->header->n_parts;
+}
+
+/* The number of the ghost that ENTRY is, or is a part of. */
+static uint32_t ghost_of(const struct glint_lens *lens, uint32_t entry)
+{
+    const struct glint_model_ghost *g = &lens->ghost[entry];
+    uint32_t k = 0;
+
+    while (k < entry && (g->i != lens->ghost[k].i || g->j != lens->ghost[k].j))
+        k++;
+    return k;
+}
+
+/* Ghosts of which some part misses. */
 static unsigned count_missed(const struct glint_lens *lens)
 {
+    bool missed[GLINT_MAX_GHOSTS] = {false};
     unsigned n = 0;
 
     for (uint32_t k = 0; k < lens->header->n_ghosts; k++) {
         const struct summary sum = summary_of(lens, span_of_ghost(lens, k));
+        const uint32_t ghost = ghost_of(lens, k);
 
-        n += misses(&sum);
+        if (ghost < GLINT_MAX_GHOSTS && misses(&sum) && !missed[ghost]) {
+            missed[ghost] = true;
+            n++;
+        }
     }
     return n;
 }
@@ -210,9 +233,10 @@ static void print_header(const struct model_file *model)
            nanometres(h->wave_lo_q24));
     printf("largest angle       %10.3f degrees\n", degrees(h->sine_hi_q30));
     printf("surfaces            %6lu\n", (unsigned long)h->n_surfaces);
-    printf("ghosts              %6lu, %lu zones, %.1f terms an output\n",
-           (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
-           mean_terms(&sum));
+    printf("ghosts              %6lu, %lu parts of pupils more, %lu zones, "
+           "%.1f terms an output\n",
+           (unsigned long)count_ghosts(&model->lens), (unsigned long)h->n_parts,
+           (unsigned long)h->n_systems, mean_terms(&sum));
 }
 
 static void print_errors(const struct summary *sum)
@@ -235,20 +259,22 @@ static void print_title(const char *more)
            more);
 }
 
-/* Leaves the line open. */
-static void print_ghost(const struct glint_lens *lens, uint32_t ghost,
+/* Leaves the line open; a part has a plus behind the ghost's number. */
+static void print_ghost(const struct glint_lens *lens, uint32_t entry,
                         const struct summary *sum)
 {
-    const struct glint_model_ghost *g = &lens->ghost[ghost];
-    const struct span span = span_of_ghost(lens, ghost);
+    const struct glint_model_ghost *g = &lens->ghost[entry];
+    const struct span span = span_of_ghost(lens, entry);
     double range_deg[2];
     char pair[32];
 
     angles_of(lens, span, range_deg);
     snprintf(pair, sizeof pair, "%lu-%lu", (unsigned long)g->i,
              (unsigned long)g->j);
-    printf("%5lu  %-8s %7lu  %7.3f .. %-7.3f %7.0f  %9zu", (unsigned long)ghost,
-           pair, (unsigned long)g->n_systems, range_deg[0], range_deg[1],
+    printf("%5lu%c %-8s %7lu  %7.3f .. %-7.3f %7.0f  %9zu",
+           (unsigned long)ghost_of(lens, entry),
+           entry < count_ghosts(lens) ? ' ' : '+', pair,
+           (unsigned long)g->n_systems, range_deg[0], range_deg[1],
            terms_of(sum), bytes_of(lens, span));
 }
 
@@ -297,10 +323,11 @@ static void print_systems(const struct glint_lens *lens)
 
             printf("%6lu %6lu  %7.3f .. %-7.3f  %4.0f .. %-4.0f %6lu %6.0f  "
                    "%9.3g %9.3g %9.3g\n",
-                   (unsigned long)n, (unsigned long)g, degrees(s->sine_lo_q30),
-                   degrees(s->sine_hi_q30), nanometres(s->wave_hi_q24),
-                   nanometres(s->wave_lo_q24), (unsigned long)s->n_knots,
-                   terms_of(&sum), sqrt(x->mean2), x->p99, x->max);
+                   (unsigned long)n, (unsigned long)ghost_of(lens, g),
+                   degrees(s->sine_lo_q30), degrees(s->sine_hi_q30),
+                   nanometres(s->wave_hi_q24), nanometres(s->wave_lo_q24),
+                   (unsigned long)s->n_knots, terms_of(&sum), sqrt(x->mean2),
+                   x->p99, x->max);
         }
 }
 
@@ -367,14 +394,15 @@ static void print_bake(const struct tool *tool, const struct glint_lens *lens,
     print_fits(lens, tool->verbose > 0);
     print_unseen(lens);
     print_errors(&sum);
-    printf("\n%s: %lu bytes, %lu ghosts, %lu zones, %.1f terms an output, "
-           "%.1f s\n",
-           h->name, (unsigned long)h->bytes, (unsigned long)h->n_ghosts,
-           (unsigned long)h->n_systems, mean_terms(&sum), seconds);
+    printf("\n%s: %lu bytes, %lu ghosts, %lu parts of pupils more, %lu zones, "
+           "%.1f terms an output, %.1f s\n",
+           h->name, (unsigned long)h->bytes, (unsigned long)count_ghosts(lens),
+           (unsigned long)h->n_parts, (unsigned long)h->n_systems,
+           mean_terms(&sum), seconds);
     printf("%u of %lu ghosts miss the target somewhere; %d of %d rays pass "
            "where they are cut; the tolerance was too tight for %d zones\n",
-           count_missed(lens), (unsigned long)h->n_ghosts, report->intruders,
-           report->rays, report->unmet);
+           count_missed(lens), (unsigned long)count_ghosts(lens),
+           report->intruders, report->rays, report->unmet);
 }
 
 /* --------------------------------------------------------------------- JSON */
@@ -408,16 +436,17 @@ static void json_header(const struct model_file *model)
 
     printf("{\"name\": ");
     tool_json_string(stdout, h->name);
-    printf(", \"focal_length_mm\": %.6f, \"back_focal_length_mm\": %.6f, "
-           "\"entrance_pupil_radius_mm\": %.6f, \"stop_radius_mm\": %.6f, "
-           "\"f_number\": %g, \"film_mm\": [%g, %g], \"surfaces\": %lu, "
-           "\"ghosts\": %lu, \"ghost_pairs\": [",
-           model_real_of(h->focal_mm), model_real_of(h->back_focal_mm),
-           model_real_of(h->entrance_radius_mm),
-           model_real_of(h->stop_radius_mm), model_real_of(h->f_number),
-           model_real_of(h->film_width_mm), model_real_of(h->film_height_mm),
-           (unsigned long)h->n_surfaces, (unsigned long)h->n_ghosts);
-    for (uint32_t k = 0; k < h->n_ghosts; k++)
+    printf(
+        ", \"focal_length_mm\": %.6f, \"back_focal_length_mm\": %.6f, "
+        "\"entrance_pupil_radius_mm\": %.6f, \"stop_radius_mm\": %.6f, "
+        "\"f_number\": %g, \"film_mm\": [%g, %g], \"surfaces\": %lu, "
+        "\"ghosts\": %lu, \"parts\": %lu, \"ghost_pairs\": [",
+        model_real_of(h->focal_mm), model_real_of(h->back_focal_mm),
+        model_real_of(h->entrance_radius_mm), model_real_of(h->stop_radius_mm),
+        model_real_of(h->f_number), model_real_of(h->film_width_mm),
+        model_real_of(h->film_height_mm), (unsigned long)h->n_surfaces,
+        (unsigned long)count_ghosts(&model->lens), (unsigned long)h->n_parts);
+    for (uint32_t k = 0; k < count_ghosts(&model->lens); k++)
         printf("%s[%lu, %lu]", k ? ", " : "",
                (unsigned long)model->lens.ghost[k].i,
                (unsigned long)model->lens.ghost[k].j);
@@ -442,10 +471,11 @@ static void json_system(const struct glint_lens *lens, uint32_t ghost,
         "{\"ghost\": %lu, \"angle_deg\": [%.6f, %.6f], \"band_nm\": "
         "[%.3f, %.3f], \"knots\": %lu, \"energy_roots\": %d, \"terms\": %.0f, "
         "\"bytes\": %zu, ",
-        (unsigned long)ghost, degrees(s->sine_lo_q30), degrees(s->sine_hi_q30),
-        nanometres(s->wave_hi_q24), nanometres(s->wave_lo_q24),
-        (unsigned long)s->n_knots, outputs_of(lens, s)[GLINT_OUT_ENERGY].roots,
-        terms_of(&sum), bytes_of(lens, span));
+        (unsigned long)ghost_of(lens, ghost), degrees(s->sine_lo_q30),
+        degrees(s->sine_hi_q30), nanometres(s->wave_hi_q24),
+        nanometres(s->wave_lo_q24), (unsigned long)s->n_knots,
+        outputs_of(lens, s)[GLINT_OUT_ENERGY].roots, terms_of(&sum),
+        bytes_of(lens, span));
     json_errors(&sum);
     printf("}");
 }
@@ -472,19 +502,22 @@ static void json_info(const struct tool *tool, const struct model_file *model)
     printf("}\n");
 }
 
-static void json_ghost(const struct glint_lens *lens, uint32_t ghost)
+static void json_ghost(const struct glint_lens *lens, uint32_t entry)
 {
-    const struct glint_model_ghost *g = &lens->ghost[ghost];
-    const struct span span = span_of_ghost(lens, ghost);
+    const struct glint_model_ghost *g = &lens->ghost[entry];
+    const struct span span = span_of_ghost(lens, entry);
     const struct summary sum = summary_of(lens, span);
     double range_deg[2];
 
     angles_of(lens, span, range_deg);
-    printf("{\"ghost\": %lu, \"pair\": [%lu, %lu], \"angle_deg\": "
+    printf("{\"ghost\": %lu, \"part\": %s, \"pair\": [%lu, %lu], "
+           "\"angle_deg\": "
            "[%.6f, %.6f], \"zones\": %lu, \"bytes\": %zu, \"met\": %s, ",
-           (unsigned long)ghost, (unsigned long)g->i, (unsigned long)g->j,
-           range_deg[0], range_deg[1], (unsigned long)span.n,
-           bytes_of(lens, span), misses(&sum) ? "false" : "true");
+           (unsigned long)ghost_of(lens, entry),
+           entry < count_ghosts(lens) ? "false" : "true", (unsigned long)g->i,
+           (unsigned long)g->j, range_deg[0], range_deg[1],
+           (unsigned long)span.n, bytes_of(lens, span),
+           misses(&sum) ? "false" : "true");
     json_errors(&sum);
     printf("}");
 }
@@ -496,11 +529,12 @@ static void json_bake(const struct glint_lens *lens, double seconds,
     const struct summary sum = summary_of(lens, span_of_all(lens));
 
     printf("{\"seconds\": %.3f, \"bytes\": %lu, \"ghosts\": %lu, "
-           "\"zones\": %lu, \"mean_terms\": %.4f, \"unmet_zones\": %d, "
+           "\"parts\": %lu, \"zones\": %lu, \"mean_terms\": %.4f, "
+           "\"unmet_zones\": %d, "
            "\"rays\": %d, \"intruders\": %d, ",
-           seconds, (unsigned long)h->bytes, (unsigned long)h->n_ghosts,
-           (unsigned long)h->n_systems, mean_terms(&sum), report->unmet,
-           report->rays, report->intruders);
+           seconds, (unsigned long)h->bytes, (unsigned long)count_ghosts(lens),
+           (unsigned long)h->n_parts, (unsigned long)h->n_systems,
+           mean_terms(&sum), report->unmet, report->rays, report->intruders);
     json_errors(&sum);
     printf(", \"by_ghost\": [");
     for (uint32_t k = 0; k < h->n_ghosts; k++) {

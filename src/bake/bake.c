@@ -226,7 +226,7 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
     const double film = k->lens->film_width_mm, t = k->options.tolerance;
     const struct glint_tolerance tolerance = {
         .sensor_mm = 0.04 * t * film / 1920,
-        .faint_sensor_mm = 0.08 * t * film / 1920,
+        .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
         .barrel = 4e-4 * t,

@@ -85,6 +85,18 @@ static void make_singlet(struct glint_prescription *lens)
                 "stop 94 10\n");
 }
 
+/* So fast, and to be fitted so closely, that its pupil is parted. */
+static void make_fast_singlet(struct glint_prescription *lens)
+{
+    parse(lens, "name fast\n"
+                "source none\n"
+                "f-number 2.2\n"
+                "film 36 24\n"
+                "surface 51.68 12 25 1.5168 64.17\n"
+                "surface flat 2 25 air\n"
+                "stop 94 23\n");
+}
+
 static void make_doublet(struct glint_prescription *lens)
 {
     parse(lens, "name doublet\n"
@@ -230,6 +242,103 @@ static void test_nothing_missing(void **state)
     assert_in_range(seen, 45, 52);
     assert_int_equal(lost_in_field, 0);
     assert_false(covered(&model.lens, 0, MAX_DEG + 0.01, 532));
+}
+
+/* -------------------------------------------------------------------- parts */
+
+/* Place of a ray in the box of a part. Returns whether the part has it. */
+static bool is_in(const struct glint_transfer *t, double x_mm, double y_mm,
+                  double uv[2])
+{
+    const double unit = ldexp(1, t->box_exponent);
+
+    uv[0] = (x_mm / unit - t->box[0]) / t->box[1];
+    uv[1] = y_mm / unit / t->box[2];
+    return fabs(uv[0]) <= 1 && fabs(uv[1]) <= 1 &&
+           !(t->hollow && fabs(uv[1]) < 0.5);
+}
+
+/* How many parts have the ray from (X, Y), and in *OFF how far they take it
+ * from where it goes, mm. */
+static int parts_of(const struct glint_transfer *part, int n, double x_mm,
+                    double y_mm, const struct glint_ray *ray, double *off)
+{
+    int found = 0;
+
+    for (int k = 0; k < n; k++) {
+        struct glint_outputs out;
+        double uv[2];
+
+        if (!is_in(&part[k], x_mm, y_mm, uv))
+            continue;
+        found++;
+        glint_transfer_ray(&part[k], (int32_t)lrint(ldexp(uv[0], 30)),
+                           (int32_t)lrint(ldexp(uv[1], 30)), &out);
+        *off = hypot(ldexp(out.at[GLINT_OUT_SENSOR_X],
+                           part[k].exponent[GLINT_OUT_SENSOR_X]) -
+                         ray->sensor_x_mm,
+                     ldexp(out.at[GLINT_OUT_SENSOR_Y],
+                           part[k].exponent[GLINT_OUT_SENSOR_Y]) -
+                         ray->sensor_y_mm);
+    }
+    return found;
+}
+
+/* Whatever comes through is one part's, and one's alone, and every part is
+ * there for something. */
+static void test_parts(void **state)
+{
+    enum { MOST = 8, ANGLES = 16, SIDE = 61 };
+    static struct glint_transfer part[MOST];
+    static struct glint_prescription lens;
+    static struct glint_setup fast;
+    struct glint_bake_options o = options;
+    const double nm = 480;
+    struct glint_error error;
+    int shared_deg = 0, n_rays = 0;
+    struct baked b;
+
+    (void)state;
+    make_fast_singlet(&lens);
+    o.tolerance = 0.2;
+    o.max_deg = 4;
+    bake(&b, &lens, &o);
+    assert_int_equal(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error),
+                     GLINT_OK);
+    assert_int_equal(b.lens.header->n_ghosts - b.lens.header->n_parts, 1);
+    assert_in_range(b.lens.header->n_parts, 1, MOST - 1);
+    for (int a = 0; a < ANGLES; a++) {
+        const double sine = sin(3.99 * a / (ANGLES - 1) * 0.0174532925199433);
+        const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+        struct glint_path path;
+        int n = 0;
+
+        for (int k = 0; k < (int)b.lens.header->n_ghosts; k++)
+            n += glint_transfer_init(&part[n], &b.lens, k,
+                                     (int32_t)lrint(sine * 0x1p30),
+                                     (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
+        shared_deg += n > 1;
+        glint_path_init(&path, &lens, &fast.ghost[0], nm);
+        for (int k = 0; k < SIDE * SIDE; k++) {
+            const double x = 24.9 * (2.0 * (k % SIDE) / (SIDE - 1) - 1);
+            const double y = 24.9 * (2.0 * (k / SIDE) / (SIDE - 1) - 1);
+            struct glint_ray ray;
+            double off = 0;
+
+            if (glint_trace(&path, x, y, direction, &ray, NULL) ||
+                ray.rel_radius > 0.999 ||
+                hypot(ray.stop_x_mm, ray.stop_y_mm) >
+                    0.999 * fast.optics.stop_radius_mm ||
+                hypot(ray.sensor_x_mm, ray.sensor_y_mm) > 0.99 * 0.55 * 43.2666)
+                continue;
+            n_rays++;
+            assert_int_equal(parts_of(part, n, x, y, &ray, &off), 1);
+            assert_true(off < 0.1 * 36 / 1920);
+        }
+    }
+    assert_true(n_rays > 1000);
+    assert_in_range(shared_deg, 1, ANGLES - 1);
+    free(b.data);
 }
 
 /* ------------------------------------------------------------------- errors */
@@ -598,6 +707,7 @@ int main(void)
         cmocka_unit_test(test_header),
         cmocka_unit_test(test_flux),
         cmocka_unit_test(test_nothing_missing),
+        cmocka_unit_test(test_parts),
         cmocka_unit_test(test_errors_are_true),
         cmocka_unit_test(test_errors_are_small),
         cmocka_unit_test(test_planted_error),
