@@ -99,26 +99,6 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
     return -1;
 }
 
-static int save(const struct tool *tool, const char *path, const void *model,
-                size_t bytes)
-{
-    struct glint_error error = {""};
-    struct glint_output out;
-    enum glint_status status =
-        glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error);
-
-    if (status == GLINT_OK)
-        status = glint_output_write(&out, model, bytes, &error);
-    if (status == GLINT_OK)
-        status = glint_output_commit(&out, &error);
-    else
-        glint_output_abort(&out);
-    if (status == GLINT_OK)
-        return EXIT_OK;
-    tool_fail(tool, status, error.text);
-    return EXIT_OUTPUT;
-}
-
 static int report(const struct tool *tool, const void *model, size_t bytes,
                   double seconds, const struct glint_bake_report *r)
 {
@@ -131,16 +111,44 @@ static int report(const struct tool *tool, const void *model, size_t bytes,
     return EXIT_OK;
 }
 
-static int run(struct tool *tool, struct bake *b, const char *name)
+/* Bakes LENS into OUT, which is finished or aborted. */
+static int bake_into(struct glint_output *out, struct tool *tool,
+                     struct bake *b, const struct glint_prescription *lens)
 {
-    struct glint_prescription *lens = malloc(sizeof *lens);
     struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
     struct tool_progress progress;
     struct glint_bake_report r;
     unsigned char *model = NULL;
     const double start = tool_seconds();
     size_t bytes = 0;
+    enum glint_status status;
+    int code = EXIT_OK;
+
+    b->options.workers = tool->workers;
+    b->options.progress = tool_progress_show;
+    b->options.progress_ctx = &progress;
+    tool_progress_start(&progress, tool, "bake");
+    status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
+    tool_progress_end(&progress);
+    if (status == GLINT_OK)
+        status = glint_output_finish(out, model, bytes, &error);
+    else
+        glint_output_abort(out);
+    if (status != GLINT_OK)
+        code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    else if (strcmp(b->output, "-"))
+        code = report(tool, model, bytes, tool_seconds() - start, &r);
+    free(model);
+    return code;
+}
+
+/* The output is opened first: a bake can take minutes. */
+static int run(struct tool *tool, struct bake *b, const char *name)
+{
+    struct glint_prescription *lens = malloc(sizeof *lens);
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    struct glint_output out;
     int code;
 
     if (!lens)
@@ -148,21 +156,13 @@ static int run(struct tool *tool, struct bake *b, const char *name)
     code = tool_lens(tool, name, lens);
     if (code == EXIT_OK && b->f_number > 0)
         status = glint_prescription_set_f_number(lens, b->f_number, &error);
-    if (code == EXIT_OK && status == GLINT_OK) {
-        b->options.workers = tool->workers;
-        b->options.progress = tool_progress_show;
-        b->options.progress_ctx = &progress;
-        tool_progress_start(&progress, tool, "bake");
-        status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
-        tool_progress_end(&progress);
-    }
+    if (code == EXIT_OK && status == GLINT_OK)
+        status =
+            glint_output_open(&out, b->output, GLINT_OUTPUT_BINARY, &error);
     if (status != GLINT_OK)
-        code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
+        code = tool_fail(tool, status, error.text);
     if (code == EXIT_OK)
-        code = save(tool, b->output, model, bytes);
-    if (code == EXIT_OK && strcmp(b->output, "-"))
-        code = report(tool, model, bytes, tool_seconds() - start, &r);
-    free(model);
+        code = bake_into(&out, tool, b, lens);
     free(lens);
     return code;
 }

@@ -226,13 +226,14 @@ static int check_output(struct tool *tool, struct render *r)
 
 static int run(struct tool *tool, struct render *r, const char *lens)
 {
-    const double start = tool_seconds();
     int code = check_output(tool, r);
+    double start;
 
     if (code == EXIT_OK)
         code = scene_open(tool, &r->scene, lens);
     if (code != EXIT_OK)
         return code;
+    start = tool_seconds();
     r->image.width = r->width;
     r->image.height = r->height;
     r->image.rgb =

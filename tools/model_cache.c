@@ -87,13 +87,8 @@ static void keep(const struct tool *tool, char *path,
 
     make_folders(path);
     status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error);
-    if (status == GLINT_OK) {
-        status = glint_output_write(&out, model->data, model->bytes, &error);
-        if (status == GLINT_OK)
-            status = glint_output_commit(&out, &error);
-        else
-            glint_output_abort(&out);
-    }
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, model->data, model->bytes, &error);
     if (status != GLINT_OK && !tool->quiet)
         fprintf(stderr, "glint %s: the model is not kept: %s\n", tool->name,
                 error.text);

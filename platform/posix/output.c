@@ -336,3 +336,16 @@ void glint_output_abort(struct glint_output *out)
     out->buffer = NULL;
     out->used = 0;
 }
+
+enum glint_status glint_output_finish(struct glint_output *out,
+                                      const void *data, size_t bytes,
+                                      struct glint_error *error)
+{
+    const enum glint_status status =
+        glint_output_write(out, data, bytes, error);
+
+    if (status == GLINT_OK)
+        return glint_output_commit(out, error);
+    glint_output_abort(out);
+    return status;
+}

@@ -66,6 +66,11 @@ enum glint_status glint_output_flush(struct glint_output *out,
 enum glint_status glint_output_commit(struct glint_output *out,
                                       struct glint_error *error);
 
+/* Writes DATA[BYTES] and commits, or aborts. */
+enum glint_status glint_output_finish(struct glint_output *out,
+                                      const void *data, size_t bytes,
+                                      struct glint_error *error);
+
 /* Closes OUT and removes the temporary file. Does nothing when closed. */
 void glint_output_abort(struct glint_output *out);
 
