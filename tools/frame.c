@@ -57,8 +57,8 @@ struct job {
 
 static struct glint_feed_config feed_config(const struct frame *f, double scale)
 {
-    return (struct glint_feed_config){f->setup, f->lens,      f->view,
-                                      scale,    f->max_cells, f->uniform};
+    return (struct glint_feed_config){f->setup,     f->lens,    f->view,  scale,
+                                      f->max_cells, f->uniform, f->narrow};
 }
 
 /* All wavelengths of one ghost and lamp. */

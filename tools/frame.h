@@ -22,6 +22,7 @@ struct frame {
                                       capacities are the frame's own */
     int max_cells;
     bool uniform;   /* the same grid for all ghosts */
+    bool narrow;    /* rays in 16-bit lanes */
     int only_ghost; /* -1: all */
     int16_t *mask;  /* of the stop, unless NULL */
 

@@ -233,10 +233,11 @@ static void print_header(const struct model_file *model)
            nanometres(h->wave_lo_q24));
     printf("largest angle       %10.3f degrees\n", degrees(h->sine_hi_q30));
     printf("surfaces            %6lu\n", (unsigned long)h->n_surfaces);
-    printf("ghosts              %6lu, %lu parts of pupils more, %lu zones, "
+    printf("ghosts              %6lu in %lu parts, %lu zones, "
            "%.1f terms an output\n",
-           (unsigned long)count_ghosts(&model->lens), (unsigned long)h->n_parts,
-           (unsigned long)h->n_systems, mean_terms(&sum));
+           (unsigned long)count_ghosts(&model->lens),
+           (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
+           mean_terms(&sum));
 }
 
 static void print_errors(const struct summary *sum)
@@ -394,10 +395,10 @@ static void print_bake(const struct tool *tool, const struct glint_lens *lens,
     print_fits(lens, tool->verbose > 0);
     print_unseen(lens);
     print_errors(&sum);
-    printf("\n%s: %lu bytes, %lu ghosts, %lu parts of pupils more, %lu zones, "
+    printf("\n%s: %lu bytes, %lu ghosts in %lu parts, %lu zones, "
            "%.1f terms an output, %.1f s\n",
            h->name, (unsigned long)h->bytes, (unsigned long)count_ghosts(lens),
-           (unsigned long)h->n_parts, (unsigned long)h->n_systems,
+           (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            mean_terms(&sum), seconds);
     printf("%u of %lu ghosts miss the target somewhere; %d of %d rays pass "
            "where they are cut; the tolerance was too tight for %d zones\n",
@@ -445,7 +446,7 @@ static void json_header(const struct model_file *model)
         model_real_of(h->entrance_radius_mm), model_real_of(h->stop_radius_mm),
         model_real_of(h->f_number), model_real_of(h->film_width_mm),
         model_real_of(h->film_height_mm), (unsigned long)h->n_surfaces,
-        (unsigned long)count_ghosts(&model->lens), (unsigned long)h->n_parts);
+        (unsigned long)count_ghosts(&model->lens), (unsigned long)h->n_ghosts);
     for (uint32_t k = 0; k < count_ghosts(&model->lens); k++)
         printf("%s[%lu, %lu]", k ? ", " : "",
                (unsigned long)model->lens.ghost[k].i,
@@ -533,7 +534,7 @@ static void json_bake(const struct glint_lens *lens, double seconds,
            "\"unmet_zones\": %d, "
            "\"rays\": %d, \"intruders\": %d, ",
            seconds, (unsigned long)h->bytes, (unsigned long)count_ghosts(lens),
-           (unsigned long)h->n_parts, (unsigned long)h->n_systems,
+           (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            mean_terms(&sum), report->unmet, report->rays, report->intruders);
     json_errors(&sum);
     printf(", \"by_ghost\": [");

@@ -92,6 +92,7 @@ static bool take(struct scene *s, int option, const char *value)
     static const char *const weights[] = {"loop-derose", "wachspress", NULL};
     static const char *const rasters[] = {"edges", "cells", NULL};
     static const char *const parts[] = {"ghosts", "all", NULL};
+    static const char *const lanes[] = {"16", "32", NULL};
     static const char *const rays[] = {"model", "exact", NULL};
     int word;
 
@@ -145,6 +146,10 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_RAYS:
         word = tool_word(value, rays);
         s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
+        return word >= 0;
+    case OPT_LANES:
+        word = tool_word(value, lanes);
+        s->narrow = word == 0;
         return word >= 0;
     case OPT_BALANCE:
         return s->balance = true;
@@ -350,6 +355,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->lens = scene->model.data ? &scene->model.lens : NULL;
     frame->max_cells = scene->grid ? scene->grid : 64;
     frame->uniform = scene->uniform;
+    frame->narrow = scene->narrow;
     frame->only_ghost = scene->only_ghost;
     frame->cfg.tile_log2 = scene->tile_log2;
     /* no larger than the small ones: one level, and the same picture */

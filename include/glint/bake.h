@@ -377,6 +377,7 @@ struct glint_feed_config {
     double scale;  /* of all light: gain times 2^EV */
     int max_cells; /* fineness of the grids, 1 .. 1024: see glint_feed_plan */
     bool uniform;  /* all ghosts get max_cells a side */
+    bool narrow;   /* a model's rays in 16-bit lanes: glint_transfer_narrow */
 };
 
 enum { GLINT_FEED_CUTS = 8 };

@@ -200,6 +200,9 @@ struct glint_transfer {
         } sparse[GLINT_OUT_KINDS];
     } of;
     uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
+    uint8_t
+        fraction; /* bits of u and v that count: 30, or 15 in 16-bit lanes */
+    uint8_t shift[GLINT_OUT_KINDS]; /* a value is as many bits above the unit */
 };
 
 /* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 0 .. 2^30,
@@ -208,6 +211,15 @@ struct glint_transfer {
 int glint_transfer_init(struct glint_transfer *transfer,
                         const struct glint_lens *lens, int ghost,
                         int32_t sine_q30, int32_t wave_q24);
+
+/* Makes the polynomials of the auto basis ones whose coefficients, variables
+ * and intermediates all fit int16: coarser, and for vectors of twice as many
+ * lanes. Coefficients are rounded to 2^shift; each intermediate is below 2^15
+ * because their magnitudes sum to less than that with every rounding added. A
+ * value is off by at most 128 * 2^shift (100 coefficients, 69 products and the
+ * variables' own rounding), and mostly by a few. Does nothing in the sparse
+ * basis. */
+void glint_transfer_narrow(struct glint_transfer *transfer);
 
 /* Where the ray at (U, V), each within +-2^30, goes: integers by kind, to be
  * scaled by 2^exponent; 0 for outputs that are not there. */

@@ -28,9 +28,13 @@ static int32_t wave_q24(double nm)
 static bool transfer_of(const struct glint_feed_config *cfg,
                         const struct glint_feed *feed, struct glint_transfer *t)
 {
-    return glint_transfer_init(
-               t, cfg->lens, feed->ghost, sine_q30(feed->lamp->theta_deg),
-               wave_q24(cfg->setup->wavelength_nm[feed->wavelength])) != 0;
+    if (!glint_transfer_init(
+            t, cfg->lens, feed->ghost, sine_q30(feed->lamp->theta_deg),
+            wave_q24(cfg->setup->wavelength_nm[feed->wavelength])))
+        return false;
+    if (cfg->narrow)
+        glint_transfer_narrow(t);
+    return true;
 }
 
 /* ------------------------------------------------------------------- survey */

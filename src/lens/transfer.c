@@ -5,7 +5,8 @@
  * Formats: variables are q30 and within +-2^30; coefficients and every
  * intermediate of an output are integers of that output's own unit, below 2^30
  * as bake has proven (bound in struct glint_model_output). So each product of
- * the two is below 2^60, and rounds to its unit by a shift of 30.
+ * the two is below 2^60, and rounds to its unit by a shift of 30. In 16-bit
+ * lanes variables are q15, values below 2^15 and the shift is 15.
  */
 #include "glint/lens.h"
 
@@ -14,7 +15,14 @@
 #include "glint/flare.h"
 #include "lens/box.h"
 
-enum { ONE_LOG2 = 30, MAX_EXPONENT = 15 /* of any variable */ };
+enum {
+    ONE_LOG2 = 30,
+    MAX_EXPONENT = 15, /* of any variable */
+    /* Sums of magnitudes in 16-bit lanes: 100 coefficients off by a half each,
+     * 6 roundings of each of 10 entries of a row and 9 along it leave that much
+     * of 32767. */
+    NARROW_LIMIT = 32767 - 50 - 30 - 5
+};
 
 #define ONE_Q30 (INT32_C(1) << ONE_LOG2)
 
@@ -187,7 +195,7 @@ static void clear(struct glint_transfer *t)
     t->head = t->roots = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
-        t->degree_u[k] = t->degree_v[k] = 0;
+        t->degree_u[k] = t->degree_v[k] = t->shift[k] = 0;
         for (int b = 0; b <= GLINT_MAX_POWER; b++)
             for (int a = 0; a <= GLINT_MAX_POWER; a++)
                 t->of.table[k][b][a] = 0;
@@ -209,6 +217,7 @@ int glint_transfer_init(struct glint_transfer *transfer,
     transfer->system = system;
     transfer->hollow = (uint8_t)system->hollow;
     transfer->basis = (enum glint_basis)lens->header->basis;
+    transfer->fraction = ONE_LOG2;
     settle(&set, lens, system, sine_q30, wave_q24);
     set_box(transfer, lens, &set);
     output = at(lens, system->output_at);
@@ -217,15 +226,67 @@ int glint_transfer_init(struct glint_transfer *transfer,
     return 1;
 }
 
+/* ------------------------------------------------------------- 16-bit lanes */
+
+typedef int32_t table_row[GLINT_MAX_POWER + 1];
+
+static int64_t magnitudes(table_row *table)
+{
+    int64_t sum = 0;
+
+    for (int b = 0; b <= GLINT_MAX_POWER; b++)
+        for (int a = 0; a <= GLINT_MAX_POWER; a++)
+            sum += table[b][a] < 0 ? -(int64_t)table[b][a] : table[b][a];
+    return sum;
+}
+
+void glint_transfer_narrow(struct glint_transfer *transfer)
+{
+    if (transfer->basis == GLINT_BASIS_SPARSE)
+        return;
+    transfer->fraction = 15;
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        table_row *table = transfer->of.table[kind];
+        const int64_t sum = magnitudes(table);
+        int shift = 0;
+
+        while (sum >> shift >= NARROW_LIMIT)
+            shift++;
+        transfer->shift[kind] = (uint8_t)shift;
+        for (int b = 0; b <= GLINT_MAX_POWER; b++)
+            for (int a = 0; a <= GLINT_MAX_POWER; a++)
+                table[b][a] = (int32_t)q_shift(table[b][a], shift);
+    }
+}
+
 /* --------------------------------------------------------------------- rays */
+
+/* X times a variable, and more. */
+static int32_t times(const struct glint_transfer *t, int32_t x,
+                     int32_t variable, int32_t more)
+{
+    const int32_t sum = q_mul(x, variable, t->fraction) + more;
+
+    if (t->fraction == 15)
+        Q_FITS("16-bit lanes", sum, INT16_MIN, INT16_MAX);
+    return sum;
+}
+
+/* Of X_Q30 the bits that count. */
+static int32_t variable_of(const struct glint_transfer *t, int32_t x_q30)
+{
+    return t->fraction == 15
+               ? q_clamp_sat(q_shift(x_q30, 15), -INT16_MAX, INT16_MAX)
+               : x_q30;
+}
 
 /* An output's polynomial in u along one row of the grid. */
 struct row {
     int32_t of_u[GLINT_MAX_POWER + 1];
 };
 
-static void set_row(const struct glint_transfer *t, int kind, int32_t v_q30,
-                    int32_t v2_q30, struct row *row)
+static void set_row(const struct glint_transfer *t, int kind, int32_t v,
+                    int32_t v2, struct row *row)
 {
     const int odd = kind & 1 && kind < GLINT_OUT_ENERGY;
     const int top = t->degree_v[kind];
@@ -234,18 +295,20 @@ static void set_row(const struct glint_transfer *t, int kind, int32_t v_q30,
         int32_t sum = t->of.table[kind][top][a];
 
         for (int b = top - 2; b >= 0; b -= 2)
-            sum = q_mul(sum, v2_q30, 30) + t->of.table[kind][b][a];
-        row->of_u[a] = odd ? q_mul(sum, v_q30, 30) : sum;
+            sum = times(t, sum, v2, t->of.table[kind][b][a]);
+        row->of_u[a] = odd ? times(t, sum, v, 0) : sum;
     }
 }
 
-static int32_t along(const struct row *row, int degree, int32_t u_q30)
+static int32_t along(const struct glint_transfer *t, int kind,
+                     const struct row *row, int32_t u)
 {
+    const int degree = t->degree_u[kind];
     int32_t sum = row->of_u[degree];
 
     for (int a = degree - 1; a >= 0; a--)
-        sum = q_mul(sum, u_q30, 30) + row->of_u[a];
-    return sum;
+        sum = times(t, sum, u, row->of_u[a]);
+    return sum * (INT32_C(1) << t->shift[kind]);
 }
 
 static int has(const struct glint_transfer *t, int kind)
@@ -256,11 +319,11 @@ static int has(const struct glint_transfer *t, int kind)
 static void set_rows(const struct glint_transfer *t, int32_t v_q30,
                      struct row rows[GLINT_OUT_KINDS])
 {
-    const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
+    const int32_t v = variable_of(t, v_q30), v2 = times(t, v, v, 0);
 
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (has(t, kind))
-            set_row(t, kind, v_q30, v2_q30, &rows[kind]);
+            set_row(t, kind, v, v2, &rows[kind]);
 }
 
 static int32_t energy_of(const struct glint_transfer *t, int32_t polynomial)
@@ -279,9 +342,10 @@ static void ray_of_rows(const struct glint_transfer *t,
                         const struct row rows[GLINT_OUT_KINDS], int32_t u_q30,
                         struct glint_outputs *out)
 {
+    const int32_t u = variable_of(t, u_q30);
+
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        out->at[kind] =
-            has(t, kind) ? along(&rows[kind], t->degree_u[kind], u_q30) : 0;
+        out->at[kind] = has(t, kind) ? along(t, kind, &rows[kind], u) : 0;
     out->at[GLINT_OUT_ENERGY] = energy_of(t, out->at[GLINT_OUT_ENERGY]);
 }
 
