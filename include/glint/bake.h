@@ -268,7 +268,8 @@ void glint_view_to_pixel(const struct glint_view *view, double focal_mm,
 
 /* ------------------------------------------------------- the exact picture */
 
-/* Told now and then how much is done, 0 .. 1, from the calling thread. */
+/* Told now and then how much is done, 0 .. 1, by the calling thread or by
+ * worker 0, one of them at a time. */
 typedef void glint_progress_fn(void *ctx, double done);
 
 struct glint_exact_config {

@@ -30,7 +30,6 @@ struct kitchen {
     int *first;     /* system of each ghost */
     int *intruders; /* of each ghost */
     int *rays;
-    int first_job; /* of a batch */
     struct glint_error *error;
 };
 
@@ -245,30 +244,25 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
     return status;
 }
 
-static void fit_job(void *ctx, int job, int worker)
+static void fit_job(void *ctx, int ghost, int worker)
 {
     struct kitchen *k = ctx;
-    const int ghost = k->first_job + job;
-
     (void)worker;
     k->status[ghost] = k->options.basis == GLINT_BASIS_SPARSE
                            ? fit_published(k, ghost)
                            : fit_auto(k, ghost);
 }
 
-static void quantise_job(void *ctx, int job, int worker)
+static void quantise_job(void *ctx, int ghost, int worker)
 {
     struct kitchen *k = ctx;
-    const int ghost = k->first_job + job;
-
     (void)worker;
     k->status[ghost] = quantise_ghost(k, ghost);
 }
 
-static void measure_job(void *ctx, int job, int worker)
+static void measure_job(void *ctx, int ghost, int worker)
 {
     struct kitchen *k = ctx;
-    const int ghost = k->first_job + job;
     const struct glint_lens lens = glint_draft_lens(&k->draft);
     struct glint_hunt *hunt = malloc(sizeof *hunt);
 
@@ -290,24 +284,41 @@ static void measure_job(void *ctx, int job, int worker)
     free(hunt);
 }
 
-/* Runs JOB for every ghost, in batches that progress can be told between. */
+/* A job for every ghost, and the share of progress it stands for. */
+struct round {
+    struct kitchen *kitchen;
+    glint_job_fn *job;
+    double from, to;
+    int most; /* jobs that were begun */
+};
+
+/* Ghosts differ a hundredfold in time, so nobody waits for anybody; worker 0
+ * tells how far it is. */
+static void round_job(void *ctx, int job, int worker)
+{
+    struct round *r = ctx;
+    const struct glint_bake_options *o = &r->kitchen->options;
+    const int n = r->kitchen->setup.n_ghosts;
+
+    r->job(r->kitchen, job, worker);
+    if (worker || !o->progress || job < r->most)
+        return;
+    r->most = job;
+    o->progress(o->progress_ctx, r->from + (r->to - r->from) * job / n);
+}
+
 static enum glint_status for_ghosts(struct kitchen *k, glint_job_fn *job,
                                     double from, double to)
 {
+    struct round round = {k, job, from, to, 0};
     const int n = k->setup.n_ghosts;
-    const int batch = 8 * glint_workers_count(k->options.workers);
 
-    for (k->first_job = 0; k->first_job < n; k->first_job += batch) {
-        const int left = n - k->first_job, now = left < batch ? left : batch;
-
-        glint_workers_run(k->options.workers, now, job, k);
-        if (k->options.progress)
-            k->options.progress(k->options.progress_ctx,
-                                from + (to - from) * (k->first_job + now) / n);
-        for (int i = k->first_job; i < k->first_job + now; i++)
-            if (k->status[i] != GLINT_OK)
-                return k->status[i];
-    }
+    glint_workers_run(k->options.workers, n, round_job, &round);
+    if (k->options.progress)
+        k->options.progress(k->options.progress_ctx, to);
+    for (int i = 0; i < n; i++)
+        if (k->status[i] != GLINT_OK)
+            return k->status[i];
     return GLINT_OK;
 }
 
