@@ -111,18 +111,23 @@ struct summary {
     struct errors of[GLINT_OUT_KINDS];
 };
 
+static double error_of(uint16_t stored)
+{
+    return ldexp((double)glint_model_error_q20(stored), -20);
+}
+
 static void add(struct errors *e, const struct glint_model_output *o,
                 double unit)
 {
-    const double rms = ldexp(o->rms_q20, -20);
+    const double rms = error_of(o->rms);
     const double step = ldexp(unit, o->exponent);
 
     e->n++;
     e->terms += (o->n_terms - e->terms) / e->n;
     e->mean2 += (rms * rms - e->mean2) / e->n;
-    e->p50 += (ldexp(o->p50_q20, -20) - e->p50) / e->n;
-    e->p99 = fmax(e->p99, ldexp(o->p99_q20, -20));
-    e->max = fmax(e->max, ldexp(o->max_q20, -20));
+    e->p50 += (error_of(o->p50) - e->p50) / e->n;
+    e->p99 = fmax(e->p99, error_of(o->p99));
+    e->max = fmax(e->max, error_of(o->max));
     e->bound = fmax(e->bound, o->bound * step);
     e->rounding = fmax(e->rounding, ldexp(o->rounding_q8 * step, -8));
 }

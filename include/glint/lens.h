@@ -80,9 +80,8 @@ struct glint_model_header {
     uint32_t n_systems, system_at; /* struct glint_model_system */
 };
 
-/* Systems of one ghost follow each other: by rising wave_lo, of one band by
- * rising angle, without overlap; so do the ghosts' lists. No systems: the ghost
- * is never seen. */
+/* Systems of one ghost follow each other by rising angle or band, without
+ * overlap; so do the ghosts' lists. No systems: the ghost is never seen. */
 struct glint_model_ghost {
     uint32_t i, j; /* reflecting surfaces, i < j */
     uint32_t first_system, n_systems;
@@ -156,9 +155,17 @@ struct glint_model_output {
                              more than so many steps */
     /* Measured against exact rays through the run-time arithmetic, q20: pixels
      * of a film 1920 wide, stop radii, share of the energy (of at least a
-     * fiftieth of the most in the system), relative radius. */
-    uint32_t rms_q20, p50_q20, p99_q20, max_q20;
+     * fiftieth of the most in the system), relative radius. Each is
+     * glint_model_error_q20() of these. */
+    uint16_t rms, p50, p99, max;
 };
+
+/* The upper five bits of E are how far up the lower eleven are shifted, which
+ * are above 1023 then: a larger E is a larger error. */
+static inline uint64_t glint_model_error_q20(uint16_t e)
+{
+    return (uint64_t)(e & 2047) << (e >> 11);
+}
 
 /* ------------------------------------------------------------------ opening */
 

@@ -22,16 +22,26 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 #define BRIGHT_EASE                                         \
     1.5 /* zones of ghosts as bright as that may be half as \
            wide */
-#define STUCK                                                               \
-    0.75              /* half a zone that is left with so much of the whole \
-                         one's error gains nothing from halving... */
-#define STUCK_DEG 1.2 /* ...once it is this narrow */
-#define PART_LEFT 3.0 /* zones that show more than that are parted */
+#define STUCK                                                  \
+    0.75 /* half a zone that is left with so much of the whole \
+            one's error gains nothing from halving... */
+#define STUCK_DEG     1.2  /* ...once it is this narrow */
+#define PART_LEFT     5.0  /* zones that show more than that are parted */
+#define HOPELESS      20.0 /* times that is what more terms cannot mend, */
+#define HALVES_ANYWAY 10.0 /* nor, where it can be halved, so much */
+#define WANDERS                                                  \
+    0.5 /* boxes that do so more make it worth to halve the band \
+         */
+#define LEAST_BAND 0.6
+#define WORTH_CROP 0.8 /* as long as cropping a part leaves less, */
 
 enum {
     FEW_TERMS = 64,
+    PATIENCE = 36,   /* terms, with what looks like another part */
     MANY_TERMS = 96, /* of places, by all means */
-    PART_DEPTH = 4   /* times that a zone's box is halved */
+    BAND_DEPTH = 3,
+    PART_DEPTH = 4, /* times that a zone's box is halved */
+    CROPS = 2       /* it is done so many times */
 };
 
 struct fitter {
@@ -49,7 +59,13 @@ struct fitter {
     double sensor_mm, edge_mm, stop, energy, hidden;
     double off; /* how far places are off, in tolerances */
     bool by_all_means;
-    int n_parts; /* of the zone so far */
+    int n_parts;                  /* of the zone so far */
+    const struct glint_hunt *now; /* in the band of what is fitted: */
+    struct glint_hunt in_band, in_part;
+    struct glint_profile band_profile;
+    double profiled[4]; /* what it is of: angles and band */
+    double wanders;     /* the box with the colour, half widths */
+    double hopeless;    /* left of what is to be parted anyway; 0: is not */
 };
 
 /* ----------------------------------------------------------------- outputs */
@@ -278,6 +294,8 @@ static enum glint_status fit_output(struct fitter *f,
 
     if (f->by_all_means && kind != GLINT_OUT_ENERGY)
         degrees.terms = MANY_TERMS;
+    degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->hopeless;
+    degrees.patience = PATIENCE;
     degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
     left = glint_regress_fit(f->scratch, &samples, f->value, &degrees, rms,
                              PEAK * rms, &poly);
@@ -366,16 +384,24 @@ static void drop_outputs(struct glint_fitted_system *system)
         free(system->output[--system->n_outputs].coef);
 }
 
+static bool is_hopeless(const struct fitter *f)
+{
+    return f->hopeless > 0 && f->off > f->hopeless;
+}
+
 static enum glint_status
 fit_outputs(struct fitter *f, struct glint_fitted_system *system, double *worst)
 {
     enum glint_status status = GLINT_OK;
 
     *worst = 0;
-    for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++)
+    for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++) {
         status = fit_channel(f, c, c <= RAY_SENSOR_Y ? f->sensor_mm : f->stop,
                              system, worst);
-    f->off = *worst;
+        f->off = *worst;
+        if (is_hopeless(f))
+            return status;
+    }
     if (status == GLINT_OK)
         status = fit_energy(f, system, worst);
     for (int b = 0; b < f->rays.n_barrels && status == GLINT_OK; b++)
@@ -420,7 +446,7 @@ static double check_zone(struct fitter *f, const struct glint_zone *zone,
 {
     double worst = 0;
 
-    glint_zone_check(zone, f->hunt, &f->rays);
+    glint_zone_check(zone, f->now, &f->rays);
     for (int k = 0; k < system->n_outputs; k++) {
         const struct glint_fitted_output *o = &system->output[k];
 
@@ -481,6 +507,7 @@ static double degrees_between(double lo, double hi)
  * the energy, and more terms. */
 struct pending {
     double lo, hi, before;
+    double w0, w1; /* the part of the band, -1 .. 1 */
     bool by_all_means;
     struct glint_part part;
     int depth; /* of the part; 0: the whole zone */
@@ -494,42 +521,115 @@ static bool nothing_seen(const struct glint_rays *r)
     return true;
 }
 
+static bool is_whole_band(double w0, double w1)
+{
+    return w0 <= -1 && w1 >= 1;
+}
+
+/* The boxes for the angles and the part of the band of P. */
+static const struct glint_profile *profile_of(struct fitter *f,
+                                              const struct pending *p)
+{
+    const double range[2] = {p->lo, p->hi};
+    const double key[4] = {p->lo, p->hi, p->w0, p->w1};
+
+    if (is_whole_band(p->w0, p->w1))
+        return &f->profile;
+    if (memcmp(key, f->profiled, sizeof key) != 0) {
+        glint_hunt_narrow(&f->in_band, f->hunt, p->w0, p->w1);
+        glint_hunt_profile(&f->in_band, range, &f->band_profile);
+        memcpy(f->profiled, key, sizeof key);
+    }
+    return &f->band_profile;
+}
+
+static void cut_out(struct fitter *f, const struct pending *p,
+                    struct glint_zone *zone)
+{
+    const struct glint_part *part = &p->part;
+    const struct glint_hunt *band =
+        is_whole_band(p->w0, p->w1) ? f->hunt : &f->in_band;
+
+    glint_zone_cut(zone, part);
+    f->now = band;
+    if (!is_whole_band(part->w0, part->w1)) {
+        glint_hunt_narrow(&f->in_part, band, part->w0, part->w1);
+        f->now = &f->in_part;
+    }
+}
+
+/* Cuts P out of ZONE, and by all means leaves off what is not seen: a ghost
+ * that comes through here in red and there in blue leaves much. */
+static void set_part(struct fitter *f, struct pending *p,
+                     struct glint_zone *zone)
+{
+    const struct glint_zone whole = *zone;
+    double rest = p->by_all_means ? 0 : 1;
+
+    cut_out(f, p, zone);
+    for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
+        rest = glint_zone_crop(zone, f->now, &p->part);
+        *zone = whole;
+        cut_out(f, p, zone);
+    }
+}
+
+/* What is left of P that will be halved or parted, whatever comes of it. The
+ * halves of wide zones are not yet at the end of halving, where what is left
+ * has to be known. */
+static double hopeless(const struct fitter *f, const struct pending *p)
+{
+    if (p->by_all_means)
+        return p->depth < PART_DEPTH ? HOPELESS * PART_LEFT * f->hidden : 0;
+    return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
+}
+
 /* Fits a zone; *LEFT becomes how bad it is: at most 1 if good. A part that
- * nothing comes through has no outputs afterwards. */
-static enum glint_status try_zone(struct fitter *f, const struct pending *p,
+ * nothing comes through has no outputs afterwards. P's part may shrink. */
+static enum glint_status try_zone(struct fitter *f, struct pending *p,
                                   struct glint_fitted_system *system,
                                   double *left)
 {
+    const struct glint_profile *profile = profile_of(f, p);
     enum glint_status status;
     struct glint_zone zone;
 
     *system = (struct glint_fitted_system){.ghost = f->hunt->ghost,
                                            .hollow = p->part.hollow,
                                            .sine_lo = p->lo,
-                                           .sine_hi = p->hi,
-                                           .wave_lo = f->hunt->wave_lo,
-                                           .wave_hi = f->hunt->wave_hi};
+                                           .sine_hi = p->hi};
     f->by_all_means = p->by_all_means;
+    *left = f->off = 0;
+    if (profile->n == 0)
+        return GLINT_OK;
     *left = HUGE_VAL;
-    glint_zone_init(&zone, &f->profile, p->lo, p->hi, p->by_all_means);
+    glint_zone_init(&zone, profile, p->lo, p->hi, p->by_all_means);
+    f->wanders = (fabs(zone.middle[GLINT_BOX_POWERS]) +
+                  fabs(zone.half_x[GLINT_BOX_POWERS])) /
+                 zone.half_x[0];
     if (!p->by_all_means && zone.fill < LEAST_FILL &&
         degrees_between(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
-    glint_zone_cut(&zone, &p->part);
-    glint_zone_survey_barrels(&zone, f->hunt, &f->survey, &f->rays);
+    set_part(f, p, &zone);
+    system->wave_lo = f->now->wave_lo;
+    system->wave_hi = f->now->wave_hi;
+    glint_zone_survey_barrels(&zone, f->now, &f->survey, &f->rays);
     if (f->rays.n_barrels > 2 && degrees_between(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
-    glint_zone_trace(&zone, f->hunt, &f->rays, &f->energies);
-    *left = f->off = 0;
-    if (p->depth > 0 && nothing_seen(&f->rays))
+    glint_zone_trace(&zone, f->now, &f->rays, &f->energies);
+    *left = 0;
+    if ((p->depth > 0 || !is_whole_band(p->w0, p->w1)) &&
+        nothing_seen(&f->rays))
         return GLINT_OK;
     status = set_box(system, &zone);
     set_tolerances(f, &zone);
     set_weights(f);
+    f->hopeless = hopeless(f, p);
     if (status == GLINT_OK)
         status = fit_outputs(f, system, left);
-    if (status == GLINT_OK && (p->by_all_means || *left <= 1) &&
-        stop_leaks(f, system)) {
+    if (status != GLINT_OK || is_hopeless(f))
+        return status;
+    if ((p->by_all_means || *left <= 1) && stop_leaks(f, system)) {
         drop_outputs(system);
         status = fit_outputs(f, system, left);
     }
@@ -542,7 +642,7 @@ static enum glint_status try_zone(struct fitter *f, const struct pending *p,
 
 /* What to do about a zone that is left with LEFT. Halves of bright ones are
  * worth more. */
-enum next { KEEP, HALVE, ALL_MEANS, PART };
+enum next { KEEP, HALVE, ALL_MEANS, BANDS, PART };
 
 static enum next next_step(const struct fitter *f, const struct pending *p,
                            double left)
@@ -552,13 +652,19 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
         degrees_between(p->lo, p->hi) * (f->ease < BRIGHT_EASE ? 2 : 1);
     const bool stuck = width < LEAST_DEG || (!helped && width < STUCK_DEG);
 
+    if (p->by_all_means && f->off <= PART_LEFT * f->hidden)
+        return KEEP;
+    if (p->by_all_means && p->depth == 0 && f->wanders > WANDERS &&
+        p->w1 - p->w0 > LEAST_BAND)
+        return BANDS;
     if (p->by_all_means)
-        return f->off > PART_LEFT * f->hidden && p->depth < PART_DEPTH ? PART
-                                                                       : KEEP;
+        return p->depth < PART_DEPTH ? PART : KEEP;
     if (left <= 1)
         return KEEP;
     return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
 }
+
+static const struct glint_part whole = {-1, 1, 1, -1, 1, false};
 
 /* Puts the halves of P on the stack: along v first, so that what is seen
  * through the middle gets apart from what is seen through the rim. Returns how
@@ -572,6 +678,9 @@ static int push_halves(struct pending *stack, int n, struct pending p,
 
     if (how == HALVE) {
         a.hi = b.lo = angle;
+    } else if (how == BANDS) {
+        a.w1 = b.w0 = 0.5 * (p.w0 + p.w1);
+        a.part = b.part = whole;
     } else {
         a.depth = b.depth = p.depth + 1;
         if (p.depth % 2 || p.part.hollow) {
@@ -590,9 +699,9 @@ static int push_halves(struct pending *stack, int n, struct pending p,
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
     /* halvings of a sine down to half of LEAST_DEG: 13 at most */
-    enum { DEEP = 24 + PART_DEPTH };
+    enum { DEEP = 24 + BAND_DEPTH + PART_DEPTH };
     struct pending stack[DEEP] = {
-        {range[0], range[1], HUGE_VAL, false, {-1, 1, 1, false}, 0}};
+        {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};
     enum glint_status status = GLINT_OK;
     int n = 1;
 
@@ -608,7 +717,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         status = try_zone(f, &p, &system, &left);
         if (status == GLINT_OK)
             next = next_step(f, &p, left);
-        if (p.depth == 0)
+        if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;
         if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
@@ -641,6 +750,7 @@ enum glint_status glint_fit_ghost(const struct glint_hunt *hunt, double max_deg,
         return status;
     f->hunt = hunt;
     f->tolerance = tolerance;
+    f->profiled[0] = HUGE_VAL; /* of nothing yet */
     f->out = out;
     f->scratch =
         malloc(glint_regress_doubles(GLINT_ZONE_RAYS) * sizeof *f->scratch);

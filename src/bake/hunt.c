@@ -13,14 +13,27 @@ enum {
     FARTHER = 4 /* steps that the ends of the band may outlast its middle */
 };
 
+static double wave_of(const struct glint_hunt *hunt, double w)
+{
+    return 0.5 * (hunt->wave_lo + hunt->wave_hi) +
+           0.5 * w * (hunt->wave_hi - hunt->wave_lo);
+}
+
 void glint_hunt_path(const struct glint_hunt *hunt, double w,
                      struct glint_path *path)
 {
-    const double wave = 0.5 * (hunt->wave_lo + hunt->wave_hi) +
-                        0.5 * w * (hunt->wave_hi - hunt->wave_lo);
-
     glint_path_init(path, hunt->setup->lens, &hunt->setup->ghost[hunt->ghost],
-                    1e3 / sqrt(wave));
+                    1e3 / sqrt(wave_of(hunt, w)));
+}
+
+static void set_paths(struct glint_hunt *hunt)
+{
+    for (int k = 0; k < GLINT_HUNT_WAVES; k++) {
+        glint_hunt_path(hunt, -cos(GLINT_PI * k / (GLINT_HUNT_WAVES - 1)),
+                        &hunt->path[k]);
+        hunt->scout[k] = hunt->path[k];
+        hunt->scout[k].places_only = true;
+    }
 }
 
 void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,
@@ -31,12 +44,18 @@ void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,
     hunt->field_mm = field_mm;
     hunt->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
     hunt->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
-    for (int k = 0; k < GLINT_HUNT_WAVES; k++) {
-        glint_hunt_path(hunt, -cos(GLINT_PI * k / (GLINT_HUNT_WAVES - 1)),
-                        &hunt->path[k]);
-        hunt->scout[k] = hunt->path[k];
-        hunt->scout[k].places_only = true;
-    }
+    set_paths(hunt);
+}
+
+void glint_hunt_narrow(struct glint_hunt *hunt, const struct glint_hunt *whole,
+                       double w0, double w1)
+{
+    hunt->setup = whole->setup;
+    hunt->ghost = whole->ghost;
+    hunt->field_mm = whole->field_mm;
+    hunt->wave_lo = wave_of(whole, w0);
+    hunt->wave_hi = wave_of(whole, w1);
+    set_paths(hunt);
 }
 
 bool glint_hunt_visible(const struct glint_hunt *hunt,

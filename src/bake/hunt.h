@@ -35,6 +35,10 @@ struct glint_hunt {
 void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,
                      int ghost, double field_mm, const double band_nm[2]);
 
+/* HUNT for the part W0 .. W1, -1 .. 1, of the band of WHOLE. */
+void glint_hunt_narrow(struct glint_hunt *hunt, const struct glint_hunt *whole,
+                       double w0, double w1);
+
 /* The path at W, -1 .. 1 over the band. */
 void glint_hunt_path(const struct glint_hunt *hunt, double w,
                      struct glint_path *path);

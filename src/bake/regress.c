@@ -200,6 +200,13 @@ static void choose(struct search *s, int index)
     add_neighbours(s, c);
 }
 
+static bool is_hopeless(const struct search *s, double left)
+{
+    const struct glint_degrees *d = s->degrees;
+
+    return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
+}
+
 /* What is left, in units of what may be. */
 static double excess(const struct search *s, double rms, double peak)
 {
@@ -245,7 +252,7 @@ double glint_regress_fit(double *scratch, const struct glint_samples *samples,
         s.residual[i] = samples->weight[i] * y[i];
     add_candidate(&s, first);
     while ((left = excess(&s, rms, peak)) > 1 && s.n_chosen < degrees->terms) {
-        const int best = best_candidate(&s);
+        const int best = is_hopeless(&s, left) ? -1 : best_candidate(&s);
 
         if (best < 0)
             break;

@@ -34,6 +34,10 @@ struct glint_degrees {
     int total;                       /* weighted sum of powers, at most */
     int parity;                      /* of variable 1: 0 even, 1 odd, -1 any */
     int terms;                       /* 1 .. GLINT_MAX_TERMS */
+    /* More than HOPELESS times of what may be, left after so many terms, ends
+     * it; 0: never. */
+    double hopeless;
+    int patience;
 };
 
 struct glint_samples {

@@ -13,7 +13,7 @@
 
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
-STATIC_ASSERT(sizeof(struct glint_model_output) == 40);
+STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
 /* Adds BYTES from DATA (zeros where it is NULL) at a multiple of 4. Returns
  * where they are. */
@@ -231,9 +231,15 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft)
                                (const void *)(draft->data + h->system_at)};
 }
 
-static uint32_t to_q20(double x)
+/* As glint_model_error_q20() has it, rounded up. */
+static uint16_t to_error(double x)
 {
-    return (uint32_t)fmin(UINT32_MAX, ceil(x * 0x1p20));
+    double mantissa = ceil(x * 0x1p20);
+    int shift = 0;
+
+    while (mantissa > 2047 && shift < 31)
+        mantissa = ceil(x * ldexp(0x1p20, -++shift));
+    return (uint16_t)(shift << 11 | (int)fmin(mantissa, 2047));
 }
 
 void glint_draft_note(struct glint_draft *draft, int system,
@@ -246,10 +252,10 @@ void glint_draft_note(struct glint_draft *draft, int system,
     for (uint32_t k = 0; k < s->n_outputs; k++, o++) {
         const struct glint_errors *e = &measured->of[o->kind];
 
-        o->rms_q20 = to_q20(e->rms);
-        o->p50_q20 = to_q20(e->p50);
-        o->p99_q20 = to_q20(e->p99);
-        o->max_q20 = to_q20(e->max);
+        o->rms = to_error(e->rms);
+        o->p50 = to_error(e->p50);
+        o->p99 = to_error(e->p99);
+        o->max = to_error(e->max);
     }
 }
 

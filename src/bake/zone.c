@@ -178,6 +178,17 @@ void glint_zone_init(struct glint_zone *zone,
     }
 }
 
+/* Puts W0 + (1 + w) / 2 * (W1 - W0) in place of w. */
+static void narrow(double side[GLINT_BOX_TERMS], double w0, double w1)
+{
+    double *of_w = side + GLINT_BOX_POWERS;
+
+    for (int k = 0; k < 2; k++) {
+        side[k] += 0.5 * (w0 + w1) * of_w[k];
+        of_w[k] *= 0.5 * (w1 - w0);
+    }
+}
+
 void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
@@ -185,6 +196,9 @@ void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part)
         zone->half_x[k] *= 0.5 * (part->u1 - part->u0);
         zone->half_y[k] *= part->top;
     }
+    narrow(zone->middle, part->w0, part->w1);
+    narrow(zone->half_x, part->w0, part->w1);
+    narrow(zone->half_y, part->w0, part->w1);
     zone->hollow = part->hollow;
 }
 
@@ -258,6 +272,66 @@ static void together_trace(struct together *t)
 static double (*hits_of(struct together *t, int k))[2]
 {
     return t->hits + k * t->path->n_events;
+}
+
+/* What LOW .. HIGH of -1 .. 1 is of *FROM .. *TO, which becomes that. */
+static void reduce(double low, double high, double *from, double *to)
+{
+    const double middle = 0.5 * (*from + *to), half = 0.5 * (*to - *from);
+
+    *from = middle + fmax(-1, low) * half;
+    *to = middle + fmin(1, high) * half;
+}
+
+/* Bounds of what is seen, by u, v and w. */
+struct sighting {
+    double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
+};
+
+static void sight(const struct glint_hunt *h, const struct together *t,
+                  struct sighting *seen)
+{
+    for (int i = 0; i < t->n; i++)
+        if (t->status[i] == GLINT_RAY_OK && glint_hunt_visible(h, &t->ray[i]))
+            for (int k = 0; k < GLINT_VARIABLES; k++) {
+                seen->low[k] = fmin(seen->low[k], t->x[i][k]);
+                seen->high[k] = fmax(seen->high[k], t->x[i][k]);
+            }
+}
+
+double glint_zone_crop(const struct glint_zone *zone,
+                       const struct glint_hunt *hunt, struct glint_part *part)
+{
+    enum { ANGLES = 5, COLUMNS = TOGETHER, ROWS = 12 };
+    const double margin = 3.0 / COLUMNS;
+    const struct glint_part before = *part;
+    struct sighting seen = {{9, 9, 9, 9}, {-9, -9, -9, -9}};
+    struct together t;
+
+    for (int k = 0; k < ANGLES * GLINT_HUNT_WAVES * (ROWS + 1); k++) {
+        const int row = k % (ROWS + 1), wave = k / (ROWS + 1) / ANGLES;
+
+        t.path = &hunt->scout[wave];
+        for (t.n = 0; t.n < COLUMNS;) {
+            const double x[GLINT_VARIABLES] = {
+                2.0 * t.n / (COLUMNS - 1) - 1, (double)row / ROWS,
+                2.0 * (k / (ROWS + 1) % ANGLES) / (ANGLES - 1) - 1,
+                glint_zone_node(wave, GLINT_HUNT_WAVES)};
+
+            together_add(&t, zone, x);
+        }
+        together_trace(&t);
+        sight(hunt, &t, &seen);
+    }
+    if (seen.high[0] < seen.low[0])
+        return 0;
+    reduce(seen.low[0] - margin, seen.high[0] + margin, &part->u0, &part->u1);
+    reduce(seen.low[3] - 0.3, seen.high[3] + 0.3, &part->w0, &part->w1);
+    if (!part->hollow)
+        part->top *= fmin(1, seen.high[1] + 1.5 / ROWS);
+    return (part->u1 - part->u0) / (before.u1 - before.u0) *
+           (part->w1 - part->w0) / (before.w1 - before.w0) * part->top /
+           before.top;
 }
 
 /* Notes the ray's radius at every event if the stop and the field let it pass,

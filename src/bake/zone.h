@@ -33,9 +33,10 @@ struct glint_zone {
     bool hollow; /* -1/2 < v < 1/2 is not part of it */
 };
 
-/* A part of a zone's box: U0 .. U1 of its u, up to TOP of its v. */
+/* A part of a zone's box and band: U0 .. U1 of its u, up to TOP of its v, W0 ..
+ * W1 of its w. */
 struct glint_part {
-    double u0, u1, top;
+    double u0, u1, top, w0, w1;
     bool hollow;
 };
 
@@ -50,6 +51,12 @@ void glint_zone_init(struct glint_zone *zone,
 
 /* Reduces the box to PART of it. */
 void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part);
+
+/* Reduces PART, to which ZONE has been cut and HUNT narrowed, to what can be
+ * seen of it, and a margin. Returns by how much, 1: by nothing; 0: there is
+ * nothing. */
+double glint_zone_crop(const struct glint_zone *zone,
+                       const struct glint_hunt *hunt, struct glint_part *part);
 
 /* Node K of N over -1 .. 1, the ends among them. */
 double glint_zone_node(int k, int n);

@@ -30,7 +30,7 @@ STATIC_ASSERT(sizeof(struct glint_real) == 8);
 STATIC_ASSERT(sizeof(struct glint_model_header) == 248);
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
-STATIC_ASSERT(sizeof(struct glint_model_output) == 40);
+STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
 enum {
     LIMIT = 1 << 30, /* of sums of magnitudes; also 1 as a q30 */
@@ -200,15 +200,9 @@ static const char *check_header(struct check *c)
 static const char *check_order(const struct glint_model_system *last,
                                const struct glint_model_system *next)
 {
-    const int same_band = next->wave_lo_q24 == last->wave_lo_q24 &&
-                          next->wave_hi_q24 == last->wave_hi_q24;
-
-    if (same_band)
-        return next->sine_lo_q30 < last->sine_hi_q30
-                   ? "a ghost's systems overlap in angle or do not rise"
-                   : NULL;
-    return next->wave_lo_q24 < last->wave_hi_q24
-               ? "a ghost's bands overlap or do not rise"
+    return next->sine_lo_q30 < last->sine_hi_q30 &&
+                   next->wave_lo_q24 < last->wave_hi_q24
+               ? "a ghost's systems overlap, or do not rise"
                : NULL;
 }
 

@@ -52,6 +52,15 @@ static void powers_q30(int32_t x_q30, int n, int32_t *power_q30)
         power_q30[k] = q_mul(power_q30[k - 1], x_q30, 30);
 }
 
+/* Whether WAVE is the system's; the upper end of its band is the next one's. */
+static int is_in_band(const struct glint_model_system *s,
+                      const struct glint_model_header *h, int32_t wave_q24)
+{
+    return wave_q24 >= s->wave_lo_q24 &&
+           (wave_q24 < s->wave_hi_q24 ||
+            (wave_q24 == s->wave_hi_q24 && wave_q24 == h->wave_hi_q24));
+}
+
 /* How far WAVE lies outside of the system's band. */
 static int64_t off_band(const struct glint_model_system *s, int32_t wave_q24)
 {
@@ -66,12 +75,17 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
             int32_t wave_q24)
 {
     const struct glint_model_ghost *g = &lens->ghost[ghost];
+    const struct glint_model_header *h = lens->header;
     const struct glint_model_system *best = NULL;
 
+    wave_q24 = wave_q24 < h->wave_lo_q24   ? h->wave_lo_q24
+               : wave_q24 > h->wave_hi_q24 ? h->wave_hi_q24
+                                           : wave_q24;
     for (uint32_t k = 0; k < g->n_systems; k++) {
         const struct glint_model_system *s = &lens->system[g->first_system + k];
 
-        if (sine_q30 < s->sine_lo_q30 || sine_q30 > s->sine_hi_q30)
+        if (sine_q30 < s->sine_lo_q30 || sine_q30 > s->sine_hi_q30 ||
+            (s->n_knots == 0 && !is_in_band(s, h, wave_q24)))
             continue;
         if (!best || off_band(s, wave_q24) < off_band(best, wave_q24))
             best = s;

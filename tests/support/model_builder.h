@@ -33,6 +33,8 @@ struct model_image {
 
 #define MODEL_POWER(u, v, s, w) ((u) | (v) << 4 | (s) << 8 | (w) << 12)
 
+#define MODEL_ERROR(mantissa, shift) ((uint16_t)((mantissa) | (shift) << 11))
+
 struct model_polynomial {
     uint8_t kind, n_terms;
     int16_t exponent;
@@ -141,10 +143,10 @@ static inline void model_outputs(struct model_image *m,
         o[k].coef_at = model_put(m, coef, 4 * n_coefs);
         o[k].bound = 1 << 29;
         o[k].rounding_q8 = 384;
-        o[k].rms_q20 = (UINT32_C(3) << 18) >> halved; /* 0.75, 0.375 */
-        o[k].p50_q20 = 1 << 18;
-        o[k].p99_q20 = (UINT32_C(1) << 20) << halved;
-        o[k].max_q20 = (UINT32_C(1) << 21) << halved;
+        o[k].rms = MODEL_ERROR(1536, 9 - halved); /* 0.75, 0.375 */
+        o[k].p50 = MODEL_ERROR(1024, 8);
+        o[k].p99 = MODEL_ERROR(1024, 10 + halved);
+        o[k].max = MODEL_ERROR(1024, 11 + halved);
     }
     s->n_outputs = (uint8_t)n;
     s->output_at = model_put(m, o, n * sizeof *o);

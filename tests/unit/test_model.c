@@ -155,7 +155,7 @@ struct rule {
 #define HEADER_(field)    HEADER, FIELD_(glint_model_header, field)
 #define GHOST_(k, field)  GHOST, k * 16 + FIELD_(glint_model_ghost, field)
 #define SYSTEM_(k, field) SYSTEM, k * 40 + FIELD_(glint_model_system, field)
-#define OUTPUT_(k, field) OUTPUT, k * 40 + FIELD_(glint_model_output, field)
+#define OUTPUT_(k, field) OUTPUT, k * 32 + FIELD_(glint_model_output, field)
 
 static const char outside[] = "a table lies outside of the file",
                   unnormal[] = "a number of the header is not normalised",
@@ -166,10 +166,8 @@ static const char outside[] = "a table lies outside of the file",
                   no_systems[] = "a ghost's systems are out of range",
                   shared[] =
                       "two ghosts share a system, or their lists do not rise",
-                  overlap[] = "a ghost's systems overlap in angle or do not "
-                              "rise",
+                  overlap[] = "a ghost's systems overlap, or do not rise",
                   energy[] = "an output has no such roots or head",
-                  bands[] = "a ghost's bands overlap or do not rise",
                   hollow[] = "a system is hollow in a way that there is not",
                   bad_angles[] = "a system's angles are out of range",
                   bad_band[] = "a system's band is out of range",
@@ -260,10 +258,10 @@ static const struct rule auto_rules[] = {
     {SYSTEM_(0, sine_hi_q30), (1 << 28) + 1, overlap},
     {SYSTEM_(0, wave_lo_q24), 0, bad_band},
     {SYSTEM_(0, wave_lo_q24), MODEL_WAVE_HI_Q24 + 1, bad_band},
-    {SYSTEM_(0, wave_lo_q24), MODEL_WAVE_HI_Q24, bands},
+    {SYSTEM_(0, wave_lo_q24), MODEL_WAVE_HI_Q24, NULL},
     {SYSTEM_(0, wave_hi_q24), MODEL_WAVE_LO_Q24, NULL},
-    {SYSTEM_(2, wave_hi_q24), MODEL_WAVE_HI_Q24, bands},
-    {SYSTEM_(3, wave_lo_q24), MODEL_WAVE_LO_Q24, bands},
+    {SYSTEM_(2, wave_hi_q24), MODEL_WAVE_HI_Q24, overlap},
+    {SYSTEM_(3, wave_lo_q24), MODEL_WAVE_LO_Q24, overlap},
     {SYSTEM_(0, n_knots), 2, no_knots},
     {SYSTEM_(3, n_knots), UINT32_MAX, no_knots},
     {SYSTEM_(0, hollow), 1, NULL},
@@ -509,8 +507,16 @@ static void test_init(void **state)
     assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8 - 1, middle), 0);
     assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle + 1), 1);
     assert_ptr_equal(t.system, &lens.system[3]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle), 1);
+    assert_ptr_equal(t.system, &lens.system[3]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle - 1), 1);
+    assert_ptr_equal(t.system, &lens.system[2]);
     assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, INT32_MIN), 1);
     assert_ptr_equal(t.system, &lens.system[2]);
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, INT32_MAX), 1);
+    assert_ptr_equal(t.system, &lens.system[3]);
+    ((struct glint_model_system *)(uintptr_t)&lens.system[3])->wave_lo_q24++;
+    assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle), 0);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 2, middle), 1);
     assert_ptr_equal(t.system, &lens.system[1]);
     /* s = 1, w = 0, coefficients halved */
