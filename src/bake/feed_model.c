@@ -219,6 +219,8 @@ void glint_feed_plan_model(const struct glint_feed_config *cfg,
     if (feed->found && glint_feed_in_view(cfg, feed))
         feed->n_cells = glint_feed_cells(cfg, bend_mm(&s), outline_mm(&s),
                                          s.up > 0 && s.down > 0);
+    if (t.hollow) /* its rim has to be a row */
+        feed->n_cells = (feed->n_cells + 3) / 4 * 4;
 }
 
 void glint_feed_trace_model(const struct glint_feed_config *cfg,

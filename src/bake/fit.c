@@ -335,7 +335,7 @@ static void energies_of(const struct glint_rays *r, double *least, double *most)
 static enum glint_status
 fit_energy(struct fitter *f, struct glint_fitted_system *system, double *worst)
 {
-    const struct glint_rays *r = &f->energies;
+    const struct glint_rays *r = f->energies.n ? &f->energies : &f->rays;
     struct glint_fitted_output *o = &system->output[system->n_outputs];
     double least = HUGE_VAL, most = 1e-30;
 
@@ -741,7 +741,7 @@ enum glint_status glint_fit_ghost(const struct glint_hunt *hunt, double max_deg,
                                   const struct glint_tolerance *tolerance,
                                   struct glint_fitted_ghost *out)
 {
-    struct fitter *f = malloc(sizeof *f);
+    struct fitter *f = calloc(1, sizeof *f);
     enum glint_status status = GLINT_E_MEMORY;
     double range[GLINT_MAX_RANGES][2];
 
