@@ -38,7 +38,7 @@ struct glint_vertex;
  * file, multiples of 4. Header first, then in any order what it points to. */
 
 #define GLINT_MODEL_MAGIC   UINT32_C(0x544e4c47) /* "GLNT" */
-#define GLINT_MODEL_VERSION 2
+#define GLINT_MODEL_VERSION 3
 
 /* mantissa * 2^exponent; mantissa 0, or 2^30 .. 2^31 - 1 in magnitude;
  * exponent within +-200. */

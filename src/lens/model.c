@@ -109,8 +109,10 @@ static const char *check_file(const struct check *c)
         return "this is no glint model";
     if (h->version > GLINT_MODEL_VERSION)
         return "the model was made by a newer glint";
-    if (h->version != GLINT_MODEL_VERSION)
+    if (h->version == 0)
         return "no glint ever made models of this version";
+    if (h->version < GLINT_MODEL_VERSION)
+        return "the model was made by an older glint: bake it again";
     if (c->bytes < sizeof *h || c->bytes < h->bytes)
         return "the model is truncated";
     if (c->bytes > h->bytes)

@@ -131,6 +131,9 @@ static void test_not_a_model(void **state)
                         "the model was made by a newer glint");
     assert_string_equal(reason_of(m.data, 8),
                         "the model was made by a newer glint");
+    word[1] = GLINT_MODEL_VERSION - 1;
+    assert_string_equal(reason_of(m.data, m.bytes),
+                        "the model was made by an older glint: bake it again");
     word[1] = 0;
     assert_string_equal(reason_of(m.data, m.bytes),
                         "no glint ever made models of this version");
