@@ -40,7 +40,7 @@ struct bake {
     struct glint_bake_options options;
 };
 
-static int take(struct tool *tool, struct bake *b, int c)
+static int take(struct tool *tool, struct bake *b, int c, const char *name)
 {
     static const char *const bases[] = {"auto", "sparse", NULL};
     struct glint_bake_options *o = &b->options;
@@ -72,7 +72,9 @@ static int take(struct tool *tool, struct bake *b, int c)
     default:
         return tool_option(tool, c, optarg);
     }
-    return ok ? -1 : tool_usage(tool, "'%s' is not something it takes", optarg);
+    return ok ? -1
+              : tool_usage(tool, "--%s: '%s' is not something it takes", name,
+                           optarg);
 }
 
 static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
@@ -86,11 +88,11 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
         {"field", required_argument, NULL, 'm'},
         {"tolerance", required_argument, NULL, 't'},
         TOOL_COMMON_OPTIONS};
-    int c, code;
+    int c, code, index = 0;
 
     while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
-                            NULL)) >= 0)
-        if ((code = take(tool, b, c)) >= 0)
+                            &index)) >= 0)
+        if ((code = take(tool, b, c, options[index].name)) >= 0)
             return code;
     if (optind + 1 != argc)
         return tool_usage(tool, "takes one lens");

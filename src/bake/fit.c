@@ -716,7 +716,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
 
         status = try_zone(f, &p, &system, &left);
         if (status == GLINT_OK)
-            next = next_step(f, &p, left);
+            next = n + 2 > DEEP ? KEEP : next_step(f, &p, left);
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;
