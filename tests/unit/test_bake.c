@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "bake/measure_model.h"
+#include "bake/zone.h"
 #include "bake/quantise.h"
 #include "support/lens_check.h"
 #include "support/shuffle.h"
@@ -339,6 +340,90 @@ static void test_parts(void **state)
     assert_true(n_rays > 1000);
     assert_in_range(shared_deg, 1, ANGLES - 1);
     free(b.data);
+}
+
+static double unit(uint32_t *seed)
+{
+    return shuffle_next(seed) * 0x1p-31 - 1;
+}
+
+/* A cut box is the box, in the part's coordinates. */
+static void test_cut(void **state)
+{
+    struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
+    const struct glint_part part = {-0.25, 0.5, 0.75, -0.5, 0.75, true};
+    uint32_t seed = 3;
+
+    (void)state;
+    for (int k = 0; k < GLINT_BOX_TERMS; k++) {
+        zone.middle[k] = unit(&seed);
+        zone.half_x[k] = unit(&seed);
+        zone.half_y[k] = unit(&seed);
+    }
+    cut = zone;
+    glint_zone_cut(&cut, &part);
+    assert_true(cut.hollow);
+    for (int k = 0; k < 100; k++) {
+        const double u = unit(&seed), s = unit(&seed), w = unit(&seed);
+        const double whole_w = 0.125 + 0.625 * w, whole_u = 0.125 + 0.375 * u;
+
+        assert_near(glint_zone_at(cut.middle, s, w) +
+                        u * glint_zone_at(cut.half_x, s, w),
+                    glint_zone_at(zone.middle, s, whole_w) +
+                        whole_u * glint_zone_at(zone.half_x, s, whole_w),
+                    1e-12);
+        assert_near(glint_zone_at(cut.half_y, s, w),
+                    0.75 * glint_zone_at(zone.half_y, s, whole_w), 1e-12);
+    }
+}
+
+/* What is cropped off was dark, in a zone wider than its ghost and colours. */
+static void test_crop(void **state)
+{
+    const double range[2] = {sin(0.1), sin(0.2)};
+    static struct glint_hunt hunt, narrow;
+    static struct glint_profile profile;
+    const struct glint_part whole = {-1, 1, 1, -1, 1, false};
+    struct glint_part part = whole;
+    struct glint_zone zone;
+    uint32_t seed = 8;
+    int seen = 0;
+
+    (void)state;
+    glint_hunt_init(&hunt, &setup, 7, field_mm, options.band_nm);
+    glint_hunt_narrow(&narrow, &hunt, -0.5, 1);
+    assert_near(narrow.wave_lo,
+                hunt.wave_lo + 0.25 * (hunt.wave_hi - hunt.wave_lo), 1e-12);
+    assert_near(narrow.wave_hi, hunt.wave_hi, 1e-12);
+    glint_hunt_profile(&hunt, range, &profile);
+    glint_zone_init(&zone, &profile, range[0], range[1], true);
+    for (int k = 0; k < GLINT_BOX_TERMS; k++) {
+        zone.half_x[k] *= 3;
+        zone.half_y[k] *= 2;
+    }
+    assert_in_range((long)(100 * glint_zone_crop(&zone, &hunt, &part)), 10, 45);
+    for (int k = 0; k < 4000; k++) {
+        const double u = unit(&seed), v = fabs(unit(&seed)), s = unit(&seed),
+                     w = unit(&seed);
+        const double sine =
+            0.5 * (range[0] + range[1]) + 0.5 * s * (range[1] - range[0]);
+        const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+        struct glint_path path;
+        struct glint_ray ray;
+
+        glint_hunt_path(&hunt, w, &path);
+        if (glint_trace(&path,
+                        glint_zone_at(zone.middle, s, w) +
+                            u * glint_zone_at(zone.half_x, s, w),
+                        v * glint_zone_at(zone.half_y, s, w), direction, &ray,
+                        NULL) ||
+            !glint_hunt_visible(&hunt, &ray))
+            continue;
+        seen++;
+        assert_true(u >= part.u0 && u <= part.u1 && v <= part.top);
+        assert_true(w >= part.w0 && w <= part.w1);
+    }
+    assert_true(seen > 100);
 }
 
 /* ------------------------------------------------------------------- errors */
@@ -712,6 +797,8 @@ int main(void)
         cmocka_unit_test(test_flux),
         cmocka_unit_test(test_nothing_missing),
         cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_crop),
         cmocka_unit_test(test_errors_are_true),
         cmocka_unit_test(test_errors_are_small),
         cmocka_unit_test(test_planted_error),
