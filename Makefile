@@ -31,8 +31,9 @@ CORE := base/status base/arena base/q base/image base/workers lens/model \
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
         bake/setup bake/exact bake/feed bake/feed_model bake/hunt bake/regress \
-        bake/zone bake/brightness bake/fitted bake/fit bake/shared_zone bake/shared_basis \
-        bake/published bake/quantise bake/measure_model bake/write_model bake/bake
+        bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
+        bake/shared_zone bake/shared_basis bake/published bake/quantise \
+        bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool model_file model_cache model_report measure lamps frame scene \
