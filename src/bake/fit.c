@@ -31,7 +31,7 @@
 #define WORTH_CROP 0.8 /* as long as cropping a part leaves less, */
 
 enum {
-    BAND_DEPTH = 3,
+    BAND_DEPTH = 2, /* times that a band is, down to LEAST_BAND */
     PART_DEPTH = 4, /* times that a zone's box is halved */
     CROPS = 2       /* it is done so many times */
 };
@@ -270,7 +270,7 @@ static int push_halves(struct pending *stack, int n, struct pending p,
 /* Zones from the lowest angle up; the upper halves wait on a stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    /* halvings of a sine down to half of LEAST_DEG: 13 at most */
+    /* halvings of a sine down to half of LEAST_DEG: 16 at most */
     enum { DEEP = 24 + BAND_DEPTH + PART_DEPTH };
     struct pending stack[DEEP] = {
         {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};

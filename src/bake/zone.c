@@ -522,7 +522,7 @@ static int count_visible(const struct glint_rays *rays)
     int n = 0;
 
     for (int i = 0; i < rays->n; i++)
-        n += rays->at[RAY_EXCESS][i] <= 1 && rays->at[RAY_FIELD][i] <= 1;
+        n += glint_rays_seen(rays, i);
     return n;
 }
 

@@ -85,6 +85,11 @@ struct glint_rays {
                           gets at most, relative */
 };
 
+static inline bool glint_rays_seen(const struct glint_rays *r, int ray)
+{
+    return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
+}
+
 /* Room for the survey that chooses the barrels. */
 enum { GLINT_SURVEY_RAYS = 6000 };
 typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];

@@ -49,11 +49,6 @@ static double weight_past_field(const struct glint_zone_fit *f, double fields)
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->sensor_mm);
 }
 
-static bool is_seen(const struct glint_rays *r, int i)
-{
-    return r->at[RAY_EXCESS][i] <= 1 && r->at[RAY_FIELD][i] <= 1;
-}
-
 /* The rays of one angle and wavelength from FIRST on: what is seen of them. */
 struct sight {
     int n, n_all;
@@ -69,7 +64,7 @@ static struct sight look(const struct glint_rays *r, int first)
     for (int i = first; i < r->n && r->x[2][i] == r->x[2][first] &&
                         r->x[3][i] == r->x[3][first];
          i++, s.n_all++) {
-        if (!is_seen(r, i))
+        if (!glint_rays_seen(r, i))
             continue;
         for (int k = 0; k < 2; k++) {
             s.low[k] = fmin(s.low[k], r->at[RAY_SENSOR_X + k][i]);
@@ -122,8 +117,8 @@ static double stretch_of(const struct glint_rays *r, const double *a,
         const double *x = r->at[RAY_SENSOR_X], *y = r->at[RAY_SENSOR_Y];
 
         if (r->x[1][i] != r->x[1][i - 1] || r->x[2][i] != r->x[2][i - 1] ||
-            r->x[3][i] != r->x[3][i - 1] || !is_seen(r, i) ||
-            !is_seen(r, i - 1) || a[i] < near)
+            r->x[3][i] != r->x[3][i - 1] || !glint_rays_seen(r, i) ||
+            !glint_rays_seen(r, i - 1) || a[i] < near)
             continue;
         moved2 += (x[i] - x[i - 1]) * (x[i] - x[i - 1]) +
                   (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
@@ -276,7 +271,7 @@ static enum glint_status fit_channel(struct glint_zone_fit *f, int channel,
 static void energies_of(const struct glint_rays *r, double *least, double *most)
 {
     for (int i = 0; i < r->n; i++)
-        if (is_seen(r, i)) {
+        if (glint_rays_seen(r, i)) {
             *least = fmin(*least, r->at[RAY_ENERGY][i]);
             *most = fmax(*most, r->at[RAY_ENERGY][i]);
         }
@@ -420,7 +415,7 @@ static double check_zone(struct glint_zone_fit *f,
 bool glint_zone_fit_is_dark(const struct glint_zone_fit *f)
 {
     for (int i = 0; i < f->rays.n; i++)
-        if (is_seen(&f->rays, i))
+        if (glint_rays_seen(&f->rays, i))
             return false;
     return true;
 }

@@ -11,7 +11,7 @@
  *     never makes an integer larger. With the sum of |coefficient| of an output
  *     below 2^30 no product, row or Horner step leaves that range, whatever
  *     the order of additions: between two knots a coefficient strays half a
- *     step from the line, 64 of them 32 steps, and int32 has a bit to spare;
+ *     step from the line, 120 of them 60 steps, and int32 has a bit to spare;
  *   - the box of the sparse basis stays within +-2^30, or 1 step more between
  *     two knots: its powers stray 15 steps, and the same bit takes it;
  *   - in the auto basis powers of u and v index a table, and powers of v are
