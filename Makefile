@@ -26,8 +26,9 @@ export DEPS OUT
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/image base/workers lens/model \
         lens/transfer flare/regions flare/lights tile/primitive tile/clip \
-        tile/outline flare/ghost_grid tile/bins tile/raster tile/edges \
-        tile/curve tile/resolve flare/flare
+        tile/outline tile/bins tile/raster tile/edges tile/curve \
+        tile/resolve flare/ghost_grid flare/ghost_edges flare/by_cells \
+        flare/by_edges flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
         bake/setup bake/exact bake/feed bake/feed_model bake/hunt bake/regress \

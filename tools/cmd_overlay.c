@@ -44,7 +44,9 @@ static const char help[] =
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
-    "found)\n" SCENE_HELP COMMON_HELP;
+    "found)\n";
+
+static const char help_end[] = SCENE_HELP COMMON_HELP;
 
 struct overlay {
     struct scene scene;
@@ -510,7 +512,7 @@ static int run(struct tool *tool, struct overlay *o)
 
 int cmd_overlay(int argc, char **argv)
 {
-    struct tool tool = {.name = "overlay", .help = help};
+    struct tool tool = {.name = "overlay", .help = help, .help_end = help_end};
     struct overlay *o = calloc(1, sizeof *o);
     int code;
 

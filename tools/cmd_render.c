@@ -28,7 +28,9 @@ static const char help[] =
     "                      90 = up), power (default 1), colour; repeatable\n"
     "  --engine E          model: the integer run time (default)\n"
     "                      exact: the reference, every ray in "
-    "double\n" SCENE_HELP COMMON_HELP;
+    "double\n";
+
+static const char help_end[] = SCENE_HELP COMMON_HELP;
 
 struct render {
     struct scene scene;
@@ -251,7 +253,7 @@ static int run(struct tool *tool, struct render *r, const char *lens)
 
 int cmd_render(int argc, char **argv)
 {
-    struct tool tool = {.name = "render", .help = help};
+    struct tool tool = {.name = "render", .help = help, .help_end = help_end};
     struct render *r = calloc(1, sizeof *r);
     int code;
 

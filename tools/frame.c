@@ -128,20 +128,23 @@ static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
     return GLINT_OK;
 }
 
-/* Irradiance of a feed if it filled the box of its light, display white. */
-static double mean_irradiance(const struct frame *f,
-                              const struct glint_feed *feed)
+/* What a feed's pupil sends, display white times pixels at scale 1. */
+static double flux_of(const struct frame *f, const struct glint_feed *feed)
 {
     const struct glint_pupil *p = &feed->pupil;
-    const double pixel = f->view.sensor_width_mm / f->view.width;
-    const double pixels = (p->sensor_mm[1] - p->sensor_mm[0]) *
-                              (p->sensor_mm[3] - p->sensor_mm[2]) /
-                              (pixel * pixel) +
-                          1;
     const double area = (p->x1_mm - p->x0_mm) * 2 * p->y1_mm;
 
     return feed->lamp->power * p->energy * area /
-           f->setup->unit_flux[feed->wavelength] / pixels;
+           f->setup->unit_flux[feed->wavelength];
+}
+
+/* Pixels of the box that its light falls in. */
+static double pixels_of(const struct frame *f, const struct glint_feed *feed)
+{
+    const double *s = feed->pupil.sensor_mm;
+    const double pixel = f->view.sensor_width_mm / f->view.width;
+
+    return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
 }
 
 double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
@@ -152,16 +155,14 @@ double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
     if (plan(frame, lamps, n_lamps) != GLINT_OK)
         return 1;
     for (int i = 0; i < frame->n_feeds; i++) {
-        const double light = mean_irradiance(frame, &frame->feed[i]);
-        const double n = frame->feed[i].n_cells;
+        const double flux = flux_of(frame, &frame->feed[i]);
 
-        brightest = fmax(brightest, light);
-        together += n * n * light;
+        brightest = fmax(brightest, flux / pixels_of(frame, &frame->feed[i]));
+        together += flux;
     }
-    /* Sums are safe while all cells together bring no pixel beyond 2^22: a
-     * sixteenth of that leaves room for caustics. */
+    /* No light is cut down while all flux together is below 2^24. */
     return brightest > 0 ? exp2(fmin(5 - ceil(log2(brightest)),
-                                     18 - ceil(log2(together))))
+                                     23 - ceil(log2(together))))
                          : 1;
 }
 

@@ -17,6 +17,7 @@ void scene_defaults(struct scene *scene)
                             .only_ghost = -1,
                             .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
+                            .quantum = 1,
                             .antialias = true};
 }
 
@@ -141,6 +142,9 @@ static bool take(struct scene *s, int option, const char *value)
         return true;
     case OPT_DITHER:
         return s->dither = true;
+    case OPT_QUANTUM:
+        return tool_number(value, &s->quantum) && s->quantum >= 0 &&
+               s->quantum <= 50;
     case OPT_QUALITY:
         return take_quality(value, s);
     case OPT_RAYS:
@@ -363,6 +367,11 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
         scene->coarse_log2 > scene->tile_log2 ? scene->coarse_log2 : 0;
     frame->cfg.raster = scene->raster;
     frame->cfg.weights = scene->weights;
+    /* the mean step, as steps are even within an octave */
+    frame->cfg.irradiance_steps =
+        scene->quantum > 0
+            ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / scene->quantum)))
+            : 0;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
     frame->cfg.antialias = scene->antialias;

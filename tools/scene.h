@@ -33,7 +33,7 @@ struct scene {
     int only_ghost;
 
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
-    double merge_gamma;
+    double merge_gamma, quantum;
     enum glint_raster raster;
     enum glint_weights weights;
     bool uniform, narrow, antialias, dither, has_exposure, balance;
@@ -58,6 +58,7 @@ enum scene_option {
     OPT_MASK,
     OPT_NO_ANTIALIAS,
     OPT_DITHER,
+    OPT_QUANTUM,
     OPT_QUALITY,
     OPT_RAYS,
     OPT_LANES,
@@ -84,6 +85,7 @@ enum scene_option {
         {"mask", required_argument, NULL, OPT_MASK},               \
         {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},     \
         {"dither", no_argument, NULL, OPT_DITHER},                 \
+        {"quantum", required_argument, NULL, OPT_QUANTUM},         \
         {"quality", required_argument, NULL, OPT_QUALITY},         \
         {"rays", required_argument, NULL, OPT_RAYS},               \
         {"lanes", required_argument, NULL, OPT_LANES},             \
@@ -131,6 +133,11 @@ enum scene_option {
     "                      4 N (default 64); the exact engine: N for all "     \
     "(512)\n"                                                                  \
     "  --uniform-grid      N cells a side for every ghost\n"                   \
+    "  --quantum P         by edges: a cell's irradiance is rounded to steps " \
+    "of P\n"                                                                   \
+    "                      percent, 0 (not) to 50 (default 1); edges "         \
+    "between\n"                                                                \
+    "                      cells of equal irradiance cost nothing\n"           \
     "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
     "                      where edges agree within GAMMA (default 0,0)\n"     \
     "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \
@@ -140,7 +147,7 @@ enum scene_option {
     "                      0 for none (default)\n"                             \
     "  --raster R          edges: exact areas (default); cells: pixel "        \
     "centres,\n"                                                               \
-    "                      which the following three need\n"                   \
+    "                      which --merge, --coarse and the next three need\n"  \
     "  --weights W         wachspress | loop-derose (default wachspress)\n"    \
     "  --mask N            look the stop up in N x N signed distances\n"       \
     "  --no-antialias      a pixel's centre decides, as published\n"           \

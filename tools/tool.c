@@ -65,6 +65,8 @@ int tool_option(struct tool *tool, int option, const char *value)
     switch (option) {
     case 'h':
         fputs(tool->help, stdout);
+        if (tool->help_end)
+            fputs(tool->help_end, stdout);
         return EXIT_OK;
     case 'V':
         return show_version();

@@ -23,8 +23,9 @@ enum exit_code {
 };
 
 struct tool {
-    const char *name; /* of the command */
-    const char *help; /* its whole text */
+    const char *name;     /* of the command */
+    const char *help;     /* its text, */
+    const char *help_end; /* and more of it, or NULL */
     bool json, quiet;
     int verbose;
     int n_threads;

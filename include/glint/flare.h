@@ -79,8 +79,9 @@ struct glint_bundle {
 /* ------------------------------------------------------------------ drawing */
 
 /* By edges: the exact area that each cell covers, one irradiance a cell; folds
- * and slivers keep their light. By cells: interpolation at pixel centres,
- * [Bodonyi23]; a stop with a mask always takes this one. */
+ * and slivers keep their light; a primitive is an edge across which light
+ * changes. By cells: interpolation at pixel centres, [Bodonyi23]; a primitive
+ * is a cell; a stop with a mask always takes this one. */
 enum glint_raster { GLINT_RASTER_EDGES, GLINT_RASTER_CELLS };
 
 enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
@@ -88,16 +89,21 @@ enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
 struct glint_flare_config {
     struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
     int width, height;             /* of the picture, 1 .. GLINT_MAX_SIDE */
-    int tile_log2;   /* small tiles of 2^n pixels square, 3 .. 6 */
-    int coarse_log2; /* large tiles, tile_log2 + 1 .. 8; 0: one level only */
+    int tile_log2; /* small tiles of 2^n pixels square, 3 .. 6 */
     enum glint_raster raster;
-    enum glint_weights weights; /* by cells */
-    int merge_steps;            /* blocks of 2^n cells may become one, 0 .. 4 */
-    int32_t merge_gamma_q16;    /* how far edges may disagree, relative */
-    int antialias;              /* by cells; 0: a pixel's centre decides, as
-                                   published */
-    int dither;                 /* when encoding to 8 bits; deterministic */
-    struct glint_stop stop;     /* copied; its mask is kept */
+    int dither;             /* when encoding to 8 bits; deterministic */
+    struct glint_stop stop; /* copied; its mask is kept */
+
+    /* By edges: the irradiance of a cell is rounded to so many steps an octave,
+     * 1 .. 4096, and edges between equal cells are not drawn; 0: not rounded */
+    int irradiance_steps;
+
+    /* By cells */
+    int coarse_log2; /* large tiles, tile_log2 + 1 .. 8; 0: one level only */
+    enum glint_weights weights;
+    int merge_steps;         /* blocks of 2^n cells may become one, 0 .. 4 */
+    int32_t merge_gamma_q16; /* how far edges may disagree, relative */
+    int antialias;           /* 0: a pixel's centre decides, as published */
 
     /* Capacities. glint_flare_bin() reports what a frame needed. */
     int max_bundles;

@@ -192,7 +192,9 @@ struct glint_transfer {
     uint32_t outputs; /* bit KIND is set where there is that output */
     int32_t exponent[GLINT_OUT_KINDS]; /* of what comes out */
     uint8_t head, roots;               /* of the energy */
-    int32_t box[3]; /* middle, half width, half height at this angle */
+    uint8_t energy_up; /* a vertex's energy counts 2^so many times, at most 29:
+                          0 after init, for the caller to set */
+    int32_t box[3];    /* middle, half width, half height at this angle */
     int32_t box_exponent;
     uint8_t hollow;
     enum glint_basis basis;
@@ -245,9 +247,9 @@ struct glint_place {
 
 /* Fills the vertices of a grid of N_CELLS a side over the whole box, row by
  * row, [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a
- * vertex is 2^(exponent[ENERGY] + 29). What does not fit a vertex is lost, and
- * so are a hollow one's rows within, whose rim is a row where N_CELLS is a
- * multiple of 4. */
+ * vertex is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does
+ * not fit a vertex is lost, and so are a hollow one's rows within, whose rim is
+ * a row where N_CELLS is a multiple of 4. */
 void glint_transfer_grid(const struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);

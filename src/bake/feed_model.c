@@ -197,6 +197,21 @@ static bool set_extent(const struct survey *s, struct glint_pupil *p)
 
 /* --------------------------------------------------------------------- feed */
 
+/* Of the largest energy that a transfer can give. */
+static int energy_log2(const struct glint_transfer *t)
+{
+    return t->exponent[GLINT_OUT_ENERGY] + 29;
+}
+
+/* How far energies can be lifted where ENERGY is the most that was seen, with a
+ * quarter more for what lies between the rays of the survey. */
+static int energy_up(const struct glint_transfer *t, double energy)
+{
+    const int up = energy > 0 ? energy_log2(t) - 1 - ilogb(1.25 * energy) : 0;
+
+    return up < 0 ? 0 : up > 29 ? 29 : up;
+}
+
 void glint_feed_plan_model(const struct glint_feed_config *cfg,
                            struct glint_feed *feed)
 {
@@ -213,9 +228,9 @@ void glint_feed_plan_model(const struct glint_feed_config *cfg,
     p->x0_mm = unit * ((double)t.box[0] - t.box[1]);
     p->x1_mm = unit * ((double)t.box[0] + t.box[1]);
     p->y1_mm = unit * t.box[2];
-    feed->energy_unit = ldexp(1, t.exponent[GLINT_OUT_ENERGY] + 29);
     run_survey(&s, &t);
     feed->found = set_extent(&s, p);
+    feed->energy_unit = ldexp(1, energy_log2(&t) - energy_up(&t, p->energy));
     if (feed->found && glint_feed_in_view(cfg, feed))
         feed->n_cells = glint_feed_cells(cfg, bend_mm(&s), outline_mm(&s),
                                          s.up > 0 && s.down > 0);
@@ -236,6 +251,8 @@ void glint_feed_trace_model(const struct glint_feed_config *cfg,
         .middle_y_q8 = cfg->view.height * 128};
     struct glint_transfer t;
 
-    if (transfer_of(cfg, feed, &t))
-        glint_transfer_grid(&t, &place, feed->n_cells, vertex);
+    if (!transfer_of(cfg, feed, &t))
+        return;
+    t.energy_up = (uint8_t)(energy_log2(&t) - ilogb(feed->energy_unit));
+    glint_transfer_grid(&t, &place, feed->n_cells, vertex);
 }

@@ -4,7 +4,6 @@
 #include "base/compiler.h"
 #include "base/q.h"
 #include "tile/clip.h"
-#include "tile/outline.h"
 
 /* Marks of a cell: the size of the block that starts here, as a power of two,
  * or that a larger block has it. */
@@ -122,17 +121,7 @@ static int block_cut(const struct glint_ghost_grid *g, const int32_t *q)
     glint_corners_gather(&corners, g->vertex, q, 4);
     if (corners.area2_q16 < 0)
         corners.area2_q16 = -corners.area2_q16;
-    if (g->raster == GLINT_RASTER_EDGES)
-        return glint_outline_classify(&corners, g->stop);
     return glint_clip_classify(&corners, g->stop);
-}
-
-static int block_thin(const struct glint_ghost_grid *g, const int32_t *q)
-{
-    struct glint_corners corners;
-
-    glint_corners_gather(&corners, g->vertex, q, 4);
-    return g->raster == GLINT_RASTER_EDGES && glint_corners_thin(&corners);
 }
 
 /* The block of 2^SIZE_LOG2 cells at (I, J) can be one primitive: its quarters
@@ -149,7 +138,7 @@ static int block_merges(const struct glint_ghost_grid *g, int i, int j,
         if (!vertex_valid(&g->vertex[q[k]]))
             return 0;
     turn = convexity(g->vertex, q);
-    if (turn == 0 || block_thin(g, q))
+    if (turn == 0)
         return 0;
     for (int k = 0; k < 4; k++) {
         const int ci = i + (k & 1) * half, cj = j + (k >> 1) * half;
@@ -248,34 +237,6 @@ static int emit_cell(struct glint_ghost_grid *g,
     return 0;
 }
 
-/* Adds what is drawn by its edges: nothing is too thin. */
-static void emit_edges(struct glint_ghost_grid *g,
-                       const struct glint_corners *corners,
-                       struct glint_primitive *p, struct glint_primitive *out)
-{
-    const int64_t pixel2 = INT64_C(1) << (2 * GLINT_VERTEX_FRAC + 1);
-    const int64_t area2 =
-        corners->area2_q16 < pixel2 ? pixel2 : corners->area2_q16;
-    int cut;
-
-    if (glint_box_empty(glint_corners_reach(corners, g->width, g->height)))
-        return;
-    cut = glint_outline_classify(corners, g->stop);
-    if (cut < 0)
-        return;
-    if (out) {
-        p->flags =
-            (uint8_t)(cut | (glint_corners_thin(corners) ? GLINT_THIN : 0));
-        out[g->n_primitives] = *p;
-    }
-    /* the most that a pixel can get of it */
-    g->light_q8 +=
-        glint_irradiance_q22(g->bundle, p->share_log2, area2,
-                             2 * GLINT_VERTEX_FRAC + 1, GLINT_LIMIT_Q8) >>
-        14;
-    g->n_primitives++;
-}
-
 /* Adds one primitive with the corners Q if anything of it can be seen. Returns
  * whether its light was dropped. */
 static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
@@ -291,10 +252,7 @@ static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
     if (n == 3)
         p.vertex[3] = -1;
     glint_corners_gather(&corners, g->vertex, p.vertex, n);
-    if (g->raster == GLINT_RASTER_CELLS)
-        return emit_cell(g, &corners, &p, out);
-    emit_edges(g, &corners, &p, out);
-    return 0;
+    return emit_cell(g, &corners, &p, out);
 }
 
 /* A cell that is no convex quad: two triangles, or the one that is left. */
@@ -326,9 +284,7 @@ static int block_tiny(const struct glint_ghost_grid *g, const int32_t *q)
     struct glint_corners corners;
 
     glint_corners_gather(&corners, g->vertex, q, 4);
-    return g->raster == GLINT_RASTER_EDGES
-               ? glint_corners_tiny(&corners, 16)
-               : g->focused && glint_corners_tiny(&corners, 2);
+    return g->focused && glint_corners_tiny(&corners, 2);
 }
 
 static int emit_block(struct glint_ghost_grid *g, int bundle, int i, int j,
@@ -368,10 +324,9 @@ void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
 {
     const int n = grid->bundle->n_cells;
 
-    grid->focused = grid->raster == GLINT_RASTER_CELLS && is_focused(grid);
+    grid->focused = is_focused(grid);
     grid->n_primitives = 0;
     grid->n_dropped = 0;
-    grid->light_q8 = 0;
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++)
             if (grid->level[j * n + i] != COVERED)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * From a bundle's ray grid to primitives.
+ * From a bundle's ray grid to primitives, for the rasteriser of cells.
  *
  *   in   vertices of the grid, row by row
  *   out  convex quads, triangles where a quad is folded or has lost a corner,
@@ -9,8 +9,8 @@
  * Blocks of 2 x 2 equal cells become one where their edges agree, up to four
  * times over [Bodonyi23]. What nothing of can be seen is left out. A cell that
  * lost one corner keeps half of its light, one that lost more is dropped.
- * For the rasteriser of cells, those of a ghost that is focused to a few pixels
- * become points; other cells without area lose their light.
+ * Cells of a ghost that is focused to a few pixels become points; others
+ * without area lose their light.
  */
 #ifndef GLINT_FLARE_GHOST_GRID_H
 #define GLINT_FLARE_GHOST_GRID_H
@@ -25,7 +25,6 @@ struct glint_ghost_grid {
     int first;                         /* of this bundle */
     const struct glint_bundle *bundle;
     const struct glint_stop *stop;
-    enum glint_raster raster;
     int width, height;       /* pixels of the picture */
     int merge_steps;         /* 0 .. 4 */
     int32_t merge_gamma_q16; /* relative */
@@ -33,8 +32,6 @@ struct glint_ghost_grid {
                                 merge found for emit */
     int focused;             /* the whole ghost is a few pixels wide */
     int n_primitives, n_dropped, n_merged;
-    int64_t light_q8; /* what all primitives together could add to a pixel, at
-                         colour 1; by edges only */
 };
 
 /* Decides which blocks of cells become one. */

@@ -206,7 +206,7 @@ static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
 static void clear(struct glint_transfer *t)
 {
     t->outputs = 0;
-    t->head = t->roots = 0;
+    t->head = t->roots = t->energy_up = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
         t->degree_u[k] = t->degree_v[k] = t->shift[k] = 0;
@@ -496,9 +496,11 @@ static void set_vertex(const struct glint_transfer *t,
     v->stop_y_q16 =
         scaled(q_shift(a * s + b * c, 30), to_q16, LIMIT_Q16, &lost);
     set_barrels(t, out, v, &lost);
-    v->energy_q16 =
-        lost ? -1
-             : q_clamp_sat(q_shift(out->at[GLINT_OUT_ENERGY], 13), 0, 1 << 16);
+    v->energy_q16 = lost ? -1
+                         : q_clamp_sat(q_shift(out->at[GLINT_OUT_ENERGY] *
+                                                   (INT64_C(1) << t->energy_up),
+                                               13),
+                                       0, 1 << 16);
 }
 
 static int32_t node_q30(int k, int n_cells)

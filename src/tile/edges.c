@@ -4,247 +4,258 @@
 #include "base/compiler.h"
 #include "base/q.h"
 
-enum { ONE_Q16 = 1 << 16 };
+#define PIXEL_Q40 (INT64_C(1) << 40)
+#define ONE_Q16   (INT64_C(1) << 16)
 
-/* What deposits in one tile. */
-struct pen {
-    uint64_t *sum_q38[3]; /* of the channels that are lit */
-    int64_t light_q22[3];
-    int n_channels;
-    int x0, x1, y0, y1; /* pixels of the tile */
-    int tile_log2;
-};
-
-/* ------------------------------------------------------------------ deposit
+/* --------------------------------------------------------------------- edge
  */
 
-/* Light below 2^43, areas at most 2^16. */
-static void add(const struct pen *pen, int at, int64_t area_q16)
+int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
+                   const int32_t b_q8[2], int32_t light, int32_t other)
 {
-    for (int c = 0; c < pen->n_channels; c++)
-        pen->sum_q38[c][at] += (uint64_t)(pen->light_q22[c] * area_q16);
+    const int up = b_q8[1] < a_q8[1];
+    const int32_t *upper = up ? b_q8 : a_q8, *lower = up ? a_q8 : b_q8;
+
+    if (a_q8[1] == b_q8[1])
+        return 0;
+    *edge = (struct glint_edge){.x_q8 = upper[0],
+                                .y_q8 = upper[1],
+                                .end_y_q8 = lower[1],
+                                .slope_q40 = ((int64_t)lower[0] - upper[0]) *
+                                             (INT64_C(1) << 32) /
+                                             ((int64_t)lower[1] - upper[1]),
+                                .left = up ? other : light,
+                                .right = up ? light : other};
+    return 1;
 }
 
-/* A straight piece of an edge within one row: from X0 to X1 (X0 <= X1) over the
- * height HEIGHT, in several pixels. FIRST and LAST are the pixels of its ends,
- * ROW is where the pixel 0 of the row would be. */
-static void add_wide(const struct pen *pen, int row, int64_t x0_q16,
-                     int64_t x1_q16, int64_t height_q16, int first, int last)
+/* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
+ * slope is rounded towards 0, so it never lies beyond its ends. */
+static int64_t x_at_q40(const struct glint_edge *e, int32_t y_q8)
 {
-    const int64_t size = height_q16 < 0 ? -height_q16 : height_q16;
-    const int64_t rise_q32 = (size << 32) / (x1_q16 - x0_q16);
-    const int begin = first > pen->x0 ? first : pen->x0;
-    const int end = last < pen->x1 - 1 ? last : pen->x1 - 1;
-    int64_t before = 0, low, high;
+    return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
+}
 
-    /* height reached where the edge enters pixel BEGIN */
-    low = begin > first ? (rise_q32 * (begin * (int64_t)ONE_Q16 - x0_q16)) >> 32
-                        : 0;
-    for (int i = begin; i <= end; i++, low = high) {
-        const int64_t right_q16 = (i + 1) * (int64_t)ONE_Q16;
-        /* how far the ends lie from the right side, twice the mean */
-        const int64_t a = i > first ? ONE_Q16 : right_q16 - x0_q16;
-        const int64_t b = i < last ? 0 : right_q16 - x1_q16;
-        int64_t area;
+static int32_t later(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
 
-        high = i < last ? (rise_q32 * (right_q16 - x0_q16)) >> 32 : size;
-        area = low + q_shift((high - low) * (a + b), 17);
-        add(pen, row + i, height_q16 < 0 ? before - area : area - before);
+static int32_t sooner(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
+/* --------------------------------------------------------------------- bins
+ */
+
+/* The pixels that EDGE crosses between two heights; what lies left of REGION is
+ * taken for its first column. */
+static struct glint_box reach(const struct glint_edge *e,
+                              const struct glint_box *region, int32_t top_q8,
+                              int32_t bottom_q8)
+{
+    const int64_t a = x_at_q40(e, top_q8) >> 40;
+    const int64_t b = x_at_q40(e, bottom_q8) >> 40;
+    const int64_t low = a < b ? a : b, high = a < b ? b : a;
+    const int x0 = q_clamp_sat(low, region->x0, region->x1);
+    const int x1 = q_clamp_sat(high, region->x0, region->x1);
+
+    return (struct glint_box){x0, top_q8 >> 8, x1 + 1, (bottom_q8 + 255) >> 8};
+}
+
+typedef void box_fn(struct glint_bins *bins, struct glint_box box, void *ctx);
+
+/* Calls DO_BOX with a box for each row of tiles. */
+static void each_box(const struct glint_edge *e, struct glint_bins *bins,
+                     box_fn *do_box, void *ctx)
+{
+    const struct glint_box *r = &bins->region;
+    const int32_t end_q8 = sooner(e->end_y_q8, r->y1 * 256);
+    int32_t y_q8 = later(e->y_q8, r->y0 * 256);
+
+    while (y_q8 < end_q8) {
+        const int row = ((y_q8 >> 8) - r->y0) >> bins->tile_log2;
+        const int32_t floor_q8 =
+            (r->y0 + ((row + 1) * (1 << bins->tile_log2))) * 256;
+        const int32_t next_q8 = sooner(end_q8, floor_q8);
+
+        do_box(bins, reach(e, r, y_q8, next_q8), ctx);
+        y_q8 = next_q8;
+    }
+}
+
+static void count_box(struct glint_bins *bins, struct glint_box box, void *ctx)
+{
+    (void)ctx;
+    glint_bins_count(bins, box);
+}
+
+static void put_box(struct glint_bins *bins, struct glint_box box, void *ctx)
+{
+    glint_bins_put(bins, box, *(const int32_t *)ctx);
+}
+
+static void span_box(struct glint_bins *bins, struct glint_box box, void *ctx)
+{
+    *(int *)ctx += glint_bins_span(bins, box);
+}
+
+void glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins)
+{
+    each_box(edge, bins, count_box, NULL);
+}
+
+void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
+                    int32_t index)
+{
+    each_box(edge, bins, put_box, &index);
+}
+
+int glint_edge_span(const struct glint_edge *edge,
+                    const struct glint_bins *bins)
+{
+    struct glint_bins same = *bins;
+    int n = 0;
+
+    each_box(edge, &same, span_box, &n);
+    return n;
+}
+
+/* --------------------------------------------------------------------- add
+ */
+
+/* One row of one channel of a tile. */
+struct run {
+    uint64_t *change_q36; /* where pixel 0 of the picture would be */
+    int x0, x1;           /* the tile's columns */
+    int64_t light_q20;
+};
+
+static void change(const struct run *r, int x, int64_t area_q16)
+{
+    r->change_q36[x] += (uint64_t)(r->light_q20 * area_q16);
+}
+
+/* A piece of an edge within one row, from A to B (A <= B) over HEIGHT, in
+ * several pixels. Covered areas rise from pixel to pixel, from 0 to HEIGHT; so
+ * much of each as lies in the tile is what it changes by. */
+static void add_wide(const struct run *r, int64_t a_q40, int64_t b_q40,
+                     int64_t height_q16)
+{
+    const int64_t first = a_q40 >> 40, last = b_q40 >> 40;
+    const int64_t wide_q24 = (b_q40 - a_q40) >> 16;
+    const int64_t rise_q40 = (height_q16 << 40) / (wide_q24 ? wide_q24 : 1);
+    /* with the last pixel of the tile before, if there is one */
+    const int64_t begin = r->x0 > 0 ? r->x0 - 1 : 0;
+    const int64_t from = first > begin ? first : begin;
+    const int64_t to = last < r->x1 - 1 ? last : r->x1 - 1;
+    int64_t before = 0;
+
+    for (int64_t i = from; i <= to; i++) {
+        const int64_t left_q24 = i > first ? (i * PIXEL_Q40 - a_q40) >> 16 : 0;
+        const int64_t right_q24 = ((i + 1) * PIXEL_Q40 - a_q40) >> 16;
+        const int64_t low = (rise_q40 * (left_q24 >> 8)) >> 32;
+        const int64_t high =
+            i < last ? (rise_q40 * (right_q24 >> 8)) >> 32 : height_q16;
+        /* how far the piece's ends lie from the pixel's right side */
+        const int64_t p = i > first ? ONE_Q16 : (right_q24 >> 8);
+        const int64_t q = i < last ? 0 : ((i + 1) * PIXEL_Q40 - b_q40) >> 24;
+        const int64_t area = low + ((high - low) * (p + q) >> 17);
+
+        if (i >= r->x0)
+            change(r, (int)i, area - before);
         before = area;
     }
-    if (last + 1 < pen->x1 && last + 1 > pen->x0)
-        add(pen, row + last + 1,
-            height_q16 < 0 ? before - size : size - before);
+    if (last < r->x1 && last >= r->x0)
+        change(r, (int)last + 1, height_q16 - before);
+    else if (last < r->x0 && r->x0 == 0)
+        change(r, 0, height_q16);
 }
 
-/* The same for any ends; HEIGHT is positive where the edge runs up. */
-static void add_run(const struct pen *pen, int y, int64_t x0_q16,
-                    int64_t x1_q16, int64_t height_q16)
+/* From A to B, in any order, over HEIGHT. */
+static inline void add_piece(const struct run *r, int64_t a_q40, int64_t b_q40,
+                             int64_t height_q16)
 {
-    const int64_t low = x0_q16 < x1_q16 ? x0_q16 : x1_q16;
-    const int64_t high = x0_q16 < x1_q16 ? x1_q16 : x0_q16;
-    const int first = (int)(low >> 16);
-    const int last = high > low ? (int)((high - 1) >> 16) : first;
-    const int row = ((y - pen->y0) << pen->tile_log2) - pen->x0;
-    int64_t area;
+    const int64_t i = a_q40 >> 40;
 
-    if (first >= pen->x1)
-        return;
-    if (last < pen->x0) {
-        add(pen, row + pen->x0, height_q16);
-        return;
-    }
-    if (first < last) {
-        add_wide(pen, row, low, high, height_q16, first, last);
-        return;
-    }
-    area = q_shift((height_q16 < 0 ? -height_q16 : height_q16) *
-                       (2 * (first + 1) * (int64_t)ONE_Q16 - low - high),
-                   17);
-    area = height_q16 < 0 ? -area : area;
-    add(pen, row + first, area);
-    if (first + 1 < pen->x1)
-        add(pen, row + first + 1, height_q16 - area);
+    if (i == b_q40 >> 40) {
+        const int64_t far_q16 =
+            2 * ONE_Q16 - ((a_q40 >> 24) & 0xffff) - ((b_q40 >> 24) & 0xffff);
+        const int64_t area = (height_q16 * far_q16) >> 17;
+
+        if (i >= r->x0 && i < r->x1) {
+            change(r, (int)i, area);
+            change(r, (int)i + 1, height_q16 - area);
+        } else if (i < 0 && r->x0 == 0)
+            change(r, 0, height_q16);
+    } else if (a_q40 < b_q40)
+        add_wide(r, a_q40, b_q40, height_q16);
+    else
+        add_wide(r, b_q40, a_q40, height_q16);
 }
 
-/* An edge, from its upper end to its lower one. */
-struct line {
-    int64_t x0_q16, y0_q16, x1_q16, y1_q16;
-    int64_t slope; /* of x, 2^SHIFT */
-    int shift;
-};
-
-static void slope_init(struct line *l)
+/* All rows of one channel. */
+static void add_channel(const struct glint_edge *e, int64_t light_q20,
+                        const struct glint_edge_sums *s, int channel)
 {
-    const int64_t dx = l->x1_q16 - l->x0_q16;
-    const int wide = bit_length((uint64_t)(dx < 0 ? -dx : dx));
+    const struct glint_box *t = &s->tile;
+    const int32_t end_q8 = sooner(e->end_y_q8, t->y1 * 256);
+    int32_t y_q8 = later(e->y_q8, t->y0 * 256);
+    const int row = (channel << s->tile_log2) + (y_q8 >> 8) - t->y0;
+    struct run r = {s->change_q36 + (ptrdiff_t)row * s->stride - t->x0, t->x0,
+                    t->x1, light_q20};
+    int64_t x_q40 = x_at_q40(e, y_q8);
 
-    /* 2^-28 of the height is a step up to 2^12 pixels */
-    l->shift = wide > 34 ? 62 - wide : 28;
-    l->slope = dx * (INT64_C(1) << l->shift) / (l->y1_q16 - l->y0_q16);
-}
+    for (; y_q8 < end_q8; r.change_q36 += s->stride) {
+        const int32_t next_q8 = sooner((y_q8 | 255) + 1, end_q8);
+        const int32_t height_q8 = next_q8 - y_q8;
+        const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;
 
-/* Where the edge is at height Y: the same for every tile and both directions;
- * never beyond its ends, since the slope is rounded towards 0. */
-static int64_t line_at(const struct line *l, int64_t y_q16)
-{
-    return y_q16 == l->y1_q16 ? l->x1_q16
-                              : l->x0_q16 + l->slope * (y_q16 - l->y0_q16) /
-                                                (INT64_C(1) << l->shift);
-}
-
-static void add_line(const struct pen *pen, struct line *l, int up)
-{
-    const int64_t top = pen->y0 * (int64_t)ONE_Q16;
-    const int64_t bottom = pen->y1 * (int64_t)ONE_Q16;
-    const int64_t left = pen->x0 * (int64_t)ONE_Q16;
-    const int64_t right = pen->x1 * (int64_t)ONE_Q16;
-    const int64_t end = l->y1_q16 < bottom ? l->y1_q16 : bottom;
-    const int beside = l->x0_q16 <= left && l->x1_q16 <= left;
-    int64_t y = l->y0_q16 > top ? l->y0_q16 : top, x = left;
-
-    if (y >= end || (l->x0_q16 >= right && l->x1_q16 >= right))
-        return;
-    if (!beside) {
-        slope_init(l);
-        x = line_at(l, y);
-    }
-    while (y < end) {
-        const int64_t floor_q16 = (y | (ONE_Q16 - 1)) + 1;
-        const int64_t next = floor_q16 < end ? floor_q16 : end;
-        const int64_t x_next = beside ? left : line_at(l, next);
-
-        if (beside)
-            add(pen, (int)((y >> 16) - pen->y0) << pen->tile_log2,
-                up ? next - y : y - next);
-        else
-            add_run(pen, (int)(y >> 16), x, x_next, up ? next - y : y - next);
-        y = next;
-        x = x_next;
+        add_piece(&r, x_q40, next_q40, (int64_t)height_q8 << 8);
+        y_q8 = next_q8;
+        x_q40 = next_q40;
     }
 }
 
-static void add_outline(const struct pen *pen, const struct glint_outline *o)
+static int64_t coloured_q20(int32_t light, int32_t colour_q14)
 {
-    for (int i = 0; i < o->n; i++) {
-        const int j = i + 1 < o->n ? i + 1 : 0;
-        const int up = o->y_q16[j] < o->y_q16[i];
-        const int upper = up ? j : i, lower = up ? i : j;
-        struct line line = {.x0_q16 = o->x_q16[upper],
-                            .y0_q16 = o->y_q16[upper],
-                            .x1_q16 = o->x_q16[lower],
-                            .y1_q16 = o->y_q16[lower]};
+    const int64_t light_q20 = glint_light_q20(light);
 
-        if (line.y0_q16 < line.y1_q16)
-            add_line(pen, &line, up);
+    return colour_q14 == 1 << 14 ? light_q20
+                                 : q_shift(light_q20 * colour_q14, 14);
+}
+
+void glint_edge_add(const struct glint_edge *edge, const int32_t rgb_q14[3],
+                    const struct glint_edge_sums *sums)
+{
+    for (int c = 0; c < 3; c++) {
+        const int64_t light_q20 = coloured_q20(edge->right, rgb_q14[c]) -
+                                  coloured_q20(edge->left, rgb_q14[c]);
+
+        if (light_q20 != 0)
+            add_channel(edge, light_q20, sums, c);
     }
 }
 
-/* ---------------------------------------------------------------- primitive
+/* ------------------------------------------------------------------- finish
  */
 
-/* The pen's light: irradiance below 2^41 times energy and colour. */
-static void ink(struct pen *pen, const struct glint_edges *e,
-                const struct glint_bundle *bundle, int64_t irradiance_q22,
-                int32_t energy_q16, uint64_t *sum_q38)
+void glint_edge_finish(const struct glint_edge_sums *sums, int channel, int row,
+                       int32_t *light_q20)
 {
-    const int64_t light_q22 = q_shift(irradiance_q22 * energy_q16, 16);
+    const int at = (channel << sums->tile_log2) + row;
+    uint64_t *sum_q36 = sums->change_q36 + (ptrdiff_t)at * sums->stride;
+    uint64_t light_q36 = sums->carry_q36[at];
+    const int n = sums->tile.x1 - sums->tile.x0;
 
-    pen->n_channels = 0;
-    for (int c = 0; c < 3; c++) {
-        const int64_t lit_q22 = q_shift(light_q22 * bundle->rgb_q14[c], 14);
-
-        if (lit_q22 == 0)
-            continue;
-        pen->sum_q38[pen->n_channels] =
-            sum_q38 + ((ptrdiff_t)c << (2 * e->tile_log2));
-        pen->light_q22[pen->n_channels++] = lit_q22;
+    for (int x = 0; x < n; x++) {
+        light_q36 += sum_q36[x];
+        sum_q36[x] = 0;
+        light_q20[x] = q_clamp_sat(((int64_t)light_q36 >> 16) +
+                                       ((int64_t)light_q36 >> 15 & 1),
+                                   INT32_MIN, INT32_MAX);
     }
-}
-
-/* A primitive that is thinner than a strip: its light, spread over one. */
-static int64_t strip_light_q22(const struct glint_edges *e,
-                               const struct glint_primitive *p,
-                               struct glint_outline *o, int share_log2)
-{
-    const int64_t share_q28 = o->share_q28;
-    const int64_t area2_q32 = glint_outline_widen_q32(o);
-
-    return q_shift(glint_irradiance_q22(&e->bundle[p->bundle], share_log2,
-                                        area2_q32, 33, e->limit_q8) *
-                       (share_q28 >> 8),
-                   20);
-}
-
-void glint_edges_primitive(const struct glint_edges *edges, int primitive,
-                           struct glint_box tile, struct glint_outline *outline,
-                           uint64_t *sum_q38)
-{
-    const struct glint_primitive *p = &edges->primitive[primitive];
-    const struct glint_bundle *bundle = &edges->bundle[p->bundle];
-    const int cut = p->flags & (GLINT_CUT_STOP | GLINT_CUT_BARREL);
-    struct glint_corners c;
-    struct pen pen = {.x0 = tile.x0,
-                      .x1 = tile.x1,
-                      .y0 = tile.y0,
-                      .y1 = tile.y1,
-                      .tile_log2 = edges->tile_log2};
-
-    glint_corners_gather(&c, edges->vertex, p->vertex,
-                         glint_primitive_corners(p));
-    for (int k = 0; k < (cut ? c.n - 2 : 1); k++) {
-        int64_t light_q22;
-
-        if (cut)
-            glint_outline_cut(outline, &c, k, edges->stop, cut);
-        else
-            glint_outline_whole(outline, &c);
-        if (outline->n == 0)
-            continue;
-        light_q22 = p->flags & GLINT_THIN
-                        ? strip_light_q22(edges, p, outline,
-                                          p->share_log2 - (cut && c.n == 4))
-                        : glint_irradiance_q22(
-                              bundle, p->share_log2, c.area2_q16,
-                              2 * GLINT_VERTEX_FRAC + 1, edges->limit_q8);
-        ink(&pen, edges, bundle, light_q22, outline->energy_q16, sum_q38);
-        add_outline(&pen, outline);
-    }
-}
-
-void glint_edges_finish(const struct glint_edges *edges, struct glint_box tile,
-                        int64_t *sum)
-{
-    for (int c = 0; c < 3; c++)
-        for (int y = 0; y < tile.y1 - tile.y0; y++) {
-            int64_t *row = sum + (((ptrdiff_t)c << edges->tile_log2 | y)
-                                  << edges->tile_log2);
-            uint64_t light_q38 = 0;
-
-            for (int x = 0; x < tile.x1 - tile.x0; x++) {
-                light_q38 += (uint64_t)row[x];
-                row[x] =
-                    ((int64_t)light_q38 >> 18) + ((int64_t)light_q38 >> 17 & 1);
-            }
-        }
+    sums->carry_q36[at] = light_q36 + sum_q36[n];
+    sum_q36[n] = 0;
 }

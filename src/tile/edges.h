@@ -1,51 +1,98 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds primitives to one tile by their edges alone.
+ * Adds light to one tile's sums by the edges across which it changes.
  *
- *   in   the visible polygon of each primitive (outline.h), one irradiance each
- *   out  sums of linear light per pixel, by the exact area that polygons cover
+ * An edge adds its light to all that lies to its right: to a pixel in
+ * proportion to the area of the part it covers. So a sum is changed only where
+ * an edge runs, by the difference of that area from one pixel to the next, and
+ * one running sum along each row turns changes into light: the inside of a
+ * ghost costs nothing.
  *
- * Method: what an edge adds to a pixel is the area of the pixel to the right of
- * it, times the irradiance; up edges count plus, down edges minus, so that a
- * polygon is the sum of its edges. Along a row that area changes only where the
- * edge runs, so only changes are noted, and one running sum at the end makes
- * light of them. The inside of a ghost costs nothing.
+ * Edges of a closed outline cancel to the last bit, because the heights by
+ * which they cross a row do, and light times height is never rounded. What an
+ * edge adds to a pixel follows from the edge alone, so that neither tiles nor
+ * the order of edges change any bit. A tile's rows begin with what runs in from
+ * its left neighbour and end with what it leaves to the right one.
  *
- * The area of an edge in a pixel depends on the edge and the pixel alone, and
- * the areas of a polygon's edges cancel exactly to its right: tiles, their
- * size and the order of primitives change no bit. What lies to the left of a
- * tile goes with its whole height into the first column.
- *
- * Formats: pixels, heights and areas _q16, light _q22, sums _q38 modulo 2^64.
- * The caller's LIMIT keeps the final sums below 2^63: see glint_flare_bin.
- * What comes in between may wrap, and wraps back.
+ * Formats: corners _q8, slopes _q40, areas _q16, light _q20 below 2^40, sums
+ * _q36 modulo 2^64. The caller's limit on light keeps final sums below 2^63
+ * (flare.c); what comes in between may wrap, and wraps back.
  */
 #ifndef GLINT_TILE_EDGES_H
 #define GLINT_TILE_EDGES_H
 
 #include <stdint.h>
 
-#include "tile/outline.h"
+#include "base/compiler.h"
+#include "base/q.h"
+#include "tile/bins.h"
 #include "tile/primitive.h"
 
-struct glint_edges {
-    const struct glint_vertex *vertex;
-    const struct glint_primitive *primitive;
-    const struct glint_bundle *bundle;
-    const struct glint_stop *stop;
-    int32_t
-        limit_q8; /* of a primitive's light in a pixel, energy 1, colour 1 */
-    int tile_log2;
+struct glint_edge {     /* 32 bytes */
+    int64_t slope_q40;  /* of x, pixels, per 1/256 pixel of y */
+    int32_t x_q8, y_q8; /* upper end */
+    int32_t end_y_q8;   /* lower end, > y */
+    /* Light on its left and right side, packed; negative where a ghost is
+     * mirrored. */
+    int32_t left, right;
+    uint16_t bundle, zero;
 };
 
-/* Adds PRIMITIVE to SUM_Q38, [3][side * side], as changes from pixel to pixel
- * of the tile whose pixels are TILE. OUTLINE is scratch. */
-void glint_edges_primitive(const struct glint_edges *edges, int primitive,
-                           struct glint_box tile, struct glint_outline *outline,
-                           uint64_t *sum_q38);
+/* Light of 25 bits and an exponent: the product of all but the lower five bits
+ * with two to the power of these, display white _q20. Every such value is a
+ * whole number, so that what cancels does so exactly. */
+static inline int32_t glint_light_pack(int64_t light_q20)
+{
+    const int wide =
+        bit_length((uint64_t)(light_q20 < 0 ? -light_q20 : light_q20));
+    const int exponent = wide > 25 ? wide - 25 : 0;
 
-/* Turns changes into light, in place, for the pixels of TILE. */
-void glint_edges_finish(const struct glint_edges *edges, struct glint_box tile,
-                        int64_t *sum);
+    return q_narrow(q_shift(light_q20, exponent) * 32 + exponent);
+}
+
+static inline int64_t glint_light_q20(int32_t packed)
+{
+    return (packed >> 5) * (INT64_C(1) << (packed & 31));
+}
+
+/* Sums of one tile. */
+struct glint_edge_sums {
+    struct glint_box tile;
+    /* [3][side rows][stride], R, G, B: changes, and past the tile's last column
+     * one more for what the next tile begins with. All 0 between tiles. */
+    uint64_t *change_q36;
+    uint64_t *carry_q36; /* [3][side rows]: what runs in, and out */
+    int tile_log2, stride;
+};
+
+/* Space of GLINT_EDGE_STRIDE(log2) words a row: a multiple of 4 words. */
+#define GLINT_EDGE_STRIDE(log2) ((1 << (log2)) + 4)
+
+/* The edge from A to B, (x, y) _q8, with LIGHT on the side that is the right
+ * one where it runs up, y falling, and OTHER on the other side; returns 0 if it
+ * is level. */
+int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
+                   const int32_t b_q8[2], int32_t light, int32_t other);
+
+/* Puts EDGE, number INDEX, into the tiles it crosses (or counts it): glint_bins
+ * with a box for each row of tiles. What lies left of the picture belongs to
+ * the first column. */
+void glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins);
+void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
+                    int32_t index);
+/* The entries that takes. */
+int glint_edge_span(const struct glint_edge *edge,
+                    const struct glint_bins *bins);
+
+/* Adds EDGE in the colour RGB to the changes of SUMS. Light is coloured before
+ * sides are compared, so that edges still cancel. */
+void glint_edge_add(const struct glint_edge *edge, const int32_t rgb_q14[3],
+                    const struct glint_edge_sums *sums);
+
+/* The light of row ROW of the tile in channel CHANNEL, one value a pixel; its
+ * changes are cleared, its carry goes on. Values saturate at the int32 range.
+ */
+void glint_edge_finish(const struct glint_edge_sums *sums, int channel, int row,
+                       int32_t *light_q20);
 
 #endif

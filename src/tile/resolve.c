@@ -7,8 +7,8 @@
 /* Part of a picture that one tile covers, and its sums. */
 struct patch {
     int x0, y0, x1, y1;
-    int tile_log2;
-    const int64_t *acc_q20[3]; /* R, G, B */
+    int stride;
+    const int32_t *acc_q20[3]; /* R, G, B */
 };
 
 /* Rank of (x, y) among the 64 thresholds of the recursive ordered dither: the
@@ -34,13 +34,13 @@ void glint_resolve_init(struct glint_resolve *resolve,
 
 /* Light to add: 0 .. white, since more saturates whatever is there. Twice white
  * lifts a channel below black, too. */
-static int32_t light_of_sum_q20(int64_t sum_q20)
+static int32_t light_of_sum_q20(int32_t sum_q20)
 {
     return q_clamp_sat(sum_q20, 0, 2 * LINEAR_WHITE_Q20);
 }
 
 static uint8_t code_plus_light(const struct glint_curve *curve, uint8_t code,
-                               int64_t sum_q20, int32_t round_q7)
+                               int32_t sum_q20, int32_t round_q7)
 {
     const int32_t light_q20 =
         curve->decode_q20[code] + light_of_sum_q20(sum_q20);
@@ -55,7 +55,7 @@ static void resolve_rgb24(const struct glint_resolve *r,
                           const struct patch *p)
 {
     for (int y = p->y0; y < p->y1; y++) {
-        const int row = (y - p->y0) << p->tile_log2;
+        const int row = (y - p->y0) * p->stride;
         uint8_t *px = image->plane[0] + y * image->stride_bytes[0] + 3 * p->x0;
 
         for (int x = p->x0; x < p->x1; x++, px += 3)
@@ -109,7 +109,7 @@ static void resolve_grey(const struct glint_resolve *r,
                          const struct glint_image *image, const struct patch *p)
 {
     for (int y = p->y0; y < p->y1; y++) {
-        const int row = (y - p->y0) << p->tile_log2;
+        const int row = (y - p->y0) * p->stride;
         uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
 
         for (int x = p->x0; x < p->x1; x++) {
@@ -171,7 +171,7 @@ static void resolve_block(const struct glint_resolve *r,
     int lit = 0;
 
     for (int y = b->y; y < b->y + (1 << b->log2_ny); y++) {
-        const int row = (y - p->y0) << p->tile_log2;
+        const int row = (y - p->y0) * p->stride;
         uint8_t *luma = image->plane[0] + y * image->stride_bytes[0];
 
         for (int x = b->x; x < b->x + (1 << b->log2_nx); x++)
@@ -214,44 +214,34 @@ static void resolve_ycc(const struct glint_resolve *r,
     }
 }
 
-static int32_t add_linear_q20(int32_t light_q20, int64_t sum_q20)
-{
-    const int64_t reach = INT64_C(1) << 33; /* further than int32 is wide */
-    const int64_t held_q20 = sum_q20 < -reach  ? -reach
-                             : sum_q20 > reach ? reach
-                                               : sum_q20;
-
-    return q_clamp_sat(light_q20 + held_q20, INT32_MIN, INT32_MAX);
-}
-
 static void resolve_linear(const struct glint_image *image,
                            const struct patch *p)
 {
     for (int y = p->y0; y < p->y1; y++) {
-        const int row = (y - p->y0) << p->tile_log2;
+        const int row = (y - p->y0) * p->stride;
         int32_t *px_q20 =
             (int32_t *)(void *)(image->plane[0] + y * image->stride_bytes[0]) +
             3 * p->x0;
 
         for (int x = p->x0; x < p->x1; x++, px_q20 += 3)
             for (int i = 0; i < 3; i++)
-                px_q20[i] =
-                    add_linear_q20(px_q20[i], p->acc_q20[i][row + x - p->x0]);
+                px_q20[i] = q_clamp_sat((int64_t)px_q20[i] +
+                                            p->acc_q20[i][row + x - p->x0],
+                                        INT32_MIN, INT32_MAX);
     }
 }
 
 void glint_resolve_tile(const struct glint_resolve *resolve,
                         const struct glint_image *image, int x0, int y0, int x1,
-                        int y1, int tile_log2, const int64_t *acc_q20)
+                        int y1, const struct glint_resolve_light *light)
 {
-    const size_t pixels = (size_t)1 << (2 * tile_log2);
     const struct patch p = {
         .x0 = x0,
         .y0 = y0,
         .x1 = x1,
         .y1 = y1,
-        .tile_log2 = tile_log2,
-        .acc_q20 = {acc_q20, acc_q20 + pixels, acc_q20 + 2 * pixels}};
+        .stride = light->stride,
+        .acc_q20 = {light->rgb_q20[0], light->rgb_q20[1], light->rgb_q20[2]}};
 
     switch (image->format) {
     case GLINT_RGB24:

@@ -2,7 +2,7 @@
  *
  * From one tile's accumulators to pixels of the picture.
  *
- *   in   linear light to add, int64 _q20 per channel, 1 = display white;
+ *   in   linear light to add, int32 _q20 per channel, 1 = display white;
  *        negative sums (colours outside the gamut) count as 0
  *   out  the picture's own codes, changed in place: decode to linear, add,
  *        encode. A pixel whose sums are 0 keeps its code exactly, whatever the
@@ -43,14 +43,19 @@ struct glint_resolve { /* 6.4 KiB: too much for a stack */
 void glint_resolve_init(struct glint_resolve *resolve,
                         const struct glint_image *image, int dither);
 
-/* Adds ACC to the pixels X0 .. X1 - 1, Y0 .. Y1 - 1 of IMAGE. ACC is [3][side *
- * side] with side = 1 << TILE_LOG2, pixel (X0, Y0) first, channels R, G, B.
+/* Light to add, pixel (x0, y0) first, row by row. */
+struct glint_resolve_light {
+    const int32_t *rgb_q20[3]; /* R, G, B */
+    int stride;                /* values */
+};
+
+/* Adds LIGHT to the pixels X0 .. X1 - 1, Y0 .. Y1 - 1 of IMAGE.
  * X0 and Y0 are even, X1 and Y1 too but at the picture's edges; then tiles
  * share no sample and may be resolved in any order, or at once.
  * GLINT_LINEAR_Q20 pictures (4-byte aligned) get the sums added as they are,
  * saturating at the int32 range, negative ones too. */
 void glint_resolve_tile(const struct glint_resolve *resolve,
                         const struct glint_image *image, int x0, int y0, int x1,
-                        int y1, int tile_log2, const int64_t *acc_q20);
+                        int y1, const struct glint_resolve_light *light);
 
 #endif

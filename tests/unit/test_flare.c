@@ -282,6 +282,67 @@ static void test_edges_agree_with_cells(void **state)
     assert_true(total(pixels, 0) < 1.001 * total(want, 0));
 }
 
+static int draw_number(int n)
+{
+    static uint32_t seed = 7;
+
+    seed = seed * 1664525 + 1013904223;
+    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
+}
+
+static struct ghost random_ghost(void)
+{
+    const int size = 3 + draw_number(40);
+
+    return (struct ghost){
+        4 + draw_number(29),
+        draw_number(WIDTH - 60) - 20,
+        draw_number(HEIGHT),
+        size,
+        draw_number(1500) - 750, /* some are folded */
+        draw_number(2) ? 1 : -1,
+        draw_number(2000) - 1000,
+        draw_number(4),
+        {16384 - draw_number(20000), draw_number(16384), 16384}};
+}
+
+/* An outline that does not close to the last bit would leave a streak to the
+ * right end of its rows. */
+static void test_outlines_close(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 400; k++) {
+        struct glint_flare_config c = base_config();
+        const struct ghost g = random_ghost();
+
+        c.stop.n_blades = k & 3 ? 8 : 0;
+        c.stop.apothem_q16 -= draw_number(30000);
+        c.irradiance_steps = draw_number(3) * 20;
+        c.tile_log2 = 3 + draw_number(4);
+        draw_list(c, &g, 1, pixels);
+        for (int y = 0; y < HEIGHT; y++)
+            for (int i = 0; i < 3; i++)
+                assert_int_equal(pixels[3 * ((y + 1) * WIDTH - 1) + i], 0);
+    }
+}
+
+/* Steps change the light of a cell by half of one at most. */
+static void test_steps(void **state)
+{
+    static int32_t stepped[3 * WIDTH * HEIGHT];
+    struct glint_flare_config c = base_config();
+    const struct ghost g = {24, 100, 75, 55, 60, 1, 200, 4, {16384, 0, 0}};
+
+    (void)state;
+    draw_list(c, &g, 1, pixels);
+    c.irradiance_steps = 10;
+    draw_list(c, &g, 1, stepped);
+    assert_memory_not_equal(stepped, pixels, sizeof pixels);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        assert_true(20 * llabs((long long)stepped[i] - pixels[i]) <=
+                    pixels[i] + 20);
+}
+
 /* ------------------------------------------------------- polygons by hand */
 
 /* One cell of flux 64 and energy 1, corners in order round it, in 1/256 px. */
@@ -694,9 +755,8 @@ static void test_golden(void **state)
     (void)state;
     assert_non_null(file);
     golden_case(file, update, "edges", c);
-    c.merge_steps = 4;
-    c.merge_gamma_q16 = 6554;
-    golden_case(file, update, "edges-merged", c);
+    c.irradiance_steps = 35;
+    golden_case(file, update, "edges-stepped", c);
     c = base_config();
     c.stop.n_blades = 0;
     golden_case(file, update, "edges-circle", c);
@@ -727,6 +787,8 @@ int main(void)
         cmocka_unit_test(test_focused_light_arrives),
         cmocka_unit_test(test_flat_inside),
         cmocka_unit_test(test_edges_agree_with_cells),
+        cmocka_unit_test(test_outlines_close),
+        cmocka_unit_test(test_steps),
         cmocka_unit_test(test_rectangle_by_hand),
         cmocka_unit_test(test_triangle_by_hand),
         cmocka_unit_test(test_thin_light_arrives),

@@ -29,7 +29,7 @@ enum {
 struct fixture {
     struct glint_image image;
     uint8_t plane[3][PLANE_BYTES], before[3][PLANE_BYTES];
-    int64_t light_q20[3][MAX_SIDE * MAX_SIDE];
+    int32_t light_q20[3][MAX_SIDE * MAX_SIDE];
 };
 
 static struct fixture fixture;
@@ -100,7 +100,9 @@ static void fill(int plane, int low, int high)
 static void add_light(int dither)
 {
     const struct glint_image *image = &fixture.image;
-    int64_t acc_q20[3][TILE * TILE];
+    int32_t acc_q20[3][TILE * TILE];
+    const struct glint_resolve_light light = {
+        {acc_q20[0], acc_q20[1], acc_q20[2]}, TILE};
 
     memcpy(fixture.before, fixture.plane, sizeof fixture.before);
     glint_resolve_init(&resolve, image, dither);
@@ -116,8 +118,7 @@ static void add_light(int dither)
                     for (int x = x0; x < x1; x++)
                         acc_q20[i][(y - y0) * TILE + x - x0] =
                             fixture.light_q20[i][y * image->width + x];
-            glint_resolve_tile(&resolve, image, x0, y0, x1, y1, TILE_LOG2,
-                               acc_q20[0]);
+            glint_resolve_tile(&resolve, image, x0, y0, x1, y1, &light);
         }
 }
 
@@ -277,7 +278,7 @@ static void check_grey(double within)
 
     for (int y = 0; y < down(0); y++)
         for (int x = 0; x < across(0); x++) {
-            const int64_t *light_q20[3] = {fixture.light_q20[0],
+            const int32_t *light_q20[3] = {fixture.light_q20[0],
                                            fixture.light_q20[1],
                                            fixture.light_q20[2]};
             const double weight[3] = {0.2126, 0.7152, 0.0722};
@@ -321,7 +322,7 @@ static void fill_light(void)
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < MAX_SIDE * MAX_SIDE; k++) {
-            const int64_t size_q20 = draw_random(1 << draw_random(23));
+            const int32_t size_q20 = draw_random(1 << draw_random(23));
 
             fixture.light_q20[i][k] = draw_random(3) ? size_q20 : -size_q20;
         }
@@ -424,7 +425,7 @@ static void test_white_saturates(void **state)
                 fill(i, 128, 128);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 7 * 5; j++)
-                    fixture.light_q20[i][j] = INT64_MAX >> j;
+                    fixture.light_q20[i][j] = INT32_MAX >> (j / 4);
             add_light(0);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
                 for (int y = 0; y < down(i); y++)
@@ -534,11 +535,13 @@ static void test_dither_in_ycc_stays_within_a_code(void **state)
 static void test_linear_adds_and_saturates(void **state)
 {
     static int32_t px_q20[2][9]; /* two rows of three pixels, one unused */
-    int64_t acc_q20[3][4] = {{5, INT64_MAX, -7, 1},
-                             {-9, INT64_MIN, 1 << 20, 2},
-                             {0, INT32_MAX, INT64_C(1) << 40, 3}};
+    const int32_t acc_q20[3][4] = {{5, INT32_MAX, -7, 1},
+                                   {-9, INT32_MIN, 1 << 20, 2},
+                                   {0, INT32_MAX, INT32_MAX - 9, 3}};
+    const struct glint_resolve_light light = {
+        {acc_q20[0], acc_q20[1], acc_q20[2]}, 2};
     const int32_t want_q20[2][9] = {
-        {15, 1, 10, INT32_MAX, INT32_MIN, INT32_MAX, 10, 10, 10},
+        {15, 1, 10, INT32_MAX, INT32_MIN + 10, INT32_MAX, 10, 10, 10},
         {3, 1048586, INT32_MAX, 11, 12, 13, 10, 10, 10}};
     const struct glint_image image = {.format = GLINT_LINEAR_Q20,
                                       .width = 2,
@@ -550,7 +553,7 @@ static void test_linear_adds_and_saturates(void **state)
     for (int k = 0; k < 18; k++)
         px_q20[k / 9][k % 9] = 10;
     glint_resolve_init(&resolve, &image, 0);
-    glint_resolve_tile(&resolve, &image, 0, 0, 2, 2, 1, acc_q20[0]);
+    glint_resolve_tile(&resolve, &image, 0, 0, 2, 2, &light);
     assert_memory_equal(px_q20, want_q20, sizeof px_q20);
 }
 

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Drawing by edges: bundles to edges, edges to tiles, rows of tiles to pixels.
+ */
+#include "base/compiler.h"
+#include "base/q.h"
+#include "flare/state.h"
+
+/* ------------------------------------------------------------------- bundles
+ */
+
+/* What a bundle sends at energy 1, display white times pixels, held at 2^26. */
+static int64_t flux_of(const struct glint_bundle *b)
+{
+    const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* 2^20 at most */
+    const int up = b->flux_exponent - 31 + 8;
+    const int64_t most_q8 = INT64_C(1) << 34, flux = b->flux_q31 * cells;
+
+    if (b->flux_q31 == 0 || up < -62)
+        return 0;
+    if (up + bit_length((uint64_t)flux) > 34)
+        return most_q8 >> 8;
+    return ((up < 0 ? flux >> -up : flux << up) >> 8) + 1;
+}
+
+/* Sums of q36 in colours up to 4 stay below 2^63 while no pixel gets more than
+ * 2^24. No cell can give a pixel more than its flux; where all flux together is
+ * more than that, each cell's share is cut down to what it may have. */
+static int32_t light_limit_q8(const struct glint_flare *f)
+{
+    const int64_t most = INT64_C(1) << 24;
+    int64_t flux = 0, cells = 1, share_q8;
+
+    for (int i = 0; i < f->n_bundles; i++) {
+        flux += flux_of(&f->bundle[i]);
+        cells += (int64_t)f->bundle[i].n_cells * f->bundle[i].n_cells;
+    }
+    if (flux < most)
+        return GLINT_LIMIT_Q8;
+    share_q8 = (most << 8) / (2 * cells);
+    return (int32_t)(share_q8 < GLINT_LIMIT_Q8 ? share_q8 : GLINT_LIMIT_Q8);
+}
+
+static void emit_bundle(struct glint_flare *f, int bundle,
+                        struct glint_flare_worker *w)
+{
+    struct glint_bundle_slot *slot = &f->slot[bundle];
+    struct glint_ghost_edges ghost = {.vertex = f->vertex + slot->first_vertex,
+                                      .bundle = &f->bundle[bundle],
+                                      .number = (uint16_t)bundle,
+                                      .stop = &f->cfg.stop,
+                                      .width = f->cfg.width,
+                                      .height = f->cfg.height,
+                                      .limit_q8 = f->limit_q8,
+                                      .steps = f->cfg.irradiance_steps,
+                                      .rows = w->rows,
+                                      .edge =
+                                          f->edge + w->first_edge + w->n_edges,
+                                      .max_edges = w->max_edges - w->n_edges};
+
+    glint_ghost_edges_emit(&ghost);
+    slot->first = -1;
+    slot->n = ghost.n_edges;
+    slot->n_dropped = ghost.n_dropped;
+    slot->n_merged = 0;
+    if (ghost.n_edges > ghost.max_edges)
+        return;
+    slot->first = w->first_edge + w->n_edges;
+    w->n_edges += ghost.n_edges;
+}
+
+static void emit_job(void *ctx, int job, int worker)
+{
+    struct glint_flare *f = ctx;
+
+    emit_bundle(f, job, &f->worker[worker]);
+}
+
+/* Gives each of N workers an equal part of the edges. */
+static void share_out(struct glint_flare *f, int n)
+{
+    const int part = f->cfg.max_primitives / n;
+
+    for (int i = 0; i < n; i++) {
+        f->worker[i].first_edge = i * part;
+        f->worker[i].max_edges = part;
+        f->worker[i].n_edges = 0;
+    }
+}
+
+static int all_placed(const struct glint_flare *f)
+{
+    for (int i = 0; i < f->n_bundles; i++)
+        if (f->slot[i].first < 0)
+            return 0;
+    return 1;
+}
+
+/* In order, into one list: what is left out does not hang on which worker came
+ * first. */
+static void emit_in_order(struct glint_flare *f)
+{
+    int full = 0;
+
+    share_out(f, 1);
+    for (int i = 0; i < f->n_bundles; i++) {
+        emit_bundle(f, i, &f->worker[0]);
+        full |= f->slot[i].first < 0;
+        if (full)
+            f->slot[i].first = -1;
+    }
+}
+
+static void emit(struct glint_flare *f)
+{
+    share_out(f, glint_workers_count(f->cfg.workers));
+    glint_workers_run(f->cfg.workers, f->n_bundles, emit_job, f);
+    if (!all_placed(f))
+        emit_in_order(f);
+    for (int i = 0; i < f->n_bundles; i++) {
+        f->stats.need_primitives =
+            glint_flare_add_need(f->stats.need_primitives, f->slot[i].n);
+        if (f->slot[i].first >= 0)
+            f->n_drawn = i + 1;
+    }
+}
+
+/* ---------------------------------------------------------------------- bins
+ */
+
+typedef void edge_fn(const struct glint_edge *edge, struct glint_bins *bins,
+                     int32_t index);
+
+static void count_edge(const struct glint_edge *edge, struct glint_bins *bins,
+                       int32_t index)
+{
+    (void)index;
+    glint_edge_count(edge, bins);
+}
+
+static void each_edge(struct glint_flare *f, edge_fn *do_edge)
+{
+    for (int i = 0; i < f->n_drawn; i++) {
+        const int32_t first = f->slot[i].first;
+
+        for (int32_t k = first; k < first + f->slot[i].n; k++)
+            do_edge(&f->edge[k], &f->bins, k);
+    }
+}
+
+/* Keeps the bundles whose entries fit. */
+static void drop_refs(struct glint_flare *f)
+{
+    int refs = 0, n_kept = 0;
+
+    for (int i = 0; i < f->n_drawn; i++) {
+        for (int k = 0; k < f->slot[i].n; k++)
+            refs = glint_flare_add_need(
+                refs,
+                glint_edge_span(&f->edge[f->slot[i].first + k], &f->bins));
+        if (refs > f->cfg.max_refs)
+            break;
+        n_kept = i + 1;
+    }
+    f->n_drawn = n_kept;
+}
+
+static void count_refs(struct glint_flare *f)
+{
+    glint_bins_open(&f->bins);
+    each_edge(f, count_edge);
+    glint_bins_sum(&f->bins);
+}
+
+void glint_flare_bin_edges(struct glint_flare *flare)
+{
+    const int n_tiles = flare->bins.tiles_x * flare->bins.tiles_y;
+
+    flare->limit_q8 = light_limit_q8(flare);
+    flare->n_drawn = 0;
+    emit(flare);
+    count_refs(flare);
+    flare->stats.need_refs = flare->bins.start[n_tiles];
+    if (flare->stats.need_refs > flare->cfg.max_refs) {
+        drop_refs(flare);
+        count_refs(flare);
+    }
+    flare->stats.refs = flare->bins.start[n_tiles];
+    each_edge(flare, glint_edge_put);
+    glint_bins_close(&flare->bins);
+}
+
+/* ------------------------------------------------------------------- drawing
+ */
+
+struct draw {
+    struct glint_flare *flare;
+    const struct glint_image *image;
+};
+
+/* Whether light runs into or out of a tile's rows. */
+static int is_lit(const struct glint_edge_sums *s)
+{
+    uint64_t any = 0;
+
+    for (int i = 0; i < 3 << s->tile_log2; i++)
+        any |= s->carry_q36[i];
+    return any != 0;
+}
+
+/* Two rows at a time, which share their colours in 4:2:0. */
+static void resolve_rows(const struct draw *d, struct glint_flare_worker *w,
+                         const struct glint_edge_sums *s)
+{
+    const int side = 1 << s->tile_log2;
+    const struct glint_resolve_light light = {
+        {w->light_q20, w->light_q20 + 2 * side, w->light_q20 + 4 * side}, side};
+
+    for (int y = s->tile.y0; y < s->tile.y1; y += 2) {
+        const int end = y + 2 < s->tile.y1 ? y + 2 : s->tile.y1;
+
+        for (int c = 0; c < 3; c++)
+            for (int row = y; row < end; row++)
+                glint_edge_finish(s, c, row - s->tile.y0,
+                                  w->light_q20 +
+                                      (ptrdiff_t)(2 * c + row - y) * side);
+        glint_resolve_tile(d->flare->resolve, d->image, s->tile.x0, y,
+                           s->tile.x1, end, &light);
+    }
+}
+
+static void draw_tile(const struct draw *d, struct glint_flare_worker *w,
+                      struct glint_edge_sums *s, int tile)
+{
+    const struct glint_flare *f = d->flare;
+    const int32_t first = f->bins.start[tile], end = f->bins.start[tile + 1];
+
+    if (first == end && !is_lit(s))
+        return;
+    s->tile = glint_bins_tile(&f->bins, tile);
+    for (int32_t k = first; k < end; k++) {
+        const struct glint_edge *e = &f->edge[f->bins.ref[k]];
+
+        glint_edge_add(e, f->bundle[e->bundle].rgb_q14, s);
+    }
+    w->n_tiles++;
+    resolve_rows(d, w, s);
+}
+
+/* A row of tiles, from left to right. */
+static void row_job(void *ctx, int job, int worker)
+{
+    struct draw *d = ctx;
+    struct glint_flare *f = d->flare;
+    struct glint_flare_worker *w = &f->worker[worker];
+    const int log2 = f->cfg.tile_log2;
+    struct glint_edge_sums s = {.change_q36 = w->change_q36,
+                                .carry_q36 = w->carry_q36,
+                                .tile_log2 = log2,
+                                .stride = GLINT_EDGE_STRIDE(log2)};
+
+    for (int i = 0; i < 3 << log2; i++)
+        s.carry_q36[i] = 0;
+    for (int x = 0; x < f->bins.tiles_x; x++)
+        draw_tile(d, w, &s, job * f->bins.tiles_x + x);
+}
+
+void glint_flare_draw_edges(struct glint_flare *flare,
+                            const struct glint_image *image)
+{
+    const int log2 = flare->cfg.tile_log2;
+    struct draw d = {flare, image};
+
+    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
+        for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++)
+            flare->worker[i].change_q36[k] = 0;
+    glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From the ray grid of a bundle to the edges that are drawn.
+ *
+ *   in   (n + 1)^2 vertices of one bundle, the stop
+ *   out  edges across which the irradiance changes
+ *
+ * A cell has one irradiance: its flux over its area on the screen, negative
+ * where the ghost is mirrored. Neighbours share an edge, which is drawn once,
+ * with what is on either side, and not at all where both are equal: irradiance
+ * is rounded to steps so that they often are. Of an edge the part is drawn that
+ * lies within the stop's sides and the barrels, linear between its ends; where
+ * a side or barrel crosses a cell, a chord closes it. Every part of an edge
+ * follows from its two ends alone, so that neighbours agree to the bit and
+ * outlines close.
+ *
+ * Cells that are folded, have lost a corner, are thinner than a sixteenth of a
+ * pixel, or are crossed by a round stop or more than two sides are drawn by
+ * themselves, closed: outline.h.
+ */
+#ifndef GLINT_FLARE_GHOST_EDGES_H
+#define GLINT_FLARE_GHOST_EDGES_H
+
+#include <stdint.h>
+
+#include "glint/flare.h"
+#include "tile/edges.h"
+#include "tile/outline.h"
+
+/* Scratch of a worker: of the nodes of two rows, and the cells between. */
+struct glint_ghost_rows {
+    struct glint_outline outline;
+    uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* of the stop: bit set = outside */
+    uint8_t barrels[2][GLINT_MAX_CELLS + 1]; /* the same; LOST */
+    int32_t light[2][GLINT_MAX_CELLS];       /* of cells, packed */
+};
+
+struct glint_ghost_edges {
+    const struct glint_vertex *vertex; /* [n_cells + 1][n_cells + 1] */
+    const struct glint_bundle *bundle;
+    uint16_t number; /* of the bundle */
+    const struct glint_stop *stop;
+    int width, height; /* of the picture */
+    int32_t limit_q8;  /* of a cell's light in a pixel, energy 1 */
+    int steps;         /* per octave of irradiance; 0: not rounded */
+    struct glint_ghost_rows *rows;
+    struct glint_edge *edge; /* [max_edges] */
+    int max_edges;
+    /* out */
+    int n_edges;   /* all that there are; only max_edges are written */
+    int n_dropped; /* cells without light for want of a corner */
+};
+
+void glint_ghost_edges_emit(struct glint_ghost_edges *ghost);
+
+#endif

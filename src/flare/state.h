@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a flare holds, and its two ways to draw: by edges (by_edges.c) and by
+ * cells (by_cells.c). flare.c has what they share.
+ */
+#ifndef GLINT_FLARE_STATE_H
+#define GLINT_FLARE_STATE_H
+
+#include "base/arena.h"
+#include "flare/ghost_edges.h"
+#include "flare/ghost_grid.h"
+#include "glint/flare.h"
+#include "tile/bins.h"
+#include "tile/edges.h"
+#include "tile/raster.h"
+#include "tile/resolve.h"
+
+/* What one worker needs while it draws. */
+struct glint_flare_worker {
+    int32_t *light_q20; /* [3][2][side]: two rows of a tile */
+    int n_tiles;        /* small tiles that it drew */
+    /* by edges */
+    struct glint_ghost_rows *rows;
+    uint64_t *change_q36, *carry_q36;   /* of one tile: tile/edges.h */
+    int first_edge, max_edges, n_edges; /* its part of the edges */
+    /* by cells */
+    int64_t *acc_q20; /* [3][side * side], one small tile's sums */
+    struct glint_clip *clip;
+    int32_t *start; /* small tiles of one large tile */
+    int32_t *ref;
+};
+
+struct glint_bundle_slot {
+    int first_vertex;
+    int first; /* primitive or edge; -1: it found no place */
+    int n, n_dropped, n_merged;
+};
+
+struct glint_flare {
+    struct glint_flare_config cfg;
+    struct glint_flare_stats stats;
+    int n_bundles, n_vertices; /* taken in */
+    int n_drawn;               /* of these, the bundles that bin kept */
+    struct glint_bundle *bundle;
+    struct glint_bundle_slot *slot;
+    struct glint_vertex *vertex;
+    struct glint_edge *edge; /* by edges */
+    int32_t limit_q8;        /* of a cell's light in a pixel */
+    uint8_t *level;          /* by cells: one per vertex, what merge found */
+    struct glint_primitive *primitive; /* by cells */
+    struct glint_bins bins;            /* first level */
+    struct glint_flare_worker *worker;
+    struct glint_resolve *resolve; /* tables for the picture drawn last */
+};
+
+/* Texture is looked up at pixel centres. */
+static inline enum glint_raster
+glint_flare_raster(const struct glint_flare_config *c)
+{
+    return c->stop.mask_q13 ? GLINT_RASTER_CELLS : c->raster;
+}
+
+/* A + B, held at INT_MAX: a need that large cannot be served anyway. */
+static inline int glint_flare_add_need(int a, int b)
+{
+    return a > INT32_MAX - b ? INT32_MAX : a + b;
+}
+
+/* Sorts the bundles taken in into tiles: sets all of STATS but the counts of
+ * bundles and vertices, n_drawn, and what draw needs. */
+void glint_flare_bin_cells(struct glint_flare *flare);
+void glint_flare_bin_edges(struct glint_flare *flare);
+
+void glint_flare_draw_cells(struct glint_flare *flare,
+                            const struct glint_image *image);
+void glint_flare_draw_edges(struct glint_flare *flare,
+                            const struct glint_image *image);
+
+#endif
