@@ -24,10 +24,10 @@ OUT  := build/$(ARCH)-$(notdir $(CC))-$(CONFIG)
 export DEPS OUT
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/image base/workers lens/model \
-        lens/transfer flare/regions flare/lights tile/primitive tile/clip \
+CORE := base/status base/arena base/q base/image base/workers kernels/sets \
+        kernels/kernels kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
         tile/outline tile/bins tile/raster tile/edges tile/curve \
-        tile/resolve flare/ghost_grid flare/ghost_edges flare/by_cells \
+        tile/mix tile/codes tile/resolve flare/ghost_grid flare/ghost_edges flare/by_cells \
         flare/by_edges flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
@@ -39,12 +39,14 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool model_file model_cache model_report measure lamps frame scene \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
-UNIT := arena model prescription optics trace pupil published quantise bake \
+UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare pnm y4m picture output workers \
         measure lamps
 FUZZ := lens model y4m pnm
 
-core_o     := $(CORE:%=$(OUT)/src/%.o)
+CORE_x86_64  := kernels/composite_sse41 kernels/composite_avx2
+CORE_aarch64 := kernels/composite_neon
+core_o     := $(patsubst %,$(OUT)/src/%.o,$(CORE) $(CORE_$(ARCH)))
 bake_o     := $(BAKE:%=$(OUT)/src/%.o)
 platform_o := $(PLATFORM:%=$(OUT)/platform/%.o)
 tools_o    := $(TOOLS:%=$(OUT)/tools/%.o)
@@ -62,6 +64,10 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
 # Run-time half: no library, small stack frames.
 $(core_o): CFLAGS += -ffreestanding -Wframe-larger-than=1024
+# An instruction set is a file-name suffix; nothing else may use its flags.
+$(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
+$(OUT)/src/%_avx2.o: CFLAGS += -mavx2
+$(OUT)/src/kernels/%.o: CFLAGS += -O3
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits
 # rays in eights: errno and traps are all that these give away
 $(OUT)/src/bake/trace.o: CFLAGS += -O3 -fno-math-errno -fno-trapping-math

@@ -224,8 +224,7 @@ static void blacken(const struct glint_image *image)
         const int rows =
             glint_image_plane_height(image->format, p, image->height);
         const int bytes =
-            glint_image_plane_width(image->format, p, image->width) *
-            glint_image_sample_bytes(image->format);
+            (int)glint_image_row_bytes(image->format, p, image->width);
         const int code = p > 0 ? 128
                          : image->range == GLINT_RANGE_LIMITED &&
                                  image->format != GLINT_RGB24

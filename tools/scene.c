@@ -356,6 +356,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
                 struct glint_view view, struct frame *frame)
 {
     frame_init(frame, &scene->setup, view, tool->workers);
+    frame->cfg.sets = tool_sets(tool);
     frame->lens = scene->model.data ? &scene->model.lens : NULL;
     frame->max_cells = scene->grid ? scene->grid : 64;
     frame->uniform = scene->uniform;

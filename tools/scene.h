@@ -156,7 +156,9 @@ enum scene_option {
 #define COMMON_HELP                                                           \
     "Common\n"                                                                \
     "  -j, --threads N     default: all processors; never changes a result\n" \
-    "  --kernels c|auto    --seed N   --json   -q   -v   --help   --version\n"
+    "  --kernels K         c | sse41 | avx2 | neon | auto: never changes a "  \
+    "result\n"                                                                \
+    "  --seed N   --json   -q   -v   --help   --version\n"
 
 void scene_defaults(struct scene *scene);
 

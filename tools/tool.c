@@ -53,13 +53,33 @@ int tool_fail(const struct tool *tool, enum glint_status status,
 
 static int show_version(void)
 {
-    printf("glint %s (C kernels; MIT licence)\n", GLINT_VERSION);
+    const unsigned sets = glint_sets_here();
+
+    printf("glint %s (kernels: c%s%s%s; MIT licence)\n", GLINT_VERSION,
+           sets & GLINT_SET_SSE41 ? " sse41" : "",
+           sets & GLINT_SET_AVX2 ? " avx2" : "",
+           sets & GLINT_SET_NEON ? " neon" : "");
     return EXIT_OK;
+}
+
+/* The instruction sets that a word allows. */
+static bool take_sets(struct tool *tool, const char *value)
+{
+    static const char *const words[] = {"c",    "sse41", "avx2",
+                                        "neon", "auto",  NULL};
+    static const unsigned sets[] = {0, GLINT_SET_SSE41,
+                                    GLINT_SET_SSE41 | GLINT_SET_AVX2,
+                                    GLINT_SET_NEON, ~0U};
+    const int word = tool_word(value, words);
+
+    if (word < 0 || (word < 4 && (sets[word] & ~glint_sets_here())))
+        return false;
+    tool->sets_off = ~sets[word];
+    return true;
 }
 
 int tool_option(struct tool *tool, int option, const char *value)
 {
-    static const char *const kernels[] = {"c", "auto", NULL};
     int seed;
 
     switch (option) {
@@ -85,11 +105,11 @@ int tool_option(struct tool *tool, int option, const char *value)
         return tool_usage(tool, "--threads takes 1 to %d, not '%s'",
                           GLINT_MAX_WORKERS, value);
     case 'K':
-        if (tool_word(value, kernels) >= 0)
+        if (take_sets(tool, value))
             return -1;
         return tool_usage(tool,
-                          "--kernels: this build has c and auto, not "
-                          "'%s'",
+                          "--kernels takes c, auto or what this CPU has "
+                          "(glint --version), not '%s'",
                           value);
     case 'S': /* nothing is random yet: any seed gives the same picture */
         if (tool_integer(value, 0, INT_MAX, &seed))
@@ -114,6 +134,11 @@ void tool_finish(struct tool *tool)
 {
     glint_pool_destroy(tool->workers);
     tool->workers = NULL;
+}
+
+unsigned tool_sets(const struct tool *tool)
+{
+    return glint_sets_here() & ~tool->sets_off;
 }
 
 /* ------------------------------------------------------------------ numbers */

@@ -29,6 +29,7 @@ struct tool {
     bool json, quiet;
     int verbose;
     int n_threads;
+    unsigned sets_off;             /* instruction sets not to use */
     struct glint_workers *workers; /* made by tool_start */
 };
 
@@ -52,6 +53,9 @@ int tool_option(struct tool *tool, int option, const char *value);
 /* Makes the workers. */
 int tool_start(struct tool *tool);
 void tool_finish(struct tool *tool);
+
+/* Instruction sets for the kernels. */
+unsigned tool_sets(const struct tool *tool);
 
 /* Prints "glint COMMAND: ..." and returns the code. */
 int tool_usage(const struct tool *tool, const char *format, ...);

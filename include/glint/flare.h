@@ -88,8 +88,10 @@ enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
 
 struct glint_flare_config {
     struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
-    int width, height;             /* of the picture, 1 .. GLINT_MAX_SIDE */
-    int tile_log2; /* small tiles of 2^n pixels square, 3 .. 6 */
+    unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C.
+                      Changes no output */
+    int width, height; /* of the picture, 1 .. GLINT_MAX_SIDE */
+    int tile_log2;     /* small tiles of 2^n pixels square, 3 .. 6 */
     enum glint_raster raster;
     int dither;             /* when encoding to 8 bits; deterministic */
     struct glint_stop stop; /* copied; its mask is kept */

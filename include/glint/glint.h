@@ -24,6 +24,7 @@
 #include "glint/bake.h"
 #include "glint/flare.h"
 #include "glint/image.h"
+#include "glint/kernels.h"
 #include "glint/lens.h"
 #include "glint/lights.h"
 #include "glint/status.h"

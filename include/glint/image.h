@@ -11,12 +11,19 @@
 #define GLINT_MAX_SIDE 8192 /* pixels, of either side of a picture */
 
 enum glint_pixel_format {
-    GLINT_RGB24,     /* one plane, R G B bytes */
-    GLINT_GREY,      /* one plane, Y bytes */
-    GLINT_I420,      /* planes Y, Cb, Cr; chroma halved both ways */
-    GLINT_I422,      /* planes Y, Cb, Cr; chroma halved across */
-    GLINT_I444,      /* planes Y, Cb, Cr */
-    GLINT_LINEAR_Q20 /* one plane, three int32 _q20 a pixel, linear R G B */
+    GLINT_RGB24,      /* one plane, R G B bytes */
+    GLINT_GREY,       /* one plane, Y bytes */
+    GLINT_I420,       /* planes Y, Cb, Cr; chroma halved both ways */
+    GLINT_I422,       /* planes Y, Cb, Cr; chroma halved across */
+    GLINT_I444,       /* planes Y, Cb, Cr */
+    GLINT_LINEAR_Q20, /* one plane, three int32 _q20 a pixel, linear R G B */
+    GLINT_NV12,       /* planes Y, Cb Cr; chroma halved both ways */
+    GLINT_NV21,       /* planes Y, Cr Cb; the same */
+    GLINT_YUYV,       /* one plane, Y Cb Y Cr for two pixels */
+    GLINT_UYVY,       /* one plane, Cb Y Cr Y */
+    GLINT_BGR24,      /* one plane, B G R bytes */
+    GLINT_XRGB8888,   /* one plane, B G R X bytes; X stays */
+    GLINT_RGB565 /* one plane, 16 bits a pixel, low byte first, R highest */
 };
 
 enum glint_range { GLINT_RANGE_FULL, GLINT_RANGE_LIMITED };
@@ -30,22 +37,19 @@ struct glint_image {
     int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
     uint8_t *plane[3]; /* first sample of the top row; unused ones NULL */
     ptrdiff_t stride_bytes[3];
-    enum glint_range range;   /* of the codes; RGB24: always full */
-    enum glint_matrix matrix; /* of Y, Cb, Cr; ignored for RGB24 */
+    enum glint_range range;   /* of the codes; RGB: always full */
+    enum glint_matrix matrix; /* of Y, Cb, Cr; ignored for RGB */
     enum glint_tone transfer; /* from codes to linear light */
 };
 
-/* Number of planes of FORMAT, 1 or 3. */
+/* Number of planes of FORMAT, 1 .. 3. */
 int glint_image_planes(enum glint_pixel_format format);
 
-/* Samples across and down plane PLANE of a WIDTH x HEIGHT picture. */
-int glint_image_plane_width(enum glint_pixel_format format, int plane,
-                            int width);
+/* Bytes of a row of plane PLANE that hold its samples, and rows of it. */
+size_t glint_image_row_bytes(enum glint_pixel_format format, int plane,
+                             int width);
 int glint_image_plane_height(enum glint_pixel_format format, int plane,
                              int height);
-
-/* Bytes of one sample of plane 0: 1, 3 (RGB24) or 12 (LINEAR_Q20). */
-int glint_image_sample_bytes(enum glint_pixel_format format);
 
 /* Bytes of a picture without padding, all planes; 0 if out of range. */
 size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);

@@ -454,7 +454,7 @@ static enum glint_status put_plane(struct glint_output *out,
                                    struct glint_error *error)
 {
     const int across =
-        glint_image_plane_width(frame->format, plane, frame->width);
+        (int)glint_image_row_bytes(frame->format, plane, frame->width);
     const int down =
         glint_image_plane_height(frame->format, plane, frame->height);
     const ptrdiff_t stride = frame->stride_bytes[plane];

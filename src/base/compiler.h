@@ -13,6 +13,9 @@
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
+/* Where a variable or field begins: a multiple of so many bytes. */
+#define ALIGNED(bytes) __attribute__((aligned(bytes)))
+
 /* Bits needed to write X: 0 for 0, 64 for UINT64_MAX. */
 static inline int bit_length(uint64_t x)
 {

@@ -165,32 +165,53 @@ struct draw {
     struct glint_cell_raster cells;
 };
 
-/* Sums of ROW of a tile, as light: they are far below what a pixel can hold. */
-static void row_of_sums(const int64_t *acc_q20, int n, int32_t *light_q20)
+/* Row Y of a tile's sums in channel C. */
+static const int64_t *sums_of(const struct glint_flare *f,
+                              const struct glint_flare_worker *w, int c, int y)
 {
-    for (int x = 0; x < n; x++)
-        light_q20[x] = q_clamp_sat(acc_q20[x], INT32_MIN, INT32_MAX);
+    const int side = 1 << f->cfg.tile_log2;
+
+    return w->acc_q20 + (ptrdiff_t)(c * side + y) * side;
+}
+
+static void resolve_linear(const struct draw *d,
+                           const struct glint_flare_worker *w,
+                           struct glint_box tile)
+{
+    const int n = tile.x1 - tile.x0;
+    int32_t *const row_q20[3] = {w->light_q20, w->light_q20 + n,
+                                 w->light_q20 + 2 * n};
+
+    for (int y = tile.y0; y < tile.y1; y++) {
+        for (int c = 0; c < 3; c++)
+            for (int x = 0; x < n; x++)
+                row_q20[c][x] =
+                    q_clamp_sat(sums_of(d->flare, w, c, y - tile.y0)[x],
+                                INT32_MIN, INT32_MAX);
+        glint_resolve_linear(d->image, tile.x0, y, n,
+                             (const int32_t *const *)row_q20);
+    }
 }
 
 /* Two rows at a time, which share their colours in 4:2:0. */
-static void resolve_rows(const struct draw *d, struct glint_flare_worker *w,
-                         struct glint_box tile)
+static void resolve_codes(const struct draw *d,
+                          const struct glint_flare_worker *w,
+                          struct glint_box tile)
 {
-    const int side = 1 << d->flare->cfg.tile_log2;
-    const struct glint_resolve_light light = {
-        {w->light_q20, w->light_q20 + 2 * side, w->light_q20 + 4 * side}, side};
+    const int n_x = tile.x1 - tile.x0;
 
     for (int y = tile.y0; y < tile.y1; y += 2) {
-        const int end = y + 2 < tile.y1 ? y + 2 : tile.y1;
+        const int n_y = y + 2 < tile.y1 ? 2 : tile.y1 - y;
 
         for (int c = 0; c < 3; c++)
-            for (int row = y; row < end; row++)
-                row_of_sums(w->acc_q20 +
-                                (c * side + row - tile.y0) * (ptrdiff_t)side,
-                            tile.x1 - tile.x0,
-                            w->light_q20 + (ptrdiff_t)(2 * c + row - y) * side);
-        glint_resolve_tile(d->flare->resolve, d->image, tile.x0, y, tile.x1,
-                           end, &light);
+            for (int row = 0; row < n_y; row++)
+                for (int x = 0; x < n_x; x++)
+                    w->light->rgb_q16[c][row][x] = (uint16_t)q_clamp_sat(
+                        q_shift(sums_of(d->flare, w, c, y + row - tile.y0)[x],
+                                4),
+                        0, 65535);
+        glint_resolve_stretch(d->flare->resolve, d->image, tile.x0, y, n_x, n_y,
+                              w->light, w->codes);
     }
 }
 
@@ -208,7 +229,10 @@ static void draw_tile(struct draw *d, struct glint_flare_worker *w,
         glint_cell_raster_primitive(&d->cells, ref[i], tile, w->clip,
                                     w->acc_q20);
     w->n_tiles++;
-    resolve_rows(d, w, tile);
+    if (d->image->format == GLINT_LINEAR_Q20)
+        resolve_linear(d, w, tile);
+    else
+        resolve_codes(d, w, tile);
 }
 
 static void draw_tiles(struct draw *d, struct glint_flare_worker *w,

@@ -198,34 +198,48 @@ struct draw {
     const struct glint_image *image;
 };
 
-/* Whether light runs into or out of a tile's rows. */
+/* Whether light runs into a tile's rows. */
 static int is_lit(const struct glint_edge_sums *s)
 {
-    uint64_t any = 0;
+    int64_t any = 0;
 
     for (int i = 0; i < 3 << s->tile_log2; i++)
-        any |= s->carry_q36[i];
+        any |= s->carry[i];
     return any != 0;
 }
 
-/* Two rows at a time, which share their colours in 4:2:0. */
-static void resolve_rows(const struct draw *d, struct glint_flare_worker *w,
-                         const struct glint_edge_sums *s)
+static void resolve_linear(const struct draw *d,
+                           const struct glint_flare_worker *w,
+                           const struct glint_edge_sums *s)
 {
     const int side = 1 << s->tile_log2;
-    const struct glint_resolve_light light = {
-        {w->light_q20, w->light_q20 + 2 * side, w->light_q20 + 4 * side}, side};
+    int32_t *const row_q20[3] = {w->light_q20, w->light_q20 + side,
+                                 w->light_q20 + 2 * side};
+
+    for (int y = s->tile.y0; y < s->tile.y1; y++) {
+        for (int c = 0; c < 3; c++)
+            glint_edge_linear(s, c, y - s->tile.y0, row_q20[c]);
+        glint_resolve_linear(d->image, s->tile.x0, y, s->tile.x1 - s->tile.x0,
+                             (const int32_t *const *)row_q20);
+    }
+}
+
+/* Two rows at a time, which share their colours in 4:2:0. */
+static void resolve_codes(const struct draw *d,
+                          const struct glint_flare_worker *w,
+                          const struct glint_edge_sums *s)
+{
+    const struct glint_resolve *r = d->flare->resolve;
 
     for (int y = s->tile.y0; y < s->tile.y1; y += 2) {
-        const int end = y + 2 < s->tile.y1 ? y + 2 : s->tile.y1;
+        const int n = y + 2 < s->tile.y1 ? 2 : s->tile.y1 - y;
 
         for (int c = 0; c < 3; c++)
-            for (int row = y; row < end; row++)
-                glint_edge_finish(s, c, row - s->tile.y0,
-                                  w->light_q20 +
-                                      (ptrdiff_t)(2 * c + row - y) * side);
-        glint_resolve_tile(d->flare->resolve, d->image, s->tile.x0, y,
-                           s->tile.x1, end, &light);
+            for (int row = 0; row < n; row++)
+                glint_edge_light(s, c, y + row - s->tile.y0, &r->kernels,
+                                 w->light->rgb_q16[c][row]);
+        glint_resolve_stretch(r, d->image, s->tile.x0, y,
+                              s->tile.x1 - s->tile.x0, n, w->light, w->codes);
     }
 }
 
@@ -238,13 +252,12 @@ static void draw_tile(const struct draw *d, struct glint_flare_worker *w,
     if (first == end && !is_lit(s))
         return;
     s->tile = glint_bins_tile(&f->bins, tile);
-    for (int32_t k = first; k < end; k++) {
-        const struct glint_edge *e = &f->edge[f->bins.ref[k]];
-
-        glint_edge_add(e, f->bundle[e->bundle].rgb_q14, s);
-    }
+    glint_edge_add(s, f->edge, f->bundle, f->bins.ref + first, end - first);
     w->n_tiles++;
-    resolve_rows(d, w, s);
+    if (s->linear)
+        resolve_linear(d, w, s);
+    else
+        resolve_codes(d, w, s);
 }
 
 /* A row of tiles, from left to right. */
@@ -254,25 +267,33 @@ static void row_job(void *ctx, int job, int worker)
     struct glint_flare *f = d->flare;
     struct glint_flare_worker *w = &f->worker[worker];
     const int log2 = f->cfg.tile_log2;
-    struct glint_edge_sums s = {.change_q36 = w->change_q36,
-                                .carry_q36 = w->carry_q36,
+    struct glint_edge_sums s = {.linear = d->image->format == GLINT_LINEAR_Q20,
+                                .wide = w->wide,
+                                .narrow_q24 = w->narrow_q24,
+                                .carry = w->carry,
                                 .tile_log2 = log2,
                                 .stride = GLINT_EDGE_STRIDE(log2)};
 
     for (int i = 0; i < 3 << log2; i++)
-        s.carry_q36[i] = 0;
+        s.carry[i] = 0;
     for (int x = 0; x < f->bins.tiles_x; x++)
         draw_tile(d, w, &s, job * f->bins.tiles_x + x);
+}
+
+static void clear(struct glint_flare_worker *w, int log2)
+{
+    for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++) {
+        w->wide[k] = 0;
+        w->narrow_q24[k] = 0;
+    }
 }
 
 void glint_flare_draw_edges(struct glint_flare *flare,
                             const struct glint_image *image)
 {
-    const int log2 = flare->cfg.tile_log2;
     struct draw d = {flare, image};
 
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
-        for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++)
-            flare->worker[i].change_q36[k] = 0;
+        clear(&flare->worker[i], flare->cfg.tile_log2);
     glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }

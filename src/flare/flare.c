@@ -28,16 +28,19 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
                          const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
+    const size_t stride = (size_t)GLINT_EDGE_STRIDE(c->tile_log2);
     const size_t tiles =
         c->coarse_log2 ? (size_t)1 << (2 * (c->coarse_log2 - c->tile_log2)) : 0;
 
-    w->light_q20 = glint_arena_take(a, 3 * 2 * side, sizeof *w->light_q20);
+    w->light = glint_arena_take(a, 1, sizeof *w->light);
+    w->light_q20 = glint_arena_take(a, 3 * side, sizeof *w->light_q20);
+    w->codes = glint_arena_take(a, 1, sizeof *w->codes);
     if (by_edges(c)) {
         w->rows = glint_arena_take(a, 1, sizeof *w->rows);
-        w->change_q36 = glint_arena_take(
-            a, 3 * side * (size_t)GLINT_EDGE_STRIDE(c->tile_log2),
-            sizeof *w->change_q36);
-        w->carry_q36 = glint_arena_take(a, 3 * side, sizeof *w->carry_q36);
+        w->wide = glint_arena_take(a, 3 * side * stride, sizeof *w->wide);
+        w->narrow_q24 =
+            glint_arena_take(a, 3 * side * stride, sizeof *w->narrow_q24);
+        w->carry = glint_arena_take(a, 3 * side, sizeof *w->carry);
         return;
     }
     w->acc_q20 = glint_arena_take(a, 3 * side * side, sizeof *w->acc_q20);
@@ -202,7 +205,8 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image)
 {
-    glint_resolve_init(flare->resolve, image, flare->cfg.dither);
+    glint_resolve_init(flare->resolve, image, flare->cfg.dither,
+                       flare->cfg.sets);
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
         flare->worker[i].n_tiles = 0;
     if (by_edges(&flare->cfg))

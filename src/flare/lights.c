@@ -8,6 +8,7 @@
 #include "glint/lights.h"
 
 #include "base/arena.h"
+#include "base/layout.h"
 #include "base/q.h"
 #include "flare/regions.h"
 #include "tile/curve.h"
@@ -133,33 +134,62 @@ static void prepare_tables(struct glint_lights *f,
             0, 255);
 }
 
-/* Full-range luma of row Y. That of RGB24 has the weights of BT.709, in 256ths,
+static void read_565(const uint8_t *px, int code[3])
+{
+    const int bits = px[0] | px[1] << 8;
+    const int r = bits >> 11, g = bits >> 5 & 63, b = bits & 31;
+
+    code[0] = r << 3 | r >> 2;
+    code[1] = g << 2 | g >> 4;
+    code[2] = b << 3 | b >> 2;
+}
+
+/* The codes of pixel (X, Y) of a picture of RGB. */
+static void read_rgb(const struct glint_layout *layout,
+                     const struct glint_image *image, int x, int y, int code[3])
+{
+    if (layout->kind == GLINT_LAYOUT_565)
+        read_565(glint_layout_at(layout, image, 0, x, y), code);
+    else
+        for (int i = 0; i < 3; i++)
+            code[i] = *glint_layout_at(layout, image, i, x, y);
+}
+
+static int is_rgb(const struct glint_layout *layout)
+{
+    return layout->kind == GLINT_LAYOUT_RGB || layout->kind == GLINT_LAYOUT_565;
+}
+
+/* Full-range luma of row Y. That of RGB has the weights of BT.709, in 256ths,
  * whose sum is 256. */
 static void read_luma(struct glint_lights *f, const struct glint_image *image,
                       int y)
 {
-    const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
+    const struct glint_layout *layout = glint_layout_of(image->format);
+    const uint8_t *px = glint_layout_at(layout, image, 0, 0, y);
+    int code[3];
 
-    if (image->format == GLINT_RGB24)
-        for (int x = 0; x < f->cfg.width; x++, px += 3)
-            f->luma[x] =
-                (uint8_t)((54 * px[0] + 183 * px[1] + 19 * px[2] + 128) >> 8);
-    else
-        for (int x = 0; x < f->cfg.width; x++)
-            f->luma[x] = f->full_luma[px[x]];
+    for (int x = 0; x < f->cfg.width; x++) {
+        if (!is_rgb(layout)) {
+            f->luma[x] = f->full_luma[px[x * layout->sample[0].step]];
+            continue;
+        }
+        read_rgb(layout, image, x, y, code);
+        f->luma[x] =
+            (uint8_t)((54 * code[0] + 183 * code[1] + 19 * code[2] + 128) >> 8);
+    }
 }
 
 static void read_ycc_q20(const struct glint_lights *f,
+                         const struct glint_layout *layout,
                          const struct glint_image *image, int x, int y,
                          int32_t rgb_q20[3])
 {
-    const int cx = image->format == GLINT_I444 ? x : x / 2;
-    const int cy = image->format == GLINT_I420 ? y / 2 : y;
     int32_t rgb_q7[3];
 
-    ycc_to_rgb(&f->ycc, image->plane[0][y * image->stride_bytes[0] + x],
-               image->plane[1][cy * image->stride_bytes[1] + cx],
-               image->plane[2][cy * image->stride_bytes[2] + cx], rgb_q7);
+    ycc_to_rgb(&f->ycc, *glint_layout_at(layout, image, 0, x, y),
+               *glint_layout_at(layout, image, 1, x, y),
+               *glint_layout_at(layout, image, 2, x, y), rgb_q7);
     for (int i = 0; i < 3; i++)
         rgb_q20[i] =
             curve_decode(f->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
@@ -170,16 +200,19 @@ static void read_light_q20(const struct glint_lights *f,
                            const struct glint_image *image, int x, int y,
                            int32_t rgb_q20[3])
 {
-    const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
+    const struct glint_layout *layout = glint_layout_of(image->format);
+    int code[3];
 
-    if (image->format == GLINT_RGB24)
+    if (is_rgb(layout)) {
+        read_rgb(layout, image, x, y, code);
         for (int i = 0; i < 3; i++)
-            rgb_q20[i] = f->curve->decode_q20[px[3 * x + i]];
-    else if (image->format == GLINT_GREY)
+            rgb_q20[i] = f->curve->decode_q20[code[i]];
+    } else if (layout->kind == GLINT_LAYOUT_GREY)
         rgb_q20[0] = rgb_q20[1] = rgb_q20[2] =
-            f->curve->decode_q20[f->full_luma[px[x]]];
+            f->curve->decode_q20[f->full_luma[*glint_layout_at(layout, image, 0,
+                                                               x, y)]];
     else
-        read_ycc_q20(f, image, x, y, rgb_q20);
+        read_ycc_q20(f, layout, image, x, y, rgb_q20);
 }
 
 /* ------------------------------------------------------------------ regions */

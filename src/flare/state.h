@@ -17,11 +17,15 @@
 
 /* What one worker needs while it draws. */
 struct glint_flare_worker {
-    int32_t *light_q20; /* [3][2][side]: two rows of a tile */
-    int n_tiles;        /* small tiles that it drew */
+    struct glint_light_rows *light; /* two rows of a tile */
+    int32_t *light_q20;             /* [3][side]: one of a linear picture */
+    struct glint_resolve_rows *codes;
+    int n_tiles; /* small tiles that it drew */
     /* by edges */
     struct glint_ghost_rows *rows;
-    uint64_t *change_q36, *carry_q36;   /* of one tile: tile/edges.h */
+    uint64_t *wide; /* of one tile: tile/edges.h */
+    uint32_t *narrow_q24;
+    int64_t *carry;
     int first_edge, max_edges, n_edges; /* its part of the edges */
     /* by cells */
     int64_t *acc_q20; /* [3][side * side], one small tile's sums */

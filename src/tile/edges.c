@@ -125,23 +125,37 @@ int glint_edge_span(const struct glint_edge *edge,
 /* --------------------------------------------------------------------- add
  */
 
-/* One row of one channel of a tile. */
+enum mode { LINEAR, WIDE, NARROW };
+
+/* One row of one channel of a tile; pointers to where pixel 0 of the picture
+ * would be. */
 struct run {
-    uint64_t *change_q36; /* where pixel 0 of the picture would be */
-    int x0, x1;           /* the tile's columns */
-    int64_t light_q20;
+    uint64_t *wide;
+    uint32_t *narrow_q24;
+    int x0, x1; /* the tile's columns */
+    int64_t light;
 };
 
-static void change(const struct run *r, int x, int64_t area_q16)
+static inline void change(const struct run *r, enum mode mode, int x,
+                          int64_t area)
 {
-    r->change_q36[x] += (uint64_t)(r->light_q20 * area_q16);
+    if (mode == NARROW)
+        r->narrow_q24[x] += (uint32_t)r->light * (uint32_t)area;
+    else
+        r->wide[x] += (uint64_t)(r->light * area);
+}
+
+/* AREA in the units of MODE. */
+static inline int64_t units(enum mode mode, int64_t area_q16)
+{
+    return mode == LINEAR ? area_q16 : (area_q16 + 128) >> 8;
 }
 
 /* A piece of an edge within one row, from A to B (A <= B) over HEIGHT, in
  * several pixels. Covered areas rise from pixel to pixel, from 0 to HEIGHT; so
  * much of each as lies in the tile is what it changes by. */
-static void add_wide(const struct run *r, int64_t a_q40, int64_t b_q40,
-                     int64_t height_q16)
+static inline void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
+                            int64_t b_q40, int64_t height_q16)
 {
     const int64_t first = a_q40 >> 40, last = b_q40 >> 40;
     const int64_t wide_q24 = (b_q40 - a_q40) >> 16;
@@ -161,60 +175,63 @@ static void add_wide(const struct run *r, int64_t a_q40, int64_t b_q40,
         /* how far the piece's ends lie from the pixel's right side */
         const int64_t p = i > first ? ONE_Q16 : (right_q24 >> 8);
         const int64_t q = i < last ? 0 : ((i + 1) * PIXEL_Q40 - b_q40) >> 24;
-        const int64_t area = low + ((high - low) * (p + q) >> 17);
+        const int64_t area = units(mode, low + ((high - low) * (p + q) >> 17));
 
         if (i >= r->x0)
-            change(r, (int)i, area - before);
+            change(r, mode, (int)i, area - before);
         before = area;
     }
     if (last < r->x1 && last >= r->x0)
-        change(r, (int)last + 1, height_q16 - before);
+        change(r, mode, (int)last + 1, units(mode, height_q16) - before);
     else if (last < r->x0 && r->x0 == 0)
-        change(r, 0, height_q16);
+        change(r, mode, 0, units(mode, height_q16));
 }
 
 /* From A to B, in any order, over HEIGHT. */
-static inline void add_piece(const struct run *r, int64_t a_q40, int64_t b_q40,
-                             int64_t height_q16)
+static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
+                             int64_t b_q40, int64_t height_q16)
 {
-    const int64_t i = a_q40 >> 40;
+    const int64_t i = a_q40 >> 40, height = units(mode, height_q16);
 
     if (i == b_q40 >> 40) {
         const int64_t far_q16 =
             2 * ONE_Q16 - ((a_q40 >> 24) & 0xffff) - ((b_q40 >> 24) & 0xffff);
-        const int64_t area = (height_q16 * far_q16) >> 17;
+        const int64_t area = units(mode, (height_q16 * far_q16) >> 17);
 
         if (i >= r->x0 && i < r->x1) {
-            change(r, (int)i, area);
-            change(r, (int)i + 1, height_q16 - area);
+            change(r, mode, (int)i, area);
+            change(r, mode, (int)i + 1, height - area);
         } else if (i < 0 && r->x0 == 0)
-            change(r, 0, height_q16);
+            change(r, mode, 0, height);
     } else if (a_q40 < b_q40)
-        add_wide(r, a_q40, b_q40, height_q16);
+        add_wide(r, mode, a_q40, b_q40, height_q16);
     else
-        add_wide(r, b_q40, a_q40, height_q16);
+        add_wide(r, mode, b_q40, a_q40, height_q16);
 }
 
 /* All rows of one channel. */
-static void add_channel(const struct glint_edge *e, int64_t light_q20,
-                        const struct glint_edge_sums *s, int channel)
+static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
+                               const struct glint_edge *e, int64_t light,
+                               int channel)
 {
     const struct glint_box *t = &s->tile;
     const int32_t end_q8 = sooner(e->end_y_q8, t->y1 * 256);
     int32_t y_q8 = later(e->y_q8, t->y0 * 256);
     const int row = (channel << s->tile_log2) + (y_q8 >> 8) - t->y0;
-    struct run r = {s->change_q36 + (ptrdiff_t)row * s->stride - t->x0, t->x0,
-                    t->x1, light_q20};
+    const ptrdiff_t at = (ptrdiff_t)row * s->stride - t->x0;
+    struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light};
     int64_t x_q40 = x_at_q40(e, y_q8);
 
-    for (; y_q8 < end_q8; r.change_q36 += s->stride) {
+    while (y_q8 < end_q8) {
         const int32_t next_q8 = sooner((y_q8 | 255) + 1, end_q8);
         const int32_t height_q8 = next_q8 - y_q8;
         const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;
 
-        add_piece(&r, x_q40, next_q40, (int64_t)height_q8 << 8);
+        add_piece(&r, mode, x_q40, next_q40, (int64_t)height_q8 << 8);
         y_q8 = next_q8;
         x_q40 = next_q40;
+        r.wide += s->stride;
+        r.narrow_q24 += s->stride;
     }
 }
 
@@ -226,36 +243,136 @@ static int64_t coloured_q20(int32_t light, int32_t colour_q14)
                                  : q_shift(light_q20 * colour_q14, 14);
 }
 
-void glint_edge_add(const struct glint_edge *edge, const int32_t rgb_q14[3],
-                    const struct glint_edge_sums *sums)
+/* What EDGE changes light by in one channel, in the units of MODE. */
+static int64_t step_of(const struct glint_edge *e, int32_t colour_q14,
+                       enum mode mode)
 {
-    for (int c = 0; c < 3; c++) {
-        const int64_t light_q20 = coloured_q20(edge->right, rgb_q14[c]) -
-                                  coloured_q20(edge->left, rgb_q14[c]);
+    const int64_t right_q20 = coloured_q20(e->right, colour_q14);
+    const int64_t left_q20 = coloured_q20(e->left, colour_q14);
 
-        if (light_q20 != 0)
-            add_channel(edge, light_q20, sums, c);
+    return mode == LINEAR ? right_q20 - left_q20
+                          : q_shift(right_q20, 4) - q_shift(left_q20, 4);
+}
+
+/* Returns how far sums can come from where they begin, all steps added up. */
+static inline int64_t add_all(const struct glint_edge_sums *s, enum mode mode,
+                              const struct glint_edge *edge,
+                              const struct glint_bundle *bundle,
+                              const int32_t *ref, int n_refs)
+{
+    int64_t far_q16 = 0;
+
+    for (int k = 0; k < n_refs; k++) {
+        const struct glint_edge *e = &edge[ref[k]];
+        const int32_t *rgb_q14 = bundle[e->bundle].rgb_q14;
+
+        for (int c = 0; c < 3; c++) {
+            const int64_t step = rgb_q14[c] ? step_of(e, rgb_q14[c], mode) : 0;
+
+            if (step == 0)
+                continue;
+            far_q16 += step < 0 ? -step : step;
+            add_channel(s, mode, e, step, c);
+        }
     }
+    return far_q16;
+}
+
+static int64_t far_carry(const struct glint_edge_sums *s)
+{
+    int64_t most = 0;
+
+    for (int i = 0; i < 3 << s->tile_log2; i++) {
+        const int64_t size = s->carry[i] < 0 ? -s->carry[i] : s->carry[i];
+
+        most = size > most ? size : most;
+    }
+    return most;
+}
+
+void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
+                    const struct glint_bundle *bundle, const int32_t *ref,
+                    int n_refs)
+{
+    const int64_t most_q24 = INT64_C(1) << 31;
+    int64_t far_q24 = 0;
+
+    sums->narrow = 0;
+    if (sums->linear) {
+        add_all(sums, LINEAR, edge, bundle, ref, n_refs);
+        return;
+    }
+    far_q24 = far_carry(sums);
+    if (far_q24 < most_q24) {
+        far_q24 +=
+            add_all(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
+        if (far_q24 + 128 < most_q24) {
+            sums->narrow = 1;
+            return;
+        }
+        for (int i = 0; i < (3 << sums->tile_log2) * sums->stride; i++)
+            sums->narrow_q24[i] = 0;
+    }
+    add_all(sums, WIDE, edge, bundle, ref, n_refs);
 }
 
 /* ------------------------------------------------------------------- finish
  */
 
-void glint_edge_finish(const struct glint_edge_sums *sums, int channel, int row,
+void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
                        int32_t *light_q20)
 {
     const int at = (channel << sums->tile_log2) + row;
-    uint64_t *sum_q36 = sums->change_q36 + (ptrdiff_t)at * sums->stride;
-    uint64_t light_q36 = sums->carry_q36[at];
+    uint64_t *change_q36 = sums->wide + (ptrdiff_t)at * sums->stride;
+    uint64_t light_q36 = (uint64_t)sums->carry[at];
     const int n = sums->tile.x1 - sums->tile.x0;
 
     for (int x = 0; x < n; x++) {
-        light_q36 += sum_q36[x];
-        sum_q36[x] = 0;
+        light_q36 += change_q36[x];
+        change_q36[x] = 0;
         light_q20[x] = q_clamp_sat(((int64_t)light_q36 >> 16) +
                                        ((int64_t)light_q36 >> 15 & 1),
                                    INT32_MIN, INT32_MAX);
     }
-    sums->carry_q36[at] = light_q36 + sum_q36[n];
-    sum_q36[n] = 0;
+    sums->carry[at] = (int64_t)(light_q36 + change_q36[n]);
+    change_q36[n] = 0;
+}
+
+static void wide_light(uint64_t *change_q24, int64_t *carry_q24, int n,
+                       uint16_t *light_q16)
+{
+    uint64_t sum_q24 = (uint64_t)*carry_q24;
+
+    for (int x = 0; x < n; x++) {
+        sum_q24 += change_q24[x];
+        change_q24[x] = 0;
+        light_q16[x] = (uint16_t)q_clamp_sat(
+            ((int64_t)sum_q24 >> 8) + ((int64_t)sum_q24 >> 7 & 1), 0, 65535);
+    }
+    *carry_q24 = (int64_t)sum_q24;
+}
+
+void glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
+                      const struct glint_kernels *kernels, uint16_t *light_q16)
+{
+    const int at = (channel << sums->tile_log2) + row;
+    const ptrdiff_t first = (ptrdiff_t)at * sums->stride;
+    const int n = sums->tile.x1 - sums->tile.x0;
+    const int padded = (n + GLINT_LANES - 1) / GLINT_LANES * GLINT_LANES;
+    uint32_t carry_q24 = (uint32_t)sums->carry[at];
+
+    if (!sums->narrow) {
+        wide_light(sums->wide + first, &sums->carry[at], padded, light_q16);
+        if (padded == n) {
+            sums->carry[at] += (int64_t)sums->wide[first + n];
+            sums->wide[first + n] = 0;
+        }
+        return;
+    }
+    kernels->run_sum(sums->narrow_q24 + first, &carry_q24, light_q16, padded);
+    if (padded == n) {
+        carry_q24 += sums->narrow_q24[first + n];
+        sums->narrow_q24[first + n] = 0;
+    }
+    sums->carry[at] = (int32_t)carry_q24;
 }

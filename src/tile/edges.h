@@ -14,9 +14,12 @@
  * the order of edges change any bit. A tile's rows begin with what runs in from
  * its left neighbour and end with what it leaves to the right one.
  *
- * Formats: corners _q8, slopes _q40, areas _q16, light _q20 below 2^40, sums
- * _q36 modulo 2^64. The caller's limit on light keeps final sums below 2^63
- * (flare.c); what comes in between may wrap, and wraps back.
+ * Formats: corners _q8, slopes _q40, light _q20 below 2^40. Sums for pictures
+ * of linear light: light _q20 times areas _q16, modulo 2^64. For all others
+ * light _q16 times areas _q8, modulo 2^64, or 2^32 where a tile's edges
+ * together cannot bring a sum beyond that: the same results, faster. The
+ * caller's limit on light keeps final sums below 2^63 (flare.c); what comes in
+ * between may wrap, and wraps back.
  */
 #ifndef GLINT_TILE_EDGES_H
 #define GLINT_TILE_EDGES_H
@@ -25,6 +28,7 @@
 
 #include "base/compiler.h"
 #include "base/q.h"
+#include "kernels/kernels.h"
 #include "tile/bins.h"
 #include "tile/primitive.h"
 
@@ -55,18 +59,21 @@ static inline int64_t glint_light_q20(int32_t packed)
     return (packed >> 5) * (INT64_C(1) << (packed & 31));
 }
 
-/* Sums of one tile. */
+/* Sums of one tile: changes, [3][side rows][stride], R, G, B; past the tile's
+ * last column one more is for what the next tile begins with. All are 0 between
+ * tiles. */
 struct glint_edge_sums {
     struct glint_box tile;
-    /* [3][side rows][stride], R, G, B: changes, and past the tile's last column
-     * one more for what the next tile begins with. All 0 between tiles. */
-    uint64_t *change_q36;
-    uint64_t *carry_q36; /* [3][side rows]: what runs in, and out */
     int tile_log2, stride;
+    int linear; /* for pictures of linear light */
+    int narrow; /* what add found: narrow sums do, and have been used */
+    uint64_t *wide;
+    uint32_t *narrow_q24;
+    int64_t *carry; /* [3][side rows]: what runs in, and out */
 };
 
-/* Space of GLINT_EDGE_STRIDE(log2) words a row: a multiple of 4 words. */
-#define GLINT_EDGE_STRIDE(log2) ((1 << (log2)) + 4)
+/* Space of GLINT_EDGE_STRIDE(log2) values a row. */
+#define GLINT_EDGE_STRIDE(log2) ((1 << (log2)) + 16)
 
 /* The edge from A to B, (x, y) _q8, with LIGHT on the side that is the right
  * one where it runs up, y falling, and OTHER on the other side; returns 0 if it
@@ -84,15 +91,19 @@ void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
 int glint_edge_span(const struct glint_edge *edge,
                     const struct glint_bins *bins);
 
-/* Adds EDGE in the colour RGB to the changes of SUMS. Light is coloured before
- * sides are compared, so that edges still cancel. */
-void glint_edge_add(const struct glint_edge *edge, const int32_t rgb_q14[3],
-                    const struct glint_edge_sums *sums);
+/* Adds the edges REF[0 .. N_REFS - 1] of EDGE, each in the colour of its
+ * bundle, to the changes of SUMS. Light is coloured before sides are compared,
+ * so that edges still cancel. */
+void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
+                    const struct glint_bundle *bundle, const int32_t *ref,
+                    int n_refs);
 
-/* The light of row ROW of the tile in channel CHANNEL, one value a pixel; its
- * changes are cleared, its carry goes on. Values saturate at the int32 range.
- */
-void glint_edge_finish(const struct glint_edge_sums *sums, int channel, int row,
+/* The light of row ROW of the tile in channel CHANNEL; its changes are cleared,
+ * its carry goes on. Of linear pictures one value a pixel, saturating at the
+ * int32 range; of others so many as are a multiple of GLINT_LANES. */
+void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
                        int32_t *light_q20);
+void glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
+                      const struct glint_kernels *kernels, uint16_t *light_q16);
 
 #endif

@@ -65,7 +65,7 @@ static unsigned touch(const struct glint_image *frame)
 
     for (int i = 0; i < glint_image_planes(frame->format); i++) {
         const int across =
-            glint_image_plane_width(frame->format, i, frame->width);
+            (int)glint_image_row_bytes(frame->format, i, frame->width);
         const int down =
             glint_image_plane_height(frame->format, i, frame->height);
 

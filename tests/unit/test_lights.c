@@ -857,8 +857,8 @@ static void test_ycc_formats(void **state)
         fill_grey(&image, 0, 0, 41, 31, 16);
         for (int i = 1; i < 3; i++)
             memset(image.plane[i], 128,
-                   (size_t)(glint_image_plane_width(formats[f], i, 41) *
-                            glint_image_plane_height(formats[f], i, 31)));
+                   glint_image_row_bytes(formats[f], i, 41) *
+                       (size_t)glint_image_plane_height(formats[f], i, 31));
         fill_grey(&image, 36, 26, 41, 31, 187); /* 199.1: not in */
         fill_grey(&image, 38, 28, 41, 31, 188);
         fill_grey(&image, 39, 29, 41, 31, 235);

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT */
+#include "kernels/kernels.h"
+
+static int16_t held(int x, int low, int high)
+{
+    return (int16_t)(x < low ? low : x > high ? high : x);
+}
+
+static int16_t sum_sat(int a, int b)
+{
+    return held(a + b, INT16_MIN, INT16_MAX);
+}
+
+/* a * b / 2^15; not for the minimum times itself. */
+static int16_t times(int a, int b)
+{
+    return (int16_t)((a * b + (1 << 14)) >> 15);
+}
+
+static uint16_t decode(const struct glint_tone16 *t, int16_t code_q7)
+{
+    const int k = code_q7 >> 12, place_q15 = (code_q7 & 4095) << 3;
+    int x = t->piece[3][k], light;
+
+    if (code_q7 < t->toe_end_q7)
+        return (uint16_t)times(code_q7, t->toe_q15);
+    x = t->piece[2][k] + times(place_q15, x);
+    x = t->piece[1][k] + times(place_q15, x);
+    light = (uint16_t)t->piece[0][k] + times(place_q15, x);
+    return (uint16_t)(light < 65535 ? light : 65535);
+}
+
+static int16_t encode(const struct glint_tone16 *t, uint16_t light_q16)
+{
+    const int k = 4 - (light_q16 >= 1 << 8) - (light_q16 >= 1 << 10) -
+                  (light_q16 >= 1 << 12) - (light_q16 >= 1 << 14);
+    const int m_q15 = ((light_q16 * t->lift[k] & 65535) >> 1) - 20480;
+    int power_q15 = t->power_q15[4];
+
+    if (light_q16 < t->toe_end_q16)
+        return (int16_t)((((light_q16 << 3) & 65535) * t->toe_q13) >> 16);
+    for (int i = 3; i >= 0; i--)
+        power_q15 = t->power_q15[i] + times(m_q15, power_q15);
+    return (int16_t)((int)(2 * (unsigned)power_q15 * t->scale[k] >> 16) -
+                     t->offset_q7);
+}
+
+/* What CODE changes by. */
+static int16_t change_of(const struct glint_tone16 *t, int16_t code_q7,
+                         uint16_t light_q16)
+{
+    const unsigned sum = decode(t, code_q7) + (unsigned)light_q16;
+    const int16_t lit = encode(t, (uint16_t)(sum < 65535 ? sum : 65535));
+
+    return light_q16 && lit > code_q7 ? (int16_t)(lit - code_q7) : 0;
+}
+
+void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
+                      const uint16_t *const light[3], int16_t *const change[3],
+                      int n, const struct glint_mix *mix, const int16_t *round)
+{
+    for (int i = 0; i < n; i++) {
+        const int y_q6 = (luma[i] - mix->black) * 64;
+        const int base_q6 = y_q6 + times(y_q6, mix->luma_q15);
+        const int b_q8 = (cb[i] - 128) * 256, r_q8 = (cr[i] - 128) * 256;
+        int16_t tint_q6[3], sum_q7 = round[i & 7];
+
+        tint_q6[0] = times(r_q8, mix->red_cr_q15);
+        tint_q6[1] = (int16_t)(times(b_q8, mix->green_cb_q15) +
+                               times(r_q8, mix->green_cr_q15));
+        tint_q6[2] = times(b_q8, mix->blue_cb_q15);
+        for (int c = 0; c < 3; c++) {
+            const int16_t half_q7 = sum_sat(tint_q6[c], base_q6);
+            const int16_t code_q7 =
+                held(sum_sat(half_q7, half_q7), 0, GLINT_WHITE_Q7);
+
+            change[c][i] = change_of(&mix->tone, code_q7, light[c][i]);
+            sum_q7 = sum_sat(sum_q7, times(change[c][i], mix->to_luma_q15[c]));
+        }
+        luma[i] = (uint8_t)held(luma[i] + (sum_q7 >> 7), 0, 255);
+    }
+}
+
+void glint_add_code_c(uint8_t *code, const uint16_t *light, int n,
+                      const struct glint_tone16 *tone, const int16_t *round)
+{
+    for (int i = 0; i < n; i++) {
+        const int16_t code_q7 = (int16_t)(code[i] * 128);
+        const int16_t change_q7 = change_of(tone, code_q7, light[i]);
+
+        code[i] = (uint8_t)held(
+            code[i] + (sum_sat(change_q7, round[i & 7]) >> 7), 0, 255);
+    }
+}
+
+void glint_run_sum_c(uint32_t *change_q24, uint32_t *carry_q24,
+                     uint16_t *light_q16, int n)
+{
+    uint32_t sum_q24 = *carry_q24;
+
+    for (int i = 0; i < n; i++) {
+        int32_t light;
+
+        sum_q24 += change_q24[i];
+        change_q24[i] = 0;
+        light = (int32_t)(sum_q24 + 128) >> 8;
+        light_q16[i] = (uint16_t)(light < 0       ? 0
+                                  : light < 65535 ? light
+                                                  : 65535);
+    }
+    *carry_q24 = sum_q24;
+}

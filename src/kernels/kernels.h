@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The hot loops, and all code that differs between CPUs.
+ *
+ * A kernel is a pure function over arrays: no allocation, errors or globals.
+ * NAME_c.c defines it; NAME_sse41.c, NAME_avx2.c and NAME_neon.c give the same
+ * bits. Arrays are disjoint, begin at 32-byte boundaries and are as long as N
+ * rounded up to a multiple of GLINT_LANES, so that no variant has a tail.
+ *
+ * One rounding everywhere but where a product is said to be cut: to nearest,
+ * ties up, as pmulhrsw and vqrdmulh do.
+ */
+#ifndef GLINT_KERNELS_KERNELS_H
+#define GLINT_KERNELS_KERNELS_H
+
+#include <stdint.h>
+
+#include "kernels/tone.h"
+
+#define GLINT_LANES 16
+
+/* Adds light to N pixels of one row of Y'CbCr.
+ *   luma    codes, changed in place
+ *   cb, cr  codes, one for each pixel
+ *   light   R, G, B: _q16, white = 65535
+ *   round   _q7, of pixel i: round[i & 7], below 1
+ *   change  R', G', B': what it changes by, _q7, 0 or more; 0 where there is
+ *           no light */
+typedef void
+glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
+                  const uint16_t *const light[3], int16_t *const change[3],
+                  int n, const struct glint_mix *mix, const int16_t *round);
+
+/* Adds light to N codes of one channel of R'G'B'; LIGHT and ROUND as above. */
+typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
+                               const struct glint_tone16 *tone,
+                               const int16_t *round);
+
+/* From changes to light, along a row: light[i] is *CARRY plus changes 0 .. i,
+ * _q24, rounded to _q16 and held to 0 .. 65535. Changes are cleared, sums may
+ * wrap and wrap back; *CARRY goes on. */
+typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
+                              uint16_t *light_q16, int n);
+
+struct glint_kernels {
+    glint_add_luma_fn *add_luma;
+    glint_add_code_fn *add_code;
+    glint_run_sum_fn *run_sum;
+};
+
+/* Fills K for the GLINT_SET_ bits SETS: C first, better ones override. */
+void glint_kernels_init(struct glint_kernels *k, unsigned sets);
+
+glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,
+    glint_add_luma_neon;
+glint_add_code_fn glint_add_code_c, glint_add_code_sse41, glint_add_code_avx2,
+    glint_add_code_neon;
+glint_run_sum_fn glint_run_sum_c, glint_run_sum_sse41, glint_run_sum_avx2,
+    glint_run_sum_neon;
+
+#endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+#include "glint/kernels.h"
+
+#if defined(__x86_64__)
+
+#include <cpuid.h>
+
+/* Whether the system saves the registers of AVX. */
+static int saves_avx(void)
+{
+    unsigned low, high;
+
+    __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    (void)high;
+    return (low & 6) == 6;
+}
+
+unsigned glint_sets_here(void)
+{
+    unsigned a, b, c, d, sets;
+
+    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & bit_SSE4_1))
+        return 0;
+    sets = GLINT_SET_SSE41;
+    if ((c & bit_OSXSAVE) && saves_avx() &&
+        __get_cpuid_count(7, 0, &a, &b, &c, &d) && (b & bit_AVX2))
+        sets |= GLINT_SET_AVX2;
+    return sets;
+}
+
+#elif defined(__ARM_NEON)
+
+unsigned glint_sets_here(void)
+{
+    return GLINT_SET_NEON;
+}
+
+#else
+
+unsigned glint_sets_here(void)
+{
+    return 0;
+}
+
+#endif

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Every variant of a kernel gives the bits of its C definition, and touches
+ * nothing but its arrays. With GLINT_BENCH=1 it is also timed.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "glint/kernels.h"
+#include "kernels/kernels.h"
+#include "tile/mix.h"
+
+enum { N = 64, PAGE = 4096, ROUNDS = 20000 };
+
+static uint32_t seed = 99;
+
+static uint32_t draw(void)
+{
+    seed ^= seed << 13;
+    seed ^= seed >> 17;
+    return seed ^= seed << 5;
+}
+
+/* N items that end at a page which traps. */
+static void *fenced(size_t bytes)
+{
+    void *mem;
+
+    assert_int_equal(posix_memalign(&mem, PAGE, 2 * PAGE), 0);
+    assert_int_equal(mprotect((uint8_t *)mem + PAGE, PAGE, PROT_NONE), 0);
+    return (uint8_t *)mem + PAGE - bytes;
+}
+
+struct variant {
+    const char *name;
+    unsigned set;
+};
+
+static const struct variant variants[] = {{"sse41", GLINT_SET_SSE41},
+                                          {"avx2", GLINT_SET_AVX2},
+                                          {"neon", GLINT_SET_NEON}};
+
+enum { N_VARIANTS = sizeof variants / sizeof *variants };
+
+static double now_ns(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
+}
+
+/* The least time of many rounds, next to that of C. */
+#define BENCH(what, name, of_c, of_variant)                                 \
+    do {                                                                    \
+        double best[2] = {1e9, 1e9};                                        \
+        if (!getenv("GLINT_BENCH"))                                         \
+            break;                                                          \
+        for (int round_ = 0; round_ < 4000; round_++) {                     \
+            double t0_ = now_ns(), t1_, t2_;                                \
+            of_c;                                                           \
+            t1_ = now_ns();                                                 \
+            of_variant;                                                     \
+            t2_ = now_ns();                                                 \
+            best[0] = t1_ - t0_ < best[0] ? t1_ - t0_ : best[0];            \
+            best[1] = t2_ - t1_ < best[1] ? t2_ - t1_ : best[1];            \
+        }                                                                   \
+        print_message("%-10s %-6s %d px: C %.0f ns, %.0f ns, %.1f times\n", \
+                      what, name, N, best[0], best[1], best[0] / best[1]);  \
+    } while (0)
+
+/* 0, the largest and what lies between, all often. */
+static uint16_t draw_light(void)
+{
+    const uint32_t x = draw();
+
+    return x % 5 == 0   ? 0
+           : x % 5 == 1 ? 65535
+                        : (uint16_t)((x >> 8) & 65535) >> (x >> 28);
+}
+
+struct rows {
+    uint8_t *luma, *cb, *cr;
+    uint16_t *light[3];
+    int16_t *change[3];
+};
+
+static void make_rows(struct rows *r)
+{
+    r->luma = fenced(N);
+    r->cb = fenced(N);
+    r->cr = fenced(N);
+    for (int c = 0; c < 3; c++) {
+        r->light[c] = fenced(N * sizeof(uint16_t));
+        r->change[c] = fenced(N * sizeof(int16_t));
+    }
+}
+
+static void draw_mix(struct glint_mix *mix)
+{
+    const struct glint_image image = {.matrix = (enum glint_matrix)(draw() & 1),
+                                      .range = (enum glint_range)(draw() & 1),
+                                      .transfer =
+                                          (enum glint_tone)(draw() & 1)};
+
+    glint_mix_init(mix, &image);
+}
+
+static void add_luma(const struct glint_kernels *k, const struct rows *r, int n,
+                     const struct glint_mix *mix, const int16_t *round)
+{
+    const uint16_t *const light[3] = {r->light[0], r->light[1], r->light[2]};
+
+    k->add_luma(r->luma, r->cb, r->cr, light, r->change, n, mix, round);
+}
+
+static void check_luma(const struct glint_kernels *k, const char *name)
+{
+    struct glint_kernels plain;
+    struct glint_mix mix;
+    struct rows want, got;
+    int16_t round[8];
+
+    glint_kernels_init(&plain, 0);
+    make_rows(&want);
+    make_rows(&got);
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
+
+        draw_mix(&mix);
+        for (int i = 0; i < 8; i++)
+            round[i] = (int16_t)(draw() & 127);
+        for (int i = 0; i < N; i++) {
+            want.luma[i] = got.luma[i] = (uint8_t)draw();
+            want.cb[i] = got.cb[i] = (uint8_t)draw();
+            want.cr[i] = got.cr[i] = (uint8_t)draw();
+            for (int c = 0; c < 3; c++) {
+                want.light[c][i] = got.light[c][i] = draw_light();
+                want.change[c][i] = got.change[c][i] = 77;
+            }
+        }
+        add_luma(&plain, &want, n, &mix, round);
+        add_luma(k, &got, n, &mix, round);
+        assert_memory_equal(got.luma, want.luma, N);
+        for (int c = 0; c < 3; c++)
+            assert_memory_equal(got.change[c], want.change[c], 2 * N);
+    }
+    BENCH("add_luma", name, add_luma(&plain, &want, N, &mix, round),
+          add_luma(k, &got, N, &mix, round));
+}
+
+/* Every code under every light. */
+static void check_code(const struct glint_kernels *k, const char *name)
+{
+    const int16_t round[8] = {64, 0, 127, 1, 63, 65, 100, 30};
+    struct glint_kernels plain;
+    uint8_t *want = fenced(N), *got = fenced(N);
+    uint16_t *light = fenced(N * sizeof *light);
+
+    glint_kernels_init(&plain, 0);
+    for (int transfer = 0; transfer < 2; transfer++)
+        for (int code = 0; code < 256; code++)
+            for (int first = 0; first < 65536; first += N) {
+                const struct glint_tone16 *tone =
+                    glint_tone16_of((enum glint_tone)transfer);
+
+                for (int i = 0; i < N; i++) {
+                    want[i] = got[i] = (uint8_t)code;
+                    light[i] = (uint16_t)(first + i);
+                }
+                plain.add_code(want, light, N, tone, round);
+                k->add_code(got, light, N, tone, round);
+                assert_memory_equal(got, want, N);
+            }
+    BENCH(
+        "add_code", name,
+        plain.add_code(want, light, N, glint_tone16_of(GLINT_TONE_SRGB), round),
+        k->add_code(got, light, N, glint_tone16_of(GLINT_TONE_SRGB), round));
+}
+
+static void check_sum(const struct glint_kernels *k, const char *name)
+{
+    struct glint_kernels plain;
+    uint32_t *want = fenced(N * sizeof *want), *got = fenced(N * sizeof *got);
+    uint16_t *light[2] = {fenced(N * sizeof(uint16_t)),
+                          fenced(N * sizeof(uint16_t))};
+    uint32_t carry[2];
+
+    glint_kernels_init(&plain, 0);
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
+        const int shift = (int)(draw() % 32);
+
+        carry[0] = carry[1] = draw() >> (draw() % 32);
+        for (int i = 0; i < N; i++) {
+            want[i] = got[i] = draw() % 3 ? 0 : draw() >> shift;
+            light[0][i] = light[1][i] = 7;
+        }
+        plain.run_sum(want, &carry[0], light[0], n);
+        k->run_sum(got, &carry[1], light[1], n);
+        assert_int_equal(carry[0], carry[1]);
+        assert_memory_equal(got, want, 4 * N);
+        assert_memory_equal(light[0], light[1], 2 * N);
+    }
+    BENCH("run_sum", name, plain.run_sum(want, &carry[0], light[0], N),
+          k->run_sum(got, &carry[1], light[1], N));
+}
+
+static void test_same_bits(void **state)
+{
+    (void)state;
+    for (int v = 0; v < N_VARIANTS; v++) {
+        struct glint_kernels k;
+
+        if (!(variants[v].set & glint_sets_here()))
+            continue;
+        glint_kernels_init(&k, variants[v].set);
+        check_luma(&k, variants[v].name);
+        check_code(&k, variants[v].name);
+        check_sum(&k, variants[v].name);
+    }
+}
+
+/* Encode undoes decode within 0.1 code, and more light is never darker. */
+static void test_codes_of_c(void **state)
+{
+    const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};
+
+    (void)state;
+    for (int transfer = 0; transfer < 2; transfer++)
+        for (int code = 0; code < 256; code++) {
+            int before = code;
+
+            for (int light = 1; before < 255; light += light / 64 + 1) {
+                uint8_t lit[GLINT_LANES];
+                uint16_t add[GLINT_LANES] = {
+                    (uint16_t)(light < 65535 ? light : 65535)};
+
+                memset(lit, code, sizeof lit);
+                glint_add_code_c(lit, add, GLINT_LANES,
+                                 glint_tone16_of((enum glint_tone)transfer),
+                                 round);
+                assert_true(lit[0] >= before);
+                assert_int_equal(lit[1], code);
+                before = lit[0];
+                assert_true(before == 255 || light < 65535);
+            }
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_codes_of_c),
+        cmocka_unit_test(test_same_bits),
+    };
+
+    return cmocka_run_group_tests_name("kernels", tests, NULL, NULL);
+}
