@@ -38,7 +38,8 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool model_file model_cache model_report measure lamps frame scene \
-        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare
+        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
+        cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare pnm y4m picture output workers \
         measure lamps
@@ -68,6 +69,8 @@ $(core_o): CFLAGS += -ffreestanding -Wframe-larger-than=1024
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
 $(OUT)/src/kernels/%.o: CFLAGS += -O3
+# the floor that everything is measured by is as fast as can be
+$(OUT)/tools/cmd_bench.o: CFLAGS += -O3
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits
 # rays in eights: errno and traps are all that these give away
 $(OUT)/src/bake/trace.o: CFLAGS += -O3 -fno-math-errno -fno-trapping-math

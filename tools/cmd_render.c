@@ -154,7 +154,7 @@ static int render_model(struct tool *tool, struct render *r)
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
     struct glint_image layer = {
         .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
-    struct frame_report report = {{0}, 0, 0, 0, 0, 0, 0, 0, 0};
+    struct frame_report report = {.lights = 0};
     int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
     enum glint_status status = GLINT_E_MEMORY;
     struct frame frame;

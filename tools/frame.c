@@ -307,13 +307,14 @@ enum glint_status frame_draw(struct frame *frame,
 {
     struct job job = {frame, feed_config(frame, scale)};
     const double t0 = tool_seconds();
-    double t1, t2, t3;
+    double t1, t2, t3, planned;
     enum glint_status status = plan(frame, lamps, n_lamps);
 
     if (status == GLINT_OK)
         status = add_bundles(frame, &job.cfg);
     if (status != GLINT_OK)
         return status;
+    planned = tool_seconds();
     glint_workers_run(frame->cfg.workers, frame->n_feeds, trace_job, &job);
     t1 = tool_seconds();
     status = bin(frame, &job.cfg, &report->stats);
@@ -328,7 +329,8 @@ enum glint_status frame_draw(struct frame *frame,
     report->tiles = glint_flare_tiles(frame->flare);
     report->arena_bytes = frame->bytes;
     report->peak_bytes = bytes_used(frame, &report->stats);
-    report->trace_ms = 1e3 * (t1 - t0);
+    report->plan_ms = 1e3 * (planned - t0);
+    report->trace_ms = 1e3 * (t1 - planned);
     report->bin_ms = 1e3 * (t2 - t1);
     report->draw_ms = 1e3 * (t3 - t2);
     return GLINT_OK;

@@ -40,7 +40,7 @@ struct frame_report {
     int lights, ghosts, tiles;
     size_t arena_bytes; /* what the run-time half was given */
     size_t peak_bytes;  /* what its largest frame took of it */
-    double trace_ms, bin_ms, draw_ms;
+    double plan_ms, trace_ms, bin_ms, draw_ms;
 };
 
 void frame_init(struct frame *frame, const struct glint_setup *setup,

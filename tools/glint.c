@@ -19,6 +19,7 @@ static const char help[] =
     "  glint overlay IN -o OUT ...     the flare of the lamps in a picture or\n"
     "                                  video, on top of it\n"
     "  glint compare A B               how far two pictures are apart\n"
+    "  glint bench                     what a frame costs\n"
     "\n"
     "  glint COMMAND --help            all options of a command\n"
     "  glint --version\n"
@@ -35,6 +36,7 @@ struct command {
 static const struct command commands[] = {
     {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
     {"overlay", cmd_overlay}, {"compare", cmd_compare}, {"bake", cmd_bake},
+    {"bench", cmd_bench},
 };
 
 static volatile sig_atomic_t reader_gone;

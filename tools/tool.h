@@ -113,5 +113,6 @@ int cmd_render(int argc, char **argv);
 int cmd_overlay(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 int cmd_bake(int argc, char **argv);
+int cmd_bench(int argc, char **argv);
 
 #endif
