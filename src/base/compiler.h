@@ -13,6 +13,10 @@
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
+/* Makes the compiler forget where P points, so that what lies there is loaded
+ * anew rather than kept where there is no room. */
+#define FORGET(p) __asm__("" : "+r"(p))
+
 /* Where a variable or field begins: a multiple of so many bytes. */
 #define ALIGNED(bytes) __attribute__((aligned(bytes)))
 

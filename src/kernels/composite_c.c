@@ -55,29 +55,83 @@ static int16_t change_of(const struct glint_tone16 *t, int16_t code_q7,
     return light_q16 && lit > code_q7 ? (int16_t)(lit - code_q7) : 0;
 }
 
+/* Adds light to one pixel: returns its luma, and what R', G', B' change by. */
+static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
+                         int16_t change[3], const struct glint_mix *mix,
+                         int16_t round_q7)
+{
+    const int y_q6 = (luma - mix->black) * 64;
+    const int base_q6 = y_q6 + times(y_q6, mix->luma_q15);
+    const int b_q8 = (cb - 128) * 256, r_q8 = (cr - 128) * 256;
+    int16_t tint_q6[3], sum_q7 = round_q7;
+
+    tint_q6[0] = times(r_q8, mix->red_cr_q15);
+    tint_q6[1] = (int16_t)(times(b_q8, mix->green_cb_q15) +
+                           times(r_q8, mix->green_cr_q15));
+    tint_q6[2] = times(b_q8, mix->blue_cb_q15);
+    for (int c = 0; c < 3; c++) {
+        const int16_t half_q7 = sum_sat(tint_q6[c], base_q6);
+        const int16_t code_q7 =
+            held(sum_sat(half_q7, half_q7), 0, GLINT_WHITE_Q7);
+
+        change[c] = change_of(&mix->tone, code_q7, light[c]);
+        sum_q7 = sum_sat(sum_q7, times(change[c], mix->to_luma_q15[c]));
+    }
+    return (uint8_t)held(luma + (sum_q7 >> 7), 0, 255);
+}
+
 void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                       const uint16_t *const light[3], int16_t *const change[3],
                       int n, const struct glint_mix *mix, const int16_t *round)
 {
     for (int i = 0; i < n; i++) {
-        const int y_q6 = (luma[i] - mix->black) * 64;
-        const int base_q6 = y_q6 + times(y_q6, mix->luma_q15);
-        const int b_q8 = (cb[i] - 128) * 256, r_q8 = (cr[i] - 128) * 256;
-        int16_t tint_q6[3], sum_q7 = round[i & 7];
+        const uint16_t here[3] = {light[0][i], light[1][i], light[2][i]};
+        int16_t changed[3];
 
-        tint_q6[0] = times(r_q8, mix->red_cr_q15);
-        tint_q6[1] = (int16_t)(times(b_q8, mix->green_cb_q15) +
-                               times(r_q8, mix->green_cr_q15));
-        tint_q6[2] = times(b_q8, mix->blue_cb_q15);
-        for (int c = 0; c < 3; c++) {
-            const int16_t half_q7 = sum_sat(tint_q6[c], base_q6);
-            const int16_t code_q7 =
-                held(sum_sat(half_q7, half_q7), 0, GLINT_WHITE_Q7);
+        luma[i] =
+            add_pixel(luma[i], cb[i], cr[i], here, changed, mix, round[i & 7]);
+        for (int c = 0; c < 3; c++)
+            change[c][i] = changed[c];
+    }
+}
 
-            change[c][i] = change_of(&mix->tone, code_q7, light[c][i]);
-            sum_q7 = sum_sat(sum_q7, times(change[c][i], mix->to_luma_q15[c]));
+/* Rounded up. */
+static int16_t mean_of(int a, int b)
+{
+    return (int16_t)((a + b + 1) >> 1);
+}
+
+void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
+                       const uint16_t *const light[3], int16_t *const mean[3],
+                       int n, enum glint_pair_step step,
+                       const struct glint_mix *mix, const int16_t *round,
+                       const int16_t *round_chroma)
+{
+    for (int i = 0; i < n; i += 2) {
+        int16_t changed[2][3],
+            sum_q7[2] = {round_chroma[i & 7], round_chroma[(i + 1) & 7]};
+
+        for (int k = 0; k < 2; k++) {
+            const uint16_t here[3] = {light[0][i + k], light[1][i + k],
+                                      light[2][i + k]};
+
+            luma[i + k] = add_pixel(luma[i + k], chroma[i], chroma[i + 1], here,
+                                    changed[k], mix, round[(i + k) & 7]);
         }
-        luma[i] = (uint8_t)held(luma[i] + (sum_q7 >> 7), 0, 255);
+        for (int c = 0; c < 3; c++) {
+            int16_t own = mean_of(changed[0][c], changed[1][c]);
+
+            if (step == GLINT_PAIRS_FIRST)
+                mean[c][i] = mean[c][i + 1] = own;
+            if (step == GLINT_PAIRS_SECOND)
+                own = mean_of(own, mean[c][i]);
+            for (int k = 0; k < 2; k++)
+                sum_q7[k] =
+                    sum_sat(sum_q7[k], times(own, mix->to_chroma_q15[k][c]));
+        }
+        for (int k = 0; k < 2 && step != GLINT_PAIRS_FIRST; k++)
+            chroma[i + k] =
+                (uint8_t)held(chroma[i + k] + (sum_q7[k] >> 7), 0, 255);
     }
 }
 

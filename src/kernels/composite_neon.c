@@ -67,6 +67,20 @@ static inline V v_greater(V a, V b)
     return S(vcgtq_s16(a, b));
 }
 
+static inline V v_set_pair(int16_t even, int16_t odd)
+{
+    return vreinterpretq_s16_u32(
+        vdupq_n_u32((uint32_t)(uint16_t)even | (uint32_t)(uint16_t)odd << 16));
+}
+
+/* Rounded up; of values of 0 or more. */
+#define v_mean vrhaddq_s16
+
+/* Of each pair of lanes: the other one, twice the first, twice the second. */
+#define v_swap     vrev32q_s16
+#define v_evens(x) vtrnq_s16(x, x).val[0]
+#define v_odds(x)  vtrnq_s16(x, x).val[1]
+
 /* Unsigned. */
 static inline V v_not_less(V a, V b)
 {

@@ -58,6 +58,31 @@ static inline void v_store_codes(uint8_t *p, V x)
 #define v_look(table, index) _mm_shuffle_epi8(table, index)
 #define v_pick(mask, a, b)   _mm_blendv_epi8(b, a, mask)
 
+static inline V v_set_pair(int16_t even, int16_t odd)
+{
+    return _mm_set1_epi32(
+        (int32_t)((uint32_t)(uint16_t)even | (uint32_t)(uint16_t)odd << 16));
+}
+
+/* Rounded up; of values of 0 or more. */
+#define v_mean _mm_avg_epu16
+
+/* Of each pair of lanes: the other one, twice the first, twice the second. */
+static inline V v_swap(V x)
+{
+    return _mm_or_si128(_mm_slli_epi32(x, 16), _mm_srli_epi32(x, 16));
+}
+
+static inline V v_evens(V x)
+{
+    return _mm_blend_epi16(x, _mm_slli_epi32(x, 16), 0xaa);
+}
+
+static inline V v_odds(V x)
+{
+    return _mm_blend_epi16(x, _mm_srli_epi32(x, 16), 0x55);
+}
+
 /* Unsigned. */
 static inline V v_not_less(V a, V b)
 {

@@ -31,6 +31,28 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
+/* What a row of pairs does with the mean changes of R', G', B' of its pairs. */
+enum glint_pair_step {
+    GLINT_PAIRS_ALONE, /* its chroma is its own */
+    GLINT_PAIRS_FIRST, /* of two rows: keeps them */
+    GLINT_PAIRS_SECOND /* of two: chroma goes by the mean of both */
+};
+
+/* Adds light to N pixels of one row of Y'CbCr whose chroma is shared by pairs.
+ *   luma    codes, changed in place
+ *   chroma  codes Cb, Cr of each pair; changed unless STEP is FIRST
+ *   light, round  as above
+ *   round_chroma  the same for chroma[i]
+ *   mean    [3][n], of the two pixels of each pair twice, _q7: kept for the
+ *           second row by the first */
+typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,
+                                const uint16_t *const light[3],
+                                int16_t *const mean[3], int n,
+                                enum glint_pair_step step,
+                                const struct glint_mix *mix,
+                                const int16_t *round,
+                                const int16_t *round_chroma);
+
 /* Adds light to N codes of one channel of R'G'B'; LIGHT and ROUND as above. */
 typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
@@ -44,6 +66,7 @@ typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
 
 struct glint_kernels {
     glint_add_luma_fn *add_luma;
+    glint_add_pairs_fn *add_pairs;
     glint_add_code_fn *add_code;
     glint_run_sum_fn *run_sum;
 };
@@ -53,6 +76,8 @@ void glint_kernels_init(struct glint_kernels *k, unsigned sets);
 
 glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,
     glint_add_luma_neon;
+glint_add_pairs_fn glint_add_pairs_c, glint_add_pairs_sse41,
+    glint_add_pairs_avx2, glint_add_pairs_neon;
 glint_add_code_fn glint_add_code_c, glint_add_code_sse41, glint_add_code_avx2,
     glint_add_code_neon;
 glint_run_sum_fn glint_run_sum_c, glint_run_sum_sse41, glint_run_sum_avx2,

@@ -4,8 +4,7 @@
 #include "base/compiler.h"
 #include "base/q.h"
 
-#define PIXEL_Q40 (INT64_C(1) << 40)
-#define ONE_Q16   (INT64_C(1) << 16)
+#define ONE_Q16 (INT64_C(1) << 16)
 
 /* --------------------------------------------------------------------- edge
  */
@@ -134,6 +133,7 @@ struct run {
     uint32_t *narrow_q24;
     int x0, x1; /* the tile's columns */
     int64_t light;
+    int64_t rise_q32; /* see rise_of */
 };
 
 static inline void change(const struct run *r, enum mode mode, int x,
@@ -154,37 +154,48 @@ static inline int64_t units(enum mode mode, int64_t area_q16)
 /* A piece of an edge within one row, from A to B (A <= B) over HEIGHT, in
  * several pixels. Covered areas rise from pixel to pixel, from 0 to HEIGHT; so
  * much of each as lies in the tile is what it changes by. */
-static inline void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
-                            int64_t b_q40, int64_t height_q16)
+static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
+                     int64_t b_q40, int64_t height_q16)
 {
-    const int64_t first = a_q40 >> 40, last = b_q40 >> 40;
-    const int64_t wide_q24 = (b_q40 - a_q40) >> 16;
-    const int64_t rise_q40 = (height_q16 << 40) / (wide_q24 ? wide_q24 : 1);
+    const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
+    const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
     /* with the last pixel of the tile before, if there is one */
-    const int64_t begin = r->x0 > 0 ? r->x0 - 1 : 0;
-    const int64_t from = first > begin ? first : begin;
-    const int64_t to = last < r->x1 - 1 ? last : r->x1 - 1;
+    const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
+    const int from = first > begin ? first : begin;
+    const int to = last < r->x1 - 1 ? last : r->x1 - 1;
+    int64_t low =
+        from > first ? r->rise_q32 * (from * ONE_Q16 - a_q16) >> 32 : 0;
     int64_t before = 0;
 
-    for (int64_t i = from; i <= to; i++) {
-        const int64_t left_q24 = i > first ? (i * PIXEL_Q40 - a_q40) >> 16 : 0;
-        const int64_t right_q24 = ((i + 1) * PIXEL_Q40 - a_q40) >> 16;
-        const int64_t low = (rise_q40 * (left_q24 >> 8)) >> 32;
+    for (int i = from; i <= to; i++) {
+        const int64_t side_q16 = (i + 1) * ONE_Q16;
         const int64_t high =
-            i < last ? (rise_q40 * (right_q24 >> 8)) >> 32 : height_q16;
+            i < last ? r->rise_q32 * (side_q16 - a_q16) >> 32 : height_q16;
         /* how far the piece's ends lie from the pixel's right side */
-        const int64_t p = i > first ? ONE_Q16 : (right_q24 >> 8);
-        const int64_t q = i < last ? 0 : ((i + 1) * PIXEL_Q40 - b_q40) >> 24;
-        const int64_t area = units(mode, low + ((high - low) * (p + q) >> 17));
+        const int64_t far_q16 = (i > first ? ONE_Q16 : side_q16 - a_q16) +
+                                (i < last ? 0 : side_q16 - b_q16);
+        const int64_t area = units(mode, low + ((high - low) * far_q16 >> 17));
 
         if (i >= r->x0)
-            change(r, mode, (int)i, area - before);
+            change(r, mode, i, area - before);
         before = area;
+        low = high;
     }
     if (last < r->x1 && last >= r->x0)
-        change(r, mode, (int)last + 1, units(mode, height_q16) - before);
+        change(r, mode, last + 1, units(mode, height_q16) - before);
     else if (last < r->x0 && r->x0 == 0)
         change(r, mode, 0, units(mode, height_q16));
+}
+
+/* How much an edge rises per pixel, _q16 per _q16, with 32 bits more. One that
+ * is so steep that it never leaves a pixel by more than 2^-16 may say less. */
+static int64_t rise_of(int64_t slope_q40)
+{
+    const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
+    const int64_t least = INT64_C(1) << 24;
+
+    /* 1/256 pixel of height is 2^8 of _q16 */
+    return (INT64_C(1) << 62) / (size > least ? size : least) << 2;
 }
 
 /* From A to B, in any order, over HEIGHT. */
@@ -219,9 +230,11 @@ static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
     int32_t y_q8 = later(e->y_q8, t->y0 * 256);
     const int row = (channel << s->tile_log2) + (y_q8 >> 8) - t->y0;
     const ptrdiff_t at = (ptrdiff_t)row * s->stride - t->x0;
-    struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light};
+    struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light, 0};
     int64_t x_q40 = x_at_q40(e, y_q8);
 
+    if (x_q40 >> 40 != x_at_q40(e, end_q8) >> 40)
+        r.rise_q32 = rise_of(e->slope_q40);
     while (y_q8 < end_q8) {
         const int32_t next_q8 = sooner((y_q8 | 255) + 1, end_q8);
         const int32_t height_q8 = next_q8 - y_q8;

@@ -54,101 +54,77 @@ static void luminance(const struct glint_light_rows *light, int row, int n,
                                  16);
 }
 
-static void resolve_luma(const struct glint_resolve *r, int y, int n,
-                         const uint16_t *const light[3], int row,
-                         struct glint_resolve_rows *rows)
+/* Chroma of its own for every pixel, or none. */
+static void resolve_whole(const struct glint_resolve *r,
+                          const struct glint_image *image, int y, int n,
+                          int row, const struct glint_light_rows *light,
+                          struct glint_resolve_rows *rows)
 {
-    struct glint_codes *c = &rows->codes;
-    int16_t *const change[3] = {rows->change_q7[0][row],
-                                rows->change_q7[1][row],
-                                rows->change_q7[2][row]};
+    const int grey = image->format == GLINT_GREY;
+    const uint16_t *rgb[3] = {light->rgb_q16[0][row], light->rgb_q16[1][row],
+                              light->rgb_q16[2][row]};
+    int16_t *const change[3] = {rows->change_q7[0], rows->change_q7[1],
+                                rows->change_q7[2]};
+    const int16_t *round = r->round_q7[y & 7];
+    uint8_t *code[3] = {rows->codes.sample[0][row], rows->codes.sample[1][row],
+                        rows->codes.sample[2][row]};
 
-    r->kernels.add_luma(c->sample[0][row], c->spread[0], c->spread[1], light,
-                        change, padded(n), &r->mix, r->round_q7[y & 7]);
-}
-
-/* The mean change of a channel over the 2^LOG2 pixels that share a sample. */
-static int32_t mean_q7(const int16_t (*change)[GLINT_CODES_WIDTH], int i,
-                       int n_x, int n_y)
-{
-    const int log2 = (n_x > 1) + (n_y > 1);
-    int32_t sum = 0;
-
-    for (int y = 0; y < n_y; y++)
-        for (int x = 0; x < n_x; x++)
-            sum += change[y][i + x];
-    return log2 ? (sum + (1 << (log2 - 1))) >> log2 : sum;
-}
-
-static uint8_t chroma_plus(const int16_t *weight_q15, int code,
-                           const int32_t mean[3], int round_q7)
-{
-    const int32_t change_q22 = mean[0] * weight_q15[0] +
-                               mean[1] * weight_q15[1] +
-                               mean[2] * weight_q15[2];
-
-    return (uint8_t)q_clamp_sat(code + ((change_q22 + (round_q7 << 15)) >> 22),
-                                0, 255);
-}
-
-/* Cb and Cr of one row of samples, the changes of whose pixels begin with row
- * ROW; CY is its place in the picture. */
-static void resolve_chroma(const struct glint_resolve *r,
-                           const struct glint_layout *l, int x, int cy, int n_x,
-                           int n_y, int row, struct glint_resolve_rows *rows)
-{
-    const int16_t *round = r->round_q7[cy & 7];
-    const int step = 1 << l->log2_x;
-
-    for (int i = 0; i < n_x; i += step) {
-        const int k = i >> l->log2_x, wide = i + step <= n_x ? step : 1;
-        const int round_q7 = round[((x >> l->log2_x) + k) & 7];
-        int32_t mean[3];
-
-        for (int c = 0; c < 3; c++)
-            mean[c] = mean_q7((const int16_t(*)[GLINT_CODES_WIDTH]) &
-                                  rows->change_q7[c][row],
-                              i, wide, n_y);
-        if (!(mean[0] | mean[1] | mean[2]))
-            continue;
-        for (int c = 0; c < 2; c++) {
-            uint8_t *code = &rows->codes.sample[c + 1][row][k];
-
-            *code = chroma_plus(r->mix.to_chroma_q15[c], *code, mean, round_q7);
-        }
+    if (grey) {
+        luminance(light, row, padded(n), rows->grey_q16);
+        rgb[0] = rgb[1] = rgb[2] = rows->grey_q16;
     }
+    r->kernels.add_luma(code[0], code[1], code[2], rgb, change, padded(n),
+                        &r->mix, round);
+    for (int k = 1; k < 3 && !grey; k++)
+        for (int i = 0; i < n; i++) {
+            const int16_t *weight_q15 = r->mix.to_chroma_q15[k - 1];
+            int64_t change_q22 = (int64_t)round[i & 7] << 15;
+
+            for (int c = 0; c < 3; c++)
+                change_q22 += change[c][i] * weight_q15[c];
+            code[k][i] =
+                (uint8_t)q_clamp_sat(code[k][i] + (change_q22 >> 22), 0, 255);
+        }
 }
 
-static void resolve_ycc(const struct glint_resolve *r,
-                        const struct glint_image *image, int x, int y, int n_x,
-                        int n_y, const struct glint_light_rows *light,
-                        struct glint_resolve_rows *rows)
+/* A stretch of odd width ends with half a pair: the other half is the same. */
+static void mirror_last(struct glint_light_rows *light, int n_x, int n_y)
 {
-    const struct glint_layout *l = glint_layout_of(image->format);
-    const int grey = l->kind == GLINT_LAYOUT_GREY;
+    for (int c = 0; c < 3; c++)
+        for (int row = 0; row < n_y; row++)
+            light->rgb_q16[c][row][n_x] = light->rgb_q16[c][row][n_x - 1];
+}
 
+static void resolve_pairs(const struct glint_resolve *r,
+                          const struct glint_layout *l, int y, int n_x, int n_y,
+                          struct glint_light_rows *light,
+                          struct glint_resolve_rows *rows)
+{
+    int16_t *const mean[3] = {rows->change_q7[0], rows->change_q7[1],
+                              rows->change_q7[2]};
+
+    if (n_x & 1)
+        mirror_last(light, n_x, n_y);
     for (int row = 0; row < n_y; row++) {
-        const uint16_t *rgb[3] = {light->rgb_q16[0][row],
-                                  light->rgb_q16[1][row],
-                                  light->rgb_q16[2][row]};
+        const uint16_t *const rgb[3] = {light->rgb_q16[0][row],
+                                        light->rgb_q16[1][row],
+                                        light->rgb_q16[2][row]};
+        const enum glint_pair_step step = !l->log2_y || n_y == 1
+                                              ? GLINT_PAIRS_ALONE
+                                          : row == 0 ? GLINT_PAIRS_FIRST
+                                                     : GLINT_PAIRS_SECOND;
+        const int cy = (y + row) >> l->log2_y;
 
-        if (grey) {
-            luminance(light, row, padded(n_x), rows->grey_q16);
-            rgb[0] = rgb[1] = rgb[2] = rows->grey_q16;
-        }
-        glint_codes_spread(&rows->codes, image->format, row);
-        resolve_luma(r, y + row, n_x, rgb, row, rows);
-        if (!grey && !l->log2_y)
-            resolve_chroma(r, l, x, y + row, n_x, 1, row, rows);
+        r->kernels.add_pairs(rows->codes.sample[0][row],
+                             rows->codes.chroma[l->log2_y ? 0 : row], rgb, mean,
+                             padded(n_x), step, &r->mix,
+                             r->round_q7[(y + row) & 7], r->round_q7[cy & 7]);
     }
-    if (!grey && l->log2_y)
-        resolve_chroma(r, l, x, y >> 1, n_x, n_y, 0, rows);
 }
 
 void glint_resolve_stretch(const struct glint_resolve *resolve,
                            const struct glint_image *image, int x, int y,
-                           int n_x, int n_y,
-                           const struct glint_light_rows *light,
+                           int n_x, int n_y, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows)
 {
     const struct glint_layout *l = glint_layout_of(image->format);
@@ -156,8 +132,11 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
     glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
     if (l->kind == GLINT_LAYOUT_RGB || l->kind == GLINT_LAYOUT_565)
         resolve_rgb(resolve, y, n_x, n_y, light, &rows->codes);
+    else if (l->log2_x)
+        resolve_pairs(resolve, l, y, n_x, n_y, light, rows);
     else
-        resolve_ycc(resolve, image, x, y, n_x, n_y, light, rows);
+        for (int row = 0; row < n_y; row++)
+            resolve_whole(resolve, image, y + row, n_x, row, light, rows);
     glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
 }
 

@@ -37,7 +37,7 @@ struct glint_resolve {
     int16_t round_q7[8][8];
 };
 
-/* Two rows of a tile, for resolve; what is past the last pixel is 0. */
+/* Two rows of a tile, for resolve, which may write past the last pixel. */
 struct glint_light_rows {
     ALIGNED(32) uint16_t rgb_q16[3][2][GLINT_CODES_WIDTH];
 };
@@ -45,7 +45,7 @@ struct glint_light_rows {
 /* Scratch of a worker. */
 struct glint_resolve_rows {
     ALIGNED(32) struct glint_codes codes;
-    ALIGNED(32) int16_t change_q7[3][2][GLINT_CODES_WIDTH];
+    ALIGNED(32) int16_t change_q7[3][GLINT_CODES_WIDTH];
     ALIGNED(32) uint16_t grey_q16[GLINT_CODES_WIDTH];
 };
 
@@ -62,8 +62,7 @@ void glint_resolve_init(struct glint_resolve *resolve,
  * once. */
 void glint_resolve_stretch(const struct glint_resolve *resolve,
                            const struct glint_image *image, int x, int y,
-                           int n_x, int n_y,
-                           const struct glint_light_rows *light,
+                           int n_x, int n_y, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows);
 
 /* Adds N values of LIGHT, R, G, B by themselves, to a row of a LINEAR_Q20
