@@ -160,6 +160,17 @@ check:
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
+# NEON kernels against their C definitions, in an emulator.
+CORE_TEST := tests/unit/test_kernels.c src/base/status.c src/base/q.c \
+        src/tile/curve.c src/tile/mix.c $(wildcard src/kernels/[!c]*.c) \
+        src/kernels/composite_c.c src/kernels/composite_neon.c
+check-neon:
+	@tools/deps "NEON kernels in an emulator" gcc-aarch64-linux-gnu \
+	        libc6-dev-arm64-cross qemu-user-static
+	@mkdir -p build/neon
+	aarch64-linux-gnu-gcc -std=c99 -O2 -static $(WARN) $(CPPFLAGS) -Isrc -Itests \
+	        -D_POSIX_C_SOURCE=200809L $(CORE_TEST) -o build/neon/test_kernels
+	qemu-aarch64-static build/neon/test_kernels
 golden-update: $(OUT)/tests/unit/test_flare
 	@GLINT_GOLDEN_UPDATE=1 $<
 
@@ -202,7 +213,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table check run-check golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table check run-check check-neon golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
