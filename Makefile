@@ -27,17 +27,17 @@ export DEPS OUT
 CORE := base/status base/arena base/q base/image base/workers kernels/sets \
         kernels/kernels kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
         tile/outline tile/bins tile/raster tile/edges tile/curve \
-        tile/mix tile/codes tile/resolve flare/ghost_grid flare/ghost_edges flare/by_cells \
+        tile/mix tile/codes tile/resolve flare/plan flare/ghost_grid flare/ghost_edges flare/by_cells \
         flare/by_edges flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
-        bake/setup bake/exact bake/feed bake/feed_model bake/hunt bake/regress \
+        bake/setup bake/exact bake/feed bake/hunt bake/regress \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
-TOOLS := tool model_file model_cache model_report measure lamps frame scene \
+TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #include "frame.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "frame_feed.h"
 #include "tool.h"
 
-/* What one frame may take: 65535 bundles, 0.8 GB of vertices. */
-enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
+/* What one frame may take, by edges and by cells. */
+enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_CELLS = 65535 };
 
 void frame_init(struct frame *frame, const struct glint_setup *setup,
                 struct glint_view view, struct glint_workers *workers)
@@ -45,230 +47,156 @@ void frame_finish(struct frame *frame)
     free(frame->mask);
     free(frame->feed);
     free(frame->vertices);
+    free(frame->beam);
+    free(frame->seen);
     free(frame->mem);
 }
 
-/* --------------------------------------------------------------------- plan */
+/* ----------------------------------------------------------------------- rays
+ */
 
-struct job {
-    struct frame *frame;
-    struct glint_feed_config cfg;
-};
-
-static struct glint_feed_config feed_config(const struct frame *f, double scale)
+static struct glint_real largest_of(const double rgb[3], int32_t rgb_q14[3])
 {
-    return (struct glint_feed_config){f->setup,     f->lens,    f->view,  scale,
-                                      f->max_cells, f->uniform, f->narrow};
+    const double most = fmax(fabs(rgb[0]), fmax(fabs(rgb[1]), fabs(rgb[2])));
+
+    for (int c = 0; c < 3; c++)
+        rgb_q14[c] = most > 0 ? (int32_t)lrint(rgb[c] / most * 16384) : 0;
+    return glint_real_of(most);
 }
 
-/* All wavelengths of one ghost and lamp. */
-static void plan_job(void *ctx, int job, int worker)
-{
-    struct job *j = ctx;
-    const int waves = j->frame->setup->n_wavelengths, middle = waves / 2;
-    struct glint_feed *feed = &j->frame->feed[job * waves];
-
-    (void)worker;
-    glint_feed_plan(&j->cfg, &feed[middle], NULL);
-    for (int wave = 0; wave < waves; wave++)
-        if (wave != middle)
-            glint_feed_plan(&j->cfg, &feed[wave], &feed[middle]);
-}
-
-static enum glint_status reserve_feeds(struct frame *f, int n)
-{
-    struct glint_feed *feed;
-    struct glint_vertex **vertices;
-
-    if (n <= f->max_feeds)
-        return GLINT_OK;
-    feed = realloc(f->feed, (size_t)n * sizeof *feed);
-    if (!feed)
-        return GLINT_E_MEMORY;
-    f->feed = feed;
-    vertices = realloc(f->vertices, (size_t)n * sizeof *vertices);
-    if (!vertices)
-        return GLINT_E_MEMORY;
-    f->vertices = vertices;
-    f->max_feeds = n;
-    return GLINT_OK;
-}
-
-/* Ghost or part GHOST is ghost NUMBER. */
-static bool is_ghost(const struct glint_setup *s, int ghost, int number)
-{
-    return s->ghost[ghost].i == s->ghost[number].i &&
-           s->ghost[ghost].j == s->ghost[number].j;
-}
-
-/* Every ghost, lamp and wavelength that reaches the picture. */
-static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
-                              int n_lamps)
+static void set_waves(struct frame *f)
 {
     const struct glint_setup *s = f->setup;
-    struct job job = {f, feed_config(f, 1)};
-    const enum glint_status status =
-        reserve_feeds(f, n_lamps * s->n_ghosts * s->n_wavelengths);
-    int n = 0, kept = 0;
 
-    if (status != GLINT_OK)
-        return status;
-    for (int lamp = 0; lamp < n_lamps; lamp++)
-        for (int ghost = 0; ghost < s->n_ghosts; ghost++)
-            for (int wave = 0; wave < s->n_wavelengths; wave++)
-                if (f->only_ghost < 0 || is_ghost(s, ghost, f->only_ghost))
-                    f->feed[n++] = (struct glint_feed){.lamp = &lamps[lamp],
-                                                       .ghost = ghost,
-                                                       .wavelength = wave};
-    glint_workers_run(f->cfg.workers, n / s->n_wavelengths, plan_job, &job);
+    for (int i = 0; i < s->n_wavelengths; i++) {
+        struct glint_wave *w = &f->wave[i];
+        const double nm = s->wavelength_nm[i];
+        const double size = glint_real_value(largest_of(s->rgb[i], w->rgb_q14));
+
+        w->wave_q24 = (int32_t)lrint(1e6 / (nm * nm) * 0x1p24);
+        w->weight = glint_real_of(size / s->unit_flux[i]);
+    }
+}
+
+static struct glint_beam beam_of(const struct glint_lamp *l, double scale)
+{
+    const double degree = 3.14159265358979323846 / 180;
+    struct glint_beam b;
+    const double size = glint_real_value(largest_of(l->rgb, b.rgb_q14));
+    const double power = size * l->power * scale;
+
+    b.sine_q30 = (int32_t)lrint(sin(l->theta_deg * degree) * 0x1p30);
+    b.cosine_q30 = (int32_t)lrint(cos(l->theta_deg * degree) * 0x1p30);
+    b.cos_q30 = (int32_t)lrint(cos(l->phi_deg * degree) * 0x1p30);
+    b.sin_q30 = (int32_t)lrint(sin(l->phi_deg * degree) * 0x1p30);
+    b.power = glint_real_of(isfinite(power) && power > 0 ? power : 0);
+    return b;
+}
+
+static enum glint_status
+set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
+{
+    if (n > f->max_beams) {
+        struct glint_beam *beam = realloc(f->beam, (size_t)n * sizeof *f->beam);
+
+        if (!beam)
+            return GLINT_E_MEMORY;
+        f->beam = beam;
+        f->max_beams = n;
+    }
     for (int i = 0; i < n; i++)
-        if (f->feed[i].n_cells > 0)
-            f->feed[kept++] = f->feed[i];
-    f->n_feeds = kept;
+        f->beam[i] = beam_of(&lamps[i], scale);
     return GLINT_OK;
 }
 
-/* What a feed's pupil sends, display white times pixels at scale 1. */
-static double flux_of(const struct frame *f, const struct glint_feed *feed)
+/* Half a code near black, which no ghost below can lift, in 8 bits. */
+static double faintest(const struct glint_image *image)
 {
-    const struct glint_pupil *p = &feed->pupil;
-    const double area = (p->x1_mm - p->x0_mm) * 2 * p->y1_mm;
-
-    return feed->lamp->power * p->energy * area /
-           f->setup->unit_flux[feed->wavelength];
+    return image->format == GLINT_LINEAR_Q20    ? 0
+           : image->transfer == GLINT_TONE_SRGB ? 0.5 / 255 / 12.92
+                                                : 0.5 / 255 / 4.5;
 }
 
-/* Pixels of the box that its light falls in. */
-static double pixels_of(const struct frame *f, const struct glint_feed *feed)
+static struct glint_rays rays_of(const struct frame *f, double faintest_light)
 {
-    const double *s = feed->pupil.sensor_mm;
-    const double pixel = f->view.sensor_width_mm / f->view.width;
-
-    return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
+    return (struct glint_rays){
+        .lens = f->lens,
+        .wave = f->wave,
+        .n_waves = f->setup->n_wavelengths,
+        .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
+        .fineness = f->max_cells,
+        .uniform = f->uniform,
+        .narrow = f->narrow,
+        .only_ghost = f->only_ghost,
+        .faintest = glint_real_of(faintest_light)};
 }
 
-double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
-                        int n_lamps)
-{
-    double brightest = 0, together = 0;
-
-    if (plan(frame, lamps, n_lamps) != GLINT_OK)
-        return 1;
-    for (int i = 0; i < frame->n_feeds; i++) {
-        const double flux = flux_of(frame, &frame->feed[i]);
-
-        brightest = fmax(brightest, flux / pixels_of(frame, &frame->feed[i]));
-        together += flux;
-    }
-    /* No light is cut down while all flux together is below 2^24. */
-    return brightest > 0 ? exp2(fmin(5 - ceil(log2(brightest)),
-                                     23 - ceil(log2(together))))
-                         : 1;
-}
-
-/* ------------------------------------------------------------------- memory */
+/* --------------------------------------------------------------------- memory
+ */
 
 static int larger(int a, int b)
 {
     return a > b ? a : b;
 }
 
-/* A new block of exactly what was needed so far; the vertices move over. */
-static enum glint_status regrow(struct frame *f,
-                                const struct glint_feed_config *cfg)
+/* A new block for the capacities there are. */
+static enum glint_status regrow(struct frame *f)
 {
     const size_t bytes = glint_flare_bytes(&f->cfg);
-    struct glint_flare *flare;
-    enum glint_status status;
     void *mem = NULL;
 
+    free(f->mem);
+    f->mem = NULL;
+    f->bytes = 0;
     if (bytes == 0 || posix_memalign(&mem, 64, bytes) != 0)
         return GLINT_E_MEMORY;
-    status = glint_flare_init(&flare, &f->cfg, mem, bytes);
-    for (int i = 0; i < f->n_feeds && status == GLINT_OK; i++) {
-        const int nodes = f->feed[i].n_cells + 1;
-        struct glint_bundle bundle;
-        struct glint_vertex *to;
-
-        glint_feed_bundle(cfg, &f->feed[i], &bundle);
-        to = glint_flare_add(flare, &bundle);
-        if (f->vertices[i])
-            memcpy(to, f->vertices[i],
-                   (size_t)nodes * (size_t)nodes * sizeof *to);
-        f->vertices[i] = to;
-    }
-    free(f->mem);
     f->mem = mem;
     f->bytes = bytes;
-    f->flare = flare;
-    return status;
+    return glint_flare_init(&f->flare, &f->cfg, mem, bytes);
 }
 
-/* -------------------------------------------------------------------- frame */
-
-static void trace_job(void *ctx, int job, int worker)
+/* Plans, with room for all bundles there can be. */
+static enum glint_status plan(struct frame *f, const struct glint_rays *rays,
+                              int n_beams)
 {
-    struct job *j = ctx;
+    const int most = f->cfg.raster == GLINT_RASTER_CELLS || f->mask
+                         ? MAX_BUNDLES_CELLS
+                         : MAX_BUNDLES;
+    const double need =
+        (double)n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
+    const int bundles = need < most ? (int)need : most;
 
-    (void)worker;
-    glint_feed_trace(&j->cfg, &j->frame->feed[job], j->frame->vertices[job]);
-}
-
-/* Takes all bundles in; makes room first where there is too little. */
-static enum glint_status add_bundles(struct frame *f,
-                                     const struct glint_feed_config *cfg)
-{
-    int vertices = 0;
-
-    f->n_dropped = 0;
-    for (int i = 0; i < f->n_feeds; i++) {
-        const int n = f->feed[i].n_cells + 1;
-
-        if (i == MAX_BUNDLES || n * n > MAX_VERTICES - vertices) {
-            f->n_dropped = f->n_feeds - i; /* the weakest lamps come last */
-            f->n_feeds = i;
-            break;
-        }
-        f->vertices[i] = NULL;
-        vertices += n * n;
-    }
-    if (!f->mem || f->n_feeds > f->cfg.max_bundles ||
-        vertices > f->cfg.max_vertices) {
-        f->cfg.max_bundles = larger(f->cfg.max_bundles, f->n_feeds);
-        f->cfg.max_vertices = larger(f->cfg.max_vertices, vertices);
-        return regrow(f, cfg);
-    }
-    glint_flare_begin(f->flare);
-    for (int i = 0; i < f->n_feeds; i++) {
-        struct glint_bundle bundle;
-
-        glint_feed_bundle(cfg, &f->feed[i], &bundle);
-        f->vertices[i] = glint_flare_add(f->flare, &bundle);
-    }
-    return GLINT_OK;
-}
-
-/* Bins, and where something did not fit, once more with room for it. */
-static enum glint_status bin(struct frame *f,
-                             const struct glint_feed_config *cfg,
-                             struct glint_flare_stats *s)
-{
-    for (;;) {
+    if (!f->mem || bundles > f->cfg.max_bundles) {
         enum glint_status status;
 
-        glint_flare_bin(f->flare, s);
-        if (s->need_primitives <= f->cfg.max_primitives &&
-            s->need_refs <= f->cfg.max_refs &&
-            s->need_tile_refs <= f->cfg.max_tile_refs)
-            return GLINT_OK;
-        f->cfg.max_primitives =
-            larger(f->cfg.max_primitives, s->need_primitives);
-        f->cfg.max_refs = larger(f->cfg.max_refs, s->need_refs);
-        f->cfg.max_tile_refs = larger(f->cfg.max_tile_refs, s->need_tile_refs);
-        status = regrow(f, cfg);
+        f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
+        status = regrow(f);
         if (status != GLINT_OK)
             return status;
     }
+    glint_flare_plan(f->flare, rays, f->beam, n_beams);
+    return GLINT_OK;
+}
+
+/* Whether all fitted; makes room where it did not. */
+static bool is_served(struct frame *f, const struct glint_flare_stats *s)
+{
+    struct glint_flare_config *c = &f->cfg;
+
+    if (s->need_vertices <= c->max_vertices &&
+        s->need_primitives <= c->max_primitives &&
+        s->need_refs <= c->max_refs && s->need_tile_refs <= c->max_tile_refs)
+        return true;
+    c->max_vertices = larger(c->max_vertices, s->need_vertices);
+    /* workers' shares are never quite even */
+    c->max_primitives = larger(
+        c->max_primitives,
+        (int)fmin(INT_MAX,
+                  s->need_primitives *
+                      (glint_workers_count(c->workers) > 1 ? 1.5 : 1.0)));
+    c->max_refs = larger(c->max_refs, s->need_refs);
+    c->max_tile_refs = larger(c->max_tile_refs, s->need_tile_refs);
+    return false;
 }
 
 /* What the frame took, by the same measure that sized the block. */
@@ -277,7 +205,7 @@ static size_t bytes_used(const struct frame *f,
 {
     struct glint_flare_config used = f->cfg;
 
-    used.max_bundles = s->bundles;
+    used.max_bundles = s->need_bundles;
     used.max_vertices = s->vertices;
     used.max_primitives = s->primitives;
     used.max_refs = s->refs;
@@ -285,19 +213,84 @@ static size_t bytes_used(const struct frame *f,
     return glint_flare_bytes(&used);
 }
 
-static int count_ghosts(const struct frame *f)
+/* ---------------------------------------------------------------------- frame
+ */
+
+/* Ghost or part GHOST is ghost NUMBER. */
+static bool is_ghost(const struct glint_setup *s, int ghost, int number)
 {
-    int n = 0;
+    return s->ghost[ghost].i == s->ghost[number].i &&
+           s->ghost[ghost].j == s->ghost[number].j;
+}
 
-    for (int ghost = 0; ghost < f->setup->n_ghosts - f->setup->n_parts;
-         ghost++) {
-        bool seen = false;
+void frame_note_ghost(struct frame *frame, int ghost)
+{
+    const struct glint_setup *s = frame->setup;
+    int number = ghost;
 
-        for (int i = 0; i < f->n_feeds && !seen; i++)
-            seen = is_ghost(f->setup, f->feed[i].ghost, ghost);
-        n += seen;
+    if (ghost >= s->n_ghosts - s->n_parts)
+        for (number = 0; !is_ghost(s, ghost, number);)
+            number++;
+    frame->seen[number] = true;
+}
+
+void frame_report_times(struct frame_report *report, const double times[5])
+{
+    report->plan_ms = 1e3 * (times[1] - times[0]);
+    report->trace_ms = 1e3 * (times[2] - times[1]);
+    report->bin_ms = 1e3 * (times[3] - times[2]);
+    report->draw_ms = 1e3 * (times[4] - times[3]);
+}
+
+static enum glint_status draw_model(struct frame *f,
+                                    const struct glint_lamp *lamps, int n_lamps,
+                                    double scale,
+                                    const struct glint_image *image,
+                                    struct frame_report *report)
+{
+    const struct glint_rays rays = rays_of(f, faintest(image));
+    double times[5] = {tool_seconds()};
+    enum glint_status status = set_beams(f, lamps, n_lamps, scale);
+
+    set_waves(f);
+    while (status == GLINT_OK) {
+        status = plan(f, &rays, n_lamps);
+        if (status != GLINT_OK)
+            return status;
+        times[1] = times[2] = tool_seconds();
+        glint_flare_bin(f->flare, &report->stats);
+        if (is_served(f, &report->stats))
+            break;
+        status = regrow(f);
     }
-    return n;
+    if (status != GLINT_OK)
+        return status;
+    times[3] = tool_seconds();
+    glint_flare_draw(f->flare, image);
+    times[4] = tool_seconds();
+    for (int i = 0; i < report->stats.bundles; i++)
+        frame_note_ghost(f, glint_flare_ghost(f->flare, i));
+    frame_report_times(report, times);
+    return GLINT_OK;
+}
+
+double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
+                        int n_lamps)
+{
+    const struct glint_rays rays = rays_of(frame, 0);
+    struct glint_real brightest, together;
+
+    if (!frame->lens)
+        return frame_feed_scale(frame, lamps, n_lamps);
+    set_waves(frame);
+    if (set_beams(frame, lamps, n_lamps, 1) != GLINT_OK ||
+        plan(frame, &rays, n_lamps) != GLINT_OK)
+        return 1;
+    glint_flare_light(frame->flare, &brightest, &together);
+    /* No light is cut down while all flux together is below 2^24. */
+    return brightest.mantissa ? exp2(fmin(5 - (brightest.exponent + 31),
+                                          23 - (together.exponent + 31)))
+                              : 1;
 }
 
 enum glint_status frame_draw(struct frame *frame,
@@ -305,33 +298,21 @@ enum glint_status frame_draw(struct frame *frame,
                              double scale, const struct glint_image *image,
                              struct frame_report *report)
 {
-    struct job job = {frame, feed_config(frame, scale)};
-    const double t0 = tool_seconds();
-    double t1, t2, t3, planned;
-    enum glint_status status = plan(frame, lamps, n_lamps);
+    enum glint_status status;
 
-    if (status == GLINT_OK)
-        status = add_bundles(frame, &job.cfg);
-    if (status != GLINT_OK)
-        return status;
-    planned = tool_seconds();
-    glint_workers_run(frame->cfg.workers, frame->n_feeds, trace_job, &job);
-    t1 = tool_seconds();
-    status = bin(frame, &job.cfg, &report->stats);
-    if (status != GLINT_OK)
-        return status;
-    t2 = tool_seconds();
-    glint_flare_draw(frame->flare, image);
-    t3 = tool_seconds();
-    report->stats.dropped_bundles += frame->n_dropped;
+    if (!frame->seen)
+        frame->seen = calloc(GLINT_MAX_GHOSTS, sizeof *frame->seen);
+    if (!frame->seen)
+        return GLINT_E_MEMORY;
+    memset(frame->seen, 0, GLINT_MAX_GHOSTS * sizeof *frame->seen);
+    status = (frame->lens ? draw_model : frame_feed_draw)(frame, lamps, n_lamps,
+                                                          scale, image, report);
     report->lights = n_lamps;
-    report->ghosts = count_ghosts(frame);
-    report->tiles = glint_flare_tiles(frame->flare);
+    report->tiles = status == GLINT_OK ? glint_flare_tiles(frame->flare) : 0;
     report->arena_bytes = frame->bytes;
     report->peak_bytes = bytes_used(frame, &report->stats);
-    report->plan_ms = 1e3 * (planned - t0);
-    report->trace_ms = 1e3 * (t1 - planned);
-    report->bin_ms = 1e3 * (t2 - t1);
-    report->draw_ms = 1e3 * (t3 - t2);
-    return GLINT_OK;
+    report->ghosts = 0;
+    for (int i = 0; i < GLINT_MAX_GHOSTS; i++)
+        report->ghosts += frame->seen[i];
+    return status;
 }

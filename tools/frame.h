@@ -12,6 +12,8 @@
 #ifndef GLINT_TOOLS_FRAME_H
 #define GLINT_TOOLS_FRAME_H
 
+#include <stdbool.h>
+
 #include "glint/glint.h"
 
 struct frame {
@@ -26,6 +28,12 @@ struct frame {
     int only_ghost; /* -1: all */
     int16_t *mask;  /* of the stop, unless NULL */
 
+    struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
+    struct glint_beam *beam;
+    int max_beams;
+    bool *seen; /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+
+    /* exact rays */
     struct glint_feed *feed;
     int n_feeds, max_feeds;
     int n_dropped;                  /* bundles beyond what a frame may take */

@@ -23,6 +23,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "glint/lens.h"
 #include "glint/status.h"
 #include "glint/workers.h"
 
@@ -240,6 +241,10 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
  * the ghosts as it shows in everything else. */
 void glint_setup_balance(struct glint_setup *setup);
 
+/* From and to the numbers of a model; what is not finite becomes 0. */
+struct glint_real glint_real_of(double x);
+double glint_real_value(struct glint_real x);
+
 /* A light at infinity. */
 struct glint_lamp {
     double theta_deg; /* off the axis, 0 .. 89.9 */
@@ -373,12 +378,10 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
 
 struct glint_feed_config {
     const struct glint_setup *setup;
-    const struct glint_lens *lens; /* its model; NULL: exact rays */
     struct glint_view view;
     double scale;  /* of all light: gain times 2^EV */
     int max_cells; /* fineness of the grids, 1 .. 1024: see glint_feed_plan */
     bool uniform;  /* all ghosts get max_cells a side */
-    bool narrow;   /* a model's rays in 16-bit lanes: glint_transfer_narrow */
 };
 
 enum { GLINT_FEED_CUTS = 8 };
@@ -401,8 +404,7 @@ struct glint_feed {
  * light bends in pixels: off by 0.01 px (RMS), outlines by 0.1, with 64 for
  * max_cells, and by the square of it less with more; a multiple of 4 from 8 to
  * 2 max_cells, 4 max_cells where light folds, over the pupil and a pixel more
- * on each side. Lamp, ghost and wavelength are set already. Of a
- * model the pupil is its box as it is, and no barrels are set. */
+ * on each side. Lamp, ghost and wavelength are set already. */
 void glint_feed_plan(const struct glint_feed_config *cfg,
                      struct glint_feed *feed, const struct glint_feed *near);
 

@@ -7,6 +7,8 @@
  *     glint_flare_begin(flare);                              each frame
  *     for each ghost, light and wavelength:
  *         vertices = glint_flare_add(flare, &bundle);        fill them in
+ *     or for those of a baked lens at once, instead of both:
+ *         glint_flare_plan(flare, &rays, beams, n_beams);
  *     glint_flare_bin(flare, &stats);
  *     glint_flare_draw(flare, &image);
  *
@@ -23,6 +25,7 @@
 #include <stdint.h>
 
 #include "glint/image.h"
+#include "glint/lens.h"
 #include "glint/status.h"
 #include "glint/workers.h"
 
@@ -74,6 +77,40 @@ struct glint_bundle {
     int flux_exponent;
     int32_t rgb_q14[3]; /* colour of the wavelength times that of the light,
                            linear BT.709, -4 .. 4 */
+};
+
+/* --------------------------------------------------------- rays of a lens */
+
+/* A light as the lens sees it: parallel rays. */
+struct glint_beam {
+    int32_t sine_q30, cosine_q30; /* of the angle off the axis, 0 .. 2^30 */
+    int32_t cos_q30, sin_q30;     /* of the azimuth: 0 = right, 90 = up */
+    struct glint_real power; /* its in-focus image, spread over one pixel, would
+                                have this value; 1 = display white */
+    int32_t rgb_q14[3];      /* colour, linear BT.709, largest channel 1 */
+};
+
+/* A wavelength that is drawn. */
+struct glint_wave {
+    int32_t wave_q24;         /* 1 / wavelength^2, um^-2 */
+    int32_t rgb_q14[3];       /* colour, largest channel 1 */
+    struct glint_real weight; /* its size, over the flux that light is measured
+                                 by: the direct image's at angle 0, mm^2 */
+};
+
+/* How a frame's rays come about. */
+struct glint_rays {
+    const struct glint_lens *lens;
+    const struct glint_wave *wave;
+    int n_waves;
+    struct glint_real pixels_per_mm;
+    int fineness;   /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
+                       between rays is off by 0.01 px, outlines by 0.1 */
+    int uniform;    /* all grids have so many cells a side */
+    int narrow;     /* rays in 16-bit lanes: glint_transfer_narrow */
+    int only_ghost; /* of the lens, with its parts; -1: all */
+    struct glint_real faintest; /* what stays below in every pixel may be left
+                                   out, display white; 0: nothing */
 };
 
 /* ------------------------------------------------------------------ drawing */
@@ -144,6 +181,22 @@ void glint_flare_begin(struct glint_flare *flare);
  * left out. */
 struct glint_vertex *glint_flare_add(struct glint_flare *flare,
                                      const struct glint_bundle *bundle);
+
+/* Forgets all bundles and takes those in that the ghosts of a lens make of
+ * BEAMS, as far as they can be seen; no vertices are to be filled in. All that
+ * RAYS points to, and BEAMS, are kept until bin has returned. Needs room for
+ * n_beams * ghosts * n_waves bundles, or the last ones are left out. */
+void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
+                      const struct glint_beam *beams, int n_beams);
+
+/* Which ghost of the lens bundle I of those planned is; I from 0 to the bundles
+ * of the statistics. */
+int glint_flare_ghost(const struct glint_flare *flare, int i);
+
+/* Of what was planned, display white: the largest mean irradiance of a bundle,
+ * and the flux of all, times pixels. */
+void glint_flare_light(const struct glint_flare *flare,
+                       struct glint_real *brightest, struct glint_real *flux);
 
 /* Turns the grids into primitives and sorts these into tiles. Bundles that do
  * not fit are left out whole, the last ones added first. */

@@ -254,4 +254,9 @@ void glint_transfer_grid(const struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);
 
+/* Row J of it alone, 0 .. N_CELLS. */
+void glint_transfer_row(const struct glint_transfer *transfer,
+                        const struct glint_place *place, int n_cells, int j,
+                        struct glint_vertex *row);
+
 #endif

@@ -52,7 +52,7 @@ static bool check_rims(const struct glint_prescription *lens,
 
 /* STATED, at PLACE, is checked only where the table says it. */
 static bool check_stated(const struct glint_text *text,
-                         struct glint_place place, const char *name,
+                         struct glint_text_place place, const char *name,
                          double stated, double found)
 {
     return !place.line || fabs(found - stated) <= STATED_TOLERANCE * stated ||
@@ -65,7 +65,7 @@ static bool check_optics(const struct glint_prescription *lens,
                          const struct glint_text *text,
                          const struct glint_places *places)
 {
-    const struct glint_place end = glint_text_end(text);
+    const struct glint_text_place end = glint_text_end(text);
     struct glint_optics optics;
 
     glint_optics_of(lens, &optics);

@@ -26,10 +26,10 @@
 
 /* Of the numbers in the table. */
 struct glint_places {
-    struct glint_place f_number, stop;    /* of the stop its semi-diameter */
-    struct glint_place focal, back_focal; /* line 0: not stated */
-    struct glint_place thickness[GLINT_MAX_ELEMENTS];
-    struct glint_place medium; /* of the last surface */
+    struct glint_text_place f_number, stop; /* of the stop its semi-diameter */
+    struct glint_text_place focal, back_focal; /* line 0: not stated */
+    struct glint_text_place thickness[GLINT_MAX_ELEMENTS];
+    struct glint_text_place medium; /* of the last surface */
 };
 
 /* False: the error is written. */

@@ -2,19 +2,20 @@
  *
  * Exact rays for the run-time half, where a model's are not wanted.
  */
-#include "bake/feed.h"
-
 #include <math.h>
 #include <stdlib.h>
 
 #include "bake/degrees.h"
 #include "bake/survey.h"
+#include "glint/bake.h"
 #include "glint/flare.h"
 
 enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
 
-bool glint_feed_in_view(const struct glint_feed_config *cfg,
-                        const struct glint_feed *feed)
+/* The ghost's box on the sensor, turned by the light's azimuth, meets the
+ * picture. */
+static bool in_view(const struct glint_feed_config *cfg,
+                    const struct glint_feed *feed)
 {
     const double *s = feed->pupil.sensor_mm;
     const double half_w = 0.5 * cfg->view.sensor_width_mm;
@@ -52,8 +53,8 @@ static void add_rim(const struct glint_feed_config *cfg,
 /* As many cells as keep what is straight between rays within a hundredth of a
  * pixel of what bends, at 64, and outlines within a tenth: light piles up along
  * folds, but not along cuts. */
-int glint_feed_cells(const struct glint_feed_config *cfg, double bend_mm,
-                     double outline_mm, bool folds)
+static int cells_of(const struct glint_feed_config *cfg, double bend_mm,
+                    double outline_mm, bool folds)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
     const double bend = fmax(bend_mm, 0.1 * outline_mm);
@@ -98,10 +99,6 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
     struct glint_path path;
     double direction[3];
 
-    if (cfg->lens) {
-        glint_feed_plan_model(cfg, feed);
-        return;
-    }
     glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
                     s->wavelength_nm[feed->wavelength]);
     feed->n_cells = 0;
@@ -110,13 +107,13 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
                                    near && near->found ? &near->pupil : NULL);
     /* some head-room over what the search for the pupil saw */
     feed->energy_unit = 1.5 * feed->pupil.energy;
-    if (feed->found && glint_feed_in_view(cfg, feed)) {
+    if (feed->found && in_view(cfg, feed)) {
         light_direction(feed, direction);
         glint_survey_run(&survey, &path, &feed->pupil, direction,
                          s->optics.stop_radius_mm, SURVEY);
         choose_cuts(feed, &survey);
-        feed->n_cells = glint_feed_cells(cfg, survey.bend_mm, survey.outline_mm,
-                                         survey.folds);
+        feed->n_cells =
+            cells_of(cfg, survey.bend_mm, survey.outline_mm, survey.folds);
         add_rim(cfg, feed);
     }
 }
@@ -269,10 +266,6 @@ void glint_feed_trace(const struct glint_feed_config *cfg,
     const int n = feed->n_cells;
     struct glint_path path;
 
-    if (cfg->lens) {
-        glint_feed_trace_model(cfg, feed, vertex);
-        return;
-    }
     glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
                     s->wavelength_nm[feed->wavelength]);
     for (int j = 0; j <= n / 2; j++)

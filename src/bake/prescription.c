@@ -63,7 +63,7 @@ enum field {
 struct parser {
     struct glint_text text;
     struct glint_prescription lens;
-    struct glint_place word[N_FIELDS]; /* latest of each, line 0: none */
+    struct glint_text_place word[N_FIELDS]; /* latest of each, line 0: none */
     struct glint_places places;
     struct coating coating; /* of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
@@ -266,7 +266,7 @@ static bool read_radius(struct parser *p, double *radius_mm)
 
 /* Thickness and semi-diameter of any element. */
 static bool read_gap_and_semi(struct parser *p, double *thickness_mm,
-                              double *semi_mm, struct glint_place *semi)
+                              double *semi_mm, struct glint_text_place *semi)
 {
     return glint_text_value(&p->text, &thickness_range, thickness_mm,
                             &p->places.thickness[p->n_elements++]) &&
@@ -304,7 +304,7 @@ static bool read_surface(struct parser *p)
     const int k = p->lens.n_surfaces;
     struct glint_surface *s = &p->lens.surface[k];
     struct medium before = {1.0, 0.0}, medium;
-    struct glint_place semi;
+    struct glint_text_place semi;
 
     if (k == GLINT_MAX_SURFACES)
         return glint_text_fail(&p->text, p->word[SURFACE],

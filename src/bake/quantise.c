@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "glint/bake.h"
+
 struct glint_real glint_real_of(double x)
 {
     int exponent;

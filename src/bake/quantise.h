@@ -46,8 +46,4 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
 
 void glint_quantised_finish(struct glint_quantised_system *system);
 
-/* X as mantissa and exponent. */
-struct glint_real glint_real_of(double x);
-double glint_real_value(struct glint_real x);
-
 #endif

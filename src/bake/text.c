@@ -64,7 +64,7 @@ static int line_end_length(const char *at, const char *end)
 
 static bool check_characters(struct glint_text *text)
 {
-    struct glint_place place = {1, 1};
+    struct glint_text_place place = {1, 1};
 
     for (const char *at = text->next; at < text->end;) {
         const int line_end = line_end_length(at, text->end);
@@ -98,7 +98,7 @@ bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
     text->file_name = file_name;
     text->error = error;
     if (bytes > GLINT_TEXT_BYTES)
-        return glint_text_fail(text, (struct glint_place){1, 1},
+        return glint_text_fail(text, (struct glint_text_place){1, 1},
                                "text is longer than %d bytes",
                                GLINT_TEXT_BYTES);
     if (!bytes) /* DATA may be NULL then */
@@ -163,13 +163,13 @@ struct glint_word glint_text_rest(struct glint_text *text)
     return word;
 }
 
-struct glint_place glint_text_end(const struct glint_text *text)
+struct glint_text_place glint_text_end(const struct glint_text *text)
 {
-    return (struct glint_place){text->line_number + 1, 1};
+    return (struct glint_text_place){text->line_number + 1, 1};
 }
 
-bool glint_text_fail(const struct glint_text *text, struct glint_place place,
-                     const char *format, ...)
+bool glint_text_fail(const struct glint_text *text,
+                     struct glint_text_place place, const char *format, ...)
 {
     struct glint_error *error = text->error;
     const size_t length = strlen(text->file_name);
@@ -320,7 +320,7 @@ bool glint_text_number_of(const struct glint_text *text,
 }
 
 bool glint_text_in_range(const struct glint_text *text,
-                         struct glint_place place,
+                         struct glint_text_place place,
                          const struct glint_range *range, double value)
 {
     return (value >= range->min && value <= range->max) ||
@@ -337,7 +337,7 @@ bool glint_text_value_of(const struct glint_text *text,
 }
 
 bool glint_text_value(struct glint_text *text, const struct glint_range *range,
-                      double *value, struct glint_place *place)
+                      double *value, struct glint_text_place *place)
 {
     const struct glint_word word = glint_text_next_word(text);
 

@@ -28,14 +28,14 @@
 #define GLINT_LINE_BYTES    200   /* longest line, without its end */
 #define GLINT_NUMBER_DIGITS 15    /* most significant digits of a number */
 
-struct glint_place {
+struct glint_text_place {
     int line, column; /* from 1; columns count bytes; line 0 is nowhere */
 };
 
 struct glint_word {
     const char *start; /* not terminated */
     int length;        /* 0: there is none, and place is where it would be */
-    struct glint_place place;
+    struct glint_text_place place;
 };
 
 struct glint_text {
@@ -61,11 +61,11 @@ struct glint_word glint_text_next_word(struct glint_text *text);
 struct glint_word glint_text_rest(struct glint_text *text);
 
 /* Where the text ends. */
-struct glint_place glint_text_end(const struct glint_text *text);
+struct glint_text_place glint_text_end(const struct glint_text *text);
 
 /* Writes "FILE:LINE:COLUMN: FORMAT ..." into the error; always false. */
-bool glint_text_fail(const struct glint_text *text, struct glint_place place,
-                     const char *format, ...);
+bool glint_text_fail(const struct glint_text *text,
+                     struct glint_text_place place, const char *format, ...);
 
 /* A quantity and the values it may take. */
 struct glint_range {
@@ -80,7 +80,7 @@ bool glint_text_number_of(const struct glint_text *text,
                           double *value);
 
 bool glint_text_in_range(const struct glint_text *text,
-                         struct glint_place place,
+                         struct glint_text_place place,
                          const struct glint_range *range, double value);
 
 /* WORD as a number in RANGE. */
@@ -90,7 +90,7 @@ bool glint_text_value_of(const struct glint_text *text,
 
 /* The next word as a number in RANGE; PLACE, unless NULL, is where it is. */
 bool glint_text_value(struct glint_text *text, const struct glint_range *range,
-                      double *value, struct glint_place *place);
+                      double *value, struct glint_text_place *place);
 
 bool glint_word_is(const struct glint_word *word, const char *string);
 

@@ -47,7 +47,7 @@ static void emit_bundle(struct glint_flare *f, int bundle,
     struct glint_bundle_slot *slot = &f->slot[bundle];
     struct glint_ghost_edges ghost = {.vertex = f->vertex + slot->first_vertex,
                                       .bundle = &f->bundle[bundle],
-                                      .number = (uint16_t)bundle,
+                                      .number = (uint32_t)bundle,
                                       .stop = &f->cfg.stop,
                                       .width = f->cfg.width,
                                       .height = f->cfg.height,
@@ -58,6 +58,11 @@ static void emit_bundle(struct glint_flare *f, int bundle,
                                           f->edge + w->first_edge + w->n_edges,
                                       .max_edges = w->max_edges - w->n_edges};
 
+    if (f->plan.rays) {
+        glint_plan_transfer(&f->plan, &f->source[bundle], &w->plan->transfer);
+        ghost.transfer = &w->plan->transfer;
+        ghost.place = glint_plan_place(&f->plan, f->source[bundle].beam);
+    }
     glint_ghost_edges_emit(&ghost);
     slot->first = -1;
     slot->n = ghost.n_edges;

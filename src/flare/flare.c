@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "glint/flare.h"
 
+#include "base/real.h"
 #include "flare/state.h"
 
 /* ------------------------------------------------------------------- memory */
@@ -35,6 +36,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     w->light = glint_arena_take(a, 1, sizeof *w->light);
     w->light_q20 = glint_arena_take(a, 3 * side, sizeof *w->light_q20);
     w->codes = glint_arena_take(a, 1, sizeof *w->codes);
+    w->plan = glint_arena_take(a, 1, sizeof *w->plan);
     if (by_edges(c)) {
         w->rows = glint_arena_take(a, 1, sizeof *w->rows);
         w->wide = glint_arena_take(a, 3 * side * stride, sizeof *w->wide);
@@ -62,6 +64,7 @@ static struct glint_flare *carve(struct glint_arena *a,
     f = placed ? placed : &measured;
     f->bundle = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->bundle);
     f->slot = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->slot);
+    f->source = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->source);
     f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
     if (by_edges(c)) {
         f->edge =
@@ -107,7 +110,8 @@ static int config_ok(const struct glint_flare_config *c)
             c->raster == GLINT_RASTER_CELLS) &&
            (c->weights == GLINT_WEIGHTS_LOOP_DEROSE ||
             c->weights == GLINT_WEIGHTS_WACHSPRESS) &&
-           c->max_bundles >= 0 && c->max_bundles <= 65535 &&
+           c->max_bundles >= 0 &&
+           c->max_bundles <= (by_edges(c) ? 1 << 20 : 65535) &&
            c->max_vertices >= 0 && c->max_primitives >= 0 && c->max_refs >= 0 &&
            c->max_tile_refs >= 0 && c->irradiance_steps >= 0 &&
            c->irradiance_steps <= 4096 && workers >= 1 && workers <= 64 &&
@@ -151,6 +155,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
 void glint_flare_begin(struct glint_flare *flare)
 {
     flare->n_bundles = flare->n_vertices = flare->n_drawn = 0;
+    flare->plan.rays = NULL;
     flare->stats = (struct glint_flare_stats){0};
 }
 
@@ -174,6 +179,124 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
         (struct glint_bundle_slot){.first_vertex = flare->n_vertices};
     flare->n_vertices += n;
     return vertices;
+}
+
+/* ---------------------------------------------------------------------- plan
+ */
+
+/* Whether ghost or part GHOST is of the pair asked for. */
+static int is_wanted(const struct glint_rays *r, int ghost)
+{
+    const struct glint_model_ghost *g = &r->lens->ghost[ghost];
+    const struct glint_model_ghost *only =
+        &r->lens->ghost[r->only_ghost < 0 ? ghost : r->only_ghost];
+
+    return g->i == only->i && g->j == only->j;
+}
+
+/* All waves of one ghost and beam. */
+static void plan_job(void *ctx, int job, int worker)
+{
+    struct glint_flare *f = ctx;
+    const struct glint_rays *r = f->plan.rays;
+    const int n_ghosts = (int)r->lens->header->n_ghosts;
+
+    for (int wave = 0; wave < r->n_waves; wave++) {
+        const int at = job * r->n_waves + wave;
+
+        if (at >= f->cfg.max_bundles)
+            return;
+        f->bundle[at].n_cells = 0;
+        if (!is_wanted(r, job % n_ghosts))
+            continue;
+        f->source[at] = (struct glint_source){
+            .ghost = job % n_ghosts, .beam = job / n_ghosts, .wave = wave};
+        glint_plan_bundle(&f->plan, &f->source[at], &f->bundle[at],
+                          f->worker[worker].plan);
+    }
+}
+
+/* Cells of a stored grid; by edges rows come and go. */
+static int stored(const struct glint_flare *f, const struct glint_bundle *b)
+{
+    const int n = b->n_cells + 1;
+
+    return by_edges(&f->cfg) ? 0 : n * n;
+}
+
+/* Closes the gaps of what cannot be seen. */
+static void keep_seen(struct glint_flare *f, int n)
+{
+    struct glint_flare_stats *s = &f->stats;
+
+    for (int i = 0; i < n; i++) {
+        const int vertices = stored(f, &f->bundle[i]);
+
+        if (f->bundle[i].n_cells == 0)
+            continue;
+        s->need_vertices = glint_flare_add_need(s->need_vertices, vertices);
+        if (vertices > f->cfg.max_vertices - f->n_vertices) {
+            s->dropped_bundles++;
+            continue;
+        }
+        f->bundle[f->n_bundles] = f->bundle[i];
+        f->source[f->n_bundles] = f->source[i];
+        f->slot[f->n_bundles++] =
+            (struct glint_bundle_slot){.first_vertex = f->n_vertices};
+        f->n_vertices += vertices;
+    }
+}
+
+/* By cells: the vertices of a bundle. */
+static void transfer_job(void *ctx, int job, int worker)
+{
+    struct glint_flare *f = ctx;
+    struct glint_transfer *t = &f->worker[worker].plan->transfer;
+    const struct glint_place place =
+        glint_plan_place(&f->plan, f->source[job].beam);
+
+    glint_plan_transfer(&f->plan, &f->source[job], t);
+    glint_transfer_grid(t, &place, f->bundle[job].n_cells,
+                        f->vertex + f->slot[job].first_vertex);
+}
+
+void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
+                      const struct glint_beam *beams, int n_beams)
+{
+    const int n_ghosts = (int)rays->lens->header->n_ghosts;
+    const int64_t all = (int64_t)n_beams * n_ghosts * rays->n_waves;
+    const int need = all < INT32_MAX ? (int)all : INT32_MAX;
+    const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
+
+    glint_flare_begin(flare);
+    flare->plan =
+        (struct glint_plan){rays, beams, flare->cfg.width, flare->cfg.height};
+    flare->stats.need_bundles = need;
+    flare->stats.dropped_bundles = need - n;
+    glint_workers_run(flare->cfg.workers,
+                      (n + rays->n_waves - 1) / rays->n_waves, plan_job, flare);
+    keep_seen(flare, n);
+    if (!by_edges(&flare->cfg))
+        glint_workers_run(flare->cfg.workers, flare->n_bundles, transfer_job,
+                          flare);
+}
+
+int glint_flare_ghost(const struct glint_flare *flare, int i)
+{
+    return flare->source[i].ghost;
+}
+
+void glint_flare_light(const struct glint_flare *flare,
+                       struct glint_real *brightest, struct glint_real *flux)
+{
+    *brightest = *flux = (struct glint_real){0, 0};
+    for (int i = 0; i < flare->n_bundles; i++) {
+        const struct glint_source *s = &flare->source[i];
+
+        *flux = real_plus(*flux, s->flux);
+        if (real_less(*brightest, s->light))
+            *brightest = s->light;
+    }
 }
 
 /* Drops what the bins did not keep from the totals. */

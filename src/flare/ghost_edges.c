@@ -33,10 +33,11 @@ static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
 /* --------------------------------------------------------------------- nodes
  */
 
+/* Of the two rows that are there. */
 static const struct glint_vertex *node(const struct glint_ghost_edges *g, int i,
                                        int j)
 {
-    return &g->vertex[(ptrdiff_t)j * (g->bundle->n_cells + 1) + i];
+    return &g->row[j & 1][i];
 }
 
 static int vertex_valid(const struct glint_vertex *v)
@@ -84,12 +85,18 @@ static uint64_t sides_of(const struct glint_stop *stop,
     return sides;
 }
 
-static void set_nodes(const struct glint_ghost_edges *g, int j)
+static void set_nodes(struct glint_ghost_edges *g, int j)
 {
+    const int n = g->bundle->n_cells;
     uint64_t *sides = g->rows->sides[j & 1];
     uint8_t *barrels = g->rows->barrels[j & 1];
 
-    for (int i = 0; i <= g->bundle->n_cells; i++) {
+    if (g->transfer)
+        glint_transfer_row(g->transfer, &g->place, n, j,
+                           g->rows->vertex[j & 1]);
+    g->row[j & 1] = g->transfer ? g->rows->vertex[j & 1]
+                                : g->vertex + (ptrdiff_t)j * (n + 1);
+    for (int i = 0; i <= n; i++) {
         const struct glint_vertex *v = node(g, i, j);
 
         if (!vertex_valid(v)) {
@@ -199,7 +206,7 @@ static void find_part(const struct glint_ghost_edges *g,
 
 struct cell {
     int i, j;
-    int32_t q[4]; /* corners, in order, as numbers of vertices */
+    const struct glint_vertex *corner[4]; /* in order */
     struct outside at[4];
     struct outside any; /* of the four */
 };
@@ -207,7 +214,6 @@ struct cell {
 static void set_cell(const struct glint_ghost_edges *g, int i, int j,
                      struct cell *c)
 {
-    const int n = g->bundle->n_cells + 1;
     const struct glint_ghost_rows *r = g->rows;
 
     c->i = i;
@@ -216,7 +222,7 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
     for (int k = 0; k < 4; k++) {
         const int across = i + (k == 1 || k == 2), down = j + (k >= 2);
 
-        c->q[k] = down * n + across;
+        c->corner[k] = node(g, across, down);
         c->at[k] = (struct outside){r->sides[down & 1][across],
                                     r->barrels[down & 1][across]};
         c->any.sides |= c->at[k].sides;
@@ -303,18 +309,19 @@ static void add_outline(struct glint_ghost_edges *g,
 
 /* What the cuts leave of a convex primitive, its light spread over at least a
  * strip. */
-static void add_alone(struct glint_ghost_edges *g, const int32_t *q, int n,
+static void add_alone(struct glint_ghost_edges *g,
+                      const struct glint_vertex *const *corner, int n,
                       int share_log2)
 {
     struct glint_outline *o = &g->rows->outline;
+    const struct glint_vertex *turned[4];
     struct glint_corners c;
-    int32_t turned[4];
     int cut, thin;
 
-    glint_corners_gather(&c, g->vertex, q, n);
+    glint_corners_set(&c, corner, n);
     for (int i = 0; i < n; i++)
-        turned[i] = c.area2_q16 >= 0 ? q[i] : q[n - 1 - i];
-    glint_corners_gather(&c, g->vertex, turned, n);
+        turned[i] = corner[c.area2_q16 >= 0 ? i : n - 1 - i];
+    glint_corners_set(&c, turned, n);
     cut = glint_outline_classify(&c, g->stop);
     if (cut < 0 ||
         glint_box_empty(glint_corners_reach(&c, g->width, g->height)))
@@ -347,18 +354,19 @@ static void add_alone(struct glint_ghost_edges *g, const int32_t *q, int n,
 static void add_triangles(struct glint_ghost_edges *g, const struct cell *c)
 {
     static const int half[2][3] = {{0, 1, 2}, {0, 2, 3}};
-    int32_t left[4];
+    const struct glint_vertex *left[4];
     int n = 0;
 
     for (int k = 0; k < 4; k++)
         if (!(c->at[k].barrels & LOST))
-            left[n++] = c->q[k];
+            left[n++] = c->corner[k];
     g->n_dropped += n < 4;
     if (n == 3)
         add_alone(g, left, 3, -1);
     for (int k = 0; n == 4 && k < 2; k++) {
-        const int32_t t[3] = {c->q[half[k][0]], c->q[half[k][1]],
-                              c->q[half[k][2]]};
+        const struct glint_vertex *const t[3] = {c->corner[half[k][0]],
+                                                 c->corner[half[k][1]],
+                                                 c->corner[half[k][2]]};
 
         add_alone(g, t, 3, -1);
     }
@@ -374,8 +382,7 @@ static void part_of_side(const struct glint_ghost_edges *g,
     const int reverse = k >= 2, next = (k + 1) & 3;
     const int from = reverse ? next : k, to = reverse ? k : next;
 
-    find_part(g, &g->vertex[c->q[from]], c->at[from], &g->vertex[c->q[to]],
-              c->at[to], part);
+    find_part(g, c->corner[from], c->at[from], c->corner[to], c->at[to], part);
     if (reverse) {
         const struct part forward = *part;
 
@@ -423,7 +430,7 @@ static int crossing(const struct glint_ghost_edges *g, const struct cell *c,
     int down;
 
     for (int k = 0; k < 4; k++) {
-        const struct glint_vertex *v = &g->vertex[c->q[k]];
+        const struct glint_vertex *v = c->corner[k];
 
         fa[k] = cut_q16(g, a, v);
         fb[k] = cut_q16(g, b, v);
@@ -513,7 +520,7 @@ static int32_t shared_light(struct glint_ghost_edges *g, const struct cell *c)
     }
     if (is_hidden(c))
         return 0;
-    glint_corners_gather(&corners, g->vertex, c->q, 4);
+    glint_corners_set(&corners, c->corner, 4);
     turn = convexity(&corners);
     if (turn == 0 && !glint_corners_tiny(&corners, 16)) {
         add_triangles(g, c);
@@ -521,7 +528,7 @@ static int32_t shared_light(struct glint_ghost_edges *g, const struct cell *c)
     }
     if (turn == 0 || cuts > 2 || (cuts > 0 && g->stop->n_blades == 0) ||
         glint_corners_thin(&corners)) {
-        add_alone(g, c->q, 4, 0);
+        add_alone(g, c->corner, 4, 0);
         return 0;
     }
     light = light_of(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1, 0,

@@ -30,15 +30,20 @@
 /* Scratch of a worker: of the nodes of two rows, and the cells between. */
 struct glint_ghost_rows {
     struct glint_outline outline;
+    struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* of the stop: bit set = outside */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1]; /* the same; LOST */
     int32_t light[2][GLINT_MAX_CELLS];       /* of cells, packed */
 };
 
 struct glint_ghost_edges {
-    const struct glint_vertex *vertex; /* [n_cells + 1][n_cells + 1] */
+    /* [n_cells + 1][n_cells + 1], unless there is TRANSFER: then they are
+     * computed, row by row */
+    const struct glint_vertex *vertex;
+    const struct glint_transfer *transfer;
+    struct glint_place place;
     const struct glint_bundle *bundle;
-    uint16_t number; /* of the bundle */
+    uint32_t number; /* of the bundle */
     const struct glint_stop *stop;
     int width, height; /* of the picture */
     int32_t limit_q8;  /* of a cell's light in a pixel, energy 1 */
@@ -46,6 +51,7 @@ struct glint_ghost_edges {
     struct glint_ghost_rows *rows;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;
+    const struct glint_vertex *row[2]; /* the two at work */
     /* out */
     int n_edges;   /* all that there are; only max_edges are written */
     int n_dropped; /* cells without light for want of a corner */

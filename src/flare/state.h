@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "flare/ghost_edges.h"
 #include "flare/ghost_grid.h"
+#include "flare/plan.h"
 #include "glint/flare.h"
 #include "tile/bins.h"
 #include "tile/edges.h"
@@ -21,6 +22,7 @@ struct glint_flare_worker {
     int32_t *light_q20;             /* [3][side]: one of a linear picture */
     struct glint_resolve_rows *codes;
     int n_tiles; /* small tiles that it drew */
+    struct glint_plan_scratch *plan;
     /* by edges */
     struct glint_ghost_rows *rows;
     uint64_t *wide; /* of one tile: tile/edges.h */
@@ -43,8 +45,10 @@ struct glint_bundle_slot {
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    int n_bundles, n_vertices; /* taken in */
-    int n_drawn;               /* of these, the bundles that bin kept */
+    int n_bundles, n_vertices;   /* taken in */
+    struct glint_plan plan;      /* of a lens, unless rays is NULL */
+    struct glint_source *source; /* of each bundle planned */
+    int n_drawn;                 /* of these, the bundles that bin kept */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;

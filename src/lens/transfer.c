@@ -508,37 +508,84 @@ static int32_t node_q30(int k, int n_cells)
     return (int32_t)((int64_t)(2 * k - n_cells) * ONE_Q30 / n_cells);
 }
 
+/* Whether another part of the pupil has row J: those within a quarter of the
+ * middle. */
+static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
+{
+    const int from_rim = 2 * j > n_cells ? n_cells - j : j;
+
+    return t->hollow && from_rim > n_cells / 4;
+}
+
+static void row_of_terms(const struct glint_transfer *t,
+                         const struct glint_place *place, int n_cells, int j,
+                         struct glint_vertex *row)
+{
+    for (int i = 0; i <= n_cells; i++) {
+        struct glint_outputs out;
+
+        ray_of_terms(t, node_q30(i, n_cells), node_q30(j, n_cells), &out);
+        set_vertex(t, place, &out, 1, &row[i]);
+    }
+}
+
+/* Row J of the lower half into ROW, and the one on the other side of the
+ * light's plane into MIRRORED, unless they are NULL. */
+static void rows_of_table(const struct glint_transfer *t,
+                          const struct glint_place *place, int n_cells, int j,
+                          struct glint_vertex *row,
+                          struct glint_vertex *mirrored)
+{
+    struct row rows[GLINT_OUT_KINDS];
+
+    set_rows(t, node_q30(j, n_cells), rows);
+    for (int i = 0; i <= n_cells; i++) {
+        struct glint_outputs out;
+
+        ray_of_rows(t, rows, node_q30(i, n_cells), &out);
+        if (mirrored)
+            set_vertex(t, place, &out, -1, &mirrored[i]);
+        if (row)
+            set_vertex(t, place, &out, 1, &row[i]);
+    }
+}
+
+static void lose_row(struct glint_vertex *row, int n_cells)
+{
+    for (int i = 0; i <= n_cells; i++)
+        row[i].energy_q16 = -1;
+}
+
+void glint_transfer_row(const struct glint_transfer *transfer,
+                        const struct glint_place *place, int n_cells, int j,
+                        struct glint_vertex *row)
+{
+    if (is_hidden(transfer, n_cells, j))
+        lose_row(row, n_cells);
+    else if (transfer->basis == GLINT_BASIS_SPARSE)
+        row_of_terms(transfer, place, n_cells, j, row);
+    else if (2 * j <= n_cells)
+        rows_of_table(transfer, place, n_cells, j, row, NULL);
+    else
+        rows_of_table(transfer, place, n_cells, n_cells - j, NULL, row);
+}
+
 void glint_transfer_grid(const struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices)
 {
     const int nodes = n_cells + 1;
-    const int symmetric = transfer->basis != GLINT_BASIS_SPARSE;
 
-    const int hidden = transfer->hollow ? n_cells / 4 : nodes;
-
-    for (int j = 0; j < nodes && !(symmetric && 2 * j > n_cells); j++) {
+    for (int j = 0; j < nodes; j++) {
         struct glint_vertex *row = vertices + (ptrdiff_t)j * nodes;
         struct glint_vertex *mirrored =
             vertices + (ptrdiff_t)(n_cells - j) * nodes;
-        const int32_t v_q30 = node_q30(j, n_cells);
-        struct row rows[GLINT_OUT_KINDS];
 
-        if (symmetric)
-            set_rows(transfer, v_q30, rows);
-        for (int i = 0; i < nodes; i++) {
-            const int32_t u_q30 = node_q30(i, n_cells);
-            struct glint_outputs out;
-
-            if (!symmetric) {
-                ray_of_terms(transfer, u_q30, v_q30, &out);
-            } else {
-                ray_of_rows(transfer, rows, u_q30, &out);
-                set_vertex(transfer, place, &out, -1, &mirrored[i]);
-            }
-            set_vertex(transfer, place, &out, 1, &row[i]);
-            if (j > hidden)
-                row[i].energy_q16 = mirrored[i].energy_q16 = -1;
-        }
+        if (is_hidden(transfer, n_cells, j))
+            lose_row(row, n_cells);
+        else if (transfer->basis == GLINT_BASIS_SPARSE)
+            row_of_terms(transfer, place, n_cells, j, row);
+        else if (2 * j <= n_cells)
+            rows_of_table(transfer, place, n_cells, j, row, mirrored);
     }
 }

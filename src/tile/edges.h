@@ -39,7 +39,7 @@ struct glint_edge {     /* 32 bytes */
     /* Light on its left and right side, packed; negative where a ghost is
      * mirrored. */
     int32_t left, right;
-    uint16_t bundle, zero;
+    uint32_t bundle;
 };
 
 /* Light of 25 bits and an exponent: the product of all but the lower five bits

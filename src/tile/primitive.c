@@ -4,15 +4,14 @@
 #include "base/compiler.h"
 #include "base/q.h"
 
-void glint_corners_gather(struct glint_corners *corners,
-                          const struct glint_vertex *v, const int32_t *vertex,
-                          int n)
+void glint_corners_set(struct glint_corners *corners,
+                       const struct glint_vertex *const *at, int n)
 {
     const struct glint_vertex *const *p = corners->at;
 
     corners->n = n;
     for (int i = 0; i < 4; i++)
-        corners->at[i] = &v[vertex[i < n ? i : 0]];
+        corners->at[i] = at[i < n ? i : 0];
     /* The cross product of the diagonals, or of two sides. */
     if (n == 4)
         corners->area2_q16 =
@@ -21,6 +20,17 @@ void glint_corners_gather(struct glint_corners *corners,
     else
         corners->area2_q16 = glint_turn_q16(p[0]->x_q8, p[0]->y_q8, p[1]->x_q8,
                                             p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
+}
+
+void glint_corners_gather(struct glint_corners *corners,
+                          const struct glint_vertex *v, const int32_t *vertex,
+                          int n)
+{
+    const struct glint_vertex *at[4];
+
+    for (int i = 0; i < n; i++)
+        at[i] = &v[vertex[i]];
+    glint_corners_set(corners, at, n);
 }
 
 /* First pixel whose centre is at X or beyond. */

@@ -65,7 +65,11 @@ int glint_corners_thin(const struct glint_corners *corners);
 struct glint_box glint_corners_reach(const struct glint_corners *corners,
                                      int width, int height);
 
-/* Gathers the N (3 or 4) corners VERTEX of V. */
+/* Sets the N (3 or 4) corners AT, or gathers those with the numbers VERTEX of
+ * V.
+ */
+void glint_corners_set(struct glint_corners *corners,
+                       const struct glint_vertex *const *at, int n);
 void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n);

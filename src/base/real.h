@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Numbers of any size in integers: struct glint_real of glint/lens.h, mantissa
+ * times a power of two, mantissa 0 or 2^30 .. 2^31 - 1 in magnitude. Products
+ * and quotients are cut, so off by 2^-30 at most.
+ */
+#ifndef GLINT_BASE_REAL_H
+#define GLINT_BASE_REAL_H
+
+#include "base/compiler.h"
+#include "glint/lens.h"
+
+/* X * 2^EXPONENT; X within +-2^62. */
+static inline struct glint_real real_of(int64_t x, int exponent)
+{
+    const int wide = bit_length((uint64_t)(x < 0 ? -x : x));
+    const int up = 31 - wide;
+
+    if (x == 0)
+        return (struct glint_real){0, 0};
+    return (struct glint_real){
+        (int32_t)(up >= 0 ? x * (INT64_C(1) << up) : x / (INT64_C(1) << -up)),
+        exponent - up};
+}
+
+static inline struct glint_real real_times(struct glint_real a,
+                                           struct glint_real b)
+{
+    return real_of((int64_t)a.mantissa * b.mantissa, a.exponent + b.exponent);
+}
+
+/* B is not 0. */
+static inline struct glint_real real_over(struct glint_real a,
+                                          struct glint_real b)
+{
+    return real_of(((int64_t)a.mantissa * (INT64_C(1) << 31)) / b.mantissa,
+                   a.exponent - b.exponent - 31);
+}
+
+/* Both 0 or more. */
+static inline struct glint_real real_plus(struct glint_real a,
+                                          struct glint_real b)
+{
+    const struct glint_real big = a.exponent > b.exponent ? a : b;
+    const struct glint_real small = a.exponent > b.exponent ? b : a;
+    const int off = big.exponent - small.exponent;
+
+    if (a.mantissa == 0 || b.mantissa == 0)
+        return a.mantissa ? a : b;
+    return real_of((int64_t)big.mantissa +
+                       (off > 31 ? 0 : small.mantissa >> off),
+                   big.exponent);
+}
+
+/* Whether A < B, both 0 or more. */
+static inline int real_less(struct glint_real a, struct glint_real b)
+{
+    if (a.mantissa == 0 || b.mantissa == 0)
+        return b.mantissa > 0;
+    return a.exponent != b.exponent ? a.exponent < b.exponent
+                                    : a.mantissa < b.mantissa;
+}
+
+/* X * 2^FRAC as an integer, cut, held to +-LIMIT. */
+static inline int64_t real_integer(struct glint_real x, int frac, int64_t limit)
+{
+    const int up = x.exponent + frac;
+    int64_t size = x.mantissa < 0 ? -(int64_t)x.mantissa : x.mantissa;
+
+    if (x.mantissa == 0 || up < -31)
+        return 0;
+    if (up > 31)
+        size = limit;
+    else
+        size = up >= 0 ? size * (INT64_C(1) << up) : size >> -up;
+    size = size < limit ? size : limit;
+    return x.mantissa < 0 ? -size : size;
+}
+
+#endif

@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/plan.h"
+
+#include "base/q.h"
+#include "base/real.h"
+
+enum {
+    ACROSS = GLINT_PLAN_ACROSS,
+    DOWN = GLINT_PLAN_DOWN,
+    FINE_LOG2 = 6, /* squares are of differences over so much */
+    LEAST = 8      /* cells a side */
+};
+
+/* --------------------------------------------------------------------- survey
+ */
+
+/* X as an integer of the output's unit. */
+static int64_t in_units(const struct glint_transfer *t, int kind, int64_t x_q16)
+{
+    return real_integer(real_of(x_q16, -16), -t->exponent[kind],
+                        INT64_C(1) << 31);
+}
+
+static void begin(struct glint_plan_survey *s, const struct glint_transfer *t)
+{
+    const int64_t near_q16 = 68813; /* 1.05 */
+
+    s->n_bends = s->up = s->down = s->n_inside = 0;
+    s->low = INT32_MAX;
+    s->high = -INT32_MAX;
+    s->wide = s->energy = 0;
+    s->least_area = UINT64_MAX;
+    for (int k = 0; k < GLINT_OUT_KINDS; k++) {
+        s->change[k] = (struct glint_plan_change){0, 0};
+        s->limit[k] = in_units(t, k, near_q16);
+    }
+}
+
+static int is_inside(const struct glint_plan_survey *s,
+                     const struct glint_transfer *t, const int32_t *at)
+{
+    const int64_t x = at[GLINT_OUT_STOP_X], y = at[GLINT_OUT_STOP_Y];
+    const int64_t r = s->limit[GLINT_OUT_STOP_X];
+
+    if (x * x + y * y >= r * r)
+        return 0;
+    for (int kind = GLINT_OUT_RADIUS; kind < GLINT_OUT_KINDS; kind++)
+        if (t->outputs >> kind & 1 && at[kind] >= s->limit[kind])
+            return 0;
+    return 1;
+}
+
+/* Rays of row J, v = J / DOWN. */
+static void survey_row(struct glint_plan_survey *s,
+                       const struct glint_transfer *t, int j)
+{
+    const int32_t one_q30 = INT32_C(1) << 30;
+    struct glint_plan_node *row = s->row[j % 3];
+
+    for (int i = 0; i <= ACROSS; i++) {
+        struct glint_outputs out;
+
+        glint_transfer_ray(t, one_q30 / (ACROSS / 2) * i - one_q30,
+                           one_q30 / DOWN * j, &out);
+        for (int k = 0; k < GLINT_OUT_KINDS; k++)
+            row[i].at[k] = out.at[k];
+        row[i].inside = is_inside(s, t, out.at) && !(t->hollow && 2 * j < DOWN);
+    }
+}
+
+/* B between A and C, STEPS of which fit the box. */
+static void add_bend(struct glint_plan_survey *s,
+                     const struct glint_plan_node *a,
+                     const struct glint_plan_node *b,
+                     const struct glint_plan_node *c, int steps)
+{
+    if (!b->inside)
+        return;
+    for (int k = 0; k < GLINT_OUT_KINDS; k++) {
+        const int64_t first = ((int64_t)c->at[k] - a->at[k]) / 2 * steps;
+        const int64_t second =
+            ((int64_t)a->at[k] - 2 * (int64_t)b->at[k] + c->at[k]) * steps *
+            steps;
+        /* squares below 2^62, some hundred of them over 2^10 */
+        const int64_t f =
+            q_clamp_sat(first >> FINE_LOG2, -INT32_MAX, INT32_MAX);
+        const int64_t d =
+            q_clamp_sat(second >> FINE_LOG2, -INT32_MAX, INT32_MAX);
+
+        s->change[k].first += (uint64_t)(f * f) >> 10;
+        s->change[k].second += (uint64_t)(d * d) >> 10;
+    }
+    s->n_bends++;
+}
+
+static void add_cell(struct glint_plan_survey *s,
+                     const struct glint_plan_node *a,
+                     const struct glint_plan_node *b,
+                     const struct glint_plan_node *c)
+{
+    const int64_t turn =
+        ((int64_t)b->at[0] - a->at[0]) * ((int64_t)c->at[1] - a->at[1]) / 2 -
+        ((int64_t)b->at[1] - a->at[1]) * ((int64_t)c->at[0] - a->at[0]) / 2;
+    const uint64_t area = (uint64_t)(turn < 0 ? -turn : turn);
+
+    if (!(a->inside || b->inside || c->inside))
+        return;
+    s->up += turn > 0;
+    s->down += turn < 0;
+    s->least_area = area < s->least_area ? area : s->least_area;
+}
+
+static void add_extent(struct glint_plan_survey *s,
+                       const struct glint_plan_node *n)
+{
+    const int64_t x = n->at[GLINT_OUT_SENSOR_X], y = n->at[GLINT_OUT_SENSOR_Y];
+
+    if (!n->inside)
+        return;
+    s->n_inside++;
+    s->low = x < s->low ? x : s->low;
+    s->high = x > s->high ? x : s->high;
+    s->wide = y > s->wide ? y : -y > s->wide ? -y : s->wide;
+    s->energy = n->at[GLINT_OUT_ENERGY] > s->energy ? n->at[GLINT_OUT_ENERGY]
+                                                    : s->energy;
+}
+
+static void run_survey(struct glint_plan_survey *s,
+                       const struct glint_transfer *t)
+{
+    begin(s, t);
+    for (int j = 0; j <= DOWN; j++) {
+        const struct glint_plan_node *here = s->row[j % 3];
+        const struct glint_plan_node *above = s->row[(j + 2) % 3];
+        const struct glint_plan_node *top = s->row[(j + 1) % 3];
+
+        survey_row(s, t, j);
+        for (int i = 0; i <= ACROSS; i++) {
+            add_extent(s, &here[i]);
+            if (i > 0 && i < ACROSS)
+                add_bend(s, &here[i - 1], &here[i], &here[i + 1], ACROSS);
+            if (j > 1)
+                add_bend(s, &top[i], &above[i], &here[i], 2 * DOWN);
+            if (j > 0 && i < ACROSS)
+                add_cell(s, &above[i], &above[i + 1], &here[i]);
+        }
+    }
+}
+
+/* --------------------------------------------------------------------- result
+ */
+
+/* Root of SUM / N, of differences whose squares were taken over 2^10 more. */
+static int64_t root_mean(uint64_t sum, int n)
+{
+    return n ? (int64_t)q_root(sum / (uint64_t)n) << 5 : 0;
+}
+
+/* The second derivative of the kinds A and B, worth on the sensor, in units of
+ * that over 2^FINE_LOG2. */
+static int64_t bend_of(const struct glint_plan_survey *s, int a, int b)
+{
+    const int64_t second = root_mean(
+        s->change[a].second + (a == b ? 0 : s->change[b].second), s->n_bends);
+    const int64_t first = root_mean(
+        s->change[a].first + (a == b ? 0 : s->change[b].first), s->n_bends);
+    const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
+                                         s->change[GLINT_OUT_SENSOR_Y].first,
+                                     s->n_bends);
+
+    return first ? second * sensor / first : 0; /* 2^30 * 2^31 */
+}
+
+/* As many cells as keep what is straight between rays within a hundredth of a
+ * pixel of what bends, at fineness 64, and outlines within a tenth: light piles
+ * up along folds, but not along cuts. */
+static int cells_of(const struct glint_plan *p,
+                    const struct glint_plan_survey *s,
+                    const struct glint_transfer *t)
+{
+    const struct glint_rays *r = p->rays;
+    const int most = (s->up && s->down ? 4 : 2) * r->fineness;
+    int64_t bend = bend_of(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
+    int64_t outline = bend_of(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
+    int64_t bend_q8;
+    int n;
+
+    if (r->uniform)
+        return r->fineness;
+    for (int k = GLINT_OUT_RADIUS; k < GLINT_OUT_KINDS; k++)
+        if (t->outputs >> k & 1) {
+            const int64_t cut = bend_of(s, k, k);
+
+            outline = cut > outline ? cut : outline;
+        }
+    bend = bend > outline / 10 ? bend : outline / 10;
+    bend_q8 = real_integer(
+        real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] + FINE_LOG2),
+                   r->pixels_per_mm),
+        8, INT64_C(1) << 40);
+    /* the root of 12.5 times as much, times fineness / 64 */
+    n = q_narrow(
+        ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
+        14);
+    n = n < LEAST ? LEAST : n;
+    n = (n + 3) / 4 * 4;
+    return n < most ? n : most < GLINT_MAX_CELLS ? most : GLINT_MAX_CELLS;
+}
+
+/* X of the sensor as pixels, q8. */
+static int64_t pixels_q8(const struct glint_plan *p,
+                         const struct glint_transfer *t, int64_t x)
+{
+    return real_integer(real_times(real_of(x, t->exponent[GLINT_OUT_SENSOR_X]),
+                                   p->rays->pixels_per_mm),
+                        8, INT64_C(1) << 31);
+}
+
+/* The ghost's box, a tenth larger than the survey saw it, turned by the beam's
+ * azimuth, meets the picture. */
+static int is_in_view(const struct glint_plan *p, const struct glint_beam *b,
+                      int64_t middle_q8, int64_t wide_q8, int64_t high_q8)
+{
+    const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
+    const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
+    const int64_t m = middle_q8 < 0 ? -middle_q8 : middle_q8;
+
+    return ((m - wide_q8) * c - s * high_q8) >> 30 <= p->width * 128 &&
+           ((m - wide_q8) * s - c * high_q8) >> 30 <= p->height * 128;
+}
+
+static struct glint_real box_side(const struct glint_transfer *t, int k)
+{
+    return real_of(t->box[k], t->box_exponent);
+}
+
+/* The colour of the bundle, its largest channel 1; returns what that was. */
+static struct glint_real colour_of(const struct glint_wave *w,
+                                   const struct glint_beam *b, int32_t *rgb_q14)
+{
+    int64_t rgb_q28[3], most = 0;
+
+    for (int c = 0; c < 3; c++) {
+        const int64_t x = (int64_t)w->rgb_q14[c] * b->rgb_q14[c];
+
+        rgb_q28[c] = x;
+        most = x > most ? x : -x > most ? -x : most;
+    }
+    for (int c = 0; c < 3; c++)
+        rgb_q14[c] = most ? q_narrow(rgb_q28[c] * (1 << 14) / most) : 0;
+    return real_of(most, -28);
+}
+
+/* Flux of the whole box at energy 2^EXPONENT. */
+static struct glint_real flux_of(const struct glint_plan *p,
+                                 const struct glint_source *s,
+                                 const struct glint_transfer *t,
+                                 struct glint_real colour, int exponent)
+{
+    const struct glint_wave *w = &p->rays->wave[s->wave];
+    const struct glint_beam *b = &p->beam[s->beam];
+    struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
+
+    x.exponent += 2 + exponent; /* both are halves */
+    x = real_times(x, real_of(b->cosine_q30, -30));
+    x = real_times(x, real_times(w->weight, b->power));
+    return real_times(x, colour);
+}
+
+/* Whether no cell can be bright enough to be seen: flux of a cell of the survey
+ * over the least area of one on the sensor, twice as much for what lies
+ * between. Of cells that are folded the area says little. */
+static int is_faint(const struct glint_plan *p,
+                    const struct glint_plan_survey *s,
+                    const struct glint_transfer *t, struct glint_real flux)
+{
+    struct glint_real area;
+
+    if (p->rays->faintest.mantissa == 0 || (s->up && s->down) ||
+        s->least_area == 0 || s->least_area == UINT64_MAX)
+        return 0;
+    area =
+        real_times(real_of((int64_t)(s->least_area >> 2),
+                           2 * t->exponent[GLINT_OUT_SENSOR_X] + 3),
+                   real_times(p->rays->pixels_per_mm, p->rays->pixels_per_mm));
+    flux.exponent -= 4 + 4 - 1; /* 16 x 16 cells in the box */
+    return real_less(real_over(flux, area), p->rays->faintest);
+}
+
+void glint_plan_transfer(const struct glint_plan *plan,
+                         const struct glint_source *source,
+                         struct glint_transfer *transfer)
+{
+    const struct glint_rays *r = plan->rays;
+
+    glint_transfer_init(transfer, r->lens, source->ghost,
+                        plan->beam[source->beam].sine_q30,
+                        r->wave[source->wave].wave_q24);
+    if (r->narrow)
+        glint_transfer_narrow(transfer);
+    transfer->energy_up = source->energy_up;
+}
+
+struct glint_place glint_plan_place(const struct glint_plan *plan, int beam)
+{
+    return (struct glint_place){.cos_q30 = plan->beam[beam].cos_q30,
+                                .sin_q30 = plan->beam[beam].sin_q30,
+                                .pixels_per_mm = plan->rays->pixels_per_mm,
+                                .middle_x_q8 = plan->width * 128,
+                                .middle_y_q8 = plan->height * 128};
+}
+
+/* How far energies can be lifted, with a quarter more than the survey saw. */
+static int energy_up(int64_t energy)
+{
+    const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
+
+    return up > 0 ? up : 0;
+}
+
+static void set_flux(struct glint_bundle *b, struct glint_real flux)
+{
+    const struct glint_real cell =
+        real_over(flux, real_of((int64_t)b->n_cells * b->n_cells, 0));
+
+    /* far below what can be seen, or far above what is held anyway */
+    b->flux_q31 = cell.exponent < -400 ? 0 : cell.mantissa;
+    b->flux_exponent = cell.exponent > 400 ? 431 : cell.exponent + 31;
+}
+
+void glint_plan_bundle(const struct glint_plan *plan,
+                       struct glint_source *source, struct glint_bundle *bundle,
+                       struct glint_plan_scratch *scratch)
+{
+    const struct glint_rays *r = plan->rays;
+    const struct glint_beam *b = &plan->beam[source->beam];
+    struct glint_transfer *transfer = &scratch->transfer;
+    struct glint_plan_survey *s = &scratch->survey;
+    struct glint_real colour;
+    int64_t wide_q8, high_q8;
+    int exponent;
+
+    bundle->n_cells = 0;
+    if (!glint_transfer_init(transfer, r->lens, source->ghost, b->sine_q30,
+                             r->wave[source->wave].wave_q24))
+        return;
+    colour = colour_of(&r->wave[source->wave], b, bundle->rgb_q14);
+    run_survey(s, transfer);
+    if (s->n_inside == 0 || colour.mantissa == 0 || b->power.mantissa == 0)
+        return;
+    wide_q8 = pixels_q8(plan, transfer, (s->high - s->low) * 3 / 5) + 256;
+    high_q8 = pixels_q8(plan, transfer, s->wide + s->wide / 10) + 256;
+    if (!is_in_view(plan, b, pixels_q8(plan, transfer, (s->low + s->high) / 2),
+                    wide_q8, high_q8))
+        return;
+    source->energy_up = (uint8_t)energy_up(s->energy);
+    exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - source->energy_up;
+    source->flux = flux_of(plan, source, transfer, colour, exponent);
+    if (is_faint(plan, s, transfer, source->flux))
+        return;
+    source->light =
+        real_over(source->flux, real_of(wide_q8 * high_q8 * 4, -16));
+    bundle->n_cells = cells_of(plan, s, transfer);
+    if (transfer->hollow) /* its rim has to be a row */
+        bundle->n_cells = (bundle->n_cells + 3) / 4 * 4;
+    set_flux(bundle, source->flux);
+}

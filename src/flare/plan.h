@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a frame has to draw of a lens: which ghosts, beams and wavelengths, each
+ * with how fine a grid.
+ *
+ *   in   a baked lens, beams, waves, the picture's size
+ *   out  a bundle for each ghost, beam and wave that can be seen in it
+ *
+ * Method: a few rays of each bundle go through its polynomials. Where they land
+ * says whether it is in the picture, how much its light bends how many cells it
+ * takes, and how close they land how bright it can be: what stays below what
+ * the picture can show is left out. Integers only.
+ */
+#ifndef GLINT_FLARE_PLAN_H
+#define GLINT_FLARE_PLAN_H
+
+#include "glint/flare.h"
+#include "glint/lens.h"
+
+/* Where the rays of a bundle come from. */
+struct glint_source {
+    int32_t ghost, beam, wave;
+    uint8_t energy_up;       /* see struct glint_transfer */
+    struct glint_real flux;  /* of the whole pupil, at the most energy seen;
+                                display white times pixels */
+    struct glint_real light; /* the same over the pixels it falls on */
+};
+
+struct glint_plan {
+    const struct glint_rays *rays;
+    const struct glint_beam *beam;
+    int width, height;
+};
+
+/* What a few rays of a bundle say. */
+enum {
+    GLINT_PLAN_ACROSS = 16,
+    GLINT_PLAN_DOWN = 8
+}; /* cells, half the pupil */
+
+struct glint_plan_node {
+    int32_t at[GLINT_OUT_KINDS];
+    int inside; /* of the stop and the barrels, and a little around */
+};
+
+/* How a quantity changes from ray to ray: sums of squares of differences. */
+struct glint_plan_change {
+    uint64_t first, second;
+};
+
+struct glint_plan_survey {
+    struct glint_plan_node row[3][GLINT_PLAN_ACROSS + 1]; /* the last three */
+    struct glint_plan_change change[GLINT_OUT_KINDS];
+    int n_bends, n_inside;
+    int up, down;            /* cells by the way they are turned */
+    int64_t low, high, wide; /* sensor x, and largest y, of what is inside */
+    int64_t energy;
+    uint64_t least_area;            /* of half a cell on the sensor */
+    int64_t limit[GLINT_OUT_KINDS]; /* what counts as inside */
+};
+
+/* Of a worker. */
+struct glint_plan_scratch {
+    struct glint_transfer transfer;
+    struct glint_plan_survey survey;
+};
+
+/* Plans one bundle: BUNDLE->n_cells is 0 where nothing of it can be seen.
+ * SOURCE has ghost, beam and wave set. */
+void glint_plan_bundle(const struct glint_plan *plan,
+                       struct glint_source *source, struct glint_bundle *bundle,
+                       struct glint_plan_scratch *scratch);
+
+/* The polynomials of a bundle that was planned. */
+void glint_plan_transfer(const struct glint_plan *plan,
+                         const struct glint_source *source,
+                         struct glint_transfer *transfer);
+
+/* Where beam BEAM's ghosts lie in the picture. */
+struct glint_place glint_plan_place(const struct glint_plan *plan, int beam);
+
+#endif
