@@ -198,26 +198,45 @@ static int64_t rise_of(int64_t slope_q40)
     return (INT64_C(1) << 62) / (size > least ? size : least) << 2;
 }
 
+/* The same where it is two pixels, FIRST and the next, both in the tile. */
+static inline void add_two(const struct run *r, enum mode mode, int first,
+                           int64_t a_q40, int64_t b_q40, int64_t height_q16)
+{
+    const int64_t far_q16 = (first + 1) * ONE_Q16 - (a_q40 >> 24);
+    const int64_t left_q16 = (first + 2) * ONE_Q16 - (b_q40 >> 24);
+    const int64_t low = r->rise_q32 * far_q16 >> 32;
+    const int64_t one = units(mode, low * far_q16 >> 17);
+    const int64_t two =
+        units(mode, low + ((height_q16 - low) * (ONE_Q16 + left_q16) >> 17));
+
+    change(r, mode, first, one);
+    change(r, mode, first + 1, two - one);
+    change(r, mode, first + 2, units(mode, height_q16) - two);
+}
+
 /* From A to B, in any order, over HEIGHT. */
 static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
                              int64_t b_q40, int64_t height_q16)
 {
-    const int64_t i = a_q40 >> 40, height = units(mode, height_q16);
+    const int64_t low_q40 = a_q40 < b_q40 ? a_q40 : b_q40;
+    const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
+    const int first = (int)(low_q40 >> 40), last = (int)(high_q40 >> 40);
+    const int within = first >= r->x0 && last < r->x1;
 
-    if (i == b_q40 >> 40) {
-        const int64_t far_q16 =
-            2 * ONE_Q16 - ((a_q40 >> 24) & 0xffff) - ((b_q40 >> 24) & 0xffff);
+    if (first == last && within) {
+        const int64_t height = units(mode, height_q16);
+        const int64_t far_q16 = 2 * ONE_Q16 - ((low_q40 >> 24) & 0xffff) -
+                                ((high_q40 >> 24) & 0xffff);
         const int64_t area = units(mode, (height_q16 * far_q16) >> 17);
 
-        if (i >= r->x0 && i < r->x1) {
-            change(r, mode, (int)i, area);
-            change(r, mode, (int)i + 1, height - area);
-        } else if (i < 0 && r->x0 == 0)
-            change(r, mode, 0, height);
-    } else if (a_q40 < b_q40)
-        add_wide(r, mode, a_q40, b_q40, height_q16);
-    else
-        add_wide(r, mode, b_q40, a_q40, height_q16);
+        change(r, mode, first, area);
+        change(r, mode, first + 1, height - area);
+    } else if (last == first + 1 && within)
+        add_two(r, mode, first, low_q40, high_q40, height_q16);
+    else if (first != last)
+        add_wide(r, mode, low_q40, high_q40, height_q16);
+    else if (first < 0 && r->x0 == 0)
+        change(r, mode, 0, units(mode, height_q16));
 }
 
 /* All rows of one channel. */
