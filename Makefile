@@ -25,7 +25,7 @@ export DEPS OUT
 
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/image base/workers kernels/sets \
-        kernels/kernels kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
+        kernels/kernels kernels/horner_c kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
         tile/outline tile/bins tile/raster tile/edges tile/curve \
         tile/mix tile/codes tile/resolve flare/plan flare/ghost_grid flare/ghost_edges flare/by_cells \
         flare/by_edges flare/flare
@@ -45,8 +45,9 @@ UNIT := arena kernels model prescription optics trace pupil published quantise b
         measure lamps
 FUZZ := lens model y4m pnm
 
-CORE_x86_64  := kernels/composite_sse41 kernels/composite_avx2
-CORE_aarch64 := kernels/composite_neon
+CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \
+        kernels/composite_sse41 kernels/composite_avx2
+CORE_aarch64 := kernels/horner_neon kernels/composite_neon
 core_o     := $(patsubst %,$(OUT)/src/%.o,$(CORE) $(CORE_$(ARCH)))
 bake_o     := $(BAKE:%=$(OUT)/src/%.o)
 platform_o := $(PLATFORM:%=$(OUT)/platform/%.o)
@@ -163,8 +164,8 @@ run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
 	        $(replay_bins)
 # NEON kernels against their C definitions, in an emulator.
 CORE_TEST := tests/unit/test_kernels.c src/base/status.c src/base/q.c \
-        src/tile/curve.c src/tile/mix.c $(wildcard src/kernels/[!c]*.c) \
-        src/kernels/composite_c.c src/kernels/composite_neon.c
+        src/tile/curve.c src/tile/mix.c src/kernels/sets.c src/kernels/kernels.c \
+        $(wildcard src/kernels/*_c.c src/kernels/*_neon.c)
 check-neon:
 	@tools/deps "NEON kernels in an emulator" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross qemu-user-static

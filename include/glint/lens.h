@@ -114,6 +114,8 @@ enum {
     GLINT_BOX_POWERS = 6, /* of s alone, the 0th among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
+    GLINT_RAYS = 8,         /* that are computed at once */
+    GLINT_TABLE_WIDTH = 16, /* of a row of powers of u: whole vectors */
     GLINT_MAX_MODEL_TERMS = 120
 };
 
@@ -200,8 +202,7 @@ struct glint_transfer {
     enum glint_basis basis;
     union {
         /* of u^a v^b: [b][a] */
-        int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1]
-                     [GLINT_MAX_POWER + 1];
+        int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
         struct {
             int32_t n_terms;
             uint16_t power[GLINT_MAX_MODEL_TERMS];
@@ -212,6 +213,10 @@ struct glint_transfer {
     uint8_t
         fraction; /* bits of u and v that count: 30, or 15 in 16-bit lanes */
     uint8_t shift[GLINT_OUT_KINDS]; /* a value is as many bits above the unit */
+    unsigned sets; /* instruction sets for rows, GLINT_SET_: 0 after init, for
+                      the caller to set; changes no result */
+    /* scratch: polynomials in u, of one row of rays */
+    int32_t of_u[GLINT_OUT_KINDS][GLINT_TABLE_WIDTH];
 };
 
 /* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 0 .. 2^30,
@@ -238,6 +243,12 @@ struct glint_outputs {
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out);
 
+/* Where the rays at (U[i], V) go, by kind; kinds that are not there are left as
+ * they are. IS_NEW: V is another one than in the last call. */
+void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
+                         const int32_t u_q30[GLINT_RAYS], int is_new,
+                         int32_t out[GLINT_OUT_KINDS][GLINT_RAYS]);
+
 /* Where the bundle lies in the picture. */
 struct glint_place {
     int32_t cos_q30, sin_q30; /* of the light's azimuth */
@@ -250,12 +261,12 @@ struct glint_place {
  * vertex is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does
  * not fit a vertex is lost, and so are a hollow one's rows within, whose rim is
  * a row where N_CELLS is a multiple of 4. */
-void glint_transfer_grid(const struct glint_transfer *transfer,
+void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);
 
 /* Row J of it alone, 0 .. N_CELLS. */
-void glint_transfer_row(const struct glint_transfer *transfer,
+void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row);
 

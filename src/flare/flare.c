@@ -269,8 +269,8 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
     const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
 
     glint_flare_begin(flare);
-    flare->plan =
-        (struct glint_plan){rays, beams, flare->cfg.width, flare->cfg.height};
+    flare->plan = (struct glint_plan){rays, beams, flare->cfg.width,
+                                      flare->cfg.height, flare->cfg.sets};
     flare->stats.need_bundles = need;
     flare->stats.dropped_bundles = need - n;
     glint_workers_run(flare->cfg.workers,

@@ -40,7 +40,7 @@ struct glint_ghost_edges {
     /* [n_cells + 1][n_cells + 1], unless there is TRANSFER: then they are
      * computed, row by row */
     const struct glint_vertex *vertex;
-    const struct glint_transfer *transfer;
+    struct glint_transfer *transfer;
     struct glint_place place;
     const struct glint_bundle *bundle;
     uint32_t number; /* of the bundle */

@@ -51,20 +51,27 @@ static int is_inside(const struct glint_plan_survey *s,
 }
 
 /* Rays of row J, v = J / DOWN. */
-static void survey_row(struct glint_plan_survey *s,
-                       const struct glint_transfer *t, int j)
+static void survey_row(struct glint_plan_survey *s, struct glint_transfer *t,
+                       int j)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     struct glint_plan_node *row = s->row[j % 3];
 
-    for (int i = 0; i <= ACROSS; i++) {
-        struct glint_outputs out;
+    for (int first = 0; first <= ACROSS; first += GLINT_RAYS) {
+        int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
 
-        glint_transfer_ray(t, one_q30 / (ACROSS / 2) * i - one_q30,
-                           one_q30 / DOWN * j, &out);
-        for (int k = 0; k < GLINT_OUT_KINDS; k++)
-            row[i].at[k] = out.at[k];
-        row[i].inside = is_inside(s, t, out.at) && !(t->hollow && 2 * j < DOWN);
+        for (int i = 0; i < GLINT_RAYS; i++)
+            u_q30[i] = first + i < ACROSS
+                           ? one_q30 / (ACROSS / 2) * (first + i) - one_q30
+                           : one_q30;
+        glint_transfer_rays(t, one_q30 / DOWN * j, u_q30, first == 0, out);
+        for (int i = 0; i < GLINT_RAYS && first + i <= ACROSS; i++) {
+            struct glint_plan_node *n = &row[first + i];
+
+            for (int k = 0; k < GLINT_OUT_KINDS; k++)
+                n->at[k] = t->outputs >> k & 1 ? out[k][i] : 0;
+            n->inside = is_inside(s, t, n->at) && !(t->hollow && 2 * j < DOWN);
+        }
     }
 }
 
@@ -125,8 +132,7 @@ static void add_extent(struct glint_plan_survey *s,
                                                     : s->energy;
 }
 
-static void run_survey(struct glint_plan_survey *s,
-                       const struct glint_transfer *t)
+static void run_survey(struct glint_plan_survey *s, struct glint_transfer *t)
 {
     begin(s, t);
     for (int j = 0; j <= DOWN; j++) {
@@ -298,6 +304,7 @@ void glint_plan_transfer(const struct glint_plan *plan,
                         r->wave[source->wave].wave_q24);
     if (r->narrow)
         glint_transfer_narrow(transfer);
+    transfer->sets = plan->sets;
     transfer->energy_up = source->energy_up;
 }
 
@@ -344,6 +351,7 @@ void glint_plan_bundle(const struct glint_plan *plan,
     if (!glint_transfer_init(transfer, r->lens, source->ghost, b->sine_q30,
                              r->wave[source->wave].wave_q24))
         return;
+    transfer->sets = plan->sets;
     colour = colour_of(&r->wave[source->wave], b, bundle->rgb_q14);
     run_survey(s, transfer);
     if (s->n_inside == 0 || colour.mantissa == 0 || b->power.mantissa == 0)

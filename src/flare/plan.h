@@ -30,6 +30,7 @@ struct glint_plan {
     const struct glint_rays *rays;
     const struct glint_beam *beam;
     int width, height;
+    unsigned sets;
 };
 
 /* What a few rays of a bundle say. */

@@ -64,7 +64,20 @@ typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
 typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
                               uint16_t *light_q16, int n);
 
+/* N values of a polynomial, Horner's way: ((c[D] x + c[D - 1]) x + ...) + c[0]
+ * with each product rounded to integers by a shift of FRACTION bits, 2 .. 30.
+ * Products stay below 2^62 and sums below 2^31: the caller's promise.
+ *   along   of one polynomial at x[0 .. N - 1]
+ *   across  of N polynomials, whose coefficients C[k] begin STRIDE apart, at X
+ */
+typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
+                                   const int32_t *x, int fraction, int n);
+typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
+                                    int degree, int32_t x, int fraction, int n);
+
 struct glint_kernels {
+    glint_horner_along_fn *horner_along;
+    glint_horner_across_fn *horner_across;
     glint_add_luma_fn *add_luma;
     glint_add_pairs_fn *add_pairs;
     glint_add_code_fn *add_code;
@@ -74,6 +87,10 @@ struct glint_kernels {
 /* Fills K for the GLINT_SET_ bits SETS: C first, better ones override. */
 void glint_kernels_init(struct glint_kernels *k, unsigned sets);
 
+glint_horner_along_fn glint_horner_along_c, glint_horner_along_sse41,
+    glint_horner_along_avx2, glint_horner_along_neon;
+glint_horner_across_fn glint_horner_across_c, glint_horner_across_sse41,
+    glint_horner_across_avx2, glint_horner_across_neon;
 glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,
     glint_add_luma_neon;
 glint_add_pairs_fn glint_add_pairs_c, glint_add_pairs_sse41,

@@ -13,10 +13,12 @@
 #include "base/compiler.h"
 #include "base/q.h"
 #include "glint/flare.h"
+#include "kernels/kernels.h"
 #include "lens/box.h"
 
 enum {
     ONE_LOG2 = 30,
+    RAYS = GLINT_RAYS,
     MAX_EXPONENT = 15, /* of any variable */
     /* Sums of magnitudes in 16-bit lanes: 100 coefficients off by a half each,
      * 6 roundings of each of 10 entries of a row and 9 along it leave that much
@@ -207,11 +209,12 @@ static void clear(struct glint_transfer *t)
 {
     t->outputs = 0;
     t->head = t->roots = t->energy_up = 0;
+    t->sets = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
         t->degree_u[k] = t->degree_v[k] = t->shift[k] = 0;
         for (int b = 0; b <= GLINT_MAX_POWER; b++)
-            for (int a = 0; a <= GLINT_MAX_POWER; a++)
+            for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
                 t->of.table[k][b][a] = 0;
     }
 }
@@ -242,7 +245,7 @@ int glint_transfer_init(struct glint_transfer *transfer,
 
 /* ------------------------------------------------------------- 16-bit lanes */
 
-typedef int32_t table_row[GLINT_MAX_POWER + 1];
+typedef int32_t table_row[GLINT_TABLE_WIDTH];
 
 static int64_t magnitudes(table_row *table)
 {
@@ -294,50 +297,41 @@ static int32_t variable_of(const struct glint_transfer *t, int32_t x_q30)
                : x_q30;
 }
 
-/* An output's polynomial in u along one row of the grid. */
-struct row {
-    int32_t of_u[GLINT_MAX_POWER + 1];
-};
-
-static void set_row(const struct glint_transfer *t, int kind, int32_t v,
-                    int32_t v2, struct row *row)
-{
-    const int odd = kind & 1 && kind < GLINT_OUT_ENERGY;
-    const int top = t->degree_v[kind];
-
-    for (int a = 0; a <= t->degree_u[kind]; a++) {
-        int32_t sum = t->of.table[kind][top][a];
-
-        for (int b = top - 2; b >= 0; b -= 2)
-            sum = times(t, sum, v2, t->of.table[kind][b][a]);
-        row->of_u[a] = odd ? times(t, sum, v, 0) : sum;
-    }
-}
-
-static int32_t along(const struct glint_transfer *t, int kind,
-                     const struct row *row, int32_t u)
-{
-    const int degree = t->degree_u[kind];
-    int32_t sum = row->of_u[degree];
-
-    for (int a = degree - 1; a >= 0; a--)
-        sum = times(t, sum, u, row->of_u[a]);
-    return sum * (INT32_C(1) << t->shift[kind]);
-}
-
 static int has(const struct glint_transfer *t, int kind)
 {
     return (t->outputs >> kind & 1) != 0;
 }
 
-static void set_rows(const struct glint_transfer *t, int32_t v_q30,
-                     struct row rows[GLINT_OUT_KINDS])
+/* Powers of v of a kind are all odd, or all even. */
+static int is_odd(int kind)
+{
+    return kind & 1 && kind < GLINT_OUT_ENERGY;
+}
+
+/* An output's polynomial in u along one row of the grid. */
+static void set_row(const struct glint_transfer *t,
+                    const struct glint_kernels *k, int kind, int32_t v,
+                    int32_t v2, int32_t *of_u)
+{
+    const int odd = is_odd(kind);
+
+    k->horner_across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
+                     (t->degree_v[kind] - odd) / 2, v2, t->fraction,
+                     t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
+    for (int a = 0; odd && a <= t->degree_u[kind]; a++)
+        of_u[a] = times(t, of_u[a], v, 0);
+}
+
+/* Fills the polynomials in u of the rays at V. */
+static void set_rows(const struct glint_transfer *t,
+                     const struct glint_kernels *k, int32_t v_q30,
+                     int32_t (*of_u)[GLINT_TABLE_WIDTH])
 {
     const int32_t v = variable_of(t, v_q30), v2 = times(t, v, v, 0);
 
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (has(t, kind))
-            set_row(t, kind, v, v2, &rows[kind]);
+            set_row(t, k, kind, v, v2, of_u[kind]);
 }
 
 static int32_t energy_of(const struct glint_transfer *t, int32_t polynomial)
@@ -352,15 +346,29 @@ static int32_t energy_of(const struct glint_transfer *t, int32_t polynomial)
     return e;
 }
 
-static void ray_of_rows(const struct glint_transfer *t,
-                        const struct row rows[GLINT_OUT_KINDS], int32_t u_q30,
+/* The rays at U, by kind. */
+static void rays_of_rows(const struct glint_transfer *t,
+                         const struct glint_kernels *k, const int32_t *u,
+                         int32_t (*out)[RAYS])
+{
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        if (!has(t, kind))
+            continue;
+        k->horner_along(out[kind], t->of_u[kind], t->degree_u[kind], u,
+                        t->fraction, RAYS);
+        for (int i = 0; t->shift[kind] && i < RAYS; i++)
+            out[kind][i] *= INT32_C(1) << t->shift[kind];
+    }
+    for (int i = 0; i < RAYS; i++)
+        out[GLINT_OUT_ENERGY][i] = energy_of(t, out[GLINT_OUT_ENERGY][i]);
+}
+
+static void set_outputs(const struct glint_transfer *t,
+                        const int32_t (*rays)[RAYS], int i,
                         struct glint_outputs *out)
 {
-    const int32_t u = variable_of(t, u_q30);
-
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        out->at[kind] = has(t, kind) ? along(t, kind, &rows[kind], u) : 0;
-    out->at[GLINT_OUT_ENERGY] = energy_of(t, out->at[GLINT_OUT_ENERGY]);
+        out->at[kind] = has(t, kind) ? rays[kind][i] : 0;
 }
 
 static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
@@ -396,14 +404,59 @@ static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out)
 {
-    struct row rows[GLINT_OUT_KINDS];
+    const struct glint_transfer *t = transfer;
+    const int32_t u = variable_of(t, u_q30), v = variable_of(t, v_q30);
+    const int32_t v2 = times(t, v, v, 0);
+    struct glint_kernels k;
 
     if (transfer->basis == GLINT_BASIS_SPARSE) {
         ray_of_terms(transfer, u_q30, v_q30, out);
         return;
     }
-    set_rows(transfer, v_q30, rows);
-    ray_of_rows(transfer, rows, u_q30, out);
+    glint_kernels_init(&k, 0);
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        int32_t of_u[GLINT_TABLE_WIDTH];
+
+        out->at[kind] = 0;
+        if (!has(t, kind))
+            continue;
+        set_row(t, &k, kind, v, v2, of_u);
+        k.horner_along(&out->at[kind], of_u, t->degree_u[kind], &u, t->fraction,
+                       1);
+        out->at[kind] *= INT32_C(1) << t->shift[kind];
+    }
+    out->at[GLINT_OUT_ENERGY] = energy_of(t, out->at[GLINT_OUT_ENERGY]);
+}
+
+static void rays_of_terms(const struct glint_transfer *t, const int32_t *u_q30,
+                          int32_t v_q30, int32_t (*rays)[RAYS])
+{
+    for (int i = 0; i < RAYS; i++) {
+        struct glint_outputs out;
+
+        ray_of_terms(t, u_q30[i], v_q30, &out);
+        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+            rays[kind][i] = out.at[kind];
+    }
+}
+
+void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
+                         const int32_t u_q30[GLINT_RAYS], int is_new,
+                         int32_t out[GLINT_OUT_KINDS][GLINT_RAYS])
+{
+    struct glint_kernels k;
+    int32_t u[RAYS];
+
+    if (transfer->basis == GLINT_BASIS_SPARSE) {
+        rays_of_terms(transfer, u_q30, v_q30, out);
+        return;
+    }
+    glint_kernels_init(&k, transfer->sets);
+    if (is_new)
+        set_rows(transfer, &k, v_q30, transfer->of_u);
+    for (int i = 0; i < RAYS; i++)
+        u[i] = variable_of(transfer, u_q30[i]);
+    rays_of_rows(transfer, &k, u, out);
 }
 
 /* ----------------------------------------------------------------- vertices */
@@ -517,36 +570,29 @@ static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
     return t->hollow && from_rim > n_cells / 4;
 }
 
-static void row_of_terms(const struct glint_transfer *t,
-                         const struct glint_place *place, int n_cells, int j,
-                         struct glint_vertex *row)
-{
-    for (int i = 0; i <= n_cells; i++) {
-        struct glint_outputs out;
-
-        ray_of_terms(t, node_q30(i, n_cells), node_q30(j, n_cells), &out);
-        set_vertex(t, place, &out, 1, &row[i]);
-    }
-}
-
 /* Row J of the lower half into ROW, and the one on the other side of the
  * light's plane into MIRRORED, unless they are NULL. */
-static void rows_of_table(const struct glint_transfer *t,
-                          const struct glint_place *place, int n_cells, int j,
-                          struct glint_vertex *row,
-                          struct glint_vertex *mirrored)
+static void set_row_pair(struct glint_transfer *t,
+                         const struct glint_place *place, int n_cells, int j,
+                         struct glint_vertex *row,
+                         struct glint_vertex *mirrored)
 {
-    struct row rows[GLINT_OUT_KINDS];
+    for (int first = 0; first <= n_cells; first += RAYS) {
+        int32_t u_q30[RAYS], rays[GLINT_OUT_KINDS][RAYS];
 
-    set_rows(t, node_q30(j, n_cells), rows);
-    for (int i = 0; i <= n_cells; i++) {
-        struct glint_outputs out;
+        for (int i = 0; i < RAYS; i++)
+            u_q30[i] =
+                node_q30(first + i < n_cells ? first + i : n_cells, n_cells);
+        glint_transfer_rays(t, node_q30(j, n_cells), u_q30, first == 0, rays);
+        for (int i = 0; i < RAYS && first + i <= n_cells; i++) {
+            struct glint_outputs out;
 
-        ray_of_rows(t, rows, node_q30(i, n_cells), &out);
-        if (mirrored)
-            set_vertex(t, place, &out, -1, &mirrored[i]);
-        if (row)
-            set_vertex(t, place, &out, 1, &row[i]);
+            set_outputs(t, (const int32_t(*)[RAYS])rays, i, &out);
+            if (mirrored)
+                set_vertex(t, place, &out, -1, &mirrored[first + i]);
+            if (row)
+                set_vertex(t, place, &out, 1, &row[first + i]);
+        }
     }
 }
 
@@ -556,24 +602,25 @@ static void lose_row(struct glint_vertex *row, int n_cells)
         row[i].energy_q16 = -1;
 }
 
-void glint_transfer_row(const struct glint_transfer *transfer,
+void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row)
 {
+    const int sparse = transfer->basis == GLINT_BASIS_SPARSE;
+
     if (is_hidden(transfer, n_cells, j))
         lose_row(row, n_cells);
-    else if (transfer->basis == GLINT_BASIS_SPARSE)
-        row_of_terms(transfer, place, n_cells, j, row);
-    else if (2 * j <= n_cells)
-        rows_of_table(transfer, place, n_cells, j, row, NULL);
+    else if (sparse || 2 * j <= n_cells)
+        set_row_pair(transfer, place, n_cells, j, row, NULL);
     else
-        rows_of_table(transfer, place, n_cells, n_cells - j, NULL, row);
+        set_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
 }
 
-void glint_transfer_grid(const struct glint_transfer *transfer,
+void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices)
 {
+    const int sparse = transfer->basis == GLINT_BASIS_SPARSE;
     const int nodes = n_cells + 1;
 
     for (int j = 0; j < nodes; j++) {
@@ -583,9 +630,9 @@ void glint_transfer_grid(const struct glint_transfer *transfer,
 
         if (is_hidden(transfer, n_cells, j))
             lose_row(row, n_cells);
-        else if (transfer->basis == GLINT_BASIS_SPARSE)
-            row_of_terms(transfer, place, n_cells, j, row);
+        else if (sparse)
+            set_row_pair(transfer, place, n_cells, j, row, NULL);
         else if (2 * j <= n_cells)
-            rows_of_table(transfer, place, n_cells, j, row, mirrored);
+            set_row_pair(transfer, place, n_cells, j, row, mirrored);
     }
 }

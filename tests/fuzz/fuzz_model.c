@@ -24,7 +24,7 @@ static void require(int condition)
         abort();
 }
 
-static void check_rays(const struct glint_transfer *t)
+static void check_rays(struct glint_transfer *t)
 {
     static const int32_t at_q30[] = {-ONE, -ONE / 3, 0, 1, ONE};
 
@@ -50,7 +50,7 @@ static void check_vertex(const struct glint_vertex *v)
         require(v->barrel_q16[k] >= 0 && v->barrel_q16[k] <= ONE);
 }
 
-static void check_grids(const struct glint_transfer *t)
+static void check_grids(struct glint_transfer *t)
 {
     static const int32_t exponent[] = {-200, -25, 0, 200};
     static const int32_t turn_q30[][2] = {

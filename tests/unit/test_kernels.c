@@ -288,6 +288,40 @@ static void check_sum(const struct glint_kernels *k, const char *name)
           k->run_sum(got, &carry[1], light[1], N));
 }
 
+/* Coefficients whose magnitudes sum to less than 2^30, as bake proves. */
+static void check_horner(const struct glint_kernels *k, const char *name)
+{
+    struct glint_kernels plain;
+    int32_t *c = fenced(160 * sizeof *c), *x = fenced(N * sizeof *x);
+    int32_t *want = fenced(N * sizeof *want), *got = fenced(N * sizeof *got);
+
+    glint_kernels_init(&plain, 0);
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int fraction = draw() % 2 ? 30 : 15, degree = (int)(draw() % 10);
+        const int n = 8 * (1 + (int)(draw() % (N / 8)));
+        const int32_t most = 1 << (fraction == 30 ? 26 : 11);
+
+        for (int i = 0; i < 160; i++)
+            c[i] = (int32_t)(draw() % (2 * (uint32_t)most)) - most;
+        for (int i = 0; i < N; i++) {
+            x[i] = (int32_t)(draw() % (2U << fraction)) - (1 << fraction);
+            if (fraction == 15 && x[i] < -32767)
+                x[i] = -32767;
+            want[i] = got[i] = 7;
+        }
+        plain.horner_along(want, c, degree, x, fraction, n);
+        k->horner_along(got, c, degree, x, fraction, n);
+        EXPECT_SAME(got, want, 4 * N);
+        plain.horner_across(want, c, 16, degree, x[0], fraction, 16);
+        k->horner_across(got, c, 16, degree, x[0], fraction, 16);
+        EXPECT_SAME(got, want, 4 * N);
+    }
+    BENCH("along 9", name, plain.horner_along(want, c, 9, x, 30, N),
+          k->horner_along(got, c, 9, x, 30, N));
+    BENCH("across 4", name, plain.horner_across(want, c, 32, 4, x[0], 30, 16),
+          k->horner_across(got, c, 32, 4, x[0], 30, 16));
+}
+
 static void test_same_bits(void)
 {
     for (int v = 0; v < N_VARIANTS; v++) {
@@ -296,6 +330,7 @@ static void test_same_bits(void)
         if (!(variants[v].set & glint_sets_here()))
             continue;
         glint_kernels_init(&k, variants[v].set);
+        check_horner(&k, variants[v].name);
         check_luma(&k, variants[v].name);
         check_pairs(&k, variants[v].name);
         check_code(&k, variants[v].name);
