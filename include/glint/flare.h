@@ -30,7 +30,6 @@
 #include "glint/workers.h"
 
 #define GLINT_MAX_BLADES 64
-#define GLINT_MAX_CELLS  1024 /* of a ray grid, per side */
 
 /* ------------------------------------------------------------ aperture stop */
 

@@ -111,7 +111,8 @@ struct glint_model_system {
 };
 
 enum {
-    GLINT_BOX_POWERS = 6, /* of s alone, the 0th among them */
+    GLINT_MAX_CELLS = 1024, /* of a ray grid, per side */
+    GLINT_BOX_POWERS = 6,   /* of s alone, the 0th among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
     GLINT_RAYS = 8,         /* that are computed at once */
@@ -215,8 +216,9 @@ struct glint_transfer {
     uint8_t shift[GLINT_OUT_KINDS]; /* a value is as many bits above the unit */
     unsigned sets; /* instruction sets for rows, GLINT_SET_: 0 after init, for
                       the caller to set; changes no result */
-    /* scratch: polynomials in u, of one row of rays */
+    /* Scratch: polynomials in u, of one row of rays; places along a row. */
     int32_t of_u[GLINT_OUT_KINDS][GLINT_TABLE_WIDTH];
+    int32_t n_nodes, node_q30[GLINT_MAX_CELLS + GLINT_RAYS];
 };
 
 /* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 0 .. 2^30,

@@ -205,7 +205,6 @@ static void find_part(const struct glint_ghost_edges *g,
  */
 
 struct cell {
-    int i, j;
     const struct glint_vertex *corner[4]; /* in order */
     struct outside at[4];
     struct outside any; /* of the four */
@@ -216,8 +215,6 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
 {
     const struct glint_ghost_rows *r = g->rows;
 
-    c->i = i;
-    c->j = j;
     c->any = (struct outside){0, 0};
     for (int k = 0; k < 4; k++) {
         const int across = i + (k == 1 || k == 2), down = j + (k >= 2);
@@ -230,46 +227,36 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
     }
 }
 
-static int is_hidden(const struct cell *c)
-{
-    uint64_t sides = ~UINT64_C(0);
-    unsigned barrels = 3;
-
-    for (int k = 0; k < 4; k++) {
-        sides &= c->at[k].sides;
-        barrels &= c->at[k].barrels;
-    }
-    return sides != 0 || barrels != 0;
-}
-
 /* Sign of the turn at each corner, if it is the same at all four; else 0. */
 static int convexity(const struct glint_corners *c)
 {
-    int positive = 0, negative = 0;
+    int64_t x[4], y[4], most = INT64_MIN, least = INT64_MAX;
 
-    for (int i = 0; i < 4; i++) {
-        const struct glint_vertex *a = c->at[i], *b = c->at[(i + 1) & 3];
-        const struct glint_vertex *d = c->at[(i + 2) & 3];
-        const int64_t turn = glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8,
-                                            d->x_q8, d->y_q8);
-
-        positive += turn > 0;
-        negative += turn < 0;
+    for (int i = 0; i < 4; i++) { /* sides */
+        x[i] = (int64_t)c->at[(i + 1) & 3]->x_q8 - c->at[i]->x_q8;
+        y[i] = (int64_t)c->at[(i + 1) & 3]->y_q8 - c->at[i]->y_q8;
     }
-    return positive == 4 ? 1 : negative == 4 ? -1 : 0;
+    for (int i = 0; i < 4; i++) {
+        const int64_t turn = x[i] * y[(i + 1) & 3] - y[i] * x[(i + 1) & 3];
+
+        most = turn > most ? turn : most;
+        least = turn < least ? turn : least;
+    }
+    return least > 0 ? 1 : most < 0 ? -1 : 0;
 }
 
-/* X to the nearest of STEPS steps per octave. */
+/* X, below 2^44, to the nearest of STEPS steps per octave. */
 static int64_t in_steps(int64_t x, int steps)
 {
     const int log2 = bit_length((uint64_t)x) - 1;
-    int64_t base, k;
+    int64_t base;
+    uint32_t k;
 
     if (steps == 0 || x <= steps)
         return x;
     base = INT64_C(1) << log2;
-    k = ((x - base) * steps + base / 2) >> log2;
-    return base + k * base / steps;
+    k = (uint32_t)(((x - base) * steps + base / 2) >> log2);
+    return base + (((int64_t)((k << 19) / (uint32_t)steps) << log2) >> 19);
 }
 
 /* The light of 2^SHARE_LOG2 cells over AREA2 / 2^FRAC pixels, as it is packed;
@@ -506,7 +493,7 @@ static int64_t mean_energy_q16(const struct glint_corners *c)
 }
 
 /* The light of a cell that shares its sides with its neighbours; what is drawn
- * by itself, or not at all, has none. */
+ * by itself has none. */
 static int32_t shared_light(struct glint_ghost_edges *g, const struct cell *c)
 {
     struct glint_corners corners;
@@ -518,8 +505,6 @@ static int32_t shared_light(struct glint_ghost_edges *g, const struct cell *c)
         add_triangles(g, c);
         return 0;
     }
-    if (is_hidden(c))
-        return 0;
     glint_corners_set(&corners, c->corner, 4);
     turn = convexity(&corners);
     if (turn == 0 && !glint_corners_tiny(&corners, 16)) {
@@ -536,6 +521,22 @@ static int32_t shared_light(struct glint_ghost_edges *g, const struct cell *c)
     if (cuts)
         add_chords(g, c, light);
     return light;
+}
+
+/* The cell at (I, J): nearly all lie outside of what is seen, or inside of it
+ * all. */
+static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
+{
+    const struct glint_ghost_rows *r = g->rows;
+    const uint64_t *s = r->sides[j & 1] + i, *t = r->sides[~j & 1] + i;
+    const uint8_t *a = r->barrels[j & 1] + i, *b = r->barrels[~j & 1] + i;
+    struct cell cell;
+
+    if (!((a[0] | a[1] | b[0] | b[1]) & LOST) &&
+        ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1])))
+        return 0;
+    set_cell(g, i, j, &cell);
+    return shared_light(g, &cell);
 }
 
 /* The visible part of the edge A to B, between the lights of two cells. */
@@ -605,12 +606,8 @@ void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
         int32_t *here = r->light[j & 1], *above = r->light[~j & 1];
 
         set_nodes(ghost, j + 1);
-        for (int i = 0; i < n; i++) {
-            struct cell cell;
-
-            set_cell(ghost, i, j, &cell);
-            here[i] = shared_light(ghost, &cell);
-        }
+        for (int i = 0; i < n; i++)
+            here[i] = light_at(ghost, i, j);
         add_level(ghost, j, above, here);
         add_upright(ghost, j, here);
     }

@@ -210,6 +210,7 @@ static void clear(struct glint_transfer *t)
     t->outputs = 0;
     t->head = t->roots = t->energy_up = 0;
     t->sets = 0;
+    t->n_nodes = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
         t->degree_u[k] = t->degree_v[k] = t->shift[k] = 0;
@@ -363,14 +364,6 @@ static void rays_of_rows(const struct glint_transfer *t,
         out[GLINT_OUT_ENERGY][i] = energy_of(t, out[GLINT_OUT_ENERGY][i]);
 }
 
-static void set_outputs(const struct glint_transfer *t,
-                        const int32_t (*rays)[RAYS], int i,
-                        struct glint_outputs *out)
-{
-    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        out->at[kind] = has(t, kind) ? rays[kind][i] : 0;
-}
-
 static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
                          int32_t v_q30, struct glint_outputs *out)
 {
@@ -466,46 +459,48 @@ struct shifts {
     int sensor, stop, barrel, radius;
 };
 
-/* X / 2^SHIFT if that is below LIMIT in magnitude; else *LOST. */
-static int32_t scaled(int64_t x, int shift, int32_t limit, int *lost)
+/* X * 2^UP if that is below 2^31 in magnitude; else *LOST. */
+static int64_t raised(int64_t x, int up, int *lost)
 {
-    int64_t y;
-
-    if (shift > 62)
-        return 0;
-    if (shift < 0 &&
-        (shift < -31 || bit_length((uint64_t)(x < 0 ? -x : x)) - shift > 32)) {
+    if (up > 31 || bit_length((uint64_t)(x < 0 ? -x : x)) + up > 32) {
         *lost |= x != 0;
         return 0;
     }
-    y = shift < 0 ? x * (INT64_C(1) << -shift) : q_shift(x, shift);
-    if (y >= limit || y <= -limit) {
-        *lost = 1;
-        return 0;
-    }
-    return (int32_t)y;
+    return x * (INT64_C(1) << up);
+}
+
+/* X / 2^SHIFT if that is below LIMIT in magnitude; else *LOST. */
+static inline int32_t scaled(int64_t x, int shift, int32_t limit, int *lost)
+{
+    const int64_t y = shift < 0    ? raised(x, -shift, lost)
+                      : shift < 63 ? q_shift(x, shift)
+                                   : 0;
+
+    if (y < limit && y > -limit)
+        return (int32_t)y;
+    *lost = 1;
+    return 0;
 }
 
 enum { LIMIT_Q16 = 1 << 30 };
 
-static int32_t barrel_of(const struct glint_outputs *out, int kind, int shift,
-                         int *lost)
+static int32_t barrel_of(int32_t value, int shift, int *lost)
 {
-    const int32_t value_q16 = scaled(out->at[kind], shift, LIMIT_Q16, lost);
+    const int32_t value_q16 = scaled(value, shift, LIMIT_Q16, lost);
 
     *lost |= value_q16 < 0;
     return value_q16;
 }
 
 static void set_barrels(const struct glint_transfer *t,
-                        const struct glint_outputs *out, struct glint_vertex *v,
-                        int *lost)
+                        const int32_t (*rays)[RAYS], int i,
+                        struct glint_vertex *v, int *lost)
 {
     int32_t more;
 
     v->barrel_q16[0] = v->barrel_q16[1] = 0;
     if (has(t, GLINT_OUT_RADIUS)) {
-        more = scaled(out->at[GLINT_OUT_RADIUS],
+        more = scaled(rays[GLINT_OUT_RADIUS][i],
                       -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23, lost);
         v->barrel_q16[0] =
             (int32_t)(((INT64_C(1) << 16) + q_shift((int64_t)more * more, 16)) /
@@ -516,21 +511,20 @@ static void set_barrels(const struct glint_transfer *t,
 
         if (!has(t, kind))
             continue;
-        more = barrel_of(out, kind, -(t->exponent[kind] + 16), lost);
+        more = barrel_of(rays[kind][i], -(t->exponent[kind] + 16), lost);
         *to = more > *to ? more : *to;
     }
 }
 
-/* MIRROR is -1 for the ray on the other side of the light's plane. */
+/* Of ray I; MIRROR is -1 for the one on the other side of the light's plane. */
 static void set_vertex(const struct glint_transfer *t,
-                       const struct glint_place *p,
-                       const struct glint_outputs *out, int mirror,
-                       struct glint_vertex *v)
+                       const struct glint_place *p, const int32_t (*rays)[RAYS],
+                       int i, int mirror, struct glint_vertex *v)
 {
-    const int64_t x = out->at[GLINT_OUT_SENSOR_X];
-    const int64_t y = (int64_t)mirror * out->at[GLINT_OUT_SENSOR_Y];
-    const int64_t a = out->at[GLINT_OUT_STOP_X];
-    const int64_t b = (int64_t)mirror * out->at[GLINT_OUT_STOP_Y];
+    const int64_t x = rays[GLINT_OUT_SENSOR_X][i];
+    const int64_t y = (int64_t)mirror * rays[GLINT_OUT_SENSOR_Y][i];
+    const int64_t a = rays[GLINT_OUT_STOP_X][i];
+    const int64_t b = (int64_t)mirror * rays[GLINT_OUT_STOP_Y][i];
     const int64_t c = p->cos_q30, s = p->sin_q30;
     const int to_q8 =
         -(t->exponent[GLINT_OUT_SENSOR_X] + p->pixels_per_mm.exponent + 8);
@@ -548,9 +542,9 @@ static void set_vertex(const struct glint_transfer *t,
         scaled(q_shift(a * c - b * s, 30), to_q16, LIMIT_Q16, &lost);
     v->stop_y_q16 =
         scaled(q_shift(a * s + b * c, 30), to_q16, LIMIT_Q16, &lost);
-    set_barrels(t, out, v, &lost);
+    set_barrels(t, rays, i, v, &lost);
     v->energy_q16 = lost ? -1
-                         : q_clamp_sat(q_shift(out->at[GLINT_OUT_ENERGY] *
+                         : q_clamp_sat(q_shift(rays[GLINT_OUT_ENERGY][i] *
                                                    (INT64_C(1) << t->energy_up),
                                                13),
                                        0, 1 << 16);
@@ -577,21 +571,23 @@ static void set_row_pair(struct glint_transfer *t,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored)
 {
+    if (t->n_nodes != n_cells + 1) {
+        t->n_nodes = n_cells + 1;
+        for (int i = 0; i < n_cells + RAYS; i++)
+            t->node_q30[i] = node_q30(i < n_cells ? i : n_cells, n_cells);
+    }
     for (int first = 0; first <= n_cells; first += RAYS) {
-        int32_t u_q30[RAYS], rays[GLINT_OUT_KINDS][RAYS];
+        int32_t rays[GLINT_OUT_KINDS][RAYS];
 
-        for (int i = 0; i < RAYS; i++)
-            u_q30[i] =
-                node_q30(first + i < n_cells ? first + i : n_cells, n_cells);
-        glint_transfer_rays(t, node_q30(j, n_cells), u_q30, first == 0, rays);
+        glint_transfer_rays(t, t->node_q30[j], t->node_q30 + first, first == 0,
+                            rays);
         for (int i = 0; i < RAYS && first + i <= n_cells; i++) {
-            struct glint_outputs out;
-
-            set_outputs(t, (const int32_t(*)[RAYS])rays, i, &out);
             if (mirrored)
-                set_vertex(t, place, &out, -1, &mirrored[first + i]);
+                set_vertex(t, place, (const int32_t(*)[RAYS])rays, i, -1,
+                           &mirrored[first + i]);
             if (row)
-                set_vertex(t, place, &out, 1, &row[first + i]);
+                set_vertex(t, place, (const int32_t(*)[RAYS])rays, i, 1,
+                           &row[first + i]);
         }
     }
 }
