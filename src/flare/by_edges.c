@@ -239,10 +239,14 @@ static void resolve_codes(const struct draw *d,
     for (int y = s->tile.y0; y < s->tile.y1; y += 2) {
         const int n = y + 2 < s->tile.y1 ? 2 : s->tile.y1 - y;
 
+        int lit = 0;
+
         for (int c = 0; c < 3; c++)
             for (int row = 0; row < n; row++)
-                glint_edge_light(s, c, y + row - s->tile.y0, &r->kernels,
-                                 w->light->rgb_q16[c][row]);
+                lit |= glint_edge_light(s, c, y + row - s->tile.y0, &r->kernels,
+                                        w->light->rgb_q16[c][row]);
+        if (!lit)
+            continue;
         glint_resolve_stretch(r, d->image, s->tile.x0, y,
                               s->tile.x1 - s->tile.x0, n, w->light, w->codes);
     }
@@ -276,6 +280,7 @@ static void row_job(void *ctx, int job, int worker)
                                 .wide = w->wide,
                                 .narrow_q24 = w->narrow_q24,
                                 .carry = w->carry,
+                                .touched = w->touched,
                                 .tile_log2 = log2,
                                 .stride = GLINT_EDGE_STRIDE(log2)};
 
@@ -287,6 +292,8 @@ static void row_job(void *ctx, int job, int worker)
 
 static void clear(struct glint_flare_worker *w, int log2)
 {
+    for (int k = 0; k < 3 << log2; k++)
+        w->touched[k] = 0;
     for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++) {
         w->wide[k] = 0;
         w->narrow_q24[k] = 0;

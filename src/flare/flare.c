@@ -43,6 +43,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
         w->narrow_q24 =
             glint_arena_take(a, 3 * side * stride, sizeof *w->narrow_q24);
         w->carry = glint_arena_take(a, 3 * side, sizeof *w->carry);
+        w->touched = glint_arena_take(a, 3 * side, sizeof *w->touched);
         return;
     }
     w->acc_q20 = glint_arena_take(a, 3 * side * side, sizeof *w->acc_q20);

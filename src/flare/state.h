@@ -28,6 +28,7 @@ struct glint_flare_worker {
     uint64_t *wide; /* of one tile: tile/edges.h */
     uint32_t *narrow_q24;
     int64_t *carry;
+    uint8_t *touched;
     int first_edge, max_edges, n_edges; /* its part of the edges */
     /* by cells */
     int64_t *acc_q20; /* [3][side * side], one small tile's sums */

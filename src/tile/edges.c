@@ -254,6 +254,8 @@ static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
 
     if (x_q40 >> 40 != x_at_q40(e, end_q8) >> 40)
         r.rise_q32 = rise_of(e->slope_q40);
+    for (int k = 0; k <= (end_q8 - 1 - (y_q8 & ~255)) >> 8; k++)
+        s->touched[row + k] = 1;
     while (y_q8 < end_q8) {
         const int32_t next_q8 = sooner((y_q8 | 255) + 1, end_q8);
         const int32_t height_q8 = next_q8 - y_q8;
@@ -370,6 +372,11 @@ void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
     change_q36[n] = 0;
 }
 
+static uint16_t rounded_q16(int64_t sum_q24)
+{
+    return (uint16_t)q_clamp_sat((sum_q24 >> 8) + (sum_q24 >> 7 & 1), 0, 65535);
+}
+
 static void wide_light(uint64_t *change_q24, int64_t *carry_q24, int n,
                        uint16_t *light_q16)
 {
@@ -384,8 +391,18 @@ static void wide_light(uint64_t *change_q24, int64_t *carry_q24, int n,
     *carry_q24 = (int64_t)sum_q24;
 }
 
-void glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
-                      const struct glint_kernels *kernels, uint16_t *light_q16)
+/* The same light everywhere. */
+static int even_light(int64_t carry_q24, int n, uint16_t *light_q16)
+{
+    const uint16_t light = rounded_q16(carry_q24);
+
+    for (int x = 0; x < n; x++)
+        light_q16[x] = light;
+    return light > 0;
+}
+
+int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
+                     const struct glint_kernels *kernels, uint16_t *light_q16)
 {
     const int at = (channel << sums->tile_log2) + row;
     const ptrdiff_t first = (ptrdiff_t)at * sums->stride;
@@ -393,13 +410,16 @@ void glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
     const int padded = (n + GLINT_LANES - 1) / GLINT_LANES * GLINT_LANES;
     uint32_t carry_q24 = (uint32_t)sums->carry[at];
 
+    if (!sums->touched[at])
+        return even_light(sums->carry[at], padded, light_q16);
+    sums->touched[at] = 0;
     if (!sums->narrow) {
         wide_light(sums->wide + first, &sums->carry[at], padded, light_q16);
         if (padded == n) {
             sums->carry[at] += (int64_t)sums->wide[first + n];
             sums->wide[first + n] = 0;
         }
-        return;
+        return 1;
     }
     kernels->run_sum(sums->narrow_q24 + first, &carry_q24, light_q16, padded);
     if (padded == n) {
@@ -407,4 +427,5 @@ void glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
         sums->narrow_q24[first + n] = 0;
     }
     sums->carry[at] = (int32_t)carry_q24;
+    return 1;
 }

@@ -69,7 +69,8 @@ struct glint_edge_sums {
     int narrow; /* what add found: narrow sums do, and have been used */
     uint64_t *wide;
     uint32_t *narrow_q24;
-    int64_t *carry; /* [3][side rows]: what runs in, and out */
+    int64_t *carry;   /* [3][side rows]: what runs in, and out */
+    uint8_t *touched; /* [3][side rows]: where there are changes */
 };
 
 /* Space of GLINT_EDGE_STRIDE(log2) values a row. */
@@ -100,10 +101,11 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
 
 /* The light of row ROW of the tile in channel CHANNEL; its changes are cleared,
  * its carry goes on. Of linear pictures one value a pixel, saturating at the
- * int32 range; of others so many as are a multiple of GLINT_LANES. */
+ * int32 range; of others so many as are a multiple of GLINT_LANES, and 0 is
+ * returned where there is no light at all. */
 void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
                        int32_t *light_q20);
-void glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
-                      const struct glint_kernels *kernels, uint16_t *light_q16);
+int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
+                     const struct glint_kernels *kernels, uint16_t *light_q16);
 
 #endif

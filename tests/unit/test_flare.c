@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "glint/flare.h"
+#include "glint/kernels.h"
 #include "posix/workers.h"
 #include "support/shuffle.h"
 
@@ -589,6 +590,119 @@ static void test_order_does_not_matter(void **state)
     }
 }
 
+/* A picture of any format, on which a scene of a few random ghosts is drawn. */
+struct random_picture {
+    struct glint_image image;
+    uint8_t *mem;
+    size_t bytes;
+};
+
+static void make_picture(struct random_picture *p, enum glint_pixel_format f,
+                         uint32_t seed)
+{
+    p->image =
+        (struct glint_image){.format = f,
+                             .width = WIDTH,
+                             .height = HEIGHT,
+                             .range = (enum glint_range)(seed & 1),
+                             .matrix = (enum glint_matrix)(seed >> 1 & 1),
+                             .transfer = (enum glint_tone)(seed >> 2 & 1)};
+    p->bytes = glint_image_bytes(f, WIDTH, HEIGHT);
+    p->mem = malloc(p->bytes);
+    glint_image_place(&p->image, p->mem);
+    for (size_t i = 0; i < p->bytes; i++)
+        p->mem[i] = (uint8_t)(f == GLINT_LINEAR_Q20 ? 0 : i * 7 + (i >> 8));
+}
+
+static void draw_picture(const struct glint_flare_config *cfg,
+                         const struct ghost *list, int n, int backwards,
+                         struct random_picture *p)
+{
+    struct glint_flare_config c = *cfg;
+    struct glint_flare_stats stats;
+    void *mem;
+    struct glint_flare *f = open_flare(&c, &mem);
+
+    for (int i = 0; i < n; i++)
+        add_ghost(f, &list[backwards ? n - 1 - i : i]);
+    glint_flare_bin(f, &stats);
+    glint_flare_draw(f, &p->image);
+    assert_int_equal(stats.dropped_bundles, 0);
+    free(mem);
+}
+
+static unsigned random_sets(void)
+{
+    return (unsigned)draw_number(8) & glint_sets_here();
+}
+
+/* From far below a code to far above what 32-bit sums hold: never darker. */
+static void test_bright_stays_bright(void **state)
+{
+    struct glint_flare_config c = base_config();
+    int before = 0;
+
+    (void)state;
+    for (int exponent = -12; exponent < 40; exponent++) {
+        const struct ghost g = {
+            16, 100, 75, 40, 0, 1, 0, exponent, {16384, 16384, 16384}};
+        struct random_picture p;
+        int code;
+
+        make_picture(&p, GLINT_GREY, 0);
+        memset(p.mem, 0, p.bytes);
+        draw_picture(&c, &g, 1, 0, &p);
+        code = p.mem[75 * WIDTH + 100];
+        assert_true(code >= before);
+        assert_true(exponent < 12 || code == 255);
+        assert_int_equal(p.mem[75 * WIDTH + WIDTH - 1], 0);
+        before = code;
+        free(p.mem);
+    }
+}
+
+/* The promise: the same bytes whatever does not matter, over many scenes. */
+static void test_random_scenes(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 240; k++) {
+        const enum glint_pixel_format format =
+            (enum glint_pixel_format)draw_number(GLINT_RGB565 + 1);
+        const uint32_t seed = (uint32_t)draw_number(1 << 20) + 1;
+        struct glint_flare_config c = base_config();
+        struct random_picture plain, other;
+        struct shuffle shuffle;
+        struct ghost list[6];
+        const int n = 1 + draw_number(6);
+
+        for (int i = 0; i < n; i++) {
+            list[i] = random_ghost();
+            list[i].flux_exponent +=
+                draw_number(20) - 12; /* to and fro white */
+        }
+        c.raster = k % 4 ? GLINT_RASTER_EDGES : GLINT_RASTER_CELLS;
+        c.stop.n_blades = k % 5 ? 8 : 0;
+        c.irradiance_steps = draw_number(3) * 30;
+        c.dither = draw_number(2);
+        c.tile_log2 = 6;
+        c.max_primitives = 400000;
+        make_picture(&plain, format, seed);
+        draw_picture(&c, list, n, 0, &plain);
+        c.tile_log2 = 3 + draw_number(4);
+        c.coarse_log2 = draw_number(2) ? 7 : 0;
+        c.sets = random_sets();
+        shuffle_init(&shuffle, 1 + draw_number(8), seed);
+        c.workers = &shuffle.workers;
+        make_picture(&other, format, seed);
+        draw_picture(&c, list, n, draw_number(2), &other);
+        if (memcmp(plain.mem, other.mem, plain.bytes) != 0)
+            fail_msg("scene %d: format %d, tiles %d, sets %u, %d workers", k,
+                     (int)format, c.tile_log2, c.sets, shuffle.workers.n);
+        free(plain.mem);
+        free(other.mem);
+    }
+}
+
 static void test_bundle_order_does_not_matter(void **state)
 {
     struct ghost turned[N_SCENE];
@@ -797,6 +911,8 @@ int main(void)
         cmocka_unit_test(test_tiles_do_not_matter),
         cmocka_unit_test(test_threads_do_not_matter),
         cmocka_unit_test(test_order_does_not_matter),
+        cmocka_unit_test(test_bright_stays_bright),
+        cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_bundle_order_does_not_matter),
         cmocka_unit_test(test_untouched_stays),
         cmocka_unit_test(test_exact_capacity),
