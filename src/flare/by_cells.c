@@ -100,10 +100,13 @@ static void count_refs(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
+/* Of the bundles that were kept. */
 static void fill_bins(struct glint_flare *f)
 {
-    const int n = f->stats.primitives;
+    int n = 0;
 
+    for (int i = 0; i < f->n_drawn; i++)
+        n += f->slot[i].n;
     glint_bins_open(&f->bins);
     for (int i = 0; i < n; i++)
         glint_bins_count(&f->bins, primitive_box(f, i));

@@ -74,11 +74,33 @@ static void emit_bundle(struct glint_flare *f, int bundle,
     w->n_edges += ghost.n_edges;
 }
 
+/* The bins, as worker W fills them. */
+static struct glint_bins bins_of(const struct glint_flare *f,
+                                 const struct glint_flare_worker *w)
+{
+    struct glint_bins bins = f->bins;
+
+    bins.start = w->at;
+    return bins;
+}
+
+static void count_bundle(struct glint_flare *f, int bundle,
+                         const struct glint_flare_worker *w)
+{
+    const struct glint_bundle_slot *slot = &f->slot[bundle];
+    struct glint_bins bins = bins_of(f, w);
+
+    for (int k = 0; slot->first >= 0 && k < slot->n; k++)
+        glint_edge_count(&f->edge[slot->first + k], &bins);
+}
+
 static void emit_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
 
     emit_bundle(f, job, &f->worker[worker]);
+    f->slot[job].worker = worker;
+    count_bundle(f, job, &f->worker[worker]);
 }
 
 /* Gives each of N workers an equal part of the edges. */
@@ -90,6 +112,15 @@ static void share_out(struct glint_flare *f, int n)
         f->worker[i].first_edge = i * part;
         f->worker[i].max_edges = part;
         f->worker[i].n_edges = 0;
+    }
+}
+
+static void clear_counts(struct glint_flare *f)
+{
+    for (int i = 0; i < glint_workers_count(f->cfg.workers); i++) {
+        struct glint_bins bins = bins_of(f, &f->worker[i]);
+
+        glint_bins_open(&bins);
     }
 }
 
@@ -108,17 +139,21 @@ static void emit_in_order(struct glint_flare *f)
     int full = 0;
 
     share_out(f, 1);
+    clear_counts(f);
     for (int i = 0; i < f->n_bundles; i++) {
         emit_bundle(f, i, &f->worker[0]);
+        f->slot[i].worker = 0;
         full |= f->slot[i].first < 0;
         if (full)
             f->slot[i].first = -1;
+        count_bundle(f, i, &f->worker[0]);
     }
 }
 
 static void emit(struct glint_flare *f)
 {
     share_out(f, glint_workers_count(f->cfg.workers));
+    clear_counts(f);
     glint_workers_run(f->cfg.workers, f->n_bundles, emit_job, f);
     if (!all_placed(f))
         emit_in_order(f);
@@ -132,26 +167,6 @@ static void emit(struct glint_flare *f)
 
 /* ---------------------------------------------------------------------- bins
  */
-
-typedef void edge_fn(const struct glint_edge *edge, struct glint_bins *bins,
-                     int32_t index);
-
-static void count_edge(const struct glint_edge *edge, struct glint_bins *bins,
-                       int32_t index)
-{
-    (void)index;
-    glint_edge_count(edge, bins);
-}
-
-static void each_edge(struct glint_flare *f, edge_fn *do_edge)
-{
-    for (int i = 0; i < f->n_drawn; i++) {
-        const int32_t first = f->slot[i].first;
-
-        for (int32_t k = first; k < first + f->slot[i].n; k++)
-            do_edge(&f->edge[k], &f->bins, k);
-    }
-}
 
 /* Keeps the bundles whose entries fit. */
 static void drop_refs(struct glint_flare *f)
@@ -170,29 +185,59 @@ static void drop_refs(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-static void count_refs(struct glint_flare *f)
+/* Turns counts into places: tile by tile, each worker's share after those of
+ * the workers before it. Returns how many there are. */
+static int place_refs(struct glint_flare *f)
 {
-    glint_bins_open(&f->bins);
-    each_edge(f, count_edge);
-    glint_bins_sum(&f->bins);
+    const int n_tiles = f->bins.tiles_x * f->bins.tiles_y;
+    const int n_workers = glint_workers_count(f->cfg.workers);
+    int32_t sum = 0;
+
+    for (int tile = 0; tile < n_tiles; tile++) {
+        f->bins.start[tile] = sum;
+        for (int i = 0; i < n_workers; i++) {
+            const int32_t n = f->worker[i].at[tile];
+
+            f->worker[i].at[tile] = sum;
+            sum = glint_flare_add_need(sum, n);
+        }
+    }
+    f->bins.start[n_tiles] = sum;
+    return sum;
+}
+
+/* The bundles that worker JOB counted: it goes on where it has its places. */
+static void put_job(void *ctx, int job, int worker)
+{
+    struct glint_flare *f = ctx;
+    struct glint_bins bins = bins_of(f, &f->worker[job]);
+
+    (void)worker;
+    for (int i = 0; i < f->n_drawn; i++) {
+        const struct glint_bundle_slot *slot = &f->slot[i];
+
+        for (int k = 0; slot->worker == job && k < slot->n; k++)
+            glint_edge_put(&f->edge[slot->first + k], &bins, slot->first + k);
+    }
 }
 
 void glint_flare_bin_edges(struct glint_flare *flare)
 {
-    const int n_tiles = flare->bins.tiles_x * flare->bins.tiles_y;
+    struct glint_flare_stats *s = &flare->stats;
 
     flare->limit_q8 = light_limit_q8(flare);
     flare->n_drawn = 0;
     emit(flare);
-    count_refs(flare);
-    flare->stats.need_refs = flare->bins.start[n_tiles];
-    if (flare->stats.need_refs > flare->cfg.max_refs) {
+    s->need_refs = s->refs = place_refs(flare);
+    if (s->refs > flare->cfg.max_refs) {
         drop_refs(flare);
-        count_refs(flare);
+        clear_counts(flare);
+        for (int i = 0; i < flare->n_drawn; i++)
+            count_bundle(flare, i, &flare->worker[flare->slot[i].worker]);
+        s->refs = place_refs(flare);
     }
-    flare->stats.refs = flare->bins.start[n_tiles];
-    each_edge(flare, glint_edge_put);
-    glint_bins_close(&flare->bins);
+    glint_workers_run(flare->cfg.workers,
+                      glint_workers_count(flare->cfg.workers), put_job, flare);
 }
 
 /* ------------------------------------------------------------------- drawing
@@ -290,7 +335,7 @@ static void row_job(void *ctx, int job, int worker)
         draw_tile(d, w, &s, job * f->bins.tiles_x + x);
 }
 
-static void clear(struct glint_flare_worker *w, int log2)
+void glint_flare_clear_edges(struct glint_flare_worker *w, int log2)
 {
     for (int k = 0; k < 3 << log2; k++)
         w->touched[k] = 0;
@@ -305,7 +350,6 @@ void glint_flare_draw_edges(struct glint_flare *flare,
 {
     struct draw d = {flare, image};
 
-    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
-        clear(&flare->worker[i], flare->cfg.tile_log2);
-    glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
+    if (flare->stats.primitives > 0)
+        glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }

@@ -44,6 +44,9 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
             glint_arena_take(a, 3 * side * stride, sizeof *w->narrow_q24);
         w->carry = glint_arena_take(a, 3 * side, sizeof *w->carry);
         w->touched = glint_arena_take(a, 3 * side, sizeof *w->touched);
+        w->at = glint_arena_take(
+            a, tile_count(c->width, c->height, c->tile_log2) + 1,
+            sizeof *w->at);
         return;
     }
     w->acc_q20 = glint_arena_take(a, 3 * side * side, sizeof *w->acc_q20);
@@ -57,12 +60,15 @@ static struct glint_flare *carve(struct glint_arena *a,
                                  const struct glint_flare_config *c)
 {
     const size_t n_workers = (size_t)glint_workers_count(c->workers);
-    struct glint_flare measured, *placed;
-    struct glint_flare *f;
-    struct glint_flare_worker none;
+    union {
+        struct glint_flare flare;
+        struct glint_flare_worker worker;
+    } measured;
+    struct glint_flare_worker *workers;
+    struct glint_flare *f, *placed;
 
     placed = glint_arena_take(a, 1, sizeof *placed);
-    f = placed ? placed : &measured;
+    f = placed ? placed : &measured.flare;
     f->bundle = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->bundle);
     f->slot = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->slot);
     f->source = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->source);
@@ -82,8 +88,9 @@ static struct glint_flare *carve(struct glint_arena *a,
     f->bins.ref = glint_arena_take(a, (size_t)c->max_refs, sizeof *f->bins.ref);
     f->worker = glint_arena_take(a, n_workers, sizeof *f->worker);
     f->resolve = glint_arena_take(a, 1, sizeof *f->resolve);
+    workers = a->base ? f->worker : NULL;
     for (size_t i = 0; i < n_workers; i++)
-        carve_worker(a->base && f->worker ? &f->worker[i] : &none, a, c);
+        carve_worker(workers ? &workers[i] : &measured.worker, a, c);
     return placed;
 }
 
@@ -144,8 +151,11 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
     f->cfg = *cfg;
     glint_bins_init(&f->bins, (struct glint_box){0, 0, cfg->width, cfg->height},
                     first_level_log2(cfg), f->bins.start, f->bins.ref);
-    for (int i = 0; i < glint_workers_count(cfg->workers); i++)
+    for (int i = 0; i < glint_workers_count(cfg->workers); i++) {
         f->worker[i].n_tiles = 0;
+        if (by_edges(cfg))
+            glint_flare_clear_edges(&f->worker[i], cfg->tile_log2);
+    }
     glint_flare_begin(f);
     *flare = f;
     return GLINT_OK;
@@ -235,6 +245,9 @@ static void keep_seen(struct glint_flare *f, int n)
 
         if (f->bundle[i].n_cells == 0)
             continue;
+        f->flux = real_plus(f->flux, f->source[i].flux);
+        if (real_less(f->brightest, f->source[i].light))
+            f->brightest = f->source[i].light;
         s->need_vertices = glint_flare_add_need(s->need_vertices, vertices);
         if (vertices > f->cfg.max_vertices - f->n_vertices) {
             s->dropped_bundles++;
@@ -276,6 +289,7 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
     flare->stats.dropped_bundles = need - n;
     glint_workers_run(flare->cfg.workers,
                       (n + rays->n_waves - 1) / rays->n_waves, plan_job, flare);
+    flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, n);
     if (!by_edges(&flare->cfg))
         glint_workers_run(flare->cfg.workers, flare->n_bundles, transfer_job,
@@ -290,14 +304,8 @@ int glint_flare_ghost(const struct glint_flare *flare, int i)
 void glint_flare_light(const struct glint_flare *flare,
                        struct glint_real *brightest, struct glint_real *flux)
 {
-    *brightest = *flux = (struct glint_real){0, 0};
-    for (int i = 0; i < flare->n_bundles; i++) {
-        const struct glint_source *s = &flare->source[i];
-
-        *flux = real_plus(*flux, s->flux);
-        if (real_less(*brightest, s->light))
-            *brightest = s->light;
-    }
+    *brightest = flare->brightest;
+    *flux = flare->flux;
 }
 
 /* Drops what the bins did not keep from the totals. */

@@ -29,6 +29,7 @@ struct glint_flare_worker {
     uint32_t *narrow_q24;
     int64_t *carry;
     uint8_t *touched;
+    int32_t *at; /* its places in the bins, tile by tile */
     int first_edge, max_edges, n_edges; /* its part of the edges */
     /* by cells */
     int64_t *acc_q20; /* [3][side * side], one small tile's sums */
@@ -41,15 +42,17 @@ struct glint_bundle_slot {
     int first_vertex;
     int first; /* primitive or edge; -1: it found no place */
     int n, n_dropped, n_merged;
+    int worker; /* by edges: who made it */
 };
 
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    int n_bundles, n_vertices;   /* taken in */
-    struct glint_plan plan;      /* of a lens, unless rays is NULL */
-    struct glint_source *source; /* of each bundle planned */
-    int n_drawn;                 /* of these, the bundles that bin kept */
+    int n_bundles, n_vertices;         /* taken in */
+    struct glint_plan plan;            /* of a lens, unless rays is NULL */
+    struct glint_source *source;       /* of each bundle planned */
+    struct glint_real flux, brightest; /* of what was planned */
+    int n_drawn;                       /* of these, the bundles that bin kept */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
@@ -82,6 +85,9 @@ void glint_flare_bin_edges(struct glint_flare *flare);
 
 void glint_flare_draw_cells(struct glint_flare *flare,
                             const struct glint_image *image);
+/* Makes the sums of W 0, as they are between tiles. */
+void glint_flare_clear_edges(struct glint_flare_worker *w, int log2);
+
 void glint_flare_draw_edges(struct glint_flare *flare,
                             const struct glint_image *image);
 

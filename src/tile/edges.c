@@ -370,6 +370,7 @@ void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
     }
     sums->carry[at] = (int64_t)(light_q36 + change_q36[n]);
     change_q36[n] = 0;
+    sums->touched[at] = 0;
 }
 
 static uint16_t rounded_q16(int64_t sum_q24)

@@ -785,16 +785,16 @@ static void test_exact_capacity(void **state)
 }
 
 /* One less of anything: whole bundles go, counted, and the rest is right. */
-static void test_too_little_capacity(void **state)
+static void check_capacity(enum glint_raster raster)
 {
     struct glint_flare_config full = base_config();
-    const struct glint_flare_stats s = draw_scene(full, pixels);
+    struct glint_flare_stats s, less;
 
-    (void)state;
+    full.raster = raster;
+    s = draw_scene(full, pixels);
     draw_list(full, scene, N_SCENE - 1, want);
     for (int k = 0; k < 4; k++) {
         struct glint_flare_config c = full;
-        struct glint_flare_stats less;
 
         c.max_bundles = k == 0 ? s.need_bundles - 1 : c.max_bundles;
         c.max_vertices = k == 1 ? s.need_vertices - 1 : c.max_vertices;
@@ -804,6 +804,21 @@ static void test_too_little_capacity(void **state)
         assert_int_equal(less.dropped_bundles, 1);
         assert_memory_equal(pixels, want, sizeof pixels);
     }
+    full.max_refs = 0;
+    less = draw_scene(full, pixels);
+    assert_int_equal(less.bundles, 0);
+    assert_int_equal(less.need_refs, s.need_refs);
+    full.max_primitives = 0;
+    less = draw_scene(full, pixels);
+    assert_int_equal(less.bundles, 0);
+    assert_int_equal(less.need_primitives, s.need_primitives);
+}
+
+static void test_too_little_capacity(void **state)
+{
+    (void)state;
+    check_capacity(GLINT_RASTER_EDGES);
+    check_capacity(GLINT_RASTER_CELLS);
 }
 
 static void test_config_is_checked(void **state)
