@@ -221,7 +221,7 @@ static int add_test(struct bench *b, const struct scene *scene,
         return code;
     t->threads = v->threads;
     t->kernels = v->kernels;
-    t->psnr_db = NAN;
+    t->psnr_db = (double)NAN;
     t->frame.cfg.workers = v->threads == 2 ? b->two : b->one;
     t->frame.cfg.raster = v->raster;
     t->frame.cfg.sets &= ~v->sets_off;

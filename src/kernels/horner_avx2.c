@@ -28,7 +28,7 @@ struct shift {
 
 static inline struct shift shift_by(int fraction)
 {
-    return (struct shift){_mm256_set1_epi64x(INT64_C(1) << (fraction - 1)),
+    return (struct shift){_mm256_set1_epi64x(1LL << (fraction - 1)),
                           _mm_cvtsi32_si128(fraction),
                           _mm_cvtsi32_si128(32 - fraction)};
 }
