@@ -41,7 +41,7 @@ TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
-        exact curve resolve lights flare pnm y4m picture output workers \
+        exact curve resolve lights flare plan pnm y4m picture output workers \
         measure lamps
 FUZZ := lens model y4m pnm
 

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a frame has to draw: what is seen is planned, what is not is not, and
+ * rows that are computed as they go give the picture of a stored grid.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/real.h"
+#include "flare/plan.h"
+#include "glint/flare.h"
+#include "support/model_builder.h"
+
+enum { WIDTH = 160, HEIGHT = 120 };
+
+/* -------------------------------------------------------------------- numbers
+ */
+
+static double value(struct glint_real x)
+{
+    return ldexp(x.mantissa, x.exponent);
+}
+
+static void assert_near(struct glint_real got, double want)
+{
+    assert_true(fabs(value(got) - want) <= fabs(want) * 0x1p-28);
+    assert_true(got.mantissa == 0 || llabs(got.mantissa) >= 1 << 30);
+}
+
+static void test_reals(void **state)
+{
+    uint32_t seed = 3;
+
+    (void)state;
+    for (int k = 0; k < 20000; k++) {
+        int64_t a, b;
+        int e, f;
+
+        seed = seed * 1664525 + 1013904223;
+        a = (int64_t)((uint64_t)seed << 30 >> (seed % 61)) + 1;
+        e = (int)(seed >> 8 & 127) - 64;
+        seed = seed * 1664525 + 1013904223;
+        b = (int64_t)((uint64_t)seed << 30 >> (seed % 61)) + 1;
+        f = (int)(seed >> 8 & 127) - 64;
+        {
+            const struct glint_real x = real_of(a, e), y = real_of(-b, f);
+            const struct glint_real z = real_of(b, f);
+            const double p = ldexp((double)a, e), q = ldexp((double)b, f);
+
+            assert_near(x, p);
+            assert_near(y, -q);
+            assert_near(real_times(x, y), -p * q);
+            assert_near(real_over(x, y), -p / q);
+            assert_near(real_plus(x, z), p + q);
+            assert_true(fabs(value(x) - value(z)) < 0x1p-28 * p ||
+                        real_less(x, z) == (p < q));
+            assert_true(fabs((double)real_integer(x, 4, INT64_C(1) << 40) -
+                             fmin(16 * p, 0x1p40)) <=
+                        1 + fmin(16 * p, 0x1p40) * 0x1p-28);
+        }
+    }
+    assert_int_equal(real_of(0, 5).mantissa, 0);
+    assert_int_equal(real_integer(real_of(-7, -1), 0, 100), -3);
+    assert_int_equal(real_integer(real_of(-7, 200), 0, 100), -100);
+}
+
+/* ----------------------------------------------------------------------- plan
+ */
+
+struct fixture {
+    struct model_image m;
+    struct glint_lens lens;
+    struct glint_wave wave[2];
+    struct glint_beam beam;
+    struct glint_rays rays;
+    struct glint_flare_config cfg;
+    void *mem;
+    struct glint_flare *flare;
+};
+
+static const int32_t square[4][2] = {
+    {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
+
+static void open_fixture(struct fixture *f)
+{
+    const char *reason;
+
+    *f = (struct fixture){.m = model_auto()};
+    assert_int_equal(glint_lens_open(&f->lens, f->m.data, f->m.bytes, &reason),
+                     GLINT_OK);
+    for (int i = 0; i < 2; i++)
+        f->wave[i] =
+            (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,
+                                {i ? 0 : 16384, i ? 16384 : 0, 0},
+                                real_of(1, 0)};
+    f->beam = (struct glint_beam){0, 1 << 30,          1 << 30,
+                                  0, real_of(1000, 0), {16384, 16384, 16384}};
+    f->rays = (struct glint_rays){.lens = &f->lens,
+                                  .wave = f->wave,
+                                  .n_waves = 2,
+                                  .pixels_per_mm = real_of(64, 0),
+                                  .fineness = 64,
+                                  .only_ghost = -1};
+    f->cfg = (struct glint_flare_config){.width = WIDTH,
+                                         .height = HEIGHT,
+                                         .tile_log2 = 5,
+                                         .max_bundles = 16,
+                                         .max_vertices = 40000,
+                                         .max_primitives = 20000,
+                                         .max_refs = 40000};
+    f->cfg.stop.n_blades = 4;
+    f->cfg.stop.apothem_q16 = 26214; /* 0.4: cuts the ghost */
+    memcpy(f->cfg.stop.normal_q30, square, sizeof square);
+}
+
+static void start(struct fixture *f)
+{
+    const size_t bytes = glint_flare_bytes(&f->cfg);
+
+    assert_int_equal(posix_memalign(&f->mem, 64, bytes), 0);
+    assert_int_equal(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes),
+                     GLINT_OK);
+}
+
+static void close_fixture(struct fixture *f)
+{
+    free(f->mem);
+    free(f->m.data);
+}
+
+static struct glint_flare_stats planned(struct fixture *f, int n_beams)
+{
+    struct glint_flare_stats s;
+
+    start(f);
+    glint_flare_plan(f->flare, &f->rays, &f->beam, n_beams);
+    glint_flare_bin(f->flare, &s);
+    free(f->mem);
+    f->mem = NULL;
+    return s;
+}
+
+static void test_what_is_seen(void **state)
+{
+    struct fixture f;
+    int all;
+
+    (void)state;
+    open_fixture(&f);
+    all = planned(&f, 1).bundles;
+    assert_true(all >= 1);
+    assert_int_equal(planned(&f, 0).bundles, 0);
+    f.beam.power = real_of(0, 0);
+    assert_int_equal(planned(&f, 1).bundles, 0);
+    f.beam.power = real_of(1000, 0);
+    f.rays.faintest = real_of(1, 60); /* nothing is that bright */
+    assert_int_equal(planned(&f, 1).bundles, 0);
+    f.rays.faintest = real_of(1, -60);
+    assert_int_equal(planned(&f, 1).bundles, all);
+    f.beam.rgb_q14[0] = 0; /* no red */
+    assert_true(planned(&f, 1).bundles < all);
+    close_fixture(&f);
+}
+
+static void test_room(void **state)
+{
+    struct fixture f;
+    struct glint_flare_stats all, less;
+
+    (void)state;
+    open_fixture(&f);
+    all = planned(&f, 1);
+    f.cfg.max_bundles = 1;
+    less = planned(&f, 1);
+    assert_int_equal(less.need_bundles, all.need_bundles);
+    assert_true(less.bundles <= 1);
+    assert_true(less.dropped_bundles > 0);
+    close_fixture(&f);
+}
+
+static void picture(struct fixture *f, int32_t *px_q20)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_flare_stats s;
+
+    memset(px_q20, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
+    glint_image_place(&image, px_q20);
+    glint_flare_bin(f->flare, &s);
+    assert_true(s.bundles > 0);
+    glint_flare_draw(f->flare, &image);
+}
+
+/* By edges rows of rays come and go; a stored grid has the same edges. */
+static void test_rows_and_grids(void **state)
+{
+    static int32_t rows[3 * WIDTH * HEIGHT], grid[3 * WIDTH * HEIGHT];
+    static struct glint_plan_scratch scratch;
+    struct fixture f;
+    struct glint_plan plan;
+    int64_t light = 0;
+
+    (void)state;
+    open_fixture(&f);
+    start(&f);
+    glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
+    picture(&f, rows);
+    plan = (struct glint_plan){&f.rays, &f.beam, WIDTH, HEIGHT, 0};
+    glint_flare_begin(f.flare);
+    for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++)
+        for (int wave = 0; wave < 2; wave++) {
+            struct glint_source source = {.ghost = ghost, .wave = wave};
+            const struct glint_place place = glint_plan_place(&plan, 0);
+            struct glint_bundle bundle;
+            struct glint_vertex *v;
+
+            glint_plan_bundle(&plan, &source, &bundle, &scratch);
+            if (bundle.n_cells == 0)
+                continue;
+            assert_int_equal(bundle.n_cells % 4, 0);
+            v = glint_flare_add(f.flare, &bundle);
+            assert_non_null(v);
+            glint_plan_transfer(&plan, &source, &scratch.transfer);
+            glint_transfer_grid(&scratch.transfer, &place, bundle.n_cells, v);
+        }
+    picture(&f, grid);
+    assert_memory_equal(rows, grid, sizeof rows);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        light += rows[i];
+    assert_true(light > 0);
+    close_fixture(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reals),
+        cmocka_unit_test(test_what_is_seen),
+        cmocka_unit_test(test_room),
+        cmocka_unit_test(test_rows_and_grids),
+    };
+
+    return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
+}
