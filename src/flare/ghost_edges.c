@@ -47,22 +47,6 @@ static int vertex_valid(const struct glint_vertex *v)
            v->y_q8 > -GLINT_VERTEX_LIMIT_Q8 && v->y_q8 < GLINT_VERTEX_LIMIT_Q8;
 }
 
-/* Positive inside. */
-static int64_t side_q16(const struct glint_stop *stop, int side,
-                        const struct glint_vertex *v)
-{
-    const int64_t nx = stop->normal_q30[side][0];
-    const int64_t ny = stop->normal_q30[side][1];
-
-    return stop->apothem_q16 -
-           q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
-}
-
-static int64_t barrel_q16(int barrel, const struct glint_vertex *v)
-{
-    return (INT64_C(1) << 16) - v->barrel_q16[barrel];
-}
-
 static int64_t radius2_q32(const struct glint_vertex *v)
 {
     return (int64_t)v->stop_x_q16 * v->stop_x_q16 +
@@ -81,7 +65,7 @@ static uint64_t sides_of(const struct glint_stop *stop,
     if (radius2_q32(v) < (apothem_q16 - 1) * (apothem_q16 - 1))
         return 0;
     for (int k = 0; k < stop->n_blades; k++)
-        sides |= (uint64_t)(side_q16(stop, k, v) <= 0) << k;
+        sides |= (uint64_t)(glint_side_q16(stop, k, v) <= 0) << k;
     return sides;
 }
 
@@ -116,11 +100,12 @@ static void set_nodes(struct glint_ghost_edges *g, int j)
 /* What cuts: side K of the stop, or barrel K - BARREL. */
 enum { BARREL = 64, NOTHING = -1 };
 
+/* Positive inside. */
 static int64_t cut_q16(const struct glint_ghost_edges *g, int cut,
                        const struct glint_vertex *v)
 {
-    return cut < BARREL ? side_q16(g->stop, cut, v)
-                        : barrel_q16(cut - BARREL, v);
+    return cut < BARREL ? glint_side_q16(g->stop, cut, v)
+                        : glint_barrel_q16(cut - BARREL, v);
 }
 
 /* The visible part of the edge between two neighbouring nodes, from the one

@@ -8,23 +8,7 @@ enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
 /* ------------------------------------------------------------------ functions
  */
 
-/* A cut: positive inside, at the corners of a primitive or of a triangle. */
-static int64_t side_value(const struct glint_stop *stop, int side,
-                          const struct glint_vertex *v)
-{
-    const int64_t nx = stop->normal_q30[side][0];
-    const int64_t ny = stop->normal_q30[side][1];
-
-    return stop->apothem_q16 -
-           q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
-}
-
-static int64_t barrel_value(int barrel, const struct glint_vertex *v)
-{
-    return (INT64_C(1) << 16) - v->barrel_q16[barrel];
-}
-
-/* (1 - r^2) / 2, held where it is far outside. */
+/* A round stop's cut: (1 - r^2) / 2, held where it is far outside. */
 static int64_t disc_value(const struct glint_vertex *v)
 {
     const int64_t x = v->stop_x_q16 / 2, y = v->stop_y_q16 / 2;
@@ -60,7 +44,7 @@ static enum side barrel_side(const struct glint_corners *c)
         int64_t value[4];
 
         for (int i = 0; i < c->n; i++)
-            value[i] = barrel_value(barrel, c->at[i]);
+            value[i] = glint_barrel_q16(barrel, c->at[i]);
         all = worse(all, side_of(value, c->n));
     }
     return all;
@@ -94,7 +78,7 @@ static enum side stop_side(const struct glint_corners *c,
         int64_t value[4];
 
         for (int i = 0; i < c->n; i++)
-            value[i] = side_value(stop, side, c->at[i]);
+            value[i] = glint_side_q16(stop, side, c->at[i]);
         all = worse(all, side_of(value, c->n));
     }
     return all;
@@ -163,7 +147,7 @@ static void cut_barrels(struct glint_outline *o,
         int64_t value[3];
 
         for (int i = 0; i < 3; i++)
-            value[i] = barrel_value(barrel, at[i]);
+            value[i] = glint_barrel_q16(barrel, at[i]);
         cut_one(o, value);
     }
 }
@@ -200,7 +184,7 @@ static void cut_stop(struct glint_outline *o,
     }
     for (int side = 0; side < stop->n_blades; side++) {
         for (int i = 0; i < 3; i++)
-            value[i] = side_value(stop, side, at[i]);
+            value[i] = glint_side_q16(stop, side, at[i]);
         cut_one(o, value);
     }
 }

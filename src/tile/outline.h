@@ -21,7 +21,24 @@
 
 #include <stdint.h>
 
+#include "base/q.h"
 #include "tile/primitive.h"
+
+/* How far V lies inside of side SIDE of a stop, stop radii, and of a barrel. */
+static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
+                                     const struct glint_vertex *v)
+{
+    const int64_t nx = stop->normal_q30[side][0];
+    const int64_t ny = stop->normal_q30[side][1];
+
+    return stop->apothem_q16 -
+           q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
+}
+
+static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
+{
+    return (INT64_C(1) << 16) - v->barrel_q16[barrel];
+}
 
 /* A triangle's, one more for each cut, and one for the loops to lean on. */
 enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
