@@ -5,6 +5,7 @@
 #   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
+#   make bench    what a frame costs;  bench-insn: in instructions
 #   also: oiio table bake-table accuracy-table inputs fuzz format
 #         golden-update clean
 
@@ -142,6 +143,11 @@ bake-table: all
 	@tools/bake-table
 accuracy-table: all
 	@tools/accuracy-table
+bench: all
+	@build/glint bench
+bench-insn: all
+	@tools/deps "instruction counts" valgrind
+	@tools/bench-insn
 
 # ------------------------------------------------------------------- to test
 test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
@@ -215,7 +221,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table check run-check check-neon golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table bench bench-insn check run-check check-neon golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

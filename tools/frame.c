@@ -199,13 +199,18 @@ static bool is_served(struct frame *f, const struct glint_flare_stats *s)
     return false;
 }
 
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
 /* What the frame took, by the same measure that sized the block. */
 static size_t bytes_used(const struct frame *f,
                          const struct glint_flare_stats *s)
 {
     struct glint_flare_config used = f->cfg;
 
-    used.max_bundles = s->need_bundles;
+    used.max_bundles = smaller(s->need_bundles, f->cfg.max_bundles);
     used.max_vertices = s->vertices;
     used.max_primitives = s->primitives;
     used.max_refs = s->refs;

@@ -75,6 +75,7 @@ static bool take_sets(struct tool *tool, const char *value)
     if (word < 0 || (word < 4 && (sets[word] & ~glint_sets_here())))
         return false;
     tool->sets_off = ~sets[word];
+    tool->kernels = words[word];
     return true;
 }
 

@@ -30,6 +30,7 @@ struct tool {
     int verbose;
     int n_threads;
     unsigned sets_off;             /* instruction sets not to use */
+    const char *kernels;           /* what --kernels said, or NULL */
     struct glint_workers *workers; /* made by tool_start */
 };
 

@@ -101,7 +101,7 @@ struct glint_wave {
 struct glint_rays {
     const struct glint_lens *lens;
     const struct glint_wave *wave;
-    int n_waves;
+    int n_waves; /* 1 or more */
     struct glint_real pixels_per_mm;
     int fineness;   /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
                        between rays is off by 0.01 px, outlines by 0.1 */
@@ -146,9 +146,10 @@ struct glint_flare_config {
     /* Capacities. glint_flare_bin() reports what a frame needed. */
     int max_bundles;
     int max_vertices;
-    int max_primitives;
-    int max_refs;      /* entries of the index lists of the first level */
-    int max_tile_refs; /* entries for one large tile; 0 with one level */
+    int max_primitives; /* by edges workers begin with equal shares; half as
+                           much again keeps them from waiting */
+    int max_refs;       /* entries of the index lists of the first level */
+    int max_tile_refs;  /* entries for one large tile; 0 with one level */
 };
 
 struct glint_flare_stats {

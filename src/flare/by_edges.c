@@ -132,6 +132,24 @@ static int all_placed(const struct glint_flare *f)
     return 1;
 }
 
+/* Finds room for the bundles that were too large for what was left of their
+ * worker's share, in what the others left. */
+static void emit_leftovers(struct glint_flare *f)
+{
+    const int n_workers = glint_workers_count(f->cfg.workers);
+
+    for (int i = 0; i < f->n_bundles; i++)
+        for (int k = 0; k < n_workers && f->slot[i].first < 0; k++) {
+            struct glint_flare_worker *w = &f->worker[k];
+
+            if (f->slot[i].n > w->max_edges - w->n_edges)
+                continue;
+            emit_bundle(f, i, w);
+            f->slot[i].worker = k;
+            count_bundle(f, i, w);
+        }
+}
+
 /* In order, into one list: what is left out does not hang on which worker came
  * first. */
 static void emit_in_order(struct glint_flare *f)
@@ -155,6 +173,8 @@ static void emit(struct glint_flare *f)
     share_out(f, glint_workers_count(f->cfg.workers));
     clear_counts(f);
     glint_workers_run(f->cfg.workers, f->n_bundles, emit_job, f);
+    if (!all_placed(f))
+        emit_leftovers(f);
     if (!all_placed(f))
         emit_in_order(f);
     for (int i = 0; i < f->n_bundles; i++) {

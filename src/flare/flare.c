@@ -100,7 +100,8 @@ static int stop_ok(const struct glint_stop *s)
         return s->mask_nodes >= 2 && s->mask_nodes <= 4096 &&
                s->mask_span_q16 >= 1 << 15 && s->mask_span_q16 <= 1 << 18;
     return s->n_blades == 0 ||
-           (s->n_blades >= 3 && s->n_blades <= GLINT_MAX_BLADES);
+           (s->n_blades >= 3 && s->n_blades <= GLINT_MAX_BLADES &&
+            s->apothem_q16 > 0);
 }
 
 static int config_ok(const struct glint_flare_config *c)
@@ -287,8 +288,10 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                                       flare->cfg.height, flare->cfg.sets};
     flare->stats.need_bundles = need;
     flare->stats.dropped_bundles = need - n;
-    glint_workers_run(flare->cfg.workers,
-                      (n + rays->n_waves - 1) / rays->n_waves, plan_job, flare);
+    if (n > 0)
+        glint_workers_run(flare->cfg.workers,
+                          (n + rays->n_waves - 1) / rays->n_waves, plan_job,
+                          flare);
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, n);
     if (!by_edges(&flare->cfg))

@@ -132,7 +132,7 @@ static void shorten(const struct glint_ghost_edges *g, struct interval *in,
         in->t_q30[1] = -1;
         return;
     }
-    t_q30 = fa * (INT64_C(1) << 30) / (fa - fb); /* 2^33 times 2^30 */
+    t_q30 = fa * (INT64_C(1) << 30) / (fa - fb); /* 2^31.5 times 2^30 */
     if (fa <= 0 && t_q30 >= in->t_q30[0]) {
         in->t_q30[0] = t_q30;
         in->cut[0] = cut;
@@ -449,8 +449,6 @@ static void add_chords(struct glint_ghost_edges *g, const struct cell *c,
         const struct part *next = &part[k + 1 < n ? k + 1 : 0];
         point_q8 corner;
 
-        if (here->cut[1] == NOTHING && next->cut[0] == NOTHING)
-            continue;
         if (here->cut[1] != next->cut[0] && here->cut[1] != NOTHING &&
             next->cut[0] != NOTHING &&
             crossing(g, c, here->cut[1], next->cut[0], corner)) {

@@ -283,11 +283,11 @@ static int is_faint(const struct glint_plan *p,
     struct glint_real area;
 
     if (p->rays->faintest.mantissa == 0 || (s->up && s->down) ||
-        s->least_area == 0 || s->least_area == UINT64_MAX)
+        s->least_area < 2 || s->least_area == UINT64_MAX)
         return 0;
     area =
-        real_times(real_of((int64_t)(s->least_area >> 2),
-                           2 * t->exponent[GLINT_OUT_SENSOR_X] + 3),
+        real_times(real_of((int64_t)(s->least_area >> 1),
+                           2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
                    real_times(p->rays->pixels_per_mm, p->rays->pixels_per_mm));
     flux.exponent -= 4 + 4 - 1; /* 16 x 16 cells in the box */
     return real_less(real_over(flux, area), p->rays->faintest);
@@ -366,8 +366,8 @@ void glint_plan_bundle(const struct glint_plan *plan,
     source->flux = flux_of(plan, source, transfer, colour, exponent);
     if (is_faint(plan, s, transfer, source->flux))
         return;
-    source->light =
-        real_over(source->flux, real_of(wide_q8 * high_q8 * 4, -16));
+    source->light = real_over(
+        source->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
     bundle->n_cells = cells_of(plan, s, transfer);
     if (transfer->hollow) /* its rim has to be a row */
         bundle->n_cells = (bundle->n_cells + 3) / 4 * 4;

@@ -163,10 +163,15 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
     const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
     const int from = first > begin ? first : begin;
     const int to = last < r->x1 - 1 ? last : r->x1 - 1;
-    int64_t low =
-        from > first ? r->rise_q32 * (from * ONE_Q16 - a_q16) >> 32 : 0;
-    int64_t before = 0;
+    int64_t low = 0, before = 0;
 
+    if (last < from) { /* left of the tile, or of the picture */
+        if (r->x0 == 0)
+            change(r, mode, 0, units(mode, height_q16));
+        return;
+    }
+    if (from > first)
+        low = r->rise_q32 * (from * ONE_Q16 - a_q16) >> 32;
     for (int i = from; i <= to; i++) {
         const int64_t side_q16 = (i + 1) * ONE_Q16;
         const int64_t high =
@@ -183,8 +188,6 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
     }
     if (last < r->x1 && last >= r->x0)
         change(r, mode, last + 1, units(mode, height_q16) - before);
-    else if (last < r->x0 && r->x0 == 0)
-        change(r, mode, 0, units(mode, height_q16));
 }
 
 /* How much an edge rises per pixel, _q16 per _q16, with 32 bits more. One that

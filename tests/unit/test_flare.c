@@ -327,6 +327,51 @@ static void test_outlines_close(void **state)
     }
 }
 
+/* A corner so far outside of the stop that the sides to it have no part worth a
+ * step: the cell still closes. */
+static void test_far_corner_closes(void **state)
+{
+    static const int32_t far_q16[] = {70000, 1 << 20, 700000000, 1000000000,
+                                      0x3fffffff};
+    const struct glint_image image = linear_image(pixels);
+    const int32_t half = 759250125; /* root of 1/2 */
+
+    (void)state;
+    for (size_t k = 0; k < sizeof far_q16 / sizeof *far_q16; k++) {
+        struct glint_flare_config c = base_config();
+        const struct glint_bundle b = {.n_cells = 1,
+                                       .flux_q31 = 1 << 30,
+                                       .flux_exponent = 10,
+                                       .rgb_q14 = {16384, 16384, 16384}};
+        struct glint_flare_stats stats;
+        void *mem;
+        struct glint_flare *f;
+        struct glint_vertex *v;
+
+        c.stop.n_blades = 4;
+        c.stop.apothem_q16 = 46341;
+        for (int i = 0; i < 4; i++) {
+            c.stop.normal_q30[i][0] = i == 0 || i == 3 ? half : -half;
+            c.stop.normal_q30[i][1] = i < 2 ? half : -half;
+        }
+        f = open_flare(&c, &mem);
+        v = glint_flare_add(f, &b);
+        for (int i = 0; i < 4; i++)
+            v[i] = (struct glint_vertex){.x_q8 = i & 1 ? 7693 : 2573,
+                                         .y_q8 = i & 2 ? 7757 : 2637,
+                                         .energy_q16 = 65536};
+        v[1].stop_x_q16 = v[2].stop_y_q16 = 65534; /* just inside */
+        v[3].stop_x_q16 = v[3].stop_y_q16 = far_q16[k];
+        memset(pixels, 0, sizeof pixels);
+        glint_flare_bin(f, &stats);
+        glint_flare_draw(f, &image);
+        free(mem);
+        assert_true(at(pixels, 12, 12) > 0);
+        for (int y = 0; y < HEIGHT; y++)
+            assert_int_equal(at(pixels, 60, y), 0);
+    }
+}
+
 /* Steps change the light of a cell by half of one at most. */
 static void test_steps(void **state)
 {
@@ -677,6 +722,8 @@ static void test_random_scenes(void **state)
 
         for (int i = 0; i < n; i++) {
             list[i] = random_ghost();
+            if (draw_number(8) == 0) /* far beyond the picture */
+                list[i].size <<= draw_number(14);
             list[i].flux_exponent +=
                 draw_number(20) - 12; /* to and fro white */
         }
@@ -917,6 +964,7 @@ int main(void)
         cmocka_unit_test(test_flat_inside),
         cmocka_unit_test(test_edges_agree_with_cells),
         cmocka_unit_test(test_outlines_close),
+        cmocka_unit_test(test_far_corner_closes),
         cmocka_unit_test(test_steps),
         cmocka_unit_test(test_rectangle_by_hand),
         cmocka_unit_test(test_triangle_by_hand),

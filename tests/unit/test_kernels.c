@@ -36,14 +36,29 @@ static uint32_t draw(void)
     return seed ^= seed << 5;
 }
 
-/* N items that end at a page which traps. */
+static void *blocks[400];
+static int n_blocks;
+
+/* BYTES that end at a page which traps. */
 static void *fenced(size_t bytes)
 {
     void *mem;
 
+    EXPECT(n_blocks < (int)(sizeof blocks / sizeof *blocks));
     EXPECT(posix_memalign(&mem, PAGE, 2 * PAGE) == 0);
     EXPECT(mprotect((uint8_t *)mem + PAGE, PAGE, PROT_NONE) == 0);
+    blocks[n_blocks++] = mem;
     return (uint8_t *)mem + PAGE - bytes;
+}
+
+static void free_blocks(void)
+{
+    while (n_blocks > 0) {
+        uint8_t *mem = blocks[--n_blocks];
+
+        EXPECT(mprotect(mem + PAGE, PAGE, PROT_READ | PROT_WRITE) == 0);
+        free(mem);
+    }
 }
 
 struct variant {
@@ -91,9 +106,9 @@ static uint16_t draw_light(void)
 {
     const uint32_t x = draw();
 
-    return x % 5 == 0   ? 0
-           : x % 5 == 1 ? 65535
-                        : (uint16_t)((x >> 8) & 65535) >> (x >> 28);
+    if (x % 5 < 2)
+        return x % 5 ? 65535 : 0;
+    return (uint16_t)((x >> 8 & 65535) >> (x >> 28));
 }
 
 struct rows {
@@ -368,5 +383,6 @@ int main(void)
 {
     test_codes_of_c();
     test_same_bits();
+    free_blocks();
     return 0;
 }
