@@ -228,7 +228,7 @@ static bool is_ghost(const struct glint_setup *s, int ghost, int number)
            s->ghost[ghost].j == s->ghost[number].j;
 }
 
-void frame_note_ghost(struct frame *frame, int ghost)
+static void note_ghost(struct frame *frame, int ghost)
 {
     const struct glint_setup *s = frame->setup;
     int number = ghost;
@@ -239,23 +239,16 @@ void frame_note_ghost(struct frame *frame, int ghost)
     frame->seen[number] = true;
 }
 
-void frame_report_times(struct frame_report *report, const double times[5])
-{
-    report->plan_ms = 1e3 * (times[1] - times[0]);
-    report->trace_ms = 1e3 * (times[2] - times[1]);
-    report->bin_ms = 1e3 * (times[3] - times[2]);
-    report->draw_ms = 1e3 * (times[4] - times[3]);
-}
-
-static enum glint_status draw_model(struct frame *f,
-                                    const struct glint_lamp *lamps, int n_lamps,
-                                    double scale,
-                                    const struct glint_image *image,
-                                    struct frame_report *report)
+static enum glint_status
+draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
+           double scale, const struct glint_image *image,
+           struct glint_flare_stats *stats, double times[5])
 {
     const struct glint_rays rays = rays_of(f, faintest(image));
-    double times[5] = {tool_seconds()};
-    enum glint_status status = set_beams(f, lamps, n_lamps, scale);
+    enum glint_status status;
+
+    times[0] = tool_seconds();
+    status = set_beams(f, lamps, n_lamps, scale);
 
     set_waves(f);
     while (status == GLINT_OK) {
@@ -263,8 +256,8 @@ static enum glint_status draw_model(struct frame *f,
         if (status != GLINT_OK)
             return status;
         times[1] = times[2] = tool_seconds();
-        glint_flare_bin(f->flare, &report->stats);
-        if (is_served(f, &report->stats))
+        glint_flare_bin(f->flare, stats);
+        if (is_served(f, stats))
             break;
         status = regrow(f);
     }
@@ -273,9 +266,6 @@ static enum glint_status draw_model(struct frame *f,
     times[3] = tool_seconds();
     glint_flare_draw(f->flare, image);
     times[4] = tool_seconds();
-    for (int i = 0; i < report->stats.bundles; i++)
-        frame_note_ghost(f, glint_flare_ghost(f->flare, i));
-    frame_report_times(report, times);
     return GLINT_OK;
 }
 
@@ -298,11 +288,18 @@ double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
                               : 1;
 }
 
+/* Bundles whose ghosts are known. */
+static int n_drawn(const struct frame *f, const struct frame_report *r)
+{
+    return f->lens ? r->stats.bundles : f->n_feeds;
+}
+
 enum glint_status frame_draw(struct frame *frame,
                              const struct glint_lamp *lamps, int n_lamps,
                              double scale, const struct glint_image *image,
                              struct frame_report *report)
 {
+    double times[5] = {0, 0, 0, 0, 0};
     enum glint_status status;
 
     if (!frame->seen)
@@ -310,8 +307,15 @@ enum glint_status frame_draw(struct frame *frame,
     if (!frame->seen)
         return GLINT_E_MEMORY;
     memset(frame->seen, 0, GLINT_MAX_GHOSTS * sizeof *frame->seen);
-    status = (frame->lens ? draw_model : frame_feed_draw)(frame, lamps, n_lamps,
-                                                          scale, image, report);
+    status = (frame->lens ? draw_model : frame_feed_draw)(
+        frame, lamps, n_lamps, scale, image, &report->stats, times);
+    for (int i = 0; status == GLINT_OK && i < n_drawn(frame, report); i++)
+        note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
+                                      : frame->feed[i].ghost);
+    report->plan_ms = 1e3 * (times[1] - times[0]);
+    report->trace_ms = 1e3 * (times[2] - times[1]);
+    report->bin_ms = 1e3 * (times[3] - times[2]);
+    report->draw_ms = 1e3 * (times[4] - times[3]);
     report->lights = n_lamps;
     report->tiles = status == GLINT_OK ? glint_flare_tiles(frame->flare) : 0;
     report->arena_bytes = frame->bytes;

@@ -241,11 +241,14 @@ static enum glint_status bin(struct frame *f,
 enum glint_status frame_feed_draw(struct frame *frame,
                                   const struct glint_lamp *lamps, int n_lamps,
                                   double scale, const struct glint_image *image,
-                                  struct frame_report *report)
+                                  struct glint_flare_stats *stats,
+                                  double times[5])
 {
     struct job job = {frame, feed_config(frame, scale)};
-    double times[5] = {tool_seconds()};
-    enum glint_status status = plan(frame, lamps, n_lamps);
+    enum glint_status status;
+
+    times[0] = tool_seconds();
+    status = plan(frame, lamps, n_lamps);
 
     if (status == GLINT_OK)
         status = add_bundles(frame, &job.cfg);
@@ -254,15 +257,12 @@ enum glint_status frame_feed_draw(struct frame *frame,
     times[1] = tool_seconds();
     glint_workers_run(frame->cfg.workers, frame->n_feeds, trace_job, &job);
     times[2] = tool_seconds();
-    status = bin(frame, &job.cfg, &report->stats);
+    status = bin(frame, &job.cfg, stats);
     if (status != GLINT_OK)
         return status;
     times[3] = tool_seconds();
     glint_flare_draw(frame->flare, image);
     times[4] = tool_seconds();
-    report->stats.dropped_bundles += frame->n_dropped;
-    for (int i = 0; i < frame->n_feeds; i++)
-        frame_note_ghost(frame, frame->feed[i].ghost);
-    frame_report_times(report, times);
+    stats->dropped_bundles += frame->n_dropped;
     return GLINT_OK;
 }

@@ -9,15 +9,13 @@
 
 double frame_feed_scale(struct frame *frame, const struct glint_lamp *lamps,
                         int n_lamps);
+
+/* TIMES: the moments between plan, transfer, bin and draw, and before and
+ * after. What was drawn stays in the frame's feeds. */
 enum glint_status frame_feed_draw(struct frame *frame,
                                   const struct glint_lamp *lamps, int n_lamps,
                                   double scale, const struct glint_image *image,
-                                  struct frame_report *report);
-
-/* Of frame.c: ghost or part GHOST is in this frame. */
-void frame_note_ghost(struct frame *frame, int ghost);
-
-/* Of frame.c: stages of REPORT from the moments between them. */
-void frame_report_times(struct frame_report *report, const double times[5]);
+                                  struct glint_flare_stats *stats,
+                                  double times[5]);
 
 #endif

@@ -62,20 +62,10 @@ static int32_t light_of_code_q20(const struct standard *s, int code)
 void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer)
 {
     const struct standard *s = transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
-    int code = 0;
 
     for (int i = 0; i < 256; i++)
         curve->decode_q20[i] = light_of_code_q20(s, i);
     curve->decode_q20[256] = 2 * LINEAR_WHITE_Q20;
-    for (int i = 0; i < 256; i++)
-        curve->slope_q24[i] =
-            (UINT32_C(128) << 24) /
-            (uint32_t)(curve->decode_q20[i + 1] - curve->decode_q20[i]);
-    for (int i = 0; i <= 4096; i++) {
-        while (curve->decode_q20[code + 1] <= i << 8)
-            code++;
-        curve->below[i] = (uint8_t)code;
-    }
 }
 
 /* N / D * 2^FRAC, rounded; D > 0. */
