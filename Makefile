@@ -71,7 +71,8 @@ $(core_o): CFLAGS += -ffreestanding -Wframe-larger-than=1024
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
 $(OUT)/src/kernels/%.o $(OUT)/src/tile/codes.o \
-$(OUT)/src/tile/edges.o: CFLAGS += -O3
+$(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o \
+$(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
 # the floor that everything is measured by is as fast as can be
 $(OUT)/tools/cmd_bench.o: CFLAGS += -O3
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits

@@ -506,6 +506,25 @@ static int32_t shared_light(struct glint_ghost_edges *g, const struct cell *c)
     return light;
 }
 
+/* Whether the cell at (I, J) is convex and wide enough; then its light. */
+static int is_plain(const struct glint_ghost_edges *g, int i, int j,
+                    int32_t *light)
+{
+    const struct glint_vertex *const corner[4] = {
+        node(g, i, j), node(g, i + 1, j), node(g, i + 1, j + 1),
+        node(g, i, j + 1)};
+    struct glint_corners corners;
+    int turn;
+
+    glint_corners_set(&corners, corner, 4);
+    turn = convexity(&corners);
+    if (turn == 0 || glint_corners_thin(&corners))
+        return 0;
+    *light = light_of(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1, 0,
+                      mean_energy_q16(&corners), turn);
+    return 1;
+}
+
 /* The cell at (I, J): nearly all lie outside of what is seen, or inside of it
  * all. */
 static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
@@ -513,11 +532,15 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     const struct glint_ghost_rows *r = g->rows;
     const uint64_t *s = r->sides[j & 1] + i, *t = r->sides[~j & 1] + i;
     const uint8_t *a = r->barrels[j & 1] + i, *b = r->barrels[~j & 1] + i;
+    const int any = a[0] | a[1] | b[0] | b[1];
     struct cell cell;
+    int32_t light;
 
-    if (!((a[0] | a[1] | b[0] | b[1]) & LOST) &&
+    if (!(any & LOST) &&
         ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1])))
         return 0;
+    if (!any && !(s[0] | s[1] | t[0] | t[1]) && is_plain(g, i, j, &light))
+        return light;
     set_cell(g, i, j, &cell);
     return shared_light(g, &cell);
 }

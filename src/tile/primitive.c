@@ -26,7 +26,7 @@ void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n)
 {
-    const struct glint_vertex *at[4];
+    const struct glint_vertex *at[4] = {v, v, v, v};
 
     for (int i = 0; i < n; i++)
         at[i] = &v[vertex[i]];
