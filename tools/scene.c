@@ -74,7 +74,8 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
-/* Sets the grid, and how exact a model is that is baked for it. */
+/* Sets the grid, the steps of irradiance, and how exact a model is that is
+ * baked for it. */
 static bool take_quality(const char *text, struct scene *s)
 {
     static const char *const words[] = {"draft", "default", "high", NULL};
@@ -85,6 +86,7 @@ static bool take_quality(const char *text, struct scene *s)
         return false;
     s->grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
     s->tolerance = q <= 0.25 ? 4 : q < 0.75 ? 1 : 0.25;
+    s->quantum = exp2(4 - 8 * q); /* 1 percent by default */
     return true;
 }
 

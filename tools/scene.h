@@ -116,9 +116,9 @@ enum scene_option {
     "as\n"                                                                     \
     "                      a camera balanced to white behind this lens\n"      \
     "Speed and accuracy of the integer engine\n"                               \
-    "  --quality Q         0 to 1, or draft, default, high: sets the grid, "   \
-    "and\n"                                                                    \
-    "                      how exact a model is that has to be baked\n"        \
+    "  --quality Q         0 to 1, or draft, default, high: sets grid and "    \
+    "quantum,\n"                                                               \
+    "                      and how exact a model is that has to be baked\n"    \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
     "  --lanes 16|32       bits a model's rays are computed with (default "    \
