@@ -308,51 +308,84 @@ static enum glint_status run_test(struct test *t, int round)
 /* --------------------------------------------------------------------- exact
  */
 
+/* The flare alone as T draws it, at scale 1. */
+static enum glint_status draw_flare(struct test *t,
+                                    struct glint_float_image *to)
+{
+    const size_t n = 3 * (size_t)to->width * (size_t)to->height;
+    struct glint_image layer = {
+        .format = GLINT_LINEAR_Q20, .width = to->width, .height = to->height};
+    const double scale = frame_auto_scale(&t->frame, t->lamp, t->n_lamps);
+    int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (linear_q20) {
+        glint_image_place(&layer, linear_q20);
+        status = frame_draw(&t->frame, t->lamp, t->n_lamps, scale, &layer,
+                            &t->report);
+    }
+    for (size_t i = 0; i < n && status == GLINT_OK; i++)
+        to->rgb[i] = (float)(linear_q20[i] * 0x1p-20 / scale);
+    free(linear_q20);
+    return status;
+}
+
+/* The same by exact rays of the lens's table. */
+static enum glint_status draw_exact(const struct bench *b, const struct test *t,
+                                    struct glint_float_image *to)
+{
+    const struct scene *s = t->scene;
+    const size_t n = 3 * (size_t)to->width * (size_t)to->height;
+    struct glint_setup *setup = malloc(sizeof *setup);
+    double *rgb = malloc(n * sizeof *rgb);
+    struct tool_progress progress;
+    struct glint_exact_config cfg = {.setup = setup,
+                                     .view = t->frame.view,
+                                     .lamps = t->lamp,
+                                     .n_lamps = t->n_lamps,
+                                     .grid = 128,
+                                     .only_ghost = s->only_ghost,
+                                     .workers = b->tool->workers,
+                                     .progress = tool_progress_show,
+                                     .progress_ctx = &progress};
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_E_MEMORY;
+
+    tool_progress_start(&progress, b->tool, "exact");
+    if (setup && rgb)
+        status = glint_setup_init(setup, &s->lens, s->n_blades,
+                                  s->blade_rotation_deg, s->wavelength_nm,
+                                  s->n_wavelengths, &error);
+    if (status == GLINT_OK && s->balance)
+        glint_setup_balance(setup);
+    if (status == GLINT_OK)
+        status = glint_exact_render(&cfg, rgb);
+    for (size_t i = 0; i < n && status == GLINT_OK; i++)
+        to->rgb[i] = (float)rgb[i];
+    tool_progress_end(&progress);
+    free(setup);
+    free(rgb);
+    return status;
+}
+
 /* PSNR of the flare alone against exact rays. */
 static int measure_psnr(struct bench *b, struct test *t)
 {
     const int w = t->canvas->image.width, h = t->canvas->image.height;
     const size_t n = 3 * (size_t)w * (size_t)h;
-    struct glint_image layer = {
-        .format = GLINT_LINEAR_Q20, .width = w, .height = h};
-    struct tool_progress progress;
-    struct glint_exact_config cfg = {.setup = &t->scene->setup,
-                                     .view = t->frame.view,
-                                     .lamps = t->lamp,
-                                     .n_lamps = t->n_lamps,
-                                     .grid = 128,
-                                     .only_ghost = t->scene->only_ghost,
-                                     .workers = b->tool->workers,
-                                     .progress = tool_progress_show,
-                                     .progress_ctx = &progress};
     struct glint_float_image want = {w, h, malloc(n * sizeof(float))};
     struct glint_float_image got = {w, h, malloc(n * sizeof(float))};
-    int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
-    double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
     struct measure m;
 
-    tool_progress_start(&progress, b->tool, "exact");
-    if (want.rgb && got.rgb && linear_q20 && rgb) {
-        const double scale = frame_auto_scale(&t->frame, t->lamp, t->n_lamps);
-
-        glint_image_place(&layer, linear_q20);
-        status = frame_draw(&t->frame, t->lamp, t->n_lamps, scale, &layer,
-                            &t->report);
-        if (status == GLINT_OK)
-            status = glint_exact_render(&cfg, rgb);
-        for (size_t i = 0; i < n && status == GLINT_OK; i++) {
-            want.rgb[i] = (float)rgb[i];
-            got.rgb[i] = (float)(linear_q20[i] * 0x1p-20 / scale);
-        }
-        if (status == GLINT_OK && measure_compare(&want, &got, false, &m))
-            t->psnr_db = m.psnr_db;
-    }
-    tool_progress_end(&progress);
+    if (want.rgb && got.rgb)
+        status = draw_flare(t, &got);
+    if (status == GLINT_OK)
+        status = draw_exact(b, t, &want);
+    if (status == GLINT_OK && measure_compare(&want, &got, false, &m))
+        t->psnr_db = m.psnr_db;
     free(want.rgb);
     free(got.rgb);
-    free(linear_q20);
-    free(rgb);
     return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
 }
 
@@ -485,6 +518,9 @@ static int open_scene(struct bench *b, const char *name)
         return tool_usage(b->tool, "takes %d lenses at most", MAX_LENSES);
     *s = b->base;
     b->n_scenes++;
+    if (b->psnr && tool_is_model(name))
+        return tool_usage(b->tool, "%s is a model: --psnr needs the lens table",
+                          name);
     return scene_open(b->tool, s, name);
 }
 
