@@ -184,6 +184,7 @@ golden-update: $(OUT)/tests/unit/test_flare
 	@GLINT_GOLDEN_UPDATE=1 $<
 
 # One fuzzer for SECONDS:  make fuzz TARGET=lens SECONDS=60
+FUZZ_SETS_x86_64 := -mavx2
 TARGET  ?= lens
 SECONDS ?= 60
 fuzz:
@@ -192,6 +193,7 @@ fuzz:
 	clang -std=c99 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Isrc \
 	        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L -ffp-contract=off \
 	        tests/fuzz/fuzz_$(TARGET).c $(BAKE:%=src/%.c) $(CORE:%=src/%.c) \
+	        $(CORE_$(ARCH):%=src/%.c) $(FUZZ_SETS_$(ARCH)) \
 	        $(PLATFORM:%=platform/%.c) -lm -lpthread -ldl \
 	        -o build/fuzz/fuzz_$(TARGET)
 	build/fuzz/fuzz_$(TARGET) -max_total_time=$(SECONDS) -timeout=10 \
