@@ -3,8 +3,8 @@
  * Any bytes as a model. Magic, version, size and checksum are put right first,
  * so that the rest is reached. What is accepted must carry rays: at the ends
  * of every range of angles, between them and outside of them, over the corners
- * of the pupil, to places near and far; no integer leaves the range that the
- * rays rely on.
+ * of the pupil, to places near and far, and a whole frame; no integer leaves
+ * the range that the rays rely on.
  *
  *     make fuzz TARGET=model SECONDS=120
  */
@@ -109,6 +109,46 @@ static void check_ghost(const struct glint_lens *lens, int ghost)
     }
 }
 
+/* A frame of it: planned, sorted, drawn, whatever comes out. */
+static void check_frame(const struct glint_lens *lens)
+{
+    enum { SIDE = 48, ROOM = 1 << 22 };
+    static uint8_t mem[ROOM] __attribute__((aligned(64)));
+    static uint8_t picture[2 * SIDE * SIDE];
+    const struct glint_model_header *h = lens->header;
+    const struct glint_wave wave[2] = {
+        {h->wave_lo_q24, {16384, 0, 0}, {1 << 30, -30}},
+        {h->wave_hi_q24, {0, 9000, 16384}, {1 << 30, 9}}};
+    const struct glint_beam beam[2] = {
+        {0, ONE, ONE, 0, {1 << 30, -20}, {16384, 16384, 16384}},
+        {h->sine_hi_q30, ONE / 2, ONE / 2, -ONE, {1 << 30, 20}, {16384, 1, 0}}};
+    const struct glint_rays rays = {.lens = lens,
+                                    .wave = wave,
+                                    .n_waves = 2,
+                                    .pixels_per_mm = {1 << 30, -26},
+                                    .fineness = 8,
+                                    .faintest = {1 << 30, -42},
+                                    .only_ghost = -1};
+    struct glint_image image = {
+        .format = GLINT_YUYV, .width = SIDE, .height = SIDE};
+    const struct glint_flare_config cfg = {.width = SIDE,
+                                           .height = SIDE,
+                                           .tile_log2 = 4,
+                                           .irradiance_steps = 70,
+                                           .max_bundles = 64,
+                                           .max_primitives = 20000,
+                                           .max_refs = 40000};
+    struct glint_flare_stats stats;
+    struct glint_flare *flare;
+
+    require(glint_flare_init(&flare, &cfg, mem, sizeof mem) == GLINT_OK);
+    glint_flare_plan(flare, &rays, beam, 2);
+    glint_flare_bin(flare, &stats);
+    require(stats.bundles <= cfg.max_bundles && stats.refs <= cfg.max_refs);
+    glint_image_place(&image, picture);
+    glint_flare_draw(flare, &image);
+}
+
 /* As a maker of files would. */
 static void seal(uint32_t *word, size_t size)
 {
@@ -134,6 +174,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         require(lens.header->n_ghosts <= INT32_MAX);
         for (uint32_t k = 0; k < lens.header->n_ghosts && k < 8; k++)
             check_ghost(&lens, (int)k);
+        check_frame(&lens);
     } else {
         require(reason && *reason);
     }
