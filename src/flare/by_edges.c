@@ -303,12 +303,11 @@ static void resolve_codes(const struct draw *d,
 
     for (int y = s->tile.y0; y < s->tile.y1; y += 2) {
         const int n = y + 2 < s->tile.y1 ? 2 : s->tile.y1 - y;
-
         int lit = 0;
 
         for (int c = 0; c < 3; c++)
             for (int row = 0; row < n; row++)
-                lit |= glint_edge_light(s, c, y + row - s->tile.y0, &r->kernels,
+                lit |= glint_edge_light(s, c, y + row - s->tile.y0, r->kernels,
                                         w->light->rgb_q16[c][row]);
         if (!lit)
             continue;

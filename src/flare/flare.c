@@ -55,7 +55,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     w->ref = glint_arena_take(a, (size_t)c->max_tile_refs, sizeof *w->ref);
 }
 
-/* Runs twice: to measure, with F NULL, and to place. */
+/* Runs twice: to measure, which gives NULL, and to place. */
 static struct glint_flare *carve(struct glint_arena *a,
                                  const struct glint_flare_config *c)
 {

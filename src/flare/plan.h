@@ -33,11 +33,10 @@ struct glint_plan {
     unsigned sets;
 };
 
-/* What a few rays of a bundle say. */
-enum {
-    GLINT_PLAN_ACROSS = 16,
-    GLINT_PLAN_DOWN = 8
-}; /* cells, half the pupil */
+/* What a few rays of a bundle say, in cells across the pupil and down half of
+ * it.
+ */
+enum { GLINT_PLAN_ACROSS = 16, GLINT_PLAN_DOWN = 8 };
 
 struct glint_plan_node {
     int32_t at[GLINT_OUT_KINDS];

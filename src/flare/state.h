@@ -85,10 +85,10 @@ void glint_flare_bin_edges(struct glint_flare *flare);
 
 void glint_flare_draw_cells(struct glint_flare *flare,
                             const struct glint_image *image);
-/* Makes the sums of W 0, as they are between tiles. */
-void glint_flare_clear_edges(struct glint_flare_worker *w, int log2);
-
 void glint_flare_draw_edges(struct glint_flare *flare,
                             const struct glint_image *image);
+
+/* Makes the sums of W 0, as they are between tiles. */
+void glint_flare_clear_edges(struct glint_flare_worker *w, int log2);
 
 #endif

@@ -3,28 +3,29 @@
 
 #include "glint/kernels.h"
 
-void glint_kernels_init(struct glint_kernels *k, unsigned sets)
+#define KERNELS(set)                                                           \
+    {                                                                          \
+        glint_horner_along_##set, glint_horner_across_##set,                   \
+            glint_add_luma_##set, glint_add_pairs_##set, glint_add_code_##set, \
+            glint_run_sum_##set                                                \
+    }
+
+const struct glint_kernels *glint_kernels_of(unsigned sets)
 {
-    *k = (struct glint_kernels){glint_horner_along_c, glint_horner_across_c,
-                                glint_add_luma_c,     glint_add_pairs_c,
-                                glint_add_code_c,     glint_run_sum_c};
+    static const struct glint_kernels plain = KERNELS(c);
 #if defined(__x86_64__)
-    if (sets & GLINT_SET_SSE41)
-        *k = (struct glint_kernels){
-            glint_horner_along_sse41, glint_horner_across_sse41,
-            glint_add_luma_sse41,     glint_add_pairs_sse41,
-            glint_add_code_sse41,     glint_run_sum_sse41};
-    if (sets & GLINT_SET_AVX2)
-        *k = (struct glint_kernels){
-            glint_horner_along_avx2, glint_horner_across_avx2,
-            glint_add_luma_avx2,     glint_add_pairs_avx2,
-            glint_add_code_avx2,     glint_run_sum_avx2};
+    static const struct glint_kernels sse41 = KERNELS(sse41);
+    static const struct glint_kernels avx2 = KERNELS(avx2);
+
+    return sets & GLINT_SET_AVX2    ? &avx2
+           : sets & GLINT_SET_SSE41 ? &sse41
+                                    : &plain;
 #elif defined(__ARM_NEON)
-    if (sets & GLINT_SET_NEON)
-        *k = (struct glint_kernels){
-            glint_horner_along_neon, glint_horner_across_neon,
-            glint_add_luma_neon,     glint_add_pairs_neon,
-            glint_add_code_neon,     glint_run_sum_neon};
-#endif
+    static const struct glint_kernels neon = KERNELS(neon);
+
+    return sets & GLINT_SET_NEON ? &neon : &plain;
+#else
     (void)sets;
+    return &plain;
+#endif
 }

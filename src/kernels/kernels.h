@@ -84,8 +84,8 @@ struct glint_kernels {
     glint_run_sum_fn *run_sum;
 };
 
-/* Fills K for the GLINT_SET_ bits SETS: C first, better ones override. */
-void glint_kernels_init(struct glint_kernels *k, unsigned sets);
+/* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C. */
+const struct glint_kernels *glint_kernels_of(unsigned sets);
 
 glint_horner_along_fn glint_horner_along_c, glint_horner_along_sse41,
     glint_horner_along_avx2, glint_horner_along_neon;

@@ -400,22 +400,21 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
     const struct glint_transfer *t = transfer;
     const int32_t u = variable_of(t, u_q30), v = variable_of(t, v_q30);
     const int32_t v2 = times(t, v, v, 0);
-    struct glint_kernels k;
+    const struct glint_kernels *k = glint_kernels_of(0);
 
     if (transfer->basis == GLINT_BASIS_SPARSE) {
         ray_of_terms(transfer, u_q30, v_q30, out);
         return;
     }
-    glint_kernels_init(&k, 0);
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         int32_t of_u[GLINT_TABLE_WIDTH];
 
         out->at[kind] = 0;
         if (!has(t, kind))
             continue;
-        set_row(t, &k, kind, v, v2, of_u);
-        k.horner_along(&out->at[kind], of_u, t->degree_u[kind], &u, t->fraction,
-                       1);
+        set_row(t, k, kind, v, v2, of_u);
+        k->horner_along(&out->at[kind], of_u, t->degree_u[kind], &u,
+                        t->fraction, 1);
         out->at[kind] *= INT32_C(1) << t->shift[kind];
     }
     out->at[GLINT_OUT_ENERGY] = energy_of(t, out->at[GLINT_OUT_ENERGY]);
@@ -437,19 +436,18 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS])
 {
-    struct glint_kernels k;
+    const struct glint_kernels *k = glint_kernels_of(transfer->sets);
     int32_t u[RAYS];
 
     if (transfer->basis == GLINT_BASIS_SPARSE) {
         rays_of_terms(transfer, u_q30, v_q30, out);
         return;
     }
-    glint_kernels_init(&k, transfer->sets);
     if (is_new)
-        set_rows(transfer, &k, v_q30, transfer->of_u);
+        set_rows(transfer, k, v_q30, transfer->of_u);
     for (int i = 0; i < RAYS; i++)
         u[i] = variable_of(transfer, u_q30[i]);
-    rays_of_rows(transfer, &k, u, out);
+    rays_of_rows(transfer, k, u, out);
 }
 
 /* ----------------------------------------------------------------- vertices */

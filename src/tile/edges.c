@@ -389,8 +389,7 @@ static void wide_light(uint64_t *change_q24, int64_t *carry_q24, int n,
     for (int x = 0; x < n; x++) {
         sum_q24 += change_q24[x];
         change_q24[x] = 0;
-        light_q16[x] = (uint16_t)q_clamp_sat(
-            ((int64_t)sum_q24 >> 8) + ((int64_t)sum_q24 >> 7 & 1), 0, 65535);
+        light_q16[x] = rounded_q16((int64_t)sum_q24);
     }
     *carry_q24 = (int64_t)sum_q24;
 }

@@ -20,7 +20,7 @@ void glint_resolve_init(struct glint_resolve *resolve,
                         unsigned sets)
 {
     glint_mix_init(&resolve->mix, image);
-    glint_kernels_init(&resolve->kernels, sets);
+    resolve->kernels = glint_kernels_of(sets);
     for (int y = 0; y < 8; y++)
         for (int x = 0; x < 8; x++)
             resolve->round_q7[y][x] =
@@ -38,9 +38,9 @@ static void resolve_rgb(const struct glint_resolve *r, int y, int n_x, int n_y,
 {
     for (int row = 0; row < n_y; row++)
         for (int c = 0; c < 3; c++)
-            r->kernels.add_code(codes->sample[c][row], light->rgb_q16[c][row],
-                                padded(n_x), &r->mix.tone,
-                                r->round_q7[(y + row) & 7]);
+            r->kernels->add_code(codes->sample[c][row], light->rgb_q16[c][row],
+                                 padded(n_x), &r->mix.tone,
+                                 r->round_q7[(y + row) & 7]);
 }
 
 /* BT.709: weights of sum 1. */
@@ -73,8 +73,8 @@ static void resolve_whole(const struct glint_resolve *r,
         luminance(light, row, padded(n), rows->grey_q16);
         rgb[0] = rgb[1] = rgb[2] = rows->grey_q16;
     }
-    r->kernels.add_luma(code[0], code[1], code[2], rgb, change, padded(n),
-                        &r->mix, round);
+    r->kernels->add_luma(code[0], code[1], code[2], rgb, change, padded(n),
+                         &r->mix, round);
     for (int k = 1; k < 3 && !grey; k++)
         for (int i = 0; i < n; i++) {
             const int16_t *weight_q15 = r->mix.to_chroma_q15[k - 1];
@@ -115,10 +115,10 @@ static void resolve_pairs(const struct glint_resolve *r,
                                                      : GLINT_PAIRS_SECOND;
         const int cy = (y + row) >> l->log2_y;
 
-        r->kernels.add_pairs(rows->codes.sample[0][row],
-                             rows->codes.chroma[l->log2_y ? 0 : row], rgb, mean,
-                             padded(n_x), step, &r->mix,
-                             r->round_q7[(y + row) & 7], r->round_q7[cy & 7]);
+        r->kernels->add_pairs(rows->codes.sample[0][row],
+                              rows->codes.chroma[l->log2_y ? 0 : row], rgb,
+                              mean, padded(n_x), step, &r->mix,
+                              r->round_q7[(y + row) & 7], r->round_q7[cy & 7]);
     }
 }
 
