@@ -28,7 +28,7 @@ export DEPS OUT
 CORE := base/status base/arena base/q base/image base/workers kernels/sets \
         kernels/kernels kernels/horner_c kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
         tile/outline tile/bins tile/raster tile/edges tile/curve \
-        tile/mix tile/codes tile/resolve flare/plan flare/ghost_grid flare/ghost_edges flare/by_cells \
+        tile/mix tile/codes tile/resolve flare/plan flare/ghost_grid flare/cuts flare/ghost_edges flare/by_cells \
         flare/by_edges flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
@@ -72,7 +72,7 @@ $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
 $(OUT)/src/kernels/%.o $(OUT)/src/tile/codes.o \
 $(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o \
-$(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
+$(OUT)/src/flare/cuts.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
 # the floor that everything is measured by is as fast as can be
 $(OUT)/tools/cmd_bench.o: CFLAGS += -O3
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits

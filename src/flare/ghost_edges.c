@@ -3,6 +3,7 @@
 
 #include "base/compiler.h"
 #include "base/q.h"
+#include "flare/cuts.h"
 
 enum { LOST = 4 }; /* of a node: no ray; bits 0 and 1 are the barrels */
 
@@ -47,28 +48,6 @@ static int vertex_valid(const struct glint_vertex *v)
            v->y_q8 > -GLINT_VERTEX_LIMIT_Q8 && v->y_q8 < GLINT_VERTEX_LIMIT_Q8;
 }
 
-static int64_t radius2_q32(const struct glint_vertex *v)
-{
-    return (int64_t)v->stop_x_q16 * v->stop_x_q16 +
-           (int64_t)v->stop_y_q16 * v->stop_y_q16;
-}
-
-/* The sides that V lies on or outside of; of a round stop the only one. */
-static uint64_t sides_of(const struct glint_stop *stop,
-                         const struct glint_vertex *v)
-{
-    const int64_t apothem_q16 = stop->apothem_q16;
-    uint64_t sides = 0;
-
-    if (stop->n_blades == 0)
-        return radius2_q32(v) >= INT64_C(1) << 32;
-    if (radius2_q32(v) < (apothem_q16 - 1) * (apothem_q16 - 1))
-        return 0;
-    for (int k = 0; k < stop->n_blades; k++)
-        sides |= (uint64_t)(glint_side_q16(stop, k, v) <= 0) << k;
-    return sides;
-}
-
 static void set_nodes(struct glint_ghost_edges *g, int j)
 {
     const int n = g->bundle->n_cells;
@@ -82,107 +61,16 @@ static void set_nodes(struct glint_ghost_edges *g, int j)
                                 : g->vertex + (ptrdiff_t)j * (n + 1);
     for (int i = 0; i <= n; i++) {
         const struct glint_vertex *v = node(g, i, j);
+        struct glint_outside outside;
 
         if (!vertex_valid(v)) {
             sides[i] = 0;
             barrels[i] = LOST;
             continue;
         }
-        sides[i] = sides_of(g->stop, v);
-        barrels[i] = (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
-                               2 * (v->barrel_q16[1] >= 1 << 16));
-    }
-}
-
-/* --------------------------------------------------------------------- parts
- */
-
-/* What cuts: side K of the stop, or barrel K - BARREL. */
-enum { BARREL = 64, NOTHING = -1 };
-
-/* Positive inside. */
-static int64_t cut_q16(const struct glint_ghost_edges *g, int cut,
-                       const struct glint_vertex *v)
-{
-    return cut < BARREL ? glint_side_q16(g->stop, cut, v)
-                        : glint_barrel_q16(cut - BARREL, v);
-}
-
-/* The visible part of the edge between two neighbouring nodes, from the one
- * that comes first in the grid. */
-struct part {
-    point_q8 end[2];
-    int cut[2]; /* what ends it there, or NOTHING: the node itself */
-    int visible;
-};
-
-struct interval {
-    int64_t t_q30[2];
-    int cut[2];
-};
-
-static void shorten(const struct glint_ghost_edges *g, struct interval *in,
-                    int cut, const struct glint_vertex *a,
-                    const struct glint_vertex *b)
-{
-    const int64_t fa = cut_q16(g, cut, a), fb = cut_q16(g, cut, b);
-    int64_t t_q30;
-
-    if (fa <= 0 && fb <= 0) {
-        in->t_q30[1] = -1;
-        return;
-    }
-    t_q30 = fa * (INT64_C(1) << 30) / (fa - fb); /* 2^31.5 times 2^30 */
-    if (fa <= 0 && t_q30 >= in->t_q30[0]) {
-        in->t_q30[0] = t_q30;
-        in->cut[0] = cut;
-    }
-    if (fb <= 0 && t_q30 <= in->t_q30[1]) {
-        in->t_q30[1] = t_q30;
-        in->cut[1] = cut;
-    }
-}
-
-static void place(const struct glint_vertex *a, const struct glint_vertex *b,
-                  int64_t t_q30, int32_t at_q8[2])
-{
-    at_q8[0] =
-        a->x_q8 + q_narrow(q_shift((b->x_q8 - (int64_t)a->x_q8) * t_q30, 30));
-    at_q8[1] =
-        a->y_q8 + q_narrow(q_shift((b->y_q8 - (int64_t)a->y_q8) * t_q30, 30));
-}
-
-static int lowest_bit(uint64_t x)
-{
-    return bit_length(x & (~x + 1)) - 1;
-}
-
-/* A node's cuts. */
-struct outside {
-    uint64_t sides;
-    uint8_t barrels;
-};
-
-static void find_part(const struct glint_ghost_edges *g,
-                      const struct glint_vertex *a, struct outside at_a,
-                      const struct glint_vertex *b, struct outside at_b,
-                      struct part *part)
-{
-    struct interval in = {{0, INT64_C(1) << 30}, {NOTHING, NOTHING}};
-
-    part->visible =
-        !(at_a.sides & at_b.sides) && !(at_a.barrels & at_b.barrels);
-    if (!part->visible)
-        return;
-    for (uint64_t m = at_a.sides | at_b.sides; m; m &= m - 1)
-        shorten(g, &in, lowest_bit(m), a, b);
-    for (int k = 0; k < 2; k++)
-        if ((at_a.barrels | at_b.barrels) >> k & 1)
-            shorten(g, &in, BARREL + k, a, b);
-    part->visible = in.t_q30[0] < in.t_q30[1];
-    for (int k = 0; k < 2 && part->visible; k++) {
-        place(a, b, in.t_q30[k], part->end[k]);
-        part->cut[k] = in.cut[k];
+        outside = glint_cuts_outside(g->stop, v);
+        sides[i] = outside.sides;
+        barrels[i] = outside.barrels;
     }
 }
 
@@ -191,8 +79,7 @@ static void find_part(const struct glint_ghost_edges *g,
 
 struct cell {
     const struct glint_vertex *corner[4]; /* in order */
-    struct outside at[4];
-    struct outside any; /* of the four */
+    struct glint_outside at[4];
 };
 
 static void set_cell(const struct glint_ghost_edges *g, int i, int j,
@@ -200,15 +87,12 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
 {
     const struct glint_ghost_rows *r = g->rows;
 
-    c->any = (struct outside){0, 0};
     for (int k = 0; k < 4; k++) {
         const int across = i + (k == 1 || k == 2), down = j + (k >= 2);
 
         c->corner[k] = node(g, across, down);
-        c->at[k] = (struct outside){r->sides[down & 1][across],
-                                    r->barrels[down & 1][across]};
-        c->any.sides |= c->at[k].sides;
-        c->any.barrels |= c->at[k].barrels;
+        c->at[k] = (struct glint_outside){r->sides[down & 1][across],
+                                          r->barrels[down & 1][across]};
     }
 }
 
@@ -349,95 +233,29 @@ static void add_triangles(struct glint_ghost_edges *g, const struct cell *c)
 
 /* The part of side K of a cell, in the cell's order: corner K to K + 1. */
 static void part_of_side(const struct glint_ghost_edges *g,
-                         const struct cell *c, int k, struct part *part)
+                         const struct cell *c, int k, struct glint_part *part)
 {
     const int reverse = k >= 2, next = (k + 1) & 3;
     const int from = reverse ? next : k, to = reverse ? k : next;
 
-    find_part(g, c->corner[from], c->at[from], c->corner[to], c->at[to], part);
+    glint_cuts_part(g->stop, c->corner[from], c->at[from], c->corner[to],
+                    c->at[to], part);
     if (reverse) {
-        const struct part forward = *part;
+        const struct glint_part forward = *part;
 
         for (int end = 0; end < 2; end++) {
-            part->end[end][0] = forward.end[1 - end][0];
-            part->end[end][1] = forward.end[1 - end][1];
+            part->end_q8[end][0] = forward.end_q8[1 - end][0];
+            part->end_q8[end][1] = forward.end_q8[1 - end][1];
             part->cut[end] = forward.cut[1 - end];
         }
     }
-}
-
-/* VALUE at the corners as middle + u along + v across, u and v -1/2 .. 1/2. */
-struct plane {
-    int64_t middle4, u2, v2; /* so many times as much */
-};
-
-static struct plane plane_of(const int64_t value[4])
-{
-    return (struct plane){value[0] + value[1] + value[2] + value[3],
-                          value[1] - value[0] + value[2] - value[3],
-                          value[3] - value[0] + value[2] - value[1]};
-}
-
-/* X / Y as q16, if it is within the cell or near. */
-static int near_q16(int64_t x, int64_t y, int64_t *q16)
-{
-    const int wide = bit_length((uint64_t)(x < 0 ? -x : x));
-    const int down = wide > 45 ? wide - 45 : 0;
-
-    x >>= down;
-    y >>= down;
-    if (y == 0)
-        return 0;
-    *q16 = x * 65536 / y;
-    return *q16 > -3 * 16384 && *q16 < 3 * 16384;
-}
-
-/* Where the cuts A and B cross within the cell. */
-static int crossing(const struct glint_ghost_edges *g, const struct cell *c,
-                    int a, int b, int32_t at_q8[2])
-{
-    int64_t fa[4], fb[4], x[4], y[4], u_q16, v_q16, det;
-    struct plane pa, pb, px, py;
-    uint64_t most = 0;
-    int down;
-
-    for (int k = 0; k < 4; k++) {
-        const struct glint_vertex *v = c->corner[k];
-
-        fa[k] = cut_q16(g, a, v);
-        fb[k] = cut_q16(g, b, v);
-        most |=
-            (uint64_t)(fa[k] ^ fa[k] >> 63) | (uint64_t)(fb[k] ^ fb[k] >> 63);
-        x[k] = v->x_q8;
-        y[k] = v->y_q8;
-    }
-    down = bit_length(most) > 27 ? bit_length(most) - 27 : 0;
-    for (int k = 0; k < 4; k++) { /* sums below 2^29, their products 2^58 */
-        fa[k] >>= down;
-        fb[k] >>= down;
-    }
-    pa = plane_of(fa);
-    pb = plane_of(fb);
-    /* middle4 / 4 + u u2 / 2 + v v2 / 2 = 0 for both: 2 u u2 + 2 v v2 =
-     * -middle4 */
-    det = 2 * (pa.u2 * pb.v2 - pb.u2 * pa.v2);
-    if (!near_q16(pb.middle4 * pa.v2 - pa.middle4 * pb.v2, det, &u_q16) ||
-        !near_q16(pa.middle4 * pb.u2 - pb.middle4 * pa.u2, det, &v_q16))
-        return 0;
-    px = plane_of(x);
-    py = plane_of(y);
-    at_q8[0] = q_narrow(
-        q_shift(px.middle4 * 32768 + px.u2 * u_q16 + px.v2 * v_q16, 17));
-    at_q8[1] = q_narrow(
-        q_shift(py.middle4 * 32768 + py.u2 * u_q16 + py.v2 * v_q16, 17));
-    return 1;
 }
 
 /* The chords of a cell that is cut: they link what is left of its sides. */
 static void add_chords(struct glint_ghost_edges *g, const struct cell *c,
                        int32_t light)
 {
-    struct part part[4];
+    struct glint_part part[4];
     int n = 0;
 
     for (int k = 0; k < 4; k++) {
@@ -445,27 +263,19 @@ static void add_chords(struct glint_ghost_edges *g, const struct cell *c,
         n += part[n].visible;
     }
     for (int k = 0; k < n; k++) {
-        const struct part *here = &part[k];
-        const struct part *next = &part[k + 1 < n ? k + 1 : 0];
+        const struct glint_part *here = &part[k];
+        const struct glint_part *next = &part[k + 1 < n ? k + 1 : 0];
         point_q8 corner;
 
-        if (here->cut[1] != next->cut[0] && here->cut[1] != NOTHING &&
-            next->cut[0] != NOTHING &&
-            crossing(g, c, here->cut[1], next->cut[0], corner)) {
-            add_edge(g, here->end[1], corner, light, 0);
-            add_edge(g, corner, next->end[0], light, 0);
+        if (here->cut[1] != next->cut[0] && here->cut[1] != GLINT_CUT_NOTHING &&
+            next->cut[0] != GLINT_CUT_NOTHING &&
+            glint_cuts_cross(g->stop, c->corner, here->cut[1], next->cut[0],
+                             corner)) {
+            add_edge(g, here->end_q8[1], corner, light, 0);
+            add_edge(g, corner, next->end_q8[0], light, 0);
         } else
-            add_edge(g, here->end[1], next->end[0], light, 0);
+            add_edge(g, here->end_q8[1], next->end_q8[0], light, 0);
     }
-}
-
-static int n_cuts(struct outside o)
-{
-    int n = (o.barrels & 1) + (o.barrels >> 1 & 1);
-
-    for (uint64_t m = o.sides; m && n < 3; m &= m - 1)
-        n++;
-    return n;
 }
 
 static int64_t mean_energy_q16(const struct glint_corners *c)
@@ -475,83 +285,73 @@ static int64_t mean_energy_q16(const struct glint_corners *c)
            2;
 }
 
-/* The light of a cell that shares its sides with its neighbours; what is drawn
- * by itself has none. */
-static int32_t shared_light(struct glint_ghost_edges *g, const struct cell *c)
+static void set_corners(const struct glint_ghost_edges *g, int i, int j,
+                        struct glint_corners *corners)
 {
-    struct glint_corners corners;
-    const int cuts = n_cuts(c->any);
-    int turn;
-    int32_t light;
+    const struct glint_vertex *const at[4] = {node(g, i, j), node(g, i + 1, j),
+                                              node(g, i + 1, j + 1),
+                                              node(g, i, j + 1)};
 
-    if (c->any.barrels & LOST) {
+    glint_corners_set(corners, at, 4);
+}
+
+/* A cell that shares no side with its neighbours. */
+static void add_odd(struct glint_ghost_edges *g, const struct cell *c,
+                    const struct glint_corners *corners, int turn)
+{
+    if (turn == 0 && !glint_corners_tiny(corners, 16))
         add_triangles(g, c);
-        return 0;
-    }
-    glint_corners_set(&corners, c->corner, 4);
-    turn = convexity(&corners);
-    if (turn == 0 && !glint_corners_tiny(&corners, 16)) {
-        add_triangles(g, c);
-        return 0;
-    }
-    if (turn == 0 || cuts > 2 || (cuts > 0 && g->stop->n_blades == 0) ||
-        glint_corners_thin(&corners)) {
+    else
         add_alone(g, c->corner, 4, 0);
-        return 0;
-    }
-    light = light_of(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1, 0,
-                     mean_energy_q16(&corners), turn);
-    if (cuts)
-        add_chords(g, c, light);
-    return light;
 }
 
-/* Whether the cell at (I, J) is convex and wide enough; then its light. */
-static int is_plain(const struct glint_ghost_edges *g, int i, int j,
-                    int32_t *light)
-{
-    const struct glint_vertex *const corner[4] = {
-        node(g, i, j), node(g, i + 1, j), node(g, i + 1, j + 1),
-        node(g, i, j + 1)};
-    struct glint_corners corners;
-    int turn;
-
-    glint_corners_set(&corners, corner, 4);
-    turn = convexity(&corners);
-    if (turn == 0 || glint_corners_thin(&corners))
-        return 0;
-    *light = light_of(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1, 0,
-                      mean_energy_q16(&corners), turn);
-    return 1;
-}
-
-/* The cell at (I, J): nearly all lie outside of what is seen, or inside of it
- * all. */
+/* The light of the cell at (I, J) towards its neighbours: what is drawn by
+ * itself has none, and nearly all cells lie outside of what is seen or wholly
+ * inside. */
 static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
 {
     const struct glint_ghost_rows *r = g->rows;
     const uint64_t *s = r->sides[j & 1] + i, *t = r->sides[~j & 1] + i;
     const uint8_t *a = r->barrels[j & 1] + i, *b = r->barrels[~j & 1] + i;
-    const int any = a[0] | a[1] | b[0] | b[1];
+    const struct glint_outside any = {s[0] | s[1] | t[0] | t[1],
+                                      a[0] | a[1] | b[0] | b[1]};
+    struct glint_corners corners;
     struct cell cell;
     int32_t light;
+    int cuts, turn, odd;
 
-    if (!(any & LOST) &&
-        ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1])))
+    if (any.barrels & LOST) {
+        set_cell(g, i, j, &cell);
+        add_triangles(g, &cell);
         return 0;
-    if (!any && !(s[0] | s[1] | t[0] | t[1]) && is_plain(g, i, j, &light))
-        return light;
-    set_cell(g, i, j, &cell);
-    return shared_light(g, &cell);
+    }
+    if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
+        return 0;
+    set_corners(g, i, j, &corners);
+    turn = convexity(&corners);
+    cuts = any.sides || any.barrels ? glint_cuts_count(any) : 0;
+    odd = turn == 0 || cuts > 2 || (cuts && g->stop->n_blades == 0) ||
+          glint_corners_thin(&corners);
+    if (odd || cuts)
+        set_cell(g, i, j, &cell);
+    if (odd) {
+        add_odd(g, &cell, &corners, turn);
+        return 0;
+    }
+    light = light_of(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1, 0,
+                     mean_energy_q16(&corners), turn);
+    if (cuts)
+        add_chords(g, &cell, light);
+    return light;
 }
 
 /* The visible part of the edge A to B, between the lights of two cells. */
 static void add_shared(struct glint_ghost_edges *g,
-                       const struct glint_vertex *a, struct outside at_a,
-                       const struct glint_vertex *b, struct outside at_b,
+                       const struct glint_vertex *a, struct glint_outside at_a,
+                       const struct glint_vertex *b, struct glint_outside at_b,
                        int32_t light, int32_t other)
 {
-    struct part part;
+    struct glint_part part;
 
     if (light == other)
         return;
@@ -561,16 +361,16 @@ static void add_shared(struct glint_ghost_edges *g,
         add_edge(g, from, to, light, other);
         return;
     }
-    find_part(g, a, at_a, b, at_b, &part);
+    glint_cuts_part(g->stop, a, at_a, b, at_b, &part);
     if (part.visible)
-        add_edge(g, part.end[0], part.end[1], light, other);
+        add_edge(g, part.end_q8[0], part.end_q8[1], light, other);
 }
 
-static struct outside outside_at(const struct glint_ghost_edges *g, int i,
-                                 int j)
+static struct glint_outside outside_at(const struct glint_ghost_edges *g, int i,
+                                       int j)
 {
-    return (struct outside){g->rows->sides[j & 1][i],
-                            g->rows->barrels[j & 1][i]};
+    return (struct glint_outside){g->rows->sides[j & 1][i],
+                                  g->rows->barrels[j & 1][i]};
 }
 
 /* The edges between two rows of cells; the nodes of row J. */

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/cuts.h"
+
+#include "base/compiler.h"
+#include "base/q.h"
+#include "tile/outline.h"
+
+/* What cuts: side K of the stop, or barrel K - BARREL. */
+enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
+
+/* ---------------------------------------------------------------------- nodes
+ */
+
+static int64_t radius2_q32(const struct glint_vertex *v)
+{
+    return (int64_t)v->stop_x_q16 * v->stop_x_q16 +
+           (int64_t)v->stop_y_q16 * v->stop_y_q16;
+}
+
+static uint64_t sides_of(const struct glint_stop *stop,
+                         const struct glint_vertex *v)
+{
+    const int64_t apothem_q16 = stop->apothem_q16;
+    uint64_t sides = 0;
+
+    if (stop->n_blades == 0)
+        return radius2_q32(v) >= INT64_C(1) << 32;
+    if (radius2_q32(v) < (apothem_q16 - 1) * (apothem_q16 - 1))
+        return 0;
+    for (int k = 0; k < stop->n_blades; k++)
+        sides |= (uint64_t)(glint_side_q16(stop, k, v) <= 0) << k;
+    return sides;
+}
+
+struct glint_outside glint_cuts_outside(const struct glint_stop *stop,
+                                        const struct glint_vertex *v)
+{
+    return (struct glint_outside){sides_of(stop, v),
+                                  (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
+                                            2 * (v->barrel_q16[1] >= 1 << 16))};
+}
+
+int glint_cuts_count(struct glint_outside o)
+{
+    int n = (o.barrels & 1) + (o.barrels >> 1 & 1);
+
+    for (uint64_t m = o.sides; m && n < 3; m &= m - 1)
+        n++;
+    return n;
+}
+
+/* ---------------------------------------------------------------------- parts
+ */
+
+/* Positive inside. */
+static int64_t cut_q16(const struct glint_stop *stop, int cut,
+                       const struct glint_vertex *v)
+{
+    return cut < BARREL ? glint_side_q16(stop, cut, v)
+                        : glint_barrel_q16(cut - BARREL, v);
+}
+
+struct interval {
+    int64_t t_q30[2];
+    int cut[2];
+};
+
+static void shorten(const struct glint_stop *stop, struct interval *in, int cut,
+                    const struct glint_vertex *a, const struct glint_vertex *b)
+{
+    const int64_t fa = cut_q16(stop, cut, a), fb = cut_q16(stop, cut, b);
+    int64_t t_q30;
+
+    if (fa <= 0 && fb <= 0) {
+        in->t_q30[1] = -1;
+        return;
+    }
+    t_q30 = fa * (INT64_C(1) << 30) / (fa - fb); /* 2^31.5 times 2^30 */
+    if (fa <= 0 && t_q30 >= in->t_q30[0]) {
+        in->t_q30[0] = t_q30;
+        in->cut[0] = cut;
+    }
+    if (fb <= 0 && t_q30 <= in->t_q30[1]) {
+        in->t_q30[1] = t_q30;
+        in->cut[1] = cut;
+    }
+}
+
+static void place(const struct glint_vertex *a, const struct glint_vertex *b,
+                  int64_t t_q30, int32_t at_q8[2])
+{
+    at_q8[0] =
+        a->x_q8 + q_narrow(q_shift((b->x_q8 - (int64_t)a->x_q8) * t_q30, 30));
+    at_q8[1] =
+        a->y_q8 + q_narrow(q_shift((b->y_q8 - (int64_t)a->y_q8) * t_q30, 30));
+}
+
+static int lowest_bit(uint64_t x)
+{
+    return bit_length(x & (~x + 1)) - 1;
+}
+
+void glint_cuts_part(const struct glint_stop *stop,
+                     const struct glint_vertex *a, struct glint_outside at_a,
+                     const struct glint_vertex *b, struct glint_outside at_b,
+                     struct glint_part *part)
+{
+    struct interval in = {{0, INT64_C(1) << 30}, {NOTHING, NOTHING}};
+
+    part->visible =
+        !(at_a.sides & at_b.sides) && !(at_a.barrels & at_b.barrels);
+    if (!part->visible)
+        return;
+    for (uint64_t m = at_a.sides | at_b.sides; m; m &= m - 1)
+        shorten(stop, &in, lowest_bit(m), a, b);
+    for (int k = 0; k < 2; k++)
+        if ((at_a.barrels | at_b.barrels) >> k & 1)
+            shorten(stop, &in, BARREL + k, a, b);
+    part->visible = in.t_q30[0] < in.t_q30[1];
+    for (int k = 0; k < 2 && part->visible; k++) {
+        place(a, b, in.t_q30[k], part->end_q8[k]);
+        part->cut[k] = in.cut[k];
+    }
+}
+
+/* -------------------------------------------------------------------- corners
+ */
+
+/* VALUE at the corners as middle + u along + v across, u and v -1/2 .. 1/2. */
+struct plane {
+    int64_t middle4, u2, v2; /* so many times as much */
+};
+
+static struct plane plane_of(const int64_t value[4])
+{
+    return (struct plane){value[0] + value[1] + value[2] + value[3],
+                          value[1] - value[0] + value[2] - value[3],
+                          value[3] - value[0] + value[2] - value[1]};
+}
+
+/* X / Y as q16, if it is within the cell or near. */
+static int near_q16(int64_t x, int64_t y, int64_t *q16)
+{
+    const int wide = bit_length((uint64_t)(x < 0 ? -x : x));
+    const int down = wide > 45 ? wide - 45 : 0;
+
+    x >>= down;
+    y >>= down;
+    if (y == 0)
+        return 0;
+    *q16 = x * 65536 / y;
+    return *q16 > -3 * 16384 && *q16 < 3 * 16384;
+}
+
+int glint_cuts_cross(const struct glint_stop *stop,
+                     const struct glint_vertex *const corner[4], int a, int b,
+                     int32_t at_q8[2])
+{
+    int64_t fa[4], fb[4], x[4], y[4], u_q16, v_q16, det;
+    struct plane pa, pb, px, py;
+    uint64_t most = 0;
+    int down;
+
+    for (int k = 0; k < 4; k++) {
+        const struct glint_vertex *v = corner[k];
+
+        fa[k] = cut_q16(stop, a, v);
+        fb[k] = cut_q16(stop, b, v);
+        most |=
+            (uint64_t)(fa[k] ^ fa[k] >> 63) | (uint64_t)(fb[k] ^ fb[k] >> 63);
+        x[k] = v->x_q8;
+        y[k] = v->y_q8;
+    }
+    down = bit_length(most) > 27 ? bit_length(most) - 27 : 0;
+    for (int k = 0; k < 4; k++) { /* sums below 2^29, their products 2^58 */
+        fa[k] >>= down;
+        fb[k] >>= down;
+    }
+    pa = plane_of(fa);
+    pb = plane_of(fb);
+    /* middle4 / 4 + u u2 / 2 + v v2 / 2 = 0 for both: 2 u u2 + 2 v v2 =
+     * -middle4 */
+    det = 2 * (pa.u2 * pb.v2 - pb.u2 * pa.v2);
+    if (!near_q16(pb.middle4 * pa.v2 - pa.middle4 * pb.v2, det, &u_q16) ||
+        !near_q16(pa.middle4 * pb.u2 - pb.middle4 * pa.u2, det, &v_q16))
+        return 0;
+    px = plane_of(x);
+    py = plane_of(y);
+    at_q8[0] = q_narrow(
+        q_shift(px.middle4 * 32768 + px.u2 * u_q16 + px.v2 * v_q16, 17));
+    at_q8[1] = q_narrow(
+        q_shift(py.middle4 * 32768 + py.u2 * u_q16 + py.v2 * v_q16, 17));
+    return 1;
+}

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where the stop's sides and the barrels cut the edges of a grid.
+ *
+ *   in   the rays at the ends of an edge, or at the corners of a cell
+ *   out  the part of the edge that is seen; where two cuts cross in a cell
+ *
+ * Every cut is linear along an edge, between its two ends, and in a cell taken
+ * for the plane that fits its corners best. A part follows from the ends alone,
+ * in the order of the grid: both cells at an edge find the same.
+ */
+#ifndef GLINT_FLARE_CUTS_H
+#define GLINT_FLARE_CUTS_H
+
+#include <stdint.h>
+
+#include "glint/flare.h"
+
+/* The cuts that a node lies on or outside of: a bit for each side of the stop,
+ * of a round one the lowest, and for each barrel. */
+struct glint_outside {
+    uint64_t sides;
+    uint8_t barrels;
+};
+
+struct glint_outside glint_cuts_outside(const struct glint_stop *stop,
+                                        const struct glint_vertex *v);
+
+/* How many cuts there are in a set; 3 for all above. */
+int glint_cuts_count(struct glint_outside o);
+
+/* The visible part of the edge between two neighbouring nodes, from the one
+ * that comes first in the grid. */
+struct glint_part {
+    int32_t end_q8[2][2];
+    int cut[2]; /* what ends it there, or GLINT_CUT_NOTHING: the node itself */
+    int visible;
+};
+
+enum { GLINT_CUT_NOTHING = -1 };
+
+void glint_cuts_part(const struct glint_stop *stop,
+                     const struct glint_vertex *a, struct glint_outside at_a,
+                     const struct glint_vertex *b, struct glint_outside at_b,
+                     struct glint_part *part);
+
+/* Where the cuts A and B, as parts name them, cross within the cell with the
+ * corners CORNER, in order. Returns 0 where they do not. */
+int glint_cuts_cross(const struct glint_stop *stop,
+                     const struct glint_vertex *const corner[4], int a, int b,
+                     int32_t at_q8[2]);
+
+#endif
