@@ -40,7 +40,7 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
-        cmd_bench
+        bench_cases bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan pnm y4m picture output workers \
         measure lamps
@@ -74,7 +74,7 @@ $(OUT)/src/kernels/%.o $(OUT)/src/tile/codes.o \
 $(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o \
 $(OUT)/src/flare/cuts.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
 # the floor that everything is measured by is as fast as can be
-$(OUT)/tools/cmd_bench.o: CFLAGS += -O3
+$(OUT)/tools/bench_cases.o: CFLAGS += -O3
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits
 # rays in eights: errno and traps are all that these give away
 $(OUT)/src/bake/trace.o: CFLAGS += -O3 -fno-math-errno -fno-trapping-math

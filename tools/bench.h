@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What glint bench times: cases of a lens, a picture and options, that take
+ * turns.
+ */
+#ifndef GLINT_TOOLS_BENCH_H
+#define GLINT_TOOLS_BENCH_H
+
+#include "scene.h"
+
+enum { MAX_CASES = 256, MAX_ROUNDS = 1000, MAX_LENSES = 16, MAX_LIGHTS = 64 };
+
+enum stage { PLAN, TRANSFER, BIN, DRAW, WHOLE, STAGES };
+
+/* A picture to draw on, and what touching it costs. */
+struct canvas {
+    struct glint_image image;
+    uint8_t *fresh, *mem;
+    size_t bytes;
+    double floor_ms[MAX_ROUNDS];
+};
+
+struct test {
+    const struct scene *scene;
+    struct canvas *canvas;
+    struct frame frame;
+    struct glint_lamp lamp[MAX_LIGHTS];
+    int n_lamps, threads;
+    const char *kernels;
+    double scale, psnr_db; /* NAN: not measured */
+    struct frame_report report;
+    double ms[STAGES][MAX_ROUNDS];
+};
+
+struct bench {
+    struct tool *tool;
+    struct scene base, scene[MAX_LENSES];
+    int n_scenes, n_canvases, n_tests, rounds;
+    struct canvas canvas[8];
+    struct test *test;
+    struct glint_workers *one, *two;
+    enum glint_pixel_format format;
+    const char *format_word;
+    int width, height;
+    bool all, psnr;
+};
+
+/* Adds the plain case of SCENE, and with b->all its variations. Returns an exit
+ * code, as all here that return int. */
+int bench_add(struct bench *b, const struct scene *scene);
+
+/* Times round ROUND of a case, and of what touching its memory costs. */
+enum glint_status bench_run(struct test *t, int round);
+double bench_floor(struct canvas *c);
+
+/* Compares T with exact rays of the lens's table: t->psnr_db. */
+int bench_psnr(struct bench *b, struct test *t);
+
+/* Medians, as a table for people or for programs. */
+void bench_print(const struct bench *b);
+void bench_print_json(const struct bench *b);
+
+#endif

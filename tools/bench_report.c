@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench.h"
+
+static const char *const stage_names[STAGES] = {"plan", "transfer", "bin",
+                                                "draw", "whole"};
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+static double median(const double *values, int n)
+{
+    double sorted[MAX_ROUNDS];
+
+    memcpy(sorted, values, (size_t)n * sizeof *values);
+    qsort(sorted, (size_t)n, sizeof *sorted, by_size);
+    return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+}
+
+static const char *raster_of(const struct test *t)
+{
+    return t->frame.cfg.raster == GLINT_RASTER_CELLS || t->frame.mask ? "cells"
+                                                                      : "edges";
+}
+
+static double quality_of(const struct test *t)
+{
+    return log2((t->scene->grid ? t->scene->grid : 64) / 16.0) / 4;
+}
+
+static void print_test(const struct bench *b, const struct test *t)
+{
+    const double floor_ms = median(t->canvas->floor_ms, b->rounds);
+    const double ms = median(t->ms[WHOLE], b->rounds);
+
+    printf("%-22s %4dx%-4d %2d %2d %-5s %-5s %8.3f %7.1f ", t->scene->lens.name,
+           t->canvas->image.width, t->canvas->image.height, t->n_lamps,
+           t->threads, raster_of(t), t->kernels, ms, ms / floor_ms);
+    for (int s = 0; s < WHOLE; s++)
+        printf(" %7.2f", median(t->ms[s], b->rounds) / floor_ms);
+    printf("  %7d %6.2f", t->report.stats.primitives,
+           (double)t->report.peak_bytes / (1 << 20));
+    if (isnan(t->psnr_db))
+        printf("\n");
+    else
+        printf("  %.1f\n", t->psnr_db);
+}
+
+void bench_print(const struct bench *b)
+{
+    printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
+           median(b->canvas[0].floor_ms, b->rounds), b->canvas[0].image.width,
+           b->canvas[0].image.height, b->format_word, b->rounds);
+    printf("%-22s %9s %2s %2s %-5s %-5s %8s %7s ", "lens", "size", "li", "th",
+           "by", "sets", "ms", "ratio");
+    for (int s = 0; s < WHOLE; s++)
+        printf(" %7.7s", stage_names[s]);
+    printf("  %7s %6s%s\n", "prims", "MiB", b->psnr ? "  dB" : "");
+    for (int i = 0; i < b->n_tests; i++)
+        print_test(b, &b->test[i]);
+}
+
+static void json_test(const struct bench *b, const struct test *t, bool last)
+{
+    const double floor_ms = median(t->canvas->floor_ms, b->rounds);
+    const double ms = median(t->ms[WHOLE], b->rounds);
+
+    printf("{\"lens\": ");
+    tool_json_string(stdout, t->scene->lens.name);
+    printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", \"lights\": "
+           "%d, \"threads\": %d, \"raster\": \"%s\", \"kernels\": \"%s\", "
+           "\"quality\": %.3f, \"ms\": %.4f, \"ratio\": %.3f, ",
+           t->canvas->image.width, t->canvas->image.height, b->format_word,
+           t->n_lamps, t->threads, raster_of(t), t->kernels, quality_of(t), ms,
+           ms / floor_ms);
+    for (int s = 0; s < WHOLE; s++)
+        printf("\"%s_ms\": %.4f, ", stage_names[s],
+               median(t->ms[s], b->rounds));
+    if (isnan(t->psnr_db))
+        printf("\"psnr_db\": null, ");
+    else
+        printf("\"psnr_db\": %.2f, ", t->psnr_db);
+    printf("\"ghosts\": %d, \"bundles\": %d, \"primitives\": %d, \"tiles\": "
+           "%d, \"arena_bytes\": %zu}%s\n",
+           t->report.ghosts, t->report.stats.bundles,
+           t->report.stats.primitives, t->report.tiles, t->report.peak_bytes,
+           last ? "" : ",");
+}
+
+void bench_print_json(const struct bench *b)
+{
+    printf("{\"floor_ms\": %.5f, \"rounds\": %d, \"cases\": [\n",
+           median(b->canvas[0].floor_ms, b->rounds), b->rounds);
+    for (int i = 0; i < b->n_tests; i++)
+        json_test(b, &b->test[i], i + 1 == b->n_tests);
+    printf("]}\n");
+}
