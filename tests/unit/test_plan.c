@@ -168,6 +168,56 @@ static void test_what_is_seen(void **state)
     close_fixture(&f);
 }
 
+/* The most that the flare adds to a pixel, display white. */
+static double peak(struct fixture *f)
+{
+    static int32_t px_q20[3 * WIDTH * HEIGHT];
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_flare_stats s;
+    int32_t most = 0;
+
+    memset(px_q20, 0, sizeof px_q20);
+    glint_image_place(&image, px_q20);
+    start(f);
+    glint_flare_plan(f->flare, &f->rays, &f->beam, 1);
+    glint_flare_bin(f->flare, &s);
+    glint_flare_draw(f->flare, &image);
+    free(f->mem);
+    f->mem = NULL;
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        most = px_q20[i] > most ? px_q20[i] : most;
+    return most * 0x1p-20;
+}
+
+/* What is left out is fainter than asked for in every pixel, and nothing is
+ * kept that is fainter by far. */
+static void test_faint(void **state)
+{
+    struct fixture f;
+    int n_left_out = 0, n_kept = 0;
+
+    (void)state;
+    open_fixture(&f);
+    f.rays.n_waves = 1;
+    for (int e = -24; e < 10; e++) {
+        double light;
+        int bundles;
+
+        f.beam.power = real_of(1, e);
+        f.rays.faintest = real_of(0, 0);
+        light = peak(&f);
+        f.rays.faintest = real_of(1, -10);
+        bundles = planned(&f, 1).bundles;
+        n_left_out += bundles == 0 && light > 0x1p-18;
+        n_kept += bundles > 0;
+        assert_true(bundles > 0 || light <= 0x1p-10);
+        assert_true(bundles == 0 || light > 0x1p-13);
+    }
+    assert_true(n_left_out > 3 && n_kept > 3);
+    close_fixture(&f);
+}
+
 static void test_room(void **state)
 {
     struct fixture f;
@@ -242,6 +292,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reals),
         cmocka_unit_test(test_what_is_seen),
+        cmocka_unit_test(test_faint),
         cmocka_unit_test(test_room),
         cmocka_unit_test(test_rows_and_grids),
     };
