@@ -109,12 +109,13 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
     return GLINT_OK;
 }
 
-/* Half a code near black, which no ghost below can lift, in 8 bits. */
+/* An eighth of a code near black: hundreds of ghosts that each stay below half
+ * a code can be seen together. */
 static double faintest(const struct glint_image *image)
 {
     return image->format == GLINT_LINEAR_Q20    ? 0
-           : image->transfer == GLINT_TONE_SRGB ? 0.5 / 255 / 12.92
-                                                : 0.5 / 255 / 4.5;
+           : image->transfer == GLINT_TONE_SRGB ? 0.125 / 255 / 12.92
+                                                : 0.125 / 255 / 4.5;
 }
 
 static struct glint_rays rays_of(const struct frame *f, double faintest_light)

@@ -108,8 +108,10 @@ struct glint_rays {
     int uniform;    /* all grids have so many cells a side */
     int narrow;     /* rays in 16-bit lanes: glint_transfer_narrow */
     int only_ghost; /* of the lens, with its parts; -1: all */
-    struct glint_real faintest; /* what stays below in every pixel may be left
-                                   out, display white; 0: nothing */
+    /* Of a picture in codes: light that no pixel shows, display white. What
+     * stays below may be left out, and the fainter a ghost, the coarser its
+     * grid and its steps of irradiance. 0: a picture in linear light. */
+    struct glint_real faintest;
 };
 
 /* ------------------------------------------------------------------ drawing */
@@ -133,7 +135,8 @@ struct glint_flare_config {
     struct glint_stop stop; /* copied; its mask is kept */
 
     /* By edges: the irradiance of a cell is rounded to so many steps an octave,
-     * 1 .. 4096, and edges between equal cells are not drawn; 0: not rounded */
+     * 1 .. 4096, fewer for faint ghosts planned for codes, and edges between
+     * equal cells are not drawn; 0: not rounded */
     int irradiance_steps;
 
     /* By cells */

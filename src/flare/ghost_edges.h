@@ -28,12 +28,15 @@
 #include "tile/outline.h"
 
 /* Scratch of a worker: of the nodes of two rows, and the cells between. */
+enum { GLINT_LIGHT_OCTAVES = 45 };
+
 struct glint_ghost_rows {
     struct glint_outline outline;
     struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* of the stop: bit set = outside */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1]; /* the same; LOST */
     int32_t light[2][GLINT_MAX_CELLS];       /* of cells, packed */
+    uint16_t steps[GLINT_LIGHT_OCTAVES];     /* of irradiance, by octave */
 };
 
 struct glint_ghost_edges {
@@ -48,6 +51,7 @@ struct glint_ghost_edges {
     int width, height; /* of the picture */
     int32_t limit_q8;  /* of a cell's light in a pixel, energy 1 */
     int steps;         /* per octave of irradiance; 0: not rounded */
+    int coded; /* the picture has codes, which tell less apart of faint light */
     struct glint_ghost_rows *rows;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;

@@ -8,7 +8,8 @@ enum {
     ACROSS = GLINT_PLAN_ACROSS,
     DOWN = GLINT_PLAN_DOWN,
     FINE_LOG2 = 6, /* squares are of differences over so much */
-    LEAST = 8      /* cells a side */
+    LEAST = 8,     /* cells a side */
+    FOLD_OCTAVES = 3
 };
 
 /* --------------------------------------------------------------------- survey
@@ -177,12 +178,28 @@ static int64_t bend_of(const struct glint_plan_survey *s, int a, int b)
     return first ? second * sensor / first : 0; /* 2^30 * 2^31 */
 }
 
+/* What codes need of N cells a side. Errors of a faint ghost are the less seen:
+ * in codes its light shrinks by 2^(5/12) with each octave, its errors with the
+ * square of the cells. Folds are brighter than their ghost's mean. */
+static int cells_for_codes(const struct glint_plan_survey *s,
+                           struct glint_real light, int n)
+{
+    const int folded = s->up && s->down;
+    int octaves = -(light.exponent + 31) - (folded ? FOLD_OCTAVES : 0);
+
+    if (!folded)
+        n -= n / 4;
+    for (; octaves > 0 && n > LEAST; octaves--)
+        n -= n / 8;
+    return n;
+}
+
 /* As many cells as keep what is straight between rays within a hundredth of a
  * pixel of what bends, at fineness 64, and outlines within a tenth: light piles
  * up along folds, but not along cuts. */
 static int cells_of(const struct glint_plan *p,
                     const struct glint_plan_survey *s,
-                    const struct glint_transfer *t)
+                    const struct glint_transfer *t, struct glint_real light)
 {
     const struct glint_rays *r = p->rays;
     const int most = (s->up && s->down ? 4 : 2) * r->fineness;
@@ -208,6 +225,8 @@ static int cells_of(const struct glint_plan *p,
     n = q_narrow(
         ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
         14);
+    if (r->faintest.mantissa)
+        n = cells_for_codes(s, light, n);
     n = n < LEAST ? LEAST : n;
     n = (n + 3) / 4 * 4;
     return n < most ? n : most < GLINT_MAX_CELLS ? most : GLINT_MAX_CELLS;
@@ -368,7 +387,7 @@ void glint_plan_bundle(const struct glint_plan *plan,
         return;
     source->light = real_over(
         source->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
-    bundle->n_cells = cells_of(plan, s, transfer);
+    bundle->n_cells = cells_of(plan, s, transfer, source->light);
     if (transfer->hollow) /* its rim has to be a row */
         bundle->n_cells = (bundle->n_cells + 3) / 4 * 4;
     set_flux(bundle, source->flux);
