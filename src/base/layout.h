@@ -28,6 +28,12 @@ struct glint_layout {
 
 const struct glint_layout *glint_layout_of(enum glint_pixel_format format);
 
+/* YUYV: every other byte is luma, and the rest is chroma by turns. */
+static inline int glint_layout_is_packed(const struct glint_layout *layout)
+{
+    return layout->planes == 1 && layout->log2_x;
+}
+
 /* Sample I that pixel (X, Y) has a part in. */
 static inline uint8_t *glint_layout_at(const struct glint_layout *layout,
                                        const struct glint_image *image, int i,

@@ -29,6 +29,17 @@ static inline V v_repeat(const int16_t *p)
         _mm_loadu_si128((const __m128i *)(const void *)p));
 }
 
+/* As they lie, from any address. */
+static inline V v_load_bytes(const uint8_t *p)
+{
+    return _mm256_loadu_si256((const __m256i *)(const void *)p);
+}
+
+static inline void v_store_bytes(uint8_t *p, V x)
+{
+    _mm256_storeu_si256((__m256i *)(void *)p, x);
+}
+
 static inline V v_load_codes(const uint8_t *p)
 {
     return _mm256_cvtepu8_epi16(
@@ -43,7 +54,6 @@ static inline void v_store_codes(uint8_t *p, V x)
                                       _mm256_extracti128_si256(x, 1)));
 }
 
-#define v_table              v_repeat
 #define v_add                _mm256_add_epi16
 #define v_sub                _mm256_sub_epi16
 #define v_add_sat            _mm256_adds_epi16
@@ -54,6 +64,7 @@ static inline void v_store_codes(uint8_t *p, V x)
 #define v_min                _mm256_min_epi16
 #define v_max                _mm256_max_epi16
 #define v_and                _mm256_and_si256
+#define v_or                 _mm256_or_si256
 #define v_and_not            _mm256_andnot_si256
 #define v_equal              _mm256_cmpeq_epi16
 #define v_greater            _mm256_cmpgt_epi16
@@ -62,12 +73,6 @@ static inline void v_store_codes(uint8_t *p, V x)
 #define v_right_signed       _mm256_srai_epi16
 #define v_look(table, index) _mm256_shuffle_epi8(table, index)
 #define v_pick(mask, a, b)   _mm256_blendv_epi8(b, a, mask)
-
-static inline V v_set_pair(int16_t even, int16_t odd)
-{
-    return _mm256_set1_epi32(
-        (int32_t)((uint32_t)(uint16_t)even | (uint32_t)(uint16_t)odd << 16));
-}
 
 /* Rounded up; of values of 0 or more. */
 #define v_mean _mm256_avg_epu16
@@ -94,11 +99,16 @@ static inline V v_not_less(V a, V b)
     return _mm256_cmpeq_epi16(_mm256_max_epu16(a, b), a);
 }
 
-/* From 0 .. 7 to the places of the bytes of table entries. */
-static inline V v_index(V k)
+/* Places of the bytes of the entries K + BASE of a table, 0 .. 7. */
+static inline V v_index(V k, int base)
 {
     return _mm256_add_epi16(_mm256_mullo_epi16(k, v_set(0x0202)),
-                            v_set(0x0100));
+                            v_set((int16_t)(0x0100 + base * 0x0202)));
+}
+
+static inline int v_is_zero(V x)
+{
+    return _mm256_testz_si256(x, x);
 }
 
 #define W              __m256i

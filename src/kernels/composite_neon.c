@@ -14,7 +14,6 @@
 #define v_load             vld1q_s16
 #define v_store            vst1q_s16
 #define v_repeat           vld1q_s16
-#define v_table            vld1q_s16
 #define v_add              vaddq_s16
 #define v_sub              vsubq_s16
 #define v_add_sat          vqaddq_s16
@@ -23,10 +22,22 @@
 #define v_min              vminq_s16
 #define v_max              vmaxq_s16
 #define v_and              vandq_s16
+#define v_or               vorrq_s16
 #define v_left             vshlq_n_s16
 #define v_right_signed     vshrq_n_s16
 #define v_right(x, n)      S(vshrq_n_u16(U(x), n))
 #define v_pick(mask, a, b) vbslq_s16(U(mask), a, b)
+
+/* As they lie, from any address. */
+static inline V v_load_bytes(const uint8_t *p)
+{
+    return vreinterpretq_s16_u8(vld1q_u8(p));
+}
+
+static inline void v_store_bytes(uint8_t *p, V x)
+{
+    vst1q_u8(p, vreinterpretq_u8_s16(x));
+}
 
 static inline V v_load_codes(const uint8_t *p)
 {
@@ -67,12 +78,6 @@ static inline V v_greater(V a, V b)
     return S(vcgtq_s16(a, b));
 }
 
-static inline V v_set_pair(int16_t even, int16_t odd)
-{
-    return vreinterpretq_s16_u32(
-        vdupq_n_u32((uint32_t)(uint16_t)even | (uint32_t)(uint16_t)odd << 16));
-}
-
 /* Rounded up; of values of 0 or more. */
 #define v_mean vrhaddq_s16
 
@@ -87,10 +92,18 @@ static inline V v_not_less(V a, V b)
     return S(vcgeq_u16(U(a), U(b)));
 }
 
-/* From 0 .. 7 to the places of the bytes of table entries. */
-static inline V v_index(V k)
+/* Places of the bytes of the entries K + BASE of a table, 0 .. 7. */
+static inline V v_index(V k, int base)
 {
-    return vmlaq_s16(v_set(0x0100), k, v_set(0x0202));
+    return vmlaq_s16(v_set((int16_t)(0x0100 + base * 0x0202)), k,
+                     v_set(0x0202));
+}
+
+static inline int v_is_zero(V x)
+{
+    const uint64x2_t both = vreinterpretq_u64_s16(x);
+
+    return (vgetq_lane_u64(both, 0) | vgetq_lane_u64(both, 1)) == 0;
 }
 
 static inline V v_look(V table, V index)

@@ -27,6 +27,17 @@ static inline V v_repeat(const int16_t *p)
     return _mm_loadu_si128((const __m128i *)(const void *)p);
 }
 
+/* As they lie, from any address. */
+static inline V v_load_bytes(const uint8_t *p)
+{
+    return _mm_loadu_si128((const __m128i *)(const void *)p);
+}
+
+static inline void v_store_bytes(uint8_t *p, V x)
+{
+    _mm_storeu_si128((__m128i *)(void *)p, x);
+}
+
 static inline V v_load_codes(const uint8_t *p)
 {
     return _mm_cvtepu8_epi16(_mm_loadl_epi64((const __m128i *)(const void *)p));
@@ -38,7 +49,6 @@ static inline void v_store_codes(uint8_t *p, V x)
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(x, x));
 }
 
-#define v_table              v_repeat
 #define v_add                _mm_add_epi16
 #define v_sub                _mm_sub_epi16
 #define v_add_sat            _mm_adds_epi16
@@ -49,6 +59,7 @@ static inline void v_store_codes(uint8_t *p, V x)
 #define v_min                _mm_min_epi16
 #define v_max                _mm_max_epi16
 #define v_and                _mm_and_si128
+#define v_or                 _mm_or_si128
 #define v_and_not            _mm_andnot_si128
 #define v_equal              _mm_cmpeq_epi16
 #define v_greater            _mm_cmpgt_epi16
@@ -57,12 +68,6 @@ static inline void v_store_codes(uint8_t *p, V x)
 #define v_right_signed       _mm_srai_epi16
 #define v_look(table, index) _mm_shuffle_epi8(table, index)
 #define v_pick(mask, a, b)   _mm_blendv_epi8(b, a, mask)
-
-static inline V v_set_pair(int16_t even, int16_t odd)
-{
-    return _mm_set1_epi32(
-        (int32_t)((uint32_t)(uint16_t)even | (uint32_t)(uint16_t)odd << 16));
-}
 
 /* Rounded up; of values of 0 or more. */
 #define v_mean _mm_avg_epu16
@@ -89,10 +94,16 @@ static inline V v_not_less(V a, V b)
     return _mm_cmpeq_epi16(_mm_max_epu16(a, b), a);
 }
 
-/* From 0 .. 7 to the places of the bytes of table entries. */
-static inline V v_index(V k)
+/* Places of the bytes of the entries K + BASE of a table, 0 .. 7. */
+static inline V v_index(V k, int base)
 {
-    return _mm_add_epi16(_mm_mullo_epi16(k, v_set(0x0202)), v_set(0x0100));
+    return _mm_add_epi16(_mm_mullo_epi16(k, v_set(0x0202)),
+                         v_set((int16_t)(0x0100 + base * 0x0202)));
+}
+
+static inline int v_is_zero(V x)
+{
+    return _mm_testz_si128(x, x);
 }
 
 #define W              __m128i

@@ -17,8 +17,6 @@
 
 #include "kernels/tone.h"
 
-#define GLINT_LANES 16
-
 /* Adds light to N pixels of one row of Y'CbCr.
  *   luma    codes, changed in place
  *   cb, cr  codes, one for each pixel
@@ -53,6 +51,14 @@ typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,
                                 const int16_t *round,
                                 const int16_t *round_chroma);
 
+/* The same for pixels of two bytes, luma and by turns Cb and Cr, luma first
+ * unless LUMA_AT is 1; PIXELS begins anywhere. */
+typedef void glint_add_packed_fn(uint8_t *pixels,
+                                 const uint16_t *const light[3], int n,
+                                 int luma_at, const struct glint_mix *mix,
+                                 const int16_t *round,
+                                 const int16_t *round_chroma);
+
 /* Adds light to N codes of one channel of R'G'B'; LIGHT and ROUND as above. */
 typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
@@ -80,6 +86,7 @@ struct glint_kernels {
     glint_horner_across_fn *horner_across;
     glint_add_luma_fn *add_luma;
     glint_add_pairs_fn *add_pairs;
+    glint_add_packed_fn *add_packed;
     glint_add_code_fn *add_code;
     glint_run_sum_fn *run_sum;
 };
@@ -95,6 +102,8 @@ glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,
     glint_add_luma_neon;
 glint_add_pairs_fn glint_add_pairs_c, glint_add_pairs_sse41,
     glint_add_pairs_avx2, glint_add_pairs_neon;
+glint_add_packed_fn glint_add_packed_c, glint_add_packed_sse41,
+    glint_add_packed_avx2, glint_add_packed_neon;
 glint_add_code_fn glint_add_code_c, glint_add_code_sse41, glint_add_code_avx2,
     glint_add_code_neon;
 glint_run_sum_fn glint_run_sum_c, glint_run_sum_sse41, glint_run_sum_avx2,

@@ -20,27 +20,36 @@
 
 #include <stdint.h>
 
+#include "base/compiler.h"
+
+#define GLINT_LANES 16
+
 enum { GLINT_WHITE_Q7 = 255 << 7 };
 
+/* A constant in all lanes of the widest vector, and a table of eight in both of
+ * its halves: operands as they lie in memory. */
+typedef ALIGNED(32) int16_t glint_lanes[GLINT_LANES];
+
 struct glint_tone16 {
-    int16_t toe_end_q7, toe_q15; /* of decode: light _q16 per code _q7 */
-    int16_t piece[4][8];         /* of powers of the place within, light _q16 */
-    uint16_t toe_end_q16, toe_q13; /* of encode: code _q7 per light _q16 */
-    int16_t power_q15[5];
-    int16_t lift[8];   /* 4^k, by k = 0 .. 4 */
-    uint16_t scale[8]; /* white _q7 / 4^(k e) */
-    int16_t offset_q7;
+    glint_lanes toe_end_q7, toe_q15; /* of decode: light _q16 per code _q7 */
+    glint_lanes piece[4]; /* of powers of the place within, light _q16 */
+    glint_lanes toe_end_q16, toe_q13; /* of encode: code _q7 per light _q16,
+                                         unsigned */
+    glint_lanes power_q15[5];
+    glint_lanes lift;  /* 4^k, by k = 0 .. 4 */
+    glint_lanes scale; /* white _q7 / 4^(k e), unsigned */
+    glint_lanes offset_q7;
 };
 
 /* How Y', Cb, Cr and R', G', B' mix. */
 struct glint_mix {
     struct glint_tone16 tone;
-    int16_t black;    /* code of Y' = 0 */
-    int16_t luma_q15; /* R'G'B' per Y', less 1 */
+    glint_lanes black;    /* code of Y' = 0 */
+    glint_lanes luma_q15; /* R'G'B' per Y', less 1 */
     /* R', G', B' per Cb and Cr, a quarter; _q15 */
-    int16_t red_cr_q15, green_cb_q15, green_cr_q15, blue_cb_q15;
-    int16_t to_luma_q15[3]; /* Y' per R', G', B' */
-    int16_t to_chroma_q15[2][3];
+    glint_lanes red_cr_q15, green_cb_q15, green_cr_q15, blue_cb_q15;
+    glint_lanes to_luma_q15[3];   /* Y' per R', G', B' */
+    glint_lanes to_chroma_q15[3]; /* Cb and Cr by turns */
 };
 
 #endif

@@ -77,12 +77,6 @@ static int is_woven(const struct glint_layout *l)
     return l->planes == 2 && l->sample[1].offset == 0;
 }
 
-/* YUYV: every other byte is luma, and the rest is chroma by turns. */
-static int is_packed(const struct glint_layout *l)
-{
-    return l->planes == 1 && l->log2_x;
-}
-
 static void read_chroma(const struct glint_layout *l,
                         const struct glint_image *image, int x, int y, int n,
                         uint8_t *to)
@@ -90,7 +84,7 @@ static void read_chroma(const struct glint_layout *l,
     const uint8_t *cb = glint_layout_at(l, image, 1, x, y);
     const uint8_t *cr = glint_layout_at(l, image, 2, x, y);
 
-    if (is_packed(l))
+    if (glint_layout_is_packed(l))
         copy(to, 1, cb, 2, 2 * n);
     else if (is_woven(l))
         copy(to, 1, cb, 1, 2 * n);
@@ -108,7 +102,7 @@ static void write_chroma(const struct glint_layout *l,
     uint8_t *cb = glint_layout_at(l, image, 1, x, y);
     uint8_t *cr = glint_layout_at(l, image, 2, x, y);
 
-    if (is_packed(l))
+    if (glint_layout_is_packed(l))
         copy(cb, 2, from, 1, 2 * n);
     else if (is_woven(l))
         copy(cb, 1, from, 1, 2 * n);
@@ -116,22 +110,6 @@ static void write_chroma(const struct glint_layout *l,
         copy(cb, l->sample[1].step, from, 2, n);
         copy(cr, l->sample[2].step, from + 1, 2, n);
     }
-}
-
-/* N bytes of each by turns, LUMA first where AHEAD. */
-static void weave(uint8_t *restrict to, const uint8_t *restrict luma,
-                  const uint8_t *restrict chroma, int n, int ahead)
-{
-    if (ahead)
-        for (int i = 0; i < n; i++) {
-            to[2 * i] = luma[i];
-            to[2 * i + 1] = chroma[i];
-        }
-    else
-        for (int i = 0; i < n; i++) {
-            to[2 * i] = chroma[i];
-            to[2 * i + 1] = luma[i];
-        }
 }
 
 /* ---------------------------------------------------------------------- rows
@@ -163,11 +141,6 @@ static void write_row(const struct glint_codes *c, const struct glint_layout *l,
                       const struct glint_image *image, int x, int y, int n,
                       int row)
 {
-    if (is_packed(l) && n % 2 == 0) {
-        weave(image->plane[0] + y * image->stride_bytes[0] + 2 * (ptrdiff_t)x,
-              c->sample[0][row], c->chroma[row], n, l->sample[0].offset == 0);
-        return;
-    }
     for (int i = 0; i < whole_channels(l); i++)
         copy(glint_layout_at(l, image, i, x, y), l->sample[i].step,
              c->sample[i][row], 1, n);

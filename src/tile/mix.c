@@ -4,30 +4,45 @@
 #include "base/q.h"
 #include "tile/curve.h"
 
+#define ALL(x)                                                                \
+    {                                                                         \
+        (int16_t)(x), (int16_t)(x), (int16_t)(x), (int16_t)(x), (int16_t)(x), \
+            (int16_t)(x), (int16_t)(x), (int16_t)(x), (int16_t)(x),           \
+            (int16_t)(x), (int16_t)(x), (int16_t)(x), (int16_t)(x),           \
+            (int16_t)(x), (int16_t)(x), (int16_t)(x)                          \
+    }
+#define TWICE(a, b, c, d, e, f, g, h)                                         \
+    {                                                                         \
+        (int16_t)(a), (int16_t)(b), (int16_t)(c), (int16_t)(d), (int16_t)(e), \
+            (int16_t)(f), (int16_t)(g), (int16_t)(h), (int16_t)(a),           \
+            (int16_t)(b), (int16_t)(c), (int16_t)(d), (int16_t)(e),           \
+            (int16_t)(f), (int16_t)(g), (int16_t)(h)                          \
+    }
+
 /* clang-format off */
 static const struct glint_tone16 srgb = {
-    1320, 5092,
-    {{57, 947, 3360, 7666, 14146, 23038, (int16_t)34544, (int16_t)48850},
-     {284, 1578, 3307, 5350, 7649, 10167, 12877, 15762},
-     {521, 775, 953, 1091, 1208, 1310, 1401, 1484},
-     {85, 60, 47, 39, 34, 30, 28, 26}},
-    205, 52714,
-    {26939, 17886, -8206, 9008, -10306},
-    {1, 4, 16, 64, 256, 0, 0, 0},
-    {34435, 19326, 10846, 6087, 3416, 0, 0, 0},
-    1795};
+    ALL(1320), ALL(5092),
+    {TWICE(57, 947, 3360, 7666, 14146, 23038, 34544, 48850),
+     TWICE(284, 1578, 3307, 5350, 7649, 10167, 12877, 15762),
+     TWICE(521, 775, 953, 1091, 1208, 1310, 1401, 1484),
+     TWICE(85, 60, 47, 39, 34, 30, 28, 26)},
+    ALL(205), ALL(52714),
+    {ALL(26939), ALL(17886), ALL(-8206), ALL(9008), ALL(-10306)},
+    TWICE(1, 4, 16, 64, 256, 0, 0, 0),
+    TWICE(34435, 19326, 10846, 6087, 3416, 0, 0, 0),
+    ALL(1795)};
 
 static const struct glint_tone16 bt709 = {
-    2644, 14620,
-    {{314, 1921, 5154, 10183, 17136, 26118, (int16_t)37215, (int16_t)50505},
-     {865, 2386, 4106, 5972, 7952, 10026, 12182, 14409},
-     {706, 818, 901, 964, 1015, 1059, 1097, 1131},
-     {37, 28, 21, 17, 15, 13, 11, 10}},
-    1180, 18360,
-    {26520, 19025, -8236, 8791, -9924},
-    {1, 4, 16, 64, 256, 0, 0, 0},
-    {35871, 19223, 10301, 5520, 2958, 0, 0, 0},
-    3231};
+    ALL(2644), ALL(14620),
+    {TWICE(314, 1921, 5154, 10183, 17136, 26118, 37215, 50505),
+     TWICE(865, 2386, 4106, 5972, 7952, 10026, 12182, 14409),
+     TWICE(706, 818, 901, 964, 1015, 1059, 1097, 1131),
+     TWICE(37, 28, 21, 17, 15, 13, 11, 10)},
+    ALL(1180), ALL(18360),
+    {ALL(26520), ALL(19025), ALL(-8236), ALL(8791), ALL(-9924)},
+    TWICE(1, 4, 16, 64, 256, 0, 0, 0),
+    TWICE(35871, 19223, 10301, 5520, 2958, 0, 0, 0),
+    ALL(3231)};
 /* clang-format on */
 
 const struct glint_tone16 *glint_tone16_of(enum glint_tone transfer)
@@ -35,9 +50,17 @@ const struct glint_tone16 *glint_tone16_of(enum glint_tone transfer)
     return transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
 }
 
-static int16_t narrow(int64_t x)
+/* EVEN and ODD by turns. */
+static void set_pairs(int16_t *lanes, int64_t even, int64_t odd)
 {
-    return (int16_t)q_clamp_sat(x, -INT16_MAX, INT16_MAX);
+    for (int i = 0; i < GLINT_LANES; i++)
+        lanes[i] =
+            (int16_t)q_clamp_sat(i & 1 ? odd : even, -INT16_MAX, INT16_MAX);
+}
+
+static void set(int16_t *lanes, int64_t x)
+{
+    set_pairs(lanes, x, x);
 }
 
 void glint_mix_init(struct glint_mix *mix, const struct glint_image *image)
@@ -46,15 +69,15 @@ void glint_mix_init(struct glint_mix *mix, const struct glint_image *image)
 
     glint_ycc_init(&ycc, image->matrix, image->range);
     mix->tone = *glint_tone16_of(image->transfer);
-    mix->black = (int16_t)ycc.black;
-    mix->luma_q15 = narrow(q_shift(ycc.to_rgb_q16[0][0] - (1 << 16), 1));
-    mix->red_cr_q15 = narrow(q_shift(ycc.to_rgb_q16[0][2], 3));
-    mix->green_cb_q15 = narrow(q_shift(ycc.to_rgb_q16[1][1], 3));
-    mix->green_cr_q15 = narrow(q_shift(ycc.to_rgb_q16[1][2], 3));
-    mix->blue_cb_q15 = narrow(q_shift(ycc.to_rgb_q16[2][1], 3));
+    set(mix->black, ycc.black);
+    set(mix->luma_q15, q_shift(ycc.to_rgb_q16[0][0] - (1 << 16), 1));
+    set(mix->red_cr_q15, q_shift(ycc.to_rgb_q16[0][2], 3));
+    set(mix->green_cb_q15, q_shift(ycc.to_rgb_q16[1][1], 3));
+    set(mix->green_cr_q15, q_shift(ycc.to_rgb_q16[1][2], 3));
+    set(mix->blue_cb_q15, q_shift(ycc.to_rgb_q16[2][1], 3));
     for (int c = 0; c < 3; c++) {
-        mix->to_luma_q15[c] = narrow(ycc.to_ycc_q15[0][c]);
-        mix->to_chroma_q15[0][c] = narrow(ycc.to_ycc_q15[1][c]);
-        mix->to_chroma_q15[1][c] = narrow(ycc.to_ycc_q15[2][c]);
+        set(mix->to_luma_q15[c], ycc.to_ycc_q15[0][c]);
+        set_pairs(mix->to_chroma_q15[c], ycc.to_ycc_q15[1][c],
+                  ycc.to_ycc_q15[2][c]);
     }
 }

@@ -77,11 +77,10 @@ static void resolve_whole(const struct glint_resolve *r,
                          &r->mix, round);
     for (int k = 1; k < 3 && !grey; k++)
         for (int i = 0; i < n; i++) {
-            const int16_t *weight_q15 = r->mix.to_chroma_q15[k - 1];
             int64_t change_q22 = (int64_t)round[i & 7] << 15;
 
             for (int c = 0; c < 3; c++)
-                change_q22 += change[c][i] * weight_q15[c];
+                change_q22 += change[c][i] * r->mix.to_chroma_q15[c][k - 1];
             code[k][i] =
                 (uint8_t)q_clamp_sat(code[k][i] + (change_q22 >> 22), 0, 255);
         }
@@ -122,6 +121,34 @@ static void resolve_pairs(const struct glint_resolve *r,
     }
 }
 
+/* YUYV and the like, in place; what is left of whole vectors on the side. */
+static void resolve_packed(const struct glint_resolve *r,
+                           const struct glint_layout *l,
+                           const struct glint_image *image, int x, int y, int n,
+                           int row, const struct glint_light_rows *light,
+                           struct glint_resolve_rows *rows)
+{
+    uint8_t *px =
+        image->plane[0] + y * image->stride_bytes[0] + 2 * (ptrdiff_t)x;
+    uint8_t *rest = rows->codes.sample[0][0];
+    const int luma_at = l->sample[0].offset, whole = n & -GLINT_LANES;
+    const int16_t *round = r->round_q7[y & 7];
+    const uint16_t *rgb[3] = {light->rgb_q16[0][row], light->rgb_q16[1][row],
+                              light->rgb_q16[2][row]};
+
+    r->kernels->add_packed(px, rgb, whole, luma_at, &r->mix, round, round);
+    if (whole == n)
+        return;
+    for (int c = 0; c < 3; c++)
+        rgb[c] += whole;
+    for (int i = 0; i < 2 * (n - whole); i++)
+        rest[i] = px[2 * whole + i];
+    r->kernels->add_packed(rest, rgb, GLINT_LANES, luma_at, &r->mix, round,
+                           round);
+    for (int i = 0; i < 2 * (n - whole); i++)
+        px[2 * whole + i] = rest[i];
+}
+
 void glint_resolve_stretch(const struct glint_resolve *resolve,
                            const struct glint_image *image, int x, int y,
                            int n_x, int n_y, struct glint_light_rows *light,
@@ -129,6 +156,12 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
 {
     const struct glint_layout *l = glint_layout_of(image->format);
 
+    if (glint_layout_is_packed(l) && n_x % 2 == 0) {
+        for (int row = 0; row < n_y; row++)
+            resolve_packed(resolve, l, image, x, y + row, n_x, row, light,
+                           rows);
+        return;
+    }
     glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
     if (l->kind == GLINT_LAYOUT_RGB || l->kind == GLINT_LAYOUT_565)
         resolve_rgb(resolve, y, n_x, n_y, light, &rows->codes);

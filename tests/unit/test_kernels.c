@@ -244,6 +244,44 @@ static void check_pairs(const struct glint_kernels *k, const char *name)
           add_pairs(k, &got, N, GLINT_PAIRS_ALONE, &mix, round));
 }
 
+static void add_packed(const struct glint_kernels *k, uint8_t *pixels,
+                       uint16_t *const light[3], int n, int luma_at,
+                       const struct glint_mix *mix, const int16_t *round)
+{
+    const uint16_t *const rgb[3] = {light[0], light[1], light[2]};
+
+    k->add_packed(pixels, rgb, n, luma_at, mix, round, round + 8);
+}
+
+/* Dark stretches among them, and pixels that begin at odd addresses. */
+static void check_packed(const struct glint_kernels *k, const char *name)
+{
+    const struct glint_kernels *plain = glint_kernels_of(0);
+    uint8_t *want = fenced(2 * N + 1), *got = fenced(2 * N + 1);
+    uint16_t *light[3] = {fenced(2 * N), fenced(2 * N), fenced(2 * N)};
+    struct glint_mix mix;
+    int16_t round[16];
+
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int n = GLINT_LANES * (1 + (int)(draw() % (N / GLINT_LANES)));
+        const int luma_at = (int)(draw() & 1), at = (int)(draw() & 1);
+        const int dark = (int)(draw() % N);
+
+        draw_mix(&mix);
+        for (int i = 0; i < 16; i++)
+            round[i] = (int16_t)(draw() & 127);
+        for (int i = 0; i < 2 * N + 1; i++)
+            want[i] = got[i] = (uint8_t)draw();
+        for (int i = 0; i < 3 * N; i++)
+            light[i / N][i % N] = i % N > dark ? draw_light() : 0;
+        add_packed(plain, want + at, light, n, luma_at, &mix, round);
+        add_packed(k, got + at, light, n, luma_at, &mix, round);
+        EXPECT_SAME(got, want, 2 * N + 1);
+    }
+    BENCH("add_packed", name, add_packed(plain, want, light, N, 0, &mix, round),
+          add_packed(k, got, light, N, 0, &mix, round));
+}
+
 /* Every code under every light. */
 static void check_code(const struct glint_kernels *k, const char *name)
 {
@@ -342,6 +380,7 @@ static void test_same_bits(void)
         check_horner(k, variants[v].name);
         check_luma(k, variants[v].name);
         check_pairs(k, variants[v].name);
+        check_packed(k, variants[v].name);
         check_code(k, variants[v].name);
         check_sum(k, variants[v].name);
     }
