@@ -357,8 +357,8 @@ static void row_job(void *ctx, int job, int worker)
 
 void glint_flare_clear_edges(struct glint_flare_worker *w, int log2)
 {
-    for (int k = 0; k < 3 << log2; k++)
-        w->touched[k] = 0;
+    for (int c = 0; c < 3; c++)
+        w->touched[c] = 0;
     for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++) {
         w->wide[k] = 0;
         w->narrow_q24[k] = 0;

@@ -43,7 +43,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
         w->narrow_q24 =
             glint_arena_take(a, 3 * side * stride, sizeof *w->narrow_q24);
         w->carry = glint_arena_take(a, 3 * side, sizeof *w->carry);
-        w->touched = glint_arena_take(a, 3 * side, sizeof *w->touched);
+        w->touched = glint_arena_take(a, 3, sizeof *w->touched);
         w->at = glint_arena_take(
             a, tile_count(c->width, c->height, c->tile_log2) + 1,
             sizeof *w->at);

@@ -28,7 +28,7 @@ struct glint_flare_worker {
     uint64_t *wide; /* of one tile: tile/edges.h */
     uint32_t *narrow_q24;
     int64_t *carry;
-    uint8_t *touched;
+    uint64_t *touched;
     int32_t *at; /* its places in the bins, tile by tile */
     int first_edge, max_edges, n_edges; /* its part of the edges */
     /* by cells */

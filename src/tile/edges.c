@@ -165,11 +165,6 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
     const int to = last < r->x1 - 1 ? last : r->x1 - 1;
     int64_t low = 0, before = 0;
 
-    if (last < from) { /* left of the tile, or of the picture */
-        if (r->x0 == 0)
-            change(r, mode, 0, units(mode, height_q16));
-        return;
-    }
     if (from > first)
         low = r->rise_q32 * (from * ONE_Q16 - a_q16) >> 32;
     for (int i = from; i <= to; i++) {
@@ -224,9 +219,13 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
     const int64_t low_q40 = a_q40 < b_q40 ? a_q40 : b_q40;
     const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
     const int first = (int)(low_q40 >> 40), last = (int)(high_q40 >> 40);
-    const int within = first >= r->x0 && last < r->x1;
 
-    if (first == last && within) {
+    if (last < r->x0) { /* what lies left of the picture counts from its side */
+        if (r->x0 == 0)
+            change(r, mode, 0, units(mode, height_q16));
+    } else if (first >= r->x1) {
+        return;
+    } else if (first == last) {
         const int64_t height = units(mode, height_q16);
         const int64_t far_q16 = 2 * ONE_Q16 - ((low_q40 >> 24) & 0xffff) -
                                 ((high_q40 >> 24) & 0xffff);
@@ -234,12 +233,23 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
 
         change(r, mode, first, area);
         change(r, mode, first + 1, height - area);
-    } else if (last == first + 1 && within)
+    } else if (last == first + 1 && first >= r->x0 && last < r->x1) {
         add_two(r, mode, first, low_q40, high_q40, height_q16);
-    else if (first != last)
+    } else {
         add_wide(r, mode, low_q40, high_q40, height_q16);
-    else if (first < 0 && r->x0 == 0)
-        change(r, mode, 0, units(mode, height_q16));
+    }
+}
+
+static inline void next_row(struct run *r, int stride)
+{
+    r->wide += stride;
+    r->narrow_q24 += stride;
+}
+
+/* Rows A .. B - 1, of 64. */
+static uint64_t rows_between(int a, int b)
+{
+    return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
 /* All rows of one channel. */
@@ -250,26 +260,33 @@ static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
     const struct glint_box *t = &s->tile;
     const int32_t end_q8 = sooner(e->end_y_q8, t->y1 * 256);
     int32_t y_q8 = later(e->y_q8, t->y0 * 256);
-    const int row = (channel << s->tile_log2) + (y_q8 >> 8) - t->y0;
-    const ptrdiff_t at = (ptrdiff_t)row * s->stride - t->x0;
+    const int row = (y_q8 >> 8) - t->y0;
+    const ptrdiff_t at =
+        (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
     struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light, 0};
+    const int64_t step_q40 = e->slope_q40 * 256;
     int64_t x_q40 = x_at_q40(e, y_q8);
 
     if (x_q40 >> 40 != x_at_q40(e, end_q8) >> 40)
         r.rise_q32 = rise_of(e->slope_q40);
-    for (int k = 0; k <= (end_q8 - 1 - (y_q8 & ~255)) >> 8; k++)
-        s->touched[row + k] = 1;
-    while (y_q8 < end_q8) {
-        const int32_t next_q8 = sooner((y_q8 | 255) + 1, end_q8);
-        const int32_t height_q8 = next_q8 - y_q8;
+    s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
+    if (y_q8 & 255) {
+        const int32_t height_q8 = sooner((y_q8 | 255) + 1, end_q8) - y_q8;
         const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;
 
-        add_piece(&r, mode, x_q40, next_q40, (int64_t)height_q8 << 8);
-        y_q8 = next_q8;
+        add_piece(&r, mode, x_q40, next_q40, height_q8 * INT64_C(256));
+        next_row(&r, s->stride);
         x_q40 = next_q40;
-        r.wide += s->stride;
-        r.narrow_q24 += s->stride;
+        y_q8 += height_q8;
     }
+    for (; end_q8 - y_q8 >= 256; y_q8 += 256) {
+        add_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
+        next_row(&r, s->stride);
+        x_q40 += step_q40;
+    }
+    if (y_q8 < end_q8)
+        add_piece(&r, mode, x_q40, x_q40 + e->slope_q40 * (end_q8 - y_q8),
+                  (end_q8 - y_q8) * INT64_C(256));
 }
 
 static int64_t coloured_q20(int32_t light, int32_t colour_q14)
@@ -373,7 +390,7 @@ void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
     }
     sums->carry[at] = (int64_t)(light_q36 + change_q36[n]);
     change_q36[n] = 0;
-    sums->touched[at] = 0;
+    sums->touched[channel] &= ~(UINT64_C(1) << row);
 }
 
 static uint16_t rounded_q16(int64_t sum_q24)
@@ -413,9 +430,9 @@ int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
     const int padded = (n + GLINT_LANES - 1) / GLINT_LANES * GLINT_LANES;
     uint32_t carry_q24 = (uint32_t)sums->carry[at];
 
-    if (!sums->touched[at])
+    if (!(sums->touched[channel] >> row & 1))
         return even_light(sums->carry[at], padded, light_q16);
-    sums->touched[at] = 0;
+    sums->touched[channel] &= ~(UINT64_C(1) << row);
     if (!sums->narrow) {
         wide_light(sums->wide + first, &sums->carry[at], padded, light_q16);
         if (padded == n) {

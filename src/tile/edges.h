@@ -69,8 +69,8 @@ struct glint_edge_sums {
     int narrow; /* what add found: narrow sums do, and have been used */
     uint64_t *wide;
     uint32_t *narrow_q24;
-    int64_t *carry;   /* [3][side rows]: what runs in, and out */
-    uint8_t *touched; /* [3][side rows]: where there are changes */
+    int64_t *carry;    /* [3][side rows]: what runs in, and out */
+    uint64_t *touched; /* [3]: bit n: row n has changes */
 };
 
 /* Space of GLINT_EDGE_STRIDE(log2) values a row. */
