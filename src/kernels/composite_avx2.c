@@ -80,17 +80,23 @@ static inline void v_store_codes(uint8_t *p, V x)
 /* Of each pair of lanes: the other one, twice the first, twice the second. */
 static inline V v_swap(V x)
 {
-    return _mm256_or_si256(_mm256_slli_epi32(x, 16), _mm256_srli_epi32(x, 16));
+    return _mm256_shuffle_epi8(
+        x, _mm256_set_epi64x(0x0d0c0f0e09080b0a, 0x0504070601000302,
+                             0x0d0c0f0e09080b0a, 0x0504070601000302));
 }
 
 static inline V v_evens(V x)
 {
-    return _mm256_blend_epi16(x, _mm256_slli_epi32(x, 16), 0xaa);
+    return _mm256_shuffle_epi8(
+        x, _mm256_set_epi64x(0x0d0c0d0c09080908, 0x0504050401000100,
+                             0x0d0c0d0c09080908, 0x0504050401000100));
 }
 
 static inline V v_odds(V x)
 {
-    return _mm256_blend_epi16(x, _mm256_srli_epi32(x, 16), 0x55);
+    return _mm256_shuffle_epi8(
+        x, _mm256_set_epi64x(0x0f0e0f0e0b0a0b0a, 0x0706070603020302,
+                             0x0f0e0f0e0b0a0b0a, 0x0706070603020302));
 }
 
 /* Unsigned. */
@@ -100,9 +106,9 @@ static inline V v_not_less(V a, V b)
 }
 
 /* Places of the bytes of the entries K + BASE of a table, 0 .. 7. */
-static inline V v_index(V k, int base)
+static inline V v_index(V k, V entry, int base)
 {
-    return _mm256_add_epi16(_mm256_mullo_epi16(k, v_set(0x0202)),
+    return _mm256_add_epi16(_mm256_mullo_epi16(k, entry),
                             v_set((int16_t)(0x0100 + base * 0x0202)));
 }
 

@@ -20,11 +20,10 @@ static int16_t times(int a, int b)
 static uint16_t decode(const struct glint_tone16 *t, int16_t code_q7)
 {
     const int k = code_q7 >> 12, place_q15 = (code_q7 & 4095) << 3;
-    int x = t->piece[3][k], light;
+    int x = t->piece[2][k], light;
 
     if (code_q7 < t->toe_end_q7[0])
         return (uint16_t)times(code_q7, t->toe_q15[0]);
-    x = t->piece[2][k] + times(place_q15, x);
     x = t->piece[1][k] + times(place_q15, x);
     light = (uint16_t)t->piece[0][k] + times(place_q15, x);
     return (uint16_t)(light < 65535 ? light : 65535);

@@ -93,10 +93,9 @@ static inline V v_not_less(V a, V b)
 }
 
 /* Places of the bytes of the entries K + BASE of a table, 0 .. 7. */
-static inline V v_index(V k, int base)
+static inline V v_index(V k, V entry, int base)
 {
-    return vmlaq_s16(v_set((int16_t)(0x0100 + base * 0x0202)), k,
-                     v_set(0x0202));
+    return vmlaq_s16(v_set((int16_t)(0x0100 + base * 0x0202)), k, entry);
 }
 
 static inline int v_is_zero(V x)

@@ -12,11 +12,10 @@
 
 static inline V decode(const struct glint_tone16 *t, V code)
 {
-    const V k = v_index(v_right(code, 12), 0);
+    const V k = v_index(v_right(code, 12), v_load(t->entry), 0);
     const V place = v_left(v_and(code, v_set(4095)), 3);
-    V x = v_look(v_load(t->piece[3]), k);
+    V x = v_look(v_load(t->piece[2]), k);
 
-    x = v_add(v_look(v_load(t->piece[2]), k), v_times(place, x));
     x = v_add(v_look(v_load(t->piece[1]), k), v_times(place, x));
     x = v_add_unsigned_sat(v_look(v_load(t->piece[0]), k), v_times(place, x));
     return PICK(v_greater(v_load(t->toe_end_q7), code),
@@ -30,7 +29,7 @@ static inline V encode(const struct glint_tone16 *t, V light)
                                     v_greater(half, v_set((1 << 9) - 1))),
                               v_add(v_greater(half, v_set((1 << 11) - 1)),
                                     v_greater(half, v_set((1 << 13) - 1)))),
-                        4);
+                        v_load(t->entry), 4);
     const V m =
         v_sub(v_right(v_low_product(light, v_look(v_load(t->lift), k)), 1),
               v_set(20480));
