@@ -53,6 +53,15 @@ static int vertex_valid(const struct glint_vertex *v)
            v->y_q8 > -GLINT_VERTEX_LIMIT_Q8 && v->y_q8 < GLINT_VERTEX_LIMIT_Q8;
 }
 
+/* Bits of the sides of the picture that V lies beyond; not of the left one, as
+ * light runs in from there. */
+static uint8_t beyond(const struct glint_ghost_edges *g,
+                      const struct glint_vertex *v)
+{
+    return (uint8_t)((v->y_q8 <= 0) + 2 * (v->y_q8 >= g->height * 256) +
+                     4 * (v->x_q8 >= g->width * 256));
+}
+
 static void set_nodes(struct glint_ghost_edges *g, int j)
 {
     const int n = g->bundle->n_cells;
@@ -73,6 +82,7 @@ static void set_nodes(struct glint_ghost_edges *g, int j)
             barrels[i] = LOST;
             continue;
         }
+        g->rows->beyond[j & 1][i] = beyond(g, v);
         outside = glint_cuts_outside(g->stop, v);
         sides[i] = outside.sides;
         barrels[i] = outside.barrels;
@@ -327,6 +337,14 @@ static void add_odd(struct glint_ghost_edges *g, const struct cell *c,
         add_alone(g, c->corner, 4, 0);
 }
 
+/* Whether no edge of the cell, or shared with it, can be drawn. */
+static int is_beyond(const struct glint_ghost_rows *r, int i, int j)
+{
+    const uint8_t *a = r->beyond[j & 1] + i, *b = r->beyond[~j & 1] + i;
+
+    return a[0] & a[1] & b[0] & b[1];
+}
+
 /* The light of the cell at (I, J) towards its neighbours: what is drawn by
  * itself has none, and nearly all cells lie outside of what is seen or wholly
  * inside. */
@@ -347,7 +365,8 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
         add_triangles(g, &cell);
         return 0;
     }
-    if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
+    if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]) ||
+        is_beyond(r, i, j))
         return 0;
     set_corners(g, i, j, &corners);
     turn = convexity(&corners);

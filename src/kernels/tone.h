@@ -5,10 +5,12 @@
  * A full-range code v has 7 fraction bits (_q7, 255 << 7 is white), light has
  * 16 (65535 is white).
  *
- *   decode  below the toe's end v times a constant; above it a parabola in each
- * of eight pieces of 32 codes encode  below the toe's end a constant times the
- * light; above it scale * m^e - offset with light = m / 4^k, m from 1/4 to 1,
- * and m^e a polynomial of degree 4 in m - 5/8
+ *   decode: below the toe's end v times a constant; above it a parabola in
+ *   each of eight pieces of 32 codes
+ *
+ *   encode: below the toe's end a constant times the light; above it
+ *   scale * m^e - offset with light = m / 4^k, m from 1/4 to 1, and m^e a
+ *   polynomial of degree 4 in m - 5/8
  *
  * Fitted by least squares to sRGB and BT.709. Over all 32641 codes and 65536
  * values of light: decode is within 0.05 of a code, encode within 0.08, encode

@@ -514,32 +514,54 @@ static void set_barrels(const struct glint_transfer *t,
     }
 }
 
-/* Of ray I; MIRROR is -1 for the one on the other side of the light's plane. */
+/* How rays of one side of the light's plane lie in the picture: cosine and sine
+ * of the azimuth, for the sensor times pixels per mm, and the shifts to the
+ * formats of a vertex. */
+struct turn {
+    int64_t cos, sin, sensor_cos, sensor_sin;
+    int mirror, to_q8, to_q16;
+};
+
+/* MIRROR is -1 for the other side of the plane. */
+static struct turn turn_of(const struct glint_transfer *t,
+                           const struct glint_place *p, int mirror)
+{
+    const struct glint_real size = p->pixels_per_mm;
+    const int64_t c = p->cos_q30, s = p->sin_q30;
+
+    return (struct turn){
+        .cos = c,
+        .sin = s,
+        .sensor_cos = q_shift(c * size.mantissa, 30),
+        .sensor_sin = q_shift(s * size.mantissa, 30),
+        .mirror = mirror,
+        .to_q8 = -(t->exponent[GLINT_OUT_SENSOR_X] + size.exponent + 8),
+        .to_q16 = 30 - (t->exponent[GLINT_OUT_STOP_X] + 16)};
+}
+
+/* Of ray I. Coordinates are below 2^30, so that sums of two products are below
+ * 2^62. */
 static void set_vertex(const struct glint_transfer *t,
-                       const struct glint_place *p, const int32_t (*rays)[RAYS],
-                       int i, int mirror, struct glint_vertex *v)
+                       const struct glint_place *p, const struct turn *turn,
+                       const int32_t (*rays)[RAYS], int i,
+                       struct glint_vertex *v)
 {
     const int64_t x = rays[GLINT_OUT_SENSOR_X][i];
-    const int64_t y = (int64_t)mirror * rays[GLINT_OUT_SENSOR_Y][i];
+    const int64_t y = (int64_t)turn->mirror * rays[GLINT_OUT_SENSOR_Y][i];
     const int64_t a = rays[GLINT_OUT_STOP_X][i];
-    const int64_t b = (int64_t)mirror * rays[GLINT_OUT_STOP_Y][i];
-    const int64_t c = p->cos_q30, s = p->sin_q30;
-    const int to_q8 =
-        -(t->exponent[GLINT_OUT_SENSOR_X] + p->pixels_per_mm.exponent + 8);
-    const int to_q16 = -(t->exponent[GLINT_OUT_STOP_X] + 16);
+    const int64_t b = (int64_t)turn->mirror * rays[GLINT_OUT_STOP_Y][i];
     int lost = 0;
 
-    /* Turned coordinates are below 2^30.5, times a mantissa below 2^61.5. */
-    v->x_q8 = p->middle_x_q8 +
-              scaled(q_shift(x * c - y * s, 30) * p->pixels_per_mm.mantissa,
-                     to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
-    v->y_q8 = p->middle_y_q8 -
-              scaled(q_shift(x * s + y * c, 30) * p->pixels_per_mm.mantissa,
-                     to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
+    v->x_q8 =
+        p->middle_x_q8 + scaled(x * turn->sensor_cos - y * turn->sensor_sin,
+                                turn->to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
+    v->y_q8 =
+        p->middle_y_q8 - scaled(x * turn->sensor_sin + y * turn->sensor_cos,
+                                turn->to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
     v->stop_x_q16 =
-        scaled(q_shift(a * c - b * s, 30), to_q16, LIMIT_Q16, &lost);
+        scaled(a * turn->cos - b * turn->sin, turn->to_q16, LIMIT_Q16, &lost);
     v->stop_y_q16 =
-        scaled(q_shift(a * s + b * c, 30), to_q16, LIMIT_Q16, &lost);
+        scaled(a * turn->sin + b * turn->cos, turn->to_q16, LIMIT_Q16, &lost);
     set_barrels(t, rays, i, v, &lost);
     v->energy_q16 = lost ? -1
                          : q_clamp_sat(q_shift(rays[GLINT_OUT_ENERGY][i] *
@@ -569,6 +591,9 @@ static void set_row_pair(struct glint_transfer *t,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored)
 {
+    const struct turn turn = turn_of(t, place, 1);
+    const struct turn back = turn_of(t, place, -1);
+
     if (t->n_nodes != n_cells + 1) {
         t->n_nodes = n_cells + 1;
         for (int i = 0; i < n_cells + RAYS; i++)
@@ -581,10 +606,10 @@ static void set_row_pair(struct glint_transfer *t,
                             rays);
         for (int i = 0; i < RAYS && first + i <= n_cells; i++) {
             if (mirrored)
-                set_vertex(t, place, (const int32_t(*)[RAYS])rays, i, -1,
+                set_vertex(t, place, &back, (const int32_t(*)[RAYS])rays, i,
                            &mirrored[first + i]);
             if (row)
-                set_vertex(t, place, (const int32_t(*)[RAYS])rays, i, 1,
+                set_vertex(t, place, &turn, (const int32_t(*)[RAYS])rays, i,
                            &row[first + i]);
         }
     }
