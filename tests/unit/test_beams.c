@@ -248,6 +248,7 @@ static void test_horizon(void **state)
     assert_int_equal(glint_beams_merge(b, 2, 1 << 30, 1, &apart), 1);
     assert_sound(b);
     b[0] = beam_at(1, 0, 1);
+    b[1] = beam_at(-1, 0, 1);
     assert_int_equal(glint_beams_merge(b, 3, NEAR_Q30, 1, &apart), 1);
     assert_sound(b);
 }
