@@ -28,7 +28,7 @@ export DEPS OUT
 CORE := base/status base/arena base/q base/image base/workers kernels/sets \
         kernels/kernels kernels/horner_c kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
         tile/outline tile/bins tile/raster tile/edges tile/curve \
-        tile/mix tile/codes tile/resolve flare/plan flare/ghost_grid flare/cuts flare/ghost_edges flare/by_cells \
+        tile/mix tile/codes tile/resolve flare/beams flare/plan flare/ghost_grid flare/cuts flare/ghost_edges flare/by_cells \
         flare/by_edges flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
@@ -42,7 +42,7 @@ TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
-        exact curve resolve lights flare plan pnm y4m picture output workers \
+        exact curve resolve lights flare plan beams pnm y4m picture output workers \
         measure lamps
 FUZZ := lens model y4m pnm
 

@@ -8,7 +8,7 @@
 
 #include "scene.h"
 
-enum { MAX_CASES = 256, MAX_ROUNDS = 1000, MAX_LENSES = 16, MAX_LIGHTS = 64 };
+enum { MAX_CASES = 256, MAX_ROUNDS = 1000, MAX_LENSES = 16 };
 
 enum stage { PLAN, TRANSFER, BIN, DRAW, WHOLE, STAGES };
 
@@ -24,7 +24,7 @@ struct test {
     const struct scene *scene;
     struct canvas *canvas;
     struct frame frame;
-    struct glint_lamp lamp[MAX_LIGHTS];
+    struct glint_lamp *lamp;
     int n_lamps, threads;
     const char *kernels;
     double scale, psnr_db; /* NAN: not measured */

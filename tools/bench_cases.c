@@ -90,6 +90,8 @@ static const struct variation variations[] = {
     {0, 0, 2, 0, 0, NULL, ~0U, 12},
     {0, 0, 8, 0, 0, NULL, ~0U, 12},
     {0, 0, 64, 0, 0, NULL, ~0U, 12},
+    {0, 0, 588, 0, 0, NULL, ~0U, 12},
+    {0, 0, 10000, 0, 0, NULL, ~0U, 12},
     {640, 360, 1, 0, 0, NULL, ~0U, 12},
     {1280, 720, 1, 0, 0, NULL, ~0U, 12},
     {3840, 2160, 1, 0, 0, NULL, ~0U, 12},
@@ -97,13 +99,20 @@ static const struct variation variations[] = {
     {0, 0, 1, 0, 0, NULL, ~0U, 75}, /* farther out than models go */
 };
 
+/* Equal lights, but of hundreds few are bright: the kth brightest has 1 / k of
+ * the power of the first. */
+static double power_of(int i, int n)
+{
+    return 1.0 / (n > 64 ? 1 + i : n);
+}
+
 static void set_lamps(struct test *t, int n, double angle)
 {
     t->n_lamps = n;
     for (int i = 0; i < n; i++)
         t->lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
                                          fmod(33 + 137.5 * i, 360),
-                                         1.0 / n,
+                                         power_of(i, n),
                                          {1, 1, 1}};
 }
 
@@ -157,7 +166,8 @@ static int add_test(struct bench *b, const struct scene *scene,
         return EXIT_OK;
     t->scene = scene;
     t->canvas = canvas_of(b, width, height);
-    if (!t->canvas)
+    t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp);
+    if (!t->canvas || !t->lamp)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     code = scene_frame(b->tool, scene, scene_view(scene, width, height),
                        &t->frame);

@@ -40,7 +40,7 @@ static void print_test(const struct bench *b, const struct test *t)
     const double floor_ms = median(t->canvas->floor_ms, b->rounds);
     const double ms = median(t->ms[WHOLE], b->rounds);
 
-    printf("%-22s %4dx%-4d %2d %2d %-5s %-5s %8.3f %7.1f ", t->scene->lens.name,
+    printf("%-22s %4dx%-4d %5d %2d %-5s %-5s %8.3f %7.1f ", t->scene->lens.name,
            t->canvas->image.width, t->canvas->image.height, t->n_lamps,
            t->threads, raster_of(t), t->kernels, ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
@@ -58,8 +58,8 @@ void bench_print(const struct bench *b)
     printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
            median(b->canvas[0].floor_ms, b->rounds), b->canvas[0].image.width,
            b->canvas[0].image.height, b->format_word, b->rounds);
-    printf("%-22s %9s %2s %2s %-5s %-5s %8s %7s ", "lens", "size", "li", "th",
-           "by", "sets", "ms", "ratio");
+    printf("%-22s %9s %5s %2s %-5s %-5s %8s %7s ", "lens", "size", "light",
+           "th", "by", "sets", "ms", "ratio");
     for (int s = 0; s < WHOLE; s++)
         printf(" %7.7s", stage_names[s]);
     printf("  %7s %6s%s\n", "prims", "MiB", b->psnr ? "  dB" : "");
@@ -75,7 +75,8 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
     printf("{\"lens\": ");
     tool_json_string(stdout, t->scene->lens.name);
     printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", \"lights\": "
-           "%d, \"threads\": %d, \"raster\": \"%s\", \"kernels\": \"%s\", "
+           "%d, \"threads\": %d, \"raster\": \"%s\", "
+           "\"kernels\": \"%s\", "
            "\"quality\": %.3f, \"ms\": %.4f, \"ratio\": %.3f, ",
            t->canvas->image.width, t->canvas->image.height, b->format_word,
            t->n_lamps, t->threads, raster_of(t), t->kernels, quality_of(t), ms,
@@ -87,9 +88,10 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
         printf("\"psnr_db\": null, ");
     else
         printf("\"psnr_db\": %.2f, ", t->psnr_db);
-    printf("\"ghosts\": %d, \"bundles\": %d, \"primitives\": %d, \"tiles\": "
+    printf("\"drawn_lights\": %d, \"ghosts\": %d, \"bundles\": %d, "
+           "\"primitives\": %d, \"tiles\": "
            "%d, \"arena_bytes\": %zu}%s\n",
-           t->report.ghosts, t->report.stats.bundles,
+           t->report.drawn_lights, t->report.ghosts, t->report.stats.bundles,
            t->report.stats.primitives, t->report.tiles, t->report.peak_bytes,
            last ? "" : ",");
 }

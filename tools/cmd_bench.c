@@ -23,7 +23,7 @@ static const char help[] =
     "glint.\n"
     "\n"
     "  --all           also: both rasterisers, all kernels, 2 threads, 2 to "
-    "64\n"
+    "10000\n"
     "                  lights, 360p to 2160p, no light, a light far outside\n"
     "  --size WxH      default 1920x1080\n"
     "  --repeat N      rounds (default 15)\n"
@@ -105,6 +105,8 @@ static int run(struct bench *b, int n_names, const char *const *names)
 
 static void close_bench(struct bench *b)
 {
+    for (int i = 0; i < MAX_CASES; i++)
+        free(b->test[i].lamp);
     for (int i = 0; i < b->n_tests; i++)
         frame_finish(&b->test[i].frame);
     for (int i = 0; i < b->n_canvases; i++) {

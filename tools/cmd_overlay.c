@@ -37,7 +37,6 @@ static const char help[] =
     "                      repeatable; replaces auto, adds to a FILE\n"
     "  --threshold H[,L]   luma code that makes a light, and the one down to\n"
     "                      which it extends\n"
-    "  --max-lights N      the N strongest of a frame, 1 to 1024 (default 16)\n"
     "  --headroom EV       stops by which clipped pixels really exceed white\n"
     "                      (default 12); what --lights auto takes for power\n"
     "  --layer WHAT        composite | flare: the flare alone on black\n"
@@ -54,7 +53,7 @@ struct overlay {
     struct glint_lights_config lights;
     int threshold[2];
     double headroom_ev;
-    int max_lights, start_number;
+    int start_number;
     bool flare_only;
     int range, matrix; /* 0: auto */
 
@@ -66,9 +65,10 @@ struct overlay {
     struct glint_view view;
     bool open; /* frame and finder are made, for view's size */
     struct frame frame;
-    struct glint_lamp lamp[SCENE_MAX_LAMPS];
+    struct glint_lamp *lamp; /* room for those by hand and all found or read */
 
-    struct frame_report report; /* of the last frame */
+    struct frame_report report;      /* of the last frame */
+    struct frame_report most_merged; /* of the one with most lights too many */
     int n_frames, most_lights;
     double find_ms, flare_ms, started;
     size_t arena_bytes, peak_bytes;
@@ -112,8 +112,6 @@ static bool take(struct overlay *o, int option, const char *value)
         return true;
     case 't':
         return take_threshold(value, o->threshold);
-    case 'm':
-        return tool_integer(value, 1, SCENE_MAX_LAMPS, &o->max_lights);
     case 'H':
         return tool_number(value, &o->headroom_ev) && o->headroom_ev >= 0 &&
                o->headroom_ev <= 40;
@@ -137,7 +135,6 @@ static const struct option options[] = {
     {"lights", required_argument, NULL, 'f'},
     {"light", required_argument, NULL, 'l'},
     {"threshold", required_argument, NULL, 't'},
-    {"max-lights", required_argument, NULL, 'm'},
     {"headroom", required_argument, NULL, 'H'},
     {"layer", required_argument, NULL, 'y'},
     {"range", required_argument, NULL, 'r'},
@@ -163,7 +160,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->lens = optarg;
         else if (c == 'f')
             o->lights_file = strcmp(optarg, "auto") == 0 ? NULL : optarg;
-        else if (strchr("ltmHyrxnQ", c)) {
+        else if (strchr("ltHyrxnQ", c)) {
             if (!take(o, c, optarg))
                 return tool_usage(tool, "--%s: '%s' is not something it takes",
                                   options[index].name, optarg);
@@ -179,6 +176,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 }
 
 /* -------------------------------------------------------------------- frame */
+
+/* Lamps to look for: a picture has many that hardly show. */
+static int finder_max(const struct overlay *o)
+{
+    const int asked = o->scene.max_lights ? o->scene.max_lights : 16;
+
+    return asked < LAMP_FINDER_MAX ? asked : LAMP_FINDER_MAX;
+}
 
 /* Makes what depends on the size of the pictures. */
 static int open_frame(struct tool *tool, struct overlay *o, int width,
@@ -198,7 +203,7 @@ static int open_frame(struct tool *tool, struct overlay *o, int width,
         o->lights.threshold_low = o->threshold[1];
     }
     o->finder.headroom_ev = o->headroom_ev;
-    o->finder.max = o->max_lights;
+    o->finder.max = finder_max(o);
     status = lamp_finder_open(&o->finder, &o->lights);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
@@ -211,7 +216,7 @@ static int lamps_of(struct overlay *o, const struct glint_image *image)
     memcpy(o->lamp, o->hand, (size_t)n * sizeof *o->lamp);
     if (o->lights_file)
         n += lamp_list_frame(&o->list, o->n_frames, &o->view, focal,
-                             o->lamp + n, SCENE_MAX_LAMPS - n);
+                             o->lamp + n, o->list.n);
     else if (n == 0)
         n = lamp_finder_frame(&o->finder, image, &o->view, focal, o->lamp);
     return n;
@@ -235,6 +240,15 @@ static void blacken(const struct glint_image *image)
             memset(image->plane[p] + y * image->stride_bytes[p], code,
                    (size_t)bytes);
     }
+}
+
+static void say_frame(const struct overlay *o)
+{
+    char lights[64];
+
+    scene_lights_text(&o->report, lights);
+    fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n", o->n_frames - 1,
+            lights, o->report.ghosts, o->report.stats.primitives);
 }
 
 static int draw(struct tool *tool, struct overlay *o,
@@ -264,10 +278,11 @@ static int draw(struct tool *tool, struct overlay *o,
     o->arena_bytes = o->report.arena_bytes;
     if (o->report.peak_bytes > o->peak_bytes)
         o->peak_bytes = o->report.peak_bytes;
+    if (o->report.apart_lights - o->report.drawn_lights >
+        o->most_merged.apart_lights - o->most_merged.drawn_lights)
+        o->most_merged = o->report;
     if (tool->verbose && !tool->quiet)
-        fprintf(stderr, "frame %d: %d lights, %d ghosts, %d primitives\n",
-                o->n_frames - 1, n, o->report.ghosts,
-                o->report.stats.primitives);
+        say_frame(o);
     return EXIT_OK;
 }
 
@@ -432,6 +447,7 @@ static void print_result(const struct tool *tool, const struct overlay *o)
 
     if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
         fputs("\r\033[K", stderr);
+    scene_warn_lights(tool, &o->most_merged);
     if (tool->json && !piped) {
         printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
                "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
@@ -497,6 +513,10 @@ static int run(struct tool *tool, struct overlay *o)
         status = lamp_list_read(&o->list, o->lights_file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
+    o->lamp = malloc(((size_t)o->n_hand + (size_t)o->list.n + LAMP_FINDER_MAX) *
+                     sizeof *o->lamp);
+    if (!o->lamp)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
     o->started = tool_seconds();
     if (is_y4m(o->input))
         code = run_video(tool, o);
@@ -520,7 +540,6 @@ int cmd_overlay(int argc, char **argv)
     scene_defaults(&o->scene);
     o->lens = "heliar-tronnier";
     o->headroom_ev = 12;
-    o->max_lights = 16;
     o->start_number = -1;
     code = parse(&tool, argc, argv, o);
     if (code < 0) {
@@ -530,6 +549,7 @@ int cmd_overlay(int argc, char **argv)
         tool_finish(&tool);
     }
     lamp_list_free(&o->list);
+    free(o->lamp);
     if (o->open) {
         lamp_finder_close(&o->finder);
         frame_finish(&o->frame);

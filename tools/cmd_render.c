@@ -6,13 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lamps.h"
 #include "measure.h"
 #include "plain/picture.h"
+#include "posix/error.h"
 #include "scene.h"
 
 static const char help[] =
     "glint render LENS|MODEL -o OUT --light THETA,PHI[,POWER[,R,G,B]]... "
     "[options]\n"
+    "glint render LENS|MODEL -o OUT --lights FILE [options]\n"
     "\n"
     "Draws the ghosts of a lens alone, from its table or its baked model; a\n"
     "table is baked when it is first drawn (see 'glint bake'). Values are\n"
@@ -26,6 +29,9 @@ static const char help[] =
     "  --size WxH          default 960x540\n"
     "  --light LIST        degrees off the axis, degrees about it (0 = right,\n"
     "                      90 = up), power (default 1), colour; repeatable\n"
+    "  --lights FILE       those of frame 0 of a list as of glint overlay, up "
+    "to a\n"
+    "                      million\n"
     "  --engine E          model: the integer run time (default)\n"
     "                      exact: the reference, every ray in "
     "double\n";
@@ -38,8 +44,9 @@ struct render {
     bool linear; /* the output takes floats */
     int width, height;
     bool exact;
+    const char *lights_file;
     int n_lamps;
-    struct glint_lamp lamp[SCENE_MAX_LAMPS];
+    struct glint_lamp *lamp; /* room for SCENE_MAX_LAMPS by hand */
     struct glint_float_image image;
     double ms;
 };
@@ -70,6 +77,9 @@ static int take(struct tool *tool, struct render *r, int c)
                           "--light takes THETA,PHI[,POWER[,R,G,B]] with THETA "
                           "0 to 89.9, not '%s'",
                           optarg);
+    case 'f':
+        r->lights_file = optarg;
+        return -1;
     case 'e':
         word = tool_word(optarg, engines);
         r->exact = word == 1;
@@ -89,6 +99,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         {"output", required_argument, NULL, 'o'},
         {"size", required_argument, NULL, 's'},
         {"light", required_argument, NULL, 'l'},
+        {"lights", required_argument, NULL, 'f'},
         {"engine", required_argument, NULL, 'e'},
         SCENE_OPTIONS,
         TOOL_COMMON_OPTIONS};
@@ -106,8 +117,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         return tool_usage(tool, "takes one lens");
     if (!r->output)
         return tool_usage(tool, "needs -o OUT");
-    if (r->n_lamps == 0)
-        return tool_usage(tool, "needs a --light");
+    if (r->n_lamps == 0 && !r->lights_file)
+        return tool_usage(tool, "needs a --light or --lights");
     return -1;
 }
 
@@ -149,6 +160,20 @@ static int render_exact(struct tool *tool, struct render *r)
     return EXIT_OK;
 }
 
+static void say_lights(const struct tool *tool,
+                       const struct frame_report *report)
+{
+    char lights[64];
+
+    scene_warn_lights(tool, report);
+    if (!tool->verbose || tool->quiet)
+        return;
+    scene_lights_text(report, lights);
+    fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
+            lights, report->ghosts, report->stats.primitives,
+            report->arena_bytes);
+}
+
 static int render_model(struct tool *tool, struct render *r)
 {
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
@@ -181,6 +206,8 @@ static int render_model(struct tool *tool, struct render *r)
         scene_json(&report);
         printf(", ");
     }
+    if (code == EXIT_OK)
+        say_lights(tool, &report);
     frame_finish(&frame);
     free(linear_q20);
     return code;
@@ -226,6 +253,30 @@ static int check_output(struct tool *tool, struct render *r)
     return EXIT_OUTPUT;
 }
 
+/* Adds the lamps of the file to those by hand. */
+static int read_lamps(struct tool *tool, struct render *r)
+{
+    const struct glint_view view = scene_view(&r->scene, r->width, r->height);
+    struct glint_error error = {""};
+    struct lamp_list list;
+    const enum glint_status status =
+        lamp_list_read(&list, r->lights_file, &error);
+    struct glint_lamp *all;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    all = realloc(r->lamp,
+                  ((size_t)r->n_lamps + (size_t)list.n + 1) * sizeof *all);
+    if (all) {
+        r->lamp = all;
+        r->n_lamps +=
+            lamp_list_frame(&list, 0, &view, r->scene.setup.optics.focal_mm,
+                            all + r->n_lamps, list.n);
+    }
+    lamp_list_free(&list);
+    return all ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+}
+
 static int run(struct tool *tool, struct render *r, const char *lens)
 {
     int code = check_output(tool, r);
@@ -233,6 +284,8 @@ static int run(struct tool *tool, struct render *r, const char *lens)
 
     if (code == EXIT_OK)
         code = scene_open(tool, &r->scene, lens);
+    if (code == EXIT_OK && r->lights_file)
+        code = read_lamps(tool, r);
     if (code != EXIT_OK)
         return code;
     start = tool_seconds();
@@ -257,8 +310,10 @@ int cmd_render(int argc, char **argv)
     struct render *r = calloc(1, sizeof *r);
     int code;
 
-    if (!r)
+    if (!r || !(r->lamp = malloc(SCENE_MAX_LAMPS * sizeof *r->lamp))) {
+        free(r);
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    }
     scene_defaults(&r->scene);
     r->width = 960;
     r->height = 540;
@@ -270,6 +325,7 @@ int cmd_render(int argc, char **argv)
         tool_finish(&tool);
     }
     scene_close(&r->scene);
+    free(r->lamp);
     free(r);
     return code;
 }

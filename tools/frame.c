@@ -23,6 +23,8 @@ void frame_init(struct frame *frame, const struct glint_setup *setup,
                                     .tile_log2 = 6,
                                     .weights = GLINT_WEIGHTS_WACHSPRESS,
                                     .antialias = 1},
+                            .max_lights = FRAME_MAX_LIGHTS,
+                            .apart_px = FRAME_APART_PX,
                             .max_cells = 64,
                             .only_ghost = -1};
     glint_setup_stop(setup, &frame->cfg.stop);
@@ -48,6 +50,7 @@ void frame_finish(struct frame *frame)
     free(frame->feed);
     free(frame->vertices);
     free(frame->beam);
+    free(frame->merged);
     free(frame->seen);
     free(frame->mem);
 }
@@ -93,6 +96,28 @@ static struct glint_beam beam_of(const struct glint_lamp *l, double scale)
     return b;
 }
 
+static struct glint_lamp lamp_of(const struct glint_beam *b)
+{
+    const double degree = 3.14159265358979323846 / 180;
+
+    return (struct glint_lamp){atan2(b->sine_q30, b->cosine_q30) / degree,
+                               atan2(b->sin_q30, b->cos_q30) / degree,
+                               glint_real_value(b->power),
+                               {b->rgb_q14[0] * 0x1p-14,
+                                b->rgb_q14[1] * 0x1p-14,
+                                b->rgb_q14[2] * 0x1p-14}};
+}
+
+/* The angle in which lights are one. */
+static int32_t near_q30(const struct frame *f)
+{
+    const double pixels =
+        f->setup->optics.focal_mm * f->view.width / f->view.sensor_width_mm;
+
+    return (int32_t)lrint(fmin(1, f->apart_px / fabs(pixels)) * 0x1p30);
+}
+
+/* Makes F's beams of LAMPS, those merged that are too many. */
 static enum glint_status
 set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
 {
@@ -106,6 +131,8 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
     }
     for (int i = 0; i < n; i++)
         f->beam[i] = beam_of(&lamps[i], scale);
+    f->n_beams =
+        glint_beams_merge(f->beam, n, near_q30(f), f->max_lights, &f->n_apart);
     return GLINT_OK;
 }
 
@@ -157,14 +184,13 @@ static enum glint_status regrow(struct frame *f)
 }
 
 /* Plans, with room for all bundles there can be. */
-static enum glint_status plan(struct frame *f, const struct glint_rays *rays,
-                              int n_beams)
+static enum glint_status plan(struct frame *f, const struct glint_rays *rays)
 {
     const int most = f->cfg.raster == GLINT_RASTER_CELLS || f->mask
                          ? MAX_BUNDLES_CELLS
                          : MAX_BUNDLES;
     const double need =
-        (double)n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
+        (double)f->n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
     const int bundles = need < most ? (int)need : most;
 
     if (!f->mem || bundles > f->cfg.max_bundles) {
@@ -175,7 +201,7 @@ static enum glint_status plan(struct frame *f, const struct glint_rays *rays,
         if (status != GLINT_OK)
             return status;
     }
-    glint_flare_plan(f->flare, rays, f->beam, n_beams);
+    glint_flare_plan(f->flare, rays, f->beam, f->n_beams);
     return GLINT_OK;
 }
 
@@ -253,7 +279,7 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
 
     set_waves(f);
     while (status == GLINT_OK) {
-        status = plan(f, &rays, n_lamps);
+        status = plan(f, &rays);
         if (status != GLINT_OK)
             return status;
         times[1] = times[2] = tool_seconds();
@@ -270,17 +296,51 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
     return GLINT_OK;
 }
 
+/* For exact rays: what LAMPS are after merging, N of them. NULL: no memory. */
+static const struct glint_lamp *
+merged_lamps(struct frame *f, const struct glint_lamp *lamps, int *n)
+{
+    struct glint_lamp *merged;
+
+    if (set_beams(f, lamps, *n, 1) != GLINT_OK)
+        return NULL;
+    if (f->n_beams == *n)
+        return lamps;
+    *n = f->n_beams;
+    merged = realloc(f->merged, ((size_t)*n + 1) * sizeof *merged);
+    if (!merged)
+        return NULL;
+    f->merged = merged;
+    for (int i = 0; i < *n; i++)
+        merged[i] = lamp_of(&f->beam[i]);
+    return merged;
+}
+
+static enum glint_status
+draw_exact(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
+           double scale, const struct glint_image *image,
+           struct glint_flare_stats *stats, double times[5])
+{
+    const struct glint_lamp *merged = merged_lamps(f, lamps, &n_lamps);
+
+    return merged
+               ? frame_feed_draw(f, merged, n_lamps, scale, image, stats, times)
+               : GLINT_E_MEMORY;
+}
+
 double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
                         int n_lamps)
 {
     const struct glint_rays rays = rays_of(frame, 0);
     struct glint_real brightest, together;
 
-    if (!frame->lens)
-        return frame_feed_scale(frame, lamps, n_lamps);
+    if (!frame->lens) {
+        lamps = merged_lamps(frame, lamps, &n_lamps);
+        return lamps ? frame_feed_scale(frame, lamps, n_lamps) : 1;
+    }
     set_waves(frame);
     if (set_beams(frame, lamps, n_lamps, 1) != GLINT_OK ||
-        plan(frame, &rays, n_lamps) != GLINT_OK)
+        plan(frame, &rays) != GLINT_OK)
         return 1;
     glint_flare_light(frame->flare, &brightest, &together);
     /* No light is cut down while all flux together is below 2^24. */
@@ -308,7 +368,7 @@ enum glint_status frame_draw(struct frame *frame,
     if (!frame->seen)
         return GLINT_E_MEMORY;
     memset(frame->seen, 0, GLINT_MAX_GHOSTS * sizeof *frame->seen);
-    status = (frame->lens ? draw_model : frame_feed_draw)(
+    status = (frame->lens ? draw_model : draw_exact)(
         frame, lamps, n_lamps, scale, image, &report->stats, times);
     for (int i = 0; status == GLINT_OK && i < n_drawn(frame, report); i++)
         note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
@@ -318,6 +378,8 @@ enum glint_status frame_draw(struct frame *frame,
     report->bin_ms = 1e3 * (times[3] - times[2]);
     report->draw_ms = 1e3 * (times[4] - times[3]);
     report->lights = n_lamps;
+    report->apart_lights = frame->n_apart;
+    report->drawn_lights = frame->n_beams;
     report->tiles = status == GLINT_OK ? glint_flare_tiles(frame->flare) : 0;
     report->arena_bytes = frame->bytes;
     report->peak_bytes = bytes_used(frame, &report->stats);

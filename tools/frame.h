@@ -16,12 +16,19 @@
 
 #include "glint/glint.h"
 
+/* Lights: so many cost less than three times what 64 do, and a model is less
+ * exact than lights so near. */
+#define FRAME_MAX_LIGHTS 128
+#define FRAME_APART_PX   0.125
+
 struct frame {
     const struct glint_setup *setup;
     const struct glint_lens *lens; /* its model; NULL: exact rays */
     struct glint_view view;
     struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop;
                                       capacities are the frame's own */
+    int max_lights;  /* that are drawn; more merge, the faint ones first */
+    double apart_px; /* lights whose images are nearer are one */
     int max_cells;
     bool uniform;   /* the same grid for all ghosts */
     bool narrow;    /* rays in 16-bit lanes */
@@ -30,10 +37,12 @@ struct frame {
 
     struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
     struct glint_beam *beam;
-    int max_beams;
-    bool *seen; /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+    int n_beams, max_beams;
+    int n_apart; /* lights that can be told apart */
+    bool *seen;  /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
 
     /* exact rays */
+    struct glint_lamp *merged; /* lamps, where some merged; [n_beams] */
     struct glint_feed *feed;
     int n_feeds, max_feeds;
     int n_dropped;                  /* bundles beyond what a frame may take */
@@ -45,7 +54,10 @@ struct frame {
 
 struct frame_report {
     struct glint_flare_stats stats;
-    int lights, ghosts, tiles;
+    int lights;       /* as given */
+    int apart_lights; /* that can be told apart */
+    int drawn_lights; /* after merging more, for their number */
+    int ghosts, tiles;
     size_t arena_bytes; /* what the run-time half was given */
     size_t peak_bytes;  /* what its largest frame took of it */
     double plan_ms, trace_ms, bin_ms, draw_ms;

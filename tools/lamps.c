@@ -11,7 +11,7 @@
 #include "posix/input.h"
 #include "tool.h"
 
-enum { FIELDS = 8, MAX_ROWS = 1 << 20 };
+enum { FIELDS = 8 };
 
 static const char *const names[FIELDS + 1] = {
     "frame", "x", "y", "power", "r", "g", "b", "size", NULL};
@@ -161,9 +161,13 @@ static enum glint_status parse_text(struct lamp_list *list, char *text,
         if (cause)
             return glint_error_report(error, GLINT_E_FORMAT, path, "%d: %s",
                                       number, cause);
-        if (list->n == MAX_ROWS || add_row(list, &room, v) != GLINT_OK)
+        if (list->n == LAMP_LIST_MAX_ROWS)
+            return glint_error_report(error, GLINT_E_FORMAT, path,
+                                      "%d: more than %d lights", number,
+                                      LAMP_LIST_MAX_ROWS);
+        if (add_row(list, &room, v) != GLINT_OK)
             return glint_error_report(error, GLINT_E_MEMORY, path,
-                                      "%d: too many rows", number);
+                                      "%d: no memory", number);
     }
     return GLINT_OK;
 }
@@ -262,7 +266,7 @@ int lamp_finder_frame(struct lamp_finder *finder,
                       const struct glint_view *view, double focal_mm,
                       struct glint_lamp *lamps)
 {
-    struct glint_spot spots[1024];
+    struct glint_spot spots[LAMP_FINDER_MAX];
     const int n = glint_lights_find(finder->lights, image, spots, finder->max);
 
     for (int i = 0; i < n; i++) {

@@ -7,6 +7,8 @@
 
 #include "glint/glint.h"
 
+enum { LAMP_LIST_MAX_ROWS = 1 << 20, LAMP_FINDER_MAX = 1024 };
+
 /* One line of a list. X and Y are pixels from the top left corner, also outside
  * of the picture. */
 struct lamp_row {
@@ -20,7 +22,8 @@ struct lamp_list {
 };
 
 /* Reads PATH: CSV "frame,x,y,power[,r,g,b[,size]]" with an optional line of
- * names, or JSON lines with these keys; frame "*" or absent is every frame.
+ * names, or JSON lines with these keys; frame "*" or absent is every frame. At
+ * most LAMP_LIST_MAX_ROWS rows.
  * ERROR names file, line and cause. */
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error);
@@ -37,7 +40,7 @@ struct lamp_finder {
     struct glint_lights *lights;
     void *mem;
     double headroom_ev; /* how far over white clipped pixels really are */
-    int max;            /* lamps a frame */
+    int max;            /* lamps a frame, 1 .. LAMP_FINDER_MAX */
 };
 
 /* CFG's thresholds 0: the defaults. */

@@ -15,6 +15,7 @@ void scene_defaults(struct scene *scene)
                             .gain = 1,
                             .tolerance = 1,
                             .only_ghost = -1,
+                            .apart_px = FRAME_APART_PX,
                             .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
@@ -159,6 +160,11 @@ static bool take(struct scene *s, int option, const char *value)
         return word >= 0;
     case OPT_BALANCE:
         return s->balance = true;
+    case OPT_MAX_LIGHTS:
+        return tool_integer(value, 1, 1 << 20, &s->max_lights);
+    case OPT_APART:
+        return tool_number(value, &s->apart_px) && s->apart_px >= 0 &&
+               s->apart_px <= 1000;
     default:
         return tool_word(value, parts) >= 0;
     }
@@ -364,6 +370,9 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->uniform = scene->uniform;
     frame->narrow = scene->narrow;
     frame->only_ghost = scene->only_ghost;
+    frame->apart_px = scene->apart_px;
+    if (scene->max_lights)
+        frame->max_lights = scene->max_lights;
     frame->cfg.tile_log2 = scene->tile_log2;
     /* no larger than the small ones: one level, and the same picture */
     frame->cfg.coarse_log2 =
@@ -392,15 +401,34 @@ double scene_scale(const struct scene *scene)
 
 void scene_json(const struct frame_report *r)
 {
-    printf("\"lights\": %d, \"ghosts\": %d, \"bundles\": %d, "
+    printf("\"lights\": %d, \"apart_lights\": %d, \"drawn_lights\": %d, "
+           "\"ghosts\": %d, \"bundles\": %d, "
            "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
            "\"peak_bytes\": %zu, \"refs\": %d, \"merged_cells\": %d, "
            "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
            "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
            "\"draw_ms\": %.3f",
-           r->lights, r->ghosts, r->stats.bundles, r->stats.primitives,
-           r->tiles, r->arena_bytes, r->peak_bytes, r->stats.refs,
-           r->stats.merged_cells, r->stats.dropped_bundles,
-           r->stats.dropped_cells, r->plan_ms, r->trace_ms, r->bin_ms,
-           r->draw_ms);
+           r->lights, r->apart_lights, r->drawn_lights, r->ghosts,
+           r->stats.bundles, r->stats.primitives, r->tiles, r->arena_bytes,
+           r->peak_bytes, r->stats.refs, r->stats.merged_cells,
+           r->stats.dropped_bundles, r->stats.dropped_cells, r->plan_ms,
+           r->trace_ms, r->bin_ms, r->draw_ms);
+}
+
+void scene_lights_text(const struct frame_report *r, char text[64])
+{
+    if (r->drawn_lights < r->lights)
+        snprintf(text, 64, "%d lights, %d after merging", r->lights,
+                 r->drawn_lights);
+    else
+        snprintf(text, 64, "%d lights", r->lights);
+}
+
+void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
+{
+    if (!tool->quiet && r->drawn_lights < r->apart_lights)
+        fprintf(stderr,
+                "glint %s: %d lights that can be told apart were merged into "
+                "%d, the faint ones first (--max-lights)\n",
+                tool->name, r->apart_lights, r->drawn_lights);
 }

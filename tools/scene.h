@@ -9,7 +9,7 @@
 #include "model_file.h"
 #include "tool.h"
 
-enum { SCENE_MAX_LAMPS = 1024 };
+enum { SCENE_MAX_LAMPS = 1024 }; /* by hand; a file may have more */
 
 #define SCENE_MAX_POWER 1e30 /* of a lamp: still finite in every output */
 
@@ -31,6 +31,8 @@ struct scene {
     double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
     int only_ghost;
+    int max_lights;  /* 0: not said */
+    double apart_px; /* lights whose images are nearer are one */
 
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma, quantum;
@@ -64,6 +66,8 @@ enum scene_option {
     OPT_LANES,
     OPT_BALANCE,
     OPT_ONLY,
+    OPT_MAX_LIGHTS,
+    OPT_APART,
     OPT_LAST
 };
 
@@ -90,8 +94,10 @@ enum scene_option {
         {"rays", required_argument, NULL, OPT_RAYS},               \
         {"lanes", required_argument, NULL, OPT_LANES},             \
         {"balance", no_argument, NULL, OPT_BALANCE},               \
+        {"only", required_argument, NULL, OPT_ONLY},               \
+        {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},   \
     {                                                              \
-        "only", required_argument, NULL, OPT_ONLY                  \
+        "apart", required_argument, NULL, OPT_APART                \
     }
 
 /* What they do, for a command's help. */
@@ -116,6 +122,13 @@ enum scene_option {
     "as\n"                                                                     \
     "                      a camera balanced to white behind this lens\n"      \
     "Speed and accuracy of the integer engine\n"                               \
+    "  --max-lights N      lights that are drawn (default 128): more merge, "  \
+    "the\n"                                                                    \
+    "                      faint ones first; of --lights auto the N "          \
+    "strongest\n"                                                              \
+    "                      (default 16)\n"                                     \
+    "  --apart PX          lights whose images are nearer are one (default "   \
+    "0.125)\n"                                                                 \
     "  --quality Q         0 to 1, or draft, default, high: sets grid and "    \
     "quantum,\n"                                                               \
     "                      and how exact a model is that has to be baked\n"    \
@@ -187,5 +200,12 @@ double scene_scale(const struct scene *scene);
 
 /* Prints the report of a frame as JSON members, without braces. */
 void scene_json(const struct frame_report *report);
+
+/* How many lights there were and are drawn, as text. */
+void scene_lights_text(const struct frame_report *report, char text[64]);
+
+/* Says on standard error if lights merged only because they were too many. */
+void scene_warn_lights(const struct tool *tool,
+                       const struct frame_report *report);
 
 #endif

@@ -114,6 +114,17 @@ struct glint_rays {
     struct glint_real faintest;
 };
 
+/* Merges beams in place, and returns how many are left, the brightest first;
+ * what lies behind them means nothing any more. Those nearer than NEAR, as the
+ * chord of the angle between them, merge as they cannot be told apart; then,
+ * while there are more than MOST (1 or more), those whose merging changes the
+ * picture least, faint ones over long distances before bright ones. A merged
+ * beam has the light of both and the direction between, by their powers. What
+ * has no light is left out. *N_APART is how many were left before MOST asked
+ * for fewer. The result does not depend on the order of beams. */
+int glint_beams_merge(struct glint_beam *beams, int n_beams, int32_t near_q30,
+                      int most, int *n_apart);
+
 /* ------------------------------------------------------------------ drawing */
 
 /* By edges: the exact area that each cell covers, one irradiance a cell; folds

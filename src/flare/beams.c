@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Many beams made few: pairs merge whose lights move least.
+ *
+ *   in   beams in any order
+ *   out  fewer, with the same light from nearly the same directions
+ *
+ * Method: beams are sorted along a Z-order curve through the plane of their
+ * direction sines, and neighbours on it are looked at. A curve parts some
+ * neighbours of the plane; so each round has another, through a shifted plane.
+ *
+ * What cannot be told apart merges first. Then, while there are too many, what
+ * costs least: a pair of fluxes a and b that lies d apart moves by d b / (a +
+ * b) and d a / (a + b), which shifts the outlines of all its ghosts, and the
+ * squared error of a shifted outline is the square of its light times the
+ * shift; together a b d. So faint lights merge over long distances while bright
+ * ones keep their places. A round merges the cheapest of the pairs it finds, a
+ * part of what has to go, so that costs rise slowly.
+ *
+ * In place: O(n log n) for all rounds, as each leaves fewer beams; nothing
+ * depends on the order that beams came in, as the sort is by all they hold.
+ * While it works, rgb_q14 of a beam has HELD more fraction bits, or a faint
+ * light's colour would be lost in the rounding of a bright one's.
+ */
+#include "base/q.h"
+#include "base/real.h"
+#include "glint/flare.h"
+
+enum {
+    CURVES = 3, /* to find what cannot be told apart */
+    PART = 4,   /* of what has to go goes in a round */
+    BINS = 64,  /* of costs */
+    HELD = 14,
+    WORDS = 9 /* of a beam */
+};
+
+#define ONE_Q30 (INT32_C(1) << 30)
+
+/* -------------------------------------------------------------- directions */
+
+struct direction {
+    int32_t x_q30, y_q30, z_q30;
+};
+
+static struct direction direction_of(const struct glint_beam *b)
+{
+    return (struct direction){q_mul(b->sine_q30, b->cos_q30, 30),
+                              q_mul(b->sine_q30, b->sin_q30, 30),
+                              b->cosine_q30};
+}
+
+/* Squared distance on the unit sphere, at most 4. */
+static uint64_t distance2_q60(const struct glint_beam *a,
+                              const struct glint_beam *b)
+{
+    const struct direction p = direction_of(a), q = direction_of(b);
+    const int64_t x = (int64_t)p.x_q30 - q.x_q30;
+    const int64_t y = (int64_t)p.y_q30 - q.y_q30;
+    const int64_t z = (int64_t)p.z_q30 - q.z_q30;
+
+    return (uint64_t)(x * x) + (uint64_t)(y * y) + (uint64_t)(z * z);
+}
+
+/* The azimuth of X, Y; returns their length. Straight ahead any will do. */
+static int64_t set_azimuth(struct glint_beam *b, int32_t x_q30, int32_t y_q30)
+{
+    const uint32_t size = (uint32_t)(x_q30 < 0 ? -x_q30 : x_q30) |
+                          (uint32_t)(y_q30 < 0 ? -y_q30 : y_q30);
+    const int up = 30 - bit_length(size); /* short ones need their last bits */
+    const int64_t scale = INT64_C(1) << (up > 0 ? up : 0);
+    const int64_t x = x_q30 * scale, y = y_q30 * scale;
+    const int64_t length = q_root((uint64_t)(x * x + y * y));
+
+    b->cos_q30 =
+        length ? q_clamp_sat(x * ONE_Q30 / length, -ONE_Q30, ONE_Q30) : ONE_Q30;
+    b->sin_q30 =
+        length ? q_clamp_sat(y * ONE_Q30 / length, -ONE_Q30, ONE_Q30) : 0;
+    return (length + scale / 2) / scale;
+}
+
+/* Points B at what is D when its length is made 1. */
+static void set_direction(struct glint_beam *b, const struct direction *d)
+{
+    const int64_t off = set_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
+    const int64_t length = q_root((uint64_t)(off * off + z * z));
+
+    /* 0: between two lights on opposite sides of the horizon */
+    b->sine_q30 =
+        length ? q_clamp_sat(off * ONE_Q30 / length, 0, ONE_Q30) : ONE_Q30;
+    b->cosine_q30 = length ? q_clamp_sat(z * ONE_Q30 / length, 0, ONE_Q30) : 0;
+}
+
+/* --------------------------------------------------------------------- order
+ */
+
+struct order {
+    int by_power;    /* the brightest first; else along a curve */
+    uint32_t x0, y0; /* where it begins, 2^-30 below -1 */
+};
+
+static void words_of(const struct glint_beam *b, int32_t *word)
+{
+    word[0] = b->power.exponent;
+    word[1] = b->power.mantissa;
+    for (int c = 0; c < 3; c++)
+        word[2 + c] = b->rgb_q14[c];
+    word[5] = b->sine_q30;
+    word[6] = b->cosine_q30;
+    word[7] = b->cos_q30;
+    word[8] = b->sin_q30;
+}
+
+/* Whether A comes before B by all that they hold. */
+static int is_brighter(const struct glint_beam *a, const struct glint_beam *b)
+{
+    int32_t p[WORDS], q[WORDS];
+
+    words_of(a, p);
+    words_of(b, q);
+    for (int i = 0; i < WORDS; i++)
+        if (p[i] != q[i])
+            return p[i] > q[i];
+    return 0;
+}
+
+/* How far V is along one side of the plane. */
+static uint32_t along(int32_t v_q30, uint32_t zero)
+{
+    return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
+}
+
+static int is_before(const struct order *o, const struct glint_beam *a,
+                     const struct glint_beam *b)
+{
+    const struct direction p = direction_of(a), q = direction_of(b);
+    const uint32_t px = along(p.x_q30, o->x0), qx = along(q.x_q30, o->x0);
+    const uint32_t py = along(p.y_q30, o->y0), qy = along(q.y_q30, o->y0);
+    const uint32_t dx = px ^ qx, dy = py ^ qy;
+
+    if (o->by_power || (dx | dy) == 0)
+        return is_brighter(a, b);
+    /* the highest bit that differs decides, y's before x's */
+    return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
+}
+
+/* Restores the heap b[0 .. n - 1], the last of the order first, below AT. */
+static void sift_down(const struct order *o, struct glint_beam *b, int at,
+                      int n)
+{
+    const struct glint_beam moved = b[at];
+
+    for (;;) {
+        int child = 2 * at + 1;
+
+        if (child >= n)
+            break;
+        if (child + 1 < n && is_before(o, &b[child], &b[child + 1]))
+            child++;
+        if (!is_before(o, &moved, &b[child]))
+            break;
+        b[at] = b[child];
+        at = child;
+    }
+    b[at] = moved;
+}
+
+static void sort(const struct order *o, struct glint_beam *b, int n)
+{
+    for (int i = n / 2 - 1; i >= 0; i--)
+        sift_down(o, b, i, n);
+    for (int end = n - 1; end > 0; end--) {
+        const struct glint_beam last = b[0];
+
+        b[0] = b[end];
+        b[end] = last;
+        sift_down(o, b, 0, end);
+    }
+}
+
+/* Multiples of irrational numbers: no two rounds part the same neighbours. */
+static void sort_along(struct glint_beam *b, int n, int round)
+{
+    const uint32_t k = (uint32_t)round;
+    const struct order o = {0, k * UINT32_C(1640531527) >> 2,
+                            k * UINT32_C(2654435769) % UINT32_C(0x3fffffff)};
+
+    sort(&o, b, n);
+}
+
+/* ------------------------------------------------------------------- merging
+ */
+
+/* A gets the light of B and the direction between. */
+static void merge(struct glint_beam *a, const struct glint_beam *b)
+{
+    const struct glint_real power = real_plus(a->power, b->power);
+    const int64_t share_q30 =
+        power.mantissa ? real_integer(real_over(b->power, power), 30, ONE_Q30)
+                       : 0;
+    const struct direction p = direction_of(a), q = direction_of(b);
+    const struct direction mean = {
+        q_narrow(p.x_q30 +
+                 q_shift(((int64_t)q.x_q30 - p.x_q30) * share_q30, 30)),
+        q_narrow(p.y_q30 +
+                 q_shift(((int64_t)q.y_q30 - p.y_q30) * share_q30, 30)),
+        q_narrow(p.z_q30 +
+                 q_shift(((int64_t)q.z_q30 - p.z_q30) * share_q30, 30))};
+    int64_t rgb[3], most = 0;
+
+    for (int c = 0; c < 3; c++) {
+        rgb[c] =
+            a->rgb_q14[c] +
+            q_shift(((int64_t)b->rgb_q14[c] - a->rgb_q14[c]) * share_q30, 30);
+        most = rgb[c] > most ? rgb[c] : -rgb[c] > most ? -rgb[c] : most;
+    }
+    for (int c = 0; c < 3; c++)
+        a->rgb_q14[c] = most ? q_narrow(rgb[c] * (1 << (14 + HELD)) / most) : 0;
+    a->power = real_times(power, real_of(most, -14 - HELD));
+    set_direction(a, &mean);
+}
+
+/* The power of two that merging A and B costs, squared. */
+static int cost_of(const struct glint_beam *a, const struct glint_beam *b)
+{
+    const uint64_t d2_q59 = distance2_q60(a, b) >> 1 | 1;
+    const struct glint_real light = real_times(a->power, b->power);
+
+    return real_times(real_times(light, light), real_of((int64_t)d2_q59, -59))
+        .exponent;
+}
+
+/* Which neighbours merge. */
+struct rule {
+    uint64_t near2_q60; /* all so near; or if 0 */
+    int cost;           /* what costs so much at most, */
+    int most;           /* while there are more than so many */
+};
+
+static int may_merge(const struct rule *r, const struct glint_beam *a,
+                     const struct glint_beam *b)
+{
+    return r->near2_q60 ? distance2_q60(a, b) <= r->near2_q60
+                        : cost_of(a, b) <= r->cost;
+}
+
+/* Returns how many are left. */
+static int merge_neighbours(struct glint_beam *b, int n, const struct rule *r)
+{
+    int last = 0, left = n;
+
+    for (int i = 1; i < n; i++)
+        if (left > r->most && may_merge(r, &b[last], &b[i])) {
+            merge(&b[last], &b[i]);
+            left--;
+        } else
+            b[++last] = b[i];
+    return left;
+}
+
+/* The least cost that serves for a part of the N - MOST that have to go. */
+static int next_cost(const struct glint_beam *b, int n, int most)
+{
+    int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
+    int wanted = (n - most + PART - 1) / PART;
+
+    for (int i = 1; i < n; i++) {
+        const int cost = cost_of(&b[i - 1], &b[i]);
+
+        low = cost < low ? cost : low;
+        high = cost > high ? cost : high;
+    }
+    width = (int)(((int64_t)high - low) / BINS) + 1;
+    for (int i = 1; i < n; i++)
+        count[(cost_of(&b[i - 1], &b[i]) - low) / width]++;
+    while (bin < BINS - 1 && (wanted -= count[bin]) > 0)
+        bin++;
+    return low + (bin + 1) * width - 1;
+}
+
+/* Leaves out what is dark, and holds colours finely. */
+static int take_in(struct glint_beam *b, int n)
+{
+    int kept = 0;
+
+    for (int i = 0; i < n; i++) {
+        const int32_t *rgb = b[i].rgb_q14;
+
+        if (b[i].power.mantissa <= 0 || (rgb[0] | rgb[1] | rgb[2]) == 0)
+            continue;
+        b[kept] = b[i];
+        for (int c = 0; c < 3; c++)
+            b[kept].rgb_q14[c] *= 1 << HELD;
+        kept++;
+    }
+    return kept;
+}
+
+static void give_out(struct glint_beam *b, int n)
+{
+    const struct order brightest_first = {.by_power = 1};
+
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++)
+            b[i].rgb_q14[c] = q_narrow(q_shift(b[i].rgb_q14[c], HELD));
+    sort(&brightest_first, b, n);
+}
+
+int glint_beams_merge(struct glint_beam *beams, int n_beams, int32_t near_q30,
+                      int most, int *n_apart)
+{
+    struct rule rule = {
+        .near2_q60 = (uint64_t)near_q30 * (uint64_t)near_q30 + 1, .most = 1};
+    int n = take_in(beams, n_beams), round = 0;
+
+    for (; round < CURVES && n > 1; round++) {
+        sort_along(beams, n, round);
+        n = merge_neighbours(beams, n, &rule);
+    }
+    *n_apart = n;
+    rule = (struct rule){.most = most > 1 ? most : 1};
+    for (; n > rule.most; round++) {
+        sort_along(beams, n, round);
+        rule.cost = next_cost(beams, n, rule.most);
+        n = merge_neighbours(beams, n, &rule);
+    }
+    give_out(beams, n);
+    return n;
+}

@@ -1,0 +1,381 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Many beams made few: the same for every order, no light lost, the bright ones
+ * where they were, at most as many as asked for.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/real.h"
+#include "glint/flare.h"
+#include "support/shuffle.h"
+
+enum { MANY = 3000, NEAR_Q30 = 60000 }; /* an eighth of 2000 pixels */
+
+static double value(struct glint_real x)
+{
+    return ldexp(x.mantissa, x.exponent);
+}
+
+static struct glint_real real(double x)
+{
+    int exponent;
+    const double fraction = frexp(x, &exponent);
+
+    return real_of((int64_t)(fraction * 0x1p40), exponent - 40);
+}
+
+static int32_t q30(double x)
+{
+    return (int32_t)lrint(x * 0x1p30);
+}
+
+/* A beam from direction sines X, Y. */
+static struct glint_beam beam_at(double x, double y, double power)
+{
+    const double sine = hypot(x, y);
+
+    return (struct glint_beam){
+        .sine_q30 = q30(sine),
+        .cosine_q30 = q30(sqrt(1 - sine * sine)),
+        .cos_q30 = sine > 0 ? q30(x / sine) : 1 << 30,
+        .sin_q30 = sine > 0 ? q30(y / sine) : 0,
+        .power = real(power),
+        .rgb_q14 = {16384, 16384, 16384},
+    };
+}
+
+static double uniform(uint32_t *state)
+{
+    return shuffle_next(state) * 0x1p-32;
+}
+
+/* Powers from 1e-6 to 1e9, most of them small; some lights coincide, some lie
+ * on the axis, with any azimuth. */
+static void scatter(struct glint_beam *b, int n, uint32_t seed)
+{
+    for (int i = 0; i < n; i++) {
+        const double x = 0.6 * (uniform(&seed) - 0.5);
+        const double y = 0.4 * (uniform(&seed) - 0.5);
+        const double power = pow(10, -6 + 15 * pow(uniform(&seed), 4));
+
+        b[i] = beam_at(x, y, power);
+        for (int c = 0; c < 3; c++)
+            b[i].rgb_q14[c] = (int32_t)(shuffle_next(&seed) % 16385);
+        b[i].rgb_q14[shuffle_next(&seed) % 3] = 16384;
+        if (i % 100 == 7)
+            b[i] = b[i - 1];
+        if (i % 100 == 9) {
+            b[i].sine_q30 = 0;
+            b[i].cosine_q30 = 1 << 30;
+        }
+    }
+}
+
+static void mix(struct glint_beam *b, int n, uint32_t seed)
+{
+    for (int i = n - 1; i > 0; i--) {
+        const int j = (int)(shuffle_next(&seed) % (uint32_t)(i + 1));
+        const struct glint_beam old = b[i];
+
+        b[i] = b[j];
+        b[j] = old;
+    }
+}
+
+static void flux_of(const struct glint_beam *b, int n, double flux[3])
+{
+    flux[0] = flux[1] = flux[2] = 0;
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++)
+            flux[c] += value(b[i].power) * b[i].rgb_q14[c] / 16384;
+}
+
+/* What a beam promises to those who draw it. */
+static void assert_sound(const struct glint_beam *b)
+{
+    const double off = hypot(b->sine_q30, b->cosine_q30) * 0x1p-30;
+    const double round = hypot(b->cos_q30, b->sin_q30) * 0x1p-30;
+    int32_t most = 0;
+
+    assert_true(b->sine_q30 >= 0 && b->cosine_q30 >= 0);
+    assert_true(fabs(off - 1) < 0x1p-27 && fabs(round - 1) < 0x1p-27);
+    assert_true(b->power.mantissa >= 1 << 30);
+    for (int c = 0; c < 3; c++)
+        most = b->rgb_q14[c] > most ? b->rgb_q14[c] : most;
+    assert_int_equal(most, 16384);
+}
+
+/* --------------------------------------------------------------------- tests
+ */
+
+static void test_none_and_one(void **state)
+{
+    struct glint_beam b = beam_at(0.1, -0.2, 3), was = b;
+    int apart = 7;
+
+    (void)state;
+    b.rgb_q14[1] = 12345;
+    was = b;
+    assert_int_equal(glint_beams_merge(&b, 0, NEAR_Q30, 5, &apart), 0);
+    assert_int_equal(apart, 0);
+    assert_int_equal(glint_beams_merge(&b, 1, NEAR_Q30, 1, &apart), 1);
+    assert_int_equal(apart, 1);
+    assert_memory_equal(&b, &was, sizeof b);
+    b.power = real_of(0, 0);
+    assert_int_equal(glint_beams_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
+    b = was;
+    memset(b.rgb_q14, 0, sizeof b.rgb_q14);
+    assert_int_equal(glint_beams_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
+}
+
+/* Too few and too far apart to merge: every bit stays. */
+static void test_untouched(void **state)
+{
+    static struct glint_beam b[200], was[200];
+    int apart, found = 0;
+
+    (void)state;
+    for (int i = 0; i < 200; i++) {
+        b[i] = beam_at(0.001 * (i % 20), 0.003 * (i / 20) - 0.01, 1 + i);
+        b[i].rgb_q14[i % 3] = i;
+    }
+    memcpy(was, b, sizeof b);
+    assert_int_equal(glint_beams_merge(b, 200, NEAR_Q30, 200, &apart), 200);
+    assert_int_equal(apart, 200);
+    for (int i = 0; i < 200; i++) {
+        assert_true(i == 0 || !real_less(b[i - 1].power, b[i].power));
+        for (int j = 0; j < 200; j++)
+            found += !memcmp(&b[i], &was[j], sizeof *b);
+    }
+    assert_int_equal(found, 200);
+}
+
+static void test_identical(void **state)
+{
+    static struct glint_beam b[MANY];
+    const struct glint_beam one = beam_at(-0.11, 0.23, 0.5);
+    int apart;
+
+    (void)state;
+    for (int i = 0; i < MANY; i++)
+        b[i] = one;
+    assert_int_equal(glint_beams_merge(b, MANY, 0, MANY, &apart), 1);
+    assert_int_equal(apart, 1);
+    assert_sound(b);
+    assert_true(abs(b->sine_q30 - one.sine_q30) < 64 &&
+                abs(b->cos_q30 - one.cos_q30) < 256);
+    assert_true(fabs(value(b->power) - 0.5 * MANY) < 1e-5 * MANY);
+}
+
+/* The chord from direction sines X, Y to P, Q. */
+static double chord(double x, double y, double p, double q)
+{
+    const double z = sqrt(1 - x * x - y * y) - sqrt(1 - p * p - q * q);
+
+    return sqrt((x - p) * (x - p) + (y - q) * (y - q) + z * z);
+}
+
+/* Pairs nearer than NEAR become one in between, by their powers; farther ones
+ * do not. */
+static void test_near(void **state)
+{
+    const double near = NEAR_Q30 * 0x1p-30;
+    uint32_t seed = 5;
+    int apart, n_merged = 0;
+
+    (void)state;
+    for (int k = 0; k < 2000; k++) {
+        const double x = uniform(&seed) - 0.5, y = uniform(&seed) - 0.5;
+        const double dx = 2 * near * (uniform(&seed) - 0.5);
+        const double dy = 2 * near * (uniform(&seed) - 0.5);
+        const double d = chord(x, y, x + dx, y + dy);
+        struct glint_beam b[2] = {beam_at(x, y, 1), beam_at(x + dx, y + dy, 3)};
+        const int left = glint_beams_merge(b, 2, NEAR_Q30, 2, &apart);
+
+        if (fabs(d - near) > 0.001 * near)
+            assert_int_equal(left, d < near ? 1 : 2);
+        assert_int_equal(apart, left);
+        if (left == 2)
+            continue;
+        n_merged++;
+        assert_sound(b);
+        assert_true(fabs(value(b->power) - 4) < 1e-8);
+        assert_true(fabs(b->sine_q30 * 0x1p-60 * b->cos_q30 - x - 0.75 * dx) <
+                    1e-8);
+        assert_true(fabs(b->sine_q30 * 0x1p-60 * b->sin_q30 - y - 0.75 * dy) <
+                    1e-8);
+    }
+    assert_true(n_merged > 500 && n_merged < 1800);
+}
+
+static void test_axis(void **state)
+{
+    struct glint_beam b[4] = {beam_at(0, 0, 1), beam_at(0, 0, 1),
+                              beam_at(2e-9, 0, 1), beam_at(-2e-9, 0, 1)};
+    struct glint_beam far[2] = {beam_at(0.1, 0, 1), beam_at(-0.1, 0, 1)};
+    struct glint_beam aside[2] = {beam_at(2e-9, 0, 1), beam_at(0, 2e-9, 1)};
+    int apart;
+
+    (void)state;
+    b[1].cos_q30 = -(1 << 29);
+    b[1].sin_q30 = 929887697; /* 120 degrees */
+    assert_int_equal(glint_beams_merge(b, 4, NEAR_Q30, 4, &apart), 1);
+    assert_sound(b);
+    assert_true(b->sine_q30 <= 2);
+    assert_true(fabs(value(b->power) - 4) < 1e-8);
+    assert_int_equal(glint_beams_merge(far, 2, NEAR_Q30, 1, &apart), 1);
+    assert_int_equal(apart, 2);
+    assert_sound(far);
+    assert_true(far->sine_q30 <= 2);
+    assert_int_equal(glint_beams_merge(aside, 2, NEAR_Q30, 1, &apart), 1);
+    assert_sound(aside);
+}
+
+static void test_horizon(void **state)
+{
+    struct glint_beam b[3] = {beam_at(1, 0, 1), beam_at(-1, 0, 1),
+                              beam_at(0, 1, 1)};
+    int apart;
+
+    (void)state;
+    assert_int_equal(glint_beams_merge(b, 2, 1 << 30, 1, &apart), 1);
+    assert_sound(b);
+    b[0] = beam_at(1, 0, 1);
+    b[1] = beam_at(-1, 0, 1);
+    assert_int_equal(glint_beams_merge(b, 3, NEAR_Q30, 1, &apart), 1);
+    assert_sound(b);
+}
+
+/* Bit for bit, for every number asked for. */
+static void test_order(void **state)
+{
+    static struct glint_beam want[MANY], got[MANY];
+
+    (void)state;
+    for (uint32_t k = 0; k < 24; k++) {
+        const int n = k < 12 ? MANY : 400, most = 1 + (int)(k * k) % n;
+        int apart, apart_again, left;
+
+        scatter(want, n, 77 + k / 3);
+        memcpy(got, want, sizeof got);
+        mix(got, n, 1000 + k);
+        left = glint_beams_merge(want, n, NEAR_Q30, most, &apart);
+        assert_int_equal(
+            glint_beams_merge(got, n, NEAR_Q30, most, &apart_again), left);
+        assert_int_equal(apart, apart_again);
+        assert_memory_equal(got, want, (size_t)left * sizeof *got);
+    }
+}
+
+static void test_cap_and_flux(void **state)
+{
+    static struct glint_beam b[MANY];
+
+    (void)state;
+    for (int most = 1; most <= 4096; most *= 2) {
+        double before[3], after[3];
+        int apart, left;
+
+        scatter(b, MANY, 9);
+        flux_of(b, MANY, before);
+        left = glint_beams_merge(b, MANY, NEAR_Q30, most, &apart);
+        assert_true(apart <= MANY - MANY / 100 && apart > MANY * 9 / 10);
+        assert_int_equal(left, most < apart ? most : apart);
+        flux_of(b, left, after);
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(after[c] - before[c]) < 1e-4 * before[c]);
+        for (int i = 0; i < left; i++)
+            assert_sound(&b[i]);
+    }
+}
+
+/* A faint colour is not lost in the rounding of a bright light's. */
+static void test_faint_colour(void **state)
+{
+    static struct glint_beam b[MANY];
+    double flux[3];
+    int apart;
+
+    (void)state;
+    for (int i = 0; i < MANY; i++) {
+        b[i] = beam_at(0.1, 0.1, 1e-5);
+        b[i].rgb_q14[1] = b[i].rgb_q14[2] = 0;
+    }
+    b[0] = beam_at(0.1, 0.1, 1);
+    assert_int_equal(glint_beams_merge(b, MANY, NEAR_Q30, 1, &apart), 1);
+    flux_of(b, 1, flux);
+    assert_true(fabs(flux[0] - 1 - 1e-5 * (MANY - 1)) < 1e-5);
+    assert_true(fabs(flux[1] - 1) < 1e-4 && fabs(flux[2] - 1) < 1e-4);
+}
+
+/* The ends of the range, far past it, and both together. */
+static void test_powers(void **state)
+{
+    static const double powers[] = {1e-6, 1e9, 1e-55, 1e55};
+
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++) {
+            struct glint_beam b[3] = {beam_at(0.1, 0.1, powers[i]),
+                                      beam_at(0.2, 0.1, powers[j]),
+                                      beam_at(0.1, 0.3, powers[i])};
+            const double sum = 2 * powers[i] + powers[j];
+            int apart;
+
+            assert_int_equal(glint_beams_merge(b, 3, NEAR_Q30, 1, &apart), 1);
+            assert_sound(b);
+            assert_true(fabs(value(b->power) - sum) < 1e-8 * sum);
+        }
+}
+
+/* Of a few bright lights among many faint ones the bright ones stay. */
+static void test_bright_ones_stay(void **state)
+{
+    static struct glint_beam b[MANY];
+    int apart;
+
+    (void)state;
+    scatter(b, MANY, 4);
+    for (int i = 0; i < MANY; i++)
+        b[i].power = real(0.01);
+    for (int i = 0; i < 20; i++)
+        b[150 * i] = beam_at(0.02 * i - 0.2, 0.15 - 0.01 * i, 100);
+    assert_int_equal(glint_beams_merge(b, MANY, NEAR_Q30, 128, &apart), 128);
+    for (int i = 0; i < 20; i++) {
+        double nearest = 1;
+
+        for (int j = 0; j < 20; j++)
+            nearest =
+                fmin(nearest, hypot(b[j].sine_q30 * 0x1p-60 * b[j].cos_q30 -
+                                        (0.02 * i - 0.2),
+                                    b[j].sine_q30 * 0x1p-60 * b[j].sin_q30 -
+                                        (0.15 - 0.01 * i)));
+        assert_true(nearest < 1e-5);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_none_and_one),
+        cmocka_unit_test(test_untouched),
+        cmocka_unit_test(test_identical),
+        cmocka_unit_test(test_near),
+        cmocka_unit_test(test_axis),
+        cmocka_unit_test(test_horizon),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_cap_and_flux),
+        cmocka_unit_test(test_faint_colour),
+        cmocka_unit_test(test_powers),
+        cmocka_unit_test(test_bright_ones_stay),
+    };
+
+    return cmocka_run_group_tests_name("beams", tests, NULL, NULL);
+}
