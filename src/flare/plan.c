@@ -31,9 +31,12 @@ static void begin(struct glint_plan_survey *s, const struct glint_transfer *t)
     s->high = -INT32_MAX;
     s->wide = s->energy = 0;
     s->least_area = UINT64_MAX;
+    s->n_kinds = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         s->change[k] = (struct glint_plan_change){0, 0};
         s->limit[k] = in_units(t, k, near_q16);
+        if (t->outputs >> k & 1 && k != GLINT_OUT_ENERGY)
+            s->kind[s->n_kinds++] = (uint8_t)k;
     }
 }
 
@@ -69,8 +72,9 @@ static void survey_row(struct glint_plan_survey *s, struct glint_transfer *t,
         for (int i = 0; i < GLINT_RAYS && first + i <= ACROSS; i++) {
             struct glint_plan_node *n = &row[first + i];
 
-            for (int k = 0; k < GLINT_OUT_KINDS; k++)
-                n->at[k] = t->outputs >> k & 1 ? out[k][i] : 0;
+            for (int k = 0; k < s->n_kinds; k++)
+                n->at[s->kind[k]] = out[s->kind[k]][i];
+            n->at[GLINT_OUT_ENERGY] = out[GLINT_OUT_ENERGY][i];
             n->inside = is_inside(s, t, n->at) && !(t->hollow && 2 * j < DOWN);
         }
     }
@@ -84,7 +88,8 @@ static void add_bend(struct glint_plan_survey *s,
 {
     if (!b->inside)
         return;
-    for (int k = 0; k < GLINT_OUT_KINDS; k++) {
+    for (int i = 0; i < s->n_kinds; i++) {
+        const int k = s->kind[i];
         const int64_t first = ((int64_t)c->at[k] - a->at[k]) / 2 * steps;
         const int64_t second =
             ((int64_t)a->at[k] - 2 * (int64_t)b->at[k] + c->at[k]) * steps *
