@@ -6,6 +6,41 @@
 #include "base/q.h"
 #include "flare/state.h"
 
+/* --------------------------------------------------------------------- order
+ */
+
+typedef int weight_fn(const struct glint_flare *f, int job);
+
+/* The heaviest of N jobs first, by powers of two, so that no worker begins a
+ * long one when the others are done. Changes no output. */
+static void set_order(struct glint_flare *f, int n, weight_fn *weight)
+{
+    int32_t at[33] = {0};
+
+    for (int i = 0; i < n; i++)
+        at[32 - bit_length((uint32_t)weight(f, i))]++;
+    for (int k = 0, sum = 0; k < 33; k++) {
+        const int here = at[k];
+
+        at[k] = sum;
+        sum += here;
+    }
+    for (int i = 0; i < n; i++)
+        f->order[at[32 - bit_length((uint32_t)weight(f, i))]++] = i;
+}
+
+static int cells_across(const struct glint_flare *f, int bundle)
+{
+    return f->bundle[bundle].n_cells;
+}
+
+static int edges_in_row(const struct glint_flare *f, int row)
+{
+    const int32_t *start = f->bins.start + row * f->bins.tiles_x;
+
+    return start[f->bins.tiles_x] - start[0];
+}
+
 /* ------------------------------------------------------------------- bundles
  */
 
@@ -98,10 +133,11 @@ static void count_bundle(struct glint_flare *f, int bundle,
 static void emit_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
+    const int bundle = f->order[job];
 
-    emit_bundle(f, job, &f->worker[worker]);
-    f->slot[job].worker = worker;
-    count_bundle(f, job, &f->worker[worker]);
+    emit_bundle(f, bundle, &f->worker[worker]);
+    f->slot[bundle].worker = worker;
+    count_bundle(f, bundle, &f->worker[worker]);
 }
 
 /* Gives each of N workers an equal part of the edges. */
@@ -173,6 +209,7 @@ static void emit(struct glint_flare *f)
 {
     share_out(f, glint_workers_count(f->cfg.workers));
     clear_counts(f);
+    set_order(f, f->n_bundles, cells_across);
     glint_workers_run(f->cfg.workers, f->n_bundles, emit_job, f);
     if (!all_placed(f))
         emit_leftovers(f);
@@ -340,7 +377,7 @@ static void row_job(void *ctx, int job, int worker)
     struct draw *d = ctx;
     struct glint_flare *f = d->flare;
     struct glint_flare_worker *w = &f->worker[worker];
-    const int log2 = f->cfg.tile_log2;
+    const int log2 = f->cfg.tile_log2, row = f->order[job];
     struct glint_edge_sums s = {.linear = d->image->format == GLINT_LINEAR_Q20,
                                 .wide = w->wide,
                                 .narrow_q24 = w->narrow_q24,
@@ -352,7 +389,7 @@ static void row_job(void *ctx, int job, int worker)
     for (int i = 0; i < 3 << log2; i++)
         s.carry[i] = 0;
     for (int x = 0; x < f->bins.tiles_x; x++)
-        draw_tile(d, w, &s, job * f->bins.tiles_x + x);
+        draw_tile(d, w, &s, row * f->bins.tiles_x + x);
 }
 
 void glint_flare_clear_edges(struct glint_flare_worker *w, int log2)
@@ -370,6 +407,8 @@ void glint_flare_draw_edges(struct glint_flare *flare,
 {
     struct draw d = {flare, image};
 
-    if (flare->stats.primitives > 0)
-        glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
+    if (flare->stats.primitives == 0)
+        return;
+    set_order(flare, flare->bins.tiles_y, edges_in_row);
+    glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }

@@ -25,6 +25,11 @@ static size_t tile_count(int pixels_x, int pixels_y, int log2)
            (((size_t)pixels_y + side - 1) >> log2);
 }
 
+static size_t tile_rows(const struct glint_flare_config *c)
+{
+    return tile_count(1, c->height, c->tile_log2);
+}
+
 static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
                          const struct glint_flare_config *c)
 {
@@ -76,6 +81,8 @@ static struct glint_flare *carve(struct glint_arena *a,
     if (by_edges(c)) {
         f->edge =
             glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->edge);
+        f->order = glint_arena_take(a, tile_rows(c) + (size_t)c->max_bundles,
+                                    sizeof *f->order);
     } else {
         f->level =
             glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->level);

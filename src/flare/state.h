@@ -57,8 +57,10 @@ struct glint_flare {
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
     struct glint_edge *edge; /* by edges */
-    int32_t limit_q8;        /* of a cell's light in a pixel */
-    uint8_t *level;          /* by cells: one per vertex, what merge found */
+    int32_t
+        *order; /* by edges: bundles, then rows of tiles, as they are done */
+    int32_t limit_q8; /* of a cell's light in a pixel */
+    uint8_t *level;   /* by cells: one per vertex, what merge found */
     struct glint_primitive *primitive; /* by cells */
     struct glint_bins bins;            /* first level */
     struct glint_flare_worker *worker;
