@@ -218,6 +218,63 @@ static void test_faint(void **state)
     close_fixture(&f);
 }
 
+static double code_of(int32_t light_q20)
+{
+    const double x = fmin(1, fmax(0, light_q20 * 0x1p-20));
+
+    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
+}
+
+static void draw(struct fixture *f, int32_t *px_q20,
+                 struct glint_flare_stats *s)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+
+    memset(px_q20, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
+    glint_image_place(&image, px_q20);
+    start(f);
+    glint_flare_plan(f->flare, &f->rays, &f->beam, 1);
+    glint_flare_bin(f->flare, s);
+    glint_flare_draw(f->flare, &image);
+    free(f->mem);
+    f->mem = NULL;
+}
+
+/* For codes the faint is drawn with fewer edges, and codes are nearly the
+ * same. */
+static void test_steps_follow_codes(void **state)
+{
+    static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
+    int n_fewer = 0;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    f.cfg.irradiance_steps = 70;
+    for (int e = 8; e > -12; e--) {
+        struct glint_flare_stats all, fewer;
+        double sum = 0;
+
+        f.beam.power = real_of(1, e);
+        f.rays.faintest = real_of(0, 0);
+        draw(&f, linear, &all);
+        f.rays.faintest = real_of(1, -20);
+        draw(&f, coded, &fewer);
+        assert_true(fewer.primitives <= all.primitives);
+
+        n_fewer += 2 * fewer.primitives < all.primitives;
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+            const double off = code_of(coded[i]) - code_of(linear[i]);
+
+            sum += off * off;
+        }
+        assert_true(sum / (3 * WIDTH * HEIGHT) < 0.65); /* 50 dB */
+    }
+    assert_true(n_fewer > 15);
+    close_fixture(&f);
+}
+
 static void test_room(void **state)
 {
     struct fixture f;
@@ -290,11 +347,9 @@ static void test_rows_and_grids(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reals),
-        cmocka_unit_test(test_what_is_seen),
-        cmocka_unit_test(test_faint),
-        cmocka_unit_test(test_room),
-        cmocka_unit_test(test_rows_and_grids),
+        cmocka_unit_test(test_reals), cmocka_unit_test(test_what_is_seen),
+        cmocka_unit_test(test_faint), cmocka_unit_test(test_steps_follow_codes),
+        cmocka_unit_test(test_room),  cmocka_unit_test(test_rows_and_grids),
     };
 
     return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
