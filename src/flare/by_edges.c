@@ -369,6 +369,5 @@ void glint_flare_draw_edges(struct glint_flare *flare,
 {
     struct draw d = {flare, image};
 
-    if (flare->stats.primitives > 0)
-        glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
+    glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }
