@@ -10,7 +10,9 @@
 
 enum { MAX_CASES = 256, MAX_ROUNDS = 1000, MAX_LENSES = 16, MAX_LIGHTS = 64 };
 
-enum stage { PLAN, TRANSFER, BIN, DRAW, WHOLE, STAGES };
+/* Drawing is accumulating light, which is timed by itself, and compositing it
+ * with the picture, which is the rest. */
+enum stage { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE, STAGES };
 
 /* A picture to draw on, and what touching it costs. */
 struct canvas {

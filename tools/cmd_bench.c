@@ -21,6 +21,8 @@ static const char help[] =
     "99.9th percentile of the flare is display white; further lights lie on a\n"
     "spiral around it. Without lenses: one of each kind that comes with "
     "glint.\n"
+    "Of drawing, accumulate is the light of all pixels, timed by itself, and\n"
+    "composite the rest: codes read, light added, codes written.\n"
     "\n"
     "  --all           also: both rasterisers, all kernels, 2 threads, 2 to "
     "64\n"

@@ -265,7 +265,7 @@ void glint_flare_bin_edges(struct glint_flare *flare)
 
 struct draw {
     struct glint_flare *flare;
-    const struct glint_image *image;
+    const struct glint_image *image; /* NULL: light is dropped */
 };
 
 /* Whether light runs into a tile's rows. */
@@ -309,7 +309,7 @@ static void resolve_codes(const struct draw *d,
             for (int row = 0; row < n; row++)
                 lit |= glint_edge_light(s, c, y + row - s->tile.y0, r->kernels,
                                         w->light->rgb_q16[c][row]);
-        if (!lit)
+        if (!lit || !d->image)
             continue;
         glint_resolve_stretch(r, d->image, s->tile.x0, y,
                               s->tile.x1 - s->tile.x0, n, w->light, w->codes);
@@ -340,7 +340,8 @@ static void row_job(void *ctx, int job, int worker)
     struct glint_flare *f = d->flare;
     struct glint_flare_worker *w = &f->worker[worker];
     const int log2 = f->cfg.tile_log2;
-    struct glint_edge_sums s = {.linear = d->image->format == GLINT_LINEAR_Q20,
+    struct glint_edge_sums s = {.linear = d->image &&
+                                          d->image->format == GLINT_LINEAR_Q20,
                                 .wide = w->wide,
                                 .narrow_q24 = w->narrow_q24,
                                 .carry = w->carry,

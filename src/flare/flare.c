@@ -358,11 +358,13 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image)
 {
+    static const struct glint_image none = {.format = GLINT_YUYV};
+
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
         flare->worker[i].n_tiles = 0;
     if (flare->stats.primitives == 0)
         return; /* the bins may be another frame's */
-    glint_resolve_init(flare->resolve, image, flare->cfg.dither,
+    glint_resolve_init(flare->resolve, image ? image : &none, flare->cfg.dither,
                        flare->cfg.sets);
     if (by_edges(&flare->cfg))
         glint_flare_draw_edges(flare, image);
