@@ -187,11 +187,35 @@ static int add_test(struct bench *b, const struct scene *scene,
     return EXIT_OK;
 }
 
+int bench_add_one(struct bench *b, const struct scene *scene, int width,
+                  int height, int lights)
+{
+    const struct variation v = {width, height, lights, 0, 0, NULL, ~0U, 12};
+
+    return add_test(b, scene, &v);
+}
+
+/* Of a frame and its memory. */
+static int add_sizes(struct bench *b, const struct scene *scene)
+{
+    static const int size[][2] = {
+        {640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}};
+    int code = EXIT_OK;
+
+    for (size_t i = 0; i < sizeof size / sizeof *size && code == EXIT_OK; i++)
+        code = bench_add_one(b, scene, size[i][0], size[i][1], 1);
+    return code;
+}
+
 int bench_add(struct bench *b, const struct scene *scene)
 {
     const int n = b->all ? (int)(sizeof variations / sizeof *variations) : 1;
     int code = EXIT_OK;
 
+    if (b->growth)
+        return bench_add_growth(b, scene);
+    if (b->sizes)
+        return add_sizes(b, scene);
     for (int i = 0; i < n && code == EXIT_OK; i++)
         if (variations[i].sets == ~0U ||
             !(variations[i].sets & ~glint_sets_here()))
