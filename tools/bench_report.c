@@ -24,15 +24,6 @@ static double median(const double *values, int n)
     return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
 }
 
-static double least(const double *values, int n)
-{
-    double x = values[0];
-
-    for (int i = 1; i < n; i++)
-        x = values[i] < x ? values[i] : x;
-    return x;
-}
-
 static const char *raster_of(const struct test *t)
 {
     return t->frame.cfg.raster == GLINT_RASTER_CELLS || t->frame.mask ? "cells"
@@ -94,11 +85,11 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
         printf(", \"series\": \"%s\"", t->series);
     printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", \"lights\": "
            "%d, \"threads\": %d, \"raster\": \"%s\", \"kernels\": \"%s\", "
-           "\"quality\": %.3f, \"ms\": %.4f, \"least_ms\": %.4f, "
+           "\"quality\": %.3f, \"ms\": %.4f, \"cpu_ms\": %.4f, "
            "\"ratio\": %.3f, ",
            t->canvas->image.width, t->canvas->image.height, b->format_word,
            t->n_lamps, t->threads, raster_of(t), t->kernels, quality_of(t), ms,
-           least(t->ms[WHOLE], b->rounds), ms / floor_ms);
+           t->cpu_ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
         printf("\"%s_ms\": %.4f, ", stage_names[s],
                median(t->ms[s], b->rounds));

@@ -3,7 +3,7 @@
 # growth.awk - from the JSON of 'glint bench --growth' to plots, both axes
 # logarithmic, with lines of best fit, and a table of their slopes.
 #
-#   in   one case a line: lens, series, what varies, least_ms
+#   in   one case a line: lens, series, what varies, cpu_ms
 #   out  dir/lights.svg, pixels.svg, ghosts.svg, edges.svg; all four in
 #        dir/growth.svg; the table
 
@@ -40,7 +40,7 @@ BEGIN {
     }
     if (x > 0)
         add(p, lens SUBSEP series, log(x) / log(10),
-            log(value("least_ms")) / log(10))
+            log(value("cpu_ms")) / log(10))
 }
 
 # One more point of line L in panel P.
