@@ -34,7 +34,7 @@ struct test {
     struct glint_lens some;                /* lens with some ghosts only, */
     struct glint_model_ghost *some_ghosts; /* unless this is NULL */
     struct frame_report report;
-    double cpu_ms; /* of all threads, the least that a frame took; at first 0 */
+    double cpu_ms; /* of growth: of all threads, the least of a frame; or 0 */
     double ms[STAGES][MAX_ROUNDS];
 };
 

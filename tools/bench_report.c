@@ -82,14 +82,14 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
     printf("{\"lens\": ");
     tool_json_string(stdout, t->scene->lens.name);
     if (t->series)
-        printf(", \"series\": \"%s\"", t->series);
+        printf(", \"series\": \"%s\", \"cpu_ms\": %.3f", t->series, t->cpu_ms);
     printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", \"lights\": "
            "%d, \"threads\": %d, \"raster\": \"%s\", \"kernels\": \"%s\", "
-           "\"quality\": %.3f, \"ms\": %.4f, \"cpu_ms\": %.4f, "
+           "\"quality\": %.3f, \"ms\": %.4f, "
            "\"ratio\": %.3f, ",
            t->canvas->image.width, t->canvas->image.height, b->format_word,
            t->n_lamps, t->threads, raster_of(t), t->kernels, quality_of(t), ms,
-           t->cpu_ms, ms / floor_ms);
+           ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
         printf("\"%s_ms\": %.4f, ", stage_names[s],
                median(t->ms[s], b->rounds));
