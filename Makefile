@@ -6,6 +6,7 @@
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
+#   make growth   how that grows, as plots;  memory-table: what it takes
 #   also: oiio table bake-table accuracy-table inputs fuzz format
 #         golden-update clean
 
@@ -40,7 +41,7 @@ PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture
 TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
-        bench_cases bench_report cmd_bench
+        bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
         measure lamps
@@ -146,6 +147,10 @@ accuracy-table: all
 	@tools/accuracy-table
 bench: all
 	@build/glint bench
+growth: all
+	@tools/growth
+memory-table: all
+	@tools/memory-table
 bench-insn: all
 	@tools/deps "instruction counts" valgrind
 	@tools/bench-insn
@@ -224,7 +229,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table bench bench-insn check run-check check-neon golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table bench bench-insn growth memory-table check run-check check-neon golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -10,7 +10,9 @@
 
 enum { MAX_CASES = 256, MAX_ROUNDS = 1000, MAX_LENSES = 16 };
 
-enum stage { PLAN, TRANSFER, BIN, DRAW, WHOLE, STAGES };
+/* Drawing is accumulating light, which is timed by itself, and compositing it
+ * with the picture, which is the rest. */
+enum stage { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE, STAGES };
 
 /* A picture to draw on, and what touching it costs. */
 struct canvas {
@@ -27,8 +29,12 @@ struct test {
     struct glint_lamp *lamp;
     int n_lamps, threads;
     const char *kernels;
-    double scale, psnr_db; /* NAN: not measured */
+    double scale, psnr_db;                 /* NAN: not measured */
+    const char *series;                    /* of growth, or NULL */
+    struct glint_lens some;                /* lens with some ghosts only, */
+    struct glint_model_ghost *some_ghosts; /* unless this is NULL */
     struct frame_report report;
+    double cpu_ms; /* of growth: of all threads, the least of a frame; or 0 */
     double ms[STAGES][MAX_ROUNDS];
 };
 
@@ -42,12 +48,19 @@ struct bench {
     enum glint_pixel_format format;
     const char *format_word;
     int width, height;
-    bool all, psnr;
+    bool all, sizes, growth, psnr;
 };
 
-/* Adds the plain case of SCENE, and with b->all its variations. Returns an exit
+/* Adds the cases of SCENE that are asked for, or the plain one. Returns an exit
  * code, as all here that return int. */
 int bench_add(struct bench *b, const struct scene *scene);
+
+/* Adds one of this size, 0 as asked, and so many lights, if there is room. */
+int bench_add_one(struct bench *b, const struct scene *scene, int width,
+                  int height, int lights);
+
+/* Adds those of b->growth. */
+int bench_add_growth(struct bench *b, const struct scene *scene);
 
 /* Times round ROUND of a case, and of what touching its memory costs. */
 enum glint_status bench_run(struct test *t, int round);

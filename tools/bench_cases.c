@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "bench.h"
 #include "measure.h"
@@ -197,11 +198,35 @@ static int add_test(struct bench *b, const struct scene *scene,
     return EXIT_OK;
 }
 
+int bench_add_one(struct bench *b, const struct scene *scene, int width,
+                  int height, int lights)
+{
+    const struct variation v = {width, height, lights, 0, 0, NULL, ~0U, 12};
+
+    return add_test(b, scene, &v);
+}
+
+/* Of a frame and its memory. */
+static int add_sizes(struct bench *b, const struct scene *scene)
+{
+    static const int size[][2] = {
+        {640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}};
+    int code = EXIT_OK;
+
+    for (size_t i = 0; i < sizeof size / sizeof *size && code == EXIT_OK; i++)
+        code = bench_add_one(b, scene, size[i][0], size[i][1], 1);
+    return code;
+}
+
 int bench_add(struct bench *b, const struct scene *scene)
 {
     const int n = b->all ? (int)(sizeof variations / sizeof *variations) : 1;
     int code = EXIT_OK;
 
+    if (b->growth)
+        return bench_add_growth(b, scene);
+    if (b->sizes)
+        return add_sizes(b, scene);
     for (int i = 0; i < n && code == EXIT_OK; i++)
         if (variations[i].sets == ~0U ||
             !(variations[i].sets & ~glint_sets_here()))
@@ -209,21 +234,39 @@ int bench_add(struct bench *b, const struct scene *scene)
     return code;
 }
 
+/* What of drawing the last frame did not touch the picture. */
+static double accumulate_ms(const struct test *t)
+{
+    const double t0 = tool_seconds();
+
+    if (t->n_lamps > 0)
+        glint_flare_draw(t->frame.flare, NULL);
+    return 1e3 * (tool_seconds() - t0);
+}
+
 enum glint_status bench_run(struct test *t, int round)
 {
     struct canvas *c = t->canvas;
     enum glint_status status;
-    double t0;
+    clock_t cpu0 = 0;
+    double t0, cpu_ms;
 
     memcpy(c->mem, c->fresh, c->bytes);
+    if (t->series) /* a system call would cool the caches of small frames */
+        cpu0 = clock();
     t0 = tool_seconds();
     status = frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale, &c->image,
                         &t->report);
     t->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
+    cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
+    if (t->cpu_ms == 0 || cpu_ms < t->cpu_ms)
+        t->cpu_ms = cpu_ms;
     t->ms[PLAN][round] = t->report.plan_ms;
     t->ms[TRANSFER][round] = t->report.trace_ms;
     t->ms[BIN][round] = t->report.bin_ms;
     t->ms[DRAW][round] = t->report.draw_ms;
+    t->ms[ACCUMULATE][round] = accumulate_ms(t);
+    t->ms[COMPOSITE][round] = t->ms[DRAW][round] - t->ms[ACCUMULATE][round];
     return status;
 }
 

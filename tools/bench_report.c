@@ -5,8 +5,8 @@
 
 #include "bench.h"
 
-static const char *const stage_names[STAGES] = {"plan", "transfer", "bin",
-                                                "draw", "whole"};
+static const char *const stage_names[STAGES] = {
+    "plan", "transfer", "bin", "draw", "accumulate", "composite", "whole"};
 
 static int by_size(const void *a, const void *b)
 {
@@ -35,6 +35,14 @@ static double quality_of(const struct test *t)
     return log2((t->scene->grid ? t->scene->grid : 64) / 16.0) / 4;
 }
 
+/* Characters across. */
+static int column(int stage)
+{
+    const int n = (int)strlen(stage_names[stage]);
+
+    return n > 7 ? n : 7;
+}
+
 static void print_test(const struct bench *b, const struct test *t)
 {
     const double floor_ms = median(t->canvas->floor_ms, b->rounds);
@@ -44,13 +52,12 @@ static void print_test(const struct bench *b, const struct test *t)
            t->canvas->image.width, t->canvas->image.height, t->n_lamps,
            t->threads, raster_of(t), t->kernels, ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
-        printf(" %7.2f", median(t->ms[s], b->rounds) / floor_ms);
+        printf(" %*.2f", column(s), median(t->ms[s], b->rounds) / floor_ms);
     printf("  %7d %6.2f", t->report.stats.primitives,
            (double)t->report.peak_bytes / (1 << 20));
-    if (isnan(t->psnr_db))
-        printf("\n");
-    else
-        printf("  %.1f\n", t->psnr_db);
+    if (!isnan(t->psnr_db))
+        printf("  %.1f", t->psnr_db);
+    printf("%s%s\n", t->series ? "  " : "", t->series ? t->series : "");
 }
 
 void bench_print(const struct bench *b)
@@ -61,7 +68,7 @@ void bench_print(const struct bench *b)
     printf("%-22s %9s %5s %2s %-5s %-5s %8s %7s ", "lens", "size", "light",
            "th", "by", "sets", "ms", "ratio");
     for (int s = 0; s < WHOLE; s++)
-        printf(" %7.7s", stage_names[s]);
+        printf(" %*s", column(s), stage_names[s]);
     printf("  %7s %6s%s\n", "prims", "MiB", b->psnr ? "  dB" : "");
     for (int i = 0; i < b->n_tests; i++)
         print_test(b, &b->test[i]);
@@ -74,6 +81,8 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
 
     printf("{\"lens\": ");
     tool_json_string(stdout, t->scene->lens.name);
+    if (t->series)
+        printf(", \"series\": \"%s\", \"cpu_ms\": %.3f", t->series, t->cpu_ms);
     printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", \"lights\": "
            "%d, \"threads\": %d, \"raster\": \"%s\", "
            "\"kernels\": \"%s\", "

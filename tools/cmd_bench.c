@@ -21,10 +21,16 @@ static const char help[] =
     "99.9th percentile of the flare is display white; further lights lie on a\n"
     "spiral around it. Without lenses: one of each kind that comes with "
     "glint.\n"
+    "Of drawing, accumulate is the light of all pixels, timed by itself, and\n"
+    "composite the rest: codes read, light added, codes written.\n"
     "\n"
     "  --all           also: both rasterisers, all kernels, 2 threads, 2 to "
     "10000\n"
     "                  lights, 360p to 2160p, no light, a light far outside\n"
+    "  --sizes         instead: 360p, 720p, 1080p and 2160p\n"
+    "  --growth        instead: 1 to 64 lights, 360p to 2160p, some of the\n"
+    "                  ghosts, other quanta and grids; tools/growth draws "
+    "them\n"
     "  --size WxH      default 1920x1080\n"
     "  --repeat N      rounds (default 15)\n"
     "  --psnr          also draw each lens exactly and compare, which takes\n"
@@ -107,8 +113,10 @@ static void close_bench(struct bench *b)
 {
     for (int i = 0; i < MAX_CASES; i++)
         free(b->test[i].lamp);
-    for (int i = 0; i < b->n_tests; i++)
+    for (int i = 0; i < b->n_tests; i++) {
         frame_finish(&b->test[i].frame);
+        free(b->test[i].some_ghosts);
+    }
     for (int i = 0; i < b->n_canvases; i++) {
         free(b->canvas[i].fresh);
         free(b->canvas[i].mem);
@@ -128,6 +136,12 @@ static int take(struct tool *tool, struct bench *b, int c)
     switch (c) {
     case 'a':
         b->all = true;
+        return -1;
+    case 'g':
+        b->growth = true;
+        return -1;
+    case 'm':
+        b->sizes = true;
         return -1;
     case 'p':
         b->psnr = true;
@@ -158,6 +172,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
 {
     static const struct option options[] = {
         {"all", no_argument, NULL, 'a'},
+        {"growth", no_argument, NULL, 'g'},
+        {"sizes", no_argument, NULL, 'm'},
         {"psnr", no_argument, NULL, 'p'},
         {"size", required_argument, NULL, 's'},
         {"repeat", required_argument, NULL, 'r'},

@@ -255,7 +255,8 @@ static bool is_ghost(const struct glint_setup *s, int ghost, int number)
            s->ghost[ghost].j == s->ghost[number].j;
 }
 
-static void note_ghost(struct frame *frame, int ghost)
+/* Returns whether it is the first of its ghost in the frame. */
+static bool note_ghost(struct frame *frame, int ghost)
 {
     const struct glint_setup *s = frame->setup;
     int number = ghost;
@@ -263,7 +264,23 @@ static void note_ghost(struct frame *frame, int ghost)
     if (ghost >= s->n_ghosts - s->n_parts)
         for (number = 0; !is_ghost(s, ghost, number);)
             number++;
-    frame->seen[number] = true;
+    if (frame->seen[number])
+        return false;
+    return frame->seen[number] = true;
+}
+
+/* How many ghosts the last frame has, of N bundles. */
+static int count_ghosts(struct frame *frame, int n)
+{
+    int n_ghosts = 0;
+
+    memset(frame->seen, 0,
+           (size_t)frame->setup->n_ghosts * sizeof *frame->seen);
+    for (int i = 0; i < n; i++)
+        n_ghosts +=
+            note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
+                                          : frame->feed[i].ghost);
+    return n_ghosts;
 }
 
 static enum glint_status
@@ -363,28 +380,28 @@ enum glint_status frame_draw(struct frame *frame,
     double times[5] = {0, 0, 0, 0, 0};
     enum glint_status status;
 
+    *report = (struct frame_report){.lights = n_lamps};
+    if (n_lamps == 0) { /* the picture is not so much as looked at */
+        report->arena_bytes = frame->bytes;
+        return GLINT_OK;
+    }
     if (!frame->seen)
         frame->seen = calloc(GLINT_MAX_GHOSTS, sizeof *frame->seen);
     if (!frame->seen)
         return GLINT_E_MEMORY;
-    memset(frame->seen, 0, GLINT_MAX_GHOSTS * sizeof *frame->seen);
     status = (frame->lens ? draw_model : draw_exact)(
         frame, lamps, n_lamps, scale, image, &report->stats, times);
-    for (int i = 0; status == GLINT_OK && i < n_drawn(frame, report); i++)
-        note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
-                                      : frame->feed[i].ghost);
+    if (status != GLINT_OK)
+        return status;
     report->plan_ms = 1e3 * (times[1] - times[0]);
     report->trace_ms = 1e3 * (times[2] - times[1]);
     report->bin_ms = 1e3 * (times[3] - times[2]);
     report->draw_ms = 1e3 * (times[4] - times[3]);
-    report->lights = n_lamps;
     report->apart_lights = frame->n_apart;
     report->drawn_lights = frame->n_beams;
-    report->tiles = status == GLINT_OK ? glint_flare_tiles(frame->flare) : 0;
+    report->tiles = glint_flare_tiles(frame->flare);
     report->arena_bytes = frame->bytes;
     report->peak_bytes = bytes_used(frame, &report->stats);
-    report->ghosts = 0;
-    for (int i = 0; i < GLINT_MAX_GHOSTS; i++)
-        report->ghosts += frame->seen[i];
-    return status;
+    report->ghosts = count_ghosts(frame, n_drawn(frame, report));
+    return GLINT_OK;
 }

@@ -218,7 +218,9 @@ void glint_flare_bin(struct glint_flare *flare,
                      struct glint_flare_stats *stats);
 
 /* Adds the flare to IMAGE, which has the size of the configuration. Tiles that
- * nothing touches are neither read nor written. May be repeated. */
+ * nothing touches are neither read nor written. May be repeated. NULL: works
+ * the light of every pixel out and drops it, to measure what that takes of
+ * drawing to 8 bits. */
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image);
 

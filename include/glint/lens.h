@@ -69,7 +69,8 @@ struct glint_model_header {
                                    not asked to be right */
     struct glint_real front_mm; /* semi-diameter of the first surface */
     int32_t wave_lo_q24, wave_hi_q24; /* the band, 1 / wavelength^2, um^-2 */
-    int32_t sine_hi_q30;              /* of the largest angle looked at */
+    int32_t sine_hi_q30;              /* of the largest angle looked at; of
+                                         lights beyond nothing is drawn */
     /* Flux of the direct image at angle 0 for irradiance 1 through a circular
      * stop, mm^2: coefficients of powers of w over the band. */
     struct glint_real direct_flux[6];

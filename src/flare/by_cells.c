@@ -164,7 +164,7 @@ void glint_flare_bin_cells(struct glint_flare *flare)
 
 struct draw {
     struct glint_flare *flare;
-    const struct glint_image *image;
+    const struct glint_image *image; /* NULL: light is dropped */
     struct glint_cell_raster cells;
 };
 
@@ -213,8 +213,9 @@ static void resolve_codes(const struct draw *d,
                         q_shift(sums_of(d->flare, w, c, y + row - tile.y0)[x],
                                 4),
                         0, 65535);
-        glint_resolve_stretch(d->flare->resolve, d->image, tile.x0, y, n_x, n_y,
-                              w->light, w->codes);
+        if (d->image)
+            glint_resolve_stretch(d->flare->resolve, d->image, tile.x0, y, n_x,
+                                  n_y, w->light, w->codes);
     }
 }
 
@@ -232,7 +233,7 @@ static void draw_tile(struct draw *d, struct glint_flare_worker *w,
         glint_cell_raster_primitive(&d->cells, ref[i], tile, w->clip,
                                     w->acc_q20);
     w->n_tiles++;
-    if (d->image->format == GLINT_LINEAR_Q20)
+    if (d->image && d->image->format == GLINT_LINEAR_Q20)
         resolve_linear(d, w, tile);
     else
         resolve_codes(d, w, tile);

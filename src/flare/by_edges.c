@@ -303,7 +303,7 @@ void glint_flare_bin_edges(struct glint_flare *flare)
 
 struct draw {
     struct glint_flare *flare;
-    const struct glint_image *image;
+    const struct glint_image *image; /* NULL: light is dropped */
 };
 
 /* Whether light runs into a tile's rows. */
@@ -347,7 +347,7 @@ static void resolve_codes(const struct draw *d,
             for (int row = 0; row < n; row++)
                 lit |= glint_edge_light(s, c, y + row - s->tile.y0, r->kernels,
                                         w->light->rgb_q16[c][row]);
-        if (!lit)
+        if (!lit || !d->image)
             continue;
         glint_resolve_stretch(r, d->image, s->tile.x0, y,
                               s->tile.x1 - s->tile.x0, n, w->light, w->codes);
@@ -378,7 +378,8 @@ static void row_job(void *ctx, int job, int worker)
     struct glint_flare *f = d->flare;
     struct glint_flare_worker *w = &f->worker[worker];
     const int log2 = f->cfg.tile_log2, row = f->order[job];
-    struct glint_edge_sums s = {.linear = d->image->format == GLINT_LINEAR_Q20,
+    struct glint_edge_sums s = {.linear = d->image &&
+                                          d->image->format == GLINT_LINEAR_Q20,
                                 .wide = w->wide,
                                 .narrow_q24 = w->narrow_q24,
                                 .carry = w->carry,
@@ -407,8 +408,6 @@ void glint_flare_draw_edges(struct glint_flare *flare,
 {
     struct draw d = {flare, image};
 
-    if (flare->stats.primitives == 0)
-        return;
     set_order(flare, flare->bins.tiles_y, edges_in_row);
     glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }

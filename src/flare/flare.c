@@ -213,6 +213,22 @@ static int is_wanted(const struct glint_rays *r, int ghost)
     return g->i == only->i && g->j == only->j;
 }
 
+/* Whether the lens was never looked at from where B comes. */
+static int is_beyond(const struct glint_lens *lens, const struct glint_beam *b)
+{
+    return b->sine_q30 > lens->header->sine_hi_q30;
+}
+
+/* N beams without the last ones that are beyond the lens: a frame that has no
+ * others takes no time. */
+static int n_within(const struct glint_lens *lens,
+                    const struct glint_beam *beams, int n)
+{
+    while (n > 0 && is_beyond(lens, &beams[n - 1]))
+        n--;
+    return n;
+}
+
 /* All waves of one ghost and beam. */
 static void plan_job(void *ctx, int job, int worker)
 {
@@ -226,7 +242,8 @@ static void plan_job(void *ctx, int job, int worker)
         if (at >= f->cfg.max_bundles)
             return;
         f->bundle[at].n_cells = 0;
-        if (!is_wanted(r, job % n_ghosts))
+        if (!is_wanted(r, job % n_ghosts) ||
+            is_beyond(r->lens, &f->plan.beam[job / n_ghosts]))
             continue;
         f->source[at] = (struct glint_source){
             .ghost = job % n_ghosts, .beam = job / n_ghosts, .wave = wave};
@@ -286,7 +303,8 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                       const struct glint_beam *beams, int n_beams)
 {
     const int n_ghosts = (int)rays->lens->header->n_ghosts;
-    const int64_t all = (int64_t)n_beams * n_ghosts * rays->n_waves;
+    const int64_t all = (int64_t)n_within(rays->lens, beams, n_beams) *
+                        n_ghosts * rays->n_waves;
     const int need = all < INT32_MAX ? (int)all : INT32_MAX;
     const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
 
@@ -336,9 +354,9 @@ static void total(struct glint_flare *f)
 
 void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 {
-    if (by_edges(&flare->cfg))
+    if (flare->n_bundles > 0 && by_edges(&flare->cfg))
         glint_flare_bin_edges(flare);
-    else
+    else if (flare->n_bundles > 0)
         glint_flare_bin_cells(flare);
     total(flare);
     *stats = flare->stats;
@@ -347,10 +365,14 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image)
 {
-    glint_resolve_init(flare->resolve, image, flare->cfg.dither,
-                       flare->cfg.sets);
+    static const struct glint_image none = {.format = GLINT_YUYV};
+
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
         flare->worker[i].n_tiles = 0;
+    if (flare->stats.primitives == 0)
+        return; /* the bins may be another frame's */
+    glint_resolve_init(flare->resolve, image ? image : &none, flare->cfg.dither,
+                       flare->cfg.sets);
     if (by_edges(&flare->cfg))
         glint_flare_draw_edges(flare, image);
     else

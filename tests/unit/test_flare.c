@@ -804,6 +804,40 @@ static void test_untouched_stays(void **state)
     free(mem);
 }
 
+/* Drawing into nothing does all but touch a picture, and leaves no trace. */
+static void test_into_nothing(void **state)
+{
+    static uint8_t bytes[2][3 * WIDTH * HEIGHT];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+
+    (void)state;
+    for (int raster = 0; raster < 2; raster++) {
+        struct glint_flare_config c = base_config();
+        struct glint_flare_stats stats;
+        struct glint_flare *f;
+        int tiles;
+        void *mem;
+
+        c.raster = raster ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
+        f = open_flare(&c, &mem);
+        for (int i = 0; i < 3; i++)
+            add_ghost(f, &scene[i]);
+        glint_flare_bin(f, &stats);
+        memset(bytes, 20, sizeof bytes);
+        glint_image_place(&image, bytes[0]);
+        glint_flare_draw(f, &image);
+        tiles = glint_flare_tiles(f);
+        glint_flare_draw(f, NULL);
+        assert_int_equal(glint_flare_tiles(f), tiles);
+        glint_image_place(&image, bytes[1]);
+        glint_flare_draw(f, &image);
+        assert_memory_equal(bytes[0], bytes[1], sizeof bytes[0]);
+        assert_true(tiles > 0 && bytes[0][0] == 20);
+        free(mem);
+    }
+}
+
 /* ------------------------------------------------------------------ capacity
  */
 
@@ -978,6 +1012,7 @@ int main(void)
         cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_bundle_order_does_not_matter),
         cmocka_unit_test(test_untouched_stays),
+        cmocka_unit_test(test_into_nothing),
         cmocka_unit_test(test_exact_capacity),
         cmocka_unit_test(test_too_little_capacity),
         cmocka_unit_test(test_config_is_checked),

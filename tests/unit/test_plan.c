@@ -344,12 +344,80 @@ static void test_rows_and_grids(void **state)
     close_fixture(&f);
 }
 
+/* Of beams beyond the lens nothing is drawn, whatever its polynomials say, and
+ * no room is asked for unless others come after them. */
+static void test_beyond(void **state)
+{
+    const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;
+    struct fixture f;
+    int alone;
+
+    (void)state;
+    open_fixture(&f);
+    f.beam.sine_q30 = inside_q30;
+    alone = planned(&f, 1).bundles;
+    f.beam.sine_q30 = outside_q30;
+    assert_true(planned(&f, 1).bundles > 0);
+    ((struct glint_model_header *)f.m.data)->sine_hi_q30 = inside_q30;
+    assert_int_equal(planned(&f, 1).need_bundles, 0);
+    for (int last = 0; last < 2; last++) {
+        struct glint_beam beam[2] = {f.beam, f.beam};
+        struct glint_flare_stats s;
+
+        beam[last].sine_q30 = inside_q30;
+        start(&f);
+        glint_flare_plan(f.flare, &f.rays, beam, 2);
+        glint_flare_bin(f.flare, &s);
+        assert_int_equal(s.need_bundles, last ? 12 : 6);
+        assert_int_equal(s.bundles, alone);
+        free(f.mem);
+        f.mem = NULL;
+    }
+    close_fixture(&f);
+}
+
+/* A frame without light after one with some leaves the picture alone. */
+static void test_dark_frame(void **state)
+{
+    static int32_t px_q20[3 * WIDTH * HEIGHT];
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct fixture f;
+
+    (void)state;
+    for (int raster = 0; raster < 2; raster++) {
+        struct glint_flare_stats s;
+
+        open_fixture(&f);
+        f.cfg.raster = raster ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
+        start(&f);
+        glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
+        picture(&f, px_q20);
+        assert_true(glint_flare_tiles(f.flare) > 0);
+        memset(px_q20, 0, sizeof px_q20);
+        glint_image_place(&image, px_q20);
+        glint_flare_plan(f.flare, &f.rays, &f.beam, 0);
+        glint_flare_bin(f.flare, &s);
+        glint_flare_draw(f.flare, &image);
+        assert_int_equal(s.primitives + s.refs + s.bundles, 0);
+        assert_int_equal(glint_flare_tiles(f.flare), 0);
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+            assert_int_equal(px_q20[i], 0);
+        close_fixture(&f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reals), cmocka_unit_test(test_what_is_seen),
-        cmocka_unit_test(test_faint), cmocka_unit_test(test_steps_follow_codes),
-        cmocka_unit_test(test_room),  cmocka_unit_test(test_rows_and_grids),
+        cmocka_unit_test(test_reals),
+        cmocka_unit_test(test_what_is_seen),
+        cmocka_unit_test(test_faint),
+        cmocka_unit_test(test_steps_follow_codes),
+        cmocka_unit_test(test_room),
+        cmocka_unit_test(test_rows_and_grids),
+        cmocka_unit_test(test_beyond),
+        cmocka_unit_test(test_dark_frame),
     };
 
     return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
