@@ -54,6 +54,18 @@ uint8_t *measure_encode(const struct glint_float_image *image, double exposure)
     return codes;
 }
 
+void measure_decode(const uint8_t *codes, double exposure,
+                    struct glint_float_image *image)
+{
+    for (size_t i = 0; i < samples(image); i++) {
+        const double v = codes[i] / 255.0;
+
+        image->rgb[i] =
+            (float)((v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4)) /
+                    exposure);
+    }
+}
+
 static double best_factor(const struct glint_float_image *a,
                           const struct glint_float_image *b)
 {
