@@ -427,7 +427,7 @@ int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
     const int at = (channel << sums->tile_log2) + row;
     const ptrdiff_t first = (ptrdiff_t)at * sums->stride;
     const int n = sums->tile.x1 - sums->tile.x0;
-    const int padded = (n + GLINT_LANES - 1) / GLINT_LANES * GLINT_LANES;
+    const int padded = (n + GLINT_LANES - 1) & -GLINT_LANES;
     uint32_t carry_q24 = (uint32_t)sums->carry[at];
 
     if (!(sums->touched[channel] >> row & 1))

@@ -29,7 +29,7 @@ void glint_resolve_init(struct glint_resolve *resolve,
 
 static int padded(int n)
 {
-    return (n + GLINT_LANES - 1) / GLINT_LANES * GLINT_LANES;
+    return (n + GLINT_LANES - 1) & -GLINT_LANES;
 }
 
 static void resolve_rgb(const struct glint_resolve *r, int y, int n_x, int n_y,
