@@ -306,7 +306,7 @@ struct draw {
     const struct glint_image *image; /* NULL: light is dropped */
 };
 
-/* Whether light runs into a tile's rows. */
+/* Whether light runs into the next tile's rows. */
 static int is_lit(const struct glint_edge_sums *s)
 {
     int64_t any = 0;
@@ -343,6 +343,9 @@ static void resolve_codes(const struct draw *d,
         const int n = y + 2 < s->tile.y1 ? 2 : s->tile.y1 - y;
         int lit = 0;
 
+        if (glint_edge_dark(s, y - s->tile.y0) &&
+            glint_edge_dark(s, y + n - 1 - s->tile.y0))
+            continue;
         for (int c = 0; c < 3; c++)
             for (int row = 0; row < n; row++)
                 lit |= glint_edge_light(s, c, y + row - s->tile.y0, r->kernels,
@@ -360,7 +363,7 @@ static void draw_tile(const struct draw *d, struct glint_flare_worker *w,
     const struct glint_flare *f = d->flare;
     const int32_t first = f->bins.start[tile], end = f->bins.start[tile + 1];
 
-    if (first == end && !is_lit(s))
+    if (first == end && !s->lit)
         return;
     s->tile = glint_bins_tile(&f->bins, tile);
     glint_edge_add(s, f->edge, f->bundle, f->bins.ref + first, end - first);
@@ -369,6 +372,7 @@ static void draw_tile(const struct draw *d, struct glint_flare_worker *w,
         resolve_linear(d, w, s);
     else
         resolve_codes(d, w, s);
+    s->lit = is_lit(s);
 }
 
 /* A row of tiles, from left to right. */

@@ -411,6 +411,17 @@ static void wide_light(uint64_t *change_q24, int64_t *carry_q24, int n,
     *carry_q24 = (int64_t)sum_q24;
 }
 
+int glint_edge_dark(const struct glint_edge_sums *sums, int row)
+{
+    const int side = 1 << sums->tile_log2;
+    const int64_t *carry = sums->carry + row;
+    const uint64_t touched =
+        sums->touched[0] | sums->touched[1] | sums->touched[2];
+
+    return !(touched >> row & 1) &&
+           (carry[0] | carry[side] | carry[2 * side]) == 0;
+}
+
 /* The same light everywhere. */
 static int even_light(int64_t carry_q24, int n, uint16_t *light_q16)
 {

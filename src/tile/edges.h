@@ -66,6 +66,7 @@ struct glint_edge_sums {
     struct glint_box tile;
     int tile_log2, stride;
     int linear; /* for pictures of linear light */
+    int lit;    /* for who draws rows of tiles: light runs in */
     int narrow; /* what add found: narrow sums do, and have been used */
     uint64_t *wide;
     uint32_t *narrow_q24;
@@ -98,6 +99,9 @@ int glint_edge_span(const struct glint_edge *edge,
 void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
                     const struct glint_bundle *bundle, const int32_t *ref,
                     int n_refs);
+
+/* Whether row ROW has neither changes nor light that runs in. */
+int glint_edge_dark(const struct glint_edge_sums *sums, int row);
 
 /* The light of row ROW of the tile in channel CHANNEL; its changes are cleared,
  * its carry goes on. Of linear pictures one value a pixel, saturating at the
