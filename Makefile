@@ -6,7 +6,7 @@
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
-#   also: oiio table bake-table accuracy-table inputs fuzz format
+#   also: oiio table bake-table accuracy-table ray-table inputs fuzz format
 #         golden-update clean
 
 MAKEFLAGS += -r
@@ -144,6 +144,10 @@ bake-table: all
 	@tools/bake-table
 accuracy-table: all
 	@tools/accuracy-table
+ray-table: all $(OUT)/ray_errors
+	@tools/ray-table build/bake
+$(OUT)/ray_errors: $(OUT)/tools/ray_errors.o $(libs)
+	$(link)
 bench: all
 	@build/glint bench
 bench-insn: all
@@ -224,7 +228,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table bench bench-insn check run-check check-neon golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn check run-check check-neon golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
