@@ -7,7 +7,7 @@
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make growth   how that grows, as plots;  memory-table: what it takes
-#   also: oiio table bake-table accuracy-table inputs fuzz format
+#   also: oiio table bake-table accuracy-table ray-table inputs fuzz format
 #         golden-update clean
 
 MAKEFLAGS += -r
@@ -145,6 +145,10 @@ bake-table: all
 	@tools/bake-table
 accuracy-table: all
 	@tools/accuracy-table
+ray-table: all $(OUT)/ray_errors
+	@tools/ray-table build/bake
+$(OUT)/ray_errors: $(OUT)/tools/ray_errors.o $(libs)
+	$(link)
 bench: all
 	@build/glint bench
 growth: all
@@ -229,7 +233,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table bench bench-insn growth memory-table check run-check check-neon golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn growth memory-table check run-check check-neon golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -22,6 +22,7 @@
             one's error gains nothing from halving... */
 #define STUCK_DEG     1.2  /* ...once it is this narrow */
 #define PART_LEFT     5.0  /* zones that show more than that are parted */
+#define MOST_HIDDEN   3.0  /* of very faint ones: so many times as much */
 #define HOPELESS      20.0 /* times that is what more terms cannot mend, */
 #define HALVES_ANYWAY 10.0 /* nor, where it can be halved, so much */
 #define WANDERS                                                  \
@@ -156,13 +157,19 @@ static void set_part(struct fitter *f, struct pending *p,
     }
 }
 
+/* How far off places of the zone may be, in tolerances. */
+static double bearable(const struct fitter *f)
+{
+    return PART_LEFT * fmin(f->fit.hidden, MOST_HIDDEN);
+}
+
 /* What is left of P that will be halved or parted, whatever comes of it. The
  * halves of wide zones are not yet at the end of halving, where what is left
  * has to be known. */
 static double hopeless(const struct fitter *f, const struct pending *p)
 {
     if (p->by_all_means)
-        return p->depth < PART_DEPTH ? HOPELESS * PART_LEFT * f->fit.hidden : 0;
+        return p->depth < PART_DEPTH ? HOPELESS * bearable(f) : 0;
     return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
 }
 
@@ -224,7 +231,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
         degrees_between(p->lo, p->hi) * (f->fit.ease < BRIGHT_EASE ? 2 : 1);
     const bool stuck = width < LEAST_DEG || (!helped && width < STUCK_DEG);
 
-    if (p->by_all_means && f->fit.off <= PART_LEFT * f->fit.hidden)
+    if (p->by_all_means && f->fit.off <= bearable(f))
         return KEEP;
     if (p->by_all_means && p->depth == 0 && f->wanders > WANDERS &&
         p->w1 - p->w0 > LEAST_BAND)

@@ -299,14 +299,15 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
 }
 
 /* How many bits above what it is where light gets through a polynomial could
- * reach: above four times as much, or what is twice the energy, where that is
- * its fourth power. Each bit more would take four of the energy's. */
+ * reach: above twice as much, or where that is its fourth power, above what is
+ * twice the energy. Each bit more would take four of the energy's. */
 static int head_of(const struct glint_fitted_output *o, int exponent)
 {
-    const double most = o->roots ? 0x1.ap28 : 0x1p27;
+    const double most = o->roots ? 0x1.ap28 : 0x1p28;
     int head = 0;
 
-    while (o->most > 0 && head < 28 && ldexp(o->most, head - exponent) < most)
+    while (o->most > 0 && head < 28 &&
+           ldexp(o->most, head + 1 - exponent) < most)
         head++;
     return head;
 }

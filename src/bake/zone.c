@@ -546,18 +546,41 @@ static void trace_positions(const struct glint_zone *zone,
     }
 }
 
+double glint_rays_spread(const struct glint_rays *rays)
+{
+    double least = HUGE_VAL, most = 0, spread = 1;
+
+    for (int i = 0; i < rays->n; i++) {
+        if (i == 0 || rays->x[2][i] != rays->x[2][i - 1] ||
+            rays->x[3][i] != rays->x[3][i - 1]) {
+            least = HUGE_VAL;
+            most = 0;
+        }
+        if (!glint_rays_seen(rays, i))
+            continue;
+        least = fmin(least, rays->at[RAY_ENERGY][i]);
+        most = fmax(most, rays->at[RAY_ENERGY][i]);
+        spread = fmax(spread, most / least);
+    }
+    return spread;
+}
+
 /* Energy hardly changes over the pupil, but films make it swing with the
- * wavelength. */
+ * wavelength. Towards total reflection it is STEEP: a finer grid then, and at
+ * each angle five wavelengths in turn. */
 static void trace_energies(const struct glint_zone *zone,
-                           const struct glint_hunt *hunt,
+                           const struct glint_hunt *hunt, bool steep,
                            struct glint_rays *rays)
 {
-    enum { STRIDE = 4 };
+    static const int shift[] = {0, 2, 4, 6, 9};
 
     rays->n = 0;
-    for (int k = 0; k < SINES * GLINT_HUNT_WAVES; k++)
-        trace_plane(zone, hunt, k / GLINT_HUNT_WAVES, k % GLINT_HUNT_WAVES,
-                    STRIDE, rays);
+    for (int k = 0; k < SINES * GLINT_HUNT_WAVES && !steep; k++)
+        trace_plane(zone, hunt, k / GLINT_HUNT_WAVES, k % GLINT_HUNT_WAVES, 4,
+                    rays);
+    for (int k = 0; k < 5 * SINES && steep; k++)
+        trace_plane(zone, hunt, k / 5,
+                    (k / 5 + shift[k % 5]) % GLINT_HUNT_WAVES, 2, rays);
 }
 
 void glint_zone_survey_barrels(const struct glint_zone *zone,
@@ -577,7 +600,7 @@ void glint_zone_trace(const struct glint_zone *zone,
 {
     trace_positions(zone, hunt, rays);
     energies->n_barrels = 0;
-    trace_energies(zone, hunt, energies);
+    trace_energies(zone, hunt, glint_rays_spread(rays) > GLINT_STEEP, energies);
 }
 
 void glint_zone_check(const struct glint_zone *zone,

@@ -90,6 +90,11 @@ static inline bool glint_rays_seen(const struct glint_rays *r, int ray)
     return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
 }
 
+/* The most energy over the least of what is seen at one angle and wavelength,
+ * and what is much: films make all of it swing with the wavelength. */
+double glint_rays_spread(const struct glint_rays *rays);
+#define GLINT_STEEP 8
+
 /* Room for the survey that chooses the barrels. */
 enum { GLINT_SURVEY_RAYS = 6000 };
 typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];

@@ -31,6 +31,12 @@ static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .total = 10,
                                                     .terms = FEW_TERMS};
 
+/* By all means, where it changes a lot over the pupil. */
+static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
+                                                   .weight = {1, 1, 1, 1},
+                                                   .total = 12,
+                                                   .terms = MANY_TERMS};
+
 /* Full weight a little past the edge, where cells straddle it; hardly any where
  * nothing is seen, which only has to stay unseen. */
 static double weight_past_edge(double excess)
@@ -235,7 +241,10 @@ static enum glint_status fit_output(struct glint_zone_fit *f,
     const struct glint_samples samples = {
         r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->channel_weight};
     struct glint_degrees degrees =
-        kind == GLINT_OUT_ENERGY ? energy_degrees : position_degrees;
+        kind != GLINT_OUT_ENERGY ? position_degrees
+        : f->by_all_means && glint_rays_spread(&f->rays) > GLINT_STEEP
+            ? steep_degrees
+            : energy_degrees;
     struct glint_poly poly;
     double left, grain = rms; /* energy's is a share */
 

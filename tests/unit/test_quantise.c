@@ -515,6 +515,31 @@ static void test_exponents(void **state)
     }
 }
 
+/* Energies are not cut where light gets through, nor a little above. */
+static void test_head(void **state)
+{
+    int cut = 0;
+
+    (void)state;
+    for (int k = 0; k < 1000; k++) {
+        const struct glint_fitted_output *o;
+        const struct glint_quantised_output *q;
+        struct made m;
+
+        seed = 11 + (uint32_t)k;
+        make_system(&m, GLINT_BASIS_AUTO);
+        assert_int_equal(glint_quantise(m.fitted.system, &m.quantised),
+                         GLINT_OK);
+        o = &m.fitted.system->output[GLINT_OUT_ENERGY];
+        q = &m.quantised.output[GLINT_OUT_ENERGY];
+        if (q->head > 0)
+            assert_true(ldexp(1.2 * o->most, q->head - q->exponent) < 0x1p29);
+        cut += q->head > 0;
+        finish(&m);
+    }
+    assert_in_range(cut, 300, 900);
+}
+
 /* Too small for any exponent of the file: steps of the least one do. */
 static void test_least_exponent(void **state)
 {
@@ -591,6 +616,7 @@ int main(void)
         cmocka_unit_test(test_reals),
         cmocka_unit_test(test_odd_reals),
         cmocka_unit_test(test_exponents),
+        cmocka_unit_test(test_head),
         cmocka_unit_test(test_least_exponent),
         cmocka_unit_test(test_proof_auto),
         cmocka_unit_test(test_proof_sparse),
