@@ -11,7 +11,8 @@
 static const char help[] =
     "glint compare REFERENCE TEST [--fit] [--exposed] [--json]\n"
     "\n"
-    "Compares two .pfm pictures of one size: exposes both so that the 99.9th\n"
+    "Compares two pictures in linear light (.pfm; others are taken for sRGB)\n"
+    "of one size: exposes both so that the 99.9th\n"
     "percentile of the reference's luminance is 1, clips, encodes to 8-bit\n"
     "sRGB, and prints PSNR, SSIM of luma (8 x 8 blocks), the 99th percentile\n"
     "of the absolute difference in codes, and the ratio of the flux.\n"
@@ -95,6 +96,8 @@ int cmd_compare(int argc, char **argv)
         if (code >= 0)
             return code;
     }
+    if (fit && exposed)
+        return tool_usage(&tool, "--fit and --exposed do not go together");
     if (optind + 2 != argc)
         return tool_usage(&tool, "takes two pictures");
     return compare(&tool, (const char *const[]){argv[optind], argv[optind + 1]},

@@ -67,8 +67,9 @@ struct overlay {
     struct frame frame;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
 
-    struct frame_report report;      /* of the last frame */
-    struct frame_report most_merged; /* of the one with most lights too many */
+    struct frame_report report; /* of the last frame */
+    struct frame_report worst;  /* its lights: of those with most too many, and
+                                   most beyond the model */
     int n_frames, most_lights;
     double find_ms, flare_ms, started;
     size_t arena_bytes, peak_bytes;
@@ -251,6 +252,22 @@ static void say_frame(const struct overlay *o)
             lights, o->report.ghosts, o->report.stats.primitives);
 }
 
+static void note_worst(struct frame_report *worst,
+                       const struct frame_report *report)
+{
+    const int beyond = worst->beyond_lights > report->beyond_lights
+                           ? worst->beyond_lights
+                           : report->beyond_lights;
+    const int lights =
+        worst->lights > report->lights ? worst->lights : report->lights;
+
+    if (report->apart_lights - report->drawn_lights >
+        worst->apart_lights - worst->drawn_lights)
+        *worst = *report;
+    worst->lights = lights;
+    worst->beyond_lights = beyond;
+}
+
 static int draw(struct tool *tool, struct overlay *o,
                 const struct glint_image *image)
 {
@@ -278,9 +295,7 @@ static int draw(struct tool *tool, struct overlay *o,
     o->arena_bytes = o->report.arena_bytes;
     if (o->report.peak_bytes > o->peak_bytes)
         o->peak_bytes = o->report.peak_bytes;
-    if (o->report.apart_lights - o->report.drawn_lights >
-        o->most_merged.apart_lights - o->most_merged.drawn_lights)
-        o->most_merged = o->report;
+    note_worst(&o->worst, &o->report);
     if (tool->verbose && !tool->quiet)
         say_frame(o);
     return EXIT_OK;
@@ -447,7 +462,7 @@ static void print_result(const struct tool *tool, const struct overlay *o)
 
     if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
         fputs("\r\033[K", stderr);
-    scene_warn_lights(tool, &o->most_merged);
+    scene_warn_lights(tool, &o->worst);
     if (tool->json && !piped) {
         printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
                "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",

@@ -117,10 +117,18 @@ static int32_t near_q30(const struct frame *f)
     return (int32_t)lrint(fmin(1, f->apart_px / fabs(pixels)) * 0x1p30);
 }
 
+/* Beams that give nothing must not be merged with others into one that does. */
+static bool is_beyond(const struct frame *f, const struct glint_beam *b)
+{
+    return f->lens && b->sine_q30 > f->lens->header->sine_hi_q30;
+}
+
 /* Makes F's beams of LAMPS, those merged that are too many. */
 static enum glint_status
 set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
 {
+    int within = 0;
+
     if (n > f->max_beams) {
         struct glint_beam *beam = realloc(f->beam, (size_t)n * sizeof *f->beam);
 
@@ -129,10 +137,13 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
         f->beam = beam;
         f->max_beams = n;
     }
-    for (int i = 0; i < n; i++)
-        f->beam[i] = beam_of(&lamps[i], scale);
-    f->n_beams =
-        glint_beams_merge(f->beam, n, near_q30(f), f->max_lights, &f->n_apart);
+    for (int i = 0; i < n; i++) {
+        f->beam[within] = beam_of(&lamps[i], scale);
+        within += !is_beyond(f, &f->beam[within]);
+    }
+    f->n_beyond = n - within;
+    f->n_beams = glint_beams_merge(f->beam, within, near_q30(f), f->max_lights,
+                                   &f->n_apart);
     return GLINT_OK;
 }
 
@@ -397,6 +408,7 @@ enum glint_status frame_draw(struct frame *frame,
     report->trace_ms = 1e3 * (times[2] - times[1]);
     report->bin_ms = 1e3 * (times[3] - times[2]);
     report->draw_ms = 1e3 * (times[4] - times[3]);
+    report->beyond_lights = frame->n_beyond;
     report->apart_lights = frame->n_apart;
     report->drawn_lights = frame->n_beams;
     report->tiles = glint_flare_tiles(frame->flare);

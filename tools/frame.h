@@ -38,8 +38,9 @@ struct frame {
     struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
     struct glint_beam *beam;
     int n_beams, max_beams;
-    int n_apart; /* lights that can be told apart */
-    bool *seen;  /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+    int n_apart;  /* lights that can be told apart */
+    int n_beyond; /* left out before: the model ends before them */
+    bool *seen;   /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
 
     /* exact rays */
     struct glint_lamp *merged; /* lamps, where some merged; [n_beams] */
@@ -54,9 +55,10 @@ struct frame {
 
 struct frame_report {
     struct glint_flare_stats stats;
-    int lights;       /* as given */
-    int apart_lights; /* that can be told apart */
-    int drawn_lights; /* after merging more, for their number */
+    int lights;        /* as given */
+    int beyond_lights; /* of these, farther out than the model goes */
+    int apart_lights;  /* that can be told apart */
+    int drawn_lights;  /* after merging more, for their number */
     int ghosts, tiles;
     size_t arena_bytes; /* what the run-time half was given */
     size_t peak_bytes;  /* what its largest frame took of it */

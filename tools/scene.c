@@ -216,21 +216,7 @@ static int check_band(const struct tool *tool, const struct scene *scene)
     return EXIT_OK;
 }
 
-/* Says what the lamps ask of the model that it was not baked for. */
-static void warn_angle(const struct tool *tool, const struct scene *scene)
-{
-    const double most =
-        asin(fmin(1, scene->model.lens.header->sine_hi_q30 * 0x1p-30)) * 180 /
-        3.14159265358979323846;
-
-    if (!tool->quiet && scene->max_deg > most + 1e-6)
-        fprintf(stderr,
-                "glint %s: the model was baked for lights up to %.0f degrees; "
-                "those beyond give nothing (bake --max-angle)\n",
-                tool->name, most);
-}
-
-/* The same of the picture. */
+/* Says what the picture asks of the model that it was not baked for. */
 static void warn_field(const struct tool *tool, const struct scene *scene)
 {
     const double field = model_real_of(scene->model.lens.header->field_mm);
@@ -266,7 +252,6 @@ static int open_model(const struct tool *tool, struct scene *scene,
     scene->lens.film_width_mm = model_real_of(h->film_width_mm);
     scene->lens.film_height_mm = model_real_of(h->film_height_mm);
     warn_field(tool, scene);
-    warn_angle(tool, scene);
     return EXIT_OK;
 }
 
@@ -401,23 +386,24 @@ double scene_scale(const struct scene *scene)
 
 void scene_json(const struct frame_report *r)
 {
-    printf("\"lights\": %d, \"apart_lights\": %d, \"drawn_lights\": %d, "
+    printf("\"lights\": %d, \"beyond_lights\": %d, \"apart_lights\": %d, "
+           "\"drawn_lights\": %d, "
            "\"ghosts\": %d, \"bundles\": %d, "
            "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
            "\"peak_bytes\": %zu, \"refs\": %d, \"merged_cells\": %d, "
            "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
            "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
            "\"draw_ms\": %.3f",
-           r->lights, r->apart_lights, r->drawn_lights, r->ghosts,
-           r->stats.bundles, r->stats.primitives, r->tiles, r->arena_bytes,
-           r->peak_bytes, r->stats.refs, r->stats.merged_cells,
+           r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
+           r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
+           r->arena_bytes, r->peak_bytes, r->stats.refs, r->stats.merged_cells,
            r->stats.dropped_bundles, r->stats.dropped_cells, r->plan_ms,
            r->trace_ms, r->bin_ms, r->draw_ms);
 }
 
 void scene_lights_text(const struct frame_report *r, char text[64])
 {
-    if (r->drawn_lights < r->lights)
+    if (r->drawn_lights < r->lights - r->beyond_lights)
         snprintf(text, 64, "%d lights, %d after merging", r->lights,
                  r->drawn_lights);
     else
@@ -426,6 +412,11 @@ void scene_lights_text(const struct frame_report *r, char text[64])
 
 void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
 {
+    if (!tool->quiet && r->beyond_lights > 0)
+        fprintf(stderr,
+                "glint %s: %d of %d lights lie beyond the angle that the model "
+                "was baked for; they give nothing (bake --max-angle)\n",
+                tool->name, r->beyond_lights, r->lights);
     if (!tool->quiet && r->drawn_lights < r->apart_lights)
         fprintf(stderr,
                 "glint %s: %d lights that can be told apart were merged into "

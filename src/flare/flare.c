@@ -25,9 +25,12 @@ static size_t tile_count(int pixels_x, int pixels_y, int log2)
            (((size_t)pixels_y + side - 1) >> log2);
 }
 
-static size_t tile_rows(const struct glint_flare_config *c)
+/* Bundles, or rows of tiles. */
+static size_t most_jobs(const struct glint_flare_config *c)
 {
-    return tile_count(1, c->height, c->tile_log2);
+    const size_t rows = tile_count(1, c->height, c->tile_log2);
+
+    return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
 static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
@@ -81,8 +84,7 @@ static struct glint_flare *carve(struct glint_arena *a,
     if (by_edges(c)) {
         f->edge =
             glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->edge);
-        f->order = glint_arena_take(a, tile_rows(c) + (size_t)c->max_bundles,
-                                    sizeof *f->order);
+        f->order = glint_arena_take(a, most_jobs(c), sizeof *f->order);
     } else {
         f->level =
             glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->level);
@@ -260,6 +262,23 @@ static int stored(const struct glint_flare *f, const struct glint_bundle *b)
     return by_edges(&f->cfg) ? 0 : n * n;
 }
 
+/* Of many beams none may be seen by itself, but all together: a ghost is left
+ * out in one wave for all beams. Sums of integers: their order is no matter. */
+static void leave_out_faint(struct glint_flare *f, int n)
+{
+    const struct glint_rays *r = f->plan.rays;
+    const int stride = (int)r->lens->header->n_ghosts * r->n_waves;
+
+    for (int first = 0; first < stride && first < n; first++) {
+        int64_t sum_q20 = 0;
+
+        for (int i = first; i < n; i += stride)
+            sum_q20 += f->bundle[i].n_cells ? f->source[i].peak_q20 : 0;
+        for (int i = first; i < n && sum_q20 < 1 << 20; i += stride)
+            f->bundle[i].n_cells = 0;
+    }
+}
+
 /* Closes the gaps of what cannot be seen. */
 static void keep_seen(struct glint_flare *f, int n)
 {
@@ -309,8 +328,9 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
     const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
 
     glint_flare_begin(flare);
-    flare->plan = (struct glint_plan){rays, beams, flare->cfg.width,
-                                      flare->cfg.height, flare->cfg.sets};
+    flare->plan = (struct glint_plan){
+        rays,           beams, n_beams, flare->cfg.width, flare->cfg.height,
+        flare->cfg.sets};
     flare->stats.need_bundles = need;
     flare->stats.dropped_bundles = need - n;
     if (n > 0)
@@ -318,6 +338,7 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                           (n + rays->n_waves - 1) / rays->n_waves, plan_job,
                           flare);
     flare->flux = flare->brightest = (struct glint_real){0, 0};
+    leave_out_faint(flare, n);
     keep_seen(flare, n);
     if (!by_edges(&flare->cfg))
         glint_workers_run(flare->cfg.workers, flare->n_bundles, transfer_job,

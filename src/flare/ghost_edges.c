@@ -140,7 +140,7 @@ static void set_steps(struct glint_ghost_edges *g)
     for (int log2 = OCTAVES - 1; log2 >= 0; log2--) {
         g->rows->steps[log2] = (uint16_t)((steps_q8 + 255) >> 8);
         if (g->coded && log2 <= WHITE_LOG2)
-            steps_q8 = steps_q8 / 8 * 7;
+            steps_q8 = steps_q8 > 256 + 32 ? steps_q8 / 8 * 7 : steps_q8;
     }
 }
 

@@ -27,9 +27,9 @@
 #include "tile/edges.h"
 #include "tile/outline.h"
 
-/* Scratch of a worker: of the nodes of two rows, and the cells between. */
-enum { GLINT_LIGHT_OCTAVES = 45 };
+enum { GLINT_LIGHT_OCTAVES = 45 }; /* of irradiance _q20 */
 
+/* Scratch of a worker: of the nodes of two rows, and the cells between. */
 struct glint_ghost_rows {
     struct glint_outline outline;
     struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];

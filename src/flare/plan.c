@@ -297,24 +297,26 @@ static struct glint_real flux_of(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* Whether no cell can be bright enough to be seen: flux of a cell of the survey
- * over the least area of one on the sensor, twice as much for what lies
+/* The most that any cell can shine over what can be seen: flux of a cell of the
+ * survey over the least area of one on the sensor, twice as much for what lies
  * between. Of cells that are folded the area says little. */
-static int is_faint(const struct glint_plan *p,
-                    const struct glint_plan_survey *s,
-                    const struct glint_transfer *t, struct glint_real flux)
+static int64_t peak_q20(const struct glint_plan *p,
+                        const struct glint_plan_survey *s,
+                        const struct glint_transfer *t, struct glint_real flux)
 {
+    const int64_t most = INT64_C(1) << 40;
     struct glint_real area;
 
     if (p->rays->faintest.mantissa == 0 || (s->up && s->down) ||
         s->least_area < 2 || s->least_area == UINT64_MAX)
-        return 0;
+        return most;
     area =
         real_times(real_of((int64_t)(s->least_area >> 1),
                            2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
                    real_times(p->rays->pixels_per_mm, p->rays->pixels_per_mm));
     flux.exponent -= 4 + 4 - 1; /* 16 x 16 cells in the box */
-    return real_less(real_over(flux, area), p->rays->faintest);
+    return real_integer(real_over(real_over(flux, area), p->rays->faintest), 20,
+                        most);
 }
 
 void glint_plan_transfer(const struct glint_plan *plan,
@@ -388,7 +390,8 @@ void glint_plan_bundle(const struct glint_plan *plan,
     source->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - source->energy_up;
     source->flux = flux_of(plan, source, transfer, colour, exponent);
-    if (is_faint(plan, s, transfer, source->flux))
+    source->peak_q20 = peak_q20(plan, s, transfer, source->flux);
+    if (plan->n_beams == 1 && source->peak_q20 < 1 << 20)
         return;
     source->light = real_over(
         source->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));

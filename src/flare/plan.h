@@ -24,12 +24,14 @@ struct glint_source {
     struct glint_real flux;  /* of the whole pupil, at the most energy seen;
                                 display white times pixels */
     struct glint_real light; /* the same over the pixels it falls on */
+    int64_t peak_q20; /* no pixel gets more; 1 = what can be seen, 2^20 at most
+                       */
 };
 
 struct glint_plan {
     const struct glint_rays *rays;
     const struct glint_beam *beam;
-    int width, height;
+    int n_beams, width, height;
     unsigned sets;
 };
 

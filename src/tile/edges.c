@@ -124,7 +124,7 @@ int glint_edge_span(const struct glint_edge *edge,
 /* --------------------------------------------------------------------- add
  */
 
-enum mode { LINEAR, WIDE, NARROW };
+enum mode { LINEAR, FINE, WIDE, NARROW };
 
 /* One row of one channel of a tile; pointers to where pixel 0 of the picture
  * would be. */
@@ -264,8 +264,7 @@ static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
     const ptrdiff_t at =
         (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
     struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light, 0};
-    const int64_t step_q40 = e->slope_q40 * 256;
-    int64_t x_q40 = x_at_q40(e, y_q8);
+    int64_t step_q40, x_q40 = x_at_q40(e, y_q8);
 
     if (x_q40 >> 40 != x_at_q40(e, end_q8) >> 40)
         r.rise_q32 = rise_of(e->slope_q40);
@@ -279,6 +278,8 @@ static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
         x_q40 = next_q40;
         y_q8 += height_q8;
     }
+    /* an edge so flat that this would overflow has no whole row */
+    step_q40 = end_q8 - y_q8 >= 256 ? e->slope_q40 * 256 : 0;
     for (; end_q8 - y_q8 >= 256; y_q8 += 256) {
         add_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
         next_row(&r, s->stride);
@@ -304,8 +305,9 @@ static int64_t step_of(const struct glint_edge *e, int32_t colour_q14,
     const int64_t right_q20 = coloured_q20(e->right, colour_q14);
     const int64_t left_q20 = coloured_q20(e->left, colour_q14);
 
-    return mode == LINEAR ? right_q20 - left_q20
-                          : q_shift(right_q20, 4) - q_shift(left_q20, 4);
+    return mode == LINEAR || mode == FINE
+               ? right_q20 - left_q20
+               : q_shift(right_q20, 4) - q_shift(left_q20, 4);
 }
 
 /* Returns how far sums can come from where they begin, all steps added up. */
@@ -314,7 +316,7 @@ static inline int64_t add_all(const struct glint_edge_sums *s, enum mode mode,
                               const struct glint_bundle *bundle,
                               const int32_t *ref, int n_refs)
 {
-    int64_t far_q16 = 0;
+    int64_t far[3] = {0, 0, 0}, most;
 
     for (int k = 0; k < n_refs; k++) {
         const struct glint_edge *e = &edge[ref[k]];
@@ -325,11 +327,12 @@ static inline int64_t add_all(const struct glint_edge_sums *s, enum mode mode,
 
             if (step == 0)
                 continue;
-            far_q16 += step < 0 ? -step : step;
+            far[c] += step < 0 ? -step : step;
             add_channel(s, mode, e, step, c);
         }
     }
-    return far_q16;
+    most = far[0] > far[1] ? far[0] : far[1];
+    return most > far[2] ? most : far[2];
 }
 
 static int64_t far_carry(const struct glint_edge_sums *s)
@@ -354,6 +357,10 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
     sums->narrow = 0;
     if (sums->linear) {
         add_all(sums, LINEAR, edge, bundle, ref, n_refs);
+        return;
+    }
+    if (sums->fine) {
+        add_all(sums, FINE, edge, bundle, ref, n_refs);
         return;
     }
     far_q24 = far_carry(sums);
@@ -393,22 +400,29 @@ void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
     sums->touched[channel] &= ~(UINT64_C(1) << row);
 }
 
-static uint16_t rounded_q16(int64_t sum_q24)
+/* Bits that a sum has beyond _q16. */
+static int more_bits(const struct glint_edge_sums *s)
 {
-    return (uint16_t)q_clamp_sat((sum_q24 >> 8) + (sum_q24 >> 7 & 1), 0, 65535);
+    return s->fine ? 12 : 8;
 }
 
-static void wide_light(uint64_t *change_q24, int64_t *carry_q24, int n,
+static uint16_t rounded_q16(int64_t sum, int more)
+{
+    return (uint16_t)q_clamp_sat((sum >> more) + (sum >> (more - 1) & 1), 0,
+                                 65535);
+}
+
+static void wide_light(uint64_t *change, int64_t *carry, int n, int more,
                        uint16_t *light_q16)
 {
-    uint64_t sum_q24 = (uint64_t)*carry_q24;
+    uint64_t sum = (uint64_t)*carry;
 
     for (int x = 0; x < n; x++) {
-        sum_q24 += change_q24[x];
-        change_q24[x] = 0;
-        light_q16[x] = rounded_q16((int64_t)sum_q24);
+        sum += change[x];
+        change[x] = 0;
+        light_q16[x] = rounded_q16((int64_t)sum, more);
     }
-    *carry_q24 = (int64_t)sum_q24;
+    *carry = (int64_t)sum;
 }
 
 int glint_edge_dark(const struct glint_edge_sums *sums, int row)
@@ -423,9 +437,9 @@ int glint_edge_dark(const struct glint_edge_sums *sums, int row)
 }
 
 /* The same light everywhere. */
-static int even_light(int64_t carry_q24, int n, uint16_t *light_q16)
+static int even_light(int64_t carry, int n, int more, uint16_t *light_q16)
 {
-    const uint16_t light = rounded_q16(carry_q24);
+    const uint16_t light = rounded_q16(carry, more);
 
     for (int x = 0; x < n; x++)
         light_q16[x] = light;
@@ -442,10 +456,11 @@ int glint_edge_light(const struct glint_edge_sums *sums, int channel, int row,
     uint32_t carry_q24 = (uint32_t)sums->carry[at];
 
     if (!(sums->touched[channel] >> row & 1))
-        return even_light(sums->carry[at], padded, light_q16);
+        return even_light(sums->carry[at], padded, more_bits(sums), light_q16);
     sums->touched[channel] &= ~(UINT64_C(1) << row);
     if (!sums->narrow) {
-        wide_light(sums->wide + first, &sums->carry[at], padded, light_q16);
+        wide_light(sums->wide + first, &sums->carry[at], padded,
+                   more_bits(sums), light_q16);
         if (padded == n) {
             sums->carry[at] += (int64_t)sums->wide[first + n];
             sums->wide[first + n] = 0;

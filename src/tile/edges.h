@@ -16,10 +16,10 @@
  *
  * Formats: corners _q8, slopes _q40, light _q20 below 2^40. Sums for pictures
  * of linear light: light _q20 times areas _q16, modulo 2^64. For all others
- * light _q16 times areas _q8, modulo 2^64, or 2^32 where a tile's edges
- * together cannot bring a sum beyond that: the same results, faster. The
- * caller's limit on light keeps final sums below 2^63 (flare.c); what comes in
- * between may wrap, and wraps back.
+ * light _q16 (_q20 if fine) times areas _q8, modulo 2^64, or 2^32 where a
+ * tile's edges together cannot bring a sum beyond that: the same results,
+ * faster. The caller's limit on light keeps final sums below 2^63 (flare.c);
+ * what comes in between may wrap, and wraps back.
  */
 #ifndef GLINT_TILE_EDGES_H
 #define GLINT_TILE_EDGES_H
@@ -66,6 +66,7 @@ struct glint_edge_sums {
     struct glint_box tile;
     int tile_log2, stride;
     int linear; /* for pictures of linear light */
+    int fine;   /* light _q20 for others too */
     int lit;    /* for who draws rows of tiles: light runs in */
     int narrow; /* what add found: narrow sums do, and have been used */
     uint64_t *wide;

@@ -275,6 +275,56 @@ static void test_steps_follow_codes(void **state)
     close_fixture(&f);
 }
 
+/* Lights that none shows by itself are seen together, in codes as well. */
+static void test_many_faint_lights(void **state)
+{
+    enum { MANY = 1024 };
+    static struct glint_beam beam[MANY];
+    static int32_t linear[3 * WIDTH * HEIGHT];
+    static uint8_t codes[3 * WIDTH * HEIGHT];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+    struct glint_image layer = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+    struct glint_flare_stats s;
+    struct fixture f;
+    double sum = 0, most = 0;
+
+    (void)state;
+    open_fixture(&f);
+    f.cfg.max_bundles = 16 * MANY;
+    f.cfg.max_primitives = 4000000;
+    f.cfg.max_refs = 4000000;
+    for (int i = 0; i < MANY; i++) {
+        beam[i] = f.beam;
+        beam[i].cos_q30 = (int32_t)lrint(0x1p30 * cos(0.001 * i));
+        beam[i].sin_q30 = (int32_t)lrint(0x1p30 * sin(0.001 * i));
+        beam[i].power = real_of(1000 + i, -18);
+    }
+    glint_image_place(&layer, linear);
+    glint_image_place(&image, codes);
+    memset(linear, 0, sizeof linear);
+    memset(codes, 0, sizeof codes);
+    start(&f);
+    for (int turn = 0; turn < 2; turn++) {
+        f.rays.faintest = real_of(turn ? 163 : 0, -22); /* 1/8 code */
+        glint_flare_plan(f.flare, &f.rays, beam, MANY);
+        glint_flare_bin(f.flare, &s);
+        assert_int_equal(s.dropped_bundles, 0);
+        assert_true(s.bundles > 1024);
+        glint_flare_draw(f.flare, turn ? &image : &layer);
+    }
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        const double want = code_of(linear[i]);
+
+        most = fmax(most, want);
+        sum += (codes[i] - want) * (codes[i] - want);
+    }
+    assert_true(most > 4 && most < 40);
+    assert_true(sum / (3 * WIDTH * HEIGHT) < 0.1);
+    close_fixture(&f);
+}
+
 static void test_room(void **state)
 {
     struct fixture f;
@@ -318,7 +368,7 @@ static void test_rows_and_grids(void **state)
     start(&f);
     glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
     picture(&f, rows);
-    plan = (struct glint_plan){&f.rays, &f.beam, WIDTH, HEIGHT, 0};
+    plan = (struct glint_plan){&f.rays, &f.beam, 1, WIDTH, HEIGHT, 0};
     glint_flare_begin(f.flare);
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++)
         for (int wave = 0; wave < 2; wave++) {
@@ -414,6 +464,7 @@ int main(void)
         cmocka_unit_test(test_what_is_seen),
         cmocka_unit_test(test_faint),
         cmocka_unit_test(test_steps_follow_codes),
+        cmocka_unit_test(test_many_faint_lights),
         cmocka_unit_test(test_room),
         cmocka_unit_test(test_rows_and_grids),
         cmocka_unit_test(test_beyond),
