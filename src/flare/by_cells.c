@@ -17,6 +17,7 @@ static struct glint_ghost_grid grid_of(const struct glint_flare *f, int bundle)
         .stop = &f->cfg.stop,
         .width = f->cfg.width,
         .height = f->cfg.height,
+        .antialias = f->cfg.antialias,
         .merge_steps = f->cfg.merge_steps,
         .merge_gamma_q16 = f->cfg.merge_gamma_q16,
         .level = f->level + slot->first_vertex,

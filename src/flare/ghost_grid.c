@@ -221,13 +221,14 @@ static int emit_cell(struct glint_ghost_grid *g,
         return emit_point(g, corners, p, out);
     if (corners->area2_q16 == 0)
         return 1;
-    if (glint_box_empty(glint_corners_box(corners, g->width, g->height)))
+    p->flags = g->sampled ? GLINT_SAMPLED : 0;
+    if (glint_box_empty(glint_primitive_box(p, corners, g->width, g->height)))
         return 0;
     cut = glint_clip_classify(corners, g->stop);
     if (cut < 0)
         return 0;
     if (out) {
-        p->flags = (uint8_t)cut;
+        p->flags |= (uint8_t)cut;
         p->irradiance_q20 = held_q20(
             glint_irradiance_q22(g->bundle, p->share_log2, corners->area2_q16,
                                  2 * GLINT_VERTEX_FRAC + 1, GLINT_LIMIT_Q8));
@@ -319,12 +320,37 @@ static int is_focused(const struct glint_ghost_grid *g)
     return 1;
 }
 
+static int is_near(const struct glint_vertex *a, const struct glint_vertex *b)
+{
+    const int64_t x = (int64_t)b->x_q8 - a->x_q8;
+    const int64_t y = (int64_t)b->y_q8 - a->y_q8;
+
+    return x < 1024 && x > -1024 && y < 1024 && y > -1024;
+}
+
+/* Whether all neighbours land within four pixels of each other: then folds have
+ * rims that pixel centres cannot tell, hundreds of times white. */
+static int has_small_cells(const struct glint_ghost_grid *g)
+{
+    const int n = g->bundle->n_cells;
+    const struct glint_vertex *v = g->vertex + g->first;
+
+    for (int j = 0; j <= n; j++)
+        for (int i = 0; i <= n; i++, v++)
+            if (vertex_valid(v) &&
+                ((i < n && vertex_valid(v + 1) && !is_near(v, v + 1)) ||
+                 (j < n && vertex_valid(v + n + 1) && !is_near(v, v + n + 1))))
+                return 0;
+    return 1;
+}
+
 void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
                            struct glint_primitive *out)
 {
     const int n = grid->bundle->n_cells;
 
     grid->focused = is_focused(grid);
+    grid->sampled = grid->antialias && !grid->focused && has_small_cells(grid);
     grid->n_primitives = 0;
     grid->n_dropped = 0;
     for (int j = 0; j < n; j++)

@@ -30,6 +30,8 @@ struct glint_ghost_grid {
     int32_t merge_gamma_q16; /* relative */
     uint8_t *level;          /* [n_cells][n_cells], scratch that keeps what
                                 merge found for emit */
+    int antialias;           /* cells of a few pixels are sampled finely */
+    int sampled;             /* all cells are that small */
     int focused;             /* the whole ghost is a few pixels wide */
     int n_primitives, n_dropped, n_merged;
 };

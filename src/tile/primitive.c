@@ -179,6 +179,8 @@ struct glint_box glint_primitive_box(const struct glint_primitive *p,
                                      const struct glint_corners *corners,
                                      int width, int height)
 {
+    if (p->flags & GLINT_SAMPLED)
+        return glint_corners_reach(corners, width, height);
     return p->flags & GLINT_POINT ? glint_corners_pixel(corners, width, height)
                                   : glint_corners_box(corners, width, height);
 }

@@ -13,8 +13,10 @@
 enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross it */
     GLINT_CUT_BARREL = 2, /* a barrel may cross it */
-    GLINT_POINT = 4       /* far smaller than a pixel: all its light goes to the
+    GLINT_POINT = 4,      /* far smaller than a pixel: all its light goes to the
                              pixel its middle lies in */
+    GLINT_SAMPLED = 8     /* of a ghost with cells of a few pixels: 4 x 4 places
+                             of each pixel are looked at */
 };
 
 struct glint_primitive {
@@ -24,7 +26,7 @@ struct glint_primitive {
                                adds to its pixel */
     uint16_t bundle;
     int8_t share_log2; /* cells whose light it has; -1: half of one */
-    uint8_t flags;     /* GLINT_CUT_, GLINT_POINT */
+    uint8_t flags;     /* GLINT_CUT_, GLINT_POINT, GLINT_SAMPLED */
 };
 
 /* Largest light of a primitive in a pixel, display white. */

@@ -93,11 +93,13 @@ static void corner_weights(const struct edges *e, int32_t *weight_q16)
                       (wide + 15));
 }
 
-/* Share of the pixel, q16, that the clips leave: distances in pixels become
- * cover by half a pixel on either side, or a step at 0. */
+/* Share, q16, of the pixel that the clips leave, or of one of its PLACES
+ * across: distances in pixels become cover by half of it on either side, or a
+ * step at 0. */
 static int32_t cover_of(const struct glint_cell_raster *r,
                         const struct glint_clip *clip,
-                        const struct glint_corners *c, const int32_t *w_q16)
+                        const struct glint_corners *c, const int32_t *w_q16,
+                        int places)
 {
     int64_t cover_q16 = 1 << 16;
 
@@ -119,6 +121,7 @@ static int32_t cover_of(const struct glint_cell_raster *r,
                                         q_narrow(q_shift(y, 16)));
             d_q8 = q_shift(d_q8 * clip->field_q16, 24);
         }
+        d_q8 *= places;
         if (!r->antialias)
             d_q8 = d_q8 >= 0 ? HALF_Q8 : -HALF_Q8;
         cover_q16 = q_shift(cover_q16 * q_clamp_sat(d_q8 + HALF_Q8, 0, 256), 8);
@@ -166,6 +169,47 @@ static void add_point(const struct glint_cell_raster *raster,
               q_shift(p->irradiance_q20 * energy_q16, 16));
 }
 
+/* What the primitive adds where E stands. */
+static int64_t light_at(const struct glint_cell_raster *raster,
+                        const struct glint_primitive *p,
+                        const struct glint_corners *c,
+                        const struct glint_clip *clip, const struct edges *e)
+{
+    int32_t w_q16[4];
+    int64_t light_q20;
+
+    if (!inside(e))
+        return 0;
+    corner_weights(e, w_q16);
+    light_q20 = q_shift((int64_t)p->irradiance_q20 * energy_of(c, w_q16), 16);
+    if (p->flags & (GLINT_CUT_STOP | GLINT_CUT_BARREL))
+        light_q20 =
+            q_shift(light_q20 * cover_of(raster, clip, c, w_q16,
+                                         p->flags & GLINT_SAMPLED ? 4 : 1),
+                    16);
+    return light_q20;
+}
+
+/* The mean over 4 x 4 places of the pixel. */
+static int64_t sampled_light(const struct glint_cell_raster *raster,
+                             const struct glint_primitive *p,
+                             const struct glint_corners *c,
+                             const struct glint_clip *clip,
+                             const struct edges *e)
+{
+    struct edges here = *e;
+    int64_t sum_q20 = 0;
+
+    for (int k = 0; k < 16; k++) {
+        const int x = 2 * (k & 3) - 3, y = 2 * (k >> 2) - 3; /* eighths */
+
+        for (int i = 0; i < 4; i++)
+            here.at[i] = e->at[i] + (e->dx[i] * x + e->dy[i] * y) / 8;
+        sum_q20 += light_at(raster, p, c, clip, &here);
+    }
+    return q_shift(sum_q20, 4);
+}
+
 void glint_cell_raster_primitive(const struct glint_cell_raster *raster,
                                  int primitive, struct glint_box tile,
                                  struct glint_clip *clip, int64_t *acc_q20)
@@ -196,18 +240,13 @@ void glint_cell_raster_primitive(const struct glint_cell_raster *raster,
         for (int i = 0; i < 4; i++)
             e.at[i] = e.row[i];
         for (int x = box.x0; x < box.x1; x++, acc++) {
-            if (inside(&e)) {
-                int32_t w_q16[4];
-                int64_t light_q20;
+            const int64_t light_q20 =
+                p->flags & GLINT_SAMPLED
+                    ? sampled_light(raster, p, &c, clip, &e)
+                    : light_at(raster, p, &c, clip, &e);
 
-                corner_weights(&e, w_q16);
-                light_q20 = q_shift(
-                    (int64_t)p->irradiance_q20 * energy_of(&c, w_q16), 16);
-                if (p->flags)
-                    light_q20 = q_shift(
-                        light_q20 * cover_of(raster, clip, &c, w_q16), 16);
+            if (light_q20)
                 add_pixel(acc, side * side, rgb_q14, light_q20);
-            }
             for (int i = 0; i < 4; i++)
                 e.at[i] += e.dx[i];
         }
