@@ -42,7 +42,8 @@ int tool_fail(const struct tool *tool, enum glint_status status,
                                [GLINT_E_LENS] = EXIT_LENS,
                                [GLINT_E_IO] = EXIT_INPUT,
                                [GLINT_E_OUTPUT] = EXIT_OUTPUT,
-                               [GLINT_E_CLOSED] = EXIT_OK};
+                               [GLINT_E_CLOSED] = EXIT_OK,
+                               [GLINT_E_DEVICE] = EXIT_DEVICE};
 
     if (status == GLINT_E_CLOSED) /* the reader had enough: no failure */
         return EXIT_OK;

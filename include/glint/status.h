@@ -18,7 +18,8 @@ enum glint_status {
     GLINT_E_LENS,        /* a lens table or model is wrong */
     GLINT_E_IO,          /* reading failed */
     GLINT_E_OUTPUT,      /* writing failed */
-    GLINT_E_CLOSED       /* the reader of a pipe went away */
+    GLINT_E_CLOSED,      /* the reader of a pipe went away */
+    GLINT_E_DEVICE       /* a camera or panel failed, is busy or went away */
 };
 
 /* One line for a person, "FILE:LINE:COLUMN: cause" where there is a file.

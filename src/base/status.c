@@ -22,6 +22,8 @@ const char *glint_status_text(enum glint_status status)
         return "writing failed";
     case GLINT_E_CLOSED:
         return "the reader closed the pipe";
+    case GLINT_E_DEVICE:
+        return "device failed";
     }
     return "unknown status";
 }

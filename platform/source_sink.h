@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * source_sink.h - where live frames come from and where they go.
+ *
+ * A source or sink is a struct of functions, the first member of the struct
+ * that implements it (linux/v4l2.h, linux/fbdev.h ...). All memory is taken
+ * when it is opened or its format changes; a frame costs none.
+ *
+ * Errors are GLINT_E_DEVICE for a device that failed or went away and
+ * GLINT_E_OUTPUT for what cannot be written, with one line that names it.
+ */
+#ifndef GLINT_SOURCE_SINK_H
+#define GLINT_SOURCE_SINK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+
+/* One frame of a source, its memory lent until done. */
+struct glint_source_frame {
+    struct glint_image image; /* plane[0] NULL: there is no frame yet */
+    uint32_t sequence;        /* of the device; wraps */
+    int64_t time_us;          /* CLOCK_MONOTONIC, when it was captured */
+    bool cached;              /* its memory may be drawn into at full speed */
+    int n_late;               /* frames given back unseen: it is the newest */
+    int n_dropped;            /* gap in sequence before it, without those */
+    int n_corrupt;            /* frames thrown away before it as damaged */
+    void *buffer;             /* the source's own */
+};
+
+struct glint_source {
+    int fd; /* readable when there may be a frame; -1: always */
+
+    /* Gives the newest frame there is, and older ones back; never waits.
+     * GLINT_E_DEVICE: the device is lost; close it. */
+    enum glint_status (*next)(struct glint_source *source,
+                              struct glint_source_frame *frame,
+                              struct glint_error *error);
+    /* Gives FRAME back. */
+    void (*done)(struct glint_source *source, struct glint_source_frame *frame);
+    void (*close)(struct glint_source *source); /* idempotent */
+};
+
+struct glint_sink {
+    /* Shows IMAGE, which is the caller's. Does not wait for slow readers longer
+     * than a frame where the system allows it. */
+    enum glint_status (*put)(struct glint_sink *sink,
+                             const struct glint_image *image,
+                             struct glint_error *error);
+    void (*close)(struct glint_sink *sink); /* idempotent */
+};
+
+#endif
