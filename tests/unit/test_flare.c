@@ -283,6 +283,29 @@ static void test_edges_agree_with_cells(void **state)
     assert_true(total(pixels, 0) < 1.001 * total(want, 0));
 }
 
+/* Cells of two pixels, folded, cut by stop and barrel: sampled by cells. */
+static void test_small_cells_agree(void **state)
+{
+    struct glint_flare_config c = base_config();
+    double off = 0, all = 0;
+
+    (void)state;
+    for (int k = 0; k < 16; k++) {
+        const struct ghost g = {16, 100, 75, 9 + k % 4,    60 * k,
+                                1,  300, -2, {16384, 0, 0}};
+
+        c.raster = GLINT_RASTER_EDGES;
+        draw_list(c, &g, 1, pixels);
+        c.raster = GLINT_RASTER_CELLS;
+        draw_list(c, &g, 1, want);
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+            off += abs(pixels[i] - want[i]);
+            all += want[i];
+        }
+    }
+    assert_true(off < 0.083 * all); /* pixel centres alone: 0.0896 */
+}
+
 static int draw_number(int n)
 {
     static uint32_t seed = 7;
@@ -997,6 +1020,7 @@ int main(void)
         cmocka_unit_test(test_focused_light_arrives),
         cmocka_unit_test(test_flat_inside),
         cmocka_unit_test(test_edges_agree_with_cells),
+        cmocka_unit_test(test_small_cells_agree),
         cmocka_unit_test(test_outlines_close),
         cmocka_unit_test(test_far_corner_closes),
         cmocka_unit_test(test_steps),

@@ -14,6 +14,8 @@
 
 #include <cmocka.h>
 
+#include "glint/kernels.h"
+
 enum {
     MAX_SIDE = 40,
     TILE_LOG2 = 3,
@@ -618,6 +620,41 @@ static void test_layouts_agree(void **state)
         }
 }
 
+/* A row of packed pixels in one stretch and in stretches of eight: vectors end
+ * anywhere in the long one. */
+static void test_long_stretches_are_short_ones(void **state)
+{
+    static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
+    static struct glint_light_rows light, part;
+    static struct glint_resolve_rows rows;
+    uint8_t want[2 * 64], got[2 * 64];
+
+    (void)state;
+    for (int n = 2; n <= 64; n += 2)
+        for (int k = 0; k < 4; k++) {
+            struct glint_image image = {
+                .format = packed[k & 1], .width = n, .height = 1};
+
+            for (int i = 0; i < 2 * n; i++)
+                want[i] = got[i] = (uint8_t)draw_random(256);
+            for (int i = 0; i < 3 * 64; i++)
+                light.rgb_q16[i / 64][0][i % 64] = (uint16_t)draw_random(9000);
+            glint_resolve_init(&resolve, &image, 0,
+                               k & 2 ? glint_sets_here() : 0u);
+            glint_image_place(&image, got);
+            glint_resolve_stretch(&resolve, &image, 0, 0, n, 1, &light, &rows);
+            glint_image_place(&image, want);
+            for (int x = 0; x < n; x += 8) {
+                for (int i = 0; i < 3 * 8; i++)
+                    part.rgb_q16[i / 8][0][i % 8] =
+                        light.rgb_q16[i / 8][0][x + i % 8];
+                glint_resolve_stretch(&resolve, &image, x, 0,
+                                      n - x < 8 ? n - x : 8, 1, &part, &rows);
+            }
+            assert_memory_equal(got, want, 2 * (size_t)n);
+        }
+}
+
 /* All codes of 16 bits come back without light, and turn white with much. */
 static void test_565(void **state)
 {
@@ -684,6 +721,7 @@ int main(void)
         cmocka_unit_test(test_dither_in_ycc_stays_within_a_code),
         cmocka_unit_test(test_linear_adds_and_saturates),
         cmocka_unit_test(test_layouts_agree),
+        cmocka_unit_test(test_long_stretches_are_short_ones),
         cmocka_unit_test(test_565),
         cmocka_unit_test(test_same_on_every_machine),
     };
