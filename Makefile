@@ -38,13 +38,13 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
-        plain/pfm plain/y4m oiio/loader plain/picture
+        plain/pfm plain/y4m oiio/loader plain/picture linux/fourcc
 TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps
+        measure lamps fourcc
 FUZZ := lens model y4m pnm
 
 CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Names of formats and colours, as V4L2 has them.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "linux/fourcc.h"
+
+#include <linux/videodev2.h>
+
+static uint32_t parsed(const char *text)
+{
+    uint32_t fourcc = 0;
+
+    assert_true(glint_fourcc_parse(text, &fourcc));
+    return fourcc;
+}
+
+static void expect_format(const char *text, enum glint_pixel_format want)
+{
+    enum glint_pixel_format format = GLINT_LINEAR_Q20;
+
+    assert_true(glint_fourcc_to_format(parsed(text), &format));
+    assert_int_equal(format, want);
+}
+
+static void test_formats(void **state)
+{
+    (void)state;
+    expect_format("YUYV", GLINT_YUYV);
+    expect_format("yuyv422", GLINT_YUYV);
+    expect_format("UYVY", GLINT_UYVY);
+    expect_format("nv12", GLINT_NV12);
+    expect_format("NM12", GLINT_NV12);
+    expect_format("NV21", GLINT_NV21);
+    expect_format("NM21", GLINT_NV21);
+    expect_format("YU12", GLINT_I420);
+    expect_format("yuv420p", GLINT_I420);
+    expect_format("YM12", GLINT_I420);
+    expect_format("422P", GLINT_I422);
+    expect_format("YM16", GLINT_I422);
+    expect_format("yuv444p", GLINT_I444);
+    expect_format("GREY", GLINT_GREY);
+    expect_format("gray", GLINT_GREY);
+    expect_format("RGB3", GLINT_RGB24);
+    expect_format("bgr24", GLINT_BGR24);
+    expect_format("XR24", GLINT_XRGB8888);
+    expect_format("AR24", GLINT_XRGB8888);
+    expect_format("RGBP", GLINT_RGB565);
+}
+
+/* The words are spelled by hand: 'Y' is the lowest byte. */
+static void test_words(void **state)
+{
+    (void)state;
+    assert_int_equal(glint_fourcc_of(GLINT_YUYV), 0x56595559);
+    assert_int_equal(glint_fourcc_of(GLINT_I420), 0x32315559);
+    assert_int_equal(glint_fourcc_of(GLINT_XRGB8888), 0x34325258);
+    assert_int_equal(glint_fourcc_of(GLINT_I444), 0);
+    assert_int_equal(glint_fourcc_of(GLINT_LINEAR_Q20), 0);
+    assert_int_equal(parsed("MJPG"), 0x47504a4d);
+    assert_int_equal(parsed("mjpeg"), 0x47504a4d);
+    assert_int_equal(parsed("pRAA"), 0x41415270); /* one that is not ours */
+}
+
+static void test_there_and_back(void **state)
+{
+    (void)state;
+    for (int i = GLINT_RGB24; i <= GLINT_RGB565; i++) {
+        const uint32_t fourcc = glint_fourcc_of((enum glint_pixel_format)i);
+        enum glint_pixel_format format;
+        char text[5];
+
+        if (i == GLINT_I444 || i == GLINT_LINEAR_Q20)
+            continue;
+        assert_int_equal(glint_fourcc_memory_planes(fourcc), 1);
+        assert_true(glint_fourcc_to_format(fourcc, &format));
+        assert_int_equal(format, i);
+        glint_fourcc_text(fourcc, text);
+        assert_int_equal(parsed(text), fourcc);
+    }
+    assert_int_equal(glint_fourcc_memory_planes(parsed("NM12")), 2);
+    assert_int_equal(glint_fourcc_memory_planes(parsed("YM12")), 3);
+    assert_int_equal(glint_fourcc_memory_planes(parsed("MJPG")), 1);
+}
+
+static void test_refuses(void **state)
+{
+    enum glint_pixel_format format;
+    uint32_t fourcc;
+    char text[5];
+
+    (void)state;
+    assert_false(glint_fourcc_to_format(parsed("MJPG"), &format));
+    assert_false(glint_fourcc_to_format(0, &format));
+    assert_false(glint_fourcc_parse("", &fourcc));
+    assert_false(glint_fourcc_parse("YUV", &fourcc));
+    assert_false(glint_fourcc_parse("YUYV2", &fourcc));
+    assert_false(glint_fourcc_parse("YU\tV", &fourcc));
+    glint_fourcc_text(0x00ff0a41, text);
+    assert_string_equal(text, "A???");
+}
+
+/* ------------------------------------------------------------------ colours */
+
+static bool read_colour(struct glint_image *image,
+                        enum glint_pixel_format format, uint32_t space,
+                        uint32_t enc, uint32_t quantization, uint32_t xfer)
+{
+    const struct glint_v4l2_colour colour = {space, enc, quantization, xfer};
+
+    *image = (struct glint_image){.format = format};
+    return glint_v4l2_colour_read(&colour, image);
+}
+
+static void test_colour_defaults(void **state)
+{
+    struct glint_image i;
+
+    (void)state;
+    /* as vivid and most webcams: sRGB, the rest by default */
+    assert_true(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_int_equal(i.range, GLINT_RANGE_LIMITED);
+    assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
+    assert_int_equal(i.transfer, GLINT_TONE_SRGB);
+    /* JPEG is of full range */
+    assert_true(read_colour(&i, GLINT_I420, V4L2_COLORSPACE_JPEG, 0, 0, 0));
+    assert_int_equal(i.range, GLINT_RANGE_FULL);
+    assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
+    assert_true(read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_REC709, 0, 0, 0));
+    assert_int_equal(i.range, GLINT_RANGE_LIMITED);
+    assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
+    assert_int_equal(i.transfer, GLINT_TONE_BT709);
+    assert_true(
+        read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_SMPTE170M, 0, 0, 0));
+    assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
+    assert_int_equal(i.transfer, GLINT_TONE_BT709);
+    assert_true(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_int_equal(i.range, GLINT_RANGE_FULL);
+}
+
+static void test_colour_stated(void **state)
+{
+    struct glint_image i;
+
+    (void)state;
+    assert_true(read_colour(&i, GLINT_UYVY, V4L2_COLORSPACE_SRGB,
+                            V4L2_YCBCR_ENC_709, V4L2_QUANTIZATION_FULL_RANGE,
+                            V4L2_XFER_FUNC_709));
+    assert_int_equal(i.range, GLINT_RANGE_FULL);
+    assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
+    assert_int_equal(i.transfer, GLINT_TONE_BT709);
+    /* no word for it */
+    assert_false(read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
+    assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
+    assert_false(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,
+                             V4L2_QUANTIZATION_LIM_RANGE, 0));
+    assert_int_equal(i.range, GLINT_RANGE_FULL);
+    assert_false(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_RAW, 0, 0, 0));
+}
+
+static void test_colour_there_and_back(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        const struct glint_image image = {
+            .format = GLINT_YUYV,
+            .range = i & 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED,
+            .matrix = i & 2 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709,
+            .transfer = i & 4 ? GLINT_TONE_SRGB : GLINT_TONE_BT709,
+        };
+        struct glint_image back = {.format = GLINT_YUYV};
+        struct glint_v4l2_colour colour;
+
+        glint_v4l2_colour_write(&colour, &image);
+        assert_true(glint_v4l2_colour_read(&colour, &back));
+        assert_int_equal(back.range, image.range);
+        assert_int_equal(back.matrix, image.matrix);
+        assert_int_equal(back.transfer, image.transfer);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_words),
+        cmocka_unit_test(test_there_and_back),
+        cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_colour_defaults),
+        cmocka_unit_test(test_colour_stated),
+        cmocka_unit_test(test_colour_there_and_back),
+    };
+
+    return cmocka_run_group_tests_name("fourcc", tests, NULL, NULL);
+}
