@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+#include "linux/request.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/ioctl.h>
+
+#include "posix/error.h"
+
+int glint_ioctl(int fd, unsigned long request, void *arg)
+{
+    int r;
+
+    do
+        r = ioctl(fd, request, arg);
+    while (r < 0 && errno == EINTR);
+    return r;
+}
+
+static const char *advice(int number)
+{
+    switch (number) {
+    case EACCES:
+    case EPERM:
+        return "; users of it are in the group 'video'";
+    case EBUSY:
+        return "; another program is using it";
+    case ENODEV:
+    case ENXIO:
+        return "; the device is gone";
+    }
+    return "";
+}
+
+enum glint_status glint_ioctl_failed(struct glint_error *error,
+                                     const char *path, const char *request)
+{
+    const int number = errno;
+
+    return glint_error_report(error, GLINT_E_DEVICE, path, "%s: %s%s", request,
+                              strerror(number), advice(number));
+}

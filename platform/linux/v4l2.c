@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: MIT */
+#include "linux/v4l2.h"
+
+#include <errno.h>
+#include <linux/videodev2.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "jpeg/mjpeg.h"
+#include "linux/request.h"
+#include "linux/v4l2_buffers.h"
+#include "posix/error.h"
+
+#define PATIENCE_US  900000  /* a broken stream gets so long to come back */
+#define STALL_US     2000000 /* silence beyond some frames that is no pause */
+#define STALL_FRAMES 4
+#define USELESS      30 /* damaged frames in a row that call for a new start */
+
+/* ------------------------------------------------------------------- stream */
+
+static void stop(struct glint_v4l2 *v)
+{
+    int type = (int)v->device.type;
+
+    if (v->streams && v->io != GLINT_V4L2_READ)
+        glint_ioctl(v->device.fd, VIDIOC_STREAMOFF, &type);
+    v->streams = false;
+    glint_v4l2_release_buffers(v);
+}
+
+static int stream_on(struct glint_v4l2 *v)
+{
+    int type = (int)v->device.type;
+
+    if (v->io == GLINT_V4L2_READ ||
+        glint_ioctl(v->device.fd, VIDIOC_STREAMON, &type) == 0)
+        return 0;
+    return errno == EINVAL ? glint_ioctl(v->device.fd, VIDIOC_STREAMON, &type)
+                           : -1;
+}
+
+static enum glint_status make_decoder(struct glint_v4l2 *v,
+                                      struct glint_error *error)
+{
+    const struct glint_v4l2_format *f = &v->device.format;
+
+    glint_mjpeg_close(v->jpeg);
+    v->jpeg = NULL;
+    return f->is_jpeg ? glint_mjpeg_open(&v->jpeg, v->device.path, f->width,
+                                         f->height, error)
+                      : GLINT_OK;
+}
+
+static enum glint_status start(struct glint_v4l2 *v, struct glint_error *error)
+{
+    int n_queued = 0;
+
+    if (glint_v4l2_get_buffers(v) < 0)
+        return glint_ioctl_failed(error, v->device.path, "VIDIOC_REQBUFS");
+    for (int i = 0; i < v->n_buffers; i++)
+        n_queued +=
+            glint_v4l2_queue(v, i) == 0; /* the rest is tried again later */
+    if (n_queued == 0)
+        return glint_ioctl_failed(error, v->device.path, "VIDIOC_QBUF");
+    if (stream_on(v) < 0)
+        return glint_ioctl_failed(error, v->device.path, "VIDIOC_STREAMON");
+    v->streams = true;
+    v->has_sequence = false;
+    v->n_useless = 0;
+    v->heard_us = glint_v4l2_now_us();
+    v->is_cached = glint_v4l2_is_cached(v);
+    v->exports_dmabuf = glint_v4l2_can_export(v);
+    return make_decoder(v, error);
+}
+
+static enum glint_status gone(const struct glint_v4l2 *v,
+                              struct glint_error *error)
+{
+    return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
+                              "the camera is gone");
+}
+
+static bool is_there(const struct glint_v4l2 *v)
+{
+    struct v4l2_capability cap;
+
+    return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
+}
+
+/* Stops and starts, with the format that the device has now. Success is known
+ * only when a frame comes; until then patience runs. */
+static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
+                                    struct glint_error *error)
+{
+    const struct timespec breath = {0, 20000000};
+    enum glint_status status;
+
+    stop(v);
+    if (!is_there(v))
+        return gone(v, error);
+    if (v->broken_us == 0)
+        v->broken_us = glint_v4l2_now_us();
+    else if (glint_v4l2_now_us() - v->broken_us > PATIENCE_US)
+        return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
+                                  "%s, and starting anew does not help", why);
+    else
+        nanosleep(&breath, NULL);
+    v->n_restarts++;
+    status = glint_v4l2_device_negotiate(&v->device, error);
+    if (status == GLINT_OK)
+        status = start(v, error);
+    if (status == GLINT_E_UNSUPPORTED)
+        return status;
+    if (status != GLINT_OK)
+        stop(v);
+    return GLINT_OK;
+}
+
+/* ------------------------------------------------------------------- frames */
+
+/* Returns whether the source is another one now. */
+static bool take_events(struct glint_v4l2 *v)
+{
+    struct v4l2_event event;
+    bool is_other = false;
+
+    while (glint_ioctl(v->device.fd, VIDIOC_DQEVENT, &event) == 0)
+        if (event.type == V4L2_EVENT_SOURCE_CHANGE)
+            is_other |=
+                !v->device.is_dv || glint_v4l2_device_retimed(&v->device);
+    return is_other;
+}
+
+static bool is_whole(const struct glint_v4l2 *v,
+                     const struct glint_v4l2_taken *t)
+{
+    const struct glint_v4l2_format *f = &v->device.format;
+    const struct glint_v4l2_buffer *b = &v->buffer[t->index];
+
+    if (t->damaged || t->bytes[0] == 0)
+        return false;
+    for (int i = 0; i < f->n_blocks; i++)
+        if (t->start[i] > t->bytes[i] || t->bytes[i] > b->bytes[i])
+            return false;
+    for (int p = 0; !f->is_jpeg && p < glint_image_planes(f->pixels); p++) {
+        const int k = f->plane[p].block;
+
+        if (t->start[k] + f->plane[p].offset + f->plane[p].bytes > t->bytes[k])
+            return false;
+    }
+    return true;
+}
+
+static void give_back(struct glint_v4l2 *v, int index)
+{
+    v->buffer[index].lent = false;
+    glint_v4l2_queue(v, index); /* if it fails, next tries again */
+}
+
+static void queue_idle(struct glint_v4l2 *v)
+{
+    for (int i = 0; i < v->n_buffers; i++)
+        if (!v->buffer[i].queued && !v->buffer[i].lent)
+            glint_v4l2_queue(v, i);
+}
+
+/* Frames between the last one and this. A driver that does not count says the
+ * same number every time. */
+static int gap(struct glint_v4l2 *v, uint32_t sequence)
+{
+    const uint32_t missing = sequence - v->sequence - 1;
+    const bool counts = v->has_sequence && missing < UINT32_C(1) << 31;
+
+    v->sequence = sequence;
+    v->has_sequence = true;
+    return counts ? (int)missing : 0;
+}
+
+/* The newest whole frame there is. */
+static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
+                                           struct glint_v4l2_taken *newest,
+                                           struct glint_source_frame *frame)
+{
+    enum glint_v4l2_outcome outcome = GLINT_V4L2_NOTHING;
+    struct glint_v4l2_taken t;
+
+    newest->index = -1;
+    for (int k = 0; k <= v->n_buffers; k++) {
+        outcome = glint_v4l2_take(v, &t);
+        if (outcome != GLINT_V4L2_TAKEN)
+            break;
+        v->heard_us = glint_v4l2_now_us();
+        frame->n_dropped += gap(v, t.sequence);
+        if (!is_whole(v, &t)) {
+            frame->n_corrupt++;
+            v->n_useless++;
+            give_back(v, t.index);
+            continue;
+        }
+        if (newest->index >= 0) {
+            frame->n_late++;
+            give_back(v, newest->index);
+        }
+        *newest = t;
+    }
+    return newest->index >= 0            ? GLINT_V4L2_TAKEN
+           : v->n_useless >= USELESS     ? GLINT_V4L2_BROKEN
+           : outcome == GLINT_V4L2_TAKEN ? GLINT_V4L2_NOTHING
+                                         : outcome;
+}
+
+static void place(const struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
+                  struct glint_image *image)
+{
+    const struct glint_v4l2_format *f = &v->device.format;
+
+    image->format = f->pixels;
+    image->width = f->width;
+    image->height = f->height;
+    for (int p = 0; p < glint_image_planes(f->pixels); p++) {
+        const int k = f->plane[p].block;
+
+        image->plane[p] = (uint8_t *)v->buffer[t->index].mem[k] + t->start[k] +
+                          f->plane[p].offset;
+        image->stride_bytes[p] = f->plane[p].stride_bytes;
+    }
+}
+
+/* Of a JPEG the planes are the decoder's, and the buffer goes back at once. */
+static bool decode(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
+                   struct glint_image *image)
+{
+    struct glint_error unsaid;
+    const bool done =
+        glint_mjpeg_decode(
+            v->jpeg, (const uint8_t *)v->buffer[t->index].mem[0] + t->start[0],
+            t->bytes[0] - t->start[0], image, &unsaid) == GLINT_OK;
+
+    if (!done)
+        image->plane[0] = NULL;
+    give_back(v, t->index);
+    return done;
+}
+
+static void show(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
+                 struct glint_source_frame *frame)
+{
+    const struct glint_v4l2_format *f = &v->device.format;
+
+    if (f->is_jpeg && !decode(v, t, &frame->image)) {
+        frame->n_corrupt++;
+        v->n_useless++;
+        return;
+    }
+    if (!f->is_jpeg) {
+        place(v, t, &frame->image);
+        v->buffer[t->index].lent = true;
+        frame->buffer = &v->buffer[t->index];
+    }
+    frame->image.range = f->range;
+    frame->image.matrix = f->matrix;
+    frame->image.transfer = f->transfer;
+    frame->sequence = t->sequence;
+    frame->time_us = t->time_us;
+    frame->cached = f->is_jpeg || v->is_cached;
+    v->n_useless = 0;
+    v->broken_us = 0;
+}
+
+/* An HDMI input without a signal may be silent for as long as it likes. */
+static bool is_stalled(struct glint_v4l2 *v)
+{
+    const struct glint_v4l2_format *f = &v->device.format;
+    const int64_t frame_us =
+        f->fps_num ? INT64_C(1000000) * f->fps_den / f->fps_num : 0;
+
+    if (glint_v4l2_now_us() - v->heard_us < STALL_US + STALL_FRAMES * frame_us)
+        return false;
+    glint_v4l2_device_retimed(&v->device);
+    return v->device.has_signal;
+}
+
+static enum glint_status next(struct glint_source *source,
+                              struct glint_source_frame *frame,
+                              struct glint_error *error)
+{
+    struct glint_v4l2 *v = (struct glint_v4l2 *)source;
+    struct glint_v4l2_taken newest;
+
+    *frame = (struct glint_source_frame){.sequence = 0};
+    if (!v->streams)
+        return start_anew(v, "the stream is broken", error);
+    if (take_events(v)) {
+        v->broken_us = 0;
+        return start_anew(v, "the source changed", error);
+    }
+    queue_idle(v);
+    switch (take_newest(v, &newest, frame)) {
+    case GLINT_V4L2_TAKEN:
+        show(v, &newest, frame);
+        return GLINT_OK;
+    case GLINT_V4L2_NOTHING:
+        return is_stalled(v) ? start_anew(v, "no frames come", error)
+                             : GLINT_OK;
+    case GLINT_V4L2_GONE:
+        return gone(v, error);
+    case GLINT_V4L2_BROKEN:
+        break;
+    }
+    return start_anew(v,
+                      v->n_useless >= USELESS ? "all frames are damaged"
+                                              : "the stream is broken",
+                      error);
+}
+
+static void done(struct glint_source *source, struct glint_source_frame *frame)
+{
+    struct glint_v4l2 *v = (struct glint_v4l2 *)source;
+    struct glint_v4l2_buffer *b = frame->buffer;
+
+    if (b && b->lent) /* else the stream was begun anew meanwhile */
+        give_back(v, (int)(b - v->buffer));
+    frame->buffer = NULL;
+    frame->image.plane[0] = NULL;
+}
+
+static void close_camera(struct glint_source *source)
+{
+    struct glint_v4l2 *v = (struct glint_v4l2 *)source;
+
+    if (v->device.fd >= 0)
+        stop(v);
+    glint_mjpeg_close(v->jpeg);
+    v->jpeg = NULL;
+    glint_v4l2_device_close(&v->device);
+    v->source.fd = -1;
+}
+
+enum glint_status glint_v4l2_open(struct glint_v4l2 *v,
+                                  const struct glint_v4l2_config *wish,
+                                  enum glint_v4l2_io io, int n_buffers,
+                                  struct glint_error *error)
+{
+    enum glint_status status;
+
+    *v = (struct glint_v4l2){
+        .source = {.fd = -1, .next = next, .done = done, .close = close_camera},
+        .wish_io = io,
+        .wish_buffers = n_buffers};
+    status = glint_v4l2_device_open(&v->device, wish, error);
+    if (status != GLINT_OK)
+        return status;
+    status = start(v, error);
+    if (status != GLINT_OK)
+        close_camera(&v->source);
+    v->source.fd = v->device.fd;
+    return status;
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * linux/v4l2.h - a V4L2 camera as a source of live frames.
+ *
+ *     glint_v4l2_open(&camera, &config, &error);
+ *     camera.source.next(&camera.source, &frame, &error);    when readable
+ *     camera.source.done(&camera.source, &frame);
+ *     camera.source.close(&camera.source);
+ *
+ * The newest frame wins: what waited behind it goes back to the driver unseen,
+ * so latency never grows. Frames that the driver marks as damaged or that are
+ * shorter than a picture are counted and not shown. Buffers are mapped; else
+ * the application's (USERPTR), else read(2), as the device allows.
+ *
+ * A stream that breaks is begun anew, with whatever format the device has then:
+ * after failed requests, a fatal error of the driver, another source, or
+ * silence for STALL. When that does not help within a second, or the device is
+ * gone, next fails with GLINT_E_DEVICE.
+ */
+#ifndef GLINT_LINUX_V4L2_H
+#define GLINT_LINUX_V4L2_H
+
+#include "linux/v4l2_device.h"
+#include "source_sink.h"
+
+#define GLINT_V4L2_MAX_BUFFERS 32
+
+enum glint_v4l2_io {
+    GLINT_V4L2_AUTO,
+    GLINT_V4L2_MMAP,
+    GLINT_V4L2_USERPTR,
+    GLINT_V4L2_READ
+};
+
+struct glint_v4l2_buffer {
+    void *mem[3];
+    size_t bytes[3]; /* that are mapped or ours; as the driver says */
+    bool queued;     /* with the driver */
+    bool lent;       /* to the application */
+};
+
+struct glint_v4l2 {
+    struct glint_source source;
+    struct glint_v4l2_device device;
+
+    /* what came of it, for reports */
+    enum glint_v4l2_io io;
+    int n_buffers;
+    bool is_cached;      /* buffers are read at the speed of memory */
+    bool exports_dmabuf; /* they could be handed on without a copy */
+    int n_restarts;
+
+    /* Private. */
+    enum glint_v4l2_io wish_io;
+    int wish_buffers;
+    struct glint_v4l2_buffer buffer[GLINT_V4L2_MAX_BUFFERS];
+    struct glint_mjpeg *jpeg; /* of JPEG streams */
+    bool streams;
+    bool has_sequence;
+    uint32_t sequence; /* of the last frame taken */
+    uint32_t n_read;   /* frames by read(2), which have no sequence */
+    int64_t heard_us;  /* when the last frame came */
+    int64_t broken_us; /* since when it has been failing; 0: it is not */
+    int n_useless;     /* damaged frames in a row */
+};
+
+/* Opens the camera that WISH names and begins to stream, with 2 ..
+ * GLINT_V4L2_MAX_BUFFERS buffers. On failure CAMERA is closed. */
+enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
+                                  const struct glint_v4l2_config *wish,
+                                  enum glint_v4l2_io io, int n_buffers,
+                                  struct glint_error *error);
+
+#endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * linux/v4l2_buffers.h - the memory that frames come in, and its way to the
+ * driver and back. Part of linux/v4l2.h; failures leave errno set.
+ */
+#ifndef GLINT_LINUX_V4L2_BUFFERS_H
+#define GLINT_LINUX_V4L2_BUFFERS_H
+
+#include "linux/v4l2.h"
+
+/* What became of asking for a frame. */
+enum glint_v4l2_outcome {
+    GLINT_V4L2_TAKEN,
+    GLINT_V4L2_NOTHING,
+    GLINT_V4L2_BROKEN,
+    GLINT_V4L2_GONE
+};
+
+struct glint_v4l2_taken {
+    int index;
+    size_t bytes[3], start[3]; /* of each block, and where data begin */
+    uint32_t sequence;
+    int64_t time_us;
+    bool damaged;
+};
+
+/* Gets buffers of the kind that the device allows; -1: none. */
+int glint_v4l2_get_buffers(struct glint_v4l2 *v);
+void glint_v4l2_release_buffers(struct glint_v4l2 *v);
+
+/* Gives buffer INDEX to the driver. */
+int glint_v4l2_queue(struct glint_v4l2 *v, int index);
+
+/* Takes a filled one back. */
+enum glint_v4l2_outcome glint_v4l2_take(struct glint_v4l2 *v,
+                                        struct glint_v4l2_taken *t);
+
+/* Whether frames could be handed on without a copy; for reports alone. */
+bool glint_v4l2_can_export(const struct glint_v4l2 *v);
+
+/* Whether buffers are read as fast as other memory. No driver says, so it is
+ * tried. */
+bool glint_v4l2_is_cached(const struct glint_v4l2 *v);
+
+/* CLOCK_MONOTONIC, which drivers stamp frames with. */
+int64_t glint_v4l2_now_us(void);
+
+#endif

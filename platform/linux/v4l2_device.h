@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * linux/v4l2_device.h - a camera before it streams: what it is, what it offers,
+ * and the format that is agreed on.
+ *
+ * What was asked for is a wish: the device answers with what it can do, and
+ * that is believed, strides and sizes included.
+ */
+#ifndef GLINT_LINUX_V4L2_DEVICE_H
+#define GLINT_LINUX_V4L2_DEVICE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+
+#define GLINT_V4L2_PATH 64
+
+struct glint_v4l2_config {
+    const char *device;   /* "/dev/video0", or "0" for it */
+    int width, height;    /* 0: what the device is set to */
+    int fps_num, fps_den; /* frames a second; 0: likewise */
+    uint32_t fourcc;      /* 0: the cheapest that gives size and rate */
+    int input;            /* -1: likewise */
+    int range, matrix;    /* of the codes, over what the device says; -1: not */
+};
+
+/* What the device delivers. */
+struct glint_v4l2_format {
+    uint32_t fourcc;
+    bool is_jpeg;
+    enum glint_pixel_format pixels; /* not of JPEG */
+    int width, height;
+    int n_blocks; /* pieces of memory a frame lies in, 1 .. 3 */
+    size_t block_bytes[3];
+    struct {
+        int block; /* that it lies in, */
+        size_t offset;
+        ptrdiff_t stride_bytes;
+        size_t bytes; /* and how many, from its offset on, it has */
+    } plane[3];
+    enum glint_range range;
+    enum glint_matrix matrix;
+    enum glint_tone transfer;
+    int fps_num, fps_den; /* 0: the device does not say */
+};
+
+struct glint_v4l2_device {
+    char path[GLINT_V4L2_PATH];
+    int fd; /* -1: closed */
+    uint32_t caps;
+    uint32_t type; /* of its buffers */
+    bool is_dv;    /* the input has timings of its own: HDMI */
+    bool has_signal;
+    uint32_t input;
+    char card[33];
+    struct glint_v4l2_config wish;
+    struct glint_v4l2_format format;
+};
+
+/* Opens the camera and agrees on a format. On failure DEVICE is closed.
+ * GLINT_E_DEVICE: not there, not allowed, not a camera, in use.
+ * GLINT_E_UNSUPPORTED: it has no format that glint reads. */
+enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *device,
+                                         const struct glint_v4l2_config *wish,
+                                         struct glint_error *error);
+
+/* Agrees anew, after the source changed or the stream broke. */
+enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *device,
+                                              struct glint_error *error);
+
+/* Whether the device's own timings are others than before; notes whether there
+ * is a signal at all. */
+bool glint_v4l2_device_retimed(struct glint_v4l2_device *device);
+
+void glint_v4l2_device_close(struct glint_v4l2_device *device);
+
+/* "YUYV 640x480 at 30 fps, BT.601 limited, sRGB" */
+void glint_v4l2_format_text(const struct glint_v4l2_format *format,
+                            char text[96]);
+
+/* Prints the cameras there are, or what DEVICE offers: formats, sizes, rates.
+ * As JSON if JSON. */
+enum glint_status glint_v4l2_list_devices(FILE *out, bool json);
+enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
+                                          bool json, struct glint_error *error);
+
+/* For both: opens NAME and asks what it is. */
+enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *device,
+                                           const char *name,
+                                           struct glint_error *error);
+
+#endif
