@@ -38,8 +38,9 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
-        plain/pfm plain/y4m oiio/loader plain/picture linux/fourcc
-TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene \
+        plain/pfm plain/y4m oiio/loader plain/picture linux/request linux/v4l2_device linux/v4l2_buffers \
+        linux/v4l2_list linux/v4l2 linux/fourcc
+TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene look \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \

@@ -3,16 +3,14 @@
  * glint overlay: the flare of the lamps in a picture or video, on top of it.
  */
 #include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "lamps.h"
+#include "look.h"
 #include "plain/picture.h"
 #include "plain/y4m.h"
 #include "posix/error.h"
-#include "scene.h"
 
 static const char help[] =
     "glint overlay IN -o OUT [options]\n"
@@ -25,21 +23,7 @@ static const char help[] =
     "                    ffmpeg -i in.mp4 -f yuv4mpegpipe - |\n"
     "                      glint overlay - -o - | ffmpeg -i - out.mp4\n"
     "\n"
-    "  -o, --output OUT\n"
-    "  --lens LENS         table or baked model (default heliar-tronnier)\n"
-    "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"
-    "                      frame,x,y,power[,r,g,b[,size]] or JSON lines with\n"
-    "                      these keys; x, y in pixels from the top left, also\n"
-    "                      outside; frames count from 0, * is every frame; "
-    "size\n"
-    "                      is read and not used yet\n"
-    "  --light LIST        one by hand, as of glint render, for all frames;\n"
-    "                      repeatable; replaces auto, adds to a FILE\n"
-    "  --threshold H[,L]   luma code that makes a light, and the one down to\n"
-    "                      which it extends\n"
-    "  --headroom EV       stops by which clipped pixels really exceed white\n"
-    "                      (default 12); what --lights auto takes for power\n"
-    "  --layer WHAT        composite | flare: the flare alone on black\n"
+    "  -o, --output OUT\n" LOOK_HELP
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
@@ -48,47 +32,19 @@ static const char help[] =
 static const char help_end[] = SCENE_HELP COMMON_HELP;
 
 struct overlay {
-    struct scene scene;
-    const char *input, *output, *lens, *lights_file;
-    struct glint_lights_config lights;
-    int threshold[2];
-    double headroom_ev;
+    struct look look;
+    const char *input, *output;
     int start_number;
-    bool flare_only;
     int range, matrix; /* 0: auto */
 
-    struct lamp_list list;
-    struct lamp_finder finder;
-    int n_hand;
-    struct glint_lamp hand[SCENE_MAX_LAMPS];
-
-    struct glint_view view;
-    bool open; /* frame and finder are made, for view's size */
-    struct frame frame;
-    struct glint_lamp *lamp; /* room for those by hand and all found or read */
-
-    struct frame_report report; /* of the last frame */
-    struct frame_report worst;  /* its lights: of those with most too many, and
-                                   most beyond the model */
-    int n_frames, most_lights;
+    struct frame_report worst; /* its lights: of the frame with most too many,
+                                  and most beyond the model */
+    int most_lights;
     double find_ms, flare_ms, started;
-    size_t arena_bytes, peak_bytes;
+    size_t peak_bytes;
 };
 
 /* ------------------------------------------------------------------ options */
-
-static bool take_threshold(const char *text, int threshold[2])
-{
-    double v[2];
-    const int n = tool_numbers(text, v, 2);
-
-    if (n == 0 || v[0] < 1 || v[0] > 255 ||
-        (n == 2 && (v[1] < 1 || v[1] > v[0])))
-        return false;
-    threshold[0] = (int)v[0];
-    threshold[1] = n == 2 ? (int)v[1] : (int)ceil(v[0] * 0.8);
-    return true;
-}
 
 static bool take_word(const char *text, const char *const *words, int *value)
 {
@@ -100,48 +56,23 @@ static bool take(struct overlay *o, int option, const char *value)
 {
     static const char *const ranges[] = {"auto", "full", "limited", NULL};
     static const char *const matrices[] = {"auto", "601", "709", NULL};
-    static const char *const layers[] = {"composite", "flare", NULL};
-    int layer;
 
     switch (option) {
-    case 'l':
-        if (o->n_hand == SCENE_MAX_LAMPS ||
-            !scene_lamp(value, &o->hand[o->n_hand]))
-            return false;
-        o->scene.max_deg =
-            fmax(o->scene.max_deg, o->hand[o->n_hand++].theta_deg);
-        return true;
-    case 't':
-        return take_threshold(value, o->threshold);
-    case 'H':
-        return tool_number(value, &o->headroom_ev) && o->headroom_ev >= 0 &&
-               o->headroom_ev <= 40;
     case 'r':
         return take_word(value, ranges, &o->range);
     case 'x':
         return take_word(value, matrices, &o->matrix);
-    case 'n':
+    default: /* 'n' */
         return tool_integer(value, 0, 1000000000, &o->start_number);
-    default: /* 'y' */
-        if (!take_word(value, layers, &layer))
-            return false;
-        o->flare_only = layer == 1;
-        return true;
     }
 }
 
 static const struct option options[] = {
     {"output", required_argument, NULL, 'o'},
-    {"lens", required_argument, NULL, 'L'},
-    {"lights", required_argument, NULL, 'f'},
-    {"light", required_argument, NULL, 'l'},
-    {"threshold", required_argument, NULL, 't'},
-    {"headroom", required_argument, NULL, 'H'},
-    {"layer", required_argument, NULL, 'y'},
     {"range", required_argument, NULL, 'r'},
     {"matrix", required_argument, NULL, 'x'},
     {"start-number", required_argument, NULL, 'n'},
-    SCENE_OPTIONS,
+    LOOK_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
 static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
@@ -150,18 +81,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 
     while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
-        code = scene_option(tool, &o->scene, c, optarg);
+        code = look_option(tool, &o->look, c, optarg);
         if (code >= 0)
             return code;
         if (code == -1)
             continue;
         if (c == 'o')
             o->output = optarg;
-        else if (c == 'L')
-            o->lens = optarg;
-        else if (c == 'f')
-            o->lights_file = strcmp(optarg, "auto") == 0 ? NULL : optarg;
-        else if (strchr("ltHyrxnQ", c)) {
+        else if (strchr("rxn", c)) {
             if (!take(o, c, optarg))
                 return tool_usage(tool, "--%s: '%s' is not something it takes",
                                   options[index].name, optarg);
@@ -178,78 +105,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 
 /* -------------------------------------------------------------------- frame */
 
-/* Lamps to look for: a picture has many that hardly show. */
-static int finder_max(const struct overlay *o)
-{
-    const int asked = o->scene.max_lights ? o->scene.max_lights : 16;
-
-    return asked < LAMP_FINDER_MAX ? asked : LAMP_FINDER_MAX;
-}
-
-/* Makes what depends on the size of the pictures. */
-static int open_frame(struct tool *tool, struct overlay *o, int width,
-                      int height)
-{
-    enum glint_status status;
-    int code;
-
-    o->view = scene_view(&o->scene, width, height);
-    code = scene_frame(tool, &o->scene, o->view, &o->frame);
-    if (code != EXIT_OK)
-        return code;
-    o->open = true;
-    glint_lights_defaults(&o->lights, width, height);
-    if (o->threshold[0]) {
-        o->lights.threshold_high = o->threshold[0];
-        o->lights.threshold_low = o->threshold[1];
-    }
-    o->finder.headroom_ev = o->headroom_ev;
-    o->finder.max = finder_max(o);
-    status = lamp_finder_open(&o->finder, &o->lights);
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
-}
-
-static int lamps_of(struct overlay *o, const struct glint_image *image)
-{
-    const double focal = o->scene.setup.optics.focal_mm;
-    int n = o->n_hand;
-
-    memcpy(o->lamp, o->hand, (size_t)n * sizeof *o->lamp);
-    if (o->lights_file)
-        n += lamp_list_frame(&o->list, o->n_frames, &o->view, focal,
-                             o->lamp + n, o->list.n);
-    else if (n == 0)
-        n = lamp_finder_frame(&o->finder, image, &o->view, focal, o->lamp);
-    return n;
-}
-
-/* Black, in the codes of IMAGE. */
-static void blacken(const struct glint_image *image)
-{
-    for (int p = 0; p < glint_image_planes(image->format); p++) {
-        const int rows =
-            glint_image_plane_height(image->format, p, image->height);
-        const int bytes =
-            (int)glint_image_row_bytes(image->format, p, image->width);
-        const int code = p > 0 ? 128
-                         : image->range == GLINT_RANGE_LIMITED &&
-                                 image->format != GLINT_RGB24
-                             ? 16
-                             : 0;
-
-        for (int y = 0; y < rows; y++)
-            memset(image->plane[p] + y * image->stride_bytes[p], code,
-                   (size_t)bytes);
-    }
-}
-
 static void say_frame(const struct overlay *o)
 {
     char lights[64];
 
-    scene_lights_text(&o->report, lights);
-    fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n", o->n_frames - 1,
-            lights, o->report.ghosts, o->report.stats.primitives);
+    scene_lights_text(&o->look.report, lights);
+    fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
+            o->look.n_frames - 1, lights, o->look.report.ghosts,
+            o->look.report.stats.primitives);
 }
 
 static void note_worst(struct frame_report *worst,
@@ -271,31 +134,24 @@ static void note_worst(struct frame_report *worst,
 static int draw(struct tool *tool, struct overlay *o,
                 const struct glint_image *image)
 {
-    const double t0 = tool_seconds();
+    struct look *look = &o->look;
     enum glint_status status;
-    double t1;
-    int n, code = EXIT_OK;
+    int code = EXIT_OK;
 
-    if (!o->open)
-        code = open_frame(tool, o, image->width, image->height);
+    if (!look->sized)
+        code = look_size(tool, look, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    n = lamps_of(o, image);
-    t1 = tool_seconds();
-    if (o->flare_only)
-        blacken(image);
-    status = frame_draw(&o->frame, o->lamp, n, scene_scale(&o->scene), image,
-                        &o->report);
+    status = look_draw(look, image);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
-    o->find_ms += 1e3 * (t1 - t0);
-    o->flare_ms += 1e3 * (tool_seconds() - t1);
-    o->n_frames++;
-    o->most_lights = n > o->most_lights ? n : o->most_lights;
-    o->arena_bytes = o->report.arena_bytes;
-    if (o->report.peak_bytes > o->peak_bytes)
-        o->peak_bytes = o->report.peak_bytes;
-    note_worst(&o->worst, &o->report);
+    o->find_ms += look->find_ms;
+    o->flare_ms += look->flare_ms;
+    if (look->n_lamps > o->most_lights)
+        o->most_lights = look->n_lamps;
+    if (look->report.peak_bytes > o->peak_bytes)
+        o->peak_bytes = look->report.peak_bytes;
+    note_worst(&o->worst, &look->report);
     if (tool->verbose && !tool->quiet)
         say_frame(o);
     return EXIT_OK;
@@ -309,8 +165,8 @@ static void show_frame(const struct tool *tool, const struct overlay *o)
 
     if (tool->quiet || tool->verbose || !isatty(STDERR_FILENO))
         return;
-    fprintf(stderr, "\rframe %d  %.1f fps  %d lights \033[K", o->n_frames,
-            o->n_frames / spent, o->report.lights);
+    fprintf(stderr, "\rframe %d  %.1f fps  %d lights \033[K", o->look.n_frames,
+            o->look.n_frames / spent, o->look.report.lights);
     fflush(stderr);
 }
 
@@ -386,10 +242,11 @@ static int run_picture(struct tool *tool, struct overlay *o, const char *from,
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (o->open &&
-        (image.width != o->view.width || image.height != o->view.height)) {
+    if (o->look.sized && (image.width != o->look.view.width ||
+                          image.height != o->look.view.height)) {
         fprintf(stderr, "glint overlay: %s: is %dx%d, those before it %dx%d\n",
-                from, image.width, image.height, o->view.width, o->view.height);
+                from, image.width, image.height, o->look.view.width,
+                o->look.view.height);
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
@@ -445,7 +302,7 @@ static int run_sequence(struct tool *tool, struct overlay *o)
             return code;
         show_frame(tool, o);
     }
-    if (o->n_frames == 0) {
+    if (o->look.n_frames == 0) {
         fprintf(stderr, "glint overlay: %s: no such frame\n", from);
         return EXIT_INPUT;
     }
@@ -457,7 +314,7 @@ static int run_sequence(struct tool *tool, struct overlay *o)
 static void print_result(const struct tool *tool, const struct overlay *o)
 {
     const double seconds = tool_seconds() - o->started;
-    const int n = o->n_frames ? o->n_frames : 1;
+    const int n = o->look.n_frames ? o->look.n_frames : 1;
     const bool piped = strcmp(o->output, "-") == 0;
 
     if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
@@ -466,24 +323,25 @@ static void print_result(const struct tool *tool, const struct overlay *o)
     if (tool->json && !piped) {
         printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
                "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
-               o->n_frames, 1e3 * seconds, o->n_frames / seconds,
+               o->look.n_frames, 1e3 * seconds, o->look.n_frames / seconds,
                o->find_ms / n, o->flare_ms / n, o->most_lights);
-        scene_json(&o->report);
+        scene_json(&o->look.report);
         printf("}\n");
     } else if (!tool->quiet) {
         fprintf(stderr,
                 "%s: %d frame%s of %dx%d, %.1f fps (find %.1f ms, flare %.1f "
                 "ms), at most %d lights, %d ghosts; flare memory %zu bytes, "
                 "peak %zu\n",
-                o->output, o->n_frames, o->n_frames == 1 ? "" : "s",
-                o->view.width, o->view.height, o->n_frames / seconds,
-                o->find_ms / n, o->flare_ms / n, o->most_lights,
-                o->report.ghosts, o->arena_bytes, o->peak_bytes);
-        if (o->report.stats.dropped_bundles > 0)
+                o->output, o->look.n_frames, o->look.n_frames == 1 ? "" : "s",
+                o->look.view.width, o->look.view.height,
+                o->look.n_frames / seconds, o->find_ms / n, o->flare_ms / n,
+                o->most_lights, o->look.report.ghosts,
+                o->look.report.arena_bytes, o->peak_bytes);
+        if (o->look.report.stats.dropped_bundles > 0)
             fprintf(stderr,
                     "%s: %d bundles were left out: fewer lights or a "
                     "smaller --grid would fit\n",
-                    o->output, o->report.stats.dropped_bundles);
+                    o->output, o->look.report.stats.dropped_bundles);
         if (o->most_lights == 0)
             fprintf(stderr,
                     "%s: no light was found, so nothing was drawn; "
@@ -516,22 +374,12 @@ static int check_output(struct tool *tool, struct overlay *o)
 
 static int run(struct tool *tool, struct overlay *o)
 {
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
     int code = check_output(tool, o);
 
     if (code == EXIT_OK)
-        code = scene_open(tool, &o->scene, o->lens);
+        code = look_open(tool, &o->look);
     if (code != EXIT_OK)
         return code;
-    if (o->lights_file)
-        status = lamp_list_read(&o->list, o->lights_file, &error);
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    o->lamp = malloc(((size_t)o->n_hand + (size_t)o->list.n + LAMP_FINDER_MAX) *
-                     sizeof *o->lamp);
-    if (!o->lamp)
-        return tool_fail(tool, GLINT_E_MEMORY, NULL);
     o->started = tool_seconds();
     if (is_y4m(o->input))
         code = run_video(tool, o);
@@ -552,9 +400,7 @@ int cmd_overlay(int argc, char **argv)
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    scene_defaults(&o->scene);
-    o->lens = "heliar-tronnier";
-    o->headroom_ev = 12;
+    look_defaults(&o->look);
     o->start_number = -1;
     code = parse(&tool, argc, argv, o);
     if (code < 0) {
@@ -563,13 +409,7 @@ int cmd_overlay(int argc, char **argv)
             code = run(&tool, o);
         tool_finish(&tool);
     }
-    lamp_list_free(&o->list);
-    free(o->lamp);
-    if (o->open) {
-        lamp_finder_close(&o->finder);
-        frame_finish(&o->frame);
-    }
-    scene_close(&o->scene);
+    look_close(&o->look);
     free(o);
     return code;
 }

@@ -123,20 +123,28 @@ static bool is_beyond(const struct frame *f, const struct glint_beam *b)
     return f->lens && b->sine_q30 > f->lens->header->sine_hi_q30;
 }
 
+static enum glint_status hold_beams(struct frame *f, int n)
+{
+    struct glint_beam *beam;
+
+    if (n <= f->max_beams)
+        return GLINT_OK;
+    beam = realloc(f->beam, (size_t)n * sizeof *f->beam);
+    if (!beam)
+        return GLINT_E_MEMORY;
+    f->beam = beam;
+    f->max_beams = n;
+    return GLINT_OK;
+}
+
 /* Makes F's beams of LAMPS, those merged that are too many. */
 static enum glint_status
 set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
 {
     int within = 0;
 
-    if (n > f->max_beams) {
-        struct glint_beam *beam = realloc(f->beam, (size_t)n * sizeof *f->beam);
-
-        if (!beam)
-            return GLINT_E_MEMORY;
-        f->beam = beam;
-        f->max_beams = n;
-    }
+    if (hold_beams(f, n) != GLINT_OK)
+        return GLINT_E_MEMORY;
     for (int i = 0; i < n; i++) {
         f->beam[within] = beam_of(&lamps[i], scale);
         within += !is_beyond(f, &f->beam[within]);
@@ -178,6 +186,11 @@ static int larger(int a, int b)
     return a > b ? a : b;
 }
 
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
 /* A new block for the capacities there are. */
 static enum glint_status regrow(struct frame *f)
 {
@@ -194,17 +207,24 @@ static enum glint_status regrow(struct frame *f)
     return glint_flare_init(&f->flare, &f->cfg, mem, bytes);
 }
 
-/* Plans, with room for all bundles there can be. */
-static enum glint_status plan(struct frame *f, const struct glint_rays *rays)
+/* Bundles that N_BEAMS may need, as many as a frame may take. */
+static int bundles_of(const struct frame *f, int n_beams)
 {
     const int most = f->cfg.raster == GLINT_RASTER_CELLS || f->mask
                          ? MAX_BUNDLES_CELLS
                          : MAX_BUNDLES;
     const double need =
-        (double)f->n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
-    const int bundles = need < most ? (int)need : most;
+        (double)n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
 
-    if (!f->mem || bundles > f->cfg.max_bundles) {
+    return need < most ? (int)need : most;
+}
+
+/* Plans, with room for all bundles there can be. */
+static enum glint_status plan(struct frame *f, const struct glint_rays *rays)
+{
+    const int bundles = bundles_of(f, f->n_beams);
+
+    if (!f->reserved && (!f->mem || bundles > f->cfg.max_bundles)) {
         enum glint_status status;
 
         f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
@@ -221,6 +241,8 @@ static bool is_served(struct frame *f, const struct glint_flare_stats *s)
 {
     struct glint_flare_config *c = &f->cfg;
 
+    if (f->reserved)
+        return true;
     if (s->need_vertices <= c->max_vertices &&
         s->need_primitives <= c->max_primitives &&
         s->need_refs <= c->max_refs && s->need_tile_refs <= c->max_tile_refs)
@@ -237,9 +259,37 @@ static bool is_served(struct frame *f, const struct glint_flare_stats *s)
     return false;
 }
 
-static int smaller(int a, int b)
+/* References for each primitive, and vertices by cells: rather too many. */
+static size_t bytes_for(struct frame *f, int primitives)
 {
-    return a < b ? a : b;
+    const bool by_cells = f->cfg.raster == GLINT_RASTER_CELLS || f->mask;
+
+    f->cfg.max_primitives = primitives;
+    f->cfg.max_refs = 2 * primitives;
+    f->cfg.max_vertices = by_cells ? 2 * primitives : 0;
+    f->cfg.max_tile_refs = f->cfg.coarse_log2 ? primitives : 0;
+    return glint_flare_bytes(&f->cfg);
+}
+
+enum glint_status frame_reserve(struct frame *f, size_t bytes, int n_lamps)
+{
+    int most = 0;
+
+    f->cfg.max_bundles = bundles_of(f, smaller(f->max_lights, n_lamps));
+    for (int step = 1 << 24; step > 0; step /= 2) {
+        const size_t need = bytes_for(f, most + step);
+
+        if (need != 0 && need <= bytes)
+            most += step;
+    }
+    if (most == 0 || bytes_for(f, most) > bytes)
+        return GLINT_E_MEMORY;
+    if (!f->seen)
+        f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
+    if (!f->seen || hold_beams(f, n_lamps) != GLINT_OK)
+        return GLINT_E_MEMORY;
+    f->reserved = true;
+    return regrow(f);
 }
 
 /* What the frame took, by the same measure that sized the block. */

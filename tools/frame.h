@@ -34,6 +34,7 @@ struct frame {
     bool narrow;    /* rays in 16-bit lanes */
     int only_ghost; /* -1: all */
     int16_t *mask;  /* of the stop, unless NULL */
+    bool reserved;  /* memory is what it is */
 
     struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
     struct glint_beam *beam;
@@ -67,6 +68,11 @@ struct frame_report {
 
 void frame_init(struct frame *frame, const struct glint_setup *setup,
                 struct glint_view view, struct glint_workers *workers);
+
+/* Takes BYTES for all frames to come, of up to N_LAMPS lamps each: nothing is
+ * allocated while drawing, and what does not fit is left out and counted.
+ * GLINT_E_MEMORY: there are not so many, or they do not hold one light. */
+enum glint_status frame_reserve(struct frame *frame, size_t bytes, int n_lamps);
 
 /* Reads the stop from a mask of NODES^2 distances rather than its sides. */
 enum glint_status frame_use_mask(struct frame *frame, int nodes);

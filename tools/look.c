@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+#include "look.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ------------------------------------------------------------------ options */
+
+void look_defaults(struct look *look)
+{
+    *look = (struct look){.lens = "heliar-tronnier", .headroom_ev = 12};
+    scene_defaults(&look->scene);
+}
+
+static bool take_threshold(const char *text, int threshold[2])
+{
+    double v[2];
+    const int n = tool_numbers(text, v, 2);
+
+    if (n == 0 || v[0] < 1 || v[0] > 255 ||
+        (n == 2 && (v[1] < 1 || v[1] > v[0])))
+        return false;
+    threshold[0] = (int)v[0];
+    threshold[1] = n == 2 ? (int)v[1] : (int)ceil(v[0] * 0.8);
+    return true;
+}
+
+static bool take_light(struct look *look, const char *text)
+{
+    struct glint_lamp *lamp = &look->hand[look->n_hand];
+
+    if (look->n_hand == SCENE_MAX_LAMPS || !scene_lamp(text, lamp))
+        return false;
+    look->scene.max_deg = fmax(look->scene.max_deg, lamp->theta_deg);
+    look->n_hand++;
+    return true;
+}
+
+static bool take(struct look *look, int option, const char *value)
+{
+    static const char *const layers[] = {"composite", "flare", NULL};
+    int layer;
+
+    switch (option) {
+    case OPT_LENS:
+        look->lens = value;
+        return true;
+    case OPT_LIGHTS:
+        look->lights_file = strcmp(value, "auto") == 0 ? NULL : value;
+        return true;
+    case OPT_LIGHT:
+        return take_light(look, value);
+    case OPT_THRESHOLD:
+        return take_threshold(value, look->threshold);
+    case OPT_HEADROOM:
+        return tool_number(value, &look->headroom_ev) &&
+               look->headroom_ev >= 0 && look->headroom_ev <= 40;
+    default:
+        layer = tool_word(value, layers);
+        look->flare_only = layer == 1;
+        return layer >= 0;
+    }
+}
+
+int look_option(const struct tool *tool, struct look *look, int option,
+                const char *value)
+{
+    static const struct option names[] = {LOOK_OPTIONS};
+    const int code = scene_option(tool, &look->scene, option, value);
+
+    if (code != -2 || option < OPT_LENS || option >= OPT_LOOK_LAST)
+        return code;
+    if (take(look, option, value))
+        return -1;
+    return tool_usage(tool, "--%s: '%s' is not something it takes",
+                      names[option - OPT_LENS].name, value);
+}
+
+/* ------------------------------------------------------------------- making */
+
+int look_open(const struct tool *tool, struct look *look)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    const int code = scene_open(tool, &look->scene, look->lens);
+
+    if (code != EXIT_OK)
+        return code;
+    if (look->lights_file)
+        status = lamp_list_read(&look->list, look->lights_file, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    look->lamp =
+        malloc(((size_t)look->n_hand + (size_t)look->list.n + LAMP_FINDER_MAX) *
+               sizeof *look->lamp);
+    return look->lamp ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+}
+
+/* Lamps to look for: a picture has many that hardly show. */
+static int finder_max(const struct look *look)
+{
+    const int asked = look->scene.max_lights ? look->scene.max_lights : 16;
+
+    return asked < LAMP_FINDER_MAX ? asked : LAMP_FINDER_MAX;
+}
+
+static void unsize(struct look *look)
+{
+    if (look->sized) {
+        lamp_finder_close(&look->finder);
+        frame_finish(&look->frame);
+    }
+    look->sized = false;
+}
+
+static enum glint_status open_finder(struct look *look, int width, int height)
+{
+    struct glint_lights_config cfg;
+
+    glint_lights_defaults(&cfg, width, height);
+    if (look->threshold[0]) {
+        cfg.threshold_high = look->threshold[0];
+        cfg.threshold_low = look->threshold[1];
+    }
+    look->finder.headroom_ev = look->headroom_ev;
+    look->finder.max = finder_max(look);
+    return lamp_finder_open(&look->finder, &cfg);
+}
+
+int look_size(const struct tool *tool, struct look *look, int width, int height)
+{
+    enum glint_status status;
+    int code;
+
+    unsize(look);
+    look->view = scene_view(&look->scene, width, height);
+    code = scene_frame(tool, &look->scene, look->view, &look->frame);
+    if (code != EXIT_OK)
+        return code;
+    look->sized = true;
+    status = open_finder(look, width, height);
+    if (status == GLINT_OK && look->reserve_bytes)
+        status = frame_reserve(&look->frame, look->reserve_bytes,
+                               look->n_hand + look->list.n + look->finder.max);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+}
+
+void look_close(struct look *look)
+{
+    unsize(look);
+    lamp_list_free(&look->list);
+    free(look->lamp);
+    look->lamp = NULL;
+    scene_close(&look->scene);
+}
+
+/* ------------------------------------------------------------------ drawing */
+
+static int lamps_of(struct look *look, const struct glint_image *image)
+{
+    const double focal = look->scene.setup.optics.focal_mm;
+    int n = look->n_hand;
+
+    memcpy(look->lamp, look->hand, (size_t)n * sizeof *look->lamp);
+    if (look->lights_file)
+        n += lamp_list_frame(&look->list, look->n_frames, &look->view, focal,
+                             look->lamp + n, look->list.n);
+    else if (n == 0)
+        n = lamp_finder_frame(&look->finder, image, &look->view, focal,
+                              look->lamp);
+    return n;
+}
+
+/* Black, in the codes of IMAGE. */
+static void blacken(const struct glint_image *image)
+{
+    for (int p = 0; p < glint_image_planes(image->format); p++) {
+        const int rows =
+            glint_image_plane_height(image->format, p, image->height);
+        const int bytes =
+            (int)glint_image_row_bytes(image->format, p, image->width);
+        const int code = p > 0 ? 128
+                         : image->range == GLINT_RANGE_LIMITED &&
+                                 image->format != GLINT_RGB24
+                             ? 16
+                             : 0;
+
+        for (int y = 0; y < rows; y++)
+            memset(image->plane[p] + y * image->stride_bytes[p], code,
+                   (size_t)bytes);
+    }
+}
+
+enum glint_status look_draw(struct look *look, const struct glint_image *image)
+{
+    const double start = tool_seconds();
+    enum glint_status status;
+    double found;
+
+    look->n_lamps = lamps_of(look, image);
+    found = tool_seconds();
+    if (look->flare_only)
+        blacken(image);
+    status = frame_draw(&look->frame, look->lamp, look->n_lamps,
+                        scene_scale(&look->scene), image, &look->report);
+    look->find_ms = 1e3 * (found - start);
+    look->flare_ms = 1e3 * (tool_seconds() - found);
+    look->n_frames++;
+    return status;
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What overlay and live put on a picture: the flare of a lens, for lamps that
+ * are found in it, listed, or given by hand.
+ *
+ *     look_defaults(&look);               then look_option() for each
+ *     look_open(&tool, &look);            lens and lists; no picture yet
+ *     look_size(&tool, &look, w, h);      once, and when the size changes
+ *     look_draw(&look, &image, us);       each frame
+ *     look_close(&look);
+ */
+#ifndef GLINT_TOOLS_LOOK_H
+#define GLINT_TOOLS_LOOK_H
+
+#include "lamps.h"
+#include "scene.h"
+
+struct look {
+    struct scene scene;
+    const char *lens, *lights_file; /* NULL: lamps are found */
+    int threshold[2];               /* 0: the defaults */
+    double headroom_ev;
+    bool flare_only;
+    size_t reserve_bytes; /* unless 0: all the memory that frames will take */
+    int n_hand;
+    struct glint_lamp hand[SCENE_MAX_LAMPS];
+
+    /* Made by open and size. */
+    struct lamp_list list;
+    struct lamp_finder finder;
+    struct glint_lamp *lamp; /* room for those by hand and all found or read */
+    struct glint_view view;
+    struct frame frame;
+    bool sized;
+
+    /* Of the last frame. */
+    int n_frames, n_lamps;
+    double find_ms, flare_ms;
+    struct frame_report report;
+};
+
+enum look_option_code {
+    OPT_LENS = OPT_LAST,
+    OPT_LIGHTS,
+    OPT_LIGHT,
+    OPT_THRESHOLD,
+    OPT_HEADROOM,
+    OPT_LAYER,
+    OPT_LOOK_LAST
+};
+
+#define LOOK_OPTIONS                                           \
+    {"lens", required_argument, NULL, OPT_LENS},               \
+        {"lights", required_argument, NULL, OPT_LIGHTS},       \
+        {"light", required_argument, NULL, OPT_LIGHT},         \
+        {"threshold", required_argument, NULL, OPT_THRESHOLD}, \
+        {"headroom", required_argument, NULL, OPT_HEADROOM},   \
+        {"layer", required_argument, NULL, OPT_LAYER}, SCENE_OPTIONS
+
+#define LOOK_HELP                                                              \
+    "  --lens LENS         table or baked model (default heliar-tronnier)\n"   \
+    "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"   \
+    "                      frame,x,y,power[,r,g,b[,size]] or JSON lines "      \
+    "with\n"                                                                   \
+    "                      these keys; x, y in pixels from the top left, "     \
+    "also\n"                                                                   \
+    "                      outside; frames count from 0, * is every frame; "   \
+    "size\n"                                                                   \
+    "                      is read and not used yet\n"                         \
+    "  --light LIST        one by hand, as of glint render, for all frames;\n" \
+    "                      repeatable; replaces auto, adds to a FILE\n"        \
+    "  --threshold H[,L]   luma code that makes a light, and the one down "    \
+    "to\n"                                                                     \
+    "                      which it extends\n"                                 \
+    "  --headroom EV       stops by which clipped pixels really exceed "       \
+    "white\n"                                                                  \
+    "                      (default 12); what --lights auto takes for power\n" \
+    "  --layer WHAT        composite | flare: the flare alone on black\n"
+
+void look_defaults(struct look *look);
+
+/* Takes an option of LOOK_OPTIONS. -1: taken; -2: not one of these; else an
+ * exit code, said. VALUE is kept. */
+int look_option(const struct tool *tool, struct look *look, int option,
+                const char *value);
+
+/* Reads the lens, baking it if need be, and the list. Returns an exit code. */
+int look_open(const struct tool *tool, struct look *look);
+
+/* Makes ready for pictures of WIDTH x HEIGHT. Returns an exit code. */
+int look_size(const struct tool *tool, struct look *look, int width,
+              int height);
+
+/* Adds the flare to IMAGE, of that size. GLINT_E_MEMORY. */
+enum glint_status look_draw(struct look *look, const struct glint_image *image);
+
+void look_close(struct look *look);
+
+#endif
