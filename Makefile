@@ -25,6 +25,15 @@ ARCH := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
 OUT  := build/$(ARCH)-$(notdir $(CC))-$(CONFIG)
 export DEPS OUT
 
+# Libraries that glint can do without:  WITH_JPEG=yes|no  says which are used,
+# else it is whether the compiler finds the header.
+has = $(shell printf '\043include <stdio.h>\n\043include <%s>\n' $(1) | $(CC) \
+        $(CPPFLAGS) $(2) -fsyntax-only -x c - 2>/dev/null && echo yes || echo no)
+JPEG_LIBS ?= -ljpeg
+ifndef WITH_JPEG
+WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS))
+endif
+
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/image base/workers kernels/sets \
         kernels/kernels kernels/horner_c kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
@@ -38,8 +47,9 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
-        plain/pfm plain/y4m oiio/loader plain/picture linux/request linux/v4l2_device linux/v4l2_buffers \
-        linux/v4l2_list linux/v4l2 linux/fourcc
+        plain/pfm plain/y4m oiio/loader plain/picture \
+        $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
+        linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2
 TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene look \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
@@ -47,6 +57,12 @@ UNIT := arena kernels model prescription optics trace pupil published quantise b
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
         measure lamps fourcc
 FUZZ := lens model y4m pnm
+ifeq ($(WITH_JPEG),yes)
+UNIT += mjpeg
+FUZZ += mjpeg
+else
+UNIT += mjpeg_absent
+endif
 
 CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \
         kernels/composite_sse41 kernels/composite_avx2
@@ -60,7 +76,7 @@ CPPFLAGS := -Iinclude -D_FILE_OFFSET_BITS=64
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
         -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef $(WERROR)
 CFLAGS := -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
-LDLIBS := -lm -lpthread -ldl
+LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) -lm -lpthread -ldl
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
 $(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
@@ -94,9 +110,13 @@ else ifneq ($(CONFIG),release)
 $(error CONFIG is release, asan, tsan or qcheck)
 endif
 
+$(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
+$(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
+
 $(OUT)/%.o: %.c
 	@mkdir -p $(@D)
 	$(say) CC $<
+	$(if $(NOTE),@echo ' $(NOTE)')
 	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) -c $< -o $@
 
 $(OUT)/libglint.a: $(core_o)
@@ -105,7 +125,11 @@ $(OUT)/libglint-platform.a: $(platform_o)
 $(OUT)/libglint-tools.a: $(tools_o)
 $(OUT)/lib%.a:
 	$(say) AR $@
-	$(Q)rm -f $@; $(AR) rcs $@ $^
+	$(Q)rm -f $@; $(AR) rcs $@ $(filter %.o,$^)
+# what is built in: another choice makes other archives
+$(OUT)/libglint-platform.a: $(OUT)/parts
+$(OUT)/parts: always
+	@mkdir -p $(@D); echo $(PLATFORM) | cmp -s - $@ || echo $(PLATFORM) >$@
 libs := $(OUT)/libglint-tools.a $(OUT)/libglint-platform.a \
         $(OUT)/libglint-bake.a $(OUT)/libglint.a
 
@@ -174,7 +198,7 @@ $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
 
 check:
 	@tools/deps "unit tests, lint" gcc libc6-dev binutils \
-	        libcmocka-dev clang clang-format
+	        libcmocka-dev clang clang-format libjpeg62-turbo-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
@@ -204,7 +228,7 @@ fuzz:
 	        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L -ffp-contract=off \
 	        tests/fuzz/fuzz_$(TARGET).c $(BAKE:%=src/%.c) $(CORE:%=src/%.c) \
 	        $(CORE_$(ARCH):%=src/%.c) $(FUZZ_SETS_$(ARCH)) \
-	        $(PLATFORM:%=platform/%.c) -lm -lpthread -ldl \
+	        $(PLATFORM:%=platform/%.c) $(JPEG_CPPFLAGS) $(LDLIBS) \
 	        -o build/fuzz/fuzz_$(TARGET)
 	build/fuzz/fuzz_$(TARGET) -max_total_time=$(SECONDS) -timeout=10 \
 	        build/fuzz/$(TARGET) tests/fuzz/corpus/$(TARGET)

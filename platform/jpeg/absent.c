@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * In place of mjpeg.c where there is no libjpeg to build with.
+ */
+#include "jpeg/mjpeg.h"
+
+#include "posix/error.h"
+
+bool glint_mjpeg_available(void)
+{
+    return false;
+}
+
+enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
+                                   const char *name, int max_width,
+                                   int max_height, struct glint_error *error)
+{
+    (void)max_width, (void)max_height;
+    *decoder = NULL;
+    return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
+                              "MJPEG: glint was built without libjpeg");
+}
+
+/* Nobody has a decoder to call this with. */
+enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
+                                     const void *data, size_t bytes,
+                                     struct glint_image *image,
+                                     struct glint_error *error)
+{
+    (void)decoder, (void)data, (void)bytes, (void)image, (void)error;
+    return GLINT_E_UNSUPPORTED;
+}
+
+void glint_mjpeg_close(struct glint_mjpeg *decoder)
+{
+    (void)decoder;
+}

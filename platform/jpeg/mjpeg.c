@@ -1,0 +1,358 @@
+/* SPDX-License-Identifier: MIT */
+#include "jpeg/mjpeg.h"
+
+#include <setjmp.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include "posix/error.h"
+
+#define ALIGN     64 /* bytes, of planes and their rows */
+#define MAX_ROWS  32 /* of a plane in one row of MCUs: 4 blocks of 8 */
+#define N_PLANES  3
+#define MARKER    0xff
+#define SOI       0xd8
+#define EOI       0xd9
+#define SOS       0xda
+#define RST_FIRST 0xd0
+#define TEM       0x01
+
+struct glint_mjpeg {
+    const char *name;
+    int max_width, max_height;
+    ptrdiff_t stride_bytes; /* of all planes, for the widest frame */
+    size_t plane_bytes;
+    uint8_t *mem; /* N_PLANES of them */
+
+    /* Of the frame at hand. */
+    struct jpeg_decompress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    struct jpeg_source_mgr source;
+    bool in_scan; /* the header is over */
+    bool ended;   /* libjpeg asked for more than there is */
+    jmp_buf escape;
+    enum glint_status status; /* it escaped with */
+    struct glint_error *error;
+};
+
+bool glint_mjpeg_available(void)
+{
+    return true;
+}
+
+/* ------------------------------------------------------------------- memory */
+
+enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
+                                   const char *name, int max_width,
+                                   int max_height, struct glint_error *error)
+{
+    struct glint_mjpeg *d;
+    void *mem;
+
+    *decoder = NULL;
+    if (max_width < 1 || max_width > GLINT_MAX_SIDE || max_height < 1 ||
+        max_height > GLINT_MAX_SIDE)
+        return glint_error_report(error, GLINT_E_ARGUMENT, name,
+                                  "MJPEG of %d x %d pixels", max_width,
+                                  max_height);
+    d = calloc(1, sizeof *d);
+    if (!d)
+        return glint_error_report(error, GLINT_E_MEMORY, name,
+                                  "no memory for MJPEG");
+    d->name = name;
+    d->max_width = max_width;
+    d->max_height = max_height;
+    /* libjpeg writes whole blocks and is handed whole rows of MCUs */
+    d->stride_bytes = (max_width + ALIGN - 1) / ALIGN * ALIGN;
+    d->plane_bytes = (size_t)d->stride_bytes * (size_t)(max_height + MAX_ROWS);
+    if (posix_memalign(&mem, ALIGN, N_PLANES * d->plane_bytes)) {
+        free(d);
+        return glint_error_report(error, GLINT_E_MEMORY, name,
+                                  "no memory for MJPEG");
+    }
+    d->mem = mem;
+    *decoder = d;
+    return GLINT_OK;
+}
+
+void glint_mjpeg_close(struct glint_mjpeg *decoder)
+{
+    if (decoder)
+        free(decoder->mem);
+    free(decoder);
+}
+
+/* ------------------------------------------------- what libjpeg complains of */
+
+/* Leaves libjpeg; ERROR has been filled. */
+static void leave(struct glint_mjpeg *d, enum glint_status status)
+{
+    d->status = status;
+    longjmp(d->escape, 1);
+}
+
+static void leave_with_message(j_common_ptr jpeg, enum glint_status status)
+{
+    struct glint_mjpeg *const d = jpeg->client_data;
+    char text[JMSG_LENGTH_MAX];
+
+    jpeg->err->format_message(jpeg, text);
+    leave(d, glint_error_report(d->error, status, d->name, "MJPEG: %s", text));
+}
+
+static void on_error(j_common_ptr jpeg)
+{
+    switch (jpeg->err->msg_code) {
+    case JERR_OUT_OF_MEMORY:
+        leave_with_message(jpeg, GLINT_E_MEMORY);
+        return;
+    case JERR_BAD_PRECISION:
+    case JERR_SOF_UNSUPPORTED:
+        leave_with_message(jpeg, GLINT_E_UNSUPPORTED);
+        return;
+    }
+    leave_with_message(jpeg, GLINT_E_FORMAT);
+}
+
+/* LEVEL -1 is a warning, others are chatter. After most warnings the samples
+ * are still right; these four say that they are not. */
+static void on_message(j_common_ptr jpeg, int level)
+{
+    struct glint_mjpeg *const d = jpeg->client_data;
+
+    if (level >= 0)
+        return;
+    switch (jpeg->err->msg_code) {
+    case JWRN_HIT_MARKER:
+        if (d->ended)
+            leave(d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
+                                        "MJPEG: frame ends in row %d of %d",
+                                        (int)d->jpeg.output_scanline,
+                                        (int)d->jpeg.output_height));
+        leave_with_message(jpeg, GLINT_E_FORMAT);
+        return;
+    case JWRN_HUFF_BAD_CODE:
+    case JWRN_MUST_RESYNC:
+        leave_with_message(jpeg, GLINT_E_FORMAT);
+    }
+}
+
+static void on_output(j_common_ptr jpeg)
+{
+    (void)jpeg;
+}
+
+/* ------------------------------------------------------- what libjpeg reads */
+
+static void on_source(j_decompress_ptr jpeg)
+{
+    (void)jpeg;
+}
+
+/* Inside the scan an end of image is made up, since libjpeg reads ahead of what
+ * it needs: samples may all be there without one. */
+static boolean on_end(j_decompress_ptr jpeg)
+{
+    static const JOCTET end[] = {MARKER, EOI};
+    struct glint_mjpeg *const d = jpeg->client_data;
+
+    if (!d->in_scan)
+        leave(d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
+                                    "MJPEG: frame ends in its header"));
+    d->ended = true;
+    d->source.next_input_byte = end;
+    d->source.bytes_in_buffer = sizeof end;
+    return TRUE;
+}
+
+static void on_skip(j_decompress_ptr jpeg, long bytes)
+{
+    struct glint_mjpeg *const d = jpeg->client_data;
+    const size_t wanted = bytes > 0 ? (size_t)bytes : 0;
+    const size_t n =
+        wanted < d->source.bytes_in_buffer ? wanted : d->source.bytes_in_buffer;
+
+    d->source.next_input_byte += n;
+    d->source.bytes_in_buffer -= n;
+}
+
+/* Markers that stand alone, without a length. */
+static bool is_bare(int marker)
+{
+    return marker == TEM || (marker >= RST_FIRST && marker <= EOI);
+}
+
+/* Where the last start of image of the header is, which may have several:
+ * libjpeg takes one only. */
+static size_t find_start(const uint8_t *data, size_t bytes)
+{
+    size_t start = 0, at = 0;
+
+    while (at + 4 <= bytes && data[at] == MARKER && data[at + 1] != SOS) {
+        const int marker = data[at + 1];
+
+        if (marker == SOI)
+            start = at;
+        if (marker == MARKER) /* padding */
+            at++;
+        else if (is_bare(marker))
+            at += 2;
+        else
+            at += 2 + ((size_t)data[at + 2] << 8 | data[at + 3]);
+    }
+    return start;
+}
+
+static void set_source(struct glint_mjpeg *d, const uint8_t *data, size_t bytes)
+{
+    const size_t start = find_start(data, bytes);
+
+    d->source = (struct jpeg_source_mgr){
+        .next_input_byte = data + start,
+        .bytes_in_buffer = bytes - start,
+        .init_source = on_source,
+        .fill_input_buffer = on_end,
+        .skip_input_data = on_skip,
+        .resync_to_restart = jpeg_resync_to_restart,
+        .term_source = on_source,
+    };
+    d->jpeg.src = &d->source;
+}
+
+/* ------------------------------------------------------------------- frames */
+
+static void refuse(struct glint_mjpeg *d, const char *cause)
+{
+    leave(d, glint_error_report(d->error, GLINT_E_UNSUPPORTED, d->name,
+                                "MJPEG: %s", cause));
+}
+
+/* Refuses what has another subsampling. The factors themselves do not matter,
+ * only how those of Y relate to those of Cb and Cr. */
+static enum glint_pixel_format format_of(struct glint_mjpeg *d)
+{
+    const jpeg_component_info *const c = d->jpeg.comp_info;
+    const int across = c[0].h_samp_factor, down = c[0].v_samp_factor;
+    char text[64];
+
+    if (d->jpeg.num_components == 1)
+        return GLINT_GREY;
+    if (c[1].h_samp_factor == c[2].h_samp_factor &&
+        c[1].v_samp_factor == c[2].v_samp_factor) {
+        if (across == c[1].h_samp_factor && down == c[1].v_samp_factor)
+            return GLINT_I444;
+        if (across == 2 * c[1].h_samp_factor && down == c[1].v_samp_factor)
+            return GLINT_I422;
+        if (across == 2 * c[1].h_samp_factor && down == 2 * c[1].v_samp_factor)
+            return GLINT_I420;
+    }
+    snprintf(text, sizeof text, "subsampling %dx%d,%dx%d,%dx%d is not handled",
+             across, down, c[1].h_samp_factor, c[1].v_samp_factor,
+             c[2].h_samp_factor, c[2].v_samp_factor);
+    refuse(d, text);
+    return GLINT_GREY;
+}
+
+/* The rest after this costs memory and time that these bounds limit. */
+static void check_header(struct glint_mjpeg *d)
+{
+    const struct jpeg_decompress_struct *const j = &d->jpeg;
+
+    if (j->image_width > (JDIMENSION)d->max_width ||
+        j->image_height > (JDIMENSION)d->max_height)
+        leave(d, glint_error_report(d->error, GLINT_E_UNSUPPORTED, d->name,
+                                    "MJPEG: frame of %u x %u pixels is larger "
+                                    "than %d x %d",
+                                    j->image_width, j->image_height,
+                                    d->max_width, d->max_height));
+    if (j->jpeg_color_space != JCS_YCbCr &&
+        j->jpeg_color_space != JCS_GRAYSCALE)
+        refuse(d, "colours are neither Y, Cb, Cr nor grey");
+    if (j->arith_code)
+        refuse(d, "arithmetic coding is not handled");
+    if (jpeg_has_multiple_scans(&d->jpeg))
+        refuse(d, "frames in several scans are not handled");
+}
+
+static void start(struct glint_mjpeg *d, struct glint_image *image)
+{
+    jpeg_read_header(&d->jpeg, TRUE);
+    check_header(d);
+    *image = (struct glint_image){
+        .format = format_of(d),
+        .width = (int)d->jpeg.image_width,
+        .height = (int)d->jpeg.image_height,
+        .range = GLINT_RANGE_FULL,
+        .matrix = GLINT_MATRIX_BT601,
+        .transfer = GLINT_TONE_SRGB,
+    };
+    for (int p = 0; p < glint_image_planes(image->format); p++) {
+        image->plane[p] = d->mem + (size_t)p * d->plane_bytes;
+        image->stride_bytes[p] = d->stride_bytes;
+    }
+    d->jpeg.out_color_space = d->jpeg.jpeg_color_space;
+    d->jpeg.raw_data_out = TRUE;
+    d->jpeg.dct_method = JDCT_ISLOW; /* its SIMD gives the same bits */
+    d->in_scan = true;
+    jpeg_start_decompress(&d->jpeg);
+}
+
+/* One row of MCUs at a time. Rows of a plane's padding are never written. */
+static void read_planes(struct glint_mjpeg *d, const struct glint_image *image)
+{
+    struct jpeg_decompress_struct *const j = &d->jpeg;
+    const int lines = j->max_v_samp_factor * DCTSIZE;
+    JSAMPROW row[N_PLANES][MAX_ROWS];
+    JSAMPARRAY planes[N_PLANES] = {row[0], row[1], row[2]};
+
+    for (int mcu_row = 0; j->output_scanline < j->output_height; mcu_row++) {
+        for (int p = 0; p < j->num_components; p++) {
+            const int n = j->comp_info[p].v_samp_factor * DCTSIZE;
+
+            for (int y = 0; y < n; y++)
+                row[p][y] = image->plane[p] +
+                            (ptrdiff_t)(mcu_row * n + y) * d->stride_bytes;
+        }
+        jpeg_read_raw_data(j, planes, (JDIMENSION)lines);
+    }
+}
+
+/* A fresh libjpeg object for each frame: a used one would lend the tables of
+ * the last frame to the next. */
+enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
+                                     const void *data, size_t bytes,
+                                     struct glint_image *image,
+                                     struct glint_error *error)
+{
+    struct glint_mjpeg *const d = decoder;
+    struct glint_image frame;
+
+    if (bytes == 0)
+        return glint_error_report(error, GLINT_E_FORMAT, d->name,
+                                  "MJPEG: frame is empty");
+    d->in_scan = d->ended = false;
+    d->error = error;
+    d->jpeg = (struct jpeg_decompress_struct){
+        .err = jpeg_std_error(&d->errors),
+        .client_data = d,
+    };
+    d->errors.error_exit = on_error;
+    d->errors.emit_message = on_message;
+    d->errors.output_message = on_output;
+    if (setjmp(d->escape)) {
+        jpeg_destroy_decompress(&d->jpeg);
+        return d->status;
+    }
+    jpeg_create_decompress(&d->jpeg);
+    set_source(d, data, bytes);
+    start(d, &frame);
+    read_planes(d, &frame);
+    jpeg_destroy_decompress(&d->jpeg);
+    *image = frame;
+    return GLINT_OK;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Any bytes as an MJPEG frame, up to 256 x 128 pixels. What decodes does so
+ * again, to the same samples, after a frame that is cut in half.
+ *
+ *     make fuzz TARGET=mjpeg SECONDS=60
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "jpeg/mjpeg.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void require(int condition)
+{
+    if (!condition)
+        abort();
+}
+
+/* Of all samples, in order; the memory checker looks at each. */
+static uint32_t hash_of(const struct glint_image *image)
+{
+    uint32_t hash = 2166136261U;
+
+    for (int p = 0; p < glint_image_planes(image->format); p++) {
+        const int across =
+            (int)glint_image_row_bytes(image->format, p, image->width);
+        const int down =
+            glint_image_plane_height(image->format, p, image->height);
+
+        for (int y = 0; y < down; y++)
+            for (int x = 0; x < across; x++)
+                hash =
+                    (hash ^ image->plane[p][y * image->stride_bytes[p] + x]) *
+                    16777619U;
+    }
+    return hash;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct glint_mjpeg *decoder;
+    struct glint_image image, again;
+    struct glint_error error;
+    enum glint_status status;
+    uint32_t hash;
+
+    require(!glint_mjpeg_open(&decoder, "fuzz", 256, 128, &error));
+    status = glint_mjpeg_decode(decoder, data, size, &image, &error);
+    if (status == GLINT_OK) {
+        require(image.width >= 1 && image.width <= 256);
+        require(image.height >= 1 && image.height <= 128);
+        hash = hash_of(&image);
+        glint_mjpeg_decode(decoder, data, size / 2, &again, &error);
+        require(!glint_mjpeg_decode(decoder, data, size, &again, &error));
+        require(again.format == image.format && hash_of(&again) == hash);
+    } else
+        require(error.text[0]);
+    glint_mjpeg_close(decoder);
+    return 0;
+}

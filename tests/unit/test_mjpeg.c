@@ -1,0 +1,724 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * MJPEG: frames that libjpeg writes here come back as the planes they were made
+ * of, and as libjpeg's own scan lines; then what cameras do to frames, and what
+ * cables do.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <malloc.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <jpeglib.h>
+
+#include "jpeg/mjpeg.h"
+
+#define NAME "cam"
+
+static struct glint_error error;
+
+/* ------------------------------------------------------------ frames to test
+ */
+
+/* How a frame is coded. */
+struct coding {
+    int width, height;
+    int factor[3][2]; /* of Y, Cb, Cr: across, down; 0: there is none */
+    int restart;      /* MCUs */
+    bool optimised;   /* Huffman tables of its own */
+    bool noisy;
+};
+
+static const struct coding y420 = {64, 48, {{2, 2}, {1, 1}, {1, 1}}, 0, 0, 0};
+static const struct coding y422 = {64, 48, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 0};
+static const struct coding grey = {64, 48, {{1, 1}, {0, 0}, {0, 0}}, 0, 0, 0};
+
+struct bytes {
+    uint8_t *data; /* of malloc, exactly as long */
+    size_t n;
+};
+
+static struct bytes copy_of(const void *data, size_t n)
+{
+    const struct bytes b = {malloc(n ? n : 1), n};
+
+    assert_non_null(b.data);
+    memcpy(b.data, data, n);
+    return b;
+}
+
+/* What plane P holds: gradients that differ, and noise on top where asked. */
+static uint8_t sample(const struct coding *c, int p, int x, int y)
+{
+    static const int base[] = {20, 60, 200}, dx[] = {2, 1, -1},
+                     dy[] = {1, 2, 0};
+    const int value = base[p] + (dx[p] * x + dy[p] * y) / 4;
+    const uint32_t hash = (uint32_t)(x * 7919 + y * 104729 + p) * 2654435761U;
+
+    return (uint8_t)(c->noisy ? value + (int)(hash >> 27) : value % 256);
+}
+
+static int n_planes(const struct coding *c)
+{
+    return c->factor[1][0] ? 3 : 1;
+}
+
+static void write_planes(struct jpeg_compress_struct *j, const struct coding *c)
+{
+    static uint8_t mem[3][32][2048];
+    JSAMPROW row[3][32];
+    JSAMPARRAY planes[3] = {row[0], row[1], row[2]};
+
+    for (int mcu = 0; j->next_scanline < j->image_height; mcu++) {
+        for (int p = 0; p < n_planes(c); p++)
+            for (int y = 0; y < c->factor[p][1] * 8; y++) {
+                row[p][y] = mem[p][y];
+                for (int x = 0; x < 2048; x++)
+                    mem[p][y][x] =
+                        sample(c, p, x, mcu * c->factor[p][1] * 8 + y);
+            }
+        jpeg_write_raw_data(j, planes, (JDIMENSION)(j->max_v_samp_factor * 8));
+    }
+}
+
+/* TUNE may change what it likes before the frame is written. */
+static struct bytes encode(const struct coding *c,
+                           void (*tune)(struct jpeg_compress_struct *))
+{
+    struct jpeg_compress_struct j;
+    struct jpeg_error_mgr errors;
+    unsigned char *data = NULL;
+    unsigned long n = 0;
+    struct bytes exact;
+
+    j.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&j);
+    jpeg_mem_dest(&j, &data, &n);
+    j.image_width = (JDIMENSION)c->width;
+    j.image_height = (JDIMENSION)c->height;
+    j.input_components = n_planes(c);
+    j.in_color_space = n_planes(c) == 3 ? JCS_YCbCr : JCS_GRAYSCALE;
+    jpeg_set_defaults(&j);
+    jpeg_set_quality(&j, 100, TRUE);
+    j.restart_interval = (unsigned)c->restart;
+    j.optimize_coding = c->optimised;
+    j.raw_data_in = TRUE;
+    for (int p = 0; p < n_planes(c); p++) {
+        j.comp_info[p].h_samp_factor = c->factor[p][0];
+        j.comp_info[p].v_samp_factor = c->factor[p][1];
+    }
+    if (tune)
+        tune(&j);
+    jpeg_start_compress(&j, TRUE);
+    write_planes(&j, c);
+    jpeg_finish_compress(&j);
+    jpeg_destroy_compress(&j);
+    exact = copy_of(data, n);
+    free(data);
+    return exact;
+}
+
+/* Offset of the first segment MARKER at or after AT. */
+static size_t find(const struct bytes *b, int marker, size_t at)
+{
+    while (at + 1 < b->n && (b->data[at] != 0xff || b->data[at + 1] != marker))
+        at++;
+    assert_true(at + 1 < b->n);
+    return at;
+}
+
+/* Replaces CUT bytes at AT by INSERT[N]. */
+static void splice(struct bytes *b, size_t at, size_t cut, const void *insert,
+                   size_t n)
+{
+    uint8_t *const data = malloc(b->n - cut + n);
+
+    assert_non_null(data);
+    memcpy(data, b->data, at);
+    memcpy(data + at, insert, n);
+    memcpy(data + at + n, b->data + at + cut, b->n - at - cut);
+    free(b->data);
+    b->data = data;
+    b->n += n - cut;
+}
+
+static void strip(struct bytes *b, int marker, int times)
+{
+    for (int i = 0; i < times; i++) {
+        const size_t at = find(b, marker, 0);
+        const size_t length = (size_t)(b->data[at + 2] << 8 | b->data[at + 3]);
+
+        splice(b, at, 2 + length, "", 0);
+    }
+}
+
+/* ----------------------------------------------------------------- checking */
+
+static struct glint_mjpeg *open_decoder(int width, int height)
+{
+    struct glint_mjpeg *d;
+
+    assert_int_equal(glint_mjpeg_open(&d, NAME, width, height, &error),
+                     GLINT_OK);
+    return d;
+}
+
+/* Decodes what must decode. */
+static struct glint_image decode(struct glint_mjpeg *d, const struct bytes *b)
+{
+    struct glint_image image;
+
+    if (glint_mjpeg_decode(d, b->data, b->n, &image, &error))
+        fail_msg("%s", error.text);
+    return image;
+}
+
+static void expect_refusal(struct glint_mjpeg *d, const struct bytes *b,
+                           enum glint_status status, const char *text)
+{
+    struct glint_image image = {.width = 77};
+
+    assert_int_equal(glint_mjpeg_decode(d, b->data, b->n, &image, &error),
+                     status);
+    assert_int_equal(image.width, 77);
+    if (!strstr(error.text, text))
+        fail_msg("'%s' is not about '%s'", error.text, text);
+    assert_memory_equal(error.text, NAME ": MJPEG: ", strlen(NAME ": MJPEG: "));
+}
+
+static void expect_planes(const struct glint_image *i, const struct coding *c)
+{
+    assert_int_equal(i->width, c->width);
+    assert_int_equal(i->height, c->height);
+    assert_int_equal(i->range, GLINT_RANGE_FULL);
+    assert_int_equal(i->matrix, GLINT_MATRIX_BT601);
+    assert_int_equal(i->transfer, GLINT_TONE_SRGB);
+    assert_int_equal(glint_image_planes(i->format), n_planes(c));
+    for (int p = 0; p < n_planes(c); p++) {
+        const int across = (int)glint_image_row_bytes(i->format, p, i->width);
+        const int down = glint_image_plane_height(i->format, p, i->height);
+
+        for (int y = 0; y < down; y++)
+            for (int x = 0; x < across; x++) {
+                const int is = i->plane[p][y * i->stride_bytes[p] + x];
+
+                if (abs(is - sample(c, p, x, y)) > 3)
+                    fail_msg("plane %d, %d, %d: %d is not %d", p, x, y, is,
+                             sample(c, p, x, y));
+            }
+    }
+    for (int p = n_planes(c); p < 3; p++)
+        assert_null(i->plane[p]);
+}
+
+/* Against scan lines of libjpeg, its chroma repeated without a filter. */
+static void expect_scanlines(const struct glint_image *i, const struct bytes *b)
+{
+    const int halved = i->format == GLINT_I420 || i->format == GLINT_I422;
+    const int halved_down = i->format == GLINT_I420;
+    struct jpeg_decompress_struct j;
+    struct jpeg_error_mgr errors;
+    static JSAMPLE line[3 * 2048];
+    JSAMPROW row = line;
+
+    j.err = jpeg_std_error(&errors);
+    jpeg_create_decompress(&j);
+    jpeg_mem_src(&j, b->data, b->n);
+    jpeg_read_header(&j, TRUE);
+    j.out_color_space = j.jpeg_color_space;
+    j.do_fancy_upsampling = FALSE;
+    jpeg_start_decompress(&j);
+    for (int y = 0; y < i->height; y++) {
+        jpeg_read_scanlines(&j, &row, 1);
+        for (int x = 0; x < i->width; x++)
+            for (int p = 0; p < j.num_components; p++) {
+                const int at_x = p ? x >> halved : x;
+                const int at_y = p ? y >> halved_down : y;
+
+                assert_int_equal(i->plane[p][at_y * i->stride_bytes[p] + at_x],
+                                 line[x * j.num_components + p]);
+            }
+    }
+    jpeg_destroy_decompress(&j);
+}
+
+/* ------------------------------------------------------------- whole frames */
+
+static void check_coding(const struct coding *c, enum glint_pixel_format format)
+{
+    struct glint_mjpeg *const d = open_decoder(c->width, c->height);
+    const struct bytes b = encode(c, NULL);
+    const struct glint_image image = decode(d, &b);
+
+    assert_int_equal(image.format, format);
+    expect_planes(&image, c);
+    expect_scanlines(&image, &b);
+    free(b.data);
+    glint_mjpeg_close(d);
+}
+
+static void test_codings(void **state)
+{
+    static const struct {
+        int factor[3][2];
+        enum glint_pixel_format format;
+    } way[] = {
+        {{{1, 1}, {0, 0}, {0, 0}}, GLINT_GREY},
+        {{{2, 2}, {0, 0}, {0, 0}}, GLINT_GREY},
+        {{{1, 1}, {1, 1}, {1, 1}}, GLINT_I444},
+        {{{1, 2}, {1, 2}, {1, 2}}, GLINT_I444},
+        {{{1, 3}, {1, 3}, {1, 3}}, GLINT_I444},
+        {{{2, 1}, {1, 1}, {1, 1}}, GLINT_I422},
+        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* as ffmpeg does */
+        {{{2, 2}, {1, 1}, {1, 1}}, GLINT_I420},
+    };
+    static const int size[][2] = {
+        {1, 1},   {8, 8},     {16, 16},  {17, 9},    {15, 33},
+        {64, 64}, {720, 405}, {641, 65}, {1, 100},   {333, 1},
+        {40, 72}, {128, 40},  {16, 64},  {1280, 31},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof way / sizeof *way; i++)
+        for (size_t s = 0; s < sizeof size / sizeof *size; s++) {
+            struct coding c = {.width = size[s][0], .height = size[s][1]};
+
+            memcpy(c.factor, way[i].factor, sizeof c.factor);
+            check_coding(&c, way[i].format);
+        }
+}
+
+/* Written by hand, without Huffman tables: one block of 8 x 8, all steps of the
+ * quantiser 1. Difference of DC 400: class 9, 1111110; 110010000; then end of
+ * block, 1010; padding. 128 + 400 / 8 = 178. */
+static void test_by_hand(void **state)
+{
+    static const uint8_t head[] = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
+    static const uint8_t tail[] = {
+        0xff, 0xc0, 0,    11,   8,   0, 8, 0, 8,  1, 1, 0x11, 0, /* frame */
+        0xff, 0xda, 0,    8,    1,   1, 0, 0, 63, 0,             /* scan */
+        0xfd, 0x90, 0xaf, 0xff, 0xd9};
+    uint8_t frame[sizeof head + 64 + sizeof tail];
+    struct glint_mjpeg *const d = open_decoder(8, 8);
+    struct bytes b;
+    struct glint_image image;
+
+    (void)state;
+    memcpy(frame, head, sizeof head);
+    memset(frame + sizeof head, 1, 64);
+    memcpy(frame + sizeof head + 64, tail, sizeof tail);
+    b = copy_of(frame, sizeof frame);
+    image = decode(d, &b);
+    assert_int_equal(image.format, GLINT_GREY);
+    for (int y = 0; y < 8; y++)
+        for (int x = 0; x < 8; x++)
+            assert_int_equal(image.plane[0][y * image.stride_bytes[0] + x],
+                             178);
+    free(b.data);
+    glint_mjpeg_close(d);
+}
+
+/* ---------------------------------------------------------- what cameras do */
+
+static void test_no_huffman_tables(void **state)
+{
+    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct coding own = y420;
+    struct bytes b = encode(&y422, NULL), other;
+    struct glint_image image;
+
+    (void)state;
+    own.optimised = true;
+    other = encode(&own, NULL);
+    strip(&b, 0xc4, 4);
+    image = decode(d, &b);
+    expect_planes(&image, &y422);
+    image = decode(d, &other);
+    expect_planes(&image, &own);
+    image = decode(d, &b); /* not with the tables of the other */
+    expect_planes(&image, &y422);
+    free(other.data);
+    free(b.data);
+    glint_mjpeg_close(d);
+}
+
+static void test_nothing_is_kept(void **state)
+{
+    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct bytes whole = encode(&y422, NULL), bare = encode(&y422, NULL);
+
+    (void)state;
+    strip(&bare, 0xdb, 2);
+    decode(d, &whole);
+    expect_refusal(d, &bare, GLINT_E_FORMAT, "Quantization table");
+    decode(d, &whole);
+    free(whole.data);
+    free(bare.data);
+    glint_mjpeg_close(d);
+}
+
+/* Each habit on its own, then all of them. */
+static void test_camera_habits(void **state)
+{
+    static const uint8_t avi1[] = {0xff, 0xe0, 0, 16, 'A', 'V', 'I', '1', 0,
+                                   0,    0,    0, 0,  0,   0,   0,   0,   0};
+    static const uint8_t soi[] = {0xff, 0xd8};
+    static const uint8_t filler[] = {0xff, 0xff, 0xff};
+    static const uint8_t comment[] = {0xff, 0xfe, 0, 4, 0xff, 0xd8};
+    struct coding c = y422;
+    struct glint_mjpeg *const d = open_decoder(64, 48);
+
+    (void)state;
+    c.restart = 4;
+    c.noisy = true;
+    for (int habits = 1; habits < 128; habits++) {
+        struct bytes b = encode(&c, NULL);
+        struct glint_image image;
+
+        if (habits & 1) { /* AVI1 instead of JFIF */
+            strip(&b, 0xe0, 1);
+            splice(&b, 2, 0, avi1, sizeof avi1);
+        }
+        if (habits & 2) /* start of image behind the first header, */
+            splice(&b, find(&b, 0xdb, 0), 0, soi, sizeof soi);
+        if (habits & 4) /* and at once */
+            splice(&b, 0, 0, soi, sizeof soi);
+        if (habits & 8) /* bytes before the third restart marker */
+            splice(&b, find(&b, 0xd2, 300), 0, "\x12\x34", 2);
+        if (habits & 16) /* trailing bytes, another frame's among them */
+            splice(&b, b.n, 0, b.data, b.n / 2);
+        else if (habits & 32) /* no end of image */
+            b.n -= 2;
+        if (habits & 64) {
+            splice(&b, find(&b, 0xdb, 0), 0, comment, sizeof comment);
+            splice(&b, find(&b, 0xdb, 0), 0, filler, sizeof filler);
+        }
+        b = (struct bytes){realloc(b.data, b.n), b.n};
+        image = decode(d, &b);
+        expect_planes(&image, &c);
+        free(b.data);
+    }
+    glint_mjpeg_close(d);
+}
+
+static void test_sizes_change(void **state)
+{
+    struct coding small = y420, high = grey;
+    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct bytes b[3];
+    struct glint_image image;
+
+    (void)state;
+    small.width = 31;
+    small.height = 17;
+    high.height = 49;
+    b[0] = encode(&y422, NULL);
+    b[1] = encode(&small, NULL);
+    b[2] = encode(&high, NULL);
+    for (int i = 0; i < 4; i++) {
+        image = decode(d, &b[i % 2]);
+        expect_planes(&image, i % 2 ? &small : &y422);
+        expect_refusal(d, &b[2], GLINT_E_UNSUPPORTED,
+                       "frame of 64 x 49 pixels is larger than 64 x 48");
+    }
+    for (int i = 0; i < 3; i++)
+        free(b[i].data);
+    glint_mjpeg_close(d);
+}
+
+/* ----------------------------------------------------------- what is refused
+ */
+
+static void tune_progressive(struct jpeg_compress_struct *j)
+{
+    jpeg_simple_progression(j);
+}
+
+static void tune_rgb(struct jpeg_compress_struct *j)
+{
+    j->in_color_space = JCS_RGB;
+    jpeg_set_colorspace(j, JCS_RGB);
+}
+
+static void tune_arithmetic(struct jpeg_compress_struct *j)
+{
+    j->arith_code = TRUE;
+}
+
+static void tune_scans(struct jpeg_compress_struct *j)
+{
+    static const jpeg_scan_info scans[] = {
+        {1, {0, 0, 0, 0}, 0, 63, 0, 0},
+        {2, {1, 2, 0, 0}, 0, 63, 0, 0},
+    };
+
+    j->scan_info = scans;
+    j->num_scans = 2;
+}
+
+static void refuse(struct coding c, void (*tune)(struct jpeg_compress_struct *),
+                   const char *text)
+{
+    struct glint_mjpeg *const d = open_decoder(64, 48);
+    const struct bytes b = encode(&c, tune);
+
+    expect_refusal(d, &b, GLINT_E_UNSUPPORTED, text);
+    free(b.data);
+    glint_mjpeg_close(d);
+}
+
+static void test_refusals(void **state)
+{
+    static const struct coding y444 = {64, 48, {{1, 1}, {1, 1}, {1, 1}},
+                                       0,  0,  0};
+    static const int odd[][3][2] = {
+        {{1, 2}, {1, 1}, {1, 1}}, {{4, 1}, {1, 1}, {1, 1}},
+        {{1, 1}, {2, 1}, {2, 1}}, {{2, 2}, {2, 1}, {1, 1}},
+        {{2, 1}, {1, 1}, {2, 1}},
+    };
+    struct coding c = y444;
+
+    (void)state;
+    refuse(y444, tune_progressive, "several scans");
+    refuse(y444, tune_scans, "several scans");
+    refuse(y420, tune_arithmetic, "arithmetic");
+    refuse(y444, tune_rgb, "colours");
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        memcpy(c.factor, odd[i], sizeof c.factor);
+        refuse(c, NULL, "subsampling");
+    }
+    assert_string_equal(error.text,
+                        NAME ": MJPEG: subsampling 2x1,1x1,2x1 is not handled");
+}
+
+static void test_deep_and_odd_processes(void **state)
+{
+    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct bytes b = encode(&y420, NULL);
+    const size_t frame = find(&b, 0xc0, 0);
+
+    (void)state;
+    b.data[frame + 4] = 12;
+    expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "precision 12");
+    b.data[frame + 4] = 8;
+    b.data[frame + 1] = 0xc3;
+    expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "SOF type 0xc3");
+    b.data[frame + 1] = 0xc0;
+    b.data[frame + 6] = 0; /* height, to follow in a marker of its own */
+    expect_refusal(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
+    free(b.data);
+    glint_mjpeg_close(d);
+}
+
+static void test_open(void **state)
+{
+    struct glint_mjpeg *d = (struct glint_mjpeg *)&error;
+
+    (void)state;
+    assert_true(glint_mjpeg_available());
+    assert_int_equal(glint_mjpeg_open(&d, NAME, 0, 8, &error),
+                     GLINT_E_ARGUMENT);
+    assert_null(d);
+    assert_int_equal(glint_mjpeg_open(&d, NAME, 8, GLINT_MAX_SIDE + 1, &error),
+                     GLINT_E_ARGUMENT);
+    assert_string_equal(error.text, NAME ": MJPEG of 8 x 8193 pixels");
+    glint_mjpeg_close(NULL);
+}
+
+/* ------------------------------------------------------------------- damage */
+
+static void check_truncations(struct coding c)
+{
+    struct glint_mjpeg *const d = open_decoder(c.width, c.height);
+    const struct bytes whole = encode(&c, NULL);
+    const size_t end = whole.n - 2;
+
+    assert_int_equal(whole.data[end + 1], 0xd9);
+    for (size_t n = 0; n < end; n++) {
+        const struct bytes b = copy_of(whole.data, n);
+
+        expect_refusal(d, &b, GLINT_E_FORMAT,
+                       n == 0    ? "frame is empty"
+                       : n < 100 ? "frame ends in its header"
+                                 : "");
+        if (n == end - 1)
+            assert_non_null(strstr(error.text, "frame ends in row "));
+        free(b.data);
+    }
+    for (size_t n = end; n <= whole.n; n++) {
+        const struct bytes b = copy_of(whole.data, n);
+        const struct glint_image image = decode(d, &b);
+
+        expect_planes(&image, &c);
+        free(b.data);
+    }
+    free(whole.data);
+    glint_mjpeg_close(d);
+}
+
+static void test_every_truncation(void **state)
+{
+    struct coding c = {33, 17, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
+
+    (void)state;
+    check_truncations(c);
+    c.restart = 2;
+    check_truncations(c);
+    c.noisy = false;
+    c.factor[0][1] = 2;
+    check_truncations(c);
+    c.factor[1][0] = 0;
+    check_truncations(c);
+}
+
+static uint32_t next_random(uint32_t *seed)
+{
+    return *seed = *seed * 1664525U + 1013904223U, *seed >> 8;
+}
+
+/* STDERR_FILENO goes to FILE; returns what brings it back. */
+static int divert(FILE *file)
+{
+    const int kept = dup(STDERR_FILENO);
+
+    assert_true(kept >= 0 && dup2(fileno(file), STDERR_FILENO) >= 0);
+    return kept;
+}
+
+/* Whatever the damage, an answer comes, in silence, and the next frame is
+ * right. */
+static void test_damage(void **state)
+{
+    struct coding c = {48, 32, {{2, 1}, {1, 1}, {1, 1}}, 3, 0, 1};
+    struct glint_mjpeg *const d = open_decoder(48, 32);
+    const struct bytes whole = encode(&c, NULL);
+    FILE *const said = tmpfile();
+    int kept, n_refused = 0;
+    uint32_t seed = 1;
+    struct glint_image image;
+
+    (void)state;
+    assert_non_null(said);
+    kept = divert(said);
+    for (int i = 0; i < 3000; i++) {
+        struct bytes b = copy_of(whole.data, whole.n);
+        enum glint_status status;
+
+        for (int n = 1 + i % 4; n > 0; n--)
+            b.data[next_random(&seed) % b.n] = (uint8_t)next_random(&seed);
+        status = glint_mjpeg_decode(d, b.data, b.n, &image, &error);
+        assert_true(status == GLINT_OK || status == GLINT_E_FORMAT ||
+                    status == GLINT_E_UNSUPPORTED);
+        n_refused += status != GLINT_OK;
+        free(b.data);
+    }
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    assert_int_equal(fseek(said, 0, SEEK_END), 0);
+    assert_int_equal(ftell(said), 0);
+    fclose(said);
+    assert_in_range(n_refused, 300, 2999); /* most is still a picture */
+    image = decode(d, &whole);
+    expect_planes(&image, &c);
+    free(whole.data);
+    glint_mjpeg_close(d);
+}
+
+static void test_garbage(void **state)
+{
+    struct glint_mjpeg *const d = open_decoder(64, 64);
+    uint32_t seed = 2;
+
+    (void)state;
+    for (size_t n = 0; n < 600; n++) {
+        struct bytes b = copy_of("", 0);
+        uint8_t noise[600];
+
+        for (size_t i = 0; i < n; i++)
+            noise[i] = n % 3 ? (uint8_t)next_random(&seed) : 0;
+        splice(&b, 0, 0, noise, n);
+        expect_refusal(d, &b, GLINT_E_FORMAT, "");
+        if (n > 2) { /* behind a start of image it may be a large one */
+            struct glint_image image;
+
+            memcpy(b.data, "\xff\xd8", 2);
+            assert_int_not_equal(
+                glint_mjpeg_decode(d, b.data, b.n, &image, &error), GLINT_OK);
+        }
+        free(b.data);
+    }
+    glint_mjpeg_close(d);
+}
+
+/* A restart interval that is lost shifts the rest: seen by its number. */
+static void test_lost_interval(void **state)
+{
+    struct coding c = y422;
+    struct glint_mjpeg *const d = open_decoder(64, 48);
+    struct bytes b;
+    size_t from;
+
+    (void)state;
+    c.restart = 4;
+    c.noisy = true;
+    b = encode(&c, NULL);
+    from = find(&b, 0xd1, 300);
+    splice(&b, from, find(&b, 0xd2, from) - from, "", 0);
+    expect_refusal(d, &b, GLINT_E_FORMAT, "instead of RST1");
+    free(b.data);
+    glint_mjpeg_close(d);
+}
+
+/* The heap after a hundred frames, good and bad, is that after ten. */
+static void test_memory_is_constant(void **state)
+{
+    struct glint_mjpeg *const d = open_decoder(720, 405);
+    struct coding c = {720, 405, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
+    const struct bytes whole = encode(&c, NULL);
+    const struct bytes half = copy_of(whole.data, whole.n / 2);
+    struct mallinfo2 early = {0}, late;
+
+    (void)state;
+    for (int i = 0; i < 100; i++) {
+        if (i == 10)
+            early = mallinfo2();
+        decode(d, &whole);
+        expect_refusal(d, &half, GLINT_E_FORMAT, "frame ends in row ");
+    }
+    late = mallinfo2();
+    assert_int_equal(late.uordblks, early.uordblks);
+    assert_int_equal(late.arena, early.arena);
+    assert_int_equal(late.hblkhd, early.hblkhd);
+    free(whole.data);
+    free(half.data);
+    glint_mjpeg_close(d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_codings),
+        cmocka_unit_test(test_by_hand),
+        cmocka_unit_test(test_no_huffman_tables),
+        cmocka_unit_test(test_nothing_is_kept),
+        cmocka_unit_test(test_camera_habits),
+        cmocka_unit_test(test_sizes_change),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_deep_and_odd_processes),
+        cmocka_unit_test(test_open),
+        cmocka_unit_test(test_every_truncation),
+        cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_garbage),
+        cmocka_unit_test(test_lost_interval),
+        cmocka_unit_test(test_memory_is_constant),
+    };
+
+    return cmocka_run_group_tests_name("mjpeg", tests, NULL, NULL);
+}
