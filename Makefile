@@ -49,13 +49,13 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
 PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture \
         $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
-        linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2
+        linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 plain/row_rgb plain/row_pack plain/panel
 TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene look \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps fourcc
+        measure lamps fourcc panel
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
@@ -93,6 +93,8 @@ $(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o \
 $(OUT)/src/flare/cuts.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
 # the floor that everything is measured by is as fast as can be
 $(OUT)/tools/bench_cases.o: CFLAGS += -O3
+# what every frame of a camera goes through on its way to a panel
+$(OUT)/platform/plain/row_rgb.o $(OUT)/platform/plain/row_pack.o: CFLAGS += -O3
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits
 # rays in eights: errno and traps are all that these give away
 $(OUT)/src/bake/trace.o: CFLAGS += -O3 -fno-math-errno -fno-trapping-math
