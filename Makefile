@@ -46,7 +46,7 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
-PLATFORM := posix/error posix/input posix/output posix/workers plain/pnm \
+PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers plain/pnm \
         plain/pfm plain/y4m oiio/loader plain/picture \
         $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
         linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 plain/row_rgb plain/row_pack plain/panel
@@ -55,7 +55,7 @@ TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps fourcc panel
+        measure lamps at_death fourcc panel
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg

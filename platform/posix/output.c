@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "posix/at_death.h"
 #include "posix/error.h"
 
 #define BUFFER_BYTES 65536
@@ -22,8 +23,6 @@
 #define EXT_CHARS    16   /* of a file name extension worth keeping */
 
 /* ---------------------------------------------- files to remove when dying */
-
-static const int deadly[] = {SIGHUP, SIGINT, SIGTERM};
 
 static char *doomed[MAX_TMP]; /* atomic: names of temporary files, or NULL */
 static int dying;             /* atomic */
@@ -41,31 +40,6 @@ static void remove_doomed(void)
             unlink(name);
     }
     errno = saved;
-}
-
-/* SA_RESETHAND has put the default action back: the second signal, delivered
- * on return, kills the process with the status everybody expects. */
-static void die(int signal_number)
-{
-    remove_doomed();
-    raise(signal_number);
-}
-
-static void take_signals(void)
-{
-    static const int broken[] = {SIGPIPE, SIGXFSZ};
-    struct sigaction old, act = {.sa_handler = SIG_IGN};
-
-    sigemptyset(&act.sa_mask);
-    for (size_t i = 0; i < sizeof broken / sizeof *broken; i++)
-        if (!sigaction(broken[i], NULL, &old) && old.sa_handler == SIG_DFL)
-            sigaction(broken[i], &act, NULL);
-    act.sa_handler = die;
-    act.sa_flags = (int)SA_RESETHAND;
-    for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
-        if (!sigaction(deadly[i], NULL, &old) && old.sa_handler == SIG_DFL)
-            sigaction(deadly[i], &act, NULL);
-    atexit(remove_doomed);
 }
 
 static bool doom(char *name)
@@ -128,9 +102,7 @@ static int create_doomed(char *name, mode_t mode)
     sigset_t held, old;
     int fd, saved;
 
-    sigemptyset(&held);
-    for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
-        sigaddset(&held, deadly[i]);
+    sigfillset(&held);
     pthread_sigmask(SIG_BLOCK, &held, &old);
     fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     saved = errno;
@@ -211,12 +183,11 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
                                     enum glint_output_kind kind,
                                     struct glint_error *error)
 {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
     const bool is_stdout = !strcmp(path, "-");
     enum glint_status status;
     struct stat st;
 
-    pthread_once(&once, take_signals);
+    glint_at_death(remove_doomed);
     *out = (struct glint_output){.fd = -1,
                                  .name = is_stdout ? "standard output" : path};
     out->buffer = malloc(BUFFER_BYTES);

@@ -9,19 +9,17 @@
  *
  * Bytes go to a temporary file in the directory of the target, named
  * .glint-PID-N.EXT, which commit renames over the target. Until then an older
- * target is untouched; after an error, an abort, exit(), or death by SIGINT,
- * SIGTERM or SIGHUP nothing is left. Symbolic links are followed, and a file
+ * target is untouched; after an error, an abort, exit(), or death by a signal
+ * other than SIGKILL nothing is left. Symbolic links are followed, and a file
  * that is replaced hands its permission bits on. There is no fsync: what is
  * promised holds when the process dies, not when the power goes.
  *
  * "-" is standard output. It and any target that exists and is no regular file
  * (a FIFO, /dev/null) are written straight into; what went there stays.
  *
- * The first open changes how the process takes signals, where the application
- * has not: SIGPIPE and SIGXFSZ are ignored, so that writing fails instead, and
- * the three above get a handler that removes temporary files and then lets the
- * signal kill the process. An application that handles them itself must abort
- * or commit what it has open.
+ * The first open changes how the process takes signals, as posix/at_death.h
+ * says. An application that handles deadly ones itself must abort or commit
+ * what it has open, or exit().
  */
 #ifndef GLINT_POSIX_OUTPUT_H
 #define GLINT_POSIX_OUTPUT_H

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT */
+#define _XOPEN_SOURCE 700 /* SIGPROF, SIGSYS and their kind */
+#include "posix/at_death.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#define MAX_FN 8
+
+static const int deadly[] = {
+    SIGHUP,  SIGINT,    SIGTERM, SIGQUIT, SIGUSR1, SIGUSR2,
+    SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGSYS,  SIGABRT,
+    SIGSEGV, SIGBUS,    SIGILL,  SIGFPE,  SIGTRAP,
+};
+
+static glint_at_death_fn *fns[MAX_FN]; /* atomic; NULL from the first free */
+
+static void run_all(void)
+{
+    for (int i = MAX_FN - 1; i >= 0; i--) {
+        glint_at_death_fn *const fn =
+            __atomic_load_n(&fns[i], __ATOMIC_SEQ_CST);
+
+        if (fn)
+            fn();
+    }
+}
+
+/* SA_RESETHAND has put the default action back: the second signal, delivered
+ * on return, kills the process with the status everybody expects. */
+static void die(int signal_number)
+{
+    run_all();
+    raise(signal_number);
+}
+
+static void take_signals(void)
+{
+    static const int broken[] = {SIGPIPE, SIGXFSZ};
+    struct sigaction old, act = {.sa_handler = SIG_IGN};
+
+    sigemptyset(&act.sa_mask);
+    for (size_t i = 0; i < sizeof broken / sizeof *broken; i++)
+        if (!sigaction(broken[i], NULL, &old) && old.sa_handler == SIG_DFL)
+            sigaction(broken[i], &act, NULL);
+    act.sa_handler = die;
+    act.sa_flags = (int)SA_RESETHAND;
+    for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
+        if (!sigaction(deadly[i], NULL, &old) && old.sa_handler == SIG_DFL)
+            sigaction(deadly[i], &act, NULL);
+    atexit(run_all);
+}
+
+bool glint_at_death(glint_at_death_fn *fn)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+
+    pthread_once(&once, take_signals);
+    for (int i = 0; i < MAX_FN; i++) {
+        glint_at_death_fn *none = NULL;
+
+        if (__atomic_compare_exchange_n(&fns[i], &none, fn, false,
+                                        __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST) ||
+            none == fn)
+            return true;
+    }
+    return false;
+}
+
+void glint_at_death_by(int signal_number)
+{
+    struct sigaction act = {.sa_handler = SIG_DFL};
+    sigset_t open;
+
+    run_all();
+    sigemptyset(&act.sa_mask);
+    sigaction(signal_number, &act, NULL);
+    sigemptyset(&open);
+    sigaddset(&open, signal_number);
+    pthread_sigmask(SIG_UNBLOCK, &open, NULL);
+    raise(signal_number);
+}
