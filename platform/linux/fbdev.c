@@ -1,0 +1,417 @@
+/* SPDX-License-Identifier: MIT */
+#include "linux/fbdev.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "posix/at_death.h"
+#include "posix/error.h"
+
+#ifndef FBIO_WAITFORVSYNC
+#define FBIO_WAITFORVSYNC _IOW('F', 0x20, uint32_t)
+#endif
+
+/* As ioctl(), but not ended by signals. */
+static int request(int fd, unsigned long number, void *arg)
+{
+    int result;
+
+    do
+        result = ioctl(fd, number, arg);
+    while (result < 0 && errno == EINTR);
+    return result;
+}
+
+/* REQUEST failed, as errno says. */
+static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
+                              struct glint_error *error)
+{
+    if (errno == ENODEV)
+        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
+                                  "the framebuffer went away");
+    return glint_error_report(error, GLINT_E_DEVICE, fb->name, "%s: %s", what,
+                              strerror(errno));
+}
+
+/* -------------------------------------------------------------- when dying */
+
+/* The console draws where it drew before, so that place must be seen again. */
+static int panned_fd = -1; /* atomic */
+static struct fb_var_screeninfo panned_home;
+static pid_t panner; /* atomic */
+
+/* Async-signal-safe. */
+static void pan_home(void)
+{
+    const int saved = errno;
+    const int fd = __atomic_load_n(&panned_fd, __ATOMIC_SEQ_CST);
+
+    if (fd >= 0 && getpid() == __atomic_load_n(&panner, __ATOMIC_SEQ_CST))
+        ioctl(fd, FBIOPAN_DISPLAY, &panned_home);
+    errno = saved;
+}
+
+static void watch_pan(const struct glint_fbdev *fb)
+{
+    panned_home = fb->home;
+    __atomic_store_n(&panner, getpid(), __ATOMIC_SEQ_CST);
+    __atomic_store_n(&panned_fd, fb->fd, __ATOMIC_SEQ_CST);
+    glint_at_death(pan_home);
+}
+
+/* -------------------------------------------------------------------- mode */
+
+static struct glint_pixel_field field_of(const struct fb_bitfield *bits)
+{
+    return (struct glint_pixel_field){(int)bits->offset, (int)bits->length};
+}
+
+/* Drivers that say nothing of their bits mean the usual ones. */
+static struct glint_pixel_layout layout_of(const struct fb_var_screeninfo *v)
+{
+    const int bytes =
+        v->bits_per_pixel > 32 ? 0 : (int)(v->bits_per_pixel + 7) / 8;
+
+    if (v->red.length == 0 && v->green.length == 0 && v->blue.length == 0)
+        return bytes == 2 ? (struct glint_pixel_layout){2,
+                                                        {11, 5},
+                                                        {5, 6},
+                                                        {0, 5},
+                                                        {0, 0}}
+                          : (struct glint_pixel_layout){
+                                bytes, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
+    return (struct glint_pixel_layout){bytes, field_of(&v->red),
+                                       field_of(&v->green), field_of(&v->blue),
+                                       field_of(&v->transp)};
+}
+
+static bool is_true_colour(const struct fb_fix_screeninfo *fix,
+                           const struct fb_var_screeninfo *var)
+{
+    return fix->type == FB_TYPE_PACKED_PIXELS && var->grayscale == 0 &&
+           (fix->visual == FB_VISUAL_TRUECOLOR ||
+            fix->visual == FB_VISUAL_DIRECTCOLOR);
+}
+
+/* Takes over what the driver says, or refuses it. */
+static enum glint_status adopt(struct glint_fbdev *fb,
+                               const struct fb_fix_screeninfo *fix,
+                               struct glint_error *error)
+{
+    const struct fb_var_screeninfo *const v = &fb->var;
+    const uint64_t wanted =
+        (uint64_t)fix->line_length *
+        (v->yres_virtual > v->yres ? v->yres_virtual : v->yres);
+
+    fb->layout = layout_of(v);
+    if (!is_true_colour(fix, v) || !glint_pixel_layout_is_valid(&fb->layout))
+        return glint_error_report(
+            error, GLINT_E_DEVICE, fb->name,
+            "pixels of %u bits (type %u, visual %u) are not packed true "
+            "colour; try: fbset -depth 16",
+            v->bits_per_pixel, fix->type, fix->visual);
+    if (v->xres < 1 || v->xres > GLINT_MAX_SIDE || v->yres < 1 ||
+        v->yres > GLINT_MAX_SIDE)
+        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
+                                  "is %u x %u pixels large", v->xres, v->yres);
+    fb->width = (int)v->xres;
+    fb->height = (int)v->yres;
+    fb->stride_bytes = fix->line_length;
+    fb->mem_bytes = wanted < fix->smem_len ? (size_t)wanted : fix->smem_len;
+    if (fb->stride_bytes < (size_t)fb->width * (size_t)fb->layout.bytes ||
+        fb->mem_bytes / fb->stride_bytes < v->yres)
+        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
+                                  "%u bytes in rows of %u are too few for %u "
+                                  "x %u pixels of %u bits",
+                                  fix->smem_len, fix->line_length, v->xres,
+                                  v->yres, v->bits_per_pixel);
+    memcpy(fb->id, fix->id, 16);
+    fb->skip_bytes = fix->smem_start & ((size_t)sysconf(_SC_PAGESIZE) - 1);
+    return GLINT_OK;
+}
+
+static void unmap(struct glint_fbdev *fb)
+{
+    if (fb->map)
+        munmap(fb->map, fb->map_bytes);
+    fb->map = NULL;
+}
+
+static enum glint_status map(struct glint_fbdev *fb, struct glint_error *error)
+{
+    void *at;
+
+    fb->map_bytes = fb->skip_bytes + fb->mem_bytes;
+    at = mmap(NULL, fb->map_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fb->fd,
+              0);
+    if (at == MAP_FAILED)
+        return lost(fb, "mmap", error);
+    fb->map = at;
+    return GLINT_OK;
+}
+
+/* Row Y of all the memory. */
+static uint8_t *row_at(const struct glint_fbdev *fb, uint32_t y)
+{
+    return fb->map + fb->skip_bytes + y * fb->stride_bytes;
+}
+
+static bool pan(struct glint_fbdev *fb, int page)
+{
+    struct fb_var_screeninfo to = fb->var;
+
+    to.xoffset = 0;
+    to.yoffset = (uint32_t)page * fb->var.yres;
+    return request(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
+}
+
+/* Whether there are two screens to change between. Tried with both black, so
+ * that what the second held is not seen. */
+static bool try_pages(struct glint_fbdev *fb,
+                      const struct fb_fix_screeninfo *fix)
+{
+    const uint32_t height = fb->var.yres;
+
+    if (fix->ypanstep == 0 || height % fix->ypanstep != 0 ||
+        fb->var.yres_virtual / 2 < height ||
+        fb->mem_bytes / fb->stride_bytes / 2 < height)
+        return false;
+    memset(row_at(fb, 0), 0, 2 * height * fb->stride_bytes);
+    watch_pan(fb);
+    return pan(fb, 1) && pan(fb, 0);
+}
+
+/* Reads all about the mode that fb->var already tells of. */
+static enum glint_status enter_mode(struct glint_fbdev *fb,
+                                    struct glint_error *error)
+{
+    struct fb_fix_screeninfo fix;
+    enum glint_status status;
+
+    unmap(fb);
+    glint_panel_close(&fb->panel);
+    fb->home = fb->var;
+    if (request(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
+        return lost(fb, "FBIOGET_FSCREENINFO", error);
+    status = adopt(fb, &fix, error);
+    if (!status)
+        status = map(fb, error);
+    if (status)
+        return status;
+    fb->n_pages = try_pages(fb, &fix) ? 2 : 1;
+    return GLINT_OK;
+}
+
+static bool is_same_field(const struct fb_bitfield *a,
+                          const struct fb_bitfield *b)
+{
+    return a->offset == b->offset && a->length == b->length;
+}
+
+static bool is_same_mode(const struct fb_var_screeninfo *a,
+                         const struct fb_var_screeninfo *b)
+{
+    return a->xres == b->xres && a->yres == b->yres &&
+           a->yres_virtual == b->yres_virtual &&
+           a->bits_per_pixel == b->bits_per_pixel &&
+           a->grayscale == b->grayscale && is_same_field(&a->red, &b->red) &&
+           is_same_field(&a->green, &b->green) &&
+           is_same_field(&a->blue, &b->blue) &&
+           is_same_field(&a->transp, &b->transp);
+}
+
+/* Other programs may change the mode, and the device may go. */
+static enum glint_status follow_mode(struct glint_fbdev *fb,
+                                     struct glint_error *error)
+{
+    const struct fb_var_screeninfo old = fb->var;
+
+    if (request(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
+        return lost(fb, "FBIOGET_VSCREENINFO", error);
+    return fb->map && is_same_mode(&old, &fb->var) ? GLINT_OK
+                                                   : enter_mode(fb, error);
+}
+
+/* ------------------------------------------------------------------ frames */
+
+static enum glint_status fit_panel(struct glint_fbdev *fb,
+                                   const struct glint_image *image,
+                                   struct glint_error *error)
+{
+    const struct glint_panel_config cfg = {
+        .width = fb->width,
+        .height = fb->height,
+        .layout = fb->layout,
+        .image_width = image->width,
+        .image_height = image->height,
+        .fit = fb->options.fit,
+        .dither = fb->options.dither,
+    };
+
+    if (fb->panel.mem && fb->panel.cfg.image_width == image->width &&
+        fb->panel.cfg.image_height == image->height)
+        return GLINT_OK;
+    glint_panel_close(&fb->panel);
+    fb->cleared[0] = fb->cleared[1] = NULL;
+    return glint_panel_open(&fb->panel, &cfg, error);
+}
+
+static void draw(struct glint_fbdev *fb, const struct glint_image *image,
+                 uint8_t *mem, int page)
+{
+    const ptrdiff_t stride = (ptrdiff_t)fb->stride_bytes;
+
+    if (fb->cleared[page] != mem)
+        glint_panel_clear(&fb->panel, mem, stride);
+    fb->cleared[page] = mem;
+    glint_panel_draw(&fb->panel, image, mem, stride);
+}
+
+/* Where there is one screen of memory: wherever that is looked at now. */
+static enum glint_status draw_seen(struct glint_fbdev *fb,
+                                   const struct glint_image *image,
+                                   struct glint_error *error)
+{
+    const uint32_t first = fb->var.yoffset;
+    const size_t left = fb->var.xoffset * (size_t)fb->layout.bytes;
+    const size_t n_rows = fb->mem_bytes / fb->stride_bytes;
+    uint32_t screen = 0;
+
+    if (first > n_rows - fb->var.yres ||
+        left + (size_t)fb->width * (size_t)fb->layout.bytes > fb->stride_bytes)
+        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
+                                  "shows what is not in its memory, at %u, %u",
+                                  fb->var.xoffset, first);
+    if (fb->has_vsync && request(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
+        fb->has_vsync = false;
+    draw(fb, image, row_at(fb, first) + left, 0);
+    return GLINT_OK;
+}
+
+/* Where there are two: the one that is not looked at, and then that one is. */
+static enum glint_status draw_unseen(struct glint_fbdev *fb,
+                                     const struct glint_image *image,
+                                     struct glint_error *error)
+{
+    const int page = fb->var.yoffset < fb->var.yres ? 1 : 0;
+
+    draw(fb, image, row_at(fb, (uint32_t)page * fb->var.yres), page);
+    if (pan(fb, page))
+        return GLINT_OK;
+    if (errno == ENODEV)
+        return lost(fb, "FBIOPAN_DISPLAY", error);
+    fb->n_pages = 1;
+    return draw_seen(fb, image, error);
+}
+
+static enum glint_status put(struct glint_sink *sink,
+                             const struct glint_image *image,
+                             struct glint_error *error)
+{
+    struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
+    enum glint_status status = follow_mode(fb, error);
+
+    if (!status)
+        status = fit_panel(fb, image, error);
+    if (status)
+        return status;
+    return fb->n_pages == 2 ? draw_unseen(fb, image, error)
+                            : draw_seen(fb, image, error);
+}
+
+/* ---------------------------------------------------------- opening, closing
+ */
+
+static enum glint_status report_open(const struct glint_fbdev *fb,
+                                     struct glint_error *error)
+{
+    const int number = errno;
+
+    if (number == ENOENT || number == ENODEV || number == ENXIO)
+        return glint_error_report(
+            error, GLINT_E_DEVICE, fb->name,
+            "there is no framebuffer; load its driver (modprobe vc4 on a "
+            "Raspberry Pi, fbtft and its panel, ...) or name another device");
+    if (number == EACCES || number == EPERM)
+        return glint_error_report(
+            error, GLINT_E_DEVICE, fb->name,
+            "%s; join its group: usermod -aG video USER, then log in again",
+            strerror(number));
+    return glint_error_report(error, GLINT_E_DEVICE, fb->name, "%s",
+                              strerror(number));
+}
+
+static void close_fb(struct glint_sink *sink)
+{
+    struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
+
+    if (fb->fd >= 0 && fb->n_pages == 2)
+        request(fb->fd, FBIOPAN_DISPLAY, &fb->home);
+    if (fb->fd >= 0)
+        __atomic_compare_exchange_n(&panned_fd, &(int){fb->fd}, -1, false,
+                                    __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST);
+    glint_console_release(&fb->console_held);
+    unmap(fb);
+    glint_panel_close(&fb->panel);
+    if (fb->fd >= 0)
+        close(fb->fd);
+    fb->fd = -1;
+}
+
+static const char *default_path(void)
+{
+    const char *const path = getenv("FRAMEBUFFER");
+
+    return path && *path ? path : "/dev/fb0";
+}
+
+/* The device, and that it is a framebuffer. */
+static enum glint_status open_device(struct glint_fbdev *fb,
+                                     struct glint_error *error)
+{
+    fb->fd = open(fb->name, O_RDWR | O_CLOEXEC);
+    if (fb->fd < 0)
+        return report_open(fb, error);
+    if (request(fb->fd, FBIOGET_VSCREENINFO, &fb->var) == 0)
+        return GLINT_OK;
+    if (errno == ENOTTY || errno == EINVAL)
+        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
+                                  "is not a framebuffer");
+    return lost(fb, "FBIOGET_VSCREENINFO", error);
+}
+
+enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
+                                   const struct glint_fbdev_options *options,
+                                   struct glint_error *error)
+{
+    enum glint_status status;
+
+    *fb = (struct glint_fbdev){
+        .sink = {.put = put, .close = close_fb},
+        .options = *options,
+        .name = path ? path : default_path(),
+        .fd = -1,
+        .has_vsync = options->vsync,
+        .console_held = {.fd = -1},
+    };
+    status = open_device(fb, error);
+    if (!status && options->console) {
+        fb->has_note = !glint_console_take(&fb->console_held, &fb->note);
+        /* taking it may have moved what is seen */
+        if (request(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
+            status = lost(fb, "FBIOGET_VSCREENINFO", error);
+    }
+    if (!status)
+        status = enter_mode(fb, error);
+    if (status)
+        close_fb(&fb->sink);
+    else
+        ioctl(fb->fd, FBIOBLANK, FB_BLANK_UNBLANK); /* few drivers can */
+    return status;
+}
