@@ -35,8 +35,8 @@ WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS))
 endif
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/image base/workers kernels/sets \
-        kernels/kernels kernels/horner_c kernels/composite_c lens/model lens/transfer flare/regions flare/lights tile/primitive tile/clip \
+CORE := base/status base/arena base/q base/sort base/image base/workers kernels/sets \
+        kernels/kernels kernels/horner_c kernels/composite_c lens/model lens/transfer flare/regions flare/lights flare/match flare/follow flare/tracks tile/primitive tile/clip \
         tile/outline tile/bins tile/raster tile/edges tile/curve \
         tile/mix tile/codes tile/resolve flare/beams flare/plan flare/ghost_grid flare/cuts flare/ghost_edges flare/by_cells \
         flare/by_edges flare/flare
@@ -55,7 +55,7 @@ TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps at_death fourcc panel
+        measure lamps at_death fourcc panel tracks
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg

@@ -5,9 +5,10 @@
  * glint computes the ghosts that a real lens throws across a picture when a
  * lamp shines into it. Two halves:
  *
- *   offline   glint/bake.h             double precision; lens tables, exact
- * rays run time  glint/lights.h flare.h   integers only; no allocation after
- * init
+ *   offline   glint/bake.h                   double precision; lens tables,
+ *                                            exact rays
+ *   run time  glint/lights.h tracks.h flare.h  integers only; no allocation
+ *                                            after init
  *
  * Conventions, unless a header says otherwise: pointers are not NULL; arrays do
  * not overlap; pointers are borrowed for the call, and kept only where marked
@@ -28,6 +29,7 @@
 #include "glint/lens.h"
 #include "glint/lights.h"
 #include "glint/status.h"
+#include "glint/tracks.h"
 #include "glint/workers.h"
 
 #define GLINT_VERSION "0.1.0"

@@ -31,6 +31,7 @@ struct glint_spot {
     int32_t n_clipped;  /* of these, pixels at the upper threshold or above */
     int64_t flux_q16;   /* sum of linear luminance over its pixels, 1 = white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
+    int32_t faint;      /* 1: no light yet; see keep_faint */
 };
 
 struct glint_lights_config {
@@ -40,6 +41,9 @@ struct glint_lights_config {
     int min_area;          /* pixels; smaller regions are noise, >= 1 */
     int32_t max_share_q15; /* of the picture; larger regions are sky or wall */
     int32_t merge_q15;     /* of the width: closer lights become one */
+    int32_t keep_faint;    /* 1: after the lights come regions that have too few
+                              pixels at the upper threshold or half of min_area,
+                              marked faint; for glint/tracks.h */
 };
 
 struct glint_lights; /* opaque, in the caller's memory */

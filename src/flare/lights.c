@@ -26,6 +26,7 @@
 struct candidate {
     struct glint_region sum;
     int32_t x_q8, y_q8;
+    int faint;
     int gone; /* merged into another */
 };
 
@@ -38,9 +39,9 @@ struct glint_lights {
     uint8_t full_luma[256]; /* of Y codes */
     uint8_t *luma;          /* of one row */
     struct glint_regions regions;
-    struct candidate *candidate;
+    struct candidate *candidate; /* and one on its way out */
     int32_t *order; /* of candidates: a heap, then by falling flux */
-    int n;          /* in order */
+    int n;          /* in order, the faint ones last */
     int dropped;
 };
 
@@ -53,7 +54,7 @@ static int is_valid(const struct glint_lights_config *c)
            c->threshold_low <= c->threshold_high && c->threshold_high <= 255 &&
            c->min_area >= 1 && c->max_share_q15 >= 0 &&
            c->max_share_q15 <= 1 << 15 && c->merge_q15 >= 0 &&
-           c->merge_q15 <= 1 << 15;
+           c->merge_q15 <= 1 << 15 && c->keep_faint >= 0 && c->keep_faint <= 1;
 }
 
 /* Runs twice: to measure, and to place. NULL if measuring or full. */
@@ -67,7 +68,7 @@ static struct glint_lights *carve(struct glint_arena *a,
     f->curve = glint_arena_take(a, 1, sizeof *f->curve);
     f->luma = glint_arena_take(a, (size_t)c->width, sizeof *f->luma);
     glint_regions_carve(&f->regions, a, c->width);
-    f->candidate = glint_arena_take(a, N_CANDIDATES, sizeof *f->candidate);
+    f->candidate = glint_arena_take(a, N_CANDIDATES + 1, sizeof *f->candidate);
     f->order = glint_arena_take(a, N_CANDIDATES, sizeof *f->order);
     return a->used <= a->size ? placed : NULL;
 }
@@ -253,10 +254,12 @@ static void add_run(struct glint_region *sum, const struct glint_lights *f,
 
 static int is_brighter(const struct glint_lights *f, int32_t a, int32_t b)
 {
-    const struct glint_region *p = &f->candidate[a].sum;
-    const struct glint_region *q = &f->candidate[b].sum;
+    const struct candidate *p = &f->candidate[a], *q = &f->candidate[b];
 
-    return p->w_q14 != q->w_q14 ? p->w_q14 > q->w_q14 : p->first < q->first;
+    if (p->faint != q->faint)
+        return q->faint;
+    return p->sum.w_q14 != q->sum.w_q14 ? p->sum.w_q14 > q->sum.w_q14
+                                        : p->sum.first < q->sum.first;
 }
 
 static void swap(int32_t *a, int32_t *b)
@@ -301,27 +304,52 @@ static void sort_by_flux(struct glint_lights *f)
     }
 }
 
-/* Holds SUM if it qualifies, at the expense of the faintest if need be. */
-static void offer(void *finder, const struct glint_region *sum)
+static int is_light(const struct glint_lights *f,
+                    const struct glint_region *sum)
 {
-    struct glint_lights *f = finder;
+    return sum->area >= f->cfg.min_area && sum->n_clipped > 0 &&
+           sum->n_clipped >= sum->area >> SEED_LOG2;
+}
 
-    if (sum->area < f->cfg.min_area || sum->area > f->max_area ||
-        sum->n_clipped == 0 || sum->n_clipped < sum->area >> SEED_LOG2)
-        return;
+/* Large enough to be what is left of a light. */
+static int is_faint(const struct glint_lights *f,
+                    const struct glint_region *sum)
+{
+    return f->cfg.keep_faint && sum->area >= (f->cfg.min_area + 1) / 2;
+}
+
+/* Holds CANDIDATE, at the expense of the last if need be. */
+static void hold(struct glint_lights *f, const struct candidate *candidate)
+{
+    struct candidate *last = &f->candidate[N_CANDIDATES];
+
     if (f->n < N_CANDIDATES) {
-        f->candidate[f->n].sum = *sum;
+        f->candidate[f->n] = *candidate;
         f->order[f->n] = f->n;
         f->n++;
         if (f->n == N_CANDIDATES)
             make_heap(f, f->n);
         return;
     }
-    f->dropped++;
-    if (sum->w_q14 <= f->candidate[f->order[0]].sum.w_q14)
-        return;
-    f->candidate[f->order[0]].sum = *sum;
-    sift_down(f, 0, f->n);
+    *last = *candidate;
+    if (is_brighter(f, N_CANDIDATES, f->order[0])) {
+        const struct candidate out = f->candidate[f->order[0]];
+
+        f->candidate[f->order[0]] = *last;
+        *last = out;
+        sift_down(f, 0, f->n);
+    }
+    f->dropped += !last->faint;
+}
+
+/* Holds SUM if it qualifies. */
+static void offer(void *finder, const struct glint_region *sum)
+{
+    struct glint_lights *f = finder;
+    const int light = is_light(f, sum);
+
+    if (sum->area <= f->max_area && (light || is_faint(f, sum)))
+        hold(f, &(struct candidate){.sum = *sum, .faint = !light});
 }
 
 static void find_candidates(struct glint_lights *f,
@@ -351,6 +379,16 @@ static void locate(struct glint_lights *f)
         glint_region_centroid(&c->sum, &c->x_q8, &c->y_q8);
         c->gone = 0;
     }
+}
+
+/* Of the sorted candidates these come first. */
+static int count_lights(const struct glint_lights *f)
+{
+    int n = f->n;
+
+    while (n > 0 && f->candidate[f->order[n - 1]].faint)
+        n--;
+    return n;
 }
 
 static int64_t distance2_q16(const struct candidate *a,
@@ -383,13 +421,15 @@ static void compact(struct glint_lights *f)
 static int merge_once(struct glint_lights *f)
 {
     const int n_before = f->n;
+    int n_lights;
 
     sort_by_flux(f);
     locate(f);
-    for (int i = 0; i < f->n; i++) {
+    n_lights = count_lights(f);
+    for (int i = 0; i < n_lights; i++) {
         struct candidate *c = &f->candidate[f->order[i]];
 
-        for (int j = i + 1; j < f->n && !c->gone; j++) {
+        for (int j = i + 1; j < n_lights && !c->gone; j++) {
             struct candidate *other = &f->candidate[f->order[j]];
 
             if (!other->gone && distance2_q16(c, other) < f->merge2_q16)
@@ -421,7 +461,9 @@ static struct candidate *nearest_kept(const struct glint_lights *f,
 
 static void cap(struct glint_lights *f, int max)
 {
-    for (int i = max; i < f->n; i++) {
+    const int n_lights = count_lights(f);
+
+    for (int i = max; i < n_lights; i++) {
         struct candidate *c = &f->candidate[f->order[i]];
         struct candidate *kept = nearest_kept(f, c, max);
 
@@ -438,12 +480,14 @@ static void cap(struct glint_lights *f, int max)
 /* ------------------------------------------------------------------- result */
 
 /* A spot's origin is the corner of the first pixel, a region's its centre. */
-static struct glint_spot spot_of(const struct glint_region *sum)
+static struct glint_spot spot_of(const struct candidate *candidate)
 {
+    const struct glint_region *sum = &candidate->sum;
     struct glint_spot s = {.size_q8 = glint_region_radius_q8(sum),
                            .area = sum->area,
                            .n_clipped = sum->n_clipped,
-                           .flux_q16 = sum->w_q14 * 4};
+                           .flux_q16 = sum->w_q14 * 4,
+                           .faint = candidate->faint};
 
     glint_region_centroid(sum, &s.x_q8, &s.y_q8);
     s.x_q8 += 128;
@@ -462,7 +506,7 @@ int glint_lights_find(struct glint_lights *finder,
         ;
     cap(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
     for (int i = 0; i < finder->n; i++)
-        spots[i] = spot_of(&finder->candidate[finder->order[i]].sum);
+        spots[i] = spot_of(&finder->candidate[finder->order[i]]);
     return finder->n;
 }
 

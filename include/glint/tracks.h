@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/tracks.h - lights over time: which spot of a picture is which lamp.
+ *
+ *     bytes = glint_tracks_bytes(&cfg);                        once
+ *     glint_tracks_init(&tracks, &cfg, mem, bytes);
+ *     n = glint_lights_find(finder, &image, spots, 1024);      each picture
+ *     n = glint_tracks_step(tracks, spots, n, us, track, max);
+ *
+ * A track is one lamp with a number of its own. It takes the nearest spot to
+ * where it should be by now; its place, flux and colour are averaged where they
+ * scatter and followed where they change, and nothing of it jumps: it rises and
+ * fades in time, and what becomes of flux and place when lights merge, part or
+ * are hidden is blended in. A track that lost its lamp fades, is remembered for
+ * a while and has its number back when the lamp is back. After a cut all begins
+ * anew, in one picture.
+ *
+ * Integers only. The order of the spots changes nothing. A spot that repeats,
+ * bit for bit, is what its track says after attack + 1 s at the latest, bit for
+ * bit, at full level.
+ */
+#ifndef GLINT_TRACKS_H
+#define GLINT_TRACKS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/lights.h"
+#include "glint/status.h"
+
+enum glint_track_state {
+    GLINT_TRACK_RISING,
+    GLINT_TRACK_STEADY, /* seen, at full level */
+    GLINT_TRACK_FADING, /* its lamp is hidden or out, or too many are brighter;
+                           moves on, slower and slower */
+    GLINT_TRACK_LEAVING /* its lamp went out of the picture, and it moves on */
+};
+
+/* What is to be drawn is LEVEL times flux + clipped * (2^headroom - 1): the
+ * level is in neither of them. */
+struct glint_track {
+    uint32_t id; /* counts from 1; no two lamps have the same */
+    enum glint_track_state state;
+    int32_t x_q8, y_q8;  /* as of a spot; may be outside of the picture */
+    int32_t size_q8;     /* RMS radius, pixels */
+    int32_t level_q15;   /* 1 .. 32768: how far it has risen or faded */
+    int64_t flux_q16;    /* linear luminance, 1 = white pixel */
+    int64_t clipped_q16; /* pixels at the upper threshold or above */
+    int32_t rgb_q15[3];  /* mean linear colour, luminance 1 */
+};
+
+struct glint_tracks_config {
+    int width, height;  /* of the pictures, 1 .. GLINT_MAX_SIDE */
+    int max_tracks;     /* that are followed, 1 .. 1024 */
+    int max_shown;      /* the strongest that are seen; the others' level
+                           fades. 1 .. max_tracks */
+    int32_t match_q15;  /* of the width: how far a spot may be from where the
+                           track should be */
+    int32_t cut_q15;    /* of the flux: a cut is where as much of it goes and
+                           as much is new; above 32768: never */
+    int32_t attack_ms;  /* from 0 to full level, or to a greater flux */
+    int32_t release_ms; /* the other way */
+    int32_t leave_ms;   /* the same for lamps that left the picture */
+    int32_t memory_ms;  /* how long a lamp without a spot keeps its number */
+    int32_t smooth_ms;  /* that scatter is averaged over */
+};                      /* times 1 .. 60000 */
+
+struct glint_tracks; /* opaque, in the caller's memory */
+
+/* What a newcomer should start from, for WIDTH x HEIGHT. */
+void glint_tracks_defaults(struct glint_tracks_config *cfg, int width,
+                           int height);
+
+/* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
+size_t glint_tracks_bytes(const struct glint_tracks_config *cfg);
+
+/* Places tracks in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: too small.
+ * GLINT_E_ARGUMENT: CFG or the alignment is wrong. */
+enum glint_status glint_tracks_init(struct glint_tracks **tracks,
+                                    const struct glint_tracks_config *cfg,
+                                    void *mem, size_t bytes);
+
+/* Takes the N (0 .. 1024) spots of the next picture, ELAPSED_US after the one
+ * before, and writes the tracks that are to be drawn, the strongest first, at
+ * most MAX of them; max_tracks is enough. Returns how many it wrote. Faint
+ * spots (glint/lights.h) only continue tracks. */
+int glint_tracks_step(struct glint_tracks *tracks,
+                      const struct glint_spot *spots, int n, int32_t elapsed_us,
+                      struct glint_track *out, int max);
+
+/* Forgets all tracks: the spots of the next step are new and at full level at
+ * once, as after init. For a caller who knows of a cut. */
+void glint_tracks_restart(struct glint_tracks *tracks);
+
+/* Whether the last step was the first, or took its picture for one after a cut.
+ */
+int glint_tracks_was_cut(const struct glint_tracks *tracks);
+
+#endif
