@@ -50,7 +50,7 @@ PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers pl
         plain/pfm plain/y4m oiio/loader plain/picture \
         $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
         linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 plain/row_rgb plain/row_pack plain/panel linux/console linux/fbdev
-TOOLS := tool model_file model_cache model_report measure lamps frame frame_feed scene look \
+TOOLS := show_lights tool model_file model_cache model_report measure lamps frame frame_feed scene look \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \

@@ -3,6 +3,7 @@
  * glint overlay: the flare of the lamps in a picture or video, on top of it.
  */
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -35,7 +36,8 @@ struct overlay {
     struct look look;
     const char *input, *output;
     int start_number;
-    int range, matrix; /* 0: auto */
+    int32_t elapsed_us; /* from frame to frame; 0: pictures by themselves */
+    int range, matrix;  /* 0: auto */
 
     struct frame_report worst; /* its lights: of the frame with most too many,
                                   and most beyond the model */
@@ -142,7 +144,7 @@ static int draw(struct tool *tool, struct overlay *o,
         code = look_size(tool, look, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    status = look_draw(look, image);
+    status = look_draw(look, image, o->elapsed_us);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     o->find_ms += look->find_ms;
@@ -198,6 +200,16 @@ static int video_frames(struct tool *tool, struct overlay *o,
     return code;
 }
 
+/* The time from frame to frame; 25 a second where that is not known. */
+static int32_t frame_us(const struct glint_y4m_header *header)
+{
+    const double us = header->fps_num > 0
+                          ? 1e6 * header->fps_den / header->fps_num
+                          : 1e6 / 25;
+
+    return (int32_t)fmin(fmax(us + 0.5, 1), 1e9);
+}
+
 static int run_video(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
@@ -219,6 +231,7 @@ static int run_video(struct tool *tool, struct overlay *o)
         glint_y4m_reader_close(&in);
         return tool_fail(tool, status, error.text);
     }
+    o->elapsed_us = frame_us(&in.header);
     code = video_frames(tool, o, &in, &out);
     if (code == EXIT_OK) {
         status = glint_y4m_writer_commit(&out, &error);
@@ -292,6 +305,7 @@ static int run_sequence(struct tool *tool, struct overlay *o)
         name_of(from, sizeof from, o->input, 0);
         number = access(from, F_OK) == 0 ? 0 : 1;
     }
+    o->elapsed_us = 1000000 / 25;
     for (;; number++) {
         name_of(from, sizeof from, o->input, number);
         if (access(from, F_OK) != 0)

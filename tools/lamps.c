@@ -229,19 +229,63 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
 
 /* ------------------------------------------------------------------- finder */
 
+/* Some more tracks than are shown, so that those that come up are known. */
+static int tracks_for(int max)
+{
+    const int wanted = max < 64 ? 128 : 2 * max;
+
+    return wanted < LAMP_FINDER_MAX ? wanted : LAMP_FINDER_MAX;
+}
+
+/* BYTES rounded up to what init wants its memory aligned to. */
+static size_t padded(size_t bytes)
+{
+    return (bytes + 63) & ~(size_t)63;
+}
+
+/* Takes one block and places everything in it. */
+static enum glint_status place(struct lamp_finder *f,
+                               const struct glint_lights_config *lights,
+                               const struct glint_tracks_config *tracks)
+{
+    const size_t lights_bytes = padded(glint_lights_bytes(lights));
+    const size_t tracks_bytes = padded(glint_tracks_bytes(tracks));
+    const size_t spot_bytes = padded(LAMP_FINDER_MAX * sizeof *f->spot);
+    enum glint_status status;
+    uint8_t *at;
+
+    if (lights_bytes == 0 || tracks_bytes == 0)
+        return GLINT_E_ARGUMENT;
+    if (posix_memalign(&f->mem, 64,
+                       lights_bytes + tracks_bytes + spot_bytes +
+                           (size_t)f->max_tracks * sizeof *f->track) != 0)
+        return GLINT_E_MEMORY;
+    at = f->mem;
+    status = glint_lights_init(&f->lights, lights, at, lights_bytes);
+    if (status == GLINT_OK)
+        status = glint_tracks_init(&f->tracks, tracks, at + lights_bytes,
+                                   tracks_bytes);
+    at += lights_bytes + tracks_bytes;
+    f->spot = (struct glint_spot *)(void *)at;
+    f->track = (struct glint_track *)(void *)(at + spot_bytes);
+    return status;
+}
+
 enum glint_status lamp_finder_open(struct lamp_finder *finder,
                                    const struct glint_lights_config *cfg)
 {
-    const size_t bytes = glint_lights_bytes(cfg);
+    struct glint_lights_config lights = *cfg;
+    struct glint_tracks_config tracks;
     enum glint_status status;
 
-    finder->cfg = *cfg;
     finder->mem = NULL;
-    if (bytes == 0)
-        return GLINT_E_ARGUMENT;
-    if (posix_memalign(&finder->mem, 64, bytes) != 0)
-        return GLINT_E_MEMORY;
-    status = glint_lights_init(&finder->lights, cfg, finder->mem, bytes);
+    finder->n_tracks = 0;
+    finder->max_tracks = tracks_for(finder->max);
+    lights.keep_faint = 1;
+    glint_tracks_defaults(&tracks, cfg->width, cfg->height);
+    tracks.max_tracks = finder->max_tracks;
+    tracks.max_shown = finder->max;
+    status = place(finder, &lights, &tracks);
     if (status != GLINT_OK)
         lamp_finder_close(finder);
     return status;
@@ -253,28 +297,69 @@ void lamp_finder_close(struct lamp_finder *finder)
     finder->mem = NULL;
 }
 
+void lamp_finder_restart(struct lamp_finder *finder)
+{
+    glint_tracks_restart(finder->tracks);
+}
+
+static struct glint_track still(const struct glint_spot *spot, uint32_t id)
+{
+    return (struct glint_track){
+        .id = id,
+        .state = GLINT_TRACK_STEADY,
+        .x_q8 = spot->x_q8,
+        .y_q8 = spot->y_q8,
+        .size_q8 = spot->size_q8,
+        .level_q15 = 1 << 15,
+        .flux_q16 = spot->flux_q16,
+        .clipped_q16 = (int64_t)spot->n_clipped << 16,
+        .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
+}
+
+/* The lights of IMAGE by itself. */
+static int find_still(struct lamp_finder *f, const struct glint_image *image)
+{
+    const int n = glint_lights_find(f->lights, image, f->spot, f->max);
+    int n_lights = 0;
+
+    for (; n_lights < n && !f->spot[n_lights].faint; n_lights++)
+        f->track[n_lights] = still(&f->spot[n_lights], (uint32_t)n_lights + 1);
+    return n_lights;
+}
+
 /* Clipped pixels count for what they would be without clipping. */
 static double power_of(const struct lamp_finder *f,
-                       const struct glint_spot *spot)
+                       const struct glint_track *track)
 {
-    return (double)spot->flux_q16 / 65536 +
-           spot->n_clipped * (exp2(f->headroom_ev) - 1);
+    return track->level_q15 / 32768.0 *
+           ((double)track->flux_q16 / 65536 +
+            (double)track->clipped_q16 / 65536 * (exp2(f->headroom_ev) - 1));
 }
 
 int lamp_finder_frame(struct lamp_finder *finder,
-                      const struct glint_image *image,
+                      const struct glint_image *image, int32_t elapsed_us,
                       const struct glint_view *view, double focal_mm,
                       struct glint_lamp *lamps)
 {
-    struct glint_spot spots[LAMP_FINDER_MAX];
-    const int n = glint_lights_find(finder->lights, image, spots, finder->max);
+    struct lamp_finder *f = finder;
 
-    for (int i = 0; i < n; i++) {
-        glint_view_to_angles(view, focal_mm, spots[i].x_q8 / 256.0,
-                             spots[i].y_q8 / 256.0, &lamps[i]);
-        lamps[i].power = power_of(finder, &spots[i]);
-        for (int c = 0; c < 3; c++)
-            lamps[i].rgb[c] = spots[i].rgb_q15[c] / 32768.0;
+    if (elapsed_us > 0) {
+        const int n =
+            glint_lights_find(f->lights, image, f->spot, LAMP_FINDER_MAX);
+
+        f->n_tracks = glint_tracks_step(f->tracks, f->spot, n, elapsed_us,
+                                        f->track, f->max_tracks);
+    } else {
+        f->n_tracks = find_still(f, image);
     }
-    return n;
+    for (int i = 0; i < f->n_tracks; i++) {
+        const struct glint_track *track = &f->track[i];
+
+        glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
+                             track->y_q8 / 256.0, &lamps[i]);
+        lamps[i].power = power_of(f, track);
+        for (int c = 0; c < 3; c++)
+            lamps[i].rgb[c] = track->rgb_q15[c] / 32768.0;
+    }
+    return f->n_tracks;
 }

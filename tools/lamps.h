@@ -34,23 +34,41 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
                     struct glint_lamp *lamps, int max);
 
-/* Finds lamps in pictures of one size. */
+/* Finds lamps in pictures of one size, and follows them where these are a
+ * video. What it needs is taken by open. */
 struct lamp_finder {
-    struct glint_lights_config cfg;
-    struct glint_lights *lights;
-    void *mem;
     double headroom_ev; /* how far over white clipped pixels really are */
-    int max;            /* lamps a frame, 1 .. LAMP_FINDER_MAX */
+    int max;            /* lamps a picture, 1 .. LAMP_FINDER_MAX */
+
+    /* Of the last frame, as found, the strongest first; untracked ones are
+     * numbered from 1. */
+    struct glint_track *track;
+    int n_tracks;
+
+    /* Private. */
+    struct glint_lights *lights;
+    struct glint_tracks *tracks;
+    struct glint_spot *spot; /* [LAMP_FINDER_MAX] */
+    int max_tracks;
+    void *mem;
 };
 
-/* CFG's thresholds 0: the defaults. */
+/* Sets headroom_ev and max before. CFG says what a light is; keep_faint is the
+ * finder's own. */
 enum glint_status lamp_finder_open(struct lamp_finder *finder,
                                    const struct glint_lights_config *cfg);
 void lamp_finder_close(struct lamp_finder *finder);
 
+/* Writes the lamps of IMAGE, which comes ELAPSED_US after the one before:
+ * rising and fading as glint/tracks.h has it, so a few more than max may be
+ * there for a while. 0: a picture by itself. LAMPS has room for
+ * LAMP_FINDER_MAX. */
 int lamp_finder_frame(struct lamp_finder *finder,
-                      const struct glint_image *image,
+                      const struct glint_image *image, int32_t elapsed_us,
                       const struct glint_view *view, double focal_mm,
                       struct glint_lamp *lamps);
+
+/* The next frame has nothing to do with the last: another camera, a jump. */
+void lamp_finder_restart(struct lamp_finder *finder);
 
 #endif

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "show_lights.h"
+
 /* ------------------------------------------------------------------ options */
 
 void look_defaults(struct look *look)
@@ -40,6 +42,7 @@ static bool take_light(struct look *look, const char *text)
 static bool take(struct look *look, int option, const char *value)
 {
     static const char *const layers[] = {"composite", "flare", NULL};
+    static const char *const shows[] = {"lights", NULL};
     int layer;
 
     switch (option) {
@@ -56,6 +59,10 @@ static bool take(struct look *look, int option, const char *value)
     case OPT_HEADROOM:
         return tool_number(value, &look->headroom_ev) &&
                look->headroom_ev >= 0 && look->headroom_ev <= 40;
+    case OPT_NO_TRACKING:
+        return look->no_tracking = true;
+    case OPT_SHOW:
+        return look->show_lights = tool_word(value, shows) == 0;
     default:
         layer = tool_word(value, layers);
         look->flare_only = layer == 1;
@@ -157,7 +164,8 @@ void look_close(struct look *look)
 
 /* ------------------------------------------------------------------ drawing */
 
-static int lamps_of(struct look *look, const struct glint_image *image)
+static int lamps_of(struct look *look, const struct glint_image *image,
+                    int32_t elapsed_us)
 {
     const double focal = look->scene.setup.optics.focal_mm;
     int n = look->n_hand;
@@ -167,8 +175,9 @@ static int lamps_of(struct look *look, const struct glint_image *image)
         n += lamp_list_frame(&look->list, look->n_frames, &look->view, focal,
                              look->lamp + n, look->list.n);
     else if (n == 0)
-        n = lamp_finder_frame(&look->finder, image, &look->view, focal,
-                              look->lamp);
+        n = lamp_finder_frame(&look->finder, image,
+                              look->no_tracking ? 0 : elapsed_us, &look->view,
+                              focal, look->lamp);
     return n;
 }
 
@@ -192,13 +201,39 @@ static void blacken(const struct glint_image *image)
     }
 }
 
-enum glint_status look_draw(struct look *look, const struct glint_image *image)
+/* Draws the lights over IMAGE: as found, else where they are, by number. */
+static void show_lights(const struct look *look,
+                        const struct glint_image *image)
+{
+    const bool found = !look->lights_file && look->n_hand == 0;
+    const double focal = look->scene.setup.optics.focal_mm;
+
+    for (int i = 0; i < look->n_lamps; i++) {
+        struct glint_track track = {.id = (uint32_t)i + 1,
+                                    .state = GLINT_TRACK_STEADY};
+        double x, y;
+
+        if (found) {
+            track = look->finder.track[i];
+        } else {
+            glint_view_to_pixel(&look->view, focal, &look->lamp[i], &x, &y);
+            if (!(fabs(x) < 1 << 20 && fabs(y) < 1 << 20))
+                continue;
+            track.x_q8 = (int32_t)(x * 256);
+            track.y_q8 = (int32_t)(y * 256);
+        }
+        show_light(image, &track);
+    }
+}
+
+enum glint_status look_draw(struct look *look, const struct glint_image *image,
+                            int32_t elapsed_us)
 {
     const double start = tool_seconds();
     enum glint_status status;
     double found;
 
-    look->n_lamps = lamps_of(look, image);
+    look->n_lamps = lamps_of(look, image, elapsed_us);
     found = tool_seconds();
     if (look->flare_only)
         blacken(image);
@@ -206,6 +241,8 @@ enum glint_status look_draw(struct look *look, const struct glint_image *image)
                         scene_scale(&look->scene), image, &look->report);
     look->find_ms = 1e3 * (found - start);
     look->flare_ms = 1e3 * (tool_seconds() - found);
+    if (look->show_lights)
+        show_lights(look, image);
     look->n_frames++;
     return status;
 }

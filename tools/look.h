@@ -20,7 +20,7 @@ struct look {
     const char *lens, *lights_file; /* NULL: lamps are found */
     int threshold[2];               /* 0: the defaults */
     double headroom_ev;
-    bool flare_only;
+    bool flare_only, no_tracking, show_lights;
     size_t reserve_bytes; /* unless 0: all the memory that frames will take */
     int n_hand;
     struct glint_lamp hand[SCENE_MAX_LAMPS];
@@ -46,6 +46,8 @@ enum look_option_code {
     OPT_THRESHOLD,
     OPT_HEADROOM,
     OPT_LAYER,
+    OPT_NO_TRACKING,
+    OPT_SHOW,
     OPT_LOOK_LAST
 };
 
@@ -55,7 +57,9 @@ enum look_option_code {
         {"light", required_argument, NULL, OPT_LIGHT},         \
         {"threshold", required_argument, NULL, OPT_THRESHOLD}, \
         {"headroom", required_argument, NULL, OPT_HEADROOM},   \
-        {"layer", required_argument, NULL, OPT_LAYER}, SCENE_OPTIONS
+        {"layer", required_argument, NULL, OPT_LAYER},         \
+        {"no-tracking", no_argument, NULL, OPT_NO_TRACKING},   \
+        {"show", required_argument, NULL, OPT_SHOW}, SCENE_OPTIONS
 
 #define LOOK_HELP                                                              \
     "  --lens LENS         table or baked model (default heliar-tronnier)\n"   \
@@ -72,6 +76,10 @@ enum look_option_code {
     "  --threshold H[,L]   luma code that makes a light, and the one down "    \
     "to\n"                                                                     \
     "                      which it extends\n"                                 \
+    "  --no-tracking       --lights auto takes each frame of a video by "      \
+    "itself,\n"                                                                \
+    "                      rather than following lamps from frame to frame\n"  \
+    "  --show lights       draws a box and the number of each light on top\n"  \
     "  --headroom EV       stops by which clipped pixels really exceed "       \
     "white\n"                                                                  \
     "                      (default 12); what --lights auto takes for power\n" \
@@ -91,8 +99,10 @@ int look_open(const struct tool *tool, struct look *look);
 int look_size(const struct tool *tool, struct look *look, int width,
               int height);
 
-/* Adds the flare to IMAGE, of that size. GLINT_E_MEMORY. */
-enum glint_status look_draw(struct look *look, const struct glint_image *image);
+/* Adds the flare to IMAGE, of that size and ELAPSED_US after the one before; 0:
+ * a picture by itself. GLINT_E_MEMORY. */
+enum glint_status look_draw(struct look *look, const struct glint_image *image,
+                            int32_t elapsed_us);
 
 void look_close(struct look *look);
 

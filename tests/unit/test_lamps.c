@@ -27,7 +27,7 @@ static void test_found_lamp(void **state)
                                 .range = GLINT_RANGE_FULL};
     struct lamp_finder finder = {.headroom_ev = 3, .max = 8};
     struct glint_lights_config cfg;
-    struct glint_lamp lamp[8];
+    static struct glint_lamp lamp[LAMP_FINDER_MAX];
     double x, y;
 
     (void)state;
@@ -36,7 +36,7 @@ static void test_found_lamp(void **state)
         memset(rgb + 3 * ((Y0 + i) * WIDTH + X0), 255, 3 * SIDE);
     glint_lights_defaults(&cfg, WIDTH, HEIGHT);
     assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
-    assert_int_equal(lamp_finder_frame(&finder, &image, &view, 50, lamp), 1);
+    assert_int_equal(lamp_finder_frame(&finder, &image, 0, &view, 50, lamp), 1);
     lamp_finder_close(&finder);
     glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
     assert_near(x, 225, 0.02);
