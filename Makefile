@@ -33,6 +33,10 @@ JPEG_LIBS ?= -ljpeg
 ifndef WITH_JPEG
 WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS))
 endif
+INIH_LIBS ?= -linih
+ifndef WITH_INIH
+WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS))
+endif
 
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/sort base/image base/workers kernels/sets \
@@ -50,7 +54,7 @@ PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers pl
         plain/pfm plain/y4m oiio/loader plain/picture \
         $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
         linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 plain/row_rgb plain/row_pack plain/panel linux/console linux/fbdev
-TOOLS := show_lights tool model_file model_cache model_report measure lamps frame frame_feed scene look \
+TOOLS := config config_absent show_lights tool model_file model_cache model_report measure lamps frame frame_feed scene look \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
@@ -62,6 +66,12 @@ UNIT += mjpeg
 FUZZ += mjpeg
 else
 UNIT += mjpeg_absent
+endif
+ifeq ($(WITH_INIH),yes)
+UNIT += config
+FUZZ += config
+else
+UNIT += config_absent
 endif
 
 CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \
@@ -76,7 +86,8 @@ CPPFLAGS := -Iinclude -D_FILE_OFFSET_BITS=64
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
         -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef $(WERROR)
 CFLAGS := -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
-LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) -lm -lpthread -ldl
+LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
+        $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) -lm -lpthread -ldl
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
 $(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
@@ -113,7 +124,9 @@ $(error CONFIG is release, asan, tsan or qcheck)
 endif
 
 $(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
+$(OUT)/tools/config.o: CPPFLAGS += $(INIH_CPPFLAGS)
 $(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
+$(OUT)/tools/config_absent.o: NOTE := --config left out: no libinih-dev
 
 $(OUT)/%.o: %.c
 	@mkdir -p $(@D)
@@ -129,9 +142,10 @@ $(OUT)/lib%.a:
 	$(say) AR $@
 	$(Q)rm -f $@; $(AR) rcs $@ $(filter %.o,$^)
 # what is built in: another choice makes other archives
-$(OUT)/libglint-platform.a: $(OUT)/parts
+$(OUT)/libglint-platform.a $(OUT)/libglint-tools.a: $(OUT)/parts
 $(OUT)/parts: always
-	@mkdir -p $(@D); echo $(PLATFORM) | cmp -s - $@ || echo $(PLATFORM) >$@
+	@mkdir -p $(@D); echo $(PLATFORM) $(TOOLS) | cmp -s - $@ || \
+	        echo $(PLATFORM) $(TOOLS) >$@
 libs := $(OUT)/libglint-tools.a $(OUT)/libglint-platform.a \
         $(OUT)/libglint-bake.a $(OUT)/libglint.a
 
@@ -200,7 +214,7 @@ $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
 
 check:
 	@tools/deps "unit tests, lint" gcc libc6-dev binutils \
-	        libcmocka-dev clang clang-format libjpeg62-turbo-dev
+	        libcmocka-dev clang clang-format libjpeg62-turbo-dev libinih-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
@@ -230,7 +244,7 @@ fuzz:
 	        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L -ffp-contract=off \
 	        tests/fuzz/fuzz_$(TARGET).c $(BAKE:%=src/%.c) $(CORE:%=src/%.c) \
 	        $(CORE_$(ARCH):%=src/%.c) $(FUZZ_SETS_$(ARCH)) \
-	        $(PLATFORM:%=platform/%.c) $(JPEG_CPPFLAGS) $(LDLIBS) \
+	        $(PLATFORM:%=platform/%.c) $(TOOLS:%=tools/%.c) $(JPEG_CPPFLAGS) $(INIH_CPPFLAGS) $(LDLIBS) \
 	        -o build/fuzz/fuzz_$(TARGET)
 	build/fuzz/fuzz_$(TARGET) -max_total_time=$(SECONDS) -timeout=10 \
 	        build/fuzz/$(TARGET) tests/fuzz/corpus/$(TARGET)

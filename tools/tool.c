@@ -24,9 +24,15 @@ int tool_usage(const struct tool *tool, const char *format, ...)
     va_list args;
 
     fprintf(stderr, "glint %s: ", tool->name);
+    if (tool->where)
+        fprintf(stderr, "%s: ", tool->where);
     va_start(args, format);
     vfprintf(stderr, format, args);
     va_end(args);
+    if (tool->where) {
+        fputc('\n', stderr);
+        return EXIT_INPUT;
+    }
     fprintf(stderr, "\nTry 'glint %s --help'.\n", tool->name);
     return EXIT_USAGE;
 }
@@ -121,6 +127,22 @@ int tool_option(struct tool *tool, int option, const char *value)
         fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
         return EXIT_USAGE;
     }
+}
+
+const char *tool_value_of(int argc, char **argv, const char *shorts,
+                          const struct option *options, int option)
+{
+    const char *value = NULL;
+    int c;
+
+    opterr = 0;
+    optind = 0; /* glibc and musl: from the start, with nothing remembered */
+    while ((c = getopt_long(argc, argv, shorts, options, NULL)) >= 0)
+        if (c == option)
+            value = optarg;
+    opterr = 1;
+    optind = 0;
+    return value;
 }
 
 int tool_start(struct tool *tool)

@@ -32,6 +32,8 @@ struct tool {
     unsigned sets_off;             /* instruction sets not to use */
     const char *kernels;           /* what --kernels said, or NULL */
     struct glint_workers *workers; /* made by tool_start */
+    const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
+                          command line */
 };
 
 /* Options that every command takes, for its struct option array. */
@@ -58,7 +60,13 @@ void tool_finish(struct tool *tool);
 /* Instruction sets for the kernels. */
 unsigned tool_sets(const struct tool *tool);
 
-/* Prints "glint COMMAND: ..." and returns the code. */
+/* The value of the last option in ARGV that getopt_long would return as OPTION,
+ * or NULL, before any is taken: getopt_long starts afresh afterwards. */
+const char *tool_value_of(int argc, char **argv, const char *shorts,
+                          const struct option *options, int option);
+
+/* Prints "glint COMMAND: ..." and returns the code: of usage EXIT_USAGE, or
+ * EXIT_INPUT where the option comes from a file. */
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
