@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=sh
+#
+# guest.sh - what scripts in the guest may call; sourced for them.
+
+# One line to the host, its answer on standard output. The port takes one
+# process at a time.
+tell() { # WORD...
+    until mkdir /tmp/.port 2>/dev/null; do usleep 10000; done
+    {
+        echo "$*" >&3
+        read -r answer <&3 && echo "$answer"
+    } 3<>/dev/vport0p1
+    rmdir /tmp/.port
+}
+
+# Runs COMMAND ten times a second until it succeeds.
+wait_for() { # SECONDS COMMAND...
+    tries=$(($1 * 10))
+    shift
+    until "$@"; do
+        tries=$((tries - 1))
+        [ $tries -gt 0 ] || return 1
+        usleep 100000
+    done
+}
+
+# A picture of the panel as it is now: /out/NAME.ppm, .png. Drivers that flush
+# by a timer had time to.
+shot() { # NAME
+    usleep 100000
+    answer=$(tell shot "$1")
+    [ "$answer" = ok ] || { echo "shot $1: $answer" >&2; return 1; }
+}
+
+# /dev/video9 as a camera that `feed` feeds.
+loopback() {
+    modprobe videodev
+    insmod /lib/loop.ko devices=1 video_nr=9 exclusive_caps=1 "$@"
+}
+
+fd_count() { # PID
+    ls "/proc/$1/fd" | wc -l
+}
