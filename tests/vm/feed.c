@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * feed [-c CAMERA] [-n COUNT] [-r FPS] DEVICE FOURCC WxH FILE... - frames of
+ * files, in a loop, into a video output: what the camera behind it delivers is
+ * known bit for bit.
+ *
+ * DEVICE is vivid's output, whose HDMI socket is then wired to CAMERA's HDMI
+ * input (same timings and format on both, no text painted over), or a node of
+ * v4l2loopback. An uncompressed file holds one or more frames; one of MJPG or
+ * JPEG is one frame, of any bytes. Without -r, vivid's timings set the pace.
+ */
+#include <sys/mman.h>
+
+#include "device.h"
+
+#define N_BUFFERS 3
+
+struct frame {
+    const uint8_t *bytes;
+    size_t n_bytes;
+};
+
+struct feed {
+    int fd;
+    size_t image_bytes;  /* room in a buffer */
+    size_t packed_bytes; /* a frame in a file; 0: compressed, the whole file */
+    struct frame *frame;
+    int n_frames;
+    uint32_t n_buffers;
+    uint8_t *memory[N_BUFFERS];
+};
+
+static void add_frame(struct feed *feed, const uint8_t *bytes, size_t n_bytes)
+{
+    feed->frame = realloc(feed->frame,
+                          (size_t)(feed->n_frames + 1) * sizeof *feed->frame);
+    if (!feed->frame)
+        die("no memory");
+    feed->frame[feed->n_frames++] = (struct frame){bytes, n_bytes};
+}
+
+static void add_file(struct feed *feed, const char *path)
+{
+    size_t n_bytes;
+    const uint8_t *bytes = read_file(path, &n_bytes);
+    size_t step = feed->packed_bytes ? feed->packed_bytes : n_bytes;
+    if (step > feed->image_bytes)
+        die("%s: more than the %zu bytes of a frame", path, feed->image_bytes);
+    if (feed->packed_bytes && (n_bytes == 0 || n_bytes % step != 0))
+        die("%s: %zu bytes are no whole frames of %zu", path, n_bytes, step);
+    for (size_t at = 0; at == 0 || at < n_bytes; at += step)
+        add_frame(feed, bytes + at, step);
+}
+
+/* Sockets that take DV timings: HDMI. -1: none, as v4l2loopback. */
+static int hdmi_output(int fd)
+{
+    struct v4l2_output output = {.index = 0};
+    for (; try_ioctl(fd, VIDIOC_ENUMOUTPUT, &output) == 0; output.index++)
+        if (output.capabilities & V4L2_OUT_CAP_DV_TIMINGS)
+            return (int)output.index;
+    return -1;
+}
+static int hdmi_input(int fd)
+{
+    struct v4l2_input input = {.index = 0};
+    for (; try_ioctl(fd, VIDIOC_ENUMINPUT, &input) == 0; input.index++)
+        if (input.capabilities & V4L2_IN_CAP_DV_TIMINGS)
+            return (int)input.index;
+    die("the camera has no HDMI input");
+}
+
+static double timings_fps(const struct v4l2_bt_timings *bt)
+{
+    double pixels = (double)V4L2_DV_BT_FRAME_WIDTH(bt) *
+                    (double)V4L2_DV_BT_FRAME_HEIGHT(bt);
+    return (double)bt->pixelclock / pixels;
+}
+
+/* The progressive timings of a size nearest to FPS. */
+static struct v4l2_dv_timings find_timings(int fd, uint32_t width,
+                                           uint32_t height, double fps)
+{
+    struct v4l2_enum_dv_timings at = {.index = 0};
+    struct v4l2_dv_timings best = {.type = 0};
+    double least = 1e9;
+    for (; try_ioctl(fd, VIDIOC_ENUM_DV_TIMINGS, &at) == 0; at.index++) {
+        const struct v4l2_bt_timings *bt = &at.timings.bt;
+        double off = timings_fps(bt) - (fps > 0.0 ? fps : 60.0);
+        off = off < 0.0 ? -off : off;
+        if (bt->width == width && bt->height == height && !bt->interlaced &&
+            off < least) {
+            least = off;
+            best = at.timings;
+        }
+    }
+    if (least > 1e8)
+        die("HDMI knows no timings of %ux%u", width, height);
+    return best;
+}
+
+static void set_control(int fd, const char *name, int32_t value)
+{
+    struct v4l2_queryctrl query = {.id = V4L2_CTRL_FLAG_NEXT_CTRL};
+    while (try_ioctl(fd, VIDIOC_QUERYCTRL, &query) == 0) {
+        if (strcmp((const char *)query.name, name) == 0) {
+            struct v4l2_control control = {query.id, value};
+            must_ioctl(fd, VIDIOC_S_CTRL, &control, name);
+            return;
+        }
+        query.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
+    }
+    die("no control \"%s\"", name);
+}
+
+/* Both ends of the cable alike. */
+static void wire_hdmi(int out, int socket, const char *camera, uint32_t fourcc,
+                      uint32_t width, uint32_t height, double fps)
+{
+    if (!camera)
+        die("vivid's output needs -c CAMERA");
+    int in = open_device(camera);
+    int input = hdmi_input(in);
+    must_ioctl(out, VIDIOC_S_OUTPUT, &socket, "VIDIOC_S_OUTPUT");
+    must_ioctl(in, VIDIOC_S_INPUT, &input, "VIDIOC_S_INPUT");
+    struct v4l2_dv_timings timings = find_timings(out, width, height, fps);
+    must_ioctl(out, VIDIOC_S_DV_TIMINGS, &timings, "VIDIOC_S_DV_TIMINGS (out)");
+    must_ioctl(in, VIDIOC_S_DV_TIMINGS, &timings, "VIDIOC_S_DV_TIMINGS (in)");
+    set_format(in, V4L2_BUF_TYPE_VIDEO_CAPTURE, fourcc, width, height);
+    set_control(in, "OSD Text Mode", 2);
+    set_control(in, "Loop Video", 1);
+    close(in);
+}
+
+static void pace(struct timespec *next, double fps)
+{
+    long step = (long)(1e9 / fps);
+    next->tv_nsec += step;
+    next->tv_sec += next->tv_nsec / 1000000000;
+    next->tv_nsec %= 1000000000;
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, next, NULL) == EINTR)
+        ;
+}
+
+static void take_buffers(struct feed *feed)
+{
+    struct v4l2_requestbuffers request = {.count = N_BUFFERS,
+                                          .type = V4L2_BUF_TYPE_VIDEO_OUTPUT,
+                                          .memory = V4L2_MEMORY_MMAP};
+    must_ioctl(feed->fd, VIDIOC_REQBUFS, &request, "VIDIOC_REQBUFS");
+    feed->n_buffers = request.count < N_BUFFERS ? request.count : N_BUFFERS;
+    for (uint32_t i = 0; i < feed->n_buffers; i++) {
+        struct v4l2_buffer buffer = {
+            .index = i, .type = request.type, .memory = request.memory};
+        must_ioctl(feed->fd, VIDIOC_QUERYBUF, &buffer, "VIDIOC_QUERYBUF");
+        feed->memory[i] = mmap(NULL, buffer.length, PROT_READ | PROT_WRITE,
+                               MAP_SHARED, feed->fd, (off_t)buffer.m.offset);
+        if (feed->memory[i] == MAP_FAILED)
+            die("mmap: %s", strerror(errno));
+    }
+}
+
+/* A buffer the device is through with; blocks until there is one. */
+static uint32_t free_buffer(const struct feed *feed, long i)
+{
+    if (i < (long)feed->n_buffers)
+        return (uint32_t)i;
+    struct v4l2_buffer buffer = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT,
+                                 .memory = V4L2_MEMORY_MMAP};
+    must_ioctl(feed->fd, VIDIOC_DQBUF, &buffer, "VIDIOC_DQBUF");
+    return buffer.index;
+}
+
+static void run(const struct feed *feed, long count, double fps)
+{
+    int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+    struct timespec next;
+    clock_gettime(CLOCK_MONOTONIC, &next);
+    for (long i = 0; count == 0 || i < count; i++) {
+        const struct frame *frame = &feed->frame[i % feed->n_frames];
+        struct v4l2_buffer buffer = {.index = free_buffer(feed, i),
+                                     .type = (uint32_t)type,
+                                     .memory = V4L2_MEMORY_MMAP,
+                                     .bytesused = (uint32_t)frame->n_bytes,
+                                     .field = V4L2_FIELD_NONE};
+        memcpy(feed->memory[buffer.index], frame->bytes, frame->n_bytes);
+        must_ioctl(feed->fd, VIDIOC_QBUF, &buffer, "VIDIOC_QBUF");
+        if (i == 0)
+            must_ioctl(feed->fd, VIDIOC_STREAMON, &type, "VIDIOC_STREAMON");
+        if (fps > 0.0)
+            pace(&next, fps);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const char *camera = NULL;
+    long count = 0;
+    double fps = 0.0;
+    int option;
+    while ((option = getopt(argc, argv, "c:n:r:")) != -1) {
+        switch (option) {
+        case 'c':
+            camera = optarg;
+            break;
+        case 'n':
+            count = atol(optarg);
+            break;
+        case 'r':
+            fps = atof(optarg);
+            break;
+        default:
+            die("see the head of feed.c");
+        }
+    }
+    if (argc - optind < 4)
+        die("feed [-c CAMERA] [-n COUNT] [-r FPS] DEVICE FOURCC WxH FILE...");
+    char **word = argv + optind;
+    uint32_t width, height, fourcc = fourcc_of(word[1]);
+    size_of(word[2], &width, &height);
+    struct feed feed = {.fd = open_device(word[0]),
+                        .packed_bytes = packed_bytes(fourcc, width, height)};
+    int socket = hdmi_output(feed.fd);
+    if (socket >= 0)
+        wire_hdmi(feed.fd, socket, camera, fourcc, width, height, fps);
+    else if (fps <= 0.0)
+        fps = 30.0;
+    feed.image_bytes =
+        set_format(feed.fd, V4L2_BUF_TYPE_VIDEO_OUTPUT, fourcc, width, height);
+    for (char **path = word + 3; *path; path++)
+        add_file(&feed, *path);
+    take_buffers(&feed);
+    run(&feed, count, fps);
+    return 0;
+}
