@@ -26,7 +26,7 @@ struct feed {
     size_t packed_bytes; /* a frame in a file; 0: compressed, the whole file */
     struct frame *frame;
     int n_frames;
-    uint32_t n_buffers;
+    uint32_t n_buffers; /* 0: frames are written */
     uint8_t *memory[N_BUFFERS];
 };
 
@@ -48,8 +48,11 @@ static void add_file(struct feed *feed, const char *path)
         die("%s: more than the %zu bytes of a frame", path, feed->image_bytes);
     if (feed->packed_bytes && (n_bytes == 0 || n_bytes % step != 0))
         die("%s: %zu bytes are no whole frames of %zu", path, n_bytes, step);
-    for (size_t at = 0; at == 0 || at < n_bytes; at += step)
+    size_t at = 0;
+    do { /* an empty file is an empty frame */
         add_frame(feed, bytes + at, step);
+        at += step;
+    } while (at < n_bytes);
 }
 
 /* Sockets that take DV timings: HDMI. -1: none, as v4l2loopback. */
@@ -171,22 +174,39 @@ static uint32_t free_buffer(const struct feed *feed, long i)
     return buffer.index;
 }
 
-static void run(const struct feed *feed, long count, double fps)
+/* v4l2loopback counts frames that are written, not those that are queued. */
+static void write_frame(int fd, const struct frame *frame)
+{
+    ssize_t n = write(fd, frame->bytes, frame->n_bytes);
+    if (n != (ssize_t)frame->n_bytes)
+        die("write: %s", n < 0 ? strerror(errno) : "cut short");
+}
+
+static void queue_frame(const struct feed *feed, const struct frame *frame,
+                        long i)
 {
     int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+    struct v4l2_buffer buffer = {.index = free_buffer(feed, i),
+                                 .type = (uint32_t)type,
+                                 .memory = V4L2_MEMORY_MMAP,
+                                 .bytesused = (uint32_t)frame->n_bytes,
+                                 .field = V4L2_FIELD_NONE};
+    memcpy(feed->memory[buffer.index], frame->bytes, frame->n_bytes);
+    must_ioctl(feed->fd, VIDIOC_QBUF, &buffer, "VIDIOC_QBUF");
+    if (i == 0)
+        must_ioctl(feed->fd, VIDIOC_STREAMON, &type, "VIDIOC_STREAMON");
+}
+
+static void run(const struct feed *feed, long count, double fps)
+{
     struct timespec next;
     clock_gettime(CLOCK_MONOTONIC, &next);
     for (long i = 0; count == 0 || i < count; i++) {
         const struct frame *frame = &feed->frame[i % feed->n_frames];
-        struct v4l2_buffer buffer = {.index = free_buffer(feed, i),
-                                     .type = (uint32_t)type,
-                                     .memory = V4L2_MEMORY_MMAP,
-                                     .bytesused = (uint32_t)frame->n_bytes,
-                                     .field = V4L2_FIELD_NONE};
-        memcpy(feed->memory[buffer.index], frame->bytes, frame->n_bytes);
-        must_ioctl(feed->fd, VIDIOC_QBUF, &buffer, "VIDIOC_QBUF");
-        if (i == 0)
-            must_ioctl(feed->fd, VIDIOC_STREAMON, &type, "VIDIOC_STREAMON");
+        if (feed->n_buffers)
+            queue_frame(feed, frame, i);
+        else
+            write_frame(feed->fd, frame);
         if (fps > 0.0)
             pace(&next, fps);
     }
@@ -229,7 +249,8 @@ int main(int argc, char **argv)
         set_format(feed.fd, V4L2_BUF_TYPE_VIDEO_OUTPUT, fourcc, width, height);
     for (char **path = word + 3; *path; path++)
         add_file(&feed, *path);
-    take_buffers(&feed);
+    if (socket >= 0)
+        take_buffers(&feed);
     run(&feed, count, fps);
     return 0;
 }
