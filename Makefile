@@ -1,6 +1,7 @@
 # glint - physically based camera effects for small machines.
 #
 #   make          build/glint; needs a C compiler only
+#   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make lint     layers, Q formats, formatting, symbols, purity
@@ -21,8 +22,31 @@ AR      ?= ar
 NM      ?= nm
 OBJDUMP ?= objdump
 PREFIX  ?= /usr/local
-ARCH := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
-OUT  := build/$(ARCH)-$(notdir $(CC))-$(CONFIG)
+# Static, for boards and the emulator:  TARGET=aarch64|armv7|x86_64, with the
+# libraries of SYSROOT, if given (tests/vm/prepare makes one). STATIC=1: this
+# machine's own.
+TARGETS := x86_64 aarch64 armv7
+ifdef STATIC
+TARGET := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
+endif
+CROSS_x86_64  := x86_64-linux-gnu-
+CROSS_aarch64 := aarch64-linux-gnu-
+CROSS_armv7   := arm-linux-gnueabihf-
+MACHINE_armv7 := -march=armv7-a -mfpu=neon-vfpv4 -mfloat-abi=hard
+ifneq ($(filter $(TARGETS),$(TARGET)),)
+CROSS   := $(CROSS_$(TARGET))
+CC      := $(CROSS)gcc
+AR      := $(CROSS)ar
+NM      := $(CROSS)nm
+OBJDUMP := $(CROSS)objdump
+LDFLAGS += -static
+JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
+JPEG_LIBS     := $(SYSROOT:%=-L%/lib) -ljpeg
+INIH_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
+INIH_LIBS     := $(SYSROOT:%=-L%/lib) -linih
+endif
+ARCH := $(if $(CROSS),$(TARGET),$(firstword $(subst -, ,$(shell $(CC) -dumpmachine))))
+OUT  := build/$(if $(CROSS),$(TARGET),$(ARCH)-$(notdir $(CC))-$(CONFIG))
 export DEPS OUT
 
 # Libraries that glint can do without:  WITH_JPEG=yes|no  says which are used,
@@ -77,6 +101,10 @@ endif
 CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \
         kernels/composite_sse41 kernels/composite_avx2
 CORE_aarch64 := kernels/horner_neon kernels/composite_neon
+CORE_armv7   := $(CORE_aarch64)
+ifdef CROSS # a static program has no plug-ins
+PLATFORM := $(PLATFORM:oiio/loader=oiio/absent)
+endif
 core_o     := $(patsubst %,$(OUT)/src/%.o,$(CORE) $(CORE_$(ARCH)))
 bake_o     := $(BAKE:%=$(OUT)/src/%.o)
 platform_o := $(PLATFORM:%=$(OUT)/platform/%.o)
@@ -85,7 +113,7 @@ tools_o    := $(TOOLS:%=$(OUT)/tools/%.o)
 CPPFLAGS := -Iinclude -D_FILE_OFFSET_BITS=64
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
         -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef $(WERROR)
-CFLAGS := -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
+CFLAGS := $(MACHINE_$(TARGET)) -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
         $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) -lm -lpthread -ldl
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
@@ -156,7 +184,7 @@ define link
 	        $(LDLIBS) -o $@
 endef
 
-all: build/glint
+all: $(if $(CROSS),$(OUT)/glint,build/glint)
 build/glint: $(OUT)/glint always
 	$(Q)cmp -s $< $@ || { cp -f $< $@.tmp && mv -f $@.tmp $@; }
 always:
@@ -225,11 +253,14 @@ CORE_TEST := tests/unit/test_kernels.c src/base/status.c src/base/q.c \
         $(wildcard src/kernels/*_c.c src/kernels/*_neon.c)
 check-neon:
 	@tools/deps "NEON kernels in an emulator" gcc-aarch64-linux-gnu \
-	        libc6-dev-arm64-cross qemu-user-static
+	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf \
+	        libc6-dev-armhf-cross qemu-user-static
 	@mkdir -p build/neon
-	aarch64-linux-gnu-gcc -std=c99 -O2 -static $(WARN) $(CPPFLAGS) -Isrc -Itests \
-	        -D_POSIX_C_SOURCE=200809L $(CORE_TEST) -o build/neon/test_kernels
-	qemu-aarch64-static build/neon/test_kernels
+	$(foreach t,aarch64 armv7,$(CROSS_$t)gcc $(MACHINE_$t) -std=c99 -O2 -static $(WARN) \
+	        $(CPPFLAGS) -Isrc -Itests -D_POSIX_C_SOURCE=200809L $(CORE_TEST) \
+	        -o build/neon/test_kernels_$t &&) true
+	qemu-aarch64-static build/neon/test_kernels_aarch64
+	qemu-arm-static build/neon/test_kernels_armv7
 golden-update: $(OUT)/tests/unit/test_flare
 	@GLINT_GOLDEN_UPDATE=1 $<
 
@@ -237,6 +268,9 @@ golden-update: $(OUT)/tests/unit/test_flare
 FUZZ_SETS_x86_64 := -mavx2
 TARGET  ?= lens
 SECONDS ?= 60
+ifeq ($(filter $(TARGETS) $(FUZZ),$(TARGET)),)
+$(error TARGET is one of $(TARGETS); for fuzz one of $(FUZZ))
+endif
 fuzz:
 	@tools/deps "libFuzzer" clang libclang-rt-14-dev
 	@mkdir -p build/fuzz/$(TARGET)

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * In place of loader.c in static programs: they cannot load a plug-in.
+ */
+#include "oiio/oiio.h"
+
+#include "posix/error.h"
+
+enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
+                                  struct glint_error *error)
+{
+    *oiio = NULL;
+    return glint_error_report(error, GLINT_E_UNSUPPORTED, "glint-oiio.so",
+                              "a static glint loads no plug-ins");
+}

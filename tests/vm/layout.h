@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * layout.h - packed pixels by the names that device trees give them: fields
+ * from the highest bit down, as in r5g6b5 or x8r8g8b8.
+ */
+#ifndef GLINT_VM_LAYOUT_H
+#define GLINT_VM_LAYOUT_H
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct layout {
+    unsigned n_bytes;
+    unsigned length[3], offset[3]; /* red, green, blue */
+};
+
+/* 0: no such name. */
+__attribute__((unused)) static int layout_of(const char *name,
+                                             struct layout *layout)
+{
+    unsigned at = 0;
+    memset(layout, 0, sizeof *layout);
+    for (size_t i = strlen(name); i >= 2; i -= 2) {
+        const char *field = name + i - 2;
+        const char *known = "rgb", *channel = strchr(known, field[0]);
+        unsigned length = (unsigned)(field[1] - '0');
+        if (length < 1 || length > 8)
+            return 0;
+        if (channel) {
+            layout->length[channel - known] = length;
+            layout->offset[channel - known] = at;
+        }
+        at += length;
+    }
+    layout->n_bytes = at / 8;
+    return at % 8 == 0 && at >= 16 && at <= 32;
+}
+
+/* What a panel makes of N bits: black and white stay so, as both ends of the
+ * range are repeated. */
+__attribute__((unused)) static uint8_t widen(uint32_t value, unsigned n)
+{
+    uint32_t wide = value << (8 - n);
+    for (unsigned have = n; have < 8; have += n)
+        wide |= wide >> have;
+    return (uint8_t)wide;
+}
+
+#endif
