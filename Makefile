@@ -1,7 +1,7 @@
 # glint - physically based camera effects for small machines.
 #
 #   make          build/glint; needs a C compiler only
-#   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static
+#   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static and takes in libjpeg and inih where it finds them
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make lint     layers, Q formats, formatting, symbols, purity
@@ -78,12 +78,12 @@ PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers pl
         plain/pfm plain/y4m oiio/loader plain/picture \
         $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
         linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 plain/row_rgb plain/row_pack plain/panel linux/console linux/fbdev
-TOOLS := config config_absent show_lights tool model_file model_cache model_report measure lamps frame frame_feed scene look \
+TOOLS := live_stats config config_absent show_lights tool model_file model_cache model_report measure lamps frame frame_feed scene look \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps at_death fourcc panel tracks
+        measure lamps at_death fourcc panel tracks live_stats
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
