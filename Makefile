@@ -1,7 +1,8 @@
 # glint - physically based camera effects for small machines.
 #
-#   make          build/glint; needs a C compiler only
-#   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static and takes in libjpeg and inih where it finds them
+#   make          build/glint; needs a C compiler only, and takes in libjpeg
+#                 and inih where it finds them
+#   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make lint     layers, Q formats, formatting, symbols, purity
@@ -63,23 +64,28 @@ WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS))
 endif
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/sort base/image base/workers kernels/sets \
-        kernels/kernels kernels/horner_c kernels/composite_c lens/model lens/transfer flare/regions flare/lights flare/match flare/follow flare/tracks tile/primitive tile/clip \
-        tile/outline tile/bins tile/raster tile/edges tile/curve \
-        tile/mix tile/codes tile/resolve flare/beams flare/plan flare/ghost_grid flare/cuts flare/ghost_edges flare/by_cells \
-        flare/by_edges flare/flare
+CORE := base/status base/arena base/q base/sort base/image base/workers \
+        kernels/sets kernels/kernels kernels/horner_c kernels/composite_c \
+        lens/model lens/transfer flare/regions flare/lights flare/match \
+        flare/follow flare/tracks tile/primitive tile/clip tile/outline \
+        tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
+        tile/resolve flare/beams flare/plan flare/ghost_grid flare/cuts \
+        flare/ghost_edges flare/by_cells flare/by_edges flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
         bake/setup bake/exact bake/feed bake/hunt bake/regress \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
-PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers plain/pnm \
-        plain/pfm plain/y4m oiio/loader plain/picture \
+PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
+        plain/pnm plain/pfm plain/y4m oiio/loader plain/picture \
         $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
-        linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 plain/row_rgb plain/row_pack plain/panel linux/console linux/fbdev
-TOOLS := live_stats config config_absent show_lights tool model_file model_cache model_report measure lamps frame frame_feed scene look \
-        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_compare \
+        linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
+        plain/row_rgb plain/row_pack plain/panel linux/console linux/fbdev
+TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
+        model_report measure lamps show_lights frame frame_feed scene look live_adapt \
+        live_signals live_output live_stats live_loop \
+        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_live cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \

@@ -9,6 +9,9 @@
 #include "frame_feed.h"
 #include "tool.h"
 
+/* Hundreds of ghosts that each stay below half a code can be seen together. */
+#define FAINTEST_CODES 0.125
+
 /* What one frame may take, by edges and by cells. */
 enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_CELLS = 65535 };
 
@@ -26,6 +29,7 @@ void frame_init(struct frame *frame, const struct glint_setup *setup,
                             .max_lights = FRAME_MAX_LIGHTS,
                             .apart_px = FRAME_APART_PX,
                             .max_cells = 64,
+                            .faintest_codes = FAINTEST_CODES,
                             .only_ghost = -1};
     glint_setup_stop(setup, &frame->cfg.stop);
 }
@@ -155,13 +159,11 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
     return GLINT_OK;
 }
 
-/* An eighth of a code near black: hundreds of ghosts that each stay below half
- * a code can be seen together. */
-static double faintest(const struct glint_image *image)
+static double faintest(const struct frame *f, const struct glint_image *image)
 {
-    return image->format == GLINT_LINEAR_Q20    ? 0
-           : image->transfer == GLINT_TONE_SRGB ? 0.125 / 255 / 12.92
-                                                : 0.125 / 255 / 4.5;
+    return image->format == GLINT_LINEAR_Q20 ? 0
+           : f->faintest_codes / 255 /
+                 (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
 }
 
 static struct glint_rays rays_of(const struct frame *f, double faintest_light)
@@ -217,6 +219,12 @@ static int bundles_of(const struct frame *f, int n_beams)
         (double)n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
 
     return need < most ? (int)need : most;
+}
+
+void frame_retune(struct frame *f)
+{
+    if (f->mem)
+        glint_flare_init(&f->flare, &f->cfg, f->mem, f->bytes);
 }
 
 /* Plans, with room for all bundles there can be. */
@@ -349,7 +357,7 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
            double scale, const struct glint_image *image,
            struct glint_flare_stats *stats, double times[5])
 {
-    const struct glint_rays rays = rays_of(f, faintest(image));
+    const struct glint_rays rays = rays_of(f, faintest(f, image));
     enum glint_status status;
 
     times[0] = tool_seconds();

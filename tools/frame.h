@@ -30,6 +30,7 @@ struct frame {
     int max_lights;  /* that are drawn; more merge, the faint ones first */
     double apart_px; /* lights whose images are nearer are one */
     int max_cells;
+    double faintest_codes; /* codes near black that a ghost may stay below */
     bool uniform;   /* the same grid for all ghosts */
     bool narrow;    /* rays in 16-bit lanes */
     int only_ghost; /* -1: all */
@@ -88,6 +89,9 @@ enum glint_status frame_draw(struct frame *frame,
                              const struct glint_lamp *lamps, int n_lamps,
                              double scale, const struct glint_image *image,
                              struct frame_report *report);
+
+/* Takes over what changed in cfg since memory was taken; no more of it is. */
+void frame_retune(struct frame *frame);
 
 void frame_finish(struct frame *frame);
 

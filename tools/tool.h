@@ -121,6 +121,7 @@ int cmd_trace(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_overlay(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
+int cmd_live(int argc, char **argv);
 int cmd_bake(int argc, char **argv);
 int cmd_bench(int argc, char **argv);
 

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT */
+#include "live_adapt.h"
+
+#include <math.h>
+
+#define TIGHT      0.9  /* of a period: a step down */
+#define SPARE      0.55 /* of a period: a step up, later */
+#define SETTLE_S   0.3  /* after a step, before the next one down */
+#define HOLD_S     2.0
+#define MAX_HOLD_S 60.0
+#define SMOOTHING  0.2
+
+/* How far each step goes from what was asked for. */
+static const struct {
+    double grid, steps; /* of what was asked */
+    double codes;       /* ghosts fainter than so many codes are left out */
+    int max_lights;
+} step_of[LIVE_MAX_STEP + 1] = {
+    {1.0, 1.0, 0.125, 1 << 20}, {0.75, 0.5, 0.125, 64}, {0.5, 0.25, 0.25, 32},
+    {0.35, 0.12, 0.5, 16},      {0.25, 0.06, 1, 12},    {0.25, 0.06, 2, 8},
+    {0.25, 0.06, 4, 4},         {0.25, 0.06, 8, 2},
+};
+
+void live_adapt_init(struct live_adapt *a)
+{
+    *a = (struct live_adapt){.hold_s = HOLD_S, .busy_ms = -1};
+}
+
+static bool go(struct live_adapt *a, int by)
+{
+    const int step = a->step + by;
+
+    a->below_s = 0;
+    if (step < 0 || step > LIVE_MAX_STEP)
+        return false;
+    /* down again soon after a step up: that was too early */
+    if (by > 0 && a->since_s < 2 * HOLD_S && a->step < LIVE_MAX_STEP)
+        a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
+    a->step = step;
+    a->since_s = 0;
+    a->busy_ms = -1;
+    return true;
+}
+
+bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
+                     int n_missed)
+{
+    const double elapsed_s = 1e-3 * period_ms * (1 + n_missed);
+
+    a->busy_ms = a->busy_ms < 0
+                     ? busy_ms
+                     : a->busy_ms + SMOOTHING * (busy_ms - a->busy_ms);
+    a->since_s += elapsed_s;
+    if (n_missed > 0 || a->busy_ms > TIGHT * period_ms)
+        return a->since_s >= SETTLE_S && go(a, 1);
+    a->below_s = a->busy_ms < SPARE * period_ms ? a->below_s + elapsed_s : 0;
+    return a->below_s >= a->hold_s && go(a, -1);
+}
+
+void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
+                      const struct frame *asked)
+{
+    const int step = a->step;
+    const int steps = asked->cfg.irradiance_steps;
+
+    frame->max_cells = (int)fmin(
+        asked->max_cells,
+        fmax(16, rint(asked->max_cells * step_of[step].grid / 4) * 4));
+    frame->cfg.irradiance_steps =
+        steps ? (int)fmax(4, rint(steps * step_of[step].steps)) : 0;
+    frame->faintest_codes = fmax(asked->faintest_codes, step_of[step].codes);
+    frame->max_lights = asked->max_lights < step_of[step].max_lights
+                            ? asked->max_lights
+                            : step_of[step].max_lights;
+    frame_retune(frame);
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What live frames go to, by name:
+ *   fb[:/dev/fb0]     the panel of a framebuffer
+ *   y4m:FILE | y4m:-  a video file or pipe
+ *   v4l2:/dev/videoN  an output node, as of v4l2loopback
+ *   null              nowhere
+ */
+#ifndef GLINT_TOOLS_LIVE_OUTPUT_H
+#define GLINT_TOOLS_LIVE_OUTPUT_H
+
+#include "linux/fbdev.h"
+#include "tool.h"
+
+enum live_output_kind {
+    LIVE_OUTPUT_FB,
+    LIVE_OUTPUT_Y4M,
+    LIVE_OUTPUT_V4L2,
+    LIVE_OUTPUT_NULL
+};
+
+struct live_output {
+    enum live_output_kind kind;
+    const char *path;        /* NULL: the default */
+    struct glint_sink *sink; /* NULL: closed */
+    union {
+        struct glint_fbdev fb;
+        struct glint_sink null;
+    } as;
+};
+
+/* Reads NAME, which is kept. False: it is none of the above. */
+bool live_output_parse(struct live_output *output, const char *name);
+
+/* Whether it takes pictures of any size, so that it can be opened before the
+ * first and need not be when the size changes. */
+bool live_output_is_flexible(const struct live_output *output);
+
+/* IMAGE says format and size, but for a flexible output. */
+enum glint_status live_output_open(struct live_output *output,
+                                   const struct glint_image *image, int fps_num,
+                                   int fps_den, enum glint_panel_fit fit,
+                                   struct glint_error *error);
+
+void live_output_close(struct live_output *output);
+
+#endif
