@@ -5,6 +5,7 @@
 #   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
+#   make check-vm   on Debian's kernels in an emulator, ARM too
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
@@ -35,6 +36,9 @@ CROSS_aarch64 := aarch64-linux-gnu-
 CROSS_armv7   := arm-linux-gnueabihf-
 MACHINE_armv7 := -march=armv7-a -mfpu=neon-vfpv4 -mfloat-abi=hard
 ifneq ($(filter $(TARGETS),$(TARGET)),)
+ifneq ($(CONFIG),release)
+$(error TARGET=$(TARGET) is for CONFIG=release)
+endif
 CROSS   := $(CROSS_$(TARGET))
 CC      := $(CROSS)gcc
 AR      := $(CROSS)ar
@@ -267,6 +271,26 @@ check-neon:
 	        -o build/neon/test_kernels_$t &&) true
 	qemu-aarch64-static build/neon/test_kernels_aarch64
 	qemu-arm-static build/neon/test_kernels_armv7
+# glint on Debian's kernels in an emulator: cameras, panels, ARM. One:
+# VMFILTER=aarch64/camera, as tests/vm/check says.
+VM_ARCHS ?= $(TARGETS)
+VM_TOOLS := bars ctl feed grab vt
+vm_cache := $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/glint/vm
+$(OUT)/vm/%: tests/vm/%.c tests/vm/device.h tests/vm/layout.h
+	@mkdir -p $(@D)
+	$(say) CC $<
+	$(Q)$(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L $(CFLAGS) $(LDFLAGS) $< -o $@
+vm-programs: $(OUT)/glint $(VM_TOOLS:%=$(OUT)/vm/%)
+check-vm:
+	@tools/deps "cameras, panels and ARM in an emulator" qemu-system-x86 \
+	        qemu-system-arm qemu-system-data seabios cpio kmod xz-utils \
+	        device-tree-compiler debian-archive-keyring gcc-aarch64-linux-gnu \
+	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross
+	@tests/vm/possible $(VM_ARCHS) || exit 0; set -e; \
+	for a in x86_64 $(VM_ARCHS); do tests/vm/prepare $$a; \
+	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$a \
+	                SYSROOT=$(vm_cache)/$$a/sysroot vm-programs; done; \
+	tests/vm/check $(VM_ARCHS)
 golden-update: $(OUT)/tests/unit/test_flare
 	@GLINT_GOLDEN_UPDATE=1 $<
 
@@ -314,7 +338,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn growth memory-table check run-check check-neon golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn growth memory-table check run-check check-neon check-vm vm-programs golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

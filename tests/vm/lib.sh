@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=bash
+#
+# lib.sh - what the tests tests/vm/test-*.sh are made of. Sourced with the
+# architecture as first word; see README.md here.
+#
+#   $arch $out $glint $tools   architecture; folder of artefacts; static glint;
+#                              folder of the guest's tools, all in each guest
+#   guest NAME [OPTION...] <<'END' ... END
+#                              boots and runs the script; $code is its exit code,
+#                              $out/NAME gets log, console, pictures
+#   expect TEXT COMMAND...     one check
+#   skip TEXT                  ends the test: not possible here
+set -u
+cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 2
+arch=${1:?an architecture: x86_64, aarch64 or armv7}
+name=$(basename "$0" .sh)
+name=${name#test-}
+out=$PWD/build/vm/$arch/$name
+glint=$PWD/build/$arch/glint
+tools=$PWD/build/$arch/vm
+rm -rf "$out"
+mkdir -p "$out"
+passed=0 failed=0 code=''
+
+guest() { # NAME [OPTION of run...], script on standard input
+    local to=$out/$1 tool inputs=()
+    shift
+    mkdir -p "$to"
+    cat >"$to/script"
+    for tool in "$tools"/*; do
+        [ -x "$tool" ] && [ -f "$tool" ] && inputs+=(-i "$tool")
+    done
+    tests/vm/run -a "$arch" "${inputs[@]}" "$@" -o "$to" -e "$to/script" \
+        >"$to/said" 2>&1
+    code=$?
+    [ $code -ne 125 ] || { echo "the guest failed:" && tail -n 5 "$to/said"; }
+}
+
+expect() { # TEXT COMMAND...
+    local text=$1
+    shift
+    if "$@" >"$out/.why" 2>&1; then
+        passed=$((passed + 1))
+        echo "ok $text"
+    else
+        failed=$((failed + 1))
+        echo "not ok $text ($*)"
+        sed 's/^/   /' "$out/.why" | head -n 8
+    fi
+}
+
+skip() { # TEXT
+    echo "skipped: $*"
+    trap - EXIT
+    exit 77
+}
+
+# What expect may ask besides shell commands; paths are relative to $out.
+exited() { # CODE - the last guest did
+    [ "$code" = "$1" ] || { echo "exit code $code"; return 1; }
+}
+says() { # FILE REGEX
+    grep -Eq "$2" "$out/$1" || { tail -n 6 "$out/$1"; return 1; }
+}
+same() { # FILE FILE - byte for byte
+    cmp "$out/$1" "$out/$2"
+}
+
+# The model of LENS, baked once for all tests; prints its path.
+model() { # LENS
+    mkdir -p build/vm/models
+    (
+        flock 8
+        [ -s "build/vm/models/$1.glint" ] ||
+            build/x86_64/glint bake "$1" -o "build/vm/models/$1.glint" >&2
+    ) 8>build/vm/models/.lock
+    echo "build/vm/models/$1.glint"
+}
+
+end() {
+    local status=$?
+    rm -f "$out/.why"
+    [ $status -eq 0 ] || { echo "not ok the test ran to its end ($status)"; failed=$((failed + 1)); }
+    [ $((passed + failed)) -gt 0 ] || { echo "not ok nothing was checked"; failed=1; }
+    echo "$passed passed, $failed failed"
+    exit $((failed > 0))
+}
+trap end EXIT
