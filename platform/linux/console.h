@@ -12,6 +12,9 @@
  * comes back by release, and also by exit() and all that posix/at_death.h
  * lists, whereupon the kernel paints the text anew.
  *
+ * Take it before a panel is opened (linux/fbdev.h does), since what comes last
+ * is put right first.
+ *
  * After kill -9 the console stays dark, and cannot be switched away from: that
  * mode is for programs that switch by themselves. Whatever takes and releases
  * the console next, as the next run does, brings the text back. So does

@@ -41,7 +41,9 @@ static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
 
 /* -------------------------------------------------------------- when dying */
 
-/* The console draws where it drew before, so that place must be seen again. */
+/* The console draws where it drew before, so that place must be seen again; and
+ * before the console comes back, for it takes the place as given, and Linux 6.1
+ * then counts from a wrong one. */
 static int panned_fd = -1; /* atomic */
 static struct fb_var_screeninfo panned_home;
 static pid_t panner; /* atomic */
@@ -197,6 +199,8 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
     unmap(fb);
     glint_panel_close(&fb->panel);
     fb->home = fb->var;
+    if (fb->home.yoffset == fb->var.yres)
+        fb->home.yoffset = 0; /* as one of us left it who was killed */
     if (request(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
         return lost(fb, "FBIOGET_FSCREENINFO", error);
     status = adopt(fb, &fix, error);
