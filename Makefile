@@ -280,7 +280,15 @@ $(OUT)/vm/%: tests/vm/%.c tests/vm/device.h tests/vm/layout.h
 	@mkdir -p $(@D)
 	$(say) CC $<
 	$(Q)$(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L $(CFLAGS) $(LDFLAGS) $< -o $@
-vm-programs: $(OUT)/glint $(VM_TOOLS:%=$(OUT)/vm/%)
+# what makes scenes and says what must come of them
+VM_HOST := scene expected
+$(VM_HOST:%=$(OUT)/vm/%): $(OUT)/vm/%: tests/vm/%.c tests/vm/layout.h $(libs)
+	@mkdir -p $(@D)
+	$(say) CC $<
+	$(Q)$(CC) $(CPPFLAGS) -Iplatform -D_POSIX_C_SOURCE=200809L $(CFLAGS) \
+	        $(LDFLAGS) $< $(libs) $(LDLIBS) -o $@
+vm-programs: $(OUT)/glint $(VM_TOOLS:%=$(OUT)/vm/%) \
+        $(if $(filter x86_64,$(TARGET)),$(VM_HOST:%=$(OUT)/vm/%))
 check-vm:
 	@tools/deps "cameras, panels and ARM in an emulator" qemu-system-x86 \
 	        qemu-system-arm qemu-system-data seabios cpio kmod xz-utils \
