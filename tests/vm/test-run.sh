@@ -29,13 +29,17 @@ END
 expect "a kernel panic: 125" exited 125
 expect "and says so" says panics/console 'Kernel panic'
 
-# Time that counts instructions passes the same whatever the host does.
+# Time that counts instructions passes the same whatever the host does; on one
+# architecture, as it is slow.
+[ "$arch" = aarch64 ] || exit 0
 for i in 1 2; do
     guest counted$i -I 0 <<'END'
 read -r before rest </proc/uptime
-for i in $(seq 20000); do :; done
+for i in $(seq 200000); do :; done
 read -r after rest </proc/uptime
-echo "$before $after" | awk '{ printf "%.1f\n", $2 - $1 }'
+echo "$before $after" | awk '{ print $2 - $1 }'
 END
 done
-expect "counted time repeats" same counted1/log counted2/log
+expect "counted time repeats to 2 %: $(cat "$out"/counted?/log | tr '\n' ' ')" \
+    awk '{ t[NR] = $1 } END { d = t[1] - t[2]; d = d < 0 ? -d : d
+        exit !(t[1] > 0.2 && d <= 0.02 * t[1]) }' "$out"/counted?/log
