@@ -29,6 +29,11 @@ static void put_back(void)
     errno = saved;
 }
 
+void glint_console_watch(void)
+{
+    glint_at_death(put_back);
+}
+
 /* The mode to leave PATH in, whose descriptor is *FD; -1 with errno set. */
 static int open_console(const char *path, int *fd)
 {
@@ -80,7 +85,7 @@ bool glint_console_take(struct glint_console *console, struct glint_error *note)
     __atomic_store_n(&held_mode, mode, __ATOMIC_SEQ_CST);
     __atomic_store_n(&holder, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&held_fd, console->fd, __ATOMIC_SEQ_CST);
-    glint_at_death(put_back);
+    glint_console_watch();
     if (ioctl(console->fd, KDSETMODE, KD_GRAPHICS) < 0) {
         __atomic_store_n(&held_fd, -1, __ATOMIC_SEQ_CST);
         return refuse(console, note, strerror(errno));

@@ -12,9 +12,6 @@
  * comes back by release, and also by exit() and all that posix/at_death.h
  * lists, whereupon the kernel paints the text anew.
  *
- * Take it before a panel is opened (linux/fbdev.h does), since what comes last
- * is put right first.
- *
  * After kill -9 the console stays dark, and cannot be switched away from: that
  * mode is for programs that switch by themselves. Whatever takes and releases
  * the console next, as the next run does, brings the text back. So does
@@ -35,6 +32,10 @@ struct glint_console {
  * elsewhere), and NOTE says so in a line. */
 bool glint_console_take(struct glint_console *console,
                         struct glint_error *note);
+
+/* Puts itself on the list of posix/at_death.h, as take does: for those who must
+ * be put right before the console is, and so come after it on that list. */
+void glint_console_watch(void);
 
 /* Does nothing when not taken. */
 void glint_console_release(struct glint_console *console);

@@ -64,7 +64,16 @@ static void watch_pan(const struct glint_fbdev *fb)
     panned_home = fb->home;
     __atomic_store_n(&panner, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&panned_fd, fb->fd, __ATOMIC_SEQ_CST);
+    glint_console_watch();
     glint_at_death(pan_home);
+}
+
+static void end_pan(const struct glint_fbdev *fb)
+{
+    if (fb->fd < 0 || __atomic_load_n(&panned_fd, __ATOMIC_SEQ_CST) != fb->fd)
+        return;
+    pan_home();
+    __atomic_store_n(&panned_fd, -1, __ATOMIC_SEQ_CST);
 }
 
 /* -------------------------------------------------------------------- mode */
@@ -355,11 +364,7 @@ static void close_fb(struct glint_sink *sink)
 {
     struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
 
-    if (fb->fd >= 0 && fb->n_pages == 2)
-        request(fb->fd, FBIOPAN_DISPLAY, &fb->home);
-    if (fb->fd >= 0)
-        __atomic_compare_exchange_n(&panned_fd, &(int){fb->fd}, -1, false,
-                                    __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST);
+    end_pan(fb);
     glint_console_release(&fb->console_held);
     unmap(fb);
     glint_panel_close(&fb->panel);

@@ -1,0 +1,658 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A framebuffer and a console that are files with ioctl() answered here: what
+ * is drawn where, and that any call may fail.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <linux/kd.h>
+#include <linux/vt.h>
+
+#include "linux/fbdev.h"
+#include "support/fake_fb.h"
+
+/* ---------------------------------------------------------------- scenery */
+
+/* 8 x 6 pixels of XRGB8888 in rows of 40 bytes, one screen of memory. */
+static void reset(void)
+{
+    uint8_t old[256];
+    int fd;
+
+    *fake = (struct fake){
+        .fix = {.id = "fake",
+                .smem_len = FB_BYTES - 4096,
+                .type = FB_TYPE_PACKED_PIXELS,
+                .visual = FB_VISUAL_TRUECOLOR,
+                .line_length = 40},
+        .var = {.xres = 8,
+                .yres = 6,
+                .xres_virtual = 8,
+                .yres_virtual = 6,
+                .bits_per_pixel = 32,
+                .red = {16, 8, 0},
+                .green = {8, 8, 0},
+                .blue = {0, 8, 0}},
+        .vsync_errno = ENOTTY,
+        .tty_mode = KD_TEXT,
+        .tty_switching = VT_AUTO,
+        .yoffset_at_text = 99,
+    };
+    memset(old, 0xaa, sizeof old);
+    fd = open(fb_path, O_WRONLY | O_TRUNC);
+    for (int i = 0; i < FB_BYTES; i += (int)sizeof old)
+        assert_int_equal(write(fd, old, sizeof old), sizeof old);
+    close(fd);
+    n_calls = fail_at = n_maps = 0;
+}
+
+/* As of vc4: two screens, panned line by line. */
+static void reset_pages(void)
+{
+    reset();
+    fake->var.yres_virtual = 12;
+    fake->fix.ypanstep = 1;
+    fake->can_pan = true;
+}
+
+static const uint8_t *memory(void)
+{
+    static uint8_t mem[FB_BYTES];
+    const int fd = open(fb_path, O_RDONLY);
+
+    assert_int_equal(read(fd, mem, sizeof mem), sizeof mem);
+    close(fd);
+    return mem;
+}
+
+static void scribble(off_t at, uint8_t value)
+{
+    const int fd = open(fb_path, O_WRONLY);
+
+    assert_int_equal(pwrite(fd, &value, 1, at), 1);
+    close(fd);
+}
+
+/* A grey picture of one code. */
+static const struct glint_image *grey(int width, int height, int code)
+{
+    static uint8_t mem[64 * 64];
+    static struct glint_image image;
+
+    image = (struct glint_image){
+        .format = GLINT_GREY, .width = width, .height = height};
+    glint_image_place(&image, mem);
+    memset(mem, code, (size_t)(width * height));
+    return &image;
+}
+
+static void must_open(struct glint_fbdev *fb,
+                      const struct glint_fbdev_options *options)
+{
+    static const struct glint_fbdev_options none;
+    struct glint_error error;
+
+    if (glint_fbdev_open(fb, fb_path, options ? options : &none, &error))
+        fail_msg("%s", error.text);
+}
+
+static void must_put(struct glint_fbdev *fb, const struct glint_image *image)
+{
+    struct glint_error error;
+
+    if (fb->sink.put(&fb->sink, image, &error))
+        fail_msg("%s", error.text);
+}
+
+/* Rows of 40 bytes from FIRST on: CODE in the 32 of each that are pixels, and
+ * what was there before behind. */
+static void expect_screen(size_t first, int code)
+{
+    const uint8_t *const mem = memory() + first;
+
+    for (int y = 0; y < 6; y++)
+        for (int x = 0; x < 40; x++) {
+            const int want = x >= 32 ? 0xaa : x % 4 == 3 ? 0 : code;
+
+            if (mem[40 * y + x] != want)
+                fail_msg("row %d byte %d: %d, not %d", y, x, mem[40 * y + x],
+                         want);
+        }
+}
+
+/* ------------------------------------------------------------------- tests */
+
+static void test_draws(void **state)
+{
+    struct glint_fbdev fb;
+
+    (void)state;
+    reset();
+    must_open(&fb, NULL);
+    assert_string_equal(fb.id, "fake");
+    assert_int_equal(fb.n_pages, 1);
+    must_put(&fb, grey(8, 6, 100));
+    expect_screen(0, 100);
+    must_put(&fb, grey(16, 12, 50));
+    expect_screen(0, 50);
+    assert_int_equal(memory()[6 * 40], 0xaa); /* nothing beyond */
+    fb.sink.close(&fb.sink);
+    fb.sink.close(&fb.sink);
+    assert_int_equal(fb.fd, -1);
+    assert_int_equal(n_maps, 0);
+}
+
+/* What is not the picture's is black, whatever the last one covered. */
+static void test_borders(void **state)
+{
+    struct glint_fbdev fb;
+    const uint8_t *mem;
+
+    (void)state;
+    reset();
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 100));
+    must_put(&fb, grey(8, 2, 50));
+    mem = memory();
+    for (int y = 0; y < 6; y++)
+        assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
+    scribble(0, 123); /* and only made so once */
+    must_put(&fb, grey(8, 2, 50));
+    assert_int_equal(memory()[0], 123);
+    fb.sink.close(&fb.sink);
+}
+
+static void test_odd_start(void **state)
+{
+    struct glint_fbdev fb;
+
+    (void)state;
+    reset();
+    fake->fix.smem_start = 0xfd000064;
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 77));
+    expect_screen(0x64, 77);
+    assert_int_equal(memory()[0x63], 0xaa);
+    fb.sink.close(&fb.sink);
+    /* a console that scrolled: what is looked at begins lower down */
+    reset();
+    fake->var.yres_virtual = 20;
+    fake->var.yoffset = 5;
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 78));
+    expect_screen(5 * 40, 78);
+    assert_int_equal(memory()[5 * 40 - 1], 0xaa);
+    must_put(&fb, grey(8, 2, 78));
+    fake->var.yoffset = 9;
+    must_put(&fb, grey(8, 2, 79));
+    assert_int_equal(memory()[9 * 40], 0);
+    assert_int_equal(memory()[11 * 40], 79);
+    fb.sink.close(&fb.sink);
+}
+
+static void test_pages(void **state)
+{
+    struct glint_fbdev fb;
+
+    (void)state;
+    reset_pages();
+    must_open(&fb, NULL);
+    assert_int_equal(fb.n_pages, 2);
+    assert_int_equal(fake->var.yoffset, 0);
+    for (int i = 1; i <= 5; i++) {
+        const uint32_t shown = i % 2 ? 6 : 0;
+        const int before = memory()[(6 - shown) * 40];
+
+        must_put(&fb, grey(8, 6, 10 * i));
+        assert_int_equal(fake->var.yoffset, shown);
+        assert_int_equal(memory()[shown * 40], 10 * i);
+        assert_int_equal(memory()[(6 - shown) * 40], before);
+    }
+    fb.sink.close(&fb.sink);
+    assert_int_equal(fake->var.yoffset, 0);
+    /* one of us was killed with the second in view */
+    fake->var.yoffset = 6;
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 1));
+    fb.sink.close(&fb.sink);
+    assert_int_equal(fake->var.yoffset, 0);
+}
+
+static void test_no_pages(void **state)
+{
+    struct glint_fbdev fb;
+
+    (void)state;
+    reset_pages();
+    fake->can_pan = false;
+    must_open(&fb, NULL);
+    assert_int_equal(fb.n_pages, 1);
+    must_put(&fb, grey(8, 6, 9));
+    assert_int_equal(memory()[0], 9);
+    fb.sink.close(&fb.sink);
+
+    reset_pages();
+    fake->fix.smem_len = 11 * 40; /* less than it says */
+    must_open(&fb, NULL);
+    assert_int_equal(fb.n_pages, 1);
+    assert_int_equal(fake->n_pan, 0);
+    fb.sink.close(&fb.sink);
+
+    reset_pages();
+    fake->fix.ypanstep = 4; /* 6 lines are no multiple */
+    must_open(&fb, NULL);
+    assert_int_equal(fb.n_pages, 1);
+    fb.sink.close(&fb.sink);
+
+    reset_pages(); /* it could, and now it cannot */
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 9));
+    fake->can_pan = false;
+    fake->n_pan = 0;
+    must_put(&fb, grey(8, 6, 11));
+    assert_int_equal(memory()[fake->var.yoffset * 40], 11);
+    must_put(&fb, grey(8, 6, 12));
+    assert_int_equal(fake->n_pan, 1); /* tried no more */
+    fb.sink.close(&fb.sink);
+}
+
+static void test_vsync(void **state)
+{
+    const struct glint_fbdev_options options = {.vsync = true};
+    struct glint_fbdev fb;
+
+    (void)state;
+    reset();
+    must_open(&fb, &options);
+    for (int i = 0; i < 3; i++)
+        must_put(&fb, grey(8, 6, i));
+    assert_int_equal(fake->n_vsync, 1); /* and never again */
+    fb.sink.close(&fb.sink);
+    reset();
+    fake->vsync_errno = 0;
+    must_open(&fb, &options);
+    for (int i = 0; i < 3; i++)
+        must_put(&fb, grey(8, 6, i));
+    assert_int_equal(fake->n_vsync, 3);
+    fb.sink.close(&fb.sink);
+    fake->n_vsync = 0;
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 1));
+    assert_int_equal(fake->n_vsync, 0);
+    fb.sink.close(&fb.sink);
+}
+
+static void test_goes_away(void **state)
+{
+    struct glint_fbdev fb;
+    struct glint_error error;
+    char want[128];
+
+    (void)state;
+    reset();
+    snprintf(want, sizeof want, "%s: the framebuffer went away", fb_path);
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 5));
+    fake->gone = true;
+    assert_int_equal(fb.sink.put(&fb.sink, grey(8, 6, 6), &error),
+                     GLINT_E_DEVICE);
+    assert_string_equal(error.text, want);
+    assert_int_equal(memory()[0], 5);
+    fb.sink.close(&fb.sink);
+    assert_int_equal(n_maps, 0);
+}
+
+/* Another program sets 16 bits, and two screens, and back. */
+static void test_mode_changes(void **state)
+{
+    struct glint_fbdev fb;
+    const uint8_t *mem;
+
+    (void)state;
+    reset();
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 255));
+    fake->var.bits_per_pixel = 16;
+    fake->var.red = (struct fb_bitfield){11, 5, 0};
+    fake->var.green = (struct fb_bitfield){5, 6, 0};
+    fake->var.blue = (struct fb_bitfield){0, 5, 0};
+    fake->var.xres = 4;
+    fake->fix.line_length = 64;
+    must_put(&fb, grey(4, 6, 255));
+    assert_int_equal(fb.width, 4);
+    mem = memory();
+    for (int i = 0; i < 8; i++)
+        assert_int_equal(mem[5 * 64 + i], 255);
+    assert_int_equal(mem[5 * 64 + 8], 0xaa);
+    reset_pages();
+    must_put(&fb, grey(8, 6, 3));
+    assert_int_equal(fb.n_pages, 2);
+    assert_int_equal(memory()[6 * 40], 3);
+    assert_int_equal(n_maps, 0); /* one more and one fewer */
+    fb.sink.close(&fb.sink);
+}
+
+/* A driver that says nothing of its bits. */
+static void test_no_fields(void **state)
+{
+    static const struct fb_bitfield none;
+    struct glint_fbdev fb;
+
+    (void)state;
+    reset();
+    fake->var.red = fake->var.green = fake->var.blue = none;
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 100));
+    expect_screen(0, 100);
+    fb.sink.close(&fb.sink);
+    fake->var.bits_per_pixel = 16;
+    must_open(&fb, NULL);
+    must_put(&fb, grey(8, 6, 255));
+    assert_int_equal(fb.layout.green.length, 6);
+    assert_int_equal(memory()[15], 255);
+    fb.sink.close(&fb.sink);
+}
+
+/* ---------------------------------------------------------------- refusals */
+
+static void expect_refused(const char *part)
+{
+    static const struct glint_fbdev_options options = {.console = true};
+    struct glint_fbdev fb;
+    struct glint_error error = {""};
+
+    assert_int_equal(glint_fbdev_open(&fb, fb_path, &options, &error),
+                     GLINT_E_DEVICE);
+    if (!strstr(error.text, part))
+        fail_msg("\"%s\" is not in \"%s\"", part, error.text);
+    assert_int_equal(fb.fd, -1);
+    assert_int_equal(n_maps, 0);
+    assert_int_equal(fake->tty_mode, KD_TEXT);
+}
+
+static void test_refuses(void **state)
+{
+    static const struct glint_fbdev_options none;
+    struct glint_fbdev fb;
+    struct glint_error error;
+
+    (void)state;
+    reset();
+    fake->open_errno = ENOENT;
+    expect_refused("there is no framebuffer");
+    fake->open_errno = EACCES;
+    expect_refused("usermod -aG video");
+    reset();
+    fake->fix.visual = FB_VISUAL_PSEUDOCOLOR;
+    fake->var.bits_per_pixel = 8;
+    expect_refused("pixels of 8 bits (type 0, visual 3) are not packed");
+    reset();
+    fake->fix.type = FB_TYPE_PLANES;
+    expect_refused("not packed true colour");
+    reset();
+    fake->var.grayscale = 1;
+    expect_refused("not packed true colour");
+    reset();
+    fake->var.bits_per_pixel = 4000000000;
+    expect_refused("not packed true colour");
+    reset();
+    fake->fix.line_length = 31;
+    expect_refused("too few for 8 x 6");
+    reset();
+    fake->fix.line_length = 0;
+    expect_refused("too few for 8 x 6");
+    reset();
+    fake->fix.smem_len = 6 * 40 - 1;
+    expect_refused("too few for 8 x 6");
+    reset();
+    fake->var.yres = 0;
+    expect_refused("is 8 x 0 pixels large");
+    reset();
+    fake->var.xres = 100000;
+    expect_refused("is 100000 x 6 pixels large");
+    reset();
+    fake->gone = true;
+    expect_refused("went away");
+    assert_int_equal(glint_fbdev_open(&fb, "/dev/null", &none, &error),
+                     GLINT_E_DEVICE);
+    assert_string_equal(error.text, "/dev/null: is not a framebuffer");
+}
+
+static void test_names(void **state)
+{
+    static const struct glint_fbdev_options none;
+    struct glint_fbdev fb;
+    struct glint_error error;
+
+    (void)state;
+    reset();
+    setenv("FRAMEBUFFER", fb_path, 1);
+    assert_int_equal(glint_fbdev_open(&fb, NULL, &none, &error), GLINT_OK);
+    fb.sink.close(&fb.sink);
+    setenv("FRAMEBUFFER", "/nowhere/fb", 1);
+    assert_int_equal(glint_fbdev_open(&fb, NULL, &none, &error),
+                     GLINT_E_DEVICE);
+    assert_int_equal(strncmp(error.text, "/nowhere/fb: ", 13), 0);
+    unsetenv("FRAMEBUFFER");
+}
+
+/* ----------------------------------------------------------------- console */
+
+static void check_console(bool taken, int during, int after)
+{
+    static const struct glint_fbdev_options options = {.console = true};
+    struct glint_fbdev fb;
+
+    must_open(&fb, &options);
+    assert_int_equal(fb.has_note, !taken);
+    assert_int_equal(fake->tty_mode, during);
+    must_put(&fb, grey(8, 6, 1));
+    fb.sink.close(&fb.sink);
+    assert_int_equal(fake->tty_mode, after);
+    if (!taken)
+        assert_non_null(strstr(fb.note.text, "may show in the picture"));
+}
+
+static void test_console(void **state)
+{
+    (void)state;
+    reset();
+    check_console(true, KD_GRAPHICS, KD_TEXT);
+    fake->tty_mode = KD_GRAPHICS; /* left behind */
+    check_console(true, KD_GRAPHICS, KD_TEXT);
+    fake->tty_mode = KD_GRAPHICS; /* of an X server */
+    fake->tty_switching = VT_PROCESS;
+    check_console(false, KD_GRAPHICS, KD_GRAPHICS);
+    reset();
+    fake->tty_errno = EACCES;
+    check_console(false, KD_TEXT, KD_TEXT);
+}
+
+/* Once given back, the console is nobody's, and descriptors are used again. */
+static void test_let_go(void **state)
+{
+    int how;
+    pid_t child;
+
+    (void)state;
+    reset();
+    child = fork();
+    if (child == 0) {
+        check_console(true, KD_GRAPHICS, KD_TEXT);
+        fake->tty_mode = KD_GRAPHICS;
+        while (open(tty_path, O_RDWR) < 20)
+            ;
+        exit(0);
+    }
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_int_equal(how, 0);
+    assert_int_equal(fake->tty_mode, KD_GRAPHICS);
+}
+
+/* Ends by HOW after an odd number of frames, the second screen in view. */
+static void end_child(int how)
+{
+    static const struct glint_fbdev_options options = {.console = true};
+    struct glint_fbdev fb;
+
+    for (int i = 1; i < SIGRTMIN; i++)
+        signal(i, SIG_DFL);
+    must_open(&fb, NULL); /* the order of lists is not that of opening */
+    fb.sink.close(&fb.sink);
+    must_open(&fb, &options);
+    must_put(&fb, grey(8, 6, 1));
+    if (fake->tty_mode != KD_GRAPHICS || fake->var.yoffset != 6)
+        _exit(99);
+    if (fork() == 0)
+        exit(0); /* a child of its own changes nothing */
+    while (wait(NULL) < 0)
+        ;
+    if (fake->tty_mode != KD_GRAPHICS || fake->var.yoffset != 6)
+        _exit(98);
+    if (how == 0)
+        exit(0);
+    raise(how);
+}
+
+/* Must come first: the first open takes the signals for the whole process. */
+static void test_every_end(void **state)
+{
+    static const int ends[] = {0,       SIGINT,  SIGTERM, SIGHUP,
+                               SIGQUIT, SIGSEGV, SIGABRT};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        int how;
+        pid_t child;
+
+        reset_pages();
+        child = fork();
+        if (child == 0)
+            end_child(ends[i]);
+        assert_int_equal(waitpid(child, &how, 0), child);
+        if (ends[i] == 0)
+            assert_int_equal(how, 0);
+        else
+            assert_int_equal(WTERMSIG(how), ends[i]);
+        assert_int_equal(fake->tty_mode, KD_TEXT);
+        assert_int_equal(fake->var.yoffset, 0);
+        assert_int_equal(fake->yoffset_at_text, 0); /* that first */
+    }
+}
+
+/* ---------------------------------------------------------------- failures */
+
+static int n_fds(void)
+{
+    DIR *const d = opendir("/proc/self/fd");
+    int n = 0;
+
+    assert_non_null(d);
+    while (readdir(d))
+        n++;
+    closedir(d);
+    return n;
+}
+
+/* Three frames of two sizes; false: something failed, and says so. */
+static bool live(void)
+{
+    static const struct glint_fbdev_options options = {.console = true,
+                                                       .vsync = true};
+    struct glint_error error = {""};
+    struct glint_fbdev fb;
+    enum glint_status status = glint_fbdev_open(&fb, fb_path, &options, &error);
+
+    if (!status) {
+        status = fb.sink.put(&fb.sink, grey(8, 6, 1), &error);
+        if (!status)
+            status = fb.sink.put(&fb.sink, grey(8, 6, 2), &error);
+        if (!status)
+            status = fb.sink.put(&fb.sink, grey(4, 6, 3), &error);
+        fail_at = 0;
+        fb.sink.close(&fb.sink);
+    }
+    assert_int_equal(fb.fd, -1);
+    if (status) {
+        assert_true(status == GLINT_E_DEVICE || status == GLINT_E_MEMORY);
+        assert_non_null(strstr(error.text, ": "));
+    }
+    return !status;
+}
+
+static void check_failures(bool pages)
+{
+    const int fds = n_fds();
+    int n_failed = 0, n = 0, n_last;
+
+    do {
+        n++;
+        if (pages)
+            reset_pages();
+        else
+            reset();
+        fail_at = n;
+        n_failed += !live();
+        n_last = n_calls;
+        fail_at = 0;
+        assert_int_equal(n_maps, 0);
+        assert_int_equal(n_fds(), fds);
+        assert_int_equal(fake->tty_mode, KD_TEXT);
+        assert_int_equal(fake->var.yoffset, 0);
+    } while (n <= n_last);
+    assert_true(n_failed >= 8); /* and some calls may fail unnoticed */
+    assert_true(n > 15);
+}
+
+static void test_every_failure(void **state)
+{
+    (void)state;
+    check_failures(false);
+    check_failures(true);
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    close(mkstemp(fb_path));
+    close(mkstemp(tty_path));
+    fake = __real_mmap64(NULL, sizeof *fake, PROT_READ | PROT_WRITE,
+                         MAP_SHARED | 0x20 /* MAP_ANONYMOUS */, -1, 0);
+    return fake == MAP_FAILED;
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return unlink(fb_path) | unlink(tty_path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_end),     cmocka_unit_test(test_draws),
+        cmocka_unit_test(test_borders),       cmocka_unit_test(test_odd_start),
+        cmocka_unit_test(test_pages),         cmocka_unit_test(test_no_pages),
+        cmocka_unit_test(test_vsync),         cmocka_unit_test(test_goes_away),
+        cmocka_unit_test(test_mode_changes),  cmocka_unit_test(test_no_fields),
+        cmocka_unit_test(test_refuses),       cmocka_unit_test(test_names),
+        cmocka_unit_test(test_console),       cmocka_unit_test(test_let_go),
+        cmocka_unit_test(test_every_failure),
+    };
+
+    return cmocka_run_group_tests_name("fbdev", tests, enter, leave);
+}
