@@ -5,6 +5,8 @@
  */
 #include "plain/row_rgb.h"
 
+#include "plain/split.h"
+
 enum { HALF_Q13 = 1 << 12 };
 
 struct mix {
@@ -113,77 +115,6 @@ static void mix_greys(const struct mix *m, uint8_t *restrict grey,
         grey[i] = code_of(luma[i] * ky + bias);
 }
 
-/* ------------------------------------------------------------------ samples */
-
-static void split_pairs(uint8_t *restrict a, uint8_t *restrict b,
-                        const uint8_t *restrict from, int n)
-{
-    for (int i = 0; i < n; i++) {
-        a[i] = from[2 * i];
-        b[i] = from[2 * i + 1];
-    }
-}
-
-static void split_yuyv(uint8_t *restrict luma, uint8_t *restrict cb,
-                       uint8_t *restrict cr, const uint8_t *restrict from,
-                       int n)
-{
-    for (int i = 0; i < n; i++) {
-        luma[2 * i] = from[4 * i];
-        luma[2 * i + 1] = from[4 * i + 2];
-        cb[i] = from[4 * i + 1];
-        cr[i] = from[4 * i + 3];
-    }
-}
-
-static void split_uyvy(uint8_t *restrict luma, uint8_t *restrict cb,
-                       uint8_t *restrict cr, const uint8_t *restrict from,
-                       int n)
-{
-    for (int i = 0; i < n; i++) {
-        luma[2 * i] = from[4 * i + 1];
-        luma[2 * i + 1] = from[4 * i + 3];
-        cb[i] = from[4 * i];
-        cr[i] = from[4 * i + 2];
-    }
-}
-
-static void split_threes(uint8_t *restrict a, uint8_t *restrict b,
-                         uint8_t *restrict c, const uint8_t *restrict from,
-                         int n)
-{
-    for (int i = 0; i < n; i++) {
-        a[i] = from[3 * i];
-        b[i] = from[3 * i + 1];
-        c[i] = from[3 * i + 2];
-    }
-}
-
-static void split_fours(uint8_t *restrict a, uint8_t *restrict b,
-                        uint8_t *restrict c, const uint8_t *restrict from,
-                        int n)
-{
-    for (int i = 0; i < n; i++) {
-        a[i] = from[4 * i];
-        b[i] = from[4 * i + 1];
-        c[i] = from[4 * i + 2];
-    }
-}
-
-/* Few bits repeat their highest ones below: 0 and the most become 0 and 255. */
-static void split_565(uint8_t *restrict r, uint8_t *restrict g,
-                      uint8_t *restrict b, const uint8_t *restrict from, int n)
-{
-    for (int i = 0; i < n; i++) {
-        const uint8_t low = from[2 * i], high = from[2 * i + 1];
-        const uint8_t green = (uint8_t)((high & 7) << 3 | low >> 5);
-
-        r[i] = (uint8_t)((high & 0xf8) | high >> 5);
-        g[i] = (uint8_t)(green << 2 | green >> 4);
-        b[i] = (uint8_t)(low << 3 | (low >> 2 & 7));
-    }
-}
-
 /* ---------------------------------------------------------------------- rows
  */
 
@@ -209,18 +140,18 @@ static struct samples find_samples(struct glint_row_rgb *row,
 
     switch (image->format) {
     case GLINT_YUYV:
-        split_yuyv(row->luma, row->cb, row->cr, row_at(image, 0, y) + 2 * x,
-                   half);
+        glint_split_yuyv(row->luma, row->cb, row->cr,
+                         row_at(image, 0, y) + 2 * x, half);
         return moved;
     case GLINT_UYVY:
-        split_uyvy(row->luma, row->cb, row->cr, row_at(image, 0, y) + 2 * x,
-                   half);
+        glint_split_uyvy(row->luma, row->cb, row->cr,
+                         row_at(image, 0, y) + 2 * x, half);
         return moved;
     case GLINT_NV12:
-        split_pairs(row->cb, row->cr, row_at(image, 1, cy) + x, half);
+        glint_split_pairs(row->cb, row->cr, row_at(image, 1, cy) + x, half);
         return (struct samples){row_at(image, 0, y) + x, row->cb, row->cr};
     case GLINT_NV21:
-        split_pairs(row->cr, row->cb, row_at(image, 1, cy) + x, half);
+        glint_split_pairs(row->cr, row->cb, row_at(image, 1, cy) + x, half);
         return (struct samples){row_at(image, 0, y) + x, row->cb, row->cr};
     default:
         return (struct samples){row_at(image, 0, y) + x,
@@ -262,16 +193,16 @@ void glint_row_rgb_read(struct glint_row_rgb *row,
         row->channel[1] = row->channel[2] = c[0];
         return;
     case GLINT_RGB24:
-        split_threes(c[0], c[1], c[2], from + 3 * x, n);
+        glint_split_threes(c[0], c[1], c[2], from + 3 * x, n);
         return;
     case GLINT_BGR24:
-        split_threes(c[2], c[1], c[0], from + 3 * x, n);
+        glint_split_threes(c[2], c[1], c[0], from + 3 * x, n);
         return;
     case GLINT_XRGB8888:
-        split_fours(c[2], c[1], c[0], from + 4 * x, n);
+        glint_split_fours(c[2], c[1], c[0], from + 4 * x, n);
         return;
     case GLINT_RGB565:
-        split_565(c[0], c[1], c[2], from + 2 * x, n);
+        glint_split_565(c[0], c[1], c[2], from + 2 * x, n);
         return;
     default:
         read_ycc(row, image, x, y, n);

@@ -197,10 +197,10 @@ static void test_odd_start(void **state)
     expect_screen(5 * 40, 78);
     assert_int_equal(memory()[5 * 40 - 1], 0xaa);
     must_put(&fb, grey(8, 2, 78));
-    fake->var.yoffset = 9;
+    fake->var.yoffset = 14;
     must_put(&fb, grey(8, 2, 79));
-    assert_int_equal(memory()[9 * 40], 0);
-    assert_int_equal(memory()[11 * 40], 79);
+    assert_int_equal(memory()[14 * 40], 0);
+    assert_int_equal(memory()[16 * 40], 79);
     fb.sink.close(&fb.sink);
 }
 
