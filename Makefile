@@ -81,7 +81,7 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
-PLATFORM := plain/split posix/error posix/at_death posix/input posix/output posix/workers \
+PLATFORM := plain/planar plain/y4m_sink plain/null linux/v4l2_sink plain/split posix/error posix/at_death posix/input posix/output posix/workers \
         plain/pnm plain/pfm plain/y4m oiio/loader plain/picture \
         $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
         linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
@@ -144,7 +144,7 @@ $(OUT)/src/flare/cuts.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.
 $(OUT)/tools/bench_cases.o: CFLAGS += -O3
 # what every frame of a camera goes through on its way to a panel
 $(OUT)/platform/plain/split.o $(OUT)/platform/plain/row_rgb.o \
-$(OUT)/platform/plain/row_pack.o: CFLAGS += -O3
+$(OUT)/platform/plain/row_pack.o $(OUT)/platform/plain/planar.o: CFLAGS += -O3
 $(OUT)/src/bake/regress.o: CFLAGS += -O3 # sums in fours: same bits
 # rays in eights: errno and traps are all that these give away
 $(OUT)/src/bake/trace.o: CFLAGS += -O3 -fno-math-errno -fno-trapping-math

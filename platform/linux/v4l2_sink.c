@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: MIT */
+#include "linux/v4l2_sink.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <linux/videodev2.h>
+
+#include "linux/fourcc.h"
+#include "posix/error.h"
+
+/* As ioctl(), but not ended by signals. */
+static int request(int fd, unsigned long number, void *arg)
+{
+    int result;
+
+    do
+        result = ioctl(fd, number, arg);
+    while (result < 0 && errno == EINTR);
+    return result;
+}
+
+/* WHAT failed, as errno says. */
+static enum glint_status failed(const struct glint_v4l2_sink *out,
+                                const char *what, struct glint_error *error)
+{
+    const int number = errno;
+    const char *hint = "";
+
+    if (number == EBUSY)
+        hint = "; another program writes to it";
+    else if (number == EACCES)
+        hint = "; join its group: usermod -aG video USER, then log in again";
+    else if (number == ENOENT)
+        hint = "; modprobe v4l2loopback makes one";
+    else if (number == ENODEV)
+        hint = "; the device went away";
+    return glint_error_report(error, GLINT_E_DEVICE, out->name, "%s: %s%s",
+                              what, strerror(number), hint);
+}
+
+/* ----------------------------------------------------------------- opening */
+
+static enum glint_status check_node(struct glint_v4l2_sink *out,
+                                    struct glint_error *error)
+{
+    struct v4l2_capability cap = {.capabilities = 0};
+    uint32_t can;
+
+    if (request(out->fd, VIDIOC_QUERYCAP, &cap) < 0)
+        return errno == ENOTTY || errno == EINVAL
+                   ? glint_error_report(error, GLINT_E_DEVICE, out->name,
+                                        "is not a video device")
+                   : failed(out, "VIDIOC_QUERYCAP", error);
+    memcpy(out->card, cap.card, 32);
+    can = cap.capabilities & V4L2_CAP_DEVICE_CAPS ? cap.device_caps
+                                                  : cap.capabilities;
+    if (!(can & V4L2_CAP_VIDEO_OUTPUT))
+        return glint_error_report(error, GLINT_E_DEVICE, out->name,
+                                  "%s is no video output", out->card);
+    if (!(can & V4L2_CAP_READWRITE))
+        return glint_error_report(error, GLINT_E_DEVICE, out->name,
+                                  "%s takes no frames by write()", out->card);
+    return GLINT_OK;
+}
+
+static enum glint_status set_format(struct glint_v4l2_sink *out,
+                                    uint32_t fourcc, struct v4l2_format *f,
+                                    struct glint_error *error)
+{
+    const struct glint_image *const like = &out->frame;
+    struct v4l2_pix_format *const px = &f->fmt.pix;
+    struct glint_v4l2_colour colour;
+    char want[5], got[5];
+
+    glint_v4l2_colour_write(&colour, like);
+    *f = (struct v4l2_format){.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
+    px->width = (uint32_t)like->width;
+    px->height = (uint32_t)like->height;
+    px->pixelformat = fourcc;
+    px->field = V4L2_FIELD_NONE;
+    px->colorspace = colour.colorspace;
+    px->ycbcr_enc = colour.ycbcr_enc;
+    px->quantization = colour.quantization;
+    px->xfer_func = colour.xfer_func;
+    px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* the last three are meant */
+    if (request(out->fd, VIDIOC_S_FMT, f) < 0)
+        return failed(out, "VIDIOC_S_FMT", error);
+    if (px->pixelformat == fourcc && px->width == (uint32_t)like->width &&
+        px->height == (uint32_t)like->height)
+        return GLINT_OK;
+    glint_fourcc_text(fourcc, want);
+    glint_fourcc_text(px->pixelformat, got);
+    return glint_error_report(
+        error, GLINT_E_DEVICE, out->name,
+        "wants %s %u x %u, not %s %d x %d; does another program use it?", got,
+        px->width, px->height, want, like->width, like->height);
+}
+
+/* Rates are for readers to know; not every driver cares. */
+static void set_rate(const struct glint_v4l2_sink *out, int num, int den)
+{
+    struct v4l2_streamparm parm = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
+
+    if (num < 1 || den < 1)
+        return;
+    parm.parm.output.timeperframe.numerator = (uint32_t)den;
+    parm.parm.output.timeperframe.denominator = (uint32_t)num;
+    request(out->fd, VIDIOC_S_PARM, &parm);
+}
+
+/* Lays the frame out as the driver said: all planes in one block, the rows of
+ * the first STRIDE bytes apart, of chroma in proportion. */
+static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
+                                 size_t size, struct glint_error *error)
+{
+    struct glint_image *const f = &out->frame;
+    const size_t least = glint_image_row_bytes(f->format, 0, f->width);
+    size_t at[3];
+
+    if (stride < least)
+        stride = least;
+    out->bytes = 0;
+    for (int i = 0; i < glint_image_planes(f->format); i++) {
+        const size_t row = glint_image_row_bytes(f->format, i, f->width);
+        const size_t each = i == 0                 ? stride
+                            : 2 * row <= least + 1 ? stride / 2
+                                                   : stride;
+
+        at[i] = out->bytes;
+        f->stride_bytes[i] = (ptrdiff_t)(each < row ? row : each);
+        out->bytes += (size_t)f->stride_bytes[i] *
+                      (size_t)glint_image_plane_height(f->format, i, f->height);
+    }
+    if (size && size < out->bytes)
+        return glint_error_report(error, GLINT_E_DEVICE, out->name,
+                                  "frames of %zu bytes, rows of %zu: that does "
+                                  "not fit",
+                                  size, stride);
+    out->mem = calloc(1, out->bytes);
+    if (!out->mem)
+        return glint_error_report(error, GLINT_E_MEMORY, out->name,
+                                  "no memory for a %d x %d frame", f->width,
+                                  f->height);
+    for (int i = 0; i < glint_image_planes(f->format); i++)
+        f->plane[i] = out->mem + at[i];
+    return GLINT_OK;
+}
+
+/* ------------------------------------------------------------------ frames */
+
+/* Whether IMAGE lies in memory just as the device wants it. */
+static bool is_laid_out(const struct glint_v4l2_sink *out,
+                        const struct glint_image *image)
+{
+    for (int i = 0; i < glint_image_planes(image->format); i++)
+        if (image->stride_bytes[i] != out->frame.stride_bytes[i] ||
+            image->plane[i] - image->plane[0] !=
+                out->frame.plane[i] - out->frame.plane[0])
+            return false;
+    return true;
+}
+
+static void copy_frame(const struct glint_v4l2_sink *out,
+                       const struct glint_image *image)
+{
+    const struct glint_image *const to = &out->frame;
+
+    for (int i = 0; i < glint_image_planes(to->format); i++)
+        for (int y = 0; y < glint_image_plane_height(to->format, i, to->height);
+             y++)
+            memcpy(to->plane[i] + y * to->stride_bytes[i],
+                   image->plane[i] + y * image->stride_bytes[i],
+                   glint_image_row_bytes(to->format, i, to->width));
+}
+
+static enum glint_status put(struct glint_sink *sink,
+                             const struct glint_image *image,
+                             struct glint_error *error)
+{
+    struct glint_v4l2_sink *const out = (struct glint_v4l2_sink *)sink;
+    const uint8_t *data = image->plane[0];
+    ssize_t n;
+
+    if (image->format != out->frame.format ||
+        image->width != out->frame.width || image->height != out->frame.height)
+        return glint_error_report(error, GLINT_E_DEVICE, out->name,
+                                  "was opened for another size or format than "
+                                  "%d x %d",
+                                  image->width, image->height);
+    if (!is_laid_out(out, image)) {
+        copy_frame(out, image);
+        data = out->mem;
+    }
+    do
+        n = write(out->fd, data, out->bytes);
+    while (n < 0 && errno == EINTR);
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+        out->n_dropped++;
+        return GLINT_OK;
+    }
+    if (n < 0)
+        return failed(out, "write", error);
+    if ((size_t)n < out->bytes)
+        return glint_error_report(error, GLINT_E_DEVICE, out->name,
+                                  "took %zu of %zu bytes", (size_t)n,
+                                  out->bytes);
+    out->n_frames++;
+    return GLINT_OK;
+}
+
+static void close_sink(struct glint_sink *sink)
+{
+    struct glint_v4l2_sink *const out = (struct glint_v4l2_sink *)sink;
+
+    if (out->fd >= 0)
+        close(out->fd);
+    out->fd = -1;
+    free(out->mem);
+    out->mem = NULL;
+}
+
+enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
+                                       const char *path,
+                                       const struct glint_image *like,
+                                       int fps_num, int fps_den,
+                                       struct glint_error *error)
+{
+    const uint32_t fourcc = glint_fourcc_of(like->format);
+    enum glint_status status = GLINT_OK;
+    struct v4l2_format format;
+
+    *out = (struct glint_v4l2_sink){
+        .sink = {put, close_sink}, .name = path, .fd = -1, .frame = *like};
+    if (!fourcc)
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
+                                  "V4L2 has no such format");
+    out->fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    if (out->fd < 0)
+        status = failed(out, "open", error);
+    if (!status)
+        status = check_node(out, error);
+    if (!status)
+        status = set_format(out, fourcc, &format, error);
+    if (!status)
+        status = lay_out(out, format.fmt.pix.bytesperline,
+                         format.fmt.pix.sizeimage, error);
+    if (status) {
+        close_sink(&out->sink);
+        return status;
+    }
+    set_rate(out, fps_num, fps_den);
+    return GLINT_OK;
+}

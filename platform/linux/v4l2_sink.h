@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * linux/v4l2_sink.h - a V4L2 output node as a sink: with v4l2loopback the way
+ * into programs that want a camera.
+ *
+ *     glint_v4l2_sink_open(&out, "/dev/video9", &like, 30, 1, &error);
+ *     out.sink.put(&out.sink, &image, &error);        each frame
+ *     out.sink.close(&out.sink);
+ *
+ * Frames are given by write(), in the format, size and colours of LIKE; what
+ * the driver makes of that is believed, its row length for one. A driver that
+ * has no room drops the frame, which is counted. Multi-planar nodes, and those
+ * that only stream, are refused.
+ */
+#ifndef GLINT_LINUX_V4L2_SINK_H
+#define GLINT_LINUX_V4L2_SINK_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "source_sink.h"
+
+struct glint_v4l2_sink {
+    struct glint_sink sink;
+    char card[33];  /* what the device calls itself */
+    long n_frames;  /* taken by the device */
+    long n_dropped; /* not taken */
+
+    /* Private. */
+    const char *name;         /* kept */
+    int fd;                   /* -1: closed */
+    struct glint_image frame; /* as the device wants it */
+    uint8_t *mem;             /* of that */
+    size_t bytes;
+};
+
+/* PATH is kept. LIKE: format, size and colours of all frames to come; its
+ * planes are not looked at. A rate of 0, 0 is not stated. On failure OUT is
+ * closed. GLINT_E_DEVICE: no such node, not an output, busy, or it will not
+ * take this format; GLINT_E_UNSUPPORTED: V4L2 has no word for the format;
+ * GLINT_E_MEMORY. */
+enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
+                                       const char *path,
+                                       const struct glint_image *like,
+                                       int fps_num, int fps_den,
+                                       struct glint_error *error);
+
+#endif
