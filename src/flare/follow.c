@@ -7,9 +7,11 @@
 #define SETTLE_US 60000
 
 /* Where drift over spread lies between noise and change. Noise of a bell curve
- * is above the first in one picture of 40. */
-#define NOISE_Q15  Q_CONST(0.7, 15)
+ * is above the first in one picture of 100, and
+ * more than so many times the spread in one of 1000. */
+#define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
+#define SUDDEN     4
 
 /* X times GAIN, away from 0, so that what is left ends in 0. */
 static int64_t part_of(int64_t x, int32_t gain_q15)
@@ -43,50 +45,67 @@ void glint_follow_start(struct glint_follow *f, int64_t value, int64_t spread)
     *f = (struct glint_follow){.value = value, .spread = spread};
 }
 
-void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us)
+void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
+                        int32_t time_us)
 {
-    if (elapsed_us >= f->left_us) {
-        f->offset = 0;
-        f->left_us = 0;
-        return;
-    }
-    f->offset -=
-        part_of(f->offset, (int32_t)(((int64_t)elapsed_us << 15) / f->left_us));
-    f->left_us -= elapsed_us;
+    const int64_t part_q15 = ((int64_t)elapsed_us << 15) / time_us;
+    const int64_t step = part_of(f->stride, q_clamp_sat(part_q15, 0, ONE_Q15));
+
+    if (size_of(f->offset) <= step)
+        f->offset = f->stride = 0;
+    else
+        f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* From the smooth part of noise to all the way of change. */
-static int32_t gain_q15(const struct glint_follow *f, int64_t floor,
-                        int32_t smooth_q15)
+/* Which of the two ERROR is; SPREAD is that of the errors before. */
+static int32_t judge_q15(const struct glint_follow *f, int64_t error,
+                         int64_t spread, int64_t floor)
 {
     const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);
-    const int32_t change_q15 = q_clamp_sat((one_way_q15 - NOISE_Q15) * ONE_Q15 /
-                                               (CHANGE_Q15 - NOISE_Q15),
-                                           0, ONE_Q15);
 
-    return smooth_q15 + q_mul(ONE_Q15 - smooth_q15, change_q15, 15);
+    if (size_of(error) > SUDDEN * (spread + floor))
+        return ONE_Q15;
+    return q_clamp_sat((one_way_q15 - NOISE_Q15) * ONE_Q15 /
+                           (CHANGE_Q15 - NOISE_Q15),
+                       0, ONE_Q15);
 }
 
-void glint_follow_step(struct glint_follow *f, int64_t target, int64_t floor,
-                       const struct glint_pace *pace, int repeats)
+int32_t glint_follow_step_q15(struct glint_follow *f, int64_t target,
+                              int64_t floor, const struct glint_pace *pace,
+                              enum glint_follow_as as)
 {
-    const int64_t error = target - f->value;
-    int32_t gain;
+    const int64_t error = target - f->value, spread = f->spread;
+    int32_t change_q15 = ONE_Q15, gain_q15;
 
+    if (as == GLINT_FOLLOW_CHANGED)
+        f->drift = f->spread = 0; /* of what was */
     f->drift += part_of(error - f->drift, pace->smooth_q15);
     f->spread += part_of(size_of(error) - f->spread, pace->smooth_q15);
-    gain = gain_q15(f, floor, pace->smooth_q15);
-    if (repeats && gain < pace->settle_q15)
-        gain = pace->settle_q15;
-    f->value =
-        size_of(error) <= floor / 4 ? target : f->value + part_of(error, gain);
+    if (as != GLINT_FOLLOW_CHANGED)
+        change_q15 = judge_q15(f, error, spread, floor);
+    gain_q15 =
+        pace->smooth_q15 + q_mul(ONE_Q15 - pace->smooth_q15, change_q15, 15);
+    if (as == GLINT_FOLLOW_REPEATED && gain_q15 < pace->settle_q15)
+        gain_q15 = pace->settle_q15;
+    f->value = size_of(error) <= floor / 4
+                   ? target
+                   : f->value + part_of(error, gain_q15);
+    return change_q15;
 }
 
-void glint_follow_jump(struct glint_follow *f, int64_t value, int64_t shown,
-                       int32_t time_us)
+void glint_follow_doubt(struct glint_follow *f, int64_t ahead, int64_t target,
+                        int64_t spread, const struct glint_pace *pace)
+{
+    f->drift = 0;
+    if (f->spread < spread)
+        f->spread = spread;
+    f->value = ahead + part_of(target - ahead, pace->smooth_q15);
+}
+
+void glint_follow_jump(struct glint_follow *f, int64_t value, int64_t shown)
 {
     f->value = value;
-    f->drift = 0;
     f->offset = shown - value;
-    f->left_us = time_us;
+    if (f->stride < size_of(f->offset))
+        f->stride = size_of(f->offset);
 }

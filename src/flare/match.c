@@ -75,8 +75,9 @@ static int pair_before(const void *ctx, int32_t a, int32_t b)
 
 /* -1: too far, or something else. */
 static int64_t cost_q16(const struct glint_seeker *s,
-                        const struct glint_spot *spot, int32_t reach_q8)
+                        const struct glint_spot *spot)
 {
+    const int64_t reach_q8 = s->reach_q8;
     const int64_t dx_q8 = (int64_t)spot->x_q8 - s->x_q8;
     const int64_t dy_q8 = (int64_t)spot->y_q8 - s->y_q8;
     const int is_far = (spot->faint != 0) + (s->is_lost != 0);
@@ -86,7 +87,7 @@ static int64_t cost_q16(const struct glint_seeker *s,
         (spot->faint && spot->area > s->max_faint_area))
         return -1;
     d2_q16 = dx_q8 * dx_q8 + dy_q8 * dy_q8;
-    if (d2_q16 > (int64_t)reach_q8 * reach_q8)
+    if (d2_q16 > reach_q8 * reach_q8)
         return -1;
     return is_far ? (d2_q16 + PIXEL2_Q16) << (is_far * FAR_LOG2) : d2_q16;
 }
@@ -127,16 +128,16 @@ static void keep_near(struct glint_match *m, int first, struct glint_pair pair)
 }
 
 static void look_around(struct glint_match *m, int seeker,
-                        const struct glint_spot *spots, int n, int32_t reach_q8)
+                        const struct glint_spot *spots, int n)
 {
     const struct glint_seeker *s = &m->seeker[seeker];
-    const int64_t right_q8 = (int64_t)s->x_q8 + reach_q8;
+    const int64_t right_q8 = (int64_t)s->x_q8 + s->reach_q8;
     const int first = m->n_pairs;
 
-    for (int i = first_from(m, spots, n, (int64_t)s->x_q8 - reach_q8);
+    for (int i = first_from(m, spots, n, (int64_t)s->x_q8 - s->reach_q8);
          i < n && spots[m->by_x[i]].x_q8 <= right_q8; i++) {
         const int32_t spot = m->by_x[i];
-        const int64_t cost = cost_q16(s, &spots[spot], reach_q8);
+        const int64_t cost = cost_q16(s, &spots[spot]);
 
         if (cost >= 0)
             keep_near(m, first, (struct glint_pair){cost, seeker, spot, i});
@@ -144,7 +145,7 @@ static void look_around(struct glint_match *m, int seeker,
 }
 
 void glint_match_find(struct glint_match *m, const struct glint_spot *spots,
-                      int n, int32_t reach_q8)
+                      int n)
 {
     for (int i = 0; i < n; i++) {
         m->by_x[i] = i;
@@ -154,7 +155,7 @@ void glint_match_find(struct glint_match *m, const struct glint_spot *spots,
     m->n_pairs = 0;
     for (int i = 0; i < m->n_seekers; i++) {
         m->seeker[i].spot = -1;
-        look_around(m, i, spots, n, reach_q8);
+        look_around(m, i, spots, n);
     }
     for (int i = 0; i < m->n_pairs; i++)
         m->order[i] = i;

@@ -22,6 +22,7 @@ struct glint_arena;
 struct glint_seeker {
     uint32_t id; /* settles ties; no two have the same */
     int32_t x_q8, y_q8;
+    int32_t reach_q8;       /* 0 .. 2^23 */
     int32_t max_faint_area; /* larger faint spots are something else */
     int is_lost;
     int32_t spot; /* result: index, or -1 */
@@ -44,8 +45,8 @@ void glint_match_carve(struct glint_match *m, struct glint_arena *arena,
                        int max_seekers, int max_spots);
 
 /* Sets the spot of m->seeker[0 .. n_seekers - 1], and by_x and taken of the N
- * SPOTS. REACH_Q8 is at most 2^22. */
+ * SPOTS. */
 void glint_match_find(struct glint_match *m, const struct glint_spot *spots,
-                      int n, int32_t reach_q8);
+                      int n);
 
 #endif

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Drawn night scenes: lamps with a blurred rim in camera noise, as an 8-bit
+ * grey picture shows them, and what finder and tracks make of them.
+ */
+#ifndef GLINT_TESTS_NIGHT_H
+#define GLINT_TESTS_NIGHT_H
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/lights.h"
+#include "glint/tracks.h"
+
+enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
+
+struct night_lamp {
+    double x, y, radius;
+    double light; /* of its face, 1 = white; it falls off over 1.5 pixels */
+};
+
+struct night {
+    struct glint_image image;
+    double sigma;            /* of the noise, codes */
+    double pole_x0, pole_x1; /* nothing is seen between */
+    struct glint_lights *finder;
+    struct glint_lights_config lights;
+    struct glint_tracks *tracks;
+    struct glint_tracks_config cfg;
+    void *mem[2];
+    struct glint_spot spot[NIGHT_MAX];
+    struct glint_track track[NIGHT_MAX];
+    int n_spots, n_tracks;
+    uint32_t seed;
+    int8_t noise[NIGHT_NOISE]; /* 1/16 of sigma */
+};
+
+static inline int night_random(struct night *night, int n)
+{
+    night->seed = night->seed * 1664525 + 1013904223;
+    return (int)((uint64_t)(night->seed >> 8) * (uint32_t)n >> 24);
+}
+
+/* A sum of twelve uniform numbers is all but a bell curve. */
+static inline void night_init(struct night *night, int width, int height)
+{
+    memset(night, 0, sizeof *night);
+    night->seed = 1;
+    night->image = (struct glint_image){
+        .format = GLINT_GREY, .width = width, .height = height};
+    glint_image_place(&night->image, malloc((size_t)width * (size_t)height));
+    for (int i = 0; i < NIGHT_NOISE; i++) {
+        double sum = -6;
+
+        for (int k = 0; k < 12; k++)
+            sum += night_random(night, 1 << 20) * 0x1p-20;
+        night->noise[i] = (int8_t)fmax(-127, fmin(127, floor(16 * sum + 0.5)));
+    }
+    glint_lights_defaults(&night->lights, width, height);
+    night->lights.keep_faint = 1;
+    night->lights.max_share_q15 = 1 << 15;
+    glint_tracks_defaults(&night->cfg, width, height);
+}
+
+/* After configuration. Returns whether all went well. */
+static inline int night_open(struct night *n)
+{
+    const size_t bytes[2] = {glint_lights_bytes(&n->lights),
+                             glint_tracks_bytes(&n->cfg)};
+
+    return posix_memalign(&n->mem[0], 64, bytes[0]) == 0 &&
+           posix_memalign(&n->mem[1], 64, bytes[1]) == 0 &&
+           glint_lights_init(&n->finder, &n->lights, n->mem[0], bytes[0]) ==
+               GLINT_OK &&
+           glint_tracks_init(&n->tracks, &n->cfg, n->mem[1], bytes[1]) ==
+               GLINT_OK;
+}
+
+static inline void night_close(struct night *night)
+{
+    free(night->image.plane[0]);
+    free(night->mem[0]);
+    free(night->mem[1]);
+}
+
+static inline int night_code(double light)
+{
+    const double v = light <= 0.0031308 ? 12.92 * light
+                                        : 1.055 * pow(light, 1 / 2.4) - 0.055;
+
+    return (int)(255 * fmin(v, 1) + 0.5);
+}
+
+static inline double night_light_at(const struct night *night,
+                                    const struct night_lamp *lamp, int n, int x,
+                                    int y)
+{
+    double light = 0.01;
+
+    if (x + 0.5 > night->pole_x0 && x + 0.5 < night->pole_x1)
+        return light;
+    for (int i = 0; i < n; i++) {
+        const double r = hypot(x + 0.5 - lamp[i].x, y + 0.5 - lamp[i].y);
+
+        if (r < lamp[i].radius + 15)
+            light += lamp[i].light * exp(-fmax(r - lamp[i].radius, 0) / 1.5);
+    }
+    return light;
+}
+
+static inline void night_draw(struct night *night,
+                              const struct night_lamp *lamp, int n)
+{
+    const struct glint_image *image = &night->image;
+
+    for (int y = 0; y < image->height; y++) {
+        const int at = night_random(night, NIGHT_NOISE);
+
+        for (int x = 0; x < image->width; x++) {
+            const double noise = night->noise[(at + x) % NIGHT_NOISE] / 16.0;
+            const double code =
+                night_code(night_light_at(night, lamp, n, x, y)) +
+                night->sigma * noise;
+
+            image->plane[0][y * image->width + x] =
+                (uint8_t)fmax(0, fmin(255, floor(code + 0.5)));
+        }
+    }
+}
+
+/* Finds and tracks what the picture shows. */
+static inline void night_track(struct night *n, int32_t elapsed_us)
+{
+    n->n_spots = glint_lights_find(n->finder, &n->image, n->spot, NIGHT_MAX);
+    n->n_tracks = glint_tracks_step(n->tracks, n->spot, n->n_spots, elapsed_us,
+                                    n->track, NIGHT_MAX);
+}
+
+static inline void night_step(struct night *n, const struct night_lamp *lamp,
+                              int n_lamps, int32_t elapsed_us)
+{
+    night_draw(n, lamp, n_lamps);
+    night_track(n, elapsed_us);
+}
+
+/* The power of a lamp that is 2^12 over white where it clips. */
+static inline double night_power(const struct glint_track *t)
+{
+    return t->level_q15 / 32768.0 *
+           ((double)t->flux_q16 + 4095 * (double)t->clipped_q16) / 65536;
+}
+
+static inline double night_energy(const struct night *n)
+{
+    double sum = 0;
+
+    for (int i = 0; i < n->n_tracks; i++)
+        sum += night_power(&n->track[i]);
+    return sum;
+}
+
+static inline double night_spot_power(const struct glint_spot *s)
+{
+    return (double)s->flux_q16 / 65536 + 4095.0 * s->n_clipped;
+}
+
+/* The track or spot nearest to X, Y; -1: there is none. */
+static inline int night_track_at(const struct night *n, double x, double y)
+{
+    double best = INFINITY;
+    int at = -1;
+
+    for (int i = 0; i < n->n_tracks; i++) {
+        const double d =
+            hypot(n->track[i].x_q8 / 256.0 - x, n->track[i].y_q8 / 256.0 - y);
+
+        if (d < best) {
+            best = d;
+            at = i;
+        }
+    }
+    return at;
+}
+
+static inline int night_spot_at(const struct night *n, double x, double y)
+{
+    double best = INFINITY;
+    int at = -1;
+
+    for (int i = 0; i < n->n_spots; i++) {
+        const double d =
+            hypot(n->spot[i].x_q8 / 256.0 - x, n->spot[i].y_q8 / 256.0 - y);
+
+        if (d < best) {
+            best = d;
+            at = i;
+        }
+    }
+    return at;
+}
+
+#endif

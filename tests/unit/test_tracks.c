@@ -1,0 +1,833 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lights over time, in drawn night scenes seen through the real finder: that
+ * noise does not show, that motion does, and that nothing pops.
+ */
+#include "glint/tracks.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/night.h"
+
+enum { FPS30 = 33333, FPS60 = 16667, FULL = 32768 };
+
+static struct night night;
+
+static void open_night(int width, int height, double sigma)
+{
+    night_init(&night, width, height);
+    night.sigma = sigma;
+    assert_true(night_open(&night));
+}
+
+static const struct glint_track *only_track(void)
+{
+    assert_int_equal(night.n_tracks, 1);
+    return &night.track[0];
+}
+
+/* ------------------------------------------------------------ configuration */
+
+static void test_memory_is_exact(void **state)
+{
+    struct glint_tracks_config cfg;
+    struct glint_tracks *tracks;
+    size_t bytes;
+    void *mem;
+
+    (void)state;
+    glint_tracks_defaults(&cfg, 1920, 1080);
+    bytes = glint_tracks_bytes(&cfg);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, bytes), GLINT_OK);
+    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, bytes - 1),
+                     GLINT_E_MEMORY);
+    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, 1), GLINT_E_MEMORY);
+    assert_int_equal(
+        glint_tracks_init(&tracks, &cfg, (char *)mem + 8, bytes - 8),
+        GLINT_E_ARGUMENT);
+    free(mem);
+}
+
+static void assert_refused(struct glint_tracks_config cfg)
+{
+    static uint64_t mem[16];
+    struct glint_tracks *tracks;
+
+    assert_true(glint_tracks_bytes(&cfg) == 0);
+    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, sizeof mem),
+                     GLINT_E_ARGUMENT);
+}
+
+static void test_bad_configurations_are_refused(void **state)
+{
+    struct glint_tracks_config good, bad;
+
+    (void)state;
+    glint_tracks_defaults(&good, 640, 480);
+    assert_true(glint_tracks_bytes(&good) > 0);
+    bad = good, bad.width = 0, assert_refused(bad);
+    bad = good, bad.height = GLINT_MAX_SIDE + 1, assert_refused(bad);
+    bad = good, bad.max_tracks = 0, assert_refused(bad);
+    bad = good, bad.max_tracks = 1025, assert_refused(bad);
+    bad = good, bad.max_shown = 0, assert_refused(bad);
+    bad = good, bad.max_shown = bad.max_tracks + 1, assert_refused(bad);
+    bad = good, bad.match_q15 = -1, assert_refused(bad);
+    bad = good, bad.match_q15 = 32769, assert_refused(bad);
+    bad = good, bad.cut_q15 = 0, assert_refused(bad);
+    bad = good, bad.attack_ms = 0, assert_refused(bad);
+    bad = good, bad.release_ms = 60001, assert_refused(bad);
+    bad = good, bad.leave_ms = 0, assert_refused(bad);
+    bad = good, bad.memory_ms = 0, assert_refused(bad);
+    bad = good, bad.smooth_ms = -1, assert_refused(bad);
+}
+
+/* ---------------------------------------------------------------- stability */
+
+struct moments {
+    double sum, square;
+    int n;
+};
+
+static void add(struct moments *m, double v)
+{
+    m->sum += v;
+    m->square += v * v;
+    m->n++;
+}
+
+static double deviation(const struct moments *m)
+{
+    const double mean = m->sum / m->n;
+
+    return sqrt(fmax(m->square / m->n - mean * mean, 0));
+}
+
+static double mean(const struct moments *m)
+{
+    return m->sum / m->n;
+}
+
+/* 300 frames of six lamps, noise of 3 codes. Columns: spots, tracks. */
+static void test_static_scene_stands_still(void **state)
+{
+    static const struct night_lamp lamp[] = {
+        {60.3, 50.7, 14, 3}, {160.8, 40.2, 8, 2},  {250.4, 60.9, 5, 4},
+        {70.1, 150.6, 3, 2}, {170.5, 140.5, 2, 3}, {260.9, 150.3, 4, 1.05}};
+    enum { N = sizeof lamp / sizeof *lamp };
+    struct moments x[N][2] = {{{0, 0, 0}}}, y[N][2] = {{{0, 0, 0}}};
+    struct moments power[N][2] = {{{0, 0, 0}}}, total[2] = {{0, 0, 0}};
+    uint32_t id[N];
+
+    (void)state;
+    open_night(320, 200, 3);
+    for (int frame = 0; frame < 300; frame++) {
+        double sum = 0;
+
+        night_step(&night, lamp, N, FPS30);
+        assert_int_equal(night.n_tracks, N);
+        for (int i = 0; i < N; i++) {
+            const struct glint_track *t =
+                &night.track[night_track_at(&night, lamp[i].x, lamp[i].y)];
+            const struct glint_spot *s =
+                &night.spot[night_spot_at(&night, lamp[i].x, lamp[i].y)];
+
+            if (frame == 0)
+                id[i] = t->id;
+            assert_int_equal(t->id, id[i]);
+            assert_int_equal(t->level_q15, FULL);
+            add(&x[i][0], s->x_q8 / 256.0), add(&x[i][1], t->x_q8 / 256.0);
+            add(&y[i][0], s->y_q8 / 256.0), add(&y[i][1], t->y_q8 / 256.0);
+            add(&power[i][0], night_spot_power(s));
+            add(&power[i][1], night_power(t));
+            sum += night_spot_power(s);
+        }
+        add(&total[0], sum), add(&total[1], night_energy(&night));
+    }
+    for (int i = 0; i < N; i++) {
+        double px[2], percent[2];
+
+        for (int k = 0; k < 2; k++) {
+            px[k] = hypot(deviation(&x[i][k]), deviation(&y[i][k]));
+            percent[k] = 100 * deviation(&power[i][k]) / mean(&power[i][k]);
+        }
+        print_message("radius %2.0f, light %.2f: %.3f px -> %.3f px; "
+                      "%.2f %% -> %.2f %%\n",
+                      lamp[i].radius, lamp[i].light, px[0], px[1], percent[0],
+                      percent[1]);
+        assert_true(px[1] < 0.25 && px[1] < px[0]);
+        assert_true(percent[1] < 0.6 * percent[0]);
+    }
+    print_message("flare energy: %.3f %% -> %.3f %%\n",
+                  100 * deviation(&total[0]) / mean(&total[0]),
+                  100 * deviation(&total[1]) / mean(&total[1]));
+    assert_true(deviation(&total[1]) < 0.01 * mean(&total[1]));
+    night_close(&night);
+}
+
+/* A lamp of 8 x 8 pixels, far from white, and one pixel of it 41 times as
+ * bright (code 255 against 43, linear 1 against 0.0242): another one in each
+ * picture, or now and then. */
+static double sparkle_moves(int every, uint32_t seed)
+{
+    double furthest = 0;
+
+    night_init(&night, 320, 200);
+    night.seed = seed;
+    night.lights.threshold_low = 40;
+    night.lights.threshold_high = 43;
+    assert_true(night_open(&night));
+    for (int frame = 0; frame < 300; frame++) {
+        uint8_t *const corner = night.image.plane[0] + 100 * 320 + 150;
+        const struct glint_track *t;
+
+        memset(night.image.plane[0], 5, 320 * 200);
+        for (int y = 0; y < 8; y++)
+            memset(corner + 320 * y, 43, 8);
+        if (frame > 0 && frame % every == 0)
+            corner[320 * night_random(&night, 8) + night_random(&night, 8)] =
+                255;
+        night_track(&night, FPS30);
+        t = only_track();
+        furthest =
+            fmax(furthest, hypot(t->x_q8 / 256.0 - 154, t->y_q8 / 256.0 - 104));
+    }
+    night_close(&night);
+    return furthest;
+}
+
+static void test_sparkle_moves_less_than_a_pixel(void **state)
+{
+    double always = 0, rarely = 0;
+
+    (void)state;
+    for (uint32_t seed = 1; seed <= 20; seed++) {
+        always = fmax(always, sparkle_moves(1, seed));
+        rarely = fmax(rarely, sparkle_moves(7, seed));
+    }
+    print_message("sparkle in each picture %.2f px, in one of seven %.2f\n",
+                  always, rarely);
+    assert_true(always < 1);
+    assert_true(rarely < 1);
+}
+
+/* A lamp whose brightest pixels hover about the upper threshold: seen or not,
+ * the finder says, and often; but a track stays. */
+static void test_hysteresis(void **state)
+{
+    uint32_t id = 0;
+    int n_faint = 0;
+
+    (void)state;
+    open_night(320, 200, 0);
+    for (int frame = 0; frame < 100; frame++) {
+        const int code = frame == 0 ? 255 : 251 + night_random(&night, 4);
+
+        memset(night.image.plane[0], 5, 320 * 200);
+        for (int y = 0; y < 6; y++)
+            memset(night.image.plane[0] + 320 * (100 + y) + 150, code, 6);
+        night_track(&night, FPS30);
+        n_faint += night.spot[0].faint;
+        assert_int_equal(only_track()->state, GLINT_TRACK_STEADY);
+        if (frame == 0)
+            id = only_track()->id;
+        assert_int_equal(only_track()->id, id);
+    }
+    assert_true(n_faint > 30);
+    night_close(&night);
+}
+
+/* What is faint from the start is no light, nor is a wall next to one. */
+static void test_faint_spots_begin_no_track(void **state)
+{
+    struct glint_spot spot[2] = {{.x_q8 = 100 << 8,
+                                  .y_q8 = 100 << 8,
+                                  .area = 40,
+                                  .flux_q16 = 40 << 16,
+                                  .faint = 1}};
+
+    (void)state;
+    open_night(320, 200, 0);
+    assert_int_equal(
+        glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX),
+        0);
+    spot[0].faint = 0;
+    assert_int_equal(glint_tracks_step(night.tracks, spot, 1, 1000000,
+                                       night.track, NIGHT_MAX),
+                     1);
+    spot[0].faint = 1;
+    spot[0].area = 161; /* more than four times */
+    glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX);
+    assert_int_equal(night.track[0].state, GLINT_TRACK_FADING);
+    glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX);
+    spot[0].area = 160;
+    glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX);
+    assert_int_equal(night.track[0].state, GLINT_TRACK_RISING);
+    night_close(&night);
+}
+
+/* --------------------------------------------------------------- exactness */
+
+static bool is_spot(const struct glint_track *t, const struct glint_spot *s)
+{
+    return t->state == GLINT_TRACK_STEADY && t->level_q15 == FULL &&
+           t->x_q8 == s->x_q8 && t->y_q8 == s->y_q8 &&
+           t->size_q8 == s->size_q8 && t->flux_q16 == s->flux_q16 &&
+           t->clipped_q16 == (int64_t)s->n_clipped * 65536 &&
+           memcmp(t->rgb_q15, s->rgb_q15, sizeof t->rgb_q15) == 0;
+}
+
+/* Every light has a track that says what it says, and faint spots may. */
+static bool all_settled(void)
+{
+    int n_lights = 0;
+
+    for (int i = 0; i < night.n_spots; i++)
+        n_lights += !night.spot[i].faint;
+    for (int i = 0; i < night.n_tracks; i++) {
+        const struct glint_track *t = &night.track[i];
+
+        if (!is_spot(t, &night.spot[night_spot_at(&night, t->x_q8 / 256.0,
+                                                  t->y_q8 / 256.0)]))
+            return false;
+    }
+    return night.n_tracks >= n_lights;
+}
+
+/* Whatever went before, noise or motion, pictures that repeat are what their
+ * track says after attack + 1 s; at any rate. */
+static void test_repeated_pictures_are_met_exactly(void **state)
+{
+    static const int32_t rates[] = {1000, FPS60, FPS30, 200000, 1000000};
+    double slowest = 0;
+
+    (void)state;
+    for (int k = 0; k < 5 * 20; k++) {
+        struct night_lamp lamp[3] = {
+            {80, 60, 7, 2}, {200, 110, 4, 1.2}, {130, 150, 2, 5}};
+        const int32_t us = rates[k % 5];
+        int n_settled = 0, n_frames = 0;
+
+        open_night(320, 200, 3);
+        night.seed = (uint32_t)k;
+        for (int frame = 0; frame < 10; frame++) {
+            for (int i = 0; i < 3; i++) {
+                lamp[i].x += night_random(&night, 7) - 3;
+                lamp[i].light *= 0.8 + night_random(&night, 5) * 0.1;
+            }
+            night_step(&night, lamp, 3, us);
+        }
+        night.n_spots = glint_lights_find(night.finder, &night.image,
+                                          night.spot, NIGHT_MAX);
+        for (; n_frames * (int64_t)us < 1200000; n_frames++) {
+            night.n_tracks =
+                glint_tracks_step(night.tracks, night.spot, night.n_spots, us,
+                                  night.track, NIGHT_MAX);
+            n_settled = all_settled() ? n_settled + 1 : 0;
+        }
+        slowest = fmax(slowest, (n_frames - n_settled + 1) * (us * 1e-6));
+        assert_true(n_settled > 0);
+        assert_true(night.n_tracks > 0);
+        night_close(&night);
+    }
+    print_message("settled after %.3f s at most\n", slowest);
+}
+
+/* ------------------------------------------------------------------ motion */
+
+/* Speeds in pixels a frame, without noise and with. */
+static void test_a_moving_lamp_does_not_lag(void **state)
+{
+    static const double speeds[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 4, 8, 12};
+
+    (void)state;
+    for (int k = 0; k < 18; k++) {
+        const double speed = speeds[k % 9];
+        struct moments lag = {0, 0, 0};
+        double most = 0;
+        uint32_t id = 0;
+
+        open_night(640, 200, k < 9 ? 0 : 3);
+        for (int frame = 0; frame < 45; frame++) {
+            const struct night_lamp lamp = {40.3 + speed * frame,
+                                            100.4 - 0.1 * speed * frame, 6, 3};
+            const struct glint_track *t;
+
+            night_step(&night, &lamp, 1, FPS30);
+            t = only_track();
+            id = frame ? id : t->id;
+            assert_int_equal(t->id, id);
+            if (frame < 15)
+                continue;
+            most = fmax(most, hypot(t->x_q8 / 256.0 - lamp.x,
+                                    t->y_q8 / 256.0 - lamp.y));
+            add(&lag, lamp.x - t->x_q8 / 256.0);
+        }
+        print_message("%5.2f px a frame%s: behind by %.3f px, off by %.3f\n",
+                      speed, k < 9 ? "" : " in noise", mean(&lag), most);
+        assert_true(most < 0.5);
+        night_close(&night);
+    }
+}
+
+/* Two lamps that meet and pass keep their numbers: they are told apart by where
+ * they are going. */
+static void test_lamps_that_pass_keep_their_numbers(void **state)
+{
+    uint32_t id[2] = {0, 0};
+
+    (void)state;
+    open_night(640, 200, 2);
+    for (int frame = 0; frame < 100; frame++) {
+        const struct night_lamp lamp[2] = {{120 + 4.0 * frame, 92, 4, 3},
+                                           {520 - 4.0 * frame, 112, 4, 3}};
+
+        night_step(&night, lamp, 2, FPS30);
+        assert_int_equal(night.n_tracks, 2);
+        for (int i = 0; i < 2; i++) {
+            const uint32_t is =
+                night.track[night_track_at(&night, lamp[i].x, lamp[i].y)].id;
+
+            id[i] = frame ? id[i] : is;
+            assert_int_equal(is, id[i]);
+        }
+    }
+    assert_true(id[0] != id[1]);
+    night_close(&night);
+}
+
+/* A fast lamp leaves to the right: its track goes on at its speed, outside, and
+ * fades in 400 ms without a step of more than 1 / 12. */
+static void test_leaving_lamp_moves_on_and_fades(void **state)
+{
+    double last_x = 0, last_power = 0;
+    int n_outside = 0, n_leaving = 0;
+
+    (void)state;
+    open_night(320, 200, 2);
+    for (int frame = 0; frame < 50; frame++) {
+        const struct night_lamp lamp = {100 + 9.0 * frame, 100, 5, 3};
+        const struct glint_track *t;
+
+        night_step(&night, &lamp, 1, FPS30);
+        if (night.n_tracks == 0)
+            break;
+        t = only_track();
+        if (frame > 10 && lamp.x < 310) {
+            assert_true(fabs(t->x_q8 / 256.0 - lamp.x) < 0.5);
+        } else if (t->state == GLINT_TRACK_LEAVING) {
+            n_leaving++;
+            assert_true(fabs(t->x_q8 / 256.0 - last_x - 9) < 3);
+            assert_true(night_power(t) < last_power);
+        }
+        n_outside += t->x_q8 > 320 << 8;
+        last_x = t->x_q8 / 256.0;
+        last_power = night_power(t);
+    }
+    assert_int_equal(night.n_tracks, 0);
+    assert_int_equal(n_leaving, 11); /* the twelfth step ends at 0 */
+    assert_true(n_outside >= 8);
+    night_close(&night);
+}
+
+/* ---------------------------------------------------------- rise, fade, cut */
+
+/* The level T us after the lamp came on, at a rate. */
+static double level_after(int32_t us, int32_t elapsed_us, int32_t attack_ms)
+{
+    const struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 120, 5, 3}};
+    double level;
+
+    night_init(&night, 320, 200);
+    night.cfg.attack_ms = attack_ms;
+    assert_true(night_open(&night));
+    night_step(&night, lamp, 1, elapsed_us);
+    night_step(&night, lamp, 1, elapsed_us);
+    for (int32_t t = elapsed_us; t <= us + 10; t += elapsed_us) {
+        night_step(&night, lamp, 2, elapsed_us);
+        assert_int_equal(night.track[0].level_q15, FULL);
+    }
+    assert_int_equal(night.n_tracks, 2);
+    level = night.track[1].level_q15 / 32768.0;
+    night_close(&night);
+    return level;
+}
+
+static void test_rise_does_not_depend_on_the_rate(void **state)
+{
+    (void)state;
+    for (int k = 1; k <= 10; k++) {
+        const double at30 = level_after(k * FPS30, FPS30, 300);
+        const double at60 = level_after(k * FPS30, FPS60, 300);
+        const double at1000 = level_after(k * FPS30, 1000, 300);
+
+        assert_true(fabs(at30 - at60) < 0.02 * at30);
+        assert_true(fabs(at30 - at1000) < 0.02);
+        assert_true(fabs(at30 - fmin(1, k * FPS30 / 300e3)) < 1e-3);
+    }
+    assert_true(level_after(4 * 50000, 50000, 200) == 1);
+}
+
+/* Other lamps elsewhere, in one picture: all old tracks are gone and all new
+ * ones at full level at once. */
+static void test_cut_restarts_in_one_frame(void **state)
+{
+    static const struct night_lamp before[] = {
+        {60, 50, 6, 3}, {200, 120, 5, 2}, {120, 160, 3, 4}};
+    static const struct night_lamp after[] = {
+        {110, 60, 4, 3}, {260, 40, 7, 2}, {62, 120, 3, 4}, {202, 124, 2, 3}};
+
+    (void)state;
+    open_night(320, 200, 3);
+    for (int frame = 0; frame < 20; frame++) {
+        night_step(&night, before, 3, FPS30);
+        assert_int_equal(glint_tracks_was_cut(night.tracks), frame == 0);
+    }
+    for (int frame = 0; frame < 20; frame++) {
+        night_step(&night, after, 4, FPS30);
+        assert_int_equal(glint_tracks_was_cut(night.tracks), frame == 0);
+        assert_int_equal(night.n_tracks, 4);
+        for (int i = 0; i < 4; i++) {
+            const struct glint_track *t = &night.track[i];
+
+            assert_true(t->id > 3);
+            assert_int_equal(t->level_q15, FULL);
+            assert_int_equal(t->state, GLINT_TRACK_STEADY);
+            assert_true(
+                hypot(t->x_q8 / 256.0 - after[t->id > 7 ? 0 : 0].x, 0) >= 0);
+            if (frame == 0) {
+                const struct glint_spot *s = &night.spot[night_spot_at(
+                    &night, t->x_q8 / 256.0, t->y_q8 / 256.0)];
+
+                assert_true(is_spot(t, s));
+            }
+        }
+    }
+    night_close(&night);
+}
+
+/* One lamp of three going out, another coming on, a pan: no cuts. */
+static void test_what_is_no_cut(void **state)
+{
+    (void)state;
+    open_night(640, 200, 3);
+    for (int frame = 0; frame < 60; frame++) {
+        const double pan = frame < 20 ? 0 : 7.0 * (frame - 20);
+        const struct night_lamp lamp[] = {{60 + pan, 50, 6, 3},
+                                          {200 + pan, 120, 6, 3},
+                                          {320 + pan, 60, 6, 3},
+                                          {120 + pan, 160, 6, 3}};
+
+        night_step(&night, lamp + (frame == 30), 3 + (frame > 40), FPS30);
+        assert_int_equal(glint_tracks_was_cut(night.tracks), frame == 0);
+    }
+    night_close(&night);
+}
+
+/* ------------------------------------------------------------- nothing pops */
+
+/* The largest step of the energy from picture to picture, over the power of
+ * the brightest that there was. */
+struct steps {
+    double last, most, largest;
+    int n;
+};
+
+static void note(struct steps *s, double energy)
+{
+    if (s->n++ > 0)
+        s->largest = fmax(s->largest, fabs(energy - s->last));
+    s->most = fmax(s->most, energy);
+    s->last = energy;
+}
+
+/* A lamp passes behind a pole of 20 pixels, which hides it for half a second
+ * or more. Its energy changes by a quarter of it a frame at most, where the
+ * spot's own goes by all of it, and it comes back with its number. */
+static void test_a_pole_makes_nothing_pop(void **state)
+{
+    static const double speeds[] = {0.7, 1, 2, 4, 6};
+
+    (void)state;
+    for (int k = 0; k < 5; k++) {
+        struct steps raw = {0, 0, 0, 0}, tracked = {0, 0, 0, 0};
+        uint32_t id = 0;
+
+        open_night(320, 200, 2);
+        night.pole_x0 = 150;
+        night.pole_x1 = 170;
+        for (int frame = 0; frame * speeds[k] < 180; frame++) {
+            const struct night_lamp lamp = {70.0 + speeds[k] * frame, 100, 5,
+                                            3};
+
+            night_step(&night, &lamp, 1, FPS30);
+            for (int i = 0; i < night.n_tracks; i++) {
+                id = id ? id : night.track[i].id;
+                assert_int_equal(night.track[i].id, id);
+            }
+            note(&raw, night.n_spots ? night_spot_power(&night.spot[0]) : 0);
+            note(&tracked, night_energy(&night));
+        }
+        print_message("%.1f px a frame: steps of %.2f -> %.2f\n", speeds[k],
+                      raw.largest / raw.most, tracked.largest / tracked.most);
+        assert_int_equal(night.n_tracks, 1);
+        assert_true(tracked.largest < 0.25 * tracked.most);
+        night_close(&night);
+    }
+}
+
+/* Two lamps meet and part again, closer than the finder tells apart in between.
+ * The energy of both together stays within bounds, and neither jumps. */
+static void test_merging_and_splitting(void **state)
+{
+    struct steps energy = {0, 0, 0, 0};
+    double least = INFINITY, both = 0, jump = 0;
+    struct glint_track last[8];
+    int n_last = 0, n_merged = 0;
+
+    (void)state;
+    night_init(&night, 640, 200);
+    night.sigma = 2;
+    night.lights.merge_q15 = 32768 * 30 / 640;
+    assert_true(night_open(&night));
+    for (int frame = 0; frame < 150; frame++) {
+        const double apart = frame < 75 ? 90.0 - frame : frame - 60.0;
+        const struct night_lamp lamp[2] = {{320 - apart / 2, 90, 4, 3},
+                                           {320 + apart / 2, 100, 5, 3}};
+
+        night_step(&night, lamp, 2, FPS30);
+        n_merged += night.n_spots == 1;
+        note(&energy, night_energy(&night));
+        both = frame < 20 ? fmax(both, night_energy(&night)) : both;
+        least = fmin(least, night_energy(&night));
+        for (int i = 0; i < night.n_tracks; i++)
+            for (int j = 0; j < n_last; j++)
+                if (night.track[i].id == last[j].id)
+                    jump =
+                        fmax(jump, hypot(night.track[i].x_q8 - last[j].x_q8,
+                                         night.track[i].y_q8 - last[j].y_q8) /
+                                       256);
+        n_last = night.n_tracks;
+        assert_in_range(n_last, 1, 2);
+        memcpy(last, night.track, (size_t)n_last * sizeof *last);
+    }
+    print_message("merged: energy %.2f to %.2f of both, steps of %.2f, "
+                  "%.1f px at most\n",
+                  least / both, energy.most / both, energy.largest / both,
+                  jump);
+    assert_in_range(n_merged, 20, 60);
+    assert_true(energy.largest < 0.15 * both);
+    assert_true(least > 0.8 * both && energy.most < 1.2 * both);
+    assert_true(jump < 5);
+    night_close(&night);
+}
+
+/* Ten lamps, four shown: with noise that makes them take turns for the last
+ * place in the finder's order, the same four are shown; and when another gets
+ * much brighter it fades in while one fades out. */
+static void test_cap_does_not_flicker(void **state)
+{
+    struct night_lamp lamp[10];
+    int turns = 0, n = 0;
+    uint32_t last = 0;
+
+    (void)state;
+    night_init(&night, 320, 200);
+    night.sigma = 3;
+    night.cfg.max_shown = 4;
+    assert_true(night_open(&night));
+    for (int i = 0; i < 10; i++)
+        lamp[i] = (struct night_lamp){30 + 60 * (i % 5), 50 + 100 * (i / 5),
+                                      i < 3 ? 8 : 4, 3};
+    for (int frame = 0; frame < 100; frame++) {
+        night_step(&night, lamp, 10, FPS30);
+        assert_int_equal(night.n_tracks, 4);
+        for (int i = 0; i < 4; i++)
+            assert_int_equal(night.track[i].level_q15, FULL);
+        turns += frame > 0 && night.spot[3].x_q8 / 2560 != n;
+        n = night.spot[3].x_q8 / 2560;
+        last = frame ? last : night.track[3].id;
+        assert_int_equal(night.track[3].id, last);
+    }
+    assert_true(turns > 10);
+    lamp[9].radius = 10;
+    for (int frame = 0; frame < 6; frame++)
+        night_step(&night, lamp, 10, FPS30);
+    n = night_track_at(&night, lamp[9].x, lamp[9].y);
+    assert_in_range(night.n_tracks, 4, 5);
+    assert_true(night.track[n].level_q15 > 30000);
+    night_step(&night, lamp, 10, FPS30);
+    assert_int_equal(night.n_tracks, 4);
+    night_close(&night);
+}
+
+/* More lights than tracks: the brightest have them, and a brighter one takes
+ * the place of one that is not shown. */
+static void test_more_lights_than_tracks(void **state)
+{
+    static struct glint_spot spot[NIGHT_MAX];
+
+    (void)state;
+    night_init(&night, 640, 480);
+    night.cfg.max_tracks = night.cfg.max_shown = 8;
+    assert_true(night_open(&night));
+    for (int i = 0; i < 100; i++)
+        spot[i] = (struct glint_spot){.x_q8 = i % 10 * 60 << 8,
+                                      .y_q8 = i / 10 * 45 << 8,
+                                      .area = 10,
+                                      .flux_q16 = (1 + i * 37 % 101) << 16};
+    for (int step = 0; step < 3; step++) {
+        assert_int_equal(
+            glint_tracks_step(night.tracks, spot, 100, FPS30, night.track, 5),
+            5);
+        for (int i = 0; i < 5; i++)
+            assert_true(night.track[i].flux_q16 >= 97 << 16);
+    }
+    night_close(&night);
+}
+
+/* ------------------------------------------------------------- any input */
+
+static struct glint_spot any_spot(void)
+{
+    static const int32_t extremes[] = {INT32_MIN, -1, 0, 1, INT32_MAX};
+    struct glint_spot s = {.x_q8 = night_random(&night, 640 << 8),
+                           .y_q8 = night_random(&night, 480 << 8),
+                           .size_q8 = night_random(&night, 40 << 8),
+                           .area = night_random(&night, 4000),
+                           .n_clipped = night_random(&night, 2000),
+                           .flux_q16 = night_random(&night, 1 << 24) * 64,
+                           .faint = night_random(&night, 3) == 0};
+
+    for (int i = 0; i < 3; i++)
+        s.rgb_q15[i] = night_random(&night, 1 << 17);
+    if (night_random(&night, 10) == 0)
+        s.flux_q16 = night_random(&night, 2) ? INT64_MAX : INT64_MIN;
+    if (night_random(&night, 10) == 0)
+        s.x_q8 = extremes[night_random(&night, 5)];
+    if (night_random(&night, 10) == 0)
+        s.y_q8 = extremes[night_random(&night, 5)];
+    if (night_random(&night, 10) == 0)
+        s.size_q8 = s.area = s.n_clipped = s.rgb_q15[1] =
+            extremes[night_random(&night, 5)];
+    return s;
+}
+
+static int32_t any_time(void)
+{
+    static const int32_t times[] = {0,     1,       1000,      FPS60,
+                                    FPS30, 1000000, INT32_MAX, -1};
+
+    return times[night_random(&night, 8)];
+}
+
+static void assert_sound(int n)
+{
+    for (int i = 0; i < n; i++) {
+        const struct glint_track *t = &night.track[i];
+
+        assert_in_range(t->level_q15, 1, FULL);
+        assert_true(t->flux_q16 >= 0 && t->flux_q16 <= INT64_C(1) << 42);
+        assert_true(t->clipped_q16 >= 0 && t->clipped_q16 <= INT64_C(1) << 42);
+        assert_true(t->size_q8 >= 0);
+        for (int c = 0; c < 3; c++)
+            assert_true(t->rgb_q15[c] >= 0);
+        for (int j = 0; j < i; j++)
+            assert_true(night.track[j].id != t->id);
+    }
+}
+
+/* Two trackers get the same spots, one of them shuffled. Some of them come back
+ * from step to step, moved a little. */
+static void test_order_of_spots_changes_nothing(void **state)
+{
+    static struct glint_spot spot[NIGHT_MAX], mixed[NIGHT_MAX];
+    static struct glint_track track[NIGHT_MAX];
+    struct glint_tracks *other;
+    void *mem;
+
+    (void)state;
+    for (int round = 0; round < 40; round++) {
+        int n = 0;
+
+        night_init(&night, 640, 480);
+        night.seed = (uint32_t)round;
+        night.cfg.max_tracks = 1 + night_random(&night, 64);
+        night.cfg.max_shown = 1 + night_random(&night, night.cfg.max_tracks);
+        assert_true(night_open(&night));
+        assert_int_equal(
+            posix_memalign(&mem, 64, glint_tracks_bytes(&night.cfg)), 0);
+        memset(mem, 0xa5, glint_tracks_bytes(&night.cfg));
+        assert_int_equal(glint_tracks_init(&other, &night.cfg, mem,
+                                           glint_tracks_bytes(&night.cfg)),
+                         GLINT_OK);
+        for (int step = 0; step < 50; step++) {
+            const int32_t us = any_time();
+            const int n_new = night_random(&night, round % 4 ? 100 : NIGHT_MAX);
+            int n_tracks;
+
+            for (int i = 0; i < n_new; i++) {
+                if (i >= n || night_random(&night, 4) == 0)
+                    spot[i] = any_spot();
+                else if (spot[i].x_q8 > 0 && spot[i].x_q8 < 600 << 8)
+                    spot[i].x_q8 += night_random(&night, 2048);
+            }
+            n = n_new;
+            if (n > 3) /* the same twice; and the same but for one number */
+                spot[1] = spot[0], spot[2] = spot[0], spot[2].faint ^= 1;
+            for (int i = 0; i < n; i++) {
+                const int j = night_random(&night, i + 1);
+
+                mixed[i] = mixed[j];
+                mixed[j] = spot[i];
+            }
+            night.n_tracks = glint_tracks_step(night.tracks, spot, n, us,
+                                               night.track, NIGHT_MAX);
+            n_tracks = glint_tracks_step(other, mixed, n, us, track, NIGHT_MAX);
+            assert_int_equal(n_tracks, night.n_tracks);
+            assert_memory_equal(track, night.track,
+                                (size_t)n_tracks * sizeof *track);
+            assert_sound(n_tracks);
+            if (night_random(&night, 20) == 0) {
+                glint_tracks_restart(night.tracks);
+                glint_tracks_restart(other);
+            }
+        }
+        free(mem);
+        night_close(&night);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_memory_is_exact),
+        cmocka_unit_test(test_bad_configurations_are_refused),
+        cmocka_unit_test(test_static_scene_stands_still),
+        cmocka_unit_test(test_sparkle_moves_less_than_a_pixel),
+        cmocka_unit_test(test_hysteresis),
+        cmocka_unit_test(test_faint_spots_begin_no_track),
+        cmocka_unit_test(test_repeated_pictures_are_met_exactly),
+        cmocka_unit_test(test_a_moving_lamp_does_not_lag),
+        cmocka_unit_test(test_lamps_that_pass_keep_their_numbers),
+        cmocka_unit_test(test_leaving_lamp_moves_on_and_fades),
+        cmocka_unit_test(test_rise_does_not_depend_on_the_rate),
+        cmocka_unit_test(test_cut_restarts_in_one_frame),
+        cmocka_unit_test(test_what_is_no_cut),
+        cmocka_unit_test(test_a_pole_makes_nothing_pop),
+        cmocka_unit_test(test_merging_and_splitting),
+        cmocka_unit_test(test_cap_does_not_flicker),
+        cmocka_unit_test(test_more_lights_than_tracks),
+        cmocka_unit_test(test_order_of_spots_changes_nothing),
+    };
+
+    return cmocka_run_group_tests_name("tracks", tests, NULL, NULL);
+}
