@@ -68,10 +68,10 @@ WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS))
 endif
 
 # Sources in the order the data flows.
-CORE := flare/record base/status base/arena base/q base/sort base/image base/workers \
+CORE := base/status base/arena base/q base/sort base/image base/workers \
         kernels/sets kernels/kernels kernels/horner_c kernels/composite_c \
         lens/model lens/transfer flare/regions flare/lights flare/match \
-        flare/follow flare/tracks tile/primitive tile/clip tile/outline \
+        flare/follow flare/record flare/tracks tile/primitive tile/clip tile/outline \
         tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
         tile/resolve flare/beams flare/plan flare/ghost_grid flare/cuts \
         flare/ghost_edges flare/by_cells flare/by_edges flare/flare
@@ -81,11 +81,12 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
-PLATFORM := plain/planar plain/y4m_sink plain/null linux/v4l2_sink plain/split posix/error posix/at_death posix/input posix/output posix/workers \
-        plain/pnm plain/pfm plain/y4m oiio/loader plain/picture \
-        $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) linux/request \
-        linux/fourcc linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
-        plain/row_rgb plain/row_pack plain/panel linux/console linux/fbdev
+PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
+        plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request \
+        linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \
+        linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
+        plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
+        linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
         model_report measure lamps show_lights frame frame_feed scene look live_adapt \
         live_signals live_output live_stats live_loop \

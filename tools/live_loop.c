@@ -32,6 +32,7 @@ struct live {
     enum live_report report;
     int64_t retry_us; /* when a lost output is tried again; 0: never lost */
     bool had_signal;
+    bool is_piped; /* frames go to standard output */
 };
 
 /* Whether statistics overwrite one line of a terminal. */
@@ -65,6 +66,23 @@ static void say_camera(const struct live *l)
         say(l, "buffers could be exported as DMABUF");
 }
 
+static void say_output(const struct live *l)
+{
+    const struct live_output *out = &l->output;
+    char text[320];
+
+    if (out->kind == LIVE_OUTPUT_FB) {
+        snprintf(text, sizeof text, "%s: %dx%d, %d bits a pixel%s",
+                 out->as.fb.id, out->as.fb.width, out->as.fb.height,
+                 8 * out->as.fb.layout.bytes,
+                 out->as.fb.n_pages > 1 ? ", drawn unseen" : "");
+        say(l, text);
+        if (out->as.fb.has_note && l->tool->verbose)
+            say(l, out->as.fb.note.text);
+    } else if (out->kind == LIVE_OUTPUT_V4L2)
+        say(l, out->as.v4l2.card);
+}
+
 static enum glint_status open_camera(struct live *l, struct glint_error *error)
 {
     const struct live_options *o = l->o;
@@ -91,6 +109,8 @@ static int open_output(struct live *l, const struct glint_image *image)
         return EXIT_OK;
     status = live_output_open(&l->output, image, f->fps_num, f->fps_den,
                               l->o->fit, &error);
+    if (status == GLINT_OK)
+        say_output(l);
     if (status == GLINT_OK || (l->retry_us && status == GLINT_E_DEVICE)) {
         l->retry_us = glint_v4l2_now_us() + 1000 * RETRY_MS;
         return EXIT_OK;
@@ -279,7 +299,9 @@ static int lose_camera(struct live *l, enum glint_status status,
 static int lose_output(struct live *l, enum glint_status status,
                        const char *why)
 {
-    live_output_close(&l->output);
+    struct glint_error unsaid;
+
+    live_output_close(&l->output, &unsaid);
     l->retry_us = glint_v4l2_now_us() + 1000 * RETRY_MS;
     return lose(l, "output", status, why);
 }
@@ -409,8 +431,10 @@ static void print_report(const struct live *l, bool total)
     char text[LIVE_STATS_TEXT];
 
     if (l->report == LIVE_REPORT_JSON) {
-        puts(live_stats_json(&l->stats, now_us, total, text));
-        fflush(stdout);
+        FILE *const out = l->is_piped ? stderr : stdout;
+
+        fprintf(out, "%s\n", live_stats_json(&l->stats, now_us, total, text));
+        fflush(out);
     } else if (l->report == LIVE_REPORT_LINE && !total)
         fputs(live_stats_line(&l->stats, now_us, is_line(l), text), stderr);
 }
@@ -435,11 +459,12 @@ static void conclude(struct live *l)
     if (l->report != LIVE_REPORT_LINE)
         return;
     snprintf(text, sizeof text,
-             "%d frames shown, %llu dropped, %llu late, %llu corrupt; latency "
-             "%.1f ms, 1 in 100 above %.1f",
-             l->n_shown, (unsigned long long)t->drops,
-             (unsigned long long)t->late, (unsigned long long)t->corrupt,
-             live_stats_latency_ms(t, 50), live_stats_latency_ms(t, 99));
+             "%d frames, %ld of them not taken by the output; %llu dropped, "
+             "%llu late, %llu corrupt; latency %.1f ms, 1 in 100 above %.1f",
+             l->n_shown, live_output_dropped(&l->output),
+             (unsigned long long)t->drops, (unsigned long long)t->late,
+             (unsigned long long)t->corrupt, live_stats_latency_ms(t, 50),
+             live_stats_latency_ms(t, 99));
     say(l, text);
 }
 
@@ -487,6 +512,8 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
              void *ctx)
 {
     struct live *l = calloc(1, sizeof *l);
+    struct glint_error error = {""};
+    enum glint_status status;
     int code;
 
     if (!l)
@@ -500,8 +527,12 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     live_adapt_init(&l->adapt);
     live_signals_take();
     code = live_output_parse(&l->output, o->output)
-               ? start(l)
+               ? EXIT_OK
                : tool_usage(tool, "-o: '%s' is no output", o->output);
+    l->is_piped =
+        l->output.kind == LIVE_OUTPUT_Y4M && strcmp(l->output.path, "-") == 0;
+    if (code == EXIT_OK)
+        code = start(l);
     if (code == EXIT_OK) {
         live_stats_start(&l->stats, glint_v4l2_now_us());
         code = loop(l);
@@ -509,7 +540,9 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     }
     if (l->camera.source.fd >= 0)
         l->camera.source.close(&l->camera.source);
-    live_output_close(&l->output);
+    status = live_output_close(&l->output, &error);
+    if (status != GLINT_OK && code == EXIT_OK)
+        code = tool_fail(tool, status, error.text);
     free(l->picture_mem);
     free(l);
     return code;

@@ -30,8 +30,7 @@ static enum glint_status open_fb(struct live_output *o,
                                  enum glint_panel_fit fit,
                                  struct glint_error *error)
 {
-    const struct glint_fbdev_options options = {
-        .fit = fit, .vsync = false, .console = true};
+    const struct glint_fbdev_options options = {.fit = fit, .console = true};
     const enum glint_status status =
         glint_fbdev_open(&o->as.fb, o->path, &options, error);
 
@@ -39,23 +38,15 @@ static enum glint_status open_fb(struct live_output *o,
     return status;
 }
 
-static enum glint_status nput(struct glint_sink *s, const struct glint_image *i,
-                              struct glint_error *e)
+static enum glint_status open_v4l2(struct live_output *o,
+                                   const struct glint_image *image, int fps_num,
+                                   int fps_den, struct glint_error *error)
 {
-    (void)s;
-    (void)i;
-    (void)e;
-    return GLINT_OK;
-}
-static void nclose(struct glint_sink *s)
-{
-    (void)s;
-}
-static enum glint_status open_null(struct live_output *o)
-{
-    o->as.null = (struct glint_sink){nput, nclose};
-    o->sink = &o->as.null;
-    return GLINT_OK;
+    const enum glint_status status = glint_v4l2_sink_open(
+        &o->as.v4l2, o->path, image, fps_num, fps_den, error);
+
+    o->sink = status == GLINT_OK ? &o->as.v4l2.sink : NULL;
+    return status;
 }
 
 enum glint_status live_output_open(struct live_output *o,
@@ -66,14 +57,36 @@ enum glint_status live_output_open(struct live_output *o,
     switch (o->kind) {
     case LIVE_OUTPUT_FB:
         return open_fb(o, fit, error);
+    case LIVE_OUTPUT_V4L2:
+        return open_v4l2(o, image, fps_num, fps_den, error);
+    case LIVE_OUTPUT_Y4M:
+        glint_y4m_sink_open(&o->as.y4m, o->path, fps_num, fps_den);
+        o->sink = &o->as.y4m.sink;
+        return GLINT_OK;
     default:
-        return open_null(o);
+        glint_null_sink_open(&o->as.null);
+        o->sink = &o->as.null.sink;
+        return GLINT_OK;
     }
 }
 
-void live_output_close(struct live_output *o)
+long live_output_dropped(const struct live_output *o)
 {
-    if (o->sink)
+    return !o->sink                      ? 0
+           : o->kind == LIVE_OUTPUT_Y4M  ? o->as.y4m.n_dropped
+           : o->kind == LIVE_OUTPUT_V4L2 ? o->as.v4l2.n_dropped
+                                         : 0;
+}
+
+enum glint_status live_output_close(struct live_output *o,
+                                    struct glint_error *error)
+{
+    enum glint_status status = GLINT_OK;
+
+    if (o->sink && o->kind == LIVE_OUTPUT_Y4M)
+        status = glint_y4m_sink_finish(&o->as.y4m, error);
+    else if (o->sink)
         o->sink->close(o->sink);
     o->sink = NULL;
+    return status;
 }

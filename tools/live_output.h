@@ -10,6 +10,9 @@
 #define GLINT_TOOLS_LIVE_OUTPUT_H
 
 #include "linux/fbdev.h"
+#include "linux/v4l2_sink.h"
+#include "plain/null.h"
+#include "plain/y4m_sink.h"
 #include "tool.h"
 
 enum live_output_kind {
@@ -25,23 +28,29 @@ struct live_output {
     struct glint_sink *sink; /* NULL: closed */
     union {
         struct glint_fbdev fb;
-        struct glint_sink null;
+        struct glint_y4m_sink y4m;
+        struct glint_v4l2_sink v4l2;
+        struct glint_null_sink null;
     } as;
 };
 
 /* Reads NAME, which is kept. False: it is none of the above. */
 bool live_output_parse(struct live_output *output, const char *name);
 
-/* Whether it takes pictures of any size, so that it can be opened before the
- * first and need not be when the size changes. */
+/* Whether it can be opened before there is a picture. */
 bool live_output_is_flexible(const struct live_output *output);
 
-/* IMAGE says format and size, but for a flexible output. */
+/* IMAGE says format and size; of no meaning to a flexible output. */
 enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, enum glint_panel_fit fit,
                                    struct glint_error *error);
 
-void live_output_close(struct live_output *output);
+/* Frames it could not take because it was busy. */
+long live_output_dropped(const struct live_output *output);
+
+/* Ends it: a file is put in place. Does nothing when closed. */
+enum glint_status live_output_close(struct live_output *output,
+                                    struct glint_error *error);
 
 #endif
