@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * insncount.so - instructions that a program executes, by function, for QEMU's
+ * emulators of other machines: the same count on every run.
+ *
+ *     qemu-aarch64 -plugin ./insncount.so,top=20 -d plugin PROGRAM ...
+ *
+ * A block of instructions counts for the function that it begins in. QEMU ships
+ * no header for plug-ins; what is used of its interface is declared here.
+ */
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EXPORTED __attribute__((visibility("default")))
+
+struct qemu_plugin_tb;
+struct qemu_plugin_insn;
+struct qemu_info;
+typedef void tb_trans_fn(uint64_t id, struct qemu_plugin_tb *tb);
+typedef void at_exit_fn(uint64_t id, void *ctx);
+
+void qemu_plugin_register_vcpu_tb_trans_cb(uint64_t id, tb_trans_fn *fn);
+void qemu_plugin_register_atexit_cb(uint64_t id, at_exit_fn *fn, void *ctx);
+size_t qemu_plugin_tb_n_insns(const struct qemu_plugin_tb *tb);
+struct qemu_plugin_insn *
+qemu_plugin_tb_get_insn(const struct qemu_plugin_tb *tb, size_t i);
+const char *qemu_plugin_insn_symbol(const struct qemu_plugin_insn *insn);
+void qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *tb,
+                                              int op, void *counter,
+                                              uint64_t by);
+void qemu_plugin_outs(const char *text);
+int qemu_plugin_install(uint64_t id, const struct qemu_info *info, int argc,
+                        char **argv);
+
+EXPORTED int qemu_plugin_version = 1;
+
+enum { ADD_U64 = 0, MAX_FUNCTIONS = 16384, SLOTS = 65536 };
+
+struct function {
+    const char *name;
+    uint64_t n;
+};
+
+static struct function function[MAX_FUNCTIONS];
+static uint16_t slot[SLOTS]; /* 1 + index, by hash of the name; 0: free */
+static int n_functions, n_top = 30;
+
+static struct function *function_of(const char *name)
+{
+    uint32_t hash = 2166136261u;
+
+    for (const char *c = name; *c; c++)
+        hash = (hash ^ (uint8_t)*c) * 16777619u;
+    for (hash %= SLOTS; slot[hash]; hash = (hash + 1) % SLOTS)
+        if (strcmp(function[slot[hash] - 1].name, name) == 0)
+            return &function[slot[hash] - 1];
+    if (n_functions == MAX_FUNCTIONS)
+        return &function[0];
+    function[n_functions].name = strdup(name);
+    slot[hash] = (uint16_t)++n_functions;
+    return &function[n_functions - 1];
+}
+
+static void count(uint64_t id, struct qemu_plugin_tb *tb)
+{
+    const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
+
+    (void)id;
+    qemu_plugin_register_vcpu_tb_exec_inline(
+        tb, ADD_U64, &function_of(name ? name : "?")->n,
+        qemu_plugin_tb_n_insns(tb));
+}
+
+static int by_count(const void *a, const void *b)
+{
+    const uint64_t x = ((const struct function *)a)->n;
+    const uint64_t y = ((const struct function *)b)->n;
+
+    return x < y ? 1 : x > y ? -1 : 0;
+}
+
+static void report(uint64_t id, void *ctx)
+{
+    uint64_t total = 0;
+    char line[256];
+
+    (void)id;
+    (void)ctx;
+    qsort(function, (size_t)n_functions, sizeof *function, by_count);
+    for (int i = 0; i < n_functions; i++)
+        total += function[i].n;
+    snprintf(line, sizeof line, "%14llu TOTAL\n", (unsigned long long)total);
+    qemu_plugin_outs(line);
+    for (int i = 0; i < n_functions && i < n_top && function[i].n; i++) {
+        snprintf(line, sizeof line, "%14llu %s\n",
+                 (unsigned long long)function[i].n, function[i].name);
+        qemu_plugin_outs(line);
+    }
+}
+
+EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
+                                 int argc, char **argv)
+{
+    (void)info;
+    for (int i = 0; i < argc; i++)
+        if (strncmp(argv[i], "top=", 4) == 0)
+            n_top = atoi(argv[i] + 4);
+    qemu_plugin_register_vcpu_tb_trans_cb(id, count);
+    qemu_plugin_register_atexit_cb(id, report, NULL);
+    return 0;
+}
