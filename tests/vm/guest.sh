@@ -44,6 +44,27 @@ loopback() {
     insmod /lib/loop.ko devices=1 video_nr=9 exclusive_caps=1 "$@"
 }
 
+# Cameras of vivid go and come back as if by the cable.
+unplug_camera() { echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind; }
+plug_camera() {
+    echo vivid.0 >/sys/bus/platform/drivers/vivid/bind
+    wait_for 5 test -e /dev/video0
+}
+# /dev/fb0 goes; `plug_panel` brings it back.
+unplug_panel() {
+    panel=$(readlink -f /sys/class/graphics/fb0/device)
+    # that of virtio is below the card's: what has a driver is unbound
+    panel_driver=$(readlink -f "$panel/driver")
+    echo "${panel##*/}" >"$panel_driver/unbind"
+}
+plug_panel() {
+    echo "${panel##*/}" >"$panel_driver/bind"
+    wait_for 5 test -e /dev/fb0
+}
+
 fd_count() { # PID
-    ls "/proc/$1/fd" | wc -l
+    find "/proc/$1/fd" -type l | wc -l
+}
+rss_kb() { # PID
+    sed -n 's/^VmRSS:[[:space:]]*\([0-9]*\).*/\1/p' "/proc/$1/status"
 }

@@ -14,6 +14,7 @@ bars || exit
 shot panel
 vt text
 END
+    expect "$1: the console is back" says "$at/log" '^text$'
     build/x86_64/vm/bars "${@:2}" >"$out/$at/expected.ppm"
     expect "$1: bars of $2, $3" same "$at/panel.ppm" "$at/expected.ppm"
     expect "$1: a PNG of them" test -s "$out/$at/panel.png"
@@ -39,3 +40,13 @@ x86_64)
     bars simple:800x480-x8r8g8b8 x8r8g8b8 800x480
     ;;
 esac
+
+for display in bochs virtio; do
+    guest gone-$display -d $display:640x480 <<'END'
+unplug_panel
+ls /dev/fb0 >unplugged 2>&1
+plug_panel && bars >plugged
+END
+    expect "$display: a panel that goes" says gone-$display/unplugged 'No such'
+    expect "and comes back" says gone-$display/plugged '640x480'
+done
