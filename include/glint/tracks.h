@@ -16,8 +16,8 @@
  * anew, in one picture.
  *
  * Integers only. The order of the spots changes nothing. A spot that repeats,
- * bit for bit, is what its track says after attack + 1 s at the latest, bit for
- * bit, at full level.
+ * bit for bit, is what its track says after attack + 1 s or five pictures,
+ * whichever is later: bit for bit, at full level.
  */
 #ifndef GLINT_TRACKS_H
 #define GLINT_TRACKS_H

@@ -11,7 +11,7 @@
  * more than so many times the spread in one of 1000. */
 #define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
-#define SUDDEN     4
+#define SUDDEN     6
 
 /* X times GAIN, away from 0, so that what is left ends in 0. */
 static int64_t part_of(int64_t x, int32_t gain_q15)

@@ -10,6 +10,8 @@
 #define MAX_FLUX_Q16 (INT64_C(1) << 42)
 #define FULL_Q30     (INT32_C(1) << 30)
 
+enum { REPEATS = 2 }; /* the same once more may be chance */
+
 enum {
     X = GLINT_CHANNEL_X,
     FLUX = GLINT_CHANNEL_FLUX,
@@ -253,6 +255,15 @@ void glint_record_begin(struct glint_record *r, uint32_t id,
     start(r, spot);
 }
 
+static int count_same(struct glint_record *r, const struct glint_spot *spot)
+{
+    if (r->lost_us > 0 || !is_same(spot, &r->last))
+        r->n_same = 0;
+    else if (r->n_same < REPEATS)
+        r->n_same++;
+    return r->n_same;
+}
+
 static void blend(struct glint_record *r, const struct glint_record_step *step)
 {
     for (int c = 0; c < GLINT_CHANNELS; c++)
@@ -265,7 +276,7 @@ void glint_record_see(struct glint_record *r,
                       const struct glint_spot *spot)
 {
     const int is_back = r->lost_us > 0;
-    const int is_repeat = !is_back && is_same(spot, &r->last);
+    const int is_repeat = count_same(r, spot) >= REPEATS;
     const int is_new_shape = is_back || is_other_shape(spot, &r->last);
     int64_t target[GLINT_CHANNELS];
 

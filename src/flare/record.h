@@ -32,6 +32,7 @@ struct glint_record {
     enum glint_track_state state;
     struct glint_follow of[GLINT_CHANNELS];
     struct glint_spot last;  /* it was seen as */
+    int n_same;              /* pictures in a row before that showed the same */
     int64_t velocity_q16[2]; /* pixels a second */
     int64_t ahead_q16[2];    /* where it should be now */
     int32_t level_q30;

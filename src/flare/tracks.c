@@ -80,7 +80,7 @@ void glint_tracks_defaults(struct glint_tracks_config *cfg, int width,
                                         .release_ms = 200,
                                         .leave_ms = 400,
                                         .memory_ms = 2000,
-                                        .smooth_ms = 250};
+                                        .smooth_ms = 300};
 }
 
 size_t glint_tracks_bytes(const struct glint_tracks_config *cfg)

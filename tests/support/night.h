@@ -33,7 +33,8 @@ struct night {
     struct glint_track track[NIGHT_MAX];
     int n_spots, n_tracks;
     uint32_t seed;
-    int8_t noise[NIGHT_NOISE]; /* 1/16 of sigma */
+    int8_t noise[NIGHT_NOISE];     /* 1/16 of sigma */
+    int row_noise[GLINT_MAX_SIDE]; /* where each row begins in it */
 };
 
 static inline int night_random(struct night *night, int n)
@@ -109,23 +110,40 @@ static inline double night_light_at(const struct night *night,
     return light;
 }
 
+static inline void night_put(struct night *night, int x, int y, double light)
+{
+    const double code =
+        night_code(light) +
+        night->sigma * night->noise[(night->row_noise[y] + x) % NIGHT_NOISE] /
+            16.0;
+
+    night->image.plane[0][y * night->image.width + x] =
+        (uint8_t)fmax(0, fmin(255, floor(code + 0.5)));
+}
+
+/* New noise, and what lies around lamps; the rest is dark. */
 static inline void night_draw(struct night *night,
                               const struct night_lamp *lamp, int n)
 {
     const struct glint_image *image = &night->image;
 
     for (int y = 0; y < image->height; y++) {
-        const int at = night_random(night, NIGHT_NOISE);
+        uint8_t *row = image->plane[0] + y * image->width;
 
-        for (int x = 0; x < image->width; x++) {
-            const double noise = night->noise[(at + x) % NIGHT_NOISE] / 16.0;
-            const double code =
-                night_code(night_light_at(night, lamp, n, x, y)) +
-                night->sigma * noise;
+        night->row_noise[y] = night_random(night, NIGHT_NOISE - image->width);
+        for (int x = 0; x < image->width; x++)
+            row[x] =
+                (uint8_t)(25 + (night->noise[night->row_noise[y] + x] >> 4));
+    }
+    for (int i = 0; i < n; i++) {
+        const int reach = (int)lamp[i].radius + 14;
+        const int cx = (int)lamp[i].x, cy = (int)lamp[i].y;
 
-            image->plane[0][y * image->width + x] =
-                (uint8_t)fmax(0, fmin(255, floor(code + 0.5)));
-        }
+        for (int y = cy - reach < 0 ? 0 : cy - reach;
+             y < image->height && y <= cy + reach; y++)
+            for (int x = cx - reach < 0 ? 0 : cx - reach;
+                 x < image->width && x <= cx + reach; x++)
+                night_put(night, x, y, night_light_at(night, lamp, n, x, y));
     }
 }
 

@@ -303,7 +303,7 @@ static bool all_settled(void)
 }
 
 /* Whatever went before, noise or motion, pictures that repeat are what their
- * track says after attack + 1 s; at any rate. */
+ * track says after attack + 1 s or five pictures; at any rate. */
 static void test_repeated_pictures_are_met_exactly(void **state)
 {
     static const int32_t rates[] = {1000, FPS60, FPS30, 200000, 1000000};
@@ -327,18 +327,20 @@ static void test_repeated_pictures_are_met_exactly(void **state)
         }
         night.n_spots = glint_lights_find(night.finder, &night.image,
                                           night.spot, NIGHT_MAX);
-        for (; n_frames * (int64_t)us < 1200000; n_frames++) {
+        for (; n_frames < 5 || n_frames * (int64_t)us < 1200000; n_frames++) {
             night.n_tracks =
                 glint_tracks_step(night.tracks, night.spot, night.n_spots, us,
                                   night.track, NIGHT_MAX);
             n_settled = all_settled() ? n_settled + 1 : 0;
         }
-        slowest = fmax(slowest, (n_frames - n_settled + 1) * (us * 1e-6));
+        if (us < 200000)
+            slowest = fmax(slowest, (n_frames - n_settled + 1) * (us * 1e-6));
         assert_true(n_settled > 0);
         assert_true(night.n_tracks > 0);
         night_close(&night);
     }
-    print_message("settled after %.3f s at most\n", slowest);
+    print_message("settled after %.3f s at most, from 30 to 1000 a second\n",
+                  slowest);
 }
 
 /* ------------------------------------------------------------------ motion */
