@@ -279,7 +279,7 @@ check-neon:
 # glint on Debian's kernels in an emulator: cameras, panels, ARM. One:
 # VMFILTER=aarch64/camera, as tests/vm/check says.
 VM_ARCHS ?= $(TARGETS)
-VM_TOOLS := bars ctl feed grab vt
+VM_TOOLS := as bars ctl feed grab vt
 vm_cache := $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/glint/vm
 $(OUT)/vm/%: tests/vm/%.c tests/vm/device.h tests/vm/layout.h
 	@mkdir -p $(@D)

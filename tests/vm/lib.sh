@@ -24,7 +24,7 @@ mkdir -p "$out"
 passed=0 failed=0 code=''
 
 guest() { # NAME [OPTION of run...], script on standard input
-    local to=$out/$1 tool inputs=(-i "$glint")
+    local to=$out/$1 tool inputs=()
     shift
     mkdir -p "$to"
     cat >"$to/script"

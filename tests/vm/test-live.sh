@@ -18,7 +18,7 @@ $host/glint overlay "$out/scene.y4m" -o "$out/overlay.y4m" -q \
 live() { # DISPLAY LAYOUT WxH [OPTION...]
     local at=${1//[:@]/-} display=$1 layout=$2 size=$3
     shift 3
-    guest "$at" -d "$display" -V '' -i "$out/scene.yuyv" -i model="$lens" <<END
+    guest "$at" -d "$display" -V '' -i "$glint" -i "$out/scene.yuyv" -i model="$lens" <<END
 feed -c /dev/video0 /dev/video1 YUYV 1280x720 /in/scene.yuyv &
 sleep 1
 glint live -d 0 -i 3 -f YUYV --lens /in/model ${look[*]} $* 2>err --json >stats &
