@@ -68,7 +68,7 @@ WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS))
 endif
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/sort base/image base/workers \
+CORE := flare/bright base/status base/arena base/q base/sort base/image base/workers \
         kernels/sets kernels/kernels kernels/horner_c kernels/composite_c \
         lens/model lens/transfer flare/regions flare/lights flare/match \
         flare/follow flare/record flare/tracks tile/primitive tile/clip tile/outline \

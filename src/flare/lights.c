@@ -8,10 +8,9 @@
 #include "glint/lights.h"
 
 #include "base/arena.h"
-#include "base/layout.h"
 #include "base/q.h"
+#include "flare/bright.h"
 #include "flare/regions.h"
-#include "tile/curve.h"
 
 #define N_CANDIDATES 2048 /* at least the 1024 that find may be asked for */
 #define MAX_SPOTS    1024
@@ -34,10 +33,7 @@ struct glint_lights {
     struct glint_lights_config cfg;
     int64_t max_area;
     int64_t merge2_q16; /* squared merge distance */
-    struct glint_curve *curve;
-    struct glint_ycc ycc;
-    uint8_t full_luma[256]; /* of Y codes */
-    uint8_t *luma;          /* of one row */
+    struct glint_bright bright;
     struct glint_regions regions;
     struct candidate *candidate; /* and one on its way out */
     int32_t *order; /* of candidates: a heap, then by falling flux */
@@ -65,8 +61,7 @@ static struct glint_lights *carve(struct glint_arena *a,
     struct glint_lights measured;
     struct glint_lights *f = placed ? placed : &measured;
 
-    f->curve = glint_arena_take(a, 1, sizeof *f->curve);
-    f->luma = glint_arena_take(a, (size_t)c->width, sizeof *f->luma);
+    glint_bright_carve(&f->bright, a, c->width);
     glint_regions_carve(&f->regions, a, c->width);
     f->candidate = glint_arena_take(a, N_CANDIDATES + 1, sizeof *f->candidate);
     f->order = glint_arena_take(a, N_CANDIDATES, sizeof *f->order);
@@ -112,6 +107,7 @@ enum glint_status glint_lights_init(struct glint_lights **finder,
     if (!f)
         return GLINT_E_MEMORY;
     f->cfg = *cfg;
+    glint_bright_init(&f->bright, cfg->width);
     f->n = f->dropped = 0;
     merge_q8 = q_shift((int64_t)cfg->width * cfg->merge_q15, 7);
     f->merge2_q16 = merge_q8 * merge_q8;
@@ -121,133 +117,71 @@ enum glint_status glint_lights_init(struct glint_lights **finder,
     return GLINT_OK;
 }
 
-/* ------------------------------------------------------------------- pixels */
-
-static void prepare_tables(struct glint_lights *f,
-                           const struct glint_image *image)
-{
-    glint_curve_init(f->curve, image->transfer);
-    glint_ycc_init(&f->ycc, image->matrix, image->range);
-    for (int code = 0; code < 256; code++)
-        f->full_luma[code] = (uint8_t)q_clamp_sat(
-            q_shift((int64_t)(code - f->ycc.black) * f->ycc.to_rgb_q16[0][0],
-                    16),
-            0, 255);
-}
-
-static void read_565(const uint8_t *px, int code[3])
-{
-    const int bits = px[0] | px[1] << 8;
-    const int r = bits >> 11, g = bits >> 5 & 63, b = bits & 31;
-
-    code[0] = r << 3 | r >> 2;
-    code[1] = g << 2 | g >> 4;
-    code[2] = b << 3 | b >> 2;
-}
-
-/* The codes of pixel (X, Y) of a picture of RGB. */
-static void read_rgb(const struct glint_layout *layout,
-                     const struct glint_image *image, int x, int y, int code[3])
-{
-    if (layout->kind == GLINT_LAYOUT_565)
-        read_565(glint_layout_at(layout, image, 0, x, y), code);
-    else
-        for (int i = 0; i < 3; i++)
-            code[i] = *glint_layout_at(layout, image, i, x, y);
-}
-
-static int is_rgb(const struct glint_layout *layout)
-{
-    return layout->kind == GLINT_LAYOUT_RGB || layout->kind == GLINT_LAYOUT_565;
-}
-
-/* Full-range luma of row Y. That of RGB has the weights of BT.709, in 256ths,
- * whose sum is 256. */
-static void read_luma(struct glint_lights *f, const struct glint_image *image,
-                      int y)
-{
-    const struct glint_layout *layout = glint_layout_of(image->format);
-    const uint8_t *px = glint_layout_at(layout, image, 0, 0, y);
-    int code[3];
-
-    for (int x = 0; x < f->cfg.width; x++) {
-        if (!is_rgb(layout)) {
-            f->luma[x] = f->full_luma[px[x * layout->sample[0].step]];
-            continue;
-        }
-        read_rgb(layout, image, x, y, code);
-        f->luma[x] =
-            (uint8_t)((54 * code[0] + 183 * code[1] + 19 * code[2] + 128) >> 8);
-    }
-}
-
-static void read_ycc_q20(const struct glint_lights *f,
-                         const struct glint_layout *layout,
-                         const struct glint_image *image, int x, int y,
-                         int32_t rgb_q20[3])
-{
-    int32_t rgb_q7[3];
-
-    ycc_to_rgb(&f->ycc, *glint_layout_at(layout, image, 0, x, y),
-               *glint_layout_at(layout, image, 1, x, y),
-               *glint_layout_at(layout, image, 2, x, y), rgb_q7);
-    for (int i = 0; i < 3; i++)
-        rgb_q20[i] =
-            curve_decode(f->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
-}
-
-/* Linear light of pixel (X, Y), 0 .. white. */
-static void read_light_q20(const struct glint_lights *f,
-                           const struct glint_image *image, int x, int y,
-                           int32_t rgb_q20[3])
-{
-    const struct glint_layout *layout = glint_layout_of(image->format);
-    int code[3];
-
-    if (is_rgb(layout)) {
-        read_rgb(layout, image, x, y, code);
-        for (int i = 0; i < 3; i++)
-            rgb_q20[i] = f->curve->decode_q20[code[i]];
-    } else if (layout->kind == GLINT_LAYOUT_GREY)
-        rgb_q20[0] = rgb_q20[1] = rgb_q20[2] =
-            f->curve->decode_q20[f->full_luma[*glint_layout_at(layout, image, 0,
-                                                               x, y)]];
-    else
-        read_ycc_q20(f, layout, image, x, y, rgb_q20);
-}
-
 /* ------------------------------------------------------------------ regions */
 
-/* A colour is known only where no channel is clipped. */
-static void add_rim_pixel(struct glint_region *sum,
-                          const struct glint_lights *f,
-                          const int32_t rgb_q20[3])
-{
-    const int32_t clipped_q20 = f->curve->decode_q20[CLIPPED_CODE];
+/* Pixels in a row of the same light. */
+struct span {
+    struct glint_bright_pixel pixel;
+    struct glint_region_light light;
+    int is_rim; /* no channel is clipped, so it shows the colour */
+    int x0;
+};
 
-    if (rgb_q20[0] < clipped_q20 && rgb_q20[1] < clipped_q20 &&
-        rgb_q20[2] < clipped_q20)
-        glint_region_add_rim(sum, rgb_q20);
+static void begin_span(struct span *span, const struct glint_lights *f, int x)
+{
+    const int32_t clipped_q20 = f->bright.curve->decode_q20[CLIPPED_CODE];
+    const int32_t *rgb_q20 = span->pixel.rgb_q20;
+
+    span->light = glint_region_light_of(rgb_q20);
+    span->is_rim = rgb_q20[0] < clipped_q20 && rgb_q20[1] < clipped_q20 &&
+                   rgb_q20[2] < clipped_q20;
+    span->x0 = x;
+}
+
+static void end_span(const struct span *span, struct glint_region *sum,
+                     const struct glint_run *run, int x1, int y)
+{
+    const int first = span->x0 > run->x0 ? span->x0 : run->x0;
+    const int end = x1 < run->x1 ? x1 : run->x1;
+
+    if (span->is_rim)
+        glint_region_add_rim(sum, &span->light, x1 - span->x0);
+    if (first < end)
+        glint_region_add_pixels(sum, &span->light, first, end, y);
+}
+
+static int count_clipped(const struct glint_lights *f,
+                         const struct glint_run *run)
+{
+    const uint8_t *luma = f->bright.luma;
+    int n = 0;
+
+    for (int x = run->x0; x < run->x1; x++)
+        n += luma[x] >= f->cfg.threshold_high;
+    return n;
 }
 
 static void add_run(struct glint_region *sum, const struct glint_lights *f,
-                    const struct glint_image *image,
                     const struct glint_run *run, int y)
 {
     const int first = run->x0 > RIM ? run->x0 - RIM : 0;
     const int end = run->x1 < f->cfg.width - RIM ? run->x1 + RIM : f->cfg.width;
+    struct span span = {.pixel = glint_bright_none()};
 
     sum->area += run->x1 - run->x0;
-    for (int x = first; x < end; x++) {
-        int32_t rgb_q20[3];
+    sum->n_clipped += count_clipped(f, run);
+    glint_bright_read(&f->bright, first, y, &span.pixel);
+    begin_span(&span, f, first);
+    for (int x = first + 1; x < end; x++) {
+        struct glint_bright_pixel pixel = span.pixel;
 
-        read_light_q20(f, image, x, y, rgb_q20);
-        add_rim_pixel(sum, f, rgb_q20);
-        if (x < run->x0 || x >= run->x1)
+        if (!glint_bright_read(&f->bright, x, y, &pixel))
             continue;
-        glint_region_add_pixel(sum, rgb_q20, x, y);
-        sum->n_clipped += f->luma[x] >= f->cfg.threshold_high;
+        end_span(&span, sum, run, x, y);
+        span.pixel = pixel;
+        begin_span(&span, f, x);
     }
+    end_span(&span, sum, run, end, y);
 }
 
 /* --------------------------------------------------------------- candidates */
@@ -358,12 +292,17 @@ static void find_candidates(struct glint_lights *f,
     struct glint_regions *r = &f->regions;
 
     f->n = f->dropped = 0;
+    glint_bright_begin(&f->bright, image, f->cfg.threshold_low);
     glint_regions_begin(r);
     for (int y = 0; y < f->cfg.height; y++) {
-        read_luma(f, image, y);
-        glint_regions_link_row(r, f->luma, f->cfg.threshold_low, y);
+        const int is_bright = glint_bright_scan(&f->bright, y);
+
+        if (!is_bright && r->n_active == 0)
+            continue;
+        if (is_bright)
+            glint_regions_link_row(r, &f->bright, y);
         for (int i = 0; i < r->here.n_runs; i++)
-            add_run(glint_regions_of_run(r, i), f, image, &r->here.run[i], y);
+            add_run(glint_regions_of_run(r, i), f, &r->here.run[i], y);
         glint_regions_end_row(r, offer, f, y);
     }
     glint_regions_end_row(r, offer, f, f->cfg.height);
@@ -500,7 +439,6 @@ int glint_lights_find(struct glint_lights *finder,
                       const struct glint_image *image, struct glint_spot *spots,
                       int max)
 {
-    prepare_tables(finder, image);
     find_candidates(finder, image);
     while (merge_once(finder))
         ;

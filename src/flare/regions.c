@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/q.h"
+#include "flare/bright.h"
 
 /* --------------------------------------------------------------------- sums */
 
@@ -13,25 +14,45 @@ static int64_t luminance(int64_t r, int64_t g, int64_t b)
                    15);
 }
 
-void glint_region_add_pixel(struct glint_region *sum, const int32_t rgb_q20[3],
-                            int x, int y)
+struct glint_region_light glint_region_light_of(const int32_t rgb_q20[3])
 {
+    struct glint_region_light light;
     const int64_t seen_q14 =
         q_shift(luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]), 20 - 14);
-    const int64_t w_q14 = seen_q14 > 1 ? seen_q14 : 1;
 
-    sum->w_q14 += w_q14;
-    sum->wx_q14 += w_q14 * x;
-    sum->wy_q14 += w_q14 * y;
-    sum->wr2_q14 += (uint64_t)w_q14 * (uint64_t)(x * x + y * y);
+    light.w_q14 = seen_q14 > 1 ? seen_q14 : 1;
     for (int i = 0; i < 3; i++)
-        sum->rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
+        light.rgb_q14[i] = q_narrow(q_shift(rgb_q20[i], 20 - 14));
+    return light;
 }
 
-void glint_region_add_rim(struct glint_region *sum, const int32_t rgb_q20[3])
+/* 0 + 1 + 4 + ... + (n - 1)^2 */
+static int64_t squares_below(int64_t n)
+{
+    return (n - 1) * n * (2 * n - 1) / 6;
+}
+
+void glint_region_add_pixels(struct glint_region *sum,
+                             const struct glint_region_light *light, int x0,
+                             int x1, int y)
+{
+    const int64_t n = x1 - x0, w_q14 = light->w_q14;
+    const int64_t r2 =
+        squares_below(x1) - squares_below(x0) + n * ((int64_t)y * y);
+
+    sum->w_q14 += w_q14 * n;
+    sum->wx_q14 += w_q14 * (n * (x0 + x1 - 1) / 2);
+    sum->wy_q14 += w_q14 * n * y;
+    sum->wr2_q14 += (uint64_t)w_q14 * (uint64_t)r2;
+    for (int i = 0; i < 3; i++)
+        sum->rgb_q14[i] += light->rgb_q14[i] * n;
+}
+
+void glint_region_add_rim(struct glint_region *sum,
+                          const struct glint_region_light *light, int n)
 {
     for (int i = 0; i < 3; i++)
-        sum->rim_rgb_q14[i] += q_shift(rgb_q20[i], 20 - 14);
+        sum->rim_rgb_q14[i] += (int64_t)light->rgb_q14[i] * n;
 }
 
 void glint_region_absorb(struct glint_region *sum,
@@ -159,25 +180,44 @@ static int32_t new_label(struct glint_regions *r, int32_t first)
     return label;
 }
 
-static void find_runs(struct glint_run_row *row, const uint8_t *luma, int width,
-                      int low)
+/* Goes on with the runs of pixels X .. END - 1: *BEGIN is where the one begins
+ * that X may continue, or -1. */
+static void find_runs(struct glint_run_row *row, const uint8_t *luma, int low,
+                      int x, int end, int *begin)
 {
-    int x = 0;
+    for (; x < end; x++) {
+        const int is_in = luma[x] >= low;
+
+        if (is_in == (*begin >= 0))
+            continue;
+        if (is_in) {
+            *begin = x;
+        } else {
+            row->run[row->n_runs++] = (struct glint_run){*begin, x, -1};
+            *begin = -1;
+        }
+    }
+}
+
+static void find_all_runs(struct glint_run_row *row,
+                          const struct glint_bright *b)
+{
+    int begin = -1;
 
     row->n_runs = 0;
-    for (;;) {
-        struct glint_run *run = &row->run[row->n_runs];
+    for (int i = 0; i * BRIGHT_BLOCK < b->width; i++) {
+        const int x = i * BRIGHT_BLOCK, end = x + BRIGHT_BLOCK;
 
-        while (x < width && luma[x] < low)
-            x++;
-        if (x == width)
-            return;
-        run->x0 = x;
-        while (x < width && luma[x] >= low)
-            x++;
-        run->x1 = x;
-        row->n_runs++;
+        if (b->block[i]) {
+            find_runs(row, b->luma, b->low, x, end < b->width ? end : b->width,
+                      &begin);
+        } else if (begin >= 0) {
+            row->run[row->n_runs++] = (struct glint_run){begin, x, -1};
+            begin = -1;
+        }
     }
+    if (begin >= 0)
+        row->run[row->n_runs++] = (struct glint_run){begin, b->width, -1};
 }
 
 /* Gives the runs of row Y the labels of what they touch. */
@@ -203,10 +243,10 @@ static void link_runs(struct glint_regions *r, int y)
     }
 }
 
-void glint_regions_link_row(struct glint_regions *r, const uint8_t *luma,
-                            int low, int y)
+void glint_regions_link_row(struct glint_regions *r,
+                            const struct glint_bright *bright, int y)
 {
-    find_runs(&r->here, luma, r->width, low);
+    find_all_runs(&r->here, bright);
     link_runs(r, y);
 }
 

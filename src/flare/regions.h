@@ -2,12 +2,12 @@
  *
  * Regions of a picture: bright pixels that touch, corners included.
  *
- *   in   luma of one row after the other, and the light of the pixels
+ *   in   what is bright in one row after the other, and the light of the pixels
  *   out  each region once, when the rows have passed it: area, moments, colour
  *
  *     glint_regions_begin(r);
  *     for each row y:
- *         glint_regions_link_row(r, luma, low, y);
+ *         glint_regions_link_row(r, bright, y);
  *         for each i below r->here.n_runs: add the pixels of r->here.run[i]
  *                 to *glint_regions_of_run(r, i);
  *         glint_regions_end_row(r, done, ctx, y);
@@ -29,6 +29,7 @@
 #include <stdint.h>
 
 struct glint_arena;
+struct glint_bright;
 
 /* What is summed over the pixels of a region. */
 struct glint_region {
@@ -41,13 +42,24 @@ struct glint_region {
                                neighbours within the row */
 };
 
-/* Adds pixel (X, Y) of linear light RGB, 0 .. white, to the moments and the
- * colour. */
-void glint_region_add_pixel(struct glint_region *sum, const int32_t rgb_q20[3],
-                            int x, int y);
+/* What a pixel adds. */
+struct glint_region_light {
+    int64_t w_q14;
+    int32_t rgb_q14[3];
+};
 
-/* Adds a pixel that shows the colour. */
-void glint_region_add_rim(struct glint_region *sum, const int32_t rgb_q20[3]);
+/* Of linear light RGB, 0 .. white. */
+struct glint_region_light glint_region_light_of(const int32_t rgb_q20[3]);
+
+/* Adds pixels X0 .. X1 - 1 of row Y, all of the same light, to the moments and
+ * the colour. */
+void glint_region_add_pixels(struct glint_region *sum,
+                             const struct glint_region_light *light, int x0,
+                             int x1, int y);
+
+/* Adds N pixels that show the colour. */
+void glint_region_add_rim(struct glint_region *sum,
+                          const struct glint_region_light *light, int n);
 
 void glint_region_absorb(struct glint_region *sum,
                          const struct glint_region *other);
@@ -92,10 +104,10 @@ void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
 
 void glint_regions_begin(struct glint_regions *r);
 
-/* Fills r->here with the runs of row Y whose LUMA is LOW or above, and labels
- * them by what they touch. */
-void glint_regions_link_row(struct glint_regions *r, const uint8_t *luma,
-                            int low, int y);
+/* Fills r->here with the runs of row Y whose luma is BRIGHT's low or above, and
+ * labels them by what they touch. */
+void glint_regions_link_row(struct glint_regions *r,
+                            const struct glint_bright *bright, int y);
 
 /* The region that run I of r->here belongs to, so far. */
 struct glint_region *glint_regions_of_run(struct glint_regions *r, int i);
