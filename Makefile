@@ -94,7 +94,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps at_death fourcc panel tracks live_stats fbdev
+        measure lamps at_death fourcc panel tracks live_stats fbdev sinks
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
@@ -246,6 +246,7 @@ $(test_bins): EXTRA := -lcmocka
 # Calls that tests answer themselves, or let fail.
 $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
+$(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 $(test_bins): $(OUT)/tests/unit/test_%: $(OUT)/tests/unit/test_%.o $(libs)
 	$(link)
 replay_bins := $(FUZZ:%=$(OUT)/tests/fuzz/replay_%)

@@ -153,14 +153,21 @@ static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
 
 /* ------------------------------------------------------------------ frames */
 
+/* Bytes from the first plane to this one. */
+static uintptr_t distance(const struct glint_image *image, int plane)
+{
+    return (uintptr_t)image->plane[plane] - (uintptr_t)image->plane[0];
+}
+
 /* Whether IMAGE lies in memory just as the device wants it. */
 static bool is_laid_out(const struct glint_v4l2_sink *out,
                         const struct glint_image *image)
 {
-    for (int i = 0; i < glint_image_planes(image->format); i++)
-        if (image->stride_bytes[i] != out->frame.stride_bytes[i] ||
-            image->plane[i] - image->plane[0] !=
-                out->frame.plane[i] - out->frame.plane[0])
+    const struct glint_image *const f = &out->frame;
+
+    for (int i = 0; i < glint_image_planes(f->format); i++)
+        if (image->stride_bytes[i] != f->stride_bytes[i] ||
+            distance(image, i) != distance(f, i))
             return false;
     return true;
 }
