@@ -61,7 +61,8 @@ static enum glint_status check_node(struct glint_v4l2_sink *out,
                                                   : cap.capabilities;
     if (!(can & V4L2_CAP_VIDEO_OUTPUT))
         return glint_error_report(error, GLINT_E_DEVICE, out->name,
-                                  "%s is no video output", out->card);
+                                  "%s is no video output, or one in use",
+                                  out->card);
     if (!(can & V4L2_CAP_READWRITE))
         return glint_error_report(error, GLINT_E_DEVICE, out->name,
                                   "%s takes no frames by write()", out->card);
@@ -74,6 +75,7 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
 {
     const struct glint_image *const like = &out->frame;
     struct v4l2_pix_format *const px = &f->fmt.pix;
+    enum glint_pixel_format format;
     struct glint_v4l2_colour colour;
     char want[5], got[5];
 
@@ -90,15 +92,27 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
     px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* the last three are meant */
     if (request(out->fd, VIDIOC_S_FMT, f) < 0)
         return failed(out, "VIDIOC_S_FMT", error);
-    if (px->pixelformat == fourcc && px->width == (uint32_t)like->width &&
+    if (glint_fourcc_to_format(px->pixelformat, &format) &&
+        format == like->format && px->width == (uint32_t)like->width &&
         px->height == (uint32_t)like->height)
         return GLINT_OK;
     glint_fourcc_text(fourcc, want);
     glint_fourcc_text(px->pixelformat, got);
     return glint_error_report(
         error, GLINT_E_DEVICE, out->name,
-        "wants %s %u x %u, not %s %d x %d; does another program use it?", got,
-        px->width, px->height, want, like->width, like->height);
+        "takes %s %u x %u, not %s %d x %d: it knows no such format, or another "
+        "program uses it",
+        got, px->width, px->height, want, like->width, like->height);
+}
+
+/* With exclusive_caps=1 v4l2loopback 0.12 is an output again after us only if
+ * we streamed. It takes write() all the same; others have no buffers to stream
+ * and refuse. */
+static void claim(const struct glint_v4l2_sink *out)
+{
+    int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+
+    request(out->fd, VIDIOC_STREAMON, &type);
 }
 
 /* Rates are for readers to know; not every driver cares. */
@@ -261,5 +275,6 @@ enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
         return status;
     }
     set_rate(out, fps_num, fps_den);
+    claim(out);
     return GLINT_OK;
 }

@@ -296,6 +296,7 @@ static struct {
     uint32_t caps, stride, size, fourcc; /* 0: as asked */
     unsigned long fail_request;          /* that ioctl, with this: */
     int fail_errno, write_errno;
+    int n_streaming;
     ssize_t most; /* bytes that a write takes; 0: all */
     struct v4l2_format set;
     struct v4l2_streamparm parm;
@@ -348,6 +349,8 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
         answer_format(arg);
     else if (request == VIDIOC_S_PARM)
         memcpy(&node.parm, arg, sizeof node.parm);
+    else if (request == VIDIOC_STREAMON)
+        node.n_streaming++;
     else
         fail_msg("ioctl %lx", request);
     return 0;
@@ -402,6 +405,7 @@ static void test_v4l2(void **state)
     assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
     expect_file("aAb1cBd2", 8);
     assert_int_equal(out.n_frames, 1);
+    assert_int_equal(node.n_streaming, 1);
     out.sink.close(&out.sink);
     out.sink.close(&out.sink);
     assert_int_equal(out.fd, -1);
@@ -507,7 +511,7 @@ static void test_v4l2_refuses(void **state)
     expect_refused(GLINT_E_DEVICE, "takes no frames by write()");
     reset_node();
     node.fourcc = V4L2_PIX_FMT_MJPEG;
-    expect_refused(GLINT_E_DEVICE, "wants MJPG 2 x 2, not YUYV 2 x 2");
+    expect_refused(GLINT_E_DEVICE, "takes MJPG 2 x 2, not YUYV 2 x 2");
     reset_node();
     node.fail_request = VIDIOC_S_FMT;
     node.fail_errno = EBUSY;
@@ -531,6 +535,13 @@ static void test_v4l2_refuses(void **state)
         glint_v4l2_sink_open(&out, "/dev/video-none", &image, 0, 0, &error),
         GLINT_E_DEVICE);
     assert_non_null(strstr(error.text, "modprobe v4l2loopback"));
+    /* another word for the same */
+    reset_node();
+    node.fourcc = V4L2_PIX_FMT_BGR32;
+    image.format = GLINT_XRGB8888;
+    must_open(&out, &image);
+    out.sink.close(&out.sink);
+    image.format = GLINT_YUYV;
     /* a rate that the driver does not want to know */
     reset_node();
     node.fail_request = VIDIOC_S_PARM;
