@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * camera_check.h - what tests of the V4L2 source do again and again. They end
+ * with must_close(), which looks for what was left behind.
+ */
+#ifndef GLINT_SUPPORT_CAMERA_CHECK_H
+#define GLINT_SUPPORT_CAMERA_CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <errno.h>
+#include <string.h>
+
+#include "linux/v4l2.h"
+#include "support/fake_camera.h"
+
+static struct glint_v4l2 v4l2;
+static struct glint_error said;
+static struct glint_source_frame frame;
+
+static const struct glint_v4l2_config any_camera = {
+    .device = FAKE_PATH, .input = -1, .range = -1, .matrix = -1};
+
+static inline int n_fds(void)
+{
+    DIR *const d = opendir("/proc/self/fd");
+    int n = 0;
+
+    assert_non_null(d);
+    while (readdir(d))
+        n++;
+    closedir(d);
+    return n;
+}
+
+static inline enum glint_status try_open(const struct glint_v4l2_config *wish,
+                                         enum glint_v4l2_io io)
+{
+    said.text[0] = '\0';
+    return glint_v4l2_open(&v4l2, wish ? wish : &any_camera, io, 4, &said);
+}
+
+static inline void must_open(const struct glint_v4l2_config *wish)
+{
+    if (try_open(wish, GLINT_V4L2_AUTO))
+        fail_msg("%s", said.text);
+}
+
+/* Nothing is left of the camera. */
+static inline void must_be_closed(void)
+{
+    assert_int_equal(v4l2.source.fd, -1);
+    assert_int_equal(v4l2.device.fd, -1);
+    assert_int_equal(camera.fd, -1);
+    assert_int_equal(camera.n_maps, 0);
+    assert_int_equal(camera.breaches, 0);
+    assert_int_equal(fake_camera_blocks(), 0);
+}
+
+static inline void must_close(void)
+{
+    v4l2.source.close(&v4l2.source);
+    v4l2.source.close(&v4l2.source);
+    must_be_closed();
+}
+
+/* It does not open, and the reason has TEXT in it. */
+static inline void must_refuse(const struct glint_v4l2_config *wish,
+                               enum glint_status status, const char *text)
+{
+    assert_int_equal(try_open(wish, GLINT_V4L2_AUTO), status);
+    if (!strstr(said.text, text))
+        fail_msg("'%s' does not say '%s'", said.text, text);
+    must_be_closed();
+}
+
+static inline enum glint_status next(void)
+{
+    said.text[0] = '\0';
+    return v4l2.source.next(&v4l2.source, &frame, &said);
+}
+
+static inline void done(void)
+{
+    v4l2.source.done(&v4l2.source, &frame);
+}
+
+/* There is a frame, of one code; it is given back. */
+static inline void must_get(int code)
+{
+    assert_int_equal(next(), GLINT_OK);
+    assert_non_null(frame.image.plane[0]);
+    assert_int_equal(frame.image.plane[0][0], code);
+    done();
+}
+
+static inline void must_get_nothing(void)
+{
+    assert_int_equal(next(), GLINT_OK);
+    assert_null(frame.image.plane[0]);
+    done();
+}
+
+/* Asks every 10 ms for MS; the first status that is not GLINT_OK, and when. */
+static inline enum glint_status follow(int ms, int *failed_ms)
+{
+    const int64_t start = fake_camera_now();
+
+    while (fake_camera_now() - start < 1000 * (int64_t)ms) {
+        const enum glint_status status = next();
+
+        *failed_ms = (int)((fake_camera_now() - start) / 1000);
+        if (status != GLINT_OK)
+            return status;
+        done();
+        fake_camera_pass(10000);
+    }
+    return GLINT_OK;
+}
+
+#endif

@@ -1,0 +1,837 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/fake_camera.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+struct fake_camera camera = {.fd = -1};
+bool fake_lacks_jpeg;
+
+static int64_t now_us;
+static int n_blocks;
+
+static struct {
+    unsigned long request;
+    int number, times;
+} refusal;
+
+static struct {
+    int n, at, number;
+    bool forever;
+} calls;
+
+/* ------------------------------------------------------------ what may fail */
+
+static int refuse(int number)
+{
+    errno = number;
+    return -1;
+}
+
+static bool fails(void)
+{
+    const int n = ++calls.n;
+
+    if (calls.at == 0 || n < calls.at || (n > calls.at && !calls.forever))
+        return false;
+    errno = calls.number;
+    return true;
+}
+
+int fake_camera_fail_at(int n, int number, bool forever)
+{
+    const int so_far = calls.n;
+
+    calls.n = 0;
+    calls.at = n;
+    calls.number = number;
+    calls.forever = forever;
+    return so_far;
+}
+
+void fake_camera_refuse(unsigned long request, int number, int times)
+{
+    refusal.request = request;
+    refusal.number = number;
+    refusal.times = times;
+}
+
+static bool is_refused(unsigned long request)
+{
+    if (refusal.request != request || refusal.times == 0)
+        return false;
+    if (refusal.times > 0)
+        refusal.times--;
+    errno = refusal.number;
+    return true;
+}
+
+/* -------------------------------------------------------------------- scene */
+
+void fake_camera_reset(void)
+{
+    camera = (struct fake_camera){
+        .fd = -1,
+        .caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING,
+        .n_inputs = 1,
+        .mode = {{V4L2_PIX_FMT_YUYV, 64, 48, 30, 1}},
+        .now = {V4L2_PIX_FMT_YUYV, 64, 48, 30, 1},
+        .max_buffers = FAKE_BUFFERS,
+        .colorspace = V4L2_COLORSPACE_SRGB,
+        .has_signal = true,
+        .timings = {.width = 64, .height = 48, .pixelclock = 1000000},
+        .received = {.width = 64, .height = 48, .pixelclock = 1000000},
+    };
+    refusal.times = 0;
+    fake_lacks_jpeg = false;
+    fake_camera_fail_at(0, 0, false);
+    now_us = 1000000000;
+    n_blocks = 0;
+}
+
+struct fake_frame *fake_camera_deliver(uint32_t sequence, int code)
+{
+    struct fake_frame *f = &camera.frame[camera.n_frames++];
+
+    *f = (struct fake_frame){
+        .sequence = sequence, .code = code, .time_us = now_us};
+    return f;
+}
+
+void fake_camera_pass(int64_t us)
+{
+    now_us += us;
+}
+
+int64_t fake_camera_now(void)
+{
+    return now_us;
+}
+
+int fake_camera_blocks(void)
+{
+    return n_blocks;
+}
+
+/* ------------------------------------------------------------------- format */
+
+static int blocks_of(uint32_t fourcc)
+{
+    return fourcc == V4L2_PIX_FMT_NV12M || fourcc == V4L2_PIX_FMT_NV21M ? 2
+           : fourcc == V4L2_PIX_FMT_YUV420M                             ? 3
+                                                                        : 1;
+}
+
+/* Bytes of a row of block BLOCK. */
+static uint32_t stride_of(const struct fake_mode *m, int block)
+{
+    switch (m->fourcc) {
+    case V4L2_PIX_FMT_YUYV:
+    case V4L2_PIX_FMT_UYVY:
+    case V4L2_PIX_FMT_RGB565:
+        return 2 * m->width + camera.stride_more;
+    case V4L2_PIX_FMT_RGB24:
+    case V4L2_PIX_FMT_BGR24:
+        return 3 * m->width + camera.stride_more;
+    case V4L2_PIX_FMT_YUV420M:
+        return (m->width + camera.stride_more) / (block ? 2 : 1);
+    case V4L2_PIX_FMT_MJPEG:
+    case V4L2_PIX_FMT_JPEG:
+    case V4L2_PIX_FMT_H264:
+        return 0;
+    }
+    return m->width + camera.stride_more;
+}
+
+static uint32_t size_of(const struct fake_mode *m, int block)
+{
+    const uint32_t luma = stride_of(m, block) * m->height;
+
+    if (camera.sizeimage)
+        return camera.sizeimage;
+    switch (m->fourcc) {
+    case V4L2_PIX_FMT_NV12:
+    case V4L2_PIX_FMT_NV21:
+    case V4L2_PIX_FMT_YUV420:
+        return luma + luma / 2;
+    case V4L2_PIX_FMT_NV12M:
+    case V4L2_PIX_FMT_NV21M:
+    case V4L2_PIX_FMT_YUV420M:
+        return block ? luma / 2 : luma;
+    case V4L2_PIX_FMT_MJPEG:
+    case V4L2_PIX_FMT_JPEG:
+    case V4L2_PIX_FMT_H264:
+        return 2 * m->width * m->height;
+    }
+    return luma;
+}
+
+static int tell_format(struct v4l2_format *f)
+{
+    const struct fake_mode *m = &camera.now;
+    struct v4l2_pix_format_mplane *mp = &f->fmt.pix_mp;
+
+    memset(&f->fmt, 0, sizeof f->fmt);
+    if (!camera.multiplanar) {
+        f->fmt.pix = (struct v4l2_pix_format){
+            .width = m->width,
+            .height = m->height,
+            .pixelformat = m->fourcc,
+            .bytesperline = camera.says_no_stride ? 0 : stride_of(m, 0),
+            .sizeimage = size_of(m, 0),
+            .colorspace = camera.colorspace,
+            .quantization = camera.quantization,
+            .ycbcr_enc = camera.ycbcr_enc};
+        return 0;
+    }
+    mp->width = m->width;
+    mp->height = m->height;
+    mp->pixelformat = m->fourcc;
+    mp->colorspace = camera.colorspace;
+    mp->quantization = (uint8_t)camera.quantization;
+    mp->num_planes = (uint8_t)blocks_of(m->fourcc);
+    for (int i = 0; i < mp->num_planes; i++) {
+        mp->plane_fmt[i].bytesperline =
+            camera.says_no_stride ? 0 : stride_of(m, i);
+        mp->plane_fmt[i].sizeimage = size_of(m, i);
+    }
+    return 0;
+}
+
+static bool has_fourcc(uint32_t fourcc)
+{
+    for (int i = 0; i < FAKE_MODES && camera.mode[i].fourcc; i++)
+        if (camera.mode[i].fourcc == fourcc)
+            return true;
+    return false;
+}
+
+static int set_format(struct v4l2_format *f)
+{
+    struct fake_mode *m = &camera.now;
+    const uint32_t fourcc =
+        camera.multiplanar ? f->fmt.pix_mp.pixelformat : f->fmt.pix.pixelformat;
+
+    if (camera.n_buffers)
+        return refuse(EBUSY);
+    m->width = camera.multiplanar ? f->fmt.pix_mp.width : f->fmt.pix.width;
+    m->height = camera.multiplanar ? f->fmt.pix_mp.height : f->fmt.pix.height;
+    m->fourcc = has_fourcc(fourcc) && !camera.ignores_fourcc
+                    ? fourcc
+                    : camera.mode[0].fourcc;
+    if (camera.rounds) {
+        m->width = (m->width + 15) / 16 * 16;
+        m->height = (m->height + 15) / 16 * 16;
+    }
+    for (int i = FAKE_MODES - 1; i >= 0; i--)
+        if (camera.mode[i].fourcc == m->fourcc &&
+            camera.mode[i].width == m->width) {
+            m->fps_num = camera.mode[i].fps_num;
+            m->fps_den = camera.mode[i].fps_den;
+        }
+    return tell_format(f);
+}
+
+/* Mode INDEX of those that differ in what LIKE tells apart; NULL: beyond. */
+static const struct fake_mode *
+nth_mode(uint32_t index,
+         bool (*like)(const struct fake_mode *a, const struct fake_mode *b),
+         const struct fake_mode *key,
+         bool (*within)(const struct fake_mode *a, const struct fake_mode *b))
+{
+    for (int i = 0; i < FAKE_MODES && camera.mode[i].fourcc; i++) {
+        const struct fake_mode *m = &camera.mode[i];
+        bool is_new = within(m, key);
+
+        for (int k = 0; k < i; k++)
+            is_new &= !like(m, &camera.mode[k]);
+        if (is_new && index-- == 0)
+            return m;
+    }
+    return NULL;
+}
+
+static bool any(const struct fake_mode *a, const struct fake_mode *b)
+{
+    return a && b;
+}
+
+static bool same_fourcc(const struct fake_mode *a, const struct fake_mode *b)
+{
+    return a->fourcc == b->fourcc;
+}
+
+static bool same_size(const struct fake_mode *a, const struct fake_mode *b)
+{
+    return same_fourcc(a, b) && a->width == b->width && a->height == b->height;
+}
+
+static bool same_mode(const struct fake_mode *a, const struct fake_mode *b)
+{
+    return same_size(a, b) && a->fps_num == b->fps_num &&
+           a->fps_den == b->fps_den;
+}
+
+static int enum_format(struct v4l2_fmtdesc *f)
+{
+    const struct fake_mode key = {.fourcc = 0};
+    const struct fake_mode *m = nth_mode(f->index, same_fourcc, &key, any);
+
+    if (!m)
+        return refuse(EINVAL);
+    f->pixelformat = m->fourcc;
+    memcpy(f->description, "of the fake", 12);
+    return 0;
+}
+
+static int enum_size(struct v4l2_frmsizeenum *s)
+{
+    const struct fake_mode key = {.fourcc = s->pixel_format};
+    const struct fake_mode *m =
+        nth_mode(s->index, same_size, &key, same_fourcc);
+
+    if (camera.has_no_sizes)
+        return refuse(ENOTTY);
+    if (!m || (camera.is_stepwise && s->index))
+        return refuse(EINVAL);
+    s->type = V4L2_FRMSIZE_TYPE_DISCRETE;
+    s->discrete.width = m->width;
+    s->discrete.height = m->height;
+    if (camera.is_stepwise) {
+        s->type = V4L2_FRMSIZE_TYPE_STEPWISE;
+        s->stepwise =
+            (struct v4l2_frmsize_stepwise){16, m->width, 16, 16, m->height, 16};
+    }
+    return 0;
+}
+
+static int enum_interval(struct v4l2_frmivalenum *i)
+{
+    const struct fake_mode key = {
+        .fourcc = i->pixel_format, .width = i->width, .height = i->height};
+    const struct fake_mode *m = nth_mode(i->index, same_mode, &key, same_size);
+
+    if (camera.has_no_sizes)
+        return refuse(ENOTTY);
+    if (!m || (camera.is_stepwise && i->index))
+        return refuse(EINVAL);
+    i->type = V4L2_FRMIVAL_TYPE_DISCRETE;
+    i->discrete = (struct v4l2_fract){m->fps_den, m->fps_num};
+    if (camera.is_stepwise) {
+        i->type = V4L2_FRMIVAL_TYPE_STEPWISE;
+        i->stepwise = (struct v4l2_frmival_stepwise){
+            {m->fps_den, m->fps_num}, {1, 1}, {1, 1000}};
+    }
+    return 0;
+}
+
+static int set_parm(struct v4l2_streamparm *p, bool set)
+{
+    struct v4l2_fract *t = &p->parm.capture.timeperframe;
+
+    if (set && t->numerator && t->denominator) {
+        for (int i = FAKE_MODES - 1; i >= 0; i--)
+            if (camera.mode[i].fourcc == camera.now.fourcc &&
+                camera.mode[i].fps_num * t->numerator ==
+                    camera.mode[i].fps_den * t->denominator) {
+                camera.now.fps_num = camera.mode[i].fps_num;
+                camera.now.fps_den = camera.mode[i].fps_den;
+            }
+    }
+    *t = (struct v4l2_fract){camera.now.fps_den, camera.now.fps_num};
+    if (camera.rate.numerator)
+        *t = camera.rate;
+    return 0;
+}
+
+/* -------------------------------------------------------------------- input */
+
+static int tell_input(struct v4l2_input *input)
+{
+    if (input->index >= camera.n_inputs)
+        return refuse(EINVAL);
+    memcpy(input->name, "HDMI", 5);
+    input->capabilities = camera.has_dv ? V4L2_IN_CAP_DV_TIMINGS : 0;
+    return 0;
+}
+
+static int set_input(int index)
+{
+    if (index < 0 || (uint32_t)index >= camera.n_inputs)
+        return refuse(EINVAL);
+    camera.input = (uint32_t)index;
+    return 0;
+}
+
+static int query_timings(struct v4l2_dv_timings *t)
+{
+    memset(t, 0, sizeof *t);
+    if (!camera.has_signal)
+        return refuse(ENOLINK);
+    t->bt = camera.received;
+    return 0;
+}
+
+static int set_timings(const struct v4l2_dv_timings *t)
+{
+    const bool same = t->bt.width == camera.timings.width &&
+                      t->bt.height == camera.timings.height;
+
+    camera.n_s_dv_timings++;
+    if (camera.n_buffers && !same)
+        return refuse(EBUSY);
+    camera.timings = t->bt;
+    camera.now.width = t->bt.width;
+    camera.now.height = t->bt.height;
+    return 0;
+}
+
+static int take_event(struct v4l2_event *e)
+{
+    if (camera.n_events == 0)
+        return refuse(ENOENT);
+    camera.n_events--;
+    memset(e, 0, sizeof *e);
+    e->type = V4L2_EVENT_SOURCE_CHANGE;
+    e->u.src_change.changes = V4L2_EVENT_SRC_CH_RESOLUTION;
+    return 0;
+}
+
+/* ------------------------------------------------------------------ buffers */
+
+static bool is_mapped(void)
+{
+    for (uint32_t i = 0; i < camera.n_buffers; i++)
+        for (int k = 0; k < 3; k++)
+            if (camera.buffer[i].map[k])
+                return true;
+    return false;
+}
+
+static int request_buffers(struct v4l2_requestbuffers *r)
+{
+    camera.n_reqbufs++;
+    if (camera.lacks_mmap && r->memory == V4L2_MEMORY_MMAP)
+        return refuse(EINVAL);
+    if (camera.streams || is_mapped())
+        return refuse(EBUSY);
+    memset(camera.buffer, 0, sizeof camera.buffer);
+    camera.n_queued = 0;
+    if (r->count > camera.max_buffers)
+        r->count = camera.max_buffers;
+    camera.n_buffers = r->count;
+    for (uint32_t i = 0; i < r->count; i++)
+        for (int k = 0; k < blocks_of(camera.now.fourcc); k++)
+            camera.buffer[i].bytes[k] =
+                size_of(&camera.now, k) - camera.length_less;
+    return 0;
+}
+
+static int query_buffer(struct v4l2_buffer *b)
+{
+    const struct fake_buffer *own = &camera.buffer[b->index];
+
+    if (b->index >= camera.n_buffers)
+        return refuse(EINVAL);
+    if (!camera.multiplanar) {
+        b->length = own->bytes[0];
+        b->m.offset = 16 * 4096 * b->index;
+        return 0;
+    }
+    b->length = (uint32_t)blocks_of(camera.now.fourcc);
+    for (uint32_t k = 0; k < b->length; k++) {
+        b->m.planes[k].length = own->bytes[k];
+        b->m.planes[k].m.mem_offset = 16 * 4096 * b->index + 4096 * k;
+    }
+    return 0;
+}
+
+static int queue(const struct v4l2_buffer *b)
+{
+    struct fake_buffer *own = &camera.buffer[b->index];
+
+    if (b->index >= camera.n_buffers || own->queued ||
+        (camera.multiplanar &&
+         b->length < (uint32_t)blocks_of(camera.now.fourcc))) {
+        camera.breaches++;
+        return refuse(EINVAL);
+    }
+    own->queued = true;
+    if (b->memory == V4L2_MEMORY_USERPTR) {
+        own->own[0] = b->m.userptr;
+        own->bytes[0] = b->length;
+        for (int k = 0; camera.multiplanar && k < blocks_of(camera.now.fourcc);
+             k++) {
+            own->own[k] = b->m.planes[k].m.userptr;
+            own->bytes[k] = b->m.planes[k].length;
+        }
+    }
+    camera.order[camera.n_queued++] = b->index;
+    return 0;
+}
+
+static struct fake_frame take_frame(void)
+{
+    const struct fake_frame f = camera.frame[0];
+
+    camera.n_frames--;
+    memmove(camera.frame, camera.frame + 1, (size_t)camera.n_frames * sizeof f);
+    return f;
+}
+
+static void fill(const struct fake_frame *f, const struct fake_buffer *b,
+                 int block)
+{
+    uint8_t *mem = b->own[block] ? (uint8_t *)b->own[block] : b->map[block];
+
+    if (!mem) {
+        camera.breaches++;
+        return;
+    }
+    memset(mem, f->code, b->bytes[block]);
+    memset(mem, 0, f->data_offset[block]);
+    if (f->data)
+        memcpy(mem + f->data_offset[block], f->data, f->bytesused[0]);
+}
+
+static uint32_t used(const struct fake_frame *f, int block)
+{
+    return f->bytesused[block] || f->is_odd
+               ? f->bytesused[block]
+               : size_of(&camera.now, block) + f->data_offset[block];
+}
+
+static int dequeue(struct v4l2_buffer *b)
+{
+    struct fake_frame f;
+    struct fake_buffer *own;
+
+    if (camera.is_broken)
+        return refuse(EIO);
+    if (!camera.streams)
+        return refuse(EINVAL);
+    if (camera.n_frames && camera.frame[0].error)
+        return refuse(take_frame().error);
+    if (camera.n_frames == 0 || camera.n_queued == 0)
+        return refuse(EAGAIN);
+    f = take_frame();
+    b->index = camera.order[0];
+    own = &camera.buffer[b->index];
+    camera.n_queued--;
+    memmove(camera.order, camera.order + 1,
+            (size_t)camera.n_queued * sizeof *camera.order);
+    own->queued = false;
+    b->sequence = f.sequence;
+    b->flags = f.flags | V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+    b->timestamp.tv_sec = f.time_us / 1000000;
+    b->timestamp.tv_usec = f.time_us % 1000000;
+    for (int k = 0; k < blocks_of(camera.now.fourcc); k++) {
+        fill(&f, own, k);
+        if (camera.multiplanar) {
+            b->m.planes[k].bytesused = used(&f, k);
+            b->m.planes[k].data_offset = f.data_offset[k];
+        } else
+            b->bytesused = used(&f, k);
+    }
+    return 0;
+}
+
+static int stream(bool on)
+{
+    if (on && camera.n_buffers == 0)
+        return refuse(EINVAL);
+    camera.n_streamons += on;
+    camera.streams = on;
+    if (!on) {
+        camera.is_broken = false;
+        camera.n_queued = 0;
+        for (uint32_t i = 0; i < camera.n_buffers; i++)
+            camera.buffer[i].queued = false;
+    }
+    return 0;
+}
+
+int __real_open64(const char *path, int flags, ...);
+int __real_close(int fd);
+
+static int export(struct v4l2_exportbuffer *e)
+{
+    e->fd = __real_open64("/dev/null", O_RDWR);
+    camera.n_exports++;
+    return 0;
+}
+
+/* ------------------------------------------------------- the kernel's calls */
+
+static int answer(unsigned long request, void *arg)
+{
+    struct v4l2_capability *cap = arg;
+
+    switch (request) {
+    case VIDIOC_QUERYCAP:
+        *cap = (struct v4l2_capability){.card = "Fake",
+                                        .capabilities =
+                                            V4L2_CAP_DEVICE_CAPS | camera.caps,
+                                        .device_caps = camera.caps};
+        return 0;
+    case VIDIOC_ENUM_FMT:
+        return enum_format(arg);
+    case VIDIOC_ENUM_FRAMESIZES:
+        return enum_size(arg);
+    case VIDIOC_ENUM_FRAMEINTERVALS:
+        return enum_interval(arg);
+    case VIDIOC_G_FMT:
+        return tell_format(arg);
+    case VIDIOC_S_FMT:
+        return set_format(arg);
+    case VIDIOC_G_PARM:
+    case VIDIOC_S_PARM:
+        return set_parm(arg, request == VIDIOC_S_PARM);
+    case VIDIOC_G_INPUT:
+        *(int *)arg = (int)camera.input;
+        return 0;
+    case VIDIOC_S_INPUT:
+        return set_input(*(const int *)arg);
+    case VIDIOC_ENUMINPUT:
+        return tell_input(arg);
+    case VIDIOC_QUERY_DV_TIMINGS:
+        return query_timings(arg);
+    case VIDIOC_G_DV_TIMINGS:
+        ((struct v4l2_dv_timings *)arg)->bt = camera.timings;
+        return 0;
+    case VIDIOC_S_DV_TIMINGS:
+        return set_timings(arg);
+    case VIDIOC_SUBSCRIBE_EVENT:
+        return 0;
+    case VIDIOC_DQEVENT:
+        return take_event(arg);
+    case VIDIOC_REQBUFS:
+        return request_buffers(arg);
+    case VIDIOC_QUERYBUF:
+        return query_buffer(arg);
+    case VIDIOC_QBUF:
+        return queue(arg);
+    case VIDIOC_DQBUF:
+        return dequeue(arg);
+    case VIDIOC_STREAMON:
+    case VIDIOC_STREAMOFF:
+        return stream(request == VIDIOC_STREAMON);
+    case VIDIOC_EXPBUF:
+        return export(arg);
+    }
+    return refuse(ENOTTY);
+}
+
+int __real_ioctl(int fd, unsigned long request, ...);
+int __wrap_ioctl(int fd, unsigned long request, ...);
+int __wrap_ioctl(int fd, unsigned long request, ...)
+{
+    va_list args;
+    void *arg;
+
+    va_start(args, request);
+    arg = va_arg(args, void *);
+    va_end(args);
+    if (fd != camera.fd || fd < 0)
+        return __real_ioctl(fd, request, arg);
+    if (fails() || is_refused(request))
+        return -1;
+    return camera.is_gone ? refuse(ENODEV) : answer(request, arg);
+}
+
+int __wrap_open64(const char *path, int flags, ...);
+int __wrap_open64(const char *path, int flags, ...)
+{
+    int mode;
+    va_list args;
+
+    va_start(args, flags);
+    mode = flags & O_CREAT ? va_arg(args, int) : 0;
+    va_end(args);
+    if (strcmp(path, FAKE_PATH) != 0)
+        return __real_open64(path, flags, mode);
+    if (fails())
+        return -1;
+    if (camera.is_gone)
+        return refuse(ENODEV);
+    if (camera.fd >= 0)
+        camera.breaches++;
+    return camera.fd = __real_open64("/dev/null", flags);
+}
+
+int __real_stat64(const char *path, struct stat *st);
+int __wrap_stat64(const char *path, struct stat *st);
+int __wrap_stat64(const char *path, struct stat *st)
+{
+    if (strcmp(path, FAKE_PATH) != 0)
+        return __real_stat64(path, st);
+    return camera.is_gone ? refuse(ENOENT) : __real_stat64("/dev/null", st);
+}
+
+/* What the kernel does for a process that ends: mappings stay. */
+int __wrap_close(int fd);
+int __wrap_close(int fd)
+{
+    if (fd == camera.fd && fd >= 0) {
+        camera.fd = -1;
+        camera.streams = false;
+        camera.n_queued = 0;
+        if (!is_mapped())
+            camera.n_buffers = 0;
+    }
+    return __real_close(fd);
+}
+
+ssize_t __real_read(int fd, void *dst, size_t bytes);
+ssize_t __wrap_read(int fd, void *dst, size_t bytes);
+ssize_t __wrap_read(int fd, void *dst, size_t bytes)
+{
+    struct fake_frame f;
+    size_t n;
+
+    if (fd != camera.fd || fd < 0)
+        return __real_read(fd, dst, bytes);
+    if (fails())
+        return -1;
+    if (camera.is_gone || camera.read_errno)
+        return refuse(camera.is_gone ? ENODEV : camera.read_errno);
+    camera.streams = true; /* by reading, until it is closed */
+    camera.n_buffers = 1;
+    if (camera.n_frames == 0)
+        return refuse(EAGAIN);
+    f = take_frame();
+    n = used(&f, 0) < bytes ? used(&f, 0) : bytes;
+    memset(dst, f.code, n);
+    if (f.data)
+        memcpy(dst, f.data, n);
+    return (ssize_t)n;
+}
+
+/* ------------------------------------------------------------------- memory */
+
+void *__real_malloc(size_t bytes);
+void *__real_mmap64(void *at, size_t bytes, int how, int flags, int fd,
+                    off_t offset);
+void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
+                    off_t offset);
+void __real_free(void *mem);
+
+void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
+                    off_t offset)
+{
+    const off_t page = offset / 4096;
+    struct fake_buffer *b = &camera.buffer[page / 16 % FAKE_BUFFERS];
+
+    if (fd != camera.fd || fd < 0)
+        return __real_mmap64(at, bytes, how, flags, fd, offset);
+    if (fails())
+        return MAP_FAILED;
+    if (page % 16 > 2 || (uint32_t)(page / 16) >= camera.n_buffers ||
+        bytes != b->bytes[page % 16] || bytes == 0) {
+        errno = EINVAL;
+        return MAP_FAILED;
+    }
+    /* a block of the heap: tools see what is read beyond it or afterwards */
+    b->map[page % 16] = __real_malloc(bytes);
+    memset(b->map[page % 16], 0, bytes);
+    camera.n_maps++;
+    return b->map[page % 16];
+}
+
+int __real_munmap(void *at, size_t bytes);
+int __wrap_munmap(void *at, size_t bytes);
+int __wrap_munmap(void *at, size_t bytes)
+{
+    for (int i = 0; i < FAKE_BUFFERS; i++)
+        for (int k = 0; k < 3; k++)
+            if (at && camera.buffer[i].map[k] == at) {
+                camera.breaches +=
+                    camera.buffer[i].bytes[k] != bytes || camera.streams;
+                camera.buffer[i].map[k] = NULL;
+                camera.n_maps--;
+                __real_free(at);
+                return 0;
+            }
+    return __real_munmap(at, bytes);
+}
+
+void *__wrap_malloc(size_t bytes);
+void *__wrap_malloc(size_t bytes)
+{
+    void *const mem = fails() ? NULL : __real_malloc(bytes);
+
+    n_blocks += mem != NULL;
+    return mem;
+}
+
+void *__real_calloc(size_t n, size_t bytes);
+void *__wrap_calloc(size_t n, size_t bytes);
+void *__wrap_calloc(size_t n, size_t bytes)
+{
+    void *const mem = fails() ? NULL : __real_calloc(n, bytes);
+
+    n_blocks += mem != NULL;
+    return mem;
+}
+
+void *__real_realloc(void *old, size_t bytes);
+void *__wrap_realloc(void *old, size_t bytes);
+void *__wrap_realloc(void *old, size_t bytes)
+{
+    void *const mem = fails() ? NULL : __real_realloc(old, bytes);
+
+    n_blocks += mem != NULL && old == NULL;
+    return mem;
+}
+
+int __real_posix_memalign(void **mem, size_t align, size_t bytes);
+int __wrap_posix_memalign(void **mem, size_t align, size_t bytes);
+int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
+{
+    const int number = fails() ? 12 : __real_posix_memalign(mem, align, bytes);
+
+    n_blocks += number == 0;
+    return number;
+}
+
+void __wrap_free(void *mem);
+void __wrap_free(void *mem)
+{
+    n_blocks -= mem != NULL;
+    __real_free(mem);
+}
+
+/* --------------------------------------------------------------------- time */
+
+int __wrap_clock_gettime(clockid_t clock, struct timespec *t);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *t)
+{
+    (void)clock;
+    t->tv_sec = now_us / 1000000;
+    t->tv_nsec = now_us % 1000000 * 1000;
+    return 0;
+}
+
+int __wrap_nanosleep(const struct timespec *t, struct timespec *left);
+int __wrap_nanosleep(const struct timespec *t, struct timespec *left)
+{
+    (void)left;
+    now_us += (int64_t)t->tv_sec * 1000000 + t->tv_nsec / 1000;
+    return 0;
+}
+
+/* --------------------------------------------------------------------- jpeg */
+
+bool __real_glint_mjpeg_available(void);
+bool __wrap_glint_mjpeg_available(void);
+bool __wrap_glint_mjpeg_available(void)
+{
+    return !fake_lacks_jpeg && __real_glint_mjpeg_available();
+}

@@ -1,0 +1,554 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The V4L2 source with a driver that does what it should: which format is
+ * chosen, where its planes lie, which frames are seen and which are counted.
+ */
+#include "support/camera_check.h"
+
+#include <limits.h>
+
+#include "jpeg/mjpeg.h"
+
+/* ------------------------------------------------------------------ formats */
+
+/* What is chosen of LIST for 64 x 48 at FPS. */
+static uint32_t chosen(const struct fake_mode *list, int n, int fps)
+{
+    struct glint_v4l2_config wish = any_camera;
+    uint32_t fourcc;
+
+    fake_camera_reset();
+    memset(camera.mode, 0, sizeof camera.mode);
+    memcpy(camera.mode, list, (size_t)n * sizeof *list);
+    wish.width = 64;
+    wish.height = 48;
+    wish.fps_num = fps;
+    wish.fps_den = 1;
+    must_open(&wish);
+    fourcc = v4l2.device.format.fourcc;
+    must_close();
+    return fourcc;
+}
+
+static void test_cheapest(void **state)
+{
+    static const struct fake_mode equal[] = {
+        {V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1},
+        {V4L2_PIX_FMT_RGB24, 64, 48, 30, 1},
+        {V4L2_PIX_FMT_NV12, 64, 48, 30, 1},
+        {V4L2_PIX_FMT_YUYV, 64, 48, 30, 1}};
+    static const struct fake_mode slow[] = {
+        {V4L2_PIX_FMT_YUYV, 64, 48, 10, 1},
+        {V4L2_PIX_FMT_YUYV, 32, 24, 30, 1},
+        {V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1}};
+    static const struct fake_mode small[] = {
+        {V4L2_PIX_FMT_YUYV, 32, 24, 30, 1},
+        {V4L2_PIX_FMT_RGB24, 64, 48, 30, 1}};
+    static const struct fake_mode foreign[] = {
+        {V4L2_PIX_FMT_H264, 64, 48, 30, 1}, {V4L2_PIX_FMT_GREY, 64, 48, 30, 1}};
+
+    (void)state;
+    assert_int_equal(chosen(equal, 4, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(chosen(equal, 3, 30), V4L2_PIX_FMT_NV12);
+    assert_int_equal(chosen(equal, 2, 30), V4L2_PIX_FMT_RGB24);
+    assert_int_equal(chosen(slow, 3, 30), V4L2_PIX_FMT_MJPEG);
+    assert_int_equal(chosen(slow, 3, 10), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(chosen(slow, 3, 60), V4L2_PIX_FMT_YUYV); /* none does */
+    assert_int_equal(chosen(small, 2, 30), V4L2_PIX_FMT_RGB24);
+    assert_int_equal(chosen(foreign, 2, 30), V4L2_PIX_FMT_GREY);
+}
+
+static void test_stepwise(void **state)
+{
+    struct glint_v4l2_config wish = any_camera;
+
+    (void)state;
+    fake_camera_reset();
+    camera.is_stepwise = true;
+    camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_RGB24, 256, 128, 60, 1};
+    wish.width = 200;
+    wish.height = 100;
+    must_open(&wish);
+    assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_RGB24);
+    assert_int_equal(v4l2.device.format.width, 200);
+    must_close();
+    fake_camera_reset();
+    camera.has_no_sizes = true;
+    must_open(&wish);
+    assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_YUYV);
+    must_close();
+}
+
+static void test_unread_format(void **state)
+{
+    struct glint_v4l2_config wish = any_camera;
+
+    (void)state;
+    fake_camera_reset();
+    camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
+    must_refuse(NULL, GLINT_E_UNSUPPORTED,
+                FAKE_PATH ": delivers H264, which glint does not read; "
+                          "--list-formats");
+    fake_camera_reset();
+    wish.fourcc = V4L2_PIX_FMT_NV12;
+    must_refuse(&wish, GLINT_E_DEVICE, "has no NV12 (gives YUYV instead)");
+}
+
+/* What was asked for is a wish. */
+static void test_believes(void **state)
+{
+    struct glint_v4l2_config wish = any_camera;
+
+    (void)state;
+    fake_camera_reset();
+    camera.rounds = true;
+    wish.width = 50;
+    wish.height = 40;
+    wish.fps_num = 25;
+    wish.fps_den = 1;
+    must_open(&wish);
+    assert_int_equal(v4l2.device.format.width, 64);
+    assert_int_equal(v4l2.device.format.height, 48);
+    assert_int_equal(v4l2.device.format.fps_num, 30);
+    fake_camera_deliver(0, 9);
+    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(frame.image.width, 64);
+    assert_int_equal(frame.image.height, 48);
+    done();
+    must_close();
+}
+
+static void test_inputs(void **state)
+{
+    struct glint_v4l2_config wish = any_camera;
+
+    (void)state;
+    fake_camera_reset();
+    camera.n_inputs = 2;
+    wish.input = 1;
+    must_open(&wish);
+    assert_int_equal(camera.input, 1);
+    must_close();
+    wish.input = 2;
+    must_refuse(&wish, GLINT_E_DEVICE, "has no input 2");
+    fake_camera_refuse(VIDIOC_S_INPUT, EBUSY, 1);
+    must_refuse(&wish, GLINT_E_DEVICE,
+                "VIDIOC_S_INPUT: Device or resource busy; another program");
+}
+
+static void test_colours(void **state)
+{
+    struct glint_v4l2_config wish = any_camera;
+
+    (void)state;
+    fake_camera_reset();
+    camera.quantization = V4L2_QUANTIZATION_FULL_RANGE;
+    camera.ycbcr_enc = V4L2_YCBCR_ENC_709;
+    must_open(NULL);
+    assert_int_equal(v4l2.device.format.range, GLINT_RANGE_FULL);
+    assert_int_equal(v4l2.device.format.matrix, GLINT_MATRIX_BT709);
+    must_close();
+    wish.range = GLINT_RANGE_LIMITED;
+    wish.matrix = GLINT_MATRIX_BT601;
+    must_open(&wish);
+    fake_camera_deliver(0, 9);
+    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(frame.image.range, GLINT_RANGE_LIMITED);
+    assert_int_equal(frame.image.matrix, GLINT_MATRIX_BT601);
+    done();
+    must_close();
+}
+
+/* ------------------------------------------------------------------- layout */
+
+static void use_format(uint32_t fourcc, bool multiplanar)
+{
+    fake_camera_reset();
+    camera.mode[0].fourcc = camera.now.fourcc = fourcc;
+    camera.multiplanar = multiplanar;
+    if (multiplanar)
+        camera.caps = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
+}
+
+/* The plane's offset from the start of the block, and its stride. */
+static void expect_plane(int plane, const uint8_t *block, ptrdiff_t offset,
+                         ptrdiff_t stride)
+{
+    assert_int_equal(frame.image.plane[plane] - block, offset);
+    assert_int_equal(frame.image.stride_bytes[plane], stride);
+}
+
+static const uint8_t *block_of(int k)
+{
+    return camera.buffer[0].map[k];
+}
+
+static void test_strides(void **state)
+{
+    (void)state;
+    use_format(V4L2_PIX_FMT_YUYV, false);
+    camera.stride_more = 24;
+    must_open(NULL);
+    fake_camera_deliver(0, 9);
+    assert_int_equal(next(), GLINT_OK);
+    expect_plane(0, block_of(0), 0, 2 * 64 + 24);
+    done();
+    must_close();
+    camera.stride_more = 0;
+    camera.says_no_stride = true;
+    must_open(NULL);
+    fake_camera_deliver(0, 9);
+    assert_int_equal(next(), GLINT_OK);
+    expect_plane(0, block_of(0), 0, 2 * 64);
+    done();
+    must_close();
+}
+
+static void test_one_block(void **state)
+{
+    (void)state;
+    use_format(V4L2_PIX_FMT_NV12, false);
+    camera.stride_more = 16;
+    must_open(NULL);
+    fake_camera_deliver(0, 9);
+    assert_int_equal(next(), GLINT_OK);
+    expect_plane(0, block_of(0), 0, 80);
+    expect_plane(1, block_of(0), 80 * 48, 80);
+    done();
+    must_close();
+    use_format(V4L2_PIX_FMT_YUV420, true);
+    camera.stride_more = 16;
+    must_open(NULL);
+    fake_camera_deliver(0, 9);
+    assert_int_equal(next(), GLINT_OK);
+    expect_plane(0, block_of(0), 0, 80);
+    expect_plane(1, block_of(0), 80 * 48, 40);
+    expect_plane(2, block_of(0), 80 * 48 + 40 * 24, 40);
+    done();
+    must_close();
+}
+
+static void test_several_blocks(void **state)
+{
+    struct fake_frame *f;
+
+    (void)state;
+    use_format(V4L2_PIX_FMT_NV12M, true);
+    camera.stride_more = 16;
+    must_open(NULL);
+    assert_int_equal(v4l2.device.format.n_blocks, 2);
+    fake_camera_deliver(0, 9);
+    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(frame.image.format, GLINT_NV12);
+    expect_plane(0, block_of(0), 0, 80);
+    expect_plane(1, block_of(1), 0, 80);
+    done();
+    must_close();
+    use_format(V4L2_PIX_FMT_YUV420M, true);
+    must_open(NULL);
+    f = fake_camera_deliver(0, 9);
+    f->is_odd = true; /* the last two say all that there is */
+    f->bytesused[0] = 64 * 48;
+    f->bytesused[1] = f->bytesused[2] = 32 * 24;
+    assert_int_equal(next(), GLINT_OK);
+    assert_non_null(frame.image.plane[0]);
+    expect_plane(2, block_of(2), 0, 32);
+    done();
+    f = fake_camera_deliver(1, 9);
+    f->is_odd = true;
+    f->bytesused[0] = 64 * 48;
+    f->bytesused[1] = 32 * 24;
+    must_get_nothing(); /* the third is missing */
+    assert_int_equal(frame.n_corrupt, 1);
+    must_close();
+}
+
+/* Something of the driver's comes before the picture. */
+static void test_data_offset(void **state)
+{
+    struct fake_frame *f;
+
+    (void)state;
+    use_format(V4L2_PIX_FMT_YUYV, true);
+    camera.sizeimage = 2 * 64 * 48 + 32;
+    must_open(NULL);
+    f = fake_camera_deliver(0, 9);
+    f->is_odd = true;
+    f->data_offset[0] = 32;
+    f->bytesused[0] = 2 * 64 * 48 + 32;
+    assert_int_equal(next(), GLINT_OK);
+    expect_plane(0, block_of(0), 32, 2 * 64);
+    done();
+    f = fake_camera_deliver(1, 9);
+    f->is_odd = true;
+    f->data_offset[0] = 33;
+    f->bytesused[0] = 2 * 64 * 48 + 32;
+    must_get_nothing();
+    assert_int_equal(frame.n_corrupt, 1);
+    f = fake_camera_deliver(2, 9);
+    f->is_odd = true;
+    f->data_offset[0] = 4000; /* beyond all that is used */
+    f->bytesused[0] = 100;
+    must_get_nothing();
+    assert_int_equal(frame.n_corrupt, 1);
+    must_close();
+}
+
+static void test_too_small(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    camera.sizeimage = 2 * 64 * 48 - 1;
+    must_refuse(NULL, GLINT_E_DEVICE,
+                "64x48 YUYV does not fit the 6143 bytes that the driver says");
+    fake_camera_reset();
+    camera.length_less = 1; /* and it says nothing of it */
+    must_open(NULL);
+    fake_camera_deliver(0, 9);
+    must_get_nothing();
+    assert_int_equal(frame.n_corrupt, 1);
+    must_close();
+    fake_camera_reset();
+    camera.now.width = GLINT_MAX_SIDE + 1;
+    must_refuse(NULL, GLINT_E_UNSUPPORTED, "pictures of ");
+}
+
+/* ------------------------------------------------------------------- frames */
+
+static void deliver_odd(uint32_t sequence, uint32_t bytesused)
+{
+    struct fake_frame *f = fake_camera_deliver(sequence, 9);
+
+    f->is_odd = true;
+    f->bytesused[0] = bytesused;
+}
+
+static void test_damaged(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    deliver_odd(0, 0);
+    deliver_odd(1, 2 * 64 * 48 - 1);
+    deliver_odd(2, 2 * 64 * 48 + 1);
+    fake_camera_deliver(3, 9)->flags = V4L2_BUF_FLAG_ERROR;
+    must_get_nothing();
+    assert_int_equal(frame.n_corrupt, 4);
+    assert_int_equal(frame.n_dropped, 0);
+    assert_int_equal(camera.n_queued, 4);
+    deliver_odd(4, 2 * 64 * 48);
+    must_get(9);
+    assert_int_equal(frame.n_corrupt, 0);
+    must_close();
+}
+
+/* A damaged frame does not take the place of a whole one, early or late. */
+static void test_damaged_among_whole(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_deliver(0, 9)->flags = V4L2_BUF_FLAG_ERROR;
+    fake_camera_deliver(1, 8);
+    fake_camera_deliver(2, 7)->flags = V4L2_BUF_FLAG_ERROR;
+    must_get(8);
+    assert_int_equal(frame.n_corrupt, 2);
+    assert_int_equal(frame.n_late, 0);
+    assert_int_equal(camera.n_queued, 4);
+    must_close();
+}
+
+static void test_newest(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    must_get_nothing();
+    for (int i = 0; i < 3; i++)
+        fake_camera_deliver((uint32_t)i, 10 + i)->time_us = 5000 + i;
+    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(frame.image.plane[0][0], 12);
+    assert_int_equal(frame.n_late, 2);
+    assert_int_equal(frame.n_dropped, 0);
+    assert_int_equal(frame.sequence, 2);
+    assert_int_equal(frame.time_us, 5002);
+    assert_int_equal(camera.n_queued, 3); /* all but the one lent */
+    fake_camera_deliver(3, 13);
+    done();
+    assert_int_equal(camera.n_queued, 4);
+    done(); /* twice is once */
+    assert_int_equal(camera.n_queued, 4);
+    must_get(13);
+    must_close();
+}
+
+/* The lent frame stays as it is while others come and go. */
+static void test_lent(void **state)
+{
+    struct glint_source_frame kept;
+
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_deliver(0, 50);
+    assert_int_equal(next(), GLINT_OK);
+    kept = frame;
+    for (int i = 1; i < 20; i++) {
+        fake_camera_deliver((uint32_t)i, i);
+        must_get(i);
+        assert_int_equal(kept.image.plane[0][0], 50);
+        assert_int_equal(camera.n_queued, 3);
+    }
+    v4l2.source.done(&v4l2.source, &kept);
+    assert_int_equal(camera.n_queued, 4);
+    must_close();
+}
+
+static int dropped(uint32_t sequence)
+{
+    fake_camera_deliver(sequence, 9);
+    must_get(9);
+    return frame.n_dropped;
+}
+
+static void test_sequence(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    assert_int_equal(dropped(1000), 0); /* it may begin anywhere */
+    assert_int_equal(dropped(1001), 0);
+    assert_int_equal(dropped(1005), 3);
+    assert_int_equal(dropped(1005), 0);
+    assert_int_equal(dropped(3), 0); /* begun anew */
+    assert_int_equal(dropped(4), 0);
+    must_close();
+    must_open(NULL);
+    assert_int_equal(dropped(UINT32_MAX - 1), 0);
+    assert_int_equal(dropped(UINT32_MAX), 0);
+    assert_int_equal(dropped(0), 0);
+    assert_int_equal(dropped(2), 1);
+    must_close();
+    must_open(NULL); /* one that never counts */
+    for (int i = 0; i < 5; i++)
+        assert_int_equal(dropped(0), 0);
+    must_close();
+}
+
+/* A gap and damage before the frame that is shown add up. */
+static void test_gaps_add_up(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    assert_int_equal(dropped(0), 0);
+    fake_camera_deliver(2, 1)->flags = V4L2_BUF_FLAG_ERROR;
+    fake_camera_deliver(5, 2);
+    fake_camera_deliver(7, 3);
+    must_get(3);
+    assert_int_equal(frame.n_dropped, 4);
+    assert_int_equal(frame.n_corrupt, 1);
+    assert_int_equal(frame.n_late, 1);
+    must_close();
+}
+
+static void test_jpeg(void **state)
+{
+    static const char garbage[] = "not a JPEG at all";
+
+    (void)state;
+    fake_camera_reset();
+    if (!glint_mjpeg_available())
+        skip();
+    camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
+    must_open(NULL);
+    for (uint32_t i = 0; i < 3; i++) {
+        struct fake_frame *f = fake_camera_deliver(i, 0);
+
+        f->data = garbage;
+        f->bytesused[0] = sizeof garbage;
+    }
+    must_get_nothing();
+    assert_int_equal(frame.n_corrupt, 1);
+    assert_int_equal(frame.n_late, 2);
+    assert_int_equal(camera.n_queued, 4);
+    must_close();
+}
+
+/* ------------------------------------------------------ other kinds of memory
+ */
+
+static void check_io(enum glint_v4l2_io wish, enum glint_v4l2_io got)
+{
+    if (try_open(NULL, wish))
+        fail_msg("%s", said.text);
+    assert_int_equal(v4l2.io, got);
+    for (uint32_t i = 0; i < 10; i++) {
+        fake_camera_deliver(i, 20 + (int)i);
+        must_get(20 + (int)i);
+        assert_int_equal(frame.n_dropped, 0);
+    }
+    assert_int_equal(camera.n_maps, got == GLINT_V4L2_MMAP ? 4 : 0);
+    must_close();
+}
+
+static void test_memory(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    check_io(GLINT_V4L2_AUTO, GLINT_V4L2_MMAP);
+    check_io(GLINT_V4L2_MMAP, GLINT_V4L2_MMAP);
+    check_io(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
+    camera.lacks_mmap = true;
+    check_io(GLINT_V4L2_AUTO, GLINT_V4L2_USERPTR);
+    use_format(V4L2_PIX_FMT_NV12M, true);
+    check_io(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
+    fake_camera_reset();
+    camera.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
+    check_io(GLINT_V4L2_AUTO, GLINT_V4L2_READ);
+    check_io(GLINT_V4L2_READ, GLINT_V4L2_READ);
+}
+
+static void test_few_buffers(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    camera.max_buffers = 2;
+    must_open(NULL);
+    assert_int_equal(v4l2.n_buffers, 2);
+    for (uint32_t i = 0; i < 10; i++) {
+        fake_camera_deliver(i, (int)i);
+        must_get((int)i);
+    }
+    must_close();
+    camera.max_buffers = 0;
+    must_refuse(NULL, GLINT_E_DEVICE, "VIDIOC_REQBUFS");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_cheapest),
+        cmocka_unit_test(test_stepwise),
+        cmocka_unit_test(test_unread_format),
+        cmocka_unit_test(test_believes),
+        cmocka_unit_test(test_inputs),
+        cmocka_unit_test(test_colours),
+        cmocka_unit_test(test_strides),
+        cmocka_unit_test(test_one_block),
+        cmocka_unit_test(test_several_blocks),
+        cmocka_unit_test(test_data_offset),
+        cmocka_unit_test(test_too_small),
+        cmocka_unit_test(test_damaged),
+        cmocka_unit_test(test_damaged_among_whole),
+        cmocka_unit_test(test_newest),
+        cmocka_unit_test(test_lent),
+        cmocka_unit_test(test_sequence),
+        cmocka_unit_test(test_gaps_add_up),
+        cmocka_unit_test(test_jpeg),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_few_buffers),
+    };
+
+    return cmocka_run_group_tests_name("v4l2", tests, NULL, NULL);
+}
