@@ -54,7 +54,7 @@ static void say_camera(const struct live *l)
 {
     static const char *const io[] = {"", "mapped", "user", "read"};
     const struct glint_v4l2 *c = &l->camera;
-    char format[96], text[320];
+    char format[96], text[GLINT_V4L2_PATH + 256];
 
     glint_v4l2_format_text(&c->device.format, format);
     snprintf(text, sizeof text, "%s (%s): %s, %d %s buffers%s%s",

@@ -70,8 +70,11 @@ enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *d,
     enum glint_status status;
 
     *d = (struct glint_v4l2_device){.fd = -1, .has_signal = true};
-    snprintf(d->path, sizeof d->path, "%s%s",
-             isdigit((unsigned char)*name) ? "/dev/video" : "", name);
+    if (snprintf(d->path, sizeof d->path, "%s%s",
+                 isdigit((unsigned char)*name) ? "/dev/video" : "",
+                 name) >= GLINT_V4L2_PATH)
+        return glint_error_report(error, GLINT_E_DEVICE, name,
+                                  "the name is too long");
     status = open_node(d, error);
     if (status != GLINT_OK)
         return status;

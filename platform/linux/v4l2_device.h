@@ -17,7 +17,7 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
-#define GLINT_V4L2_PATH 64
+#define GLINT_V4L2_PATH 256 /* udev makes names of 80 and more */
 
 struct glint_v4l2_config {
     const char *device;   /* "/dev/video0", or "0" for it */

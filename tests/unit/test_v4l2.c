@@ -159,6 +159,28 @@ static void test_colours(void **state)
     must_close();
 }
 
+/* Names as udev makes them are longer than /dev/video0. */
+static void test_long_names(void **state)
+{
+    struct glint_v4l2_config wish = any_camera;
+    char name[400];
+
+    (void)state;
+    fake_camera_reset();
+    memset(name, 'x', sizeof name);
+    memcpy(name, "/dev/", 5);
+    name[120] = '\0';
+    wish.device = name;
+    must_refuse(&wish, GLINT_E_DEVICE, "xxx: no such device");
+    assert_int_equal(strlen(v4l2.device.path), 120);
+    name[120] = 'x';
+    name[399] = '\0';
+    must_refuse(&wish, GLINT_E_DEVICE, "name is too long");
+    wish.device = "77"; /* a number will do */
+    must_open(&wish);
+    must_close();
+}
+
 /* ------------------------------------------------------------------- layout */
 
 static void use_format(uint32_t fourcc, bool multiplanar)
@@ -534,6 +556,7 @@ int main(void)
         cmocka_unit_test(test_believes),
         cmocka_unit_test(test_inputs),
         cmocka_unit_test(test_colours),
+        cmocka_unit_test(test_long_names),
         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_one_block),
         cmocka_unit_test(test_several_blocks),
