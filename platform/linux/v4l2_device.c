@@ -180,12 +180,12 @@ static enum glint_status follow_timings(struct glint_v4l2_device *d,
 
 /* ----------------------------------------------------- the cheapest format */
 
-static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc)
+static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
+                     uint32_t w, uint32_t h)
 {
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
-    const uint32_t w = (uint32_t)d->wish.width, h = (uint32_t)d->wish.height;
 
-    if (w == 0 || glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) < 0)
+    if (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) < 0)
         return true; /* not said: tried */
     if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE)
         return w >= size.stepwise.min_width && w <= size.stepwise.max_width &&
@@ -198,20 +198,21 @@ static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc)
     return false;
 }
 
-/* A is at most as long as FPS_DEN / FPS_NUM. */
+/* A is at most as long as FPS_DEN / FPS_NUM, but for one part in 200: USB has
+ * units of 100 ns, and 30 is also said for 29.97. */
 static bool is_fast(const struct glint_v4l2_device *d, struct v4l2_fract a)
 {
-    return (uint64_t)a.numerator * (uint64_t)d->wish.fps_num <=
-           (uint64_t)a.denominator * (uint64_t)d->wish.fps_den;
+    return 200.0 * a.numerator * d->wish.fps_num <=
+           201.0 * a.denominator * d->wish.fps_den;
 }
 
-static bool has_rate(const struct glint_v4l2_device *d, uint32_t fourcc)
+static bool has_rate(const struct glint_v4l2_device *d, uint32_t fourcc,
+                     uint32_t w, uint32_t h)
 {
-    struct v4l2_frmivalenum interval = {.pixel_format = fourcc,
-                                        .width = (uint32_t)d->wish.width,
-                                        .height = (uint32_t)d->wish.height};
+    struct v4l2_frmivalenum interval = {
+        .pixel_format = fourcc, .width = w, .height = h};
 
-    if (d->wish.fps_num == 0 || d->wish.width == 0 ||
+    if (d->wish.fps_num == 0 ||
         glint_ioctl(d->fd, VIDIOC_ENUM_FRAMEINTERVALS, &interval) < 0)
         return true;
     if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE)
@@ -237,8 +238,9 @@ static uint32_t offered(const struct glint_v4l2_device *d)
     return have;
 }
 
-/* 0: none that glint reads. */
-static uint32_t cheapest(const struct glint_v4l2_device *d)
+/* For pictures of W x H; 0: none that glint reads. */
+static uint32_t cheapest(const struct glint_v4l2_device *d, uint32_t w,
+                         uint32_t h)
 {
     const uint32_t have = offered(d);
     uint32_t first = 0, sized = 0;
@@ -247,7 +249,7 @@ static uint32_t cheapest(const struct glint_v4l2_device *d)
         if (!(have >> i & 1))
             continue;
         first = preferred[i];
-        if (has_size(d, first) && has_rate(d, first))
+        if (has_size(d, first, w, h) && has_rate(d, first, w, h))
             sized = first;
     }
     return sized ? sized : first;
@@ -390,16 +392,21 @@ static enum glint_status set_format(struct glint_v4l2_device *d,
                                     struct glint_error *error)
 {
     const bool multiplanar = is_multiplanar(d);
-    const uint32_t fourcc = d->wish.fourcc ? d->wish.fourcc : cheapest(d);
     struct v4l2_format f = {.type = d->type};
+    uint32_t fourcc = d->wish.fourcc;
     struct pix pix;
 
     if (glint_ioctl(d->fd, VIDIOC_G_FMT, &f) < 0)
         return refuse(d, error, "VIDIOC_G_FMT");
     pix = read_pix(&f, multiplanar);
-    write_pix(&f, multiplanar, fourcc ? fourcc : pix.fourcc,
-              d->wish.width ? (uint32_t)d->wish.width : pix.width,
-              d->wish.height ? (uint32_t)d->wish.height : pix.height);
+    if (d->wish.width) {
+        pix.width = (uint32_t)d->wish.width;
+        pix.height = (uint32_t)d->wish.height;
+    }
+    if (!fourcc)
+        fourcc = cheapest(d, pix.width, pix.height);
+    write_pix(&f, multiplanar, fourcc ? fourcc : pix.fourcc, pix.width,
+              pix.height);
     if (glint_ioctl(d->fd, VIDIOC_S_FMT, &f) < 0)
         return refuse(d, error, "VIDIOC_S_FMT");
     pix = read_pix(&f, multiplanar);

@@ -21,7 +21,7 @@
 
 struct glint_v4l2_config {
     const char *device;   /* "/dev/video0", or "0" for it */
-    int width, height;    /* 0: what the device is set to */
+    int width, height;    /* 0, both: what the device is set to */
     int fps_num, fps_den; /* frames a second; 0: likewise */
     uint32_t fourcc;      /* 0: the cheapest that gives size and rate */
     int input;            /* -1: likewise */

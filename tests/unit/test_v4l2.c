@@ -58,6 +58,43 @@ static void test_cheapest(void **state)
     assert_int_equal(chosen(foreign, 2, 30), V4L2_PIX_FMT_GREY);
 }
 
+/* Without a size the one that the camera is set to counts. */
+static void test_rate_alone(void **state)
+{
+    struct glint_v4l2_config wish = any_camera;
+
+    (void)state;
+    fake_camera_reset();
+    camera.mode[0].fps_num = 10;
+    camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1};
+    wish.fps_num = 30;
+    wish.fps_den = 1;
+    must_open(&wish);
+    assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_MJPEG);
+    assert_int_equal(v4l2.device.format.fps_num, 30);
+    must_close();
+}
+
+/* 333334 units of 100 ns, as some USB cameras say it, are 30 frames a second;
+ * so are 1001/30000. */
+static void test_almost_the_rate(void **state)
+{
+    static const struct fake_mode usb[] = {
+        {V4L2_PIX_FMT_YUYV, 64, 48, 10000000, 333334},
+        {V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1}};
+    static const struct fake_mode ntsc[] = {
+        {V4L2_PIX_FMT_YUYV, 64, 48, 30000, 1001},
+        {V4L2_PIX_FMT_MJPEG, 64, 48, 30, 1}};
+    static const struct fake_mode film[] = {
+        {V4L2_PIX_FMT_YUYV, 64, 48, 24, 1},
+        {V4L2_PIX_FMT_MJPEG, 64, 48, 25, 1}};
+
+    (void)state;
+    assert_int_equal(chosen(usb, 2, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(chosen(ntsc, 2, 30), V4L2_PIX_FMT_YUYV);
+    assert_int_equal(chosen(film, 2, 25), V4L2_PIX_FMT_MJPEG);
+}
+
 static void test_stepwise(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -551,6 +588,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cheapest),
+        cmocka_unit_test(test_rate_alone),
+        cmocka_unit_test(test_almost_the_rate),
         cmocka_unit_test(test_stepwise),
         cmocka_unit_test(test_unread_format),
         cmocka_unit_test(test_believes),
