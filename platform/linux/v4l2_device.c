@@ -423,6 +423,11 @@ static enum glint_status set_format(struct glint_v4l2_device *d,
     return take_format(d, &pix, error);
 }
 
+static bool is_count(uint32_t n)
+{
+    return n >= 1 && n <= INT32_MAX;
+}
+
 /* Rates are a wish even more than sizes: some inputs have theirs. */
 static void set_rate(struct glint_v4l2_device *d)
 {
@@ -434,7 +439,8 @@ static void set_rate(struct glint_v4l2_device *d)
         t->denominator = (uint32_t)d->wish.fps_num;
         glint_ioctl(d->fd, VIDIOC_S_PARM, &parm);
     }
-    if (glint_ioctl(d->fd, VIDIOC_G_PARM, &parm) == 0 && t->numerator) {
+    if (glint_ioctl(d->fd, VIDIOC_G_PARM, &parm) == 0 &&
+        is_count(t->numerator) && is_count(t->denominator)) {
         d->format.fps_num = (int)t->denominator;
         d->format.fps_den = (int)t->numerator;
     }

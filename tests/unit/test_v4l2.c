@@ -155,6 +155,21 @@ static void test_believes(void **state)
     must_close();
 }
 
+static void test_odd_rates(void **state)
+{
+    static const struct v4l2_fract odd[] = {
+        {1, 0}, {1, UINT32_MAX}, {UINT32_MAX, 1}, {UINT32_MAX, UINT32_MAX}};
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        fake_camera_reset();
+        camera.rate = odd[i];
+        must_open(NULL);
+        assert_int_equal(v4l2.device.format.fps_num, 0); /* it does not say */
+        must_close();
+    }
+}
+
 static void test_inputs(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -593,6 +608,7 @@ int main(void)
         cmocka_unit_test(test_stepwise),
         cmocka_unit_test(test_unread_format),
         cmocka_unit_test(test_believes),
+        cmocka_unit_test(test_odd_rates),
         cmocka_unit_test(test_inputs),
         cmocka_unit_test(test_colours),
         cmocka_unit_test(test_long_names),
