@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "jpeg/mjpeg.h"
 #include "linux/fourcc.h"
 #include "linux/request.h"
 #include "posix/error.h"
@@ -30,6 +31,14 @@ enum { N_PREFERRED = (int)(sizeof preferred / sizeof *preferred) };
 static bool is_jpeg(uint32_t fourcc)
 {
     return fourcc == V4L2_PIX_FMT_MJPEG || fourcc == V4L2_PIX_FMT_JPEG;
+}
+
+bool glint_v4l2_is_read(uint32_t fourcc)
+{
+    enum glint_pixel_format unused;
+
+    return is_jpeg(fourcc) ? glint_mjpeg_available()
+                           : glint_fourcc_to_format(fourcc, &unused);
 }
 
 static bool is_multiplanar(const struct glint_v4l2_device *d)
@@ -233,7 +242,8 @@ static uint32_t offered(const struct glint_v4l2_device *d)
 
     for (; glint_ioctl(d->fd, VIDIOC_ENUM_FMT, &f) == 0; f.index++)
         for (int i = 0; i < N_PREFERRED; i++)
-            if (f.pixelformat == preferred[i])
+            if (f.pixelformat == preferred[i] &&
+                glint_v4l2_is_read(f.pixelformat))
                 have |= UINT32_C(1) << i;
     return have;
 }

@@ -88,7 +88,10 @@ enum glint_status glint_v4l2_list_devices(FILE *out, bool json);
 enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
                                           bool json, struct glint_error *error);
 
-/* For both: opens NAME and asks what it is. */
+/* Whether glint has a use for frames in FOURCC. */
+bool glint_v4l2_is_read(uint32_t fourcc);
+
+/* For both lists: opens NAME and asks what it is. */
 enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *device,
                                            const char *name,
                                            struct glint_error *error);

@@ -179,10 +179,7 @@ static void print_sizes(FILE *out, const struct glint_v4l2_device *d,
 static void print_format(FILE *out, const struct glint_v4l2_device *d,
                          const struct v4l2_fmtdesc *f, bool json)
 {
-    enum glint_pixel_format unused;
-    const bool is_read = f->pixelformat == V4L2_PIX_FMT_MJPEG ||
-                         f->pixelformat == V4L2_PIX_FMT_JPEG ||
-                         glint_fourcc_to_format(f->pixelformat, &unused);
+    const bool is_read = glint_v4l2_is_read(f->pixelformat);
     char name[5];
 
     glint_fourcc_text(f->pixelformat, name);

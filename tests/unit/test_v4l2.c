@@ -116,6 +116,19 @@ static void test_stepwise(void **state)
     must_close();
 }
 
+/* Built without libjpeg MJPG is no format that glint reads. */
+static void test_no_jpeg(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    fake_lacks_jpeg = true;
+    camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
+    camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_GREY, 64, 48, 30, 1};
+    must_open(NULL);
+    assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_GREY);
+    must_close();
+}
+
 static void test_unread_format(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -606,6 +619,7 @@ int main(void)
         cmocka_unit_test(test_rate_alone),
         cmocka_unit_test(test_almost_the_rate),
         cmocka_unit_test(test_stepwise),
+        cmocka_unit_test(test_no_jpeg),
         cmocka_unit_test(test_unread_format),
         cmocka_unit_test(test_believes),
         cmocka_unit_test(test_odd_rates),
