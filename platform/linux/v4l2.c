@@ -15,6 +15,7 @@
 #define PATIENCE_US  900000  /* a broken stream gets so long to come back */
 #define STALL_US     2000000 /* silence beyond some frames that is no pause */
 #define STALL_FRAMES 4
+#define MAX_GAP      4096
 #define USELESS      30 /* damaged frames in a row that call for a new start */
 
 /* ------------------------------------------------------------------- stream */
@@ -166,11 +167,11 @@ static void queue_idle(struct glint_v4l2 *v)
 }
 
 /* Frames between the last one and this. A driver that does not count says the
- * same number every time. */
+ * same number every time; and longer than a stall no gap can be. */
 static int gap(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;
-    const bool counts = v->has_sequence && missing < UINT32_C(1) << 31;
+    const bool counts = v->has_sequence && missing <= MAX_GAP;
 
     v->sequence = sequence;
     v->has_sequence = true;

@@ -539,6 +539,21 @@ static void test_gaps_add_up(void **state)
     must_close();
 }
 
+/* Leaps are no gaps, and their sum does not overflow. */
+static void test_leaps(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    assert_int_equal(dropped(0), 0);
+    for (uint32_t i = 1; i <= 3; i++)
+        fake_camera_deliver(i * 0x7fffffff, 9);
+    must_get(9);
+    assert_true(frame.n_dropped >= 0);
+    assert_true(frame.n_dropped < INT_MAX / 2);
+    must_close();
+}
+
 static void test_jpeg(void **state)
 {
     static const char garbage[] = "not a JPEG at all";
@@ -637,6 +652,7 @@ int main(void)
         cmocka_unit_test(test_lent),
         cmocka_unit_test(test_sequence),
         cmocka_unit_test(test_gaps_add_up),
+        cmocka_unit_test(test_leaps),
         cmocka_unit_test(test_jpeg),
         cmocka_unit_test(test_memory),
         cmocka_unit_test(test_few_buffers),
