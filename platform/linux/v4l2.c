@@ -55,10 +55,11 @@ static enum glint_status make_decoder(struct glint_v4l2 *v,
 
 static enum glint_status start(struct glint_v4l2 *v, struct glint_error *error)
 {
+    const char *const failed = glint_v4l2_get_buffers(v);
     int n_queued = 0;
 
-    if (glint_v4l2_get_buffers(v) < 0)
-        return glint_ioctl_failed(error, v->device.path, "VIDIOC_REQBUFS");
+    if (failed)
+        return glint_ioctl_failed(error, v->device.path, failed);
     for (int i = 0; i < v->n_buffers; i++)
         n_queued +=
             glint_v4l2_queue(v, i) == 0; /* the rest is tried again later */

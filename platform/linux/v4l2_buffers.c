@@ -138,6 +138,7 @@ enum glint_v4l2_outcome glint_v4l2_take(struct glint_v4l2 *v,
 
 /* ------------------------------------------------------------------ buffers */
 
+/* 0: it failed, and errno says why. */
 static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
                                 int n)
 {
@@ -146,6 +147,7 @@ static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
 
     if (glint_ioctl(v->device.fd, VIDIOC_REQBUFS, &r) < 0)
         return 0;
+    errno = ENOMEM; /* where there are none */
     return r.count < GLINT_V4L2_MAX_BUFFERS ? r.count : GLINT_V4L2_MAX_BUFFERS;
 }
 
@@ -169,36 +171,38 @@ void glint_v4l2_release_buffers(struct glint_v4l2 *v)
     v->n_buffers = 0;
 }
 
-static int map_block(struct glint_v4l2 *v, int index, int block, size_t bytes,
-                     size_t offset)
+/* These return NULL, or what failed. */
+static const char *map_block(struct glint_v4l2 *v, int index, int block,
+                             size_t bytes, size_t offset)
 {
     struct glint_v4l2_buffer *b = &v->buffer[index];
     void *mem = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED,
                      v->device.fd, (off_t)offset);
 
     if (mem == MAP_FAILED)
-        return -1;
+        return "mmap";
     b->mem[block] = mem;
     b->bytes[block] = bytes;
-    return 0;
+    return NULL;
 }
 
-static int map_buffer(struct glint_v4l2 *v, int index)
+static const char *map_buffer(struct glint_v4l2 *v, int index)
 {
     struct v4l2_plane planes[3];
     struct v4l2_buffer b = describe(v, index, planes);
+    const char *failed = NULL;
 
     if (glint_ioctl(v->device.fd, VIDIOC_QUERYBUF, &b) < 0)
-        return -1;
+        return "VIDIOC_QUERYBUF";
     if (!is_multiplanar(v))
         return map_block(v, index, 0, b.length, b.m.offset);
-    for (int i = 0; i < v->device.format.n_blocks; i++)
-        if (map_block(v, index, i, planes[i].length, planes[i].m.mem_offset))
-            return -1;
-    return 0;
+    for (int i = 0; !failed && i < v->device.format.n_blocks; i++)
+        failed =
+            map_block(v, index, i, planes[i].length, planes[i].m.mem_offset);
+    return failed;
 }
 
-static int own_buffer(struct glint_v4l2 *v, int index)
+static const char *own_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *b = &v->buffer[index];
 
@@ -208,10 +212,10 @@ static int own_buffer(struct glint_v4l2 *v, int index)
         if (posix_memalign(&b->mem[i], PAGE, b->bytes[i]) != 0) {
             b->mem[i] = NULL;
             errno = ENOMEM;
-            return -1;
+            return "buffers";
         }
     }
-    return 0;
+    return NULL;
 }
 
 bool glint_v4l2_can_export(const struct glint_v4l2 *v)
@@ -256,21 +260,23 @@ bool glint_v4l2_is_cached(const struct glint_v4l2 *v)
     return best_us <= 4 * own_us + 20;
 }
 
-static int fill_buffers(struct glint_v4l2 *v, uint32_t n)
+static const char *fill_buffers(struct glint_v4l2 *v, uint32_t n)
 {
+    const char *failed = NULL;
+
     v->n_buffers = (int)n;
-    for (int i = 0; i < v->n_buffers; i++)
-        if ((v->io == GLINT_V4L2_MMAP ? map_buffer : own_buffer)(v, i) < 0)
-            return -1;
-    return 0;
+    for (int i = 0; !failed && i < v->n_buffers; i++)
+        failed = (v->io == GLINT_V4L2_MMAP ? map_buffer : own_buffer)(v, i);
+    return failed;
 }
 
 /* Asks twice: drivers that were just stopped refuse once. */
-static int try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
+static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
 {
     const enum v4l2_memory memory =
         io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP : V4L2_MEMORY_USERPTR;
     uint32_t n = (uint32_t)v->wish_buffers;
+    const char *failed;
 
     v->io = io;
     if (io != GLINT_V4L2_READ) {
@@ -278,30 +284,43 @@ static int try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
         if (n == 0 && errno != EBUSY)
             n = request_buffers(v, memory, v->wish_buffers);
         if (n == 0)
-            return -1;
+            return "VIDIOC_REQBUFS";
     }
-    if (fill_buffers(v, n) == 0)
-        return 0;
-    glint_v4l2_release_buffers(v);
-    return -1;
+    failed = fill_buffers(v, n);
+    if (failed) {
+        const int number = errno;
+
+        glint_v4l2_release_buffers(v);
+        errno = number;
+    }
+    return failed;
 }
 
-int glint_v4l2_get_buffers(struct glint_v4l2 *v)
+/* EINVAL is how drivers say that they lack this kind of memory. */
+static bool is_lacking(const struct glint_v4l2 *v)
+{
+    return v->n_buffers == 0 && errno == EINVAL;
+}
+
+const char *glint_v4l2_get_buffers(struct glint_v4l2 *v)
 {
     const uint32_t caps = v->device.caps;
     const enum glint_v4l2_io wish = v->wish_io;
+    const bool may_stream =
+        wish != GLINT_V4L2_READ && caps & V4L2_CAP_STREAMING;
+    const char *failed = NULL;
 
     errno = EINVAL;
-    if (wish != GLINT_V4L2_READ && caps & V4L2_CAP_STREAMING) {
-        if (wish != GLINT_V4L2_USERPTR && try_io(v, GLINT_V4L2_MMAP) == 0)
-            return 0;
-        if (errno == EBUSY)
-            return -1;
-        if (wish != GLINT_V4L2_MMAP && try_io(v, GLINT_V4L2_USERPTR) == 0)
-            return 0;
-    }
+    if (may_stream && wish != GLINT_V4L2_USERPTR)
+        failed = try_io(v, GLINT_V4L2_MMAP);
+    if (may_stream && wish != GLINT_V4L2_MMAP && is_lacking(v))
+        failed = try_io(v, GLINT_V4L2_USERPTR);
     if ((wish == GLINT_V4L2_READ || wish == GLINT_V4L2_AUTO) &&
-        caps & V4L2_CAP_READWRITE && v->device.format.n_blocks == 1)
-        return try_io(v, GLINT_V4L2_READ);
-    return -1;
+        caps & V4L2_CAP_READWRITE && v->device.format.n_blocks == 1 &&
+        is_lacking(v))
+        failed = try_io(v, GLINT_V4L2_READ);
+    if (v->n_buffers || failed)
+        return failed;
+    errno = ENOTSUP;
+    return "streaming or reading, as --io allows";
 }

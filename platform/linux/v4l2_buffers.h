@@ -24,8 +24,9 @@ struct glint_v4l2_taken {
     bool damaged;
 };
 
-/* Gets buffers of the kind that the device allows; -1: none. */
-int glint_v4l2_get_buffers(struct glint_v4l2 *v);
+/* Gets buffers of the kind that the device allows. Returns NULL, or what
+ * failed, for the user. */
+const char *glint_v4l2_get_buffers(struct glint_v4l2 *v);
 void glint_v4l2_release_buffers(struct glint_v4l2 *v);
 
 /* Gives buffer INDEX to the driver. */
