@@ -68,11 +68,11 @@ WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS))
 endif
 
 # Sources in the order the data flows.
-CORE := flare/bright base/status base/arena base/q base/sort base/image base/workers \
+CORE := base/status base/arena base/q base/sort base/image base/workers \
         kernels/sets kernels/kernels kernels/horner_c kernels/composite_c \
-        lens/model lens/transfer flare/regions flare/lights flare/match \
-        flare/follow flare/record flare/tracks tile/primitive tile/clip tile/outline \
-        tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
+        lens/model lens/transfer flare/bright flare/regions flare/lights \
+        flare/match flare/follow flare/record flare/tracks tile/primitive \
+        tile/clip tile/outline tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
         tile/resolve flare/beams flare/plan flare/ghost_grid flare/cuts \
         flare/ghost_edges flare/by_cells flare/by_edges flare/flare
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
@@ -247,6 +247,11 @@ $(test_bins): EXTRA := -lcmocka
 $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
+FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \
+        realloc posix_memalign free clock_gettime nanosleep glint_mjpeg_available
+fake_bins := $(patsubst %,$(OUT)/tests/unit/test_%,v4l2)
+$(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
+$(fake_bins): $(OUT)/tests/support/fake_camera.o
 $(test_bins): $(OUT)/tests/unit/test_%: $(OUT)/tests/unit/test_%.o $(libs)
 	$(link)
 replay_bins := $(FUZZ:%=$(OUT)/tests/fuzz/replay_%)
