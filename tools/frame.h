@@ -31,11 +31,11 @@ struct frame {
     double apart_px; /* lights whose images are nearer are one */
     int max_cells;
     double faintest_codes; /* codes near black that a ghost may stay below */
-    bool uniform;   /* the same grid for all ghosts */
-    bool narrow;    /* rays in 16-bit lanes */
-    int only_ghost; /* -1: all */
-    int16_t *mask;  /* of the stop, unless NULL */
-    bool reserved;  /* memory is what it is */
+    bool uniform;          /* the same grid for all ghosts */
+    bool narrow;           /* rays in 16-bit lanes */
+    int only_ghost;        /* -1: all */
+    int16_t *mask;         /* of the stop, unless NULL */
+    bool reserved;         /* memory is what it is */
 
     struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
     struct glint_beam *beam;

@@ -35,9 +35,9 @@ struct command {
 };
 
 static const struct command commands[] = {
-    {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
-    {"overlay", cmd_overlay}, {"live", cmd_live}, {"compare", cmd_compare}, {"bake", cmd_bake},
-    {"bench", cmd_bench},
+    {"info", cmd_info},       {"trace", cmd_trace}, {"render", cmd_render},
+    {"overlay", cmd_overlay}, {"live", cmd_live},   {"compare", cmd_compare},
+    {"bake", cmd_bake},       {"bench", cmd_bench},
 };
 
 static volatile sig_atomic_t reader_gone;

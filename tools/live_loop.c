@@ -204,7 +204,7 @@ static enum glint_status save(const char *name, const struct glint_image *image,
 static void snapshot(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
-    char name[200], text[300];
+    char name[200], text[512];
     enum glint_status status;
 
     snprintf(name, sizeof name, l->o->snapshot, ++l->n_snapshots);

@@ -28,9 +28,8 @@ size_t qemu_plugin_tb_n_insns(const struct qemu_plugin_tb *tb);
 struct qemu_plugin_insn *
 qemu_plugin_tb_get_insn(const struct qemu_plugin_tb *tb, size_t i);
 const char *qemu_plugin_insn_symbol(const struct qemu_plugin_insn *insn);
-void qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *tb,
-                                              int op, void *counter,
-                                              uint64_t by);
+void qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *tb, int op,
+                                              void *counter, uint64_t by);
 void qemu_plugin_outs(const char *text);
 int qemu_plugin_install(uint64_t id, const struct qemu_info *info, int argc,
                         char **argv);
@@ -69,9 +68,9 @@ static void count(uint64_t id, struct qemu_plugin_tb *tb)
     const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
 
     (void)id;
-    qemu_plugin_register_vcpu_tb_exec_inline(
-        tb, ADD_U64, &function_of(name ? name : "?")->n,
-        qemu_plugin_tb_n_insns(tb));
+    qemu_plugin_register_vcpu_tb_exec_inline(tb, ADD_U64,
+                                             &function_of(name ? name : "?")->n,
+                                             qemu_plugin_tb_n_insns(tb));
 }
 
 static int by_count(const void *a, const void *b)
