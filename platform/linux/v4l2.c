@@ -68,7 +68,7 @@ static enum glint_status start(struct glint_v4l2 *v, struct glint_error *error)
     if (stream_on(v) < 0)
         return glint_ioctl_failed(error, v->device.path, "VIDIOC_STREAMON");
     v->streams = true;
-    v->has_sequence = false;
+    v->n_numbered = 0;
     v->n_useless = 0;
     v->heard_us = glint_v4l2_now_us();
     v->is_cached = glint_v4l2_is_cached(v);
@@ -168,14 +168,15 @@ static void queue_idle(struct glint_v4l2 *v)
 }
 
 /* Frames between the last one and this. A driver that does not count says the
- * same number every time; and longer than a stall no gap can be. */
+ * same number every time; the first number after a start may be an old one, as
+ * of v4l2loopback; and longer than a stall no gap can be. */
 static int gap(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;
-    const bool counts = v->has_sequence && missing <= MAX_GAP;
+    const bool counts = v->n_numbered == 2 && missing <= MAX_GAP;
 
     v->sequence = sequence;
-    v->has_sequence = true;
+    v->n_numbered += v->n_numbered < 2;
     return counts ? (int)missing : 0;
 }
 
