@@ -1,0 +1,71 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+#
+# test-rate.sh - 300 frames of a moving lamp at 640x360 and 30 fps, on a clock
+# that counts instructions. At 1 GIPS none is lost and none is late by two
+# frames; at 500 MIPS nothing queues, the quality is lowered as far as it goes,
+# and that is said. Emulated: every instruction takes the same time, and whoever
+# feeds the camera works on the same processor.
+# arch: aarch64
+. "$(dirname "$0")/lib.sh"
+
+model=$(model heliar-tronnier)
+build/x86_64/vm/scene -n 60 -m 3,1 YUYV 640x360 "$out/scene" 100,150,7
+
+run_at() { # NAME SHIFT OPTION...
+    local at=$1 shift=$2
+    shift 2
+    guest "$at" -I "$shift" -m 512 -t 500 -d bochs:640x480 -i "$glint" \
+        -i model="$model" -i "$out/scene" <<END
+cp /in/scene /tmp/scene # what the host is asked for makes the clock jump
+loopback
+feed -r 30 /dev/video9 YUYV 640x360 /tmp/scene &
+wait_for 5 test -e /dev/video9
+sleep 1
+glint live -d 9 --lens /in/model -j 1 --count 300 --stats json $* \
+    >/tmp/stats 2>/tmp/err
+echo "\$?" >/tmp/code
+shot last
+cp /tmp/stats /tmp/err /tmp/code .
+END
+    expect "$at: shows 300 frames" says "$at/code" '^0$'
+}
+# Of the last line, all frames together, or of the one before the last second.
+value() { # NAME KEY
+    tail -n 1 "$out/$1/stats" | grep -oE "\"$2\":[0-9.]+" | head -n 1 |
+        cut -d: -f2
+}
+between() { # LOW VALUE HIGH
+    awk -v a="$1" -v x="$2" -v b="$3" \
+        'BEGIN { print x " of " a " .. " b; exit !(x != "" && a <= x && x <= b) }'
+}
+stages() { # NAME
+    printf '%-8s' "$1"
+    for key in fps drops late latency_ms_p50 latency_ms_p99 find plan bin draw \
+        show quality; do
+        printf ' %s %s' "$key" "$(value "$1" $key)"
+    done
+    echo
+}
+
+run_at gips 0
+expect "1 GIPS: 30 fps" between 29.5 "$(value gips fps)" 30.5
+expect "1 GIPS: no frame is lost" between 0 "$(value gips drops)" 0
+expect "1 GIPS: none is late" between 0 "$(value gips late)" 0
+expect "1 GIPS: latency below two frames" \
+    between 1 "$(value gips latency_ms_p99)" 66.7
+expect "1 GIPS: at full quality" between 1 "$(value gips quality)" 1
+
+run_at half 1 --adaptive
+expect "500 MIPS: nothing queues" between 1 "$(value half latency_ms_p99)" 100
+expect "500 MIPS: quality is lowered, and that is said" \
+    says half/err 'quality lowered to hold the rate: step [1-9]'
+expect "500 MIPS: lights and ghosts are still drawn" \
+    says half/stats '"lights":1,"ghosts":[1-9]'
+run_at plain 1
+expect "500 MIPS: faster than without" between "$(value plain fps)" \
+    "$(value half fps)" 31
+for at in gips half plain; do
+    stages $at
+done | tee "$out/stages"
+rm -f "$out/scene"
