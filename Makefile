@@ -4,8 +4,8 @@
 #                 and inih where it finds them
 #   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
-#   make check    every test;  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
-#   make check-vm   on Debian's kernels in an emulator, ARM too
+#   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
+#   make check-vm   of these those on Debian's kernels in an emulator, ARM too
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
@@ -265,6 +265,9 @@ check:
 	@tools/deps "unit tests, lint" gcc libc6-dev binutils \
 	        libcmocka-dev clang clang-format libjpeg62-turbo-dev libinih-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
+	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
+	        ! tests/vm/possible $(VM_ARCHS) || \
+	        $(MAKE) --no-print-directory DEPS=no check-vm
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
@@ -300,11 +303,12 @@ $(VM_HOST:%=$(OUT)/vm/%): $(OUT)/vm/%: tests/vm/%.c tests/vm/layout.h $(libs)
 	        $(LDFLAGS) $< $(libs) $(LDLIBS) -o $@
 vm-programs: $(OUT)/glint $(VM_TOOLS:%=$(OUT)/vm/%) \
         $(if $(filter x86_64,$(TARGET)),$(VM_HOST:%=$(OUT)/vm/%))
-check-vm:
+vm-deps:
 	@tools/deps "cameras, panels and ARM in an emulator" qemu-system-x86 \
 	        qemu-system-arm qemu-system-data seabios cpio kmod xz-utils \
 	        device-tree-compiler debian-archive-keyring gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross strace
+check-vm: vm-deps
 	@tests/vm/possible $(VM_ARCHS) || exit 0; set -e; \
 	for a in x86_64 $(VM_ARCHS); do tests/vm/prepare $$a; \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$a \
@@ -357,7 +361,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn growth memory-table check run-check check-neon check-vm vm-programs golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn growth memory-table check run-check check-neon check-vm vm-deps vm-programs golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
