@@ -94,7 +94,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps at_death fourcc panel tracks live_stats fbdev sinks v4l2
+        measure lamps at_death fourcc panel tracks live_stats fbdev sinks v4l2 bright match
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
@@ -139,7 +139,7 @@ $(core_o): CFLAGS += -ffreestanding -Wframe-larger-than=1024
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
 $(OUT)/src/kernels/%.o $(OUT)/src/tile/codes.o \
-$(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o \
+$(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o $(OUT)/src/flare/bright.o \
 $(OUT)/src/flare/cuts.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
 # the floor that everything is measured by is as fast as can be
 $(OUT)/tools/bench_cases.o: CFLAGS += -O3

@@ -173,43 +173,64 @@ static int mark_row_565(struct glint_bright *b, const uint8_t *px)
 
 /* --------------------------------------------------------------------- luma */
 
-static void read_565(const uint8_t *px, int code[3])
+static WHOLLY_INLINE int code_at(const struct glint_bright *b, int i, int x)
 {
-    const int bits = px[0] | px[1] << 8;
-    const int r = bits >> 11, g = bits >> 5 & 63, b = bits & 31;
+    const struct glint_bright_code *c = &b->code[i];
 
-    code[0] = r << 3 | r >> 2;
-    code[1] = g << 2 | g >> 4;
-    code[2] = b << 3 | b >> 2;
+    return c->first[(x >> c->shift) * c->step];
 }
 
-/* The codes of pixel (X, Y) of a picture of RGB. */
-static void read_rgb(const struct glint_bright *b, int x, int y, int code[3])
+static void find_codes(struct glint_bright *b, int y)
 {
-    if (b->layout->kind == GLINT_LAYOUT_565)
-        read_565(glint_layout_at(b->layout, b->image, 0, x, y), code);
-    else
+    const struct glint_layout *layout = b->layout;
+
+    b->n_codes = layout->kind == GLINT_LAYOUT_GREY  ? 1
+                 : layout->kind == GLINT_LAYOUT_565 ? 2
+                                                    : 3;
+    for (int i = 0; i < b->n_codes; i++)
+        b->code[i] = (struct glint_bright_code){
+            glint_layout_at(layout, b->image, i, 0, y), layout->sample[i].step,
+            i ? layout->log2_x : 0};
+    if (layout->kind == GLINT_LAYOUT_565)
+        b->code[1].first = b->code[0].first + 1;
+}
+
+/* R, G, B of pixel X of a picture of RGB. */
+static WHOLLY_INLINE void read_rgb(const struct glint_bright *b, int x,
+                                   int rgb[3])
+{
+    if (b->layout->kind == GLINT_LAYOUT_565) {
+        const int bits = code_at(b, 0, x) | code_at(b, 1, x) << 8;
+        const int red = bits >> 11, green = bits >> 5 & 63, blue = bits & 31;
+
+        rgb[0] = red << 3 | red >> 2;
+        rgb[1] = green << 2 | green >> 4;
+        rgb[2] = blue << 3 | blue >> 2;
+    } else {
         for (int i = 0; i < 3; i++)
-            code[i] = *glint_layout_at(b->layout, b->image, i, x, y);
+            rgb[i] = code_at(b, i, x);
+    }
 }
 
 /* Full-range luma of pixels X .. END - 1. That of RGB has the weights of
  * BT.709, in 256ths, whose sum is 256: no more than the largest of the three.
  */
-static void read_luma(struct glint_bright *b, int x, int end, int y)
+static void read_luma(struct glint_bright *b, int x, int end)
 {
-    const uint8_t *px = glint_layout_at(b->layout, b->image, 0, 0, y);
-    const int step = b->layout->sample[0].step;
-    int code[3];
+    if (!is_rgb(b->layout)) {
+        const uint8_t *px = b->code[0].first;
+        const int step = b->code[0].step;
 
-    for (; x < end; x++) {
-        if (!is_rgb(b->layout)) {
+        for (; x < end; x++)
             b->luma[x] = b->full_luma[px[x * step]];
-            continue;
-        }
-        read_rgb(b, x, y, code);
+        return;
+    }
+    for (; x < end; x++) {
+        int rgb[3];
+
+        read_rgb(b, x, rgb);
         b->luma[x] =
-            (uint8_t)((54 * code[0] + 183 * code[1] + 19 * code[2] + 128) >> 8);
+            (uint8_t)((54 * rgb[0] + 183 * rgb[1] + 19 * rgb[2] + 128) >> 8);
     }
 }
 
@@ -231,57 +252,54 @@ int glint_bright_scan(struct glint_bright *b, int y)
 
     if (n_blocks * BRIGHT_BLOCK > b->width) /* the rest is looked at as it is */
         any = b->block[n_blocks - 1] = 1;
+    find_codes(b, y);
     for (int i = 0; any && i < n_blocks; i++) {
         const int end = (i + 1) * BRIGHT_BLOCK;
 
         if (b->block[i])
-            read_luma(b, i * BRIGHT_BLOCK, end < b->width ? end : b->width, y);
+            read_luma(b, i * BRIGHT_BLOCK, end < b->width ? end : b->width);
     }
     return any;
 }
 
 /* -------------------------------------------------------------------- light */
 
-static uint32_t codes_of(const struct glint_bright *b, int x, int y)
-{
-    int code[3] = {0, 0, 0};
-
-    if (is_rgb(b->layout))
-        read_rgb(b, x, y, code);
-    else
-        for (int i = 0; i < (b->layout->kind == GLINT_LAYOUT_GREY ? 1 : 3); i++)
-            code[i] = *glint_layout_at(b->layout, b->image, i, x, y);
-    return (uint32_t)(code[0] | code[1] << 8 | code[2] << 16);
-}
-
-static void decode_ycc(const struct glint_bright *b, int y, int cb, int cr,
-                       int32_t rgb_q20[3])
+static void decode_ycc(const struct glint_bright *b, int x, int32_t rgb_q20[3])
 {
     int32_t rgb_q7[3];
 
-    ycc_to_rgb(&b->ycc, y, cb, cr, rgb_q7);
+    ycc_to_rgb(&b->ycc, code_at(b, 0, x), code_at(b, 1, x), code_at(b, 2, x),
+               rgb_q7);
     for (int i = 0; i < 3; i++)
         rgb_q20[i] =
             curve_decode(b->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
 }
 
-int glint_bright_read(const struct glint_bright *b, int x, int y,
-                      struct glint_bright_pixel *p)
+void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3])
 {
-    const uint32_t codes = codes_of(b, x, y);
-    const int code[3] = {(int)(codes & 255), (int)(codes >> 8 & 255),
-                         (int)(codes >> 16)};
+    int rgb[3];
 
-    if (codes == p->codes)
-        return 0;
-    p->codes = codes;
+    if (b->layout->kind == GLINT_LAYOUT_YCC) {
+        decode_ycc(b, x, rgb_q20);
+        return;
+    }
     if (is_rgb(b->layout))
-        for (int i = 0; i < 3; i++)
-            p->rgb_q20[i] = b->curve->decode_q20[code[i]];
-    else if (b->layout->kind == GLINT_LAYOUT_GREY)
-        p->rgb_q20[0] = p->rgb_q20[1] = p->rgb_q20[2] =
-            b->curve->decode_q20[b->full_luma[code[0]]];
+        read_rgb(b, x, rgb);
     else
-        decode_ycc(b, code[0], code[1], code[2], p->rgb_q20);
-    return 1;
+        rgb[0] = rgb[1] = rgb[2] = b->full_luma[code_at(b, 0, x)];
+    for (int i = 0; i < 3; i++)
+        rgb_q20[i] = b->curve->decode_q20[rgb[i]];
+}
+
+int glint_bright_same(const struct glint_bright *b, int x, int end)
+{
+    int code[3];
+
+    for (int i = 0; i < b->n_codes; i++)
+        code[i] = code_at(b, i, x);
+    for (x++; x < end; x++)
+        for (int i = 0; i < b->n_codes; i++)
+            if (code_at(b, i, x) != code[i])
+                return x;
+    return end;
 }

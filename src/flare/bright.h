@@ -7,7 +7,7 @@
  *
  *     glint_bright_begin(b, image, low);
  *     for each row y: if (glint_bright_scan(b, y))
- *             ... b->luma where b->block says so, glint_bright_read() ...
+ *             ... b->luma where b->block says so, glint_bright_read(b, x) ...
  *
  * Most of a picture by night is dark, and that is seen without luma: eight
  * bytes at a time are compared with the least code that luma can come from, and
@@ -23,11 +23,10 @@ struct glint_arena;
 
 enum { BRIGHT_BLOCK = 32 }; /* pixels */
 
-/* Linear light of a pixel, 0 .. white. In lamps and skies it is often that of
- * the one before. */
-struct glint_bright_pixel {
-    uint32_t codes; /* that it was made from */
-    int32_t rgb_q20[3];
+/* Where a code of a row's pixels lies. */
+struct glint_bright_code {
+    const uint8_t *first;
+    int step, shift; /* pixel x has that at first + (x >> shift) * step */
 };
 
 struct glint_bright {
@@ -38,6 +37,9 @@ struct glint_bright {
     /* Private. */
     const struct glint_image *image;
     const struct glint_layout *layout;
+    struct glint_bright_code code[3]; /* of the row; Y Cb Cr, R G B, or two
+                                         bytes */
+    int n_codes;
     int low;      /* luma code */
     int low_code; /* the least byte of a bright pixel's brightest sample */
     struct glint_curve *curve;
@@ -58,14 +60,11 @@ void glint_bright_begin(struct glint_bright *b, const struct glint_image *image,
 /* Sets block and luma for row Y. Returns 0 if all of it is dark. */
 int glint_bright_scan(struct glint_bright *b, int y);
 
-/* The light of pixel (X, Y). P is one read before from the same picture, or
- * glint_bright_none(). Returns 0 if it is the same. */
-int glint_bright_read(const struct glint_bright *b, int x, int y,
-                      struct glint_bright_pixel *p);
+/* The linear light of pixel X of the row scanned last, 0 .. white. */
+void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 
-static inline struct glint_bright_pixel glint_bright_none(void)
-{
-    return (struct glint_bright_pixel){.codes = UINT32_MAX};
-}
+/* The first of pixels X + 1 .. END - 1 that is not as X is, or END: lamps and
+ * skies are white in many pixels on end. */
+int glint_bright_same(const struct glint_bright *b, int x, int end);
 
 #endif

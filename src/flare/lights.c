@@ -119,35 +119,25 @@ enum glint_status glint_lights_init(struct glint_lights **finder,
 
 /* ------------------------------------------------------------------ regions */
 
-/* Pixels in a row of the same light. */
-struct span {
-    struct glint_bright_pixel pixel;
-    struct glint_region_light light;
-    int is_rim; /* no channel is clipped, so it shows the colour */
-    int x0;
-};
-
-static void begin_span(struct span *span, const struct glint_lights *f, int x)
+/* Adds pixels X0 .. X1 - 1 of row Y, all of the same light, of which those in
+ * RUN belong to it and the others are next to it. A colour is known only where
+ * no channel is clipped. */
+static void add_span(struct glint_region *sum, const struct glint_lights *f,
+                     const struct glint_run *run, int x0, int x1, int y)
 {
     const int32_t clipped_q20 = f->bright.curve->decode_q20[CLIPPED_CODE];
-    const int32_t *rgb_q20 = span->pixel.rgb_q20;
-
-    span->light = glint_region_light_of(rgb_q20);
-    span->is_rim = rgb_q20[0] < clipped_q20 && rgb_q20[1] < clipped_q20 &&
-                   rgb_q20[2] < clipped_q20;
-    span->x0 = x;
-}
-
-static void end_span(const struct span *span, struct glint_region *sum,
-                     const struct glint_run *run, int x1, int y)
-{
-    const int first = span->x0 > run->x0 ? span->x0 : run->x0;
+    const int first = x0 > run->x0 ? x0 : run->x0;
     const int end = x1 < run->x1 ? x1 : run->x1;
+    struct glint_region_light light;
+    int32_t rgb_q20[3];
 
-    if (span->is_rim)
-        glint_region_add_rim(sum, &span->light, x1 - span->x0);
+    glint_bright_read(&f->bright, x0, rgb_q20);
+    light = glint_region_light_of(rgb_q20);
+    if (rgb_q20[0] < clipped_q20 && rgb_q20[1] < clipped_q20 &&
+        rgb_q20[2] < clipped_q20)
+        glint_region_add_rim(sum, &light, x1 - x0);
     if (first < end)
-        glint_region_add_pixels(sum, &span->light, first, end, y);
+        glint_region_add_pixels(sum, &light, first, end, y);
 }
 
 static int count_clipped(const struct glint_lights *f,
@@ -166,22 +156,15 @@ static void add_run(struct glint_region *sum, const struct glint_lights *f,
 {
     const int first = run->x0 > RIM ? run->x0 - RIM : 0;
     const int end = run->x1 < f->cfg.width - RIM ? run->x1 + RIM : f->cfg.width;
-    struct span span = {.pixel = glint_bright_none()};
 
     sum->area += run->x1 - run->x0;
+    if (sum->area > f->max_area)
+        return; /* no light, whatever else it is */
     sum->n_clipped += count_clipped(f, run);
-    glint_bright_read(&f->bright, first, y, &span.pixel);
-    begin_span(&span, f, first);
-    for (int x = first + 1; x < end; x++) {
-        struct glint_bright_pixel pixel = span.pixel;
-
-        if (!glint_bright_read(&f->bright, x, y, &pixel))
-            continue;
-        end_span(&span, sum, run, x, y);
-        span.pixel = pixel;
-        begin_span(&span, f, x);
+    for (int x = first, next; x < end; x = next) {
+        next = glint_bright_same(&f->bright, x, end);
+        add_span(sum, f, run, x, next, y);
     }
-    end_span(&span, sum, run, end, y);
 }
 
 /* --------------------------------------------------------------- candidates */

@@ -219,6 +219,7 @@ static void test_bad_configurations_are_refused(void **state)
     bad = good, bad.max_share_q15 = 32769, assert_refused(bad);
     bad = good, bad.merge_q15 = -1, assert_refused(bad);
     bad = good, bad.merge_q15 = 32769, assert_refused(bad);
+    bad = good, bad.keep_faint = 2, assert_refused(bad);
 }
 
 static void test_defaults_are_valid_for_every_size(void **state)
@@ -500,6 +501,84 @@ static void test_hysteresis(void **state)
     assert_int_equal(find(&cfg, &image), 1);
     assert_int_equal(spot[0].area, area);
     free(image.plane[0]);
+}
+
+/* The same pictures with faint regions kept: the lights are as they were, and
+ * then come those that are none, marked. */
+static void test_faint_regions_come_last(void **state)
+{
+    static struct glint_spot light[MAX_SPOTS];
+    int most_faint = 0;
+
+    (void)state;
+    for (int round = 0; round < 50; round++) {
+        struct glint_image image = new_image(GLINT_GREY, 256, 256);
+        struct glint_lights_config cfg = plain_config(&image, 100, 200);
+        int n_lights, n, max = round % 2 ? MAX_SPOTS : 20, dropped;
+
+        cfg.min_area = 4;
+        cfg.merge_q15 = 6 * 32768 / 256;
+        for (int i = 0; i < 200; i++) {
+            const int x = draw_random(250), y = draw_random(250);
+
+            fill_grey(&image, x, y, x + 1 + draw_random(4),
+                      y + 1 + draw_random(4), 100 + draw_random(156));
+        }
+        n_lights = find_at_most(&cfg, &image, max, &dropped);
+        memcpy(light, spot, sizeof light);
+        cfg.keep_faint = 1;
+        n = find_at_most(&cfg, &image, max, &dropped);
+        assert_in_range(n, n_lights, max);
+        assert_memory_equal(light, spot, (size_t)n_lights * sizeof *spot);
+        for (int i = n_lights; i < n; i++) {
+            assert_int_equal(spot[i].faint, 1);
+            assert_true(spot[i].area >= 2); /* half of min_area */
+            assert_true(spot[i].area < 4 ||
+                        spot[i].n_clipped < spot[i].area / 32 ||
+                        spot[i].n_clipped == 0);
+            assert_true(i == n_lights ||
+                        spot[i].flux_q16 <= spot[i - 1].flux_q16);
+        }
+        most_faint = n - n_lights > most_faint ? n - n_lights : most_faint;
+        free(image.plane[0]);
+    }
+    assert_true(most_faint > 20);
+}
+
+/* Patches of one code and noise, all in one region, against sums in doubles. */
+static void test_sums_of_a_large_region(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 20; round++) {
+        struct glint_image image = new_image(GLINT_GREY, 320, 200);
+        struct glint_lights_config cfg = plain_config(&image, 1, 1);
+        double flux = 0, x_sum = 0, y_sum = 0, r2 = 0;
+
+        for (int i = 0; i < 320 * 200; i++)
+            image.plane[0][i] = (uint8_t)(100 + draw_random(156));
+        for (int i = 0; i < 30; i++) {
+            const int x = draw_random(250), y = draw_random(150);
+
+            fill_grey(&image, x, y, x + 70, y + 50, draw_random(2) ? 255 : 40);
+        }
+        for (int i = 0; i < 320 * 200; i++) {
+            const double v = image.plane[0][i] / 255.0;
+            const double w =
+                v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+            const double x = i % 320 + 0.5, y = i / 320 + 0.5;
+
+            flux += w, x_sum += w * x, y_sum += w * y;
+            r2 += w * (x * x + y * y);
+        }
+        assert_int_equal(find(&cfg, &image), 1);
+        assert_true(fabs((double)spot[0].flux_q16 / 65536 / flux - 1) < 1e-4);
+        assert_true(fabs(x_of(0) - x_sum / flux) < 0.01);
+        assert_true(fabs(y_of(0) - y_sum / flux) < 0.01);
+        assert_true(fabs(spot[0].size_q8 / 256.0 -
+                         sqrt(r2 / flux - pow(x_sum / flux, 2) -
+                              pow(y_sum / flux, 2))) < 0.02);
+        free(image.plane[0]);
+    }
 }
 
 static void test_small_ones_are_noise(void **state)
@@ -927,6 +1006,8 @@ int main(void)
         cmocka_unit_test(test_sky_is_no_light),
         cmocka_unit_test(test_few_seeds_are_no_light),
         cmocka_unit_test(test_hysteresis),
+        cmocka_unit_test(test_faint_regions_come_last),
+        cmocka_unit_test(test_sums_of_a_large_region),
         cmocka_unit_test(test_small_ones_are_noise),
         cmocka_unit_test(test_two_discs_by_flux),
         cmocka_unit_test(test_ties_go_by_position),
