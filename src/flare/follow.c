@@ -57,34 +57,40 @@ void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Which of the two ERROR is; SPREAD is that of the errors before. */
-static int32_t judge_q15(const struct glint_follow *f, int64_t error,
-                         int64_t spread, int64_t floor)
+/* Which of the two it is, by the errors so far. */
+static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
 {
     const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);
 
-    if (size_of(error) > SUDDEN * (spread + floor))
-        return ONE_Q15;
     return q_clamp_sat((one_way_q15 - NOISE_Q15) * ONE_Q15 /
                            (CHANGE_Q15 - NOISE_Q15),
                        0, ONE_Q15);
+}
+
+/* Takes ERROR in; returns how much of a change it is. */
+static int32_t learn_q15(struct glint_follow *f, int64_t error, int64_t floor,
+                         int32_t smooth_q15, enum glint_follow_as as)
+{
+    if (as == GLINT_FOLLOW_CHANGED ||
+        size_of(error) > SUDDEN * (f->spread + floor)) {
+        f->drift = error / 2; /* what was before is of no use */
+        f->spread = size_of(error / 2);
+        return ONE_Q15;
+    }
+    f->drift += part_of(error - f->drift, smooth_q15);
+    f->spread += part_of(size_of(error) - f->spread, smooth_q15);
+    return judge_q15(f, floor);
 }
 
 int32_t glint_follow_step_q15(struct glint_follow *f, int64_t target,
                               int64_t floor, const struct glint_pace *pace,
                               enum glint_follow_as as)
 {
-    const int64_t error = target - f->value, spread = f->spread;
-    int32_t change_q15 = ONE_Q15, gain_q15;
-
-    if (as == GLINT_FOLLOW_CHANGED)
-        f->drift = f->spread = 0; /* of what was */
-    f->drift += part_of(error - f->drift, pace->smooth_q15);
-    f->spread += part_of(size_of(error) - f->spread, pace->smooth_q15);
-    if (as != GLINT_FOLLOW_CHANGED)
-        change_q15 = judge_q15(f, error, spread, floor);
-    gain_q15 =
+    const int64_t error = target - f->value;
+    const int32_t change_q15 = learn_q15(f, error, floor, pace->smooth_q15, as);
+    int32_t gain_q15 =
         pace->smooth_q15 + q_mul(ONE_Q15 - pace->smooth_q15, change_q15, 15);
+
     if (as == GLINT_FOLLOW_REPEATED && gain_q15 < pace->settle_q15)
         gain_q15 = pace->settle_q15;
     f->value = size_of(error) <= floor / 4

@@ -115,9 +115,16 @@ static void test_against_all_pairs(void **state)
 
     (void)state;
     for (int round = 0; round < 300; round++) {
-        const int n_seekers = draw_random(40), n_spots = draw_random(40);
+        const int is_near = round % 3 == 0; /* eight that want the same */
+        const int n_seekers = draw_random(is_near ? 9 : 40);
+        const int n_spots = draw_random(40);
 
         scatter(n_seekers, n_spots, 300 << 8);
+        for (int i = 0; is_near && i < n_seekers; i++) {
+            match.seeker[i].x_q8 = match.seeker[i].x_q8 / 8 + (130 << 8);
+            match.seeker[i].y_q8 = match.seeker[i].y_q8 / 8 + (130 << 8);
+            match.seeker[i].reach_q8 = 600 << 8;
+        }
         glint_match_find(&match, spot, n_spots);
         n_matched += match_slowly(n_spots, partner);
         for (int i = 0; i < n_seekers; i++)
@@ -126,8 +133,21 @@ static void test_against_all_pairs(void **state)
     assert_true(n_matched > 1000);
 }
 
+/* Spots that are nearer to S than spot AT. */
+static int count_nearer(const struct glint_seeker *s, int at)
+{
+    int n = 0;
+
+    for (int j = 0; j < MAX; j++) {
+        const int64_t cost = cost_of(s, &spot[j]);
+
+        n += cost >= 0 && cost < cost_of(s, &spot[at]);
+    }
+    return n;
+}
+
 /* The most there can be, all in reach of each other: no spot is given twice,
- * and nothing is written where it must not be. */
+ * and each is one of the eight nearest. */
 static void test_crowd(void **state)
 {
     static uint8_t seen[MAX];
@@ -147,6 +167,7 @@ static void test_crowd(void **state)
         assert_in_range(at, 0, MAX - 1);
         assert_int_equal(seen[at]++, 0);
         assert_int_equal(match.taken[at], 1);
+        assert_true(count_nearer(&match.seeker[i], at) < 8);
         n++;
     }
     assert_in_range(n, MAX / 2, MAX);

@@ -380,6 +380,58 @@ static void test_a_moving_lamp_does_not_lag(void **state)
     }
 }
 
+/* A lamp that stood still for two seconds and goes off at 2 pixels a frame is
+ * followed from the first frame on. */
+static void test_a_lamp_that_starts_is_followed(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        open_night(320, 200, 2 * k);
+        for (int frame = 0; frame < 80; frame++) {
+            const struct night_lamp lamp = {
+                60 + (frame < 60 ? 0 : 2.0 * (frame - 59)), 100, 6, 3};
+
+            night_step(&night, &lamp, 1, FPS30);
+            assert_true(fabs(only_track()->x_q8 / 256.0 - lamp.x) < 0.5);
+        }
+        night_close(&night);
+    }
+}
+
+/* What comes back after a second may be farther off than what was there in the
+ * picture before (0.06 of 320 is 19 pixels); it rises from where it is. */
+static void test_a_lamp_that_comes_back(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 100, 5, 3}};
+
+        open_night(320, 200, 0);
+        for (int frame = 0; frame < 10; frame++)
+            night_step(&night, lamp, 2, FPS30);
+        for (int frame = 0; frame < (k ? 30 : 1); frame++)
+            night_step(&night, lamp, 1, FPS30);
+        lamp[1] = (struct night_lamp){225, 100, 7, 3};
+        night_step(&night, lamp, 2, FPS30);
+        if (k) {
+            const struct glint_track *t =
+                &night.track[night_track_at(&night, 225, 100)];
+
+            assert_int_equal(night.n_tracks, 2);
+            assert_in_range(t->id, 1, 2);
+            assert_int_equal(t->state, GLINT_TRACK_RISING);
+            assert_true(fabs(t->x_q8 / 256.0 - 225) < 0.05);
+            assert_true(t->flux_q16 ==
+                        night.spot[night_spot_at(&night, 225, 100)].flux_q16);
+        } else {
+            assert_int_equal(night.n_tracks, 3);
+            assert_int_equal(night.track[night_track_at(&night, 225, 100)].id,
+                             3);
+        }
+        night_close(&night);
+    }
+}
+
 /* Two lamps that meet and pass keep their numbers: they are told apart by where
  * they are going. */
 static void test_lamps_that_pass_keep_their_numbers(void **state)
@@ -819,6 +871,8 @@ int main(void)
         cmocka_unit_test(test_faint_spots_begin_no_track),
         cmocka_unit_test(test_repeated_pictures_are_met_exactly),
         cmocka_unit_test(test_a_moving_lamp_does_not_lag),
+        cmocka_unit_test(test_a_lamp_that_starts_is_followed),
+        cmocka_unit_test(test_a_lamp_that_comes_back),
         cmocka_unit_test(test_lamps_that_pass_keep_their_numbers),
         cmocka_unit_test(test_leaving_lamp_moves_on_and_fades),
         cmocka_unit_test(test_rise_does_not_depend_on_the_rate),
