@@ -94,7 +94,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps at_death fourcc panel tracks live_stats fbdev sinks v4l2 bright match
+        measure lamps at_death fourcc panel tracks live_stats fbdev sinks v4l2 bright match v4l2_faults
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
@@ -249,7 +249,7 @@ $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \
         realloc posix_memalign free clock_gettime nanosleep glint_mjpeg_available
-fake_bins := $(patsubst %,$(OUT)/tests/unit/test_%,v4l2)
+fake_bins := $(patsubst %,$(OUT)/tests/unit/test_%,v4l2 v4l2_faults)
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
 $(fake_bins): $(OUT)/tests/support/fake_camera.o
 $(test_bins): $(OUT)/tests/unit/test_%: $(OUT)/tests/unit/test_%.o $(libs)

@@ -163,7 +163,9 @@ void glint_v4l2_release_buffers(struct glint_v4l2 *v)
                 free(mem);
         }
     memset(v->buffer, 0, sizeof v->buffer);
-    if (v->n_buffers && v->io != GLINT_V4L2_READ)
+    /* also where there are none: the last time may have failed, and no format
+     * can be set until it does not */
+    if (v->io == GLINT_V4L2_MMAP || v->io == GLINT_V4L2_USERPTR)
         request_buffers(v,
                         v->io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP
                                                  : V4L2_MEMORY_USERPTR,

@@ -528,6 +528,8 @@ static int dequeue(struct v4l2_buffer *b)
     memmove(camera.order, camera.order + 1,
             (size_t)camera.n_queued * sizeof *camera.order);
     own->queued = false;
+    if (camera.says_index)
+        b->index = (uint32_t)camera.says_index - 1;
     b->sequence = f.sequence;
     b->flags = f.flags | V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
     b->timestamp.tv_sec = f.time_us / 1000000;
@@ -641,6 +643,8 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     va_end(args);
     if (fd != camera.fd || fd < 0)
         return __real_ioctl(fd, request, arg);
+    if (request == VIDIOC_STREAMOFF || camera.is_gone)
+        camera.streams = false; /* though it may fail besides */
     if (fails() || is_refused(request))
         return -1;
     return camera.is_gone ? refuse(ENODEV) : answer(request, arg);

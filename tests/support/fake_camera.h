@@ -79,6 +79,7 @@ struct fake_camera {
     struct fake_frame frame[FAKE_FRAMES];
     int n_frames;
     int read_errno; /* read() fails with it */
+    int says_index; /* unless 0: DQBUF gives this less one */
 
     /* what happened */
     int n_maps, n_exports, breaches, n_streamons, n_reqbufs;

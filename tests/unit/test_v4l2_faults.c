@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The V4L2 source when things go wrong: what it comes through, what it gives up
+ * on, after how long and in which words; and that nothing is left behind.
+ */
+#include "support/camera_check.h"
+
+#include <linux/videodev2.h>
+
+/* ------------------------------------------------------------------ requests
+ */
+
+static void test_queueing_fails_once(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_deliver(0, 1);
+    fake_camera_refuse(VIDIOC_QBUF, EIO, 1);
+    must_get(1);
+    assert_int_equal(camera.n_queued, 3);
+    fake_camera_deliver(1, 2);
+    must_get(2); /* which tries again first */
+    assert_int_equal(camera.n_queued, 4);
+    assert_int_equal(v4l2.n_restarts, 0);
+    must_close();
+    fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* and at the start */
+    must_open(NULL);
+    assert_int_equal(camera.n_queued, 3);
+    must_get_nothing();
+    assert_int_equal(camera.n_queued, 4);
+    must_close();
+}
+
+static void test_opens_at_second_try(void **state)
+{
+    static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        fake_camera_reset();
+        fake_camera_refuse(request[i], EINVAL, 1);
+        must_open(NULL);
+        assert_int_equal(v4l2.io, GLINT_V4L2_MMAP);
+        fake_camera_deliver(0, 1);
+        must_get(1);
+        must_close();
+    }
+}
+
+static void test_refuses(void **state)
+{
+    static const struct {
+        unsigned long request;
+        int number;
+        const char *text;
+    } failure[] = {
+        {VIDIOC_QBUF, EIO, FAKE_PATH ": VIDIOC_QBUF: Input/output error"},
+        {VIDIOC_STREAMON, EINVAL, ": VIDIOC_STREAMON: Invalid argument"},
+        {VIDIOC_STREAMON, EBUSY,
+         ": VIDIOC_STREAMON: Device or resource busy; "
+         "another program is using it"},
+        {VIDIOC_S_FMT, EBUSY,
+         ": VIDIOC_S_FMT: Device or resource busy; "
+         "another program is using it"},
+        {VIDIOC_G_FMT, EINVAL, ": VIDIOC_G_FMT: Invalid argument"},
+        {VIDIOC_QUERYCAP, ENOTTY, ": not a camera: does not speak V4L2"},
+        {VIDIOC_QUERYCAP, ENODEV, "; the device is gone"},
+        {VIDIOC_S_FMT, ENODEV, "; the device is gone"},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
+        fake_camera_reset();
+        fake_camera_refuse(failure[i].request, failure[i].number, -1);
+        must_refuse(NULL, GLINT_E_DEVICE, failure[i].text);
+    }
+    fake_camera_reset();
+    camera.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
+    must_refuse(NULL, GLINT_E_DEVICE, "'Fake' captures no pictures here");
+}
+
+/* These are of no consequence. */
+static void test_does_without(void **state)
+{
+    static const unsigned long request[] = {
+        VIDIOC_G_PARM,   VIDIOC_S_PARM,          VIDIOC_G_INPUT,
+        VIDIOC_ENUM_FMT, VIDIOC_SUBSCRIBE_EVENT, VIDIOC_DQEVENT,
+        VIDIOC_EXPBUF,   VIDIOC_ENUM_FRAMESIZES, VIDIOC_ENUM_FRAMEINTERVALS};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof request / sizeof *request; i++) {
+        fake_camera_reset();
+        fake_camera_refuse(request[i], ENOTTY, -1);
+        must_open(NULL);
+        fake_camera_deliver(0, 1);
+        must_get(1);
+        must_close();
+    }
+}
+
+/* ------------------------------------------------------------- broken streams
+ */
+
+/* The next frame is of WIDTH, CODE all over. */
+static void must_get_wide(int width, int code)
+{
+    assert_int_equal(next(), GLINT_OK);
+    assert_non_null(frame.image.plane[0]);
+    assert_int_equal(frame.image.width, width);
+    assert_int_equal(frame.image.plane[0][0], code);
+    done();
+}
+
+/* Another program set another size while the stream was down. */
+static void test_broken_stream(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_deliver(41, 1);
+    must_get(1);
+    camera.is_broken = true;
+    camera.now.width = 32;
+    camera.now.height = 24;
+    must_get_nothing();
+    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.device.format.width, 32);
+    fake_camera_deliver(0, 2);
+    must_get_wide(32, 2);
+    assert_int_equal(frame.n_dropped, 0); /* counted from anew */
+    must_close();
+}
+
+/* The format may change to one that is decoded, and back. */
+static void test_other_format(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    for (int i = 0; i < 3; i++) {
+        camera.mode[0].fourcc = camera.now.fourcc =
+            i == 1 ? V4L2_PIX_FMT_RGB24 : V4L2_PIX_FMT_GREY;
+        camera.is_broken = true;
+        must_get_nothing();
+        fake_camera_deliver(0, i);
+        must_get_wide(64, i);
+        assert_int_equal(frame.image.format, i == 1 ? GLINT_RGB24 : GLINT_GREY);
+    }
+    camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
+    camera.is_broken = true;
+    assert_int_equal(next(), GLINT_E_UNSUPPORTED);
+    assert_non_null(strstr(said.text, "delivers H264"));
+    must_close();
+}
+
+/* Refusals while it is begun anew are come through for a while. */
+static void test_stubborn(void **state)
+{
+    static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON,
+                                            VIDIOC_S_FMT, VIDIOC_QBUF};
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        int failed_ms;
+
+        fake_camera_reset();
+        must_open(NULL);
+        camera.is_broken = true;
+        fake_camera_refuse(request[i], EBUSY, 8);
+        assert_int_equal(follow(600, &failed_ms), GLINT_OK);
+        fake_camera_deliver(0, 3);
+        must_get(3);
+        must_close();
+    }
+}
+
+/* Patience begins anew after each frame. */
+static void test_patience(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    for (int i = 1; i <= 20; i++) {
+        camera.is_broken = true;
+        must_get_nothing();
+        fake_camera_deliver(0, i);
+        must_get(i);
+        assert_int_equal(v4l2.n_restarts, i);
+        fake_camera_pass(100000);
+    }
+    must_close();
+}
+
+static void test_gone(void **state)
+{
+    static const unsigned long request[] = {VIDIOC_DQBUF, VIDIOC_QUERYCAP};
+    int failed_ms;
+
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_deliver(0, 1);
+    assert_int_equal(next(), GLINT_OK);
+    camera.is_gone = true; /* while a frame is lent */
+    done();
+    assert_int_equal(next(), GLINT_E_DEVICE);
+    assert_string_equal(said.text, FAKE_PATH ": the camera is gone");
+    must_close();
+    must_refuse(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
+
+    for (int i = 0; i < 2; i++) { /* in whatever request it shows */
+        fake_camera_reset();
+        must_open(NULL);
+        camera.is_broken = i == 1;
+        fake_camera_refuse(request[i], ENODEV, -1);
+        assert_int_equal(follow(100, &failed_ms), GLINT_E_DEVICE);
+        assert_int_equal(failed_ms, 0);
+        assert_non_null(strstr(said.text, "the camera is gone"));
+        must_close();
+    }
+}
+
+static void test_all_damaged(void **state)
+{
+    uint32_t sequence = 0;
+    enum glint_status status = GLINT_OK;
+    int n_corrupt = 0, n_frames;
+
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    for (n_frames = 0; status == GLINT_OK && n_frames < 200; n_frames++) {
+        fake_camera_deliver(sequence++, 1)->flags = V4L2_BUF_FLAG_ERROR;
+        status = next();
+        n_corrupt += frame.n_corrupt;
+        assert_int_equal(v4l2.n_restarts,
+                         (n_frames + 1) / 30 > 1 ? 1 : (n_frames + 1) / 30);
+        done();
+        fake_camera_pass(33333);
+    }
+    assert_int_equal(status, GLINT_E_DEVICE);
+    assert_string_equal(said.text, FAKE_PATH ": all frames are damaged, and "
+                                             "starting anew does not help");
+    assert_int_equal(n_frames, 60); /* two seconds */
+    assert_int_equal(n_corrupt, 60);
+    must_close();
+}
+
+/* Now and then a whole one is no reason for anything. */
+static void test_many_damaged(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    for (uint32_t i = 0; i < 300; i++) {
+        const bool whole = i % 30 == 29;
+
+        fake_camera_deliver(i, 1)->flags = whole ? 0 : V4L2_BUF_FLAG_ERROR;
+        if (whole)
+            must_get(1);
+        else
+            must_get_nothing();
+    }
+    assert_int_equal(v4l2.n_restarts, 0);
+    must_close();
+}
+
+/* ------------------------------------------------------------------- silence
+ */
+
+static void test_silence(void **state)
+{
+    int failed_ms;
+
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_pass(2100000);
+    must_get_nothing();
+    assert_int_equal(v4l2.n_restarts, 0);
+    fake_camera_pass(40000); /* 2 s and 4 frames */
+    must_get_nothing();
+    assert_int_equal(v4l2.n_restarts, 1);
+    fake_camera_deliver(0, 1); /* that helped */
+    must_get(1);
+    assert_int_equal(follow(10000, &failed_ms), GLINT_E_DEVICE);
+    assert_in_range(failed_ms, 4200, 4400); /* here it did not */
+    assert_string_equal(said.text, FAKE_PATH ": no frames come, and starting "
+                                             "anew does not help");
+    must_close();
+}
+
+static void test_slow_camera(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    camera.mode[0].fps_num = camera.now.fps_num = 1;
+    camera.mode[0].fps_den = camera.now.fps_den = 3;
+    must_open(NULL);
+    for (uint32_t i = 0; i < 5; i++) {
+        fake_camera_pass(6000000);
+        must_get_nothing();
+        fake_camera_deliver(i, 1);
+        must_get(1);
+    }
+    assert_int_equal(v4l2.n_restarts, 0);
+    must_close();
+}
+
+/* -------------------------------------------------------------------- source
+ */
+
+static void test_source_changes(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_deliver(0, 1);
+    must_get(1);
+    camera.n_events = 2;
+    camera.now.width = 32;
+    must_get_nothing();
+    assert_int_equal(v4l2.n_restarts, 1);
+    fake_camera_deliver(0, 2);
+    must_get_wide(32, 2);
+    must_close();
+}
+
+static void use_hdmi(void)
+{
+    fake_camera_reset();
+    camera.has_dv = true;
+}
+
+static void test_timings_change(void **state)
+{
+    (void)state;
+    use_hdmi();
+    must_open(NULL);
+    assert_true(v4l2.device.has_signal);
+    camera.n_events = 1; /* of what it has already */
+    fake_camera_deliver(0, 1);
+    must_get(1);
+    assert_int_equal(v4l2.n_restarts, 0);
+    camera.received.width = 128;
+    camera.n_events = 1;
+    must_get_nothing();
+    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(camera.timings.width, 128);
+    fake_camera_deliver(0, 2);
+    must_get_wide(128, 2);
+    must_close();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_queueing_fails_once),
+        cmocka_unit_test(test_opens_at_second_try),
+        cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_does_without),
+        cmocka_unit_test(test_broken_stream),
+        cmocka_unit_test(test_other_format),
+        cmocka_unit_test(test_stubborn),
+        cmocka_unit_test(test_patience),
+        cmocka_unit_test(test_gone),
+        cmocka_unit_test(test_all_damaged),
+        cmocka_unit_test(test_many_damaged),
+        cmocka_unit_test(test_silence),
+        cmocka_unit_test(test_slow_camera),
+        cmocka_unit_test(test_source_changes),
+        cmocka_unit_test(test_timings_change),
+    };
+
+    return cmocka_run_group_tests_name("v4l2_faults", tests, NULL, NULL);
+}
