@@ -31,7 +31,8 @@ struct glint_source_frame {
 };
 
 struct glint_source {
-    int fd; /* readable when there may be a frame; -1: always */
+    int fd; /* readable when there may be a frame; -1: always. May be another
+               after next */
 
     /* Gives the newest frame there is, and older ones back; never waits.
      * GLINT_E_DEVICE: the device is lost; close it. */

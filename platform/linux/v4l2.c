@@ -90,6 +90,22 @@ static bool is_there(const struct glint_v4l2 *v)
     return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
 }
 
+/* What is read by read(2) streams until it is closed, and takes no other format
+ * before. */
+static enum glint_status agree_anew(struct glint_v4l2 *v,
+                                    struct glint_error *error)
+{
+    const struct glint_v4l2_config wish = v->device.wish;
+    enum glint_status status;
+
+    if (v->io != GLINT_V4L2_READ)
+        return glint_v4l2_device_negotiate(&v->device, error);
+    glint_v4l2_device_close(&v->device);
+    status = glint_v4l2_device_open(&v->device, &wish, error);
+    v->source.fd = v->device.fd;
+    return status;
+}
+
 /* Stops and starts, with the format that the device has now. Success is known
  * only when a frame comes; until then patience runs. */
 static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
@@ -109,10 +125,10 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
     else
         nanosleep(&breath, NULL);
     v->n_restarts++;
-    status = glint_v4l2_device_negotiate(&v->device, error);
+    status = agree_anew(v, error);
     if (status == GLINT_OK)
         status = start(v, error);
-    if (status == GLINT_E_UNSUPPORTED)
+    if (status == GLINT_E_UNSUPPORTED || v->device.fd < 0)
         return status;
     if (status != GLINT_OK)
         stop(v);

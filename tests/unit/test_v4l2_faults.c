@@ -353,6 +353,115 @@ static void test_timings_change(void **state)
     must_close();
 }
 
+/* -------------------------------------------------- begun anew, other memory
+ */
+
+static void check_anew(enum glint_v4l2_io io)
+{
+    assert_int_equal(try_open(NULL, io), GLINT_OK);
+    fake_camera_deliver(0, 1);
+    must_get(1);
+    if (io == GLINT_V4L2_READ)
+        camera.read_errno = EIO;
+    else
+        camera.is_broken = true;
+    must_get_nothing();
+    camera.read_errno = 0;
+    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.source.fd, camera.fd);
+    camera.now.width = 64;
+    fake_camera_deliver(0, 2);
+    must_get_wide(64, 2);
+    must_close();
+}
+
+static void test_anew_otherwise(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    check_anew(GLINT_V4L2_USERPTR);
+    camera.caps |= V4L2_CAP_READWRITE;
+    check_anew(GLINT_V4L2_READ);
+}
+
+/* ------------------------------------------------------- every call that fails
+ */
+
+static int n_got;
+
+/* Frames, a broken stream, another source; whatever fails. */
+static enum glint_status live(enum glint_v4l2_io io, int *n_calls)
+{
+    enum glint_status status = try_open(NULL, io);
+
+    for (uint32_t i = 0; status == GLINT_OK && i < 12; i++) {
+        fake_camera_deliver(i, (int)i);
+        camera.is_broken |= i == 4;
+        camera.n_events += i == 8;
+        status = next();
+        n_got += status == GLINT_OK && frame.image.plane[0] != NULL;
+        if (status == GLINT_OK)
+            done();
+        fake_camera_pass(33333);
+    }
+    *n_calls = fake_camera_fail_at(0, 0, false);
+    v4l2.source.close(&v4l2.source);
+    return status;
+}
+
+static void check_failures(int number, bool forever, enum glint_v4l2_io io,
+                           bool multiplanar, uint32_t fourcc)
+{
+    const int fds = n_fds();
+    int n_failed = 0, n_calls, n = 0;
+
+    do {
+        enum glint_status status;
+
+        n++;
+        fake_camera_reset();
+        camera.multiplanar = multiplanar;
+        camera.mode[0].fourcc = camera.now.fourcc = fourcc;
+        camera.caps = V4L2_CAP_READWRITE | V4L2_CAP_STREAMING |
+                      (multiplanar ? V4L2_CAP_VIDEO_CAPTURE_MPLANE
+                                   : V4L2_CAP_VIDEO_CAPTURE);
+        fake_camera_fail_at(n, number, forever);
+        n_got = 0;
+        status = live(io, &n_calls);
+        if (status != GLINT_OK) {
+            n_failed++;
+            assert_true(status == GLINT_E_DEVICE || status == GLINT_E_MEMORY);
+            assert_non_null(strstr(said.text, FAKE_PATH ": "));
+        }
+        /* one that is lost, and one for each new start */
+        if (status == GLINT_OK && !forever && fourcc != V4L2_PIX_FMT_MJPEG)
+            assert_true(n_got >= 8);
+        must_be_closed();
+        assert_int_equal(n_fds(), fds);
+    } while (n <= n_calls);
+    assert_true(n_failed >= 4);
+}
+
+static void test_every_failure(void **state)
+{
+    static const int number[] = {EIO, EINVAL, EBUSY, ENOMEM, ENODEV, EAGAIN};
+
+    (void)state;
+    for (int i = 0; i < 6; i++)
+        for (int forever = 0; forever < 2; forever++) {
+            check_failures(number[i], forever, GLINT_V4L2_AUTO, false,
+                           V4L2_PIX_FMT_YUYV);
+            check_failures(number[i], forever, GLINT_V4L2_AUTO, true,
+                           V4L2_PIX_FMT_YUV420M);
+            check_failures(number[i], forever, GLINT_V4L2_USERPTR, true,
+                           V4L2_PIX_FMT_NV12M);
+            check_failures(number[i], forever, GLINT_V4L2_READ, false,
+                           V4L2_PIX_FMT_YUYV);
+            check_failures(number[i], forever, GLINT_V4L2_AUTO, false,
+                           V4L2_PIX_FMT_MJPEG);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -371,6 +480,8 @@ int main(void)
         cmocka_unit_test(test_slow_camera),
         cmocka_unit_test(test_source_changes),
         cmocka_unit_test(test_timings_change),
+        cmocka_unit_test(test_anew_otherwise),
+        cmocka_unit_test(test_every_failure),
     };
 
     return cmocka_run_group_tests_name("v4l2_faults", tests, NULL, NULL);
