@@ -107,28 +107,33 @@ static enum glint_status agree_anew(struct glint_v4l2 *v,
 }
 
 /* Stops and starts, with the format that the device has now. Success is known
- * only when a frame comes; until then patience runs. */
+ * only when a frame comes; until then patience runs. Then the request that is
+ * still refused says more than what happened first. */
 static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
                                     struct glint_error *error)
 {
     const struct timespec breath = {0, 20000000};
+    const bool started = v->streams;
     enum glint_status status;
+    bool is_late = false;
 
     stop(v);
     if (!is_there(v))
         return gone(v, error);
     if (v->broken_us == 0)
         v->broken_us = glint_v4l2_now_us();
-    else if (glint_v4l2_now_us() - v->broken_us > PATIENCE_US)
+    else {
+        nanosleep(&breath, NULL);
+        is_late = glint_v4l2_now_us() - v->broken_us > PATIENCE_US;
+    }
+    if (is_late && started)
         return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
                                   "%s, and starting anew does not help", why);
-    else
-        nanosleep(&breath, NULL);
     v->n_restarts++;
     status = agree_anew(v, error);
     if (status == GLINT_OK)
         status = start(v, error);
-    if (status == GLINT_E_UNSUPPORTED || v->device.fd < 0)
+    if (status == GLINT_E_UNSUPPORTED || v->device.fd < 0 || is_late)
         return status;
     if (status != GLINT_OK)
         stop(v);

@@ -63,9 +63,12 @@ void fake_camera_refuse(unsigned long request, int number, int times)
     refusal.times = times;
 }
 
-static bool is_refused(unsigned long request)
+static bool is_refused(unsigned long request, const void *arg)
 {
-    if (refusal.request != request || refusal.times == 0)
+    const struct v4l2_requestbuffers *r = arg;
+
+    if (refusal.request != request || refusal.times == 0 ||
+        (request == VIDIOC_REQBUFS && r->count == 0)) /* frees them */
         return false;
     if (refusal.times > 0)
         refusal.times--;
@@ -645,7 +648,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
         return __real_ioctl(fd, request, arg);
     if (request == VIDIOC_STREAMOFF || camera.is_gone)
         camera.streams = false; /* though it may fail besides */
-    if (fails() || is_refused(request))
+    if (fails() || is_refused(request, arg))
         return -1;
     return camera.is_gone ? refuse(ENODEV) : answer(request, arg);
 }

@@ -175,6 +175,43 @@ static void test_stubborn(void **state)
     }
 }
 
+/* For ever is not: within a second, and the request is named. */
+static void test_never_again(void **state)
+{
+    static const struct {
+        unsigned long request;
+        int number;
+        const char *text;
+    } failure[] = {
+        {VIDIOC_STREAMON, EBUSY,
+         ": VIDIOC_STREAMON: Device or resource busy; "
+         "another program is using it"},
+        {VIDIOC_REQBUFS, EBUSY, ": VIDIOC_REQBUFS: Device or resource busy; "},
+        {VIDIOC_REQBUFS, ENOMEM, ": VIDIOC_REQBUFS: Cannot allocate memory"},
+        {VIDIOC_QBUF, EIO, ": VIDIOC_QBUF: Input/output error"},
+        {VIDIOC_S_FMT, EBUSY, ": VIDIOC_S_FMT: Device or resource busy; "},
+        {VIDIOC_DQBUF, EIO,
+         ": the stream is broken, and starting anew does "
+         "not help"},
+        {VIDIOC_DQBUF, EPIPE, "starting anew does not help"},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
+        int failed_ms;
+
+        fake_camera_reset();
+        must_open(NULL);
+        camera.is_broken = true;
+        fake_camera_refuse(failure[i].request, failure[i].number, -1);
+        assert_int_equal(follow(5000, &failed_ms), GLINT_E_DEVICE);
+        assert_in_range(failed_ms, 500, 1000);
+        if (!strstr(said.text, failure[i].text))
+            fail_msg("'%s' does not say '%s'", said.text, failure[i].text);
+        must_close();
+    }
+}
+
 /* Patience begins anew after each frame. */
 static void test_patience(void **state)
 {
@@ -472,6 +509,7 @@ int main(void)
         cmocka_unit_test(test_broken_stream),
         cmocka_unit_test(test_other_format),
         cmocka_unit_test(test_stubborn),
+        cmocka_unit_test(test_never_again),
         cmocka_unit_test(test_patience),
         cmocka_unit_test(test_gone),
         cmocka_unit_test(test_all_damaged),
