@@ -91,7 +91,7 @@ static enum glint_v4l2_outcome dequeue(struct glint_v4l2 *v,
 
     if (glint_ioctl(v->device.fd, VIDIOC_DQBUF, &b) < 0)
         return outcome_of(errno);
-    if (b.index >= (uint32_t)v->n_buffers)
+    if (b.index >= (uint32_t)v->n_buffers || !v->buffer[b.index].queued)
         return GLINT_V4L2_BROKEN;
     *t = (struct glint_v4l2_taken){.index = (int)b.index,
                                    .bytes = {b.bytesused},

@@ -303,6 +303,34 @@ static void test_many_damaged(void **state)
     must_close();
 }
 
+/* A driver that hands out what it was not given. */
+static void test_wrong_index(void **state)
+{
+    struct glint_source_frame kept;
+
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    fake_camera_deliver(0, 1);
+    camera.says_index = 5;
+    must_get_nothing();
+    assert_int_equal(v4l2.n_restarts, 1);
+    camera.says_index = 0;
+    fake_camera_deliver(0, 1);
+    assert_int_equal(next(), GLINT_OK);
+    kept = frame;
+    fake_camera_deliver(1, 2);
+    camera.says_index = 1; /* which is the index plus one that is lent */
+    must_get_nothing();
+    assert_int_equal(v4l2.n_restarts, 2);
+    camera.says_index = 0;
+    v4l2.source.done(&v4l2.source, &kept);
+    assert_int_equal(camera.n_queued, 4);
+    fake_camera_deliver(0, 3);
+    must_get(3);
+    must_close();
+}
+
 /* ------------------------------------------------------------------- silence
  */
 
@@ -514,6 +542,7 @@ int main(void)
         cmocka_unit_test(test_gone),
         cmocka_unit_test(test_all_damaged),
         cmocka_unit_test(test_many_damaged),
+        cmocka_unit_test(test_wrong_index),
         cmocka_unit_test(test_silence),
         cmocka_unit_test(test_slow_camera),
         cmocka_unit_test(test_source_changes),
