@@ -142,6 +142,15 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
 
 /* ------------------------------------------------------------------- frames */
 
+/* What comes is another source, or the same after a pause: time to wait for it
+ * counts from now, and so does patience. */
+static void begin_waiting(struct glint_v4l2 *v)
+{
+    v->heard_us = glint_v4l2_now_us();
+    if (v->broken_us)
+        v->broken_us = v->heard_us;
+}
+
 /* Returns whether the source is another one now. */
 static bool take_events(struct glint_v4l2 *v)
 {
@@ -149,9 +158,11 @@ static bool take_events(struct glint_v4l2 *v)
     bool is_other = false;
 
     while (glint_ioctl(v->device.fd, VIDIOC_DQEVENT, &event) == 0)
-        if (event.type == V4L2_EVENT_SOURCE_CHANGE)
+        if (event.type == V4L2_EVENT_SOURCE_CHANGE) {
             is_other |=
                 !v->device.is_dv || glint_v4l2_device_retimed(&v->device);
+            begin_waiting(v);
+        }
     return is_other;
 }
 
@@ -302,6 +313,8 @@ static bool is_stalled(struct glint_v4l2 *v)
     if (glint_v4l2_now_us() - v->heard_us < STALL_US + STALL_FRAMES * frame_us)
         return false;
     glint_v4l2_device_retimed(&v->device);
+    if (!v->device.has_signal)
+        begin_waiting(v);
     return v->device.has_signal;
 }
 
@@ -315,10 +328,8 @@ static enum glint_status next(struct glint_source *source,
     *frame = (struct glint_source_frame){.sequence = 0};
     if (!v->streams)
         return start_anew(v, "the stream is broken", error);
-    if (take_events(v)) {
-        v->broken_us = 0;
+    if (take_events(v))
         return start_anew(v, "the source changed", error);
-    }
     queue_idle(v);
     switch (take_newest(v, &newest, frame)) {
     case GLINT_V4L2_TAKEN:

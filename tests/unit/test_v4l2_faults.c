@@ -418,6 +418,77 @@ static void test_timings_change(void **state)
     must_close();
 }
 
+/* It may be silent for as long as it likes, and be back as it was or not. */
+static void test_signal_lost(void **state)
+{
+    int failed_ms;
+
+    (void)state;
+    for (int with_events = 0; with_events < 2; with_events++) {
+        use_hdmi();
+        must_open(NULL);
+        camera.has_signal = false;
+        camera.n_events = with_events;
+        assert_int_equal(follow(60000, &failed_ms), GLINT_OK);
+        assert_false(v4l2.device.has_signal);
+        assert_int_equal(v4l2.n_restarts, 0);
+        camera.has_signal = true;
+        camera.n_events = with_events;
+        if (with_events) {
+            assert_int_equal(follow(100, &failed_ms), GLINT_OK);
+            assert_true(v4l2.device.has_signal);
+            assert_int_equal(v4l2.n_restarts, 0);
+        }
+        fake_camera_deliver(0, 1);
+        must_get(1);
+        must_close();
+    }
+}
+
+/* Changes without a frame between them, for longer than patience: a cable
+ * being plugged in. */
+static void test_signal_wavers(void **state)
+{
+    int failed_ms;
+
+    (void)state;
+    use_hdmi();
+    must_open(NULL);
+    for (uint32_t i = 0; i < 8; i++) {
+        camera.received.width = 64 + 16 * (i % 2 + 1);
+        camera.n_events = 1;
+        camera.has_signal = true;
+        assert_int_equal(follow(300, &failed_ms), GLINT_OK);
+        camera.has_signal = false;
+        camera.n_events = 1;
+        assert_int_equal(follow(1500, &failed_ms), GLINT_OK);
+    }
+    camera.has_signal = true; /* as it was, and then it breaks */
+    camera.n_events = 1;
+    camera.is_broken = true;
+    must_get_nothing();
+    fake_camera_deliver(0, 1);
+    must_get_wide(96, 1);
+    must_close();
+}
+
+/* A driver that calls every beginning a change does not spin. */
+static void test_endless_changes(void **state)
+{
+    int64_t start;
+
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    start = fake_camera_now();
+    for (int i = 0; i < 50; i++) {
+        camera.n_events = 1;
+        must_get_nothing();
+    }
+    assert_true(fake_camera_now() - start > 500000);
+    must_close();
+}
+
 /* -------------------------------------------------- begun anew, other memory
  */
 
@@ -547,6 +618,9 @@ int main(void)
         cmocka_unit_test(test_slow_camera),
         cmocka_unit_test(test_source_changes),
         cmocka_unit_test(test_timings_change),
+        cmocka_unit_test(test_signal_lost),
+        cmocka_unit_test(test_signal_wavers),
+        cmocka_unit_test(test_endless_changes),
         cmocka_unit_test(test_anew_otherwise),
         cmocka_unit_test(test_every_failure),
     };
