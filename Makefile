@@ -94,7 +94,8 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
-        measure lamps at_death fourcc panel tracks live_stats fbdev sinks v4l2 bright match v4l2_faults
+        measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
+        fbdev sinks live_stats
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg

@@ -117,28 +117,6 @@ static void set_lamps(struct test *t, int n, double angle)
                                          {1, 1, 1}};
 }
 
-/* The flare alone as T draws it, at scale 1. */
-static enum glint_status draw_flare(struct test *t,
-                                    struct glint_float_image *to)
-{
-    const size_t n = 3 * (size_t)to->width * (size_t)to->height;
-    struct glint_image layer = {
-        .format = GLINT_LINEAR_Q20, .width = to->width, .height = to->height};
-    const double scale = frame_auto_scale(&t->frame, t->lamp, t->n_lamps);
-    int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
-    enum glint_status status = GLINT_E_MEMORY;
-
-    if (linear_q20) {
-        glint_image_place(&layer, linear_q20);
-        status = frame_draw(&t->frame, t->lamp, t->n_lamps, scale, &layer,
-                            &t->report);
-    }
-    for (size_t i = 0; i < n && status == GLINT_OK; i++)
-        to->rgb[i] = (float)(linear_q20[i] * 0x1p-20 / scale);
-    free(linear_q20);
-    return status;
-}
-
 /* The exposure at which the flare is as bright as the picture's white. */
 static enum glint_status expose(struct test *t)
 {
@@ -148,7 +126,8 @@ static enum glint_status expose(struct test *t)
     enum glint_status status = GLINT_E_MEMORY;
 
     if (flare.rgb)
-        status = draw_flare(t, &flare);
+        status = frame_draw_alone(&t->frame, t->lamp, t->n_lamps, 1, flare.rgb,
+                                  &t->report);
     if (status == GLINT_OK)
         t->scale = measure_exposure(&flare);
     free(flare.rgb);

@@ -176,28 +176,16 @@ static void say_lights(const struct tool *tool,
 
 static int render_model(struct tool *tool, struct render *r)
 {
-    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
-    struct glint_image layer = {
-        .format = GLINT_LINEAR_Q20, .width = r->width, .height = r->height};
     struct frame_report report = {.lights = 0};
-    int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
-    enum glint_status status = GLINT_E_MEMORY;
+    enum glint_status status;
     struct frame frame;
-    double scale;
-    int code;
+    int code = scene_frame(tool, &r->scene,
+                           scene_view(&r->scene, r->width, r->height), &frame);
 
-    if (!linear_q20)
-        return tool_fail(tool, status, NULL);
-    glint_image_place(&layer, linear_q20);
-    code = scene_frame(tool, &r->scene,
-                       scene_view(&r->scene, r->width, r->height), &frame);
     if (code == EXIT_OK) {
-        scale = frame_auto_scale(&frame, r->lamp, r->n_lamps);
         status =
-            frame_draw(&frame, r->lamp, r->n_lamps, scale, &layer, &report);
-        for (size_t i = 0; i < n; i++)
-            r->image.rgb[i] = (float)(linear_q20[i] * 0x1p-20 / scale *
-                                      scene_scale(&r->scene));
+            frame_draw_alone(&frame, r->lamp, r->n_lamps,
+                             scene_scale(&r->scene), r->image.rgb, &report);
         if (status != GLINT_OK)
             code = tool_fail(tool, status, NULL);
     }
@@ -209,7 +197,6 @@ static int render_model(struct tool *tool, struct render *r)
     if (code == EXIT_OK)
         say_lights(tool, &report);
     frame_finish(&frame);
-    free(linear_q20);
     return code;
 }
 

@@ -415,25 +415,27 @@ draw_exact(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
                : GLINT_E_MEMORY;
 }
 
-double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
-                        int n_lamps)
+/* As the plan tells without drawing anything; brightest 0: there is no light.
+ */
+static struct frame_scale
+plan_scale(struct frame *frame, const struct glint_lamp *lamps, int n_lamps)
 {
     const struct glint_rays rays = rays_of(frame, 0);
     struct glint_real brightest, together;
 
     if (!frame->lens) {
         lamps = merged_lamps(frame, lamps, &n_lamps);
-        return lamps ? frame_feed_scale(frame, lamps, n_lamps) : 1;
+        return lamps ? frame_feed_scale(frame, lamps, n_lamps)
+                     : (struct frame_scale){0, 0};
     }
     set_waves(frame);
     if (set_beams(frame, lamps, n_lamps, 1) != GLINT_OK ||
         plan(frame, &rays) != GLINT_OK)
-        return 1;
+        return (struct frame_scale){0, 0};
     glint_flare_light(frame->flare, &brightest, &together);
-    /* No light is cut down while all flux together is below 2^24. */
-    return brightest.mantissa ? exp2(fmin(5 - (brightest.exponent + 31),
-                                          23 - (together.exponent + 31)))
-                              : 1;
+    return brightest.mantissa
+               ? frame_scale_of(brightest.exponent + 31, together.exponent + 31)
+               : (struct frame_scale){0, 0};
 }
 
 /* Bundles whose ghosts are known. */
@@ -475,4 +477,71 @@ enum glint_status frame_draw(struct frame *frame,
     report->peak_bytes = bytes_used(frame, &report->stats);
     report->ghosts = count_ghosts(frame, n_drawn(frame, report));
     return GLINT_OK;
+}
+
+/* ---------------------------------------------------------------------- alone
+ */
+
+struct frame_scale frame_scale_of(int brightest_log2, int together_log2)
+{
+    const int most = 23 - together_log2, likely = 5 - brightest_log2;
+
+    return (struct frame_scale){likely < most ? likely : most, most};
+}
+
+/* The size of the largest of N values. */
+static uint32_t peak_of(const int32_t *linear_q20, size_t n)
+{
+    uint32_t peak = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t size = linear_q20[i] < 0 ? 0U - (uint32_t)linear_q20[i]
+                                                : (uint32_t)linear_q20[i];
+
+        peak = size > peak ? size : peak;
+    }
+    return peak;
+}
+
+/* Octaves that a picture with that PEAK should have been drawn brighter; of
+ * held light nobody knows how bright it is. A single one is not worth it. */
+static int octaves_up(uint32_t peak, struct frame_scale scale)
+{
+    const int room = scale.most - scale.likely;
+    int up = 0;
+
+    if (peak >= INT32_MAX)
+        return -6;
+    for (; peak && peak < UINT32_C(1) << 29; peak *= 2)
+        up++;
+    up = up < room ? up : room;
+    return up > 1 ? up : 0;
+}
+
+enum glint_status frame_draw_alone(struct frame *frame,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   double gain, float *rgb,
+                                   struct frame_report *report)
+{
+    const int width = frame->view.width, height = frame->view.height;
+    const size_t n = 3 * (size_t)width * (size_t)height;
+    struct frame_scale scale = plan_scale(frame, lamps, n_lamps);
+    struct glint_image layer = {
+        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+    int32_t *linear_q20 = malloc(n * sizeof *linear_q20);
+    enum glint_status status = linear_q20 ? GLINT_OK : GLINT_E_MEMORY;
+    int up = 1;
+
+    glint_image_place(&layer, linear_q20);
+    for (int i = 0; i < 4 && up && status == GLINT_OK; i++) {
+        memset(linear_q20, 0, n * sizeof *linear_q20);
+        status = frame_draw(frame, lamps, n_lamps, exp2(scale.likely), &layer,
+                            report);
+        up = octaves_up(peak_of(linear_q20, n), scale);
+        scale.likely += i < 3 ? up : 0;
+    }
+    for (size_t i = 0; i < n && status == GLINT_OK; i++)
+        rgb[i] = (float)(linear_q20[i] * exp2(-20 - scale.likely) * gain);
+    free(linear_q20);
+    return status;
 }

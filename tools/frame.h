@@ -78,12 +78,6 @@ enum glint_status frame_reserve(struct frame *frame, size_t bytes, int n_lamps);
 /* Reads the stop from a mask of NODES^2 distances rather than its sides. */
 enum glint_status frame_use_mask(struct frame *frame, int nodes);
 
-/* Plans LAMPS and returns the power of two that brings the brightest ghost near
- * 32 times display white, of the 2048 that it may reach: the scale for pictures
- * in linear light. */
-double frame_auto_scale(struct frame *frame, const struct glint_lamp *lamps,
-                        int n_lamps);
-
 /* Adds the flare of LAMPS, times SCALE, to IMAGE. GLINT_E_MEMORY. */
 enum glint_status frame_draw(struct frame *frame,
                              const struct glint_lamp *lamps, int n_lamps,
@@ -92,6 +86,15 @@ enum glint_status frame_draw(struct frame *frame,
 
 /* Takes over what changed in cfg since memory was taken; no more of it is. */
 void frame_retune(struct frame *frame);
+
+/* Draws the flare of LAMPS alone, times GAIN, into RGB, [height][width][3],
+ * linear light. The scale within is a power of two that leaves the faint as
+ * many steps as the brightest pixel allows: where that is fainter than the plan
+ * could tell, the frame is drawn twice. GLINT_E_MEMORY. */
+enum glint_status frame_draw_alone(struct frame *frame,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   double gain, float *rgb,
+                                   struct frame_report *report);
 
 void frame_finish(struct frame *frame);
 

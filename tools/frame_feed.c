@@ -112,23 +112,22 @@ static double pixels_of(const struct frame *f, const struct glint_feed *feed)
     return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
 }
 
-double frame_feed_scale(struct frame *frame, const struct glint_lamp *lamps,
-                        int n_lamps)
+struct frame_scale frame_feed_scale(struct frame *frame,
+                                    const struct glint_lamp *lamps, int n_lamps)
 {
     double brightest = 0, together = 0;
 
     if (plan(frame, lamps, n_lamps) != GLINT_OK)
-        return 1;
+        return (struct frame_scale){0, 0};
     for (int i = 0; i < frame->n_feeds; i++) {
         const double flux = flux_of(frame, &frame->feed[i]);
 
         brightest = fmax(brightest, flux / pixels_of(frame, &frame->feed[i]));
         together += flux;
     }
-    /* No light is cut down while all flux together is below 2^24. */
-    return brightest > 0 ? exp2(fmin(5 - ceil(log2(brightest)),
-                                     23 - ceil(log2(together))))
-                         : 1;
+    return brightest > 0 ? frame_scale_of((int)ceil(log2(brightest)),
+                                          (int)ceil(log2(together)))
+                         : (struct frame_scale){0, 0};
 }
 
 /* ------------------------------------------------------------------- memory */

@@ -7,8 +7,19 @@
 
 #include "frame.h"
 
-double frame_feed_scale(struct frame *frame, const struct glint_lamp *lamps,
-                        int n_lamps);
+/* Powers of two, as their logarithms. */
+struct frame_scale {
+    int likely; /* brings the brightest ghost near 32 times display white, of
+                   the 2048 that a pixel may reach */
+    int most;   /* no light is cut down: together it is below 2^24 */
+};
+
+/* Of the brightest ghost's mean light and of all flux together. */
+struct frame_scale frame_scale_of(int brightest_log2, int together_log2);
+
+struct frame_scale frame_feed_scale(struct frame *frame,
+                                    const struct glint_lamp *lamps,
+                                    int n_lamps);
 
 /* TIMES: the moments between plan, transfer, bin and draw, and before and
  * after. What was drawn stays in the frame's feeds. */
