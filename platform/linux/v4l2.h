@@ -56,7 +56,7 @@ struct glint_v4l2 {
     struct glint_v4l2_buffer buffer[GLINT_V4L2_MAX_BUFFERS];
     struct glint_mjpeg *jpeg; /* of JPEG streams */
     bool streams;
-    int n_numbered; /* frames since the start, up to 2 */
+    int n_numbered;    /* frames since the start, up to 2 */
     uint32_t sequence; /* of the last frame taken */
     uint32_t n_read;   /* frames by read(2), which have no sequence */
     int64_t heard_us;  /* when the last frame came */
