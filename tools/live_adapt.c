@@ -34,8 +34,11 @@ static bool go(struct live_adapt *a, int by)
     if (step < 0 || step > LIVE_MAX_STEP)
         return false;
     /* down again soon after a step up: that was too early */
-    if (by > 0 && a->since_s < 2 * HOLD_S && a->step < LIVE_MAX_STEP)
+    if (by > 0 && a->rose && a->since_s < 2 * HOLD_S)
         a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
+    if (by < 0 && a->rose) /* and this one was not */
+        a->hold_s = HOLD_S;
+    a->rose = by < 0;
     a->step = step;
     a->since_s = 0;
     a->busy_ms = -1;

@@ -21,6 +21,7 @@ struct live_adapt {
     double busy_ms;         /* smoothed time of a frame */
     double below_s, hold_s; /* time with time to spare; how long it must be */
     double since_s;         /* since the last step */
+    bool rose;              /* which was one up */
 };
 
 void live_adapt_init(struct live_adapt *adapt);
