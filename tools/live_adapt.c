@@ -16,9 +16,9 @@ static const struct {
     double codes;       /* ghosts fainter than so many codes are left out */
     int max_lights;
 } step_of[LIVE_MAX_STEP + 1] = {
-    {1.0, 1.0, 0.125, 1 << 20}, {0.75, 0.5, 0.125, 64}, {0.5, 0.25, 0.25, 32},
-    {0.35, 0.12, 0.5, 16},      {0.25, 0.06, 1, 12},    {0.25, 0.06, 2, 8},
-    {0.25, 0.06, 4, 4},         {0.25, 0.06, 8, 2},
+    {1.0, 1.0, 0, 1 << 20}, {0.75, 0.5, 0.125, 64}, {0.5, 0.25, 0.25, 32},
+    {0.35, 0.12, 0.5, 16},  {0.25, 0.06, 1, 12},    {0.25, 0.06, 2, 8},
+    {0.25, 0.06, 4, 4},     {0.25, 0.06, 8, 2},
 };
 
 void live_adapt_init(struct live_adapt *a)
@@ -60,17 +60,20 @@ bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
     return a->below_s >= a->hold_s && go(a, -1);
 }
 
+/* PART of ASKED, but not less than LEAST unless that was asked for. */
+static int part_of(int asked, double part, int least)
+{
+    return (int)fmin(asked, fmax(least, rint(asked * part)));
+}
+
 void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
                       const struct frame *asked)
 {
     const int step = a->step;
-    const int steps = asked->cfg.irradiance_steps;
 
-    frame->max_cells = (int)fmin(
-        asked->max_cells,
-        fmax(16, rint(asked->max_cells * step_of[step].grid / 4) * 4));
+    frame->max_cells = part_of(asked->max_cells, step_of[step].grid, 16);
     frame->cfg.irradiance_steps =
-        steps ? (int)fmax(4, rint(steps * step_of[step].steps)) : 0;
+        part_of(asked->cfg.irradiance_steps, step_of[step].steps, 4);
     frame->faintest_codes = fmax(asked->faintest_codes, step_of[step].codes);
     frame->max_lights = asked->max_lights < step_of[step].max_lights
                             ? asked->max_lights

@@ -8,6 +8,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <string.h>
+
 #include "live_adapt.h"
 
 #define PERIOD_MS (1000. / 30)
@@ -154,6 +156,53 @@ static void test_forgets(void **state)
     assert_int_equal(adapt.step, 0);
 }
 
+static void apply(const struct frame *asked, int step, struct frame *frame)
+{
+    *frame = *asked; /* nothing drawn yet: no memory to make anew */
+    adapt.step = step;
+    live_adapt_apply(&adapt, frame, asked);
+}
+
+/* Step 0 is what was asked for, and no step is finer than the one before. */
+static void test_steps(void **state)
+{
+    static const struct {
+        int cells, steps, lights;
+        double codes;
+    } ask[] = {{64, 69, 128, 0.125}, {8, 1, 1, 0},      {4, 2, 2, 40},
+               {1024, 4096, 9, 1},   {64, 0, 128, 0.5}, {17, 3, 64, 0.2}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof ask / sizeof *ask; i++) {
+        struct frame asked, frame, last;
+
+        memset(&asked, 0, sizeof asked);
+        asked.max_cells = ask[i].cells;
+        asked.cfg.irradiance_steps = ask[i].steps;
+        asked.max_lights = ask[i].lights;
+        asked.faintest_codes = ask[i].codes;
+        last = asked;
+        for (int s = 0; s <= LIVE_MAX_STEP; s++, last = frame) {
+            apply(&asked, s, &frame);
+            if (s == 0) {
+                assert_int_equal(frame.max_cells, ask[i].cells);
+                assert_int_equal(frame.cfg.irradiance_steps, ask[i].steps);
+                assert_int_equal(frame.max_lights, ask[i].lights);
+                assert_true(frame.faintest_codes == ask[i].codes);
+            }
+            assert_true(frame.max_cells >= 1);
+            assert_true(frame.max_lights >= 1);
+            assert_true(frame.max_cells <= last.max_cells);
+            assert_true(frame.max_lights <= last.max_lights);
+            assert_true(frame.faintest_codes >= last.faintest_codes);
+            assert_true(frame.cfg.irradiance_steps <=
+                        last.cfg.irradiance_steps);
+            assert_int_equal(frame.cfg.irradiance_steps == 0,
+                             ask[i].steps == 0);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -164,6 +213,7 @@ int main(void)
         cmocka_unit_test(test_recovers),
         cmocka_unit_test(test_does_not_oscillate),
         cmocka_unit_test(test_forgets),
+        cmocka_unit_test(test_steps),
     };
 
     return cmocka_run_group_tests_name("live_adapt", tests, NULL, NULL);
