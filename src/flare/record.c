@@ -9,6 +9,7 @@
                1 - 1/e of it */
 #define MAX_FLUX_Q16 (INT64_C(1) << 42)
 #define FULL_Q30     (INT32_C(1) << 30)
+#define ONE_Q15      (1 << 15)
 
 enum { REPEATS = 2 }; /* the same once more may be chance */
 
@@ -107,9 +108,9 @@ static void slow_down(struct glint_record *r,
     r->velocity_q16[axis] -= r->velocity_q16[axis] * part_q15 / (1 << 15);
 }
 
-/* The velocity is that of the value, which was BEFORE, as far as that moved and
- * did not just scatter. A light that crosses the picture in less than a
- * sixteenth of a second is not followed. */
+/* The velocity is that of the value, which was BEFORE; of noise half as fast. A
+ * light that crosses the picture in less than a sixteenth of a second is not
+ * followed. */
 static void learn_velocity(struct glint_record *r,
                            const struct glint_record_step *step, int axis,
                            int64_t before_q16, int32_t change_q15)
@@ -117,14 +118,13 @@ static void learn_velocity(struct glint_record *r,
     const int64_t limit_q16 = (int64_t)step->cfg->width << (16 + 4);
     const int32_t us = step->pace.elapsed_us;
     const int32_t part_q15 =
-        q_mul(glint_pace_part_q15(us, VELOCITY_US), change_q15, 15);
+        q_mul(glint_pace_part_q15(us, VELOCITY_US), ONE_Q15 + change_q15, 16);
     int64_t now_q16;
 
     if (us == 0)
         return;
     now_q16 = (r->of[X + axis].value - before_q16) * 1000000 / us;
     now_q16 = clamp(now_q16, -limit_q16, limit_q16);
-    slow_down(r, step, axis);
     r->velocity_q16[axis] +=
         (now_q16 - r->velocity_q16[axis]) * part_q15 / (1 << 15);
 }
@@ -154,6 +154,28 @@ static enum glint_follow_as judge_place(const struct glint_record *r,
     if (size_of(error_q16) > r->of[SIZE].value * 192 + 65536 / 8)
         return GLINT_FOLLOW_CHANGED;
     return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
+}
+
+/* Whether no motion explains TARGET: twice the light's extent and an eighth of
+ * the match distance from where it should be. It may be motion that begins, or
+ * another light. */
+static int is_leap(const struct glint_record *r,
+                   const struct glint_record_step *step, int axis,
+                   int64_t target_q16)
+{
+    return size_of(target_q16 - r->ahead_q16[axis]) >
+           r->of[SIZE].value * 512 +
+               (int64_t)step->cfg->width * step->cfg->match_q15 / 4;
+}
+
+static void leap(struct glint_record *r, const struct glint_record_step *step,
+                 int axis, int64_t target_q16)
+{
+    struct glint_follow *f = &r->of[X + axis];
+    const int64_t before_q16 = f->value;
+
+    glint_follow_jump(f, target_q16, r->ahead_q16[axis] + f->offset);
+    learn_velocity(r, step, axis, before_q16, ONE_Q15);
 }
 
 static void follow_place(struct glint_record *r,
@@ -287,6 +309,8 @@ void glint_record_see(struct glint_record *r,
         for (int axis = 0; axis < 2; axis++)
             if (is_new_shape)
                 doubt_place(r, step, axis, target[X + axis]);
+            else if (is_leap(r, step, axis, target[X + axis]))
+                leap(r, step, axis, target[X + axis]);
             else
                 follow_place(r, step, axis, target[X + axis], is_repeat);
         for (int c = FLUX; c < GLINT_CHANNELS; c++)
