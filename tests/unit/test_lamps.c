@@ -48,6 +48,78 @@ static void test_found_lamp(void **state)
     assert_near(lamp[0].theta_deg, 10.845, 0.01);
 }
 
+enum { W = 320, H = 200 };
+
+static void draw_square(struct glint_image *image, int x0, int y0, int side)
+{
+    for (int y = y0; y < y0 + side; y++)
+        memset(image->plane[0] + y * W + x0, 255, (size_t)side);
+}
+
+/* Videos: what stands still has the same lamps as a picture by itself, to the
+ * last bit; what comes on rises; what is of no use before does not count after
+ * a restart. */
+static void test_tracked_lamps(void **state)
+{
+    static uint8_t grey[W * H];
+    static struct glint_lamp lamp[LAMP_FINDER_MAX], still[LAMP_FINDER_MAX];
+    const struct glint_view view = glint_view_fit(W, H, 36, 24);
+    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct lamp_finder finder = {.headroom_ev = 12, .max = 8};
+    struct glint_lights_config cfg;
+
+    (void)state;
+    glint_image_place(&image, grey);
+    draw_square(&image, 50, 60, 9);
+    glint_lights_defaults(&cfg, W, H);
+    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    for (int frame = 0; frame < 5; frame++)
+        assert_int_equal(
+            lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp), 1);
+    assert_int_equal(lamp_finder_frame(&finder, &image, 0, &view, 50, still),
+                     1);
+    assert_memory_equal(lamp, still, sizeof *lamp);
+
+    draw_square(&image, 200, 100, 9);
+    assert_int_equal(lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp),
+                     2);
+    assert_int_equal(finder.n_tracks, 2);
+    assert_near(lamp[1].power, still[0].power / 5, 10); /* 40 of 200 ms */
+    assert_int_equal(finder.track[1].state, GLINT_TRACK_RISING);
+
+    lamp_finder_restart(&finder);
+    lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp);
+    assert_true(lamp[1].power == still[0].power);
+    lamp_finder_close(&finder);
+    lamp_finder_close(&finder);
+}
+
+/* Twelve lamps and four wanted, tracked and not: the four largest. */
+static void test_most_lamps(void **state)
+{
+    static uint8_t grey[W * H];
+    static struct glint_lamp lamp[LAMP_FINDER_MAX];
+    const struct glint_view view = glint_view_fit(W, H, 36, 24);
+    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct lamp_finder finder = {.headroom_ev = 0, .max = 4};
+    struct glint_lights_config cfg;
+
+    (void)state;
+    glint_image_place(&image, grey);
+    for (int i = 0; i < 12; i++)
+        draw_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
+                    3 + i * 5 % 12);
+    glint_lights_defaults(&cfg, W, H);
+    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    for (int us = 0; us <= 40000; us += 40000) {
+        assert_int_equal(
+            lamp_finder_frame(&finder, &image, us, &view, 50, lamp), 4);
+        for (int i = 0; i < 4; i++)
+            assert_true(lamp[i].power == (14 - i) * (14 - i));
+    }
+    lamp_finder_close(&finder);
+}
+
 static void read_text(struct lamp_list *list, const char *text)
 {
     char path[] = "/tmp/glint-lamps-XXXXXX";
@@ -95,6 +167,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_found_lamp),
+        cmocka_unit_test(test_tracked_lamps),
+        cmocka_unit_test(test_most_lamps),
         cmocka_unit_test(test_lists),
     };
 
