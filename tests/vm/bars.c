@@ -2,9 +2,8 @@
  *
  * bars [/dev/fbN] - draws eight colour bars over ramps of red, green and blue,
  *     by the bit fields that the driver reports.
- * bars LAYOUT WxH [shifted] - the picture a panel of r5g6b5, x8r8g8b8 ... must
- *     then show, as PPM; needs no device. shifted: white is not quite white, as
- *     the emulated VGA card has it with 5 bits a channel.
+ * bars LAYOUT WxH - the picture a panel of r5g6b5, x8r8g8b8 ... must then show,
+ *     as PPM; needs no device.
  */
 #include <linux/fb.h>
 #include <sys/mman.h>
@@ -61,7 +60,7 @@ static void draw(const char *path)
                       &var, x, y);
 }
 
-static void expect(const char *name, const char *size, int shifted)
+static void expect(const char *name, const char *size)
 {
     struct layout layout;
     unsigned width, height;
@@ -71,17 +70,16 @@ static void expect(const char *name, const char *size, int shifted)
     printf("P6\n%u %u\n255\n", width, height);
     for (unsigned y = 0; y < height; y++)
         for (unsigned x = 0; x < width; x++)
-            for (unsigned c = 0; c < 3; c++) {
-                unsigned n = layout.length[c];
-                uint32_t field = colour(x, y, width, height, c) >> (8 - n);
-                putchar(shifted ? (int)(field << (8 - n)) : widen(field, n));
-            }
+            for (unsigned c = 0; c < 3; c++)
+                putchar(shown(&layout, c,
+                              colour(x, y, width, height, c) >>
+                                  (8 - layout.length[c])));
 }
 
 int main(int argc, char **argv)
 {
-    if (argc >= 3)
-        expect(argv[1], argv[2], argc == 4);
+    if (argc == 3)
+        expect(argv[1], argv[2]);
     else
         draw(argc == 2 ? argv[1] : "/dev/fb0");
     return 0;

@@ -35,9 +35,8 @@ static void put_pixel(const struct layout *l, const uint8_t *at, FILE *file)
 
     for (unsigned i = 0; i < l->n_bytes; i++)
         word |= (uint32_t)at[i] << (8 * i);
-    for (int c = 0; c < 3; c++)
-        putc(widen(word >> l->offset[c] & ((1u << l->length[c]) - 1),
-                   l->length[c]),
+    for (unsigned c = 0; c < 3; c++)
+        putc(shown(l, c, word >> l->offset[c] & ((1u << l->length[c]) - 1)),
              file);
 }
 

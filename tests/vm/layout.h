@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * layout.h - packed pixels by the names that device trees give them: fields
- * from the highest bit down, as in r5g6b5 or x8r8g8b8.
+ * from the highest bit down, as in r5g6b5 or x8r8g8b8. "-shifted" behind it is
+ * for a panel that does not repeat bits, so that white is not quite white: the
+ * emulated VGA card is one with 5 bits a channel.
  */
 #ifndef GLINT_VM_LAYOUT_H
 #define GLINT_VM_LAYOUT_H
@@ -13,6 +15,7 @@
 struct layout {
     unsigned n_bytes;
     unsigned length[3], offset[3]; /* red, green, blue */
+    int shifted;
 };
 
 /* 0: no such name. */
@@ -20,8 +23,10 @@ __attribute__((unused)) static int layout_of(const char *name,
                                              struct layout *layout)
 {
     unsigned at = 0;
+    const char *end = strchr(name, '-');
     memset(layout, 0, sizeof *layout);
-    for (size_t i = strlen(name); i >= 2; i -= 2) {
+    layout->shifted = end && strcmp(end, "-shifted") == 0;
+    for (size_t i = end ? (size_t)(end - name) : strlen(name); i >= 2; i -= 2) {
         const char *field = name + i - 2;
         const char *known = "rgb", *channel = strchr(known, field[0]);
         unsigned length = (unsigned)(field[1] - '0');
@@ -37,12 +42,14 @@ __attribute__((unused)) static int layout_of(const char *name,
     return at % 8 == 0 && at >= 16 && at <= 32;
 }
 
-/* What a panel makes of N bits: black and white stay so, as both ends of the
- * range are repeated. */
-__attribute__((unused)) static uint8_t widen(uint32_t value, unsigned n)
+/* Channel C of a panel's picture, 0 .. 255; both ends of the range are kept, as
+ * the highest bits are repeated below. */
+__attribute__((unused)) static uint8_t shown(const struct layout *layout,
+                                             unsigned c, uint32_t field)
 {
-    uint32_t wide = value << (8 - n);
-    for (unsigned have = n; have < 8; have += n)
+    unsigned n = layout->length[c];
+    uint32_t wide = field << (8 - n);
+    for (unsigned have = n; have < 8 && !layout->shifted; have += n)
         wide |= wide >> have;
     return (uint8_t)wide;
 }

@@ -10,6 +10,7 @@
 #                              boots and runs the script; $code is its exit code,
 #                              $out/NAME gets log, console, pictures
 #   expect TEXT COMMAND...     one check
+#   model LENS, asan_glint       path of a baked lens, of a glint with ASan
 #   skip TEXT                  ends the test: not possible here
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 2
@@ -65,6 +66,15 @@ says() { # FILE REGEX
 }
 same() { # FILE FILE - byte for byte
     cmp "$out/$1" "$out/$2"
+}
+
+# glint with ASan and UBSan, dynamic: for guest -m 1024 -l. Prints its path.
+asan_glint() {
+    (
+        flock 8
+        make -s --no-print-directory CONFIG=asan OUT=build/asan \
+            build/asan/glint >&2
+    ) 8>build/vm/.asan && echo build/asan/glint
 }
 
 # The model of LENS, baked once for all tests; prints its path.

@@ -42,8 +42,7 @@ static int read_raw(const char *path, const struct layout *layout,
             pixel |= (uint32_t)bytes[b] << 8 * b;
         for (unsigned c = 0; c < 3; c++) {
             uint32_t mask = (1u << layout->length[c]) - 1;
-            *dst++ =
-                widen(pixel >> layout->offset[c] & mask, layout->length[c]);
+            *dst++ = shown(layout, c, pixel >> layout->offset[c] & mask);
         }
     }
     fclose(file);

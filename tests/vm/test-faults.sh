@@ -9,9 +9,8 @@
 
 program=(-i "$glint")
 if [ "$arch" = x86_64 ]; then
-    make -s --no-print-directory CONFIG=asan OUT=build/asan build/asan/glint ||
-        exit
-    program=(-m 1024 -l build/asan/glint)
+    asan=$(asan_glint) || exit
+    program=(-m 1024 -l "$asan")
 fi
 build/x86_64/vm/scene YUYV 640x480 "$out/scene" 200,150,9
 model=$(model heliar-tronnier)

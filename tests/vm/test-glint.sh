@@ -19,8 +19,8 @@ expect "that are not black" test "$(od -An -v -tx4 -j 16 "$out/host.pfm" |
     tr -s ' ' '\n' | sort -u | wc -l)" -gt 1000
 [ "$arch" = x86_64 ] || exit 0
 
-make -s --no-print-directory CONFIG=asan OUT=build/asan build/asan/glint || exit
-guest asan -m 1024 -l build/asan/glint -i "$model" <<END
+asan=$(asan_glint) || exit
+guest asan -m 1024 -l "$asan" -i "$model" <<END
 glint render /in/heliar-tronnier.glint ${look[*]}
 END
 expect "ASan and UBSan have no complaint" exited 0

@@ -48,7 +48,7 @@ case $arch in
 x86_64)
     live virtio:640x480 x8r8g8b8 640x480
     live cirrus r5g6b5 1024x768
-    live vesa:0x310 x1r5g5b5 640x480
+    live vesa:0x310 x1r5g5b5-shifted 640x480
     fit=centre live vesa:0x315 r8g8b8 800x600 --fit centre
     ;;
 *)
