@@ -28,6 +28,7 @@ struct live {
     struct frame asked; /* the look's frame before it was adapted */
     struct live_stats stats;
     int n_shown, n_snapshots;
+    int n_short;     /* frames that did not fit into memory */
     int64_t time_us; /* of the last frame */
     enum live_report report;
     int64_t retry_us; /* when a lost output is tried again; 0: never lost */
@@ -92,6 +93,8 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     if (status != GLINT_OK)
         return status;
     l->time_us = 0;
+    if (l->o->look.sized)
+        lamp_finder_restart(&l->o->look.finder);
     l->had_signal = l->camera.device.has_signal;
     say_camera(l);
     return GLINT_OK;
@@ -241,6 +244,26 @@ static void adapt(struct live *l, int64_t busy_us, int n_missed)
     say(l, text);
 }
 
+/* Said once: it is likely to be so in every frame. */
+static void say_short(struct live *l)
+{
+    const struct frame_report *r = &l->o->look.report;
+    char text[160];
+
+    if (r->stats.dropped_bundles == 0 &&
+        r->stats.need_primitives <= r->stats.primitives)
+        return;
+    if (l->n_short++ > 0)
+        return;
+    snprintf(text, sizeof text,
+             "a frame needs more than --memory allows: %d of %d bundles and %d "
+             "of %d edges are left out",
+             r->stats.dropped_bundles, r->stats.need_bundles,
+             r->stats.need_primitives - r->stats.primitives,
+             r->stats.need_primitives);
+    say(l, text);
+}
+
 static int64_t us(double ms)
 {
     return (int64_t)(1e3 * ms);
@@ -346,6 +369,7 @@ static int show(struct live *l, const struct glint_source_frame *frame)
     status = look_draw(look, image, elapsed_us(l, frame->time_us));
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, NULL);
+    say_short(l);
     if (live_signal(LIVE_SNAPSHOT))
         snapshot(l, image);
     code = open_output(l, image);
@@ -466,6 +490,12 @@ static void conclude(struct live *l)
              (unsigned long long)t->corrupt, live_stats_latency_ms(t, 50),
              live_stats_latency_ms(t, 99));
     say(l, text);
+    if (l->n_short) {
+        snprintf(text, sizeof text,
+                 "in %d frames something was left out for want of --memory",
+                 l->n_short);
+        say(l, text);
+    }
 }
 
 static int loop(struct live *l)
