@@ -147,7 +147,6 @@ static void send_seekers(struct glint_tracks *t)
     m->n_seekers = 0;
     for (int i = 0; i < t->cfg.max_tracks; i++) {
         struct glint_record *r = &t->record[i];
-        const int32_t area = r->last.area;
 
         if (!r->id)
             continue;
@@ -158,7 +157,7 @@ static void send_seekers(struct glint_tracks *t)
             .x_q8 = q_narrow(r->ahead_q16[0] / 256),
             .y_q8 = q_narrow(r->ahead_q16[1] / 256),
             .reach_q8 = reach_of_q8(t, r),
-            .max_faint_area = area < 1 << 24 ? area * 4 : 1 << 26,
+            .max_faint_area = q_clamp_sat(r->last.area, 0, 1 << 26) * 4,
             .is_lost = r->lost_us > 0};
     }
 }

@@ -186,7 +186,7 @@ static inline double night_spot_power(const struct glint_spot *s)
 /* The track or spot nearest to X, Y; -1: there is none. */
 static inline int night_track_at(const struct night *n, double x, double y)
 {
-    double best = INFINITY;
+    double best = HUGE_VAL;
     int at = -1;
 
     for (int i = 0; i < n->n_tracks; i++) {
@@ -203,7 +203,7 @@ static inline int night_track_at(const struct night *n, double x, double y)
 
 static inline int night_spot_at(const struct night *n, double x, double y)
 {
-    double best = INFINITY;
+    double best = HUGE_VAL;
     int at = -1;
 
     for (int i = 0; i < n->n_spots; i++) {

@@ -643,7 +643,7 @@ static void test_a_pole_makes_nothing_pop(void **state)
 static void test_merging_and_splitting(void **state)
 {
     struct steps energy = {0, 0, 0, 0};
-    double least = INFINITY, both = 0, jump = 0;
+    double least = HUGE_VAL, both = 0, jump = 0;
     struct glint_track last[8];
     int n_last = 0, n_merged = 0;
 
