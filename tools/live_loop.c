@@ -6,8 +6,8 @@
 
 #include "linux/v4l2_buffers.h"
 #include "live.h"
+#include "live_picture.h"
 #include "live_signals.h"
-#include "plain/picture.h"
 
 #define RETRY_MS 500
 #define WAIT_MS  250 /* longest sleep, so that silence is noticed */
@@ -20,9 +20,7 @@ struct live {
 
     struct glint_v4l2 camera; /* source.fd -1: closed */
     struct live_output output;
-    struct glint_image picture; /* where frames go that lie in slow memory */
-    void *picture_mem;
-    size_t picture_bytes;
+    struct live_copy copy; /* of frames that lie in slow memory */
 
     struct live_adapt adapt;
     struct frame asked; /* the look's frame before it was adapted */
@@ -150,60 +148,6 @@ static struct glint_image expected(const struct live *l)
 
 /* ------------------------------------------------------------------- frames */
 
-/* Copies IMAGE, which is slow to read and is read but once this way. */
-static const struct glint_image *copy(struct live *l,
-                                      const struct glint_image *image)
-{
-    const size_t bytes =
-        glint_image_bytes(image->format, image->width, image->height);
-
-    if (bytes > l->picture_bytes) {
-        free(l->picture_mem);
-        l->picture_mem = malloc(bytes);
-        l->picture_bytes = l->picture_mem ? bytes : 0;
-        if (!l->picture_mem)
-            return NULL;
-    }
-    l->picture = *image;
-    glint_image_place(&l->picture, l->picture_mem);
-    for (int p = 0; p < glint_image_planes(image->format); p++)
-        for (int y = 0;
-             y < glint_image_plane_height(image->format, p, image->height); y++)
-            memcpy(l->picture.plane[p] + y * l->picture.stride_bytes[p],
-                   image->plane[p] + y * image->stride_bytes[p],
-                   glint_image_row_bytes(image->format, p, image->width));
-    return &l->picture;
-}
-
-static enum glint_status save(const char *name, const struct glint_image *image,
-                              struct glint_error *error)
-{
-    const struct glint_panel_config as_rgb = {
-        .width = image->width,
-        .height = image->height,
-        .layout = {3, {0, 8}, {8, 8}, {16, 8}, {0, 0}},
-        .image_width = image->width,
-        .image_height = image->height};
-    struct glint_image rgb = {
-        .format = GLINT_RGB24, .width = image->width, .height = image->height};
-    struct glint_panel panel;
-    enum glint_status status = glint_panel_open(&panel, &as_rgb, error);
-    void *mem;
-
-    if (status != GLINT_OK)
-        return status;
-    mem = malloc(glint_image_bytes(rgb.format, rgb.width, rgb.height));
-    if (mem) {
-        glint_image_place(&rgb, mem);
-        glint_panel_draw(&panel, image, mem, rgb.stride_bytes[0]);
-        status = glint_picture_save(name, &rgb, error);
-    } else
-        status = GLINT_E_MEMORY;
-    free(mem);
-    glint_panel_close(&panel);
-    return status;
-}
-
 static void snapshot(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
@@ -211,7 +155,7 @@ static void snapshot(struct live *l, const struct glint_image *image)
     enum glint_status status;
 
     snprintf(name, sizeof name, l->o->snapshot, ++l->n_snapshots);
-    status = save(name, image, &error);
+    status = live_save(name, image, &error);
     snprintf(text, sizeof text, "snapshot %s%s%s", name,
              status == GLINT_OK ? "" : ": ",
              status == GLINT_OK ? ""
@@ -361,7 +305,7 @@ static int show(struct live *l, const struct glint_source_frame *frame)
 
     at_us[0] = glint_v4l2_now_us();
     if (!frame->cached)
-        image = copy(l, image);
+        image = live_copy(&l->copy, image);
     code = image ? take_size(l, image) : tool_fail(l->tool, GLINT_E_MEMORY, "");
     if (code != EXIT_OK)
         return code;
@@ -573,7 +517,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     status = live_output_close(&l->output, &error);
     if (status != GLINT_OK && code == EXIT_OK)
         code = tool_fail(tool, status, error.text);
-    free(l->picture_mem);
+    live_copy_free(&l->copy);
     free(l);
     return code;
 }
