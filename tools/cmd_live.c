@@ -106,7 +106,7 @@ struct line {
     struct tool *tool;
     int argc;
     char **argv;
-    struct config config;
+    struct config config, again; /* as read first, and by the last reload */
     struct live_options *into;
 };
 
@@ -295,8 +295,9 @@ static int parse_line(struct line *line)
                                              line->argv[optind]);
 }
 
-/* The file first, so that the line wins. */
-static int parse(struct line *line, struct live_options *into)
+/* The file first, so that the line wins. CONFIG keeps what INTO points to. */
+static int parse(struct line *line, struct config *config,
+                 struct live_options *into)
 {
     const char *path;
 
@@ -304,7 +305,7 @@ static int parse(struct line *line, struct live_options *into)
     line->into = into;
     path = tool_value_of(line->argc, line->argv, SHORT, options, OPT_CONFIG);
     if (path) {
-        const int code = config_read(&line->config, path);
+        const int code = config_read(config, path);
 
         if (code != EXIT_OK)
             return code;
@@ -314,8 +315,11 @@ static int parse(struct line *line, struct live_options *into)
 
 static int reread(void *ctx, struct tool *tool, struct live_options *into)
 {
+    struct line *line = ctx;
+
     (void)tool;
-    return parse(ctx, into);
+    config_free(&line->again); /* a look that is open needs no names */
+    return parse(line, &line->again, into);
 }
 
 static int list(struct tool *tool, const struct live_options *o)
@@ -333,13 +337,17 @@ int cmd_live(int argc, char **argv)
 {
     struct tool tool = {.name = "live", .help = help, .help_end = help_end};
     struct live_options *o = calloc(1, sizeof *o);
-    struct line line = {
-        &tool, argc, argv, {&tool, options, take_from_file, &line, NULL}, o};
+    struct line line = {.tool = &tool,
+                        .argc = argc,
+                        .argv = argv,
+                        .config = {&tool, options, take_from_file, &line, NULL},
+                        .into = o};
     int code;
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    code = parse(&line, o);
+    line.again = line.config;
+    code = parse(&line, &line.config, o);
     if (code < 0 && (o->list_devices || o->list_formats))
         code = list(&tool, o);
     else if (code < 0) {
@@ -350,6 +358,7 @@ int cmd_live(int argc, char **argv)
     }
     look_close(&o->look);
     config_free(&line.config);
+    config_free(&line.again);
     free(o);
     return code;
 }
