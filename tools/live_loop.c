@@ -375,15 +375,12 @@ static int step(struct live *l)
 static void reload(struct live *l)
 {
     struct live_options *fresh = calloc(1, sizeof *fresh);
-    struct look old;
 
     if (!fresh)
         return;
     if (l->reread(l->ctx, l->tool, fresh) < 0 &&
         look_open(l->tool, &fresh->look) == EXIT_OK) {
-        old = l->o->look;
-        l->o->look = fresh->look;
-        look_close(&old);
+        look_replace(&l->o->look, &fresh->look);
         live_adapt_init(&l->adapt);
         say(l, "reloaded");
     } else {

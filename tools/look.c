@@ -96,6 +96,7 @@ int look_open(const struct tool *tool, struct look *look)
         return code;
     if (look->lights_file)
         status = lamp_list_read(&look->list, look->lights_file, &error);
+    look->is_listed = look->lights_file != NULL;
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     look->lamp =
@@ -153,6 +154,15 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
+void look_replace(struct look *look, struct look *fresh)
+{
+    look_close(look);
+    *look = *fresh;
+    /* what is made by size points here, and is made anew */
+    if (look->scene.setup.lens)
+        look->scene.setup.lens = &look->scene.lens;
+}
+
 void look_close(struct look *look)
 {
     unsize(look);
@@ -171,7 +181,7 @@ static int lamps_of(struct look *look, const struct glint_image *image,
     int n = look->n_hand;
 
     memcpy(look->lamp, look->hand, (size_t)n * sizeof *look->lamp);
-    if (look->lights_file)
+    if (look->is_listed)
         n += lamp_list_frame(&look->list, look->n_frames, &look->view, focal,
                              look->lamp + n, look->list.n);
     else if (n == 0)
@@ -205,7 +215,7 @@ static void blacken(const struct glint_image *image)
 static void show_lights(const struct look *look,
                         const struct glint_image *image)
 {
-    const bool found = !look->lights_file && look->n_hand == 0;
+    const bool found = !look->is_listed && look->n_hand == 0;
     const double focal = look->scene.setup.optics.focal_mm;
 
     for (int i = 0; i < look->n_lamps; i++) {

@@ -26,6 +26,7 @@ struct look {
     struct glint_lamp hand[SCENE_MAX_LAMPS];
 
     /* Made by open and size. */
+    bool is_listed; /* lights come from a file; its name is not needed more */
     struct lamp_list list;
     struct lamp_finder finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
@@ -103,6 +104,9 @@ int look_size(const struct tool *tool, struct look *look, int width,
  * a picture by itself. GLINT_E_MEMORY. */
 enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us);
+
+/* Closes LOOK and moves FRESH there, which is open and not yet sized. */
+void look_replace(struct look *look, struct look *fresh);
 
 void look_close(struct look *look);
 
