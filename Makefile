@@ -95,7 +95,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
-        fbdev sinks live_stats live_adapt frame show_lights
+        fbdev sinks live_stats live_adapt frame show_lights live
 FUZZ := lens model y4m pnm
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
@@ -249,8 +249,9 @@ $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \
-        realloc posix_memalign free clock_gettime nanosleep glint_mjpeg_available
-fake_bins := $(patsubst %,$(OUT)/tests/unit/test_%,v4l2 v4l2_faults)
+        realloc posix_memalign free strdup realpath clock_gettime nanosleep glint_mjpeg_available
+fake_bins := $(patsubst %,$(OUT)/tests/unit/test_%,v4l2 v4l2_faults live)
+$(OUT)/tests/unit/test_live: LDFLAGS += -Wl,--wrap=ppoll
 $(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
         -Wl,--wrap=realloc,--wrap=posix_memalign
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)

@@ -47,15 +47,16 @@ bool live_signal(enum live_signal which)
 {
     const bool was = asked[which];
 
-    if (which != LIVE_STOP)
+    if (was && which != LIVE_STOP) /* else one might come in between */
         asked[which] = 0;
     return was;
 }
 
+/* A snapshot waits for the next frame, and that may be long in coming. */
 static bool is_any_asked(void)
 {
     for (int i = 0; i < LIVE_N_SIGNALS; i++)
-        if (asked[i])
+        if (asked[i] && i != LIVE_SNAPSHOT)
             return true;
     return false;
 }

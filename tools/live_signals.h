@@ -23,7 +23,8 @@ void live_signals_take(void);
 bool live_signal(enum live_signal which);
 
 /* Waits until FD (unless -1) is readable, has an event or an error, a signal
- * has arrived that nobody looked at, or MS have passed. */
+ * has arrived that nobody looked at (but for a snapshot, which needs a frame),
+ * or MS have passed. */
 void live_signals_wait(int fd, int ms);
 
 #endif

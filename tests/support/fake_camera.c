@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +16,7 @@ struct fake_camera camera = {.fd = -1};
 bool fake_lacks_jpeg;
 
 static int64_t now_us;
-static int n_blocks;
+static int n_blocks, n_asked;
 
 static struct {
     unsigned long request;
@@ -121,6 +122,11 @@ int64_t fake_camera_now(void)
 int fake_camera_blocks(void)
 {
     return n_blocks;
+}
+
+int fake_camera_asked(void)
+{
+    return n_asked;
 }
 
 /* ------------------------------------------------------------------- format */
@@ -516,6 +522,8 @@ static int dequeue(struct v4l2_buffer *b)
     struct fake_frame f;
     struct fake_buffer *own;
 
+    if (camera.on_dequeue)
+        camera.on_dequeue();
     if (camera.is_broken)
         return refuse(EIO);
     if (!camera.streams)
@@ -774,6 +782,7 @@ void *__wrap_malloc(size_t bytes)
 {
     void *const mem = fails() ? NULL : __real_malloc(bytes);
 
+    n_asked++;
     n_blocks += mem != NULL;
     return mem;
 }
@@ -784,6 +793,7 @@ void *__wrap_calloc(size_t n, size_t bytes)
 {
     void *const mem = fails() ? NULL : __real_calloc(n, bytes);
 
+    n_asked++;
     n_blocks += mem != NULL;
     return mem;
 }
@@ -794,6 +804,7 @@ void *__wrap_realloc(void *old, size_t bytes)
 {
     void *const mem = fails() ? NULL : __real_realloc(old, bytes);
 
+    n_asked++;
     n_blocks += mem != NULL && old == NULL;
     return mem;
 }
@@ -804,14 +815,39 @@ int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 {
     const int number = fails() ? 12 : __real_posix_memalign(mem, align, bytes);
 
+    n_asked++;
     n_blocks += number == 0;
     return number;
+}
+
+char *__real_strdup(const char *text);
+char *__wrap_strdup(const char *text);
+char *__wrap_strdup(const char *text)
+{
+    char *const mem = fails() ? NULL : __real_strdup(text);
+
+    n_asked++;
+    n_blocks += mem != NULL;
+    return mem;
+}
+
+char *__real_realpath(const char *path, char *into);
+char *__wrap_realpath(const char *path, char *into);
+char *__wrap_realpath(const char *path, char *into)
+{
+    char *const mem = fails() ? NULL : __real_realpath(path, into);
+
+    n_asked++;
+    n_blocks += mem != NULL && !into;
+    return mem;
 }
 
 void __wrap_free(void *mem);
 void __wrap_free(void *mem)
 {
     n_blocks -= mem != NULL;
+    if (mem) /* so that it shows when it is read afterwards */
+        memset(mem, 0xdd, malloc_usable_size(mem));
     __real_free(mem);
 }
 

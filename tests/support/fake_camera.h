@@ -78,8 +78,9 @@ struct fake_camera {
     int n_queued;
     struct fake_frame frame[FAKE_FRAMES];
     int n_frames;
-    int read_errno; /* read() fails with it */
-    int says_index; /* unless 0: DQBUF gives this less one */
+    int read_errno;           /* read() fails with it */
+    void (*on_dequeue)(void); /* unless NULL: before each DQBUF */
+    int says_index;           /* unless 0: DQBUF gives this less one */
 
     /* what happened */
     int n_maps, n_exports, breaches, n_streamons, n_reqbufs;
@@ -103,6 +104,9 @@ int fake_camera_fail_at(int n, int number, bool forever);
 
 /* Blocks of the heap that the code under test holds. */
 int fake_camera_blocks(void);
+
+/* How often the heap was asked for memory so far. */
+int fake_camera_asked(void);
 
 /* The clock stands still but for this and for sleeping. */
 void fake_camera_pass(int64_t us);
