@@ -299,7 +299,8 @@ $(OUT)/vm/%: tests/vm/%.c tests/vm/device.h tests/vm/layout.h
 	$(say) CC $<
 	$(Q)$(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L $(CFLAGS) $(LDFLAGS) $< -o $@
 # what makes scenes and says what must come of them
-VM_HOST := scene expected
+VM_HOST := scene expected $(if $(filter yes,$(WITH_JPEG)),jpeg)
+$(OUT)/vm/jpeg: CPPFLAGS += $(JPEG_CPPFLAGS)
 $(VM_HOST:%=$(OUT)/vm/%): $(OUT)/vm/%: tests/vm/%.c tests/vm/layout.h $(libs)
 	@mkdir -p $(@D)
 	$(say) CC $<

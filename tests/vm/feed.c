@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * feed [-c CAMERA] [-n COUNT] [-r FPS] DEVICE FOURCC WxH FILE... - frames of
- * files, in a loop, into a video output: what the camera behind it delivers is
- * known bit for bit.
+ * feed [-c CAMERA] [-n COUNT] [-r FPS] [-t] DEVICE FOURCC WxH FILE... - frames
+ * of files, in a loop, into a video output: what the camera behind it delivers
+ * is known bit for bit. With -t it is said to have BT.709's transfer curve, as
+ * y4m video does.
  *
  * DEVICE is vivid's output, whose HDMI socket is then wired to CAMERA's HDMI
  * input (same timings and format on both, no text painted over), or a node of
@@ -53,6 +54,16 @@ static void add_file(struct feed *feed, const char *path)
         add_frame(feed, bytes + at, step);
         at += step;
     } while (at < n_bytes);
+}
+
+/* Last, as S_FMT of size and pixels alone would forget it. */
+static void set_curve(int fd)
+{
+    struct v4l2_format format = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
+    must_ioctl(fd, VIDIOC_G_FMT, &format, "VIDIOC_G_FMT");
+    format.fmt.pix.priv = V4L2_PIX_FMT_PRIV_MAGIC;
+    format.fmt.pix.xfer_func = V4L2_XFER_FUNC_709;
+    must_ioctl(fd, VIDIOC_S_FMT, &format, "VIDIOC_S_FMT");
 }
 
 /* Sockets that take DV timings: HDMI. -1: none, as v4l2loopback. */
@@ -217,8 +228,8 @@ int main(int argc, char **argv)
     const char *camera = NULL;
     long count = 0;
     double fps = 0.0;
-    int option;
-    while ((option = getopt(argc, argv, "c:n:r:")) != -1) {
+    int option, is_video = 0;
+    while ((option = getopt(argc, argv, "c:n:r:t")) != -1) {
         switch (option) {
         case 'c':
             camera = optarg;
@@ -229,12 +240,16 @@ int main(int argc, char **argv)
         case 'r':
             fps = atof(optarg);
             break;
+        case 't':
+            is_video = 1;
+            break;
         default:
             die("see the head of feed.c");
         }
     }
     if (argc - optind < 4)
-        die("feed [-c CAMERA] [-n COUNT] [-r FPS] DEVICE FOURCC WxH FILE...");
+        die("feed [-c CAMERA] [-n COUNT] [-r FPS] [-t] DEVICE FOURCC WxH "
+            "FILE...");
     char **word = argv + optind;
     uint32_t width, height, fourcc = fourcc_of(word[1]);
     size_of(word[2], &width, &height);
@@ -247,6 +262,8 @@ int main(int argc, char **argv)
         fps = 30.0;
     feed.image_bytes =
         set_format(feed.fd, V4L2_BUF_TYPE_VIDEO_OUTPUT, fourcc, width, height);
+    if (is_video)
+        set_curve(feed.fd);
     for (char **path = word + 3; *path; path++)
         add_file(&feed, *path);
     if (socket >= 0)
