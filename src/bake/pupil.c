@@ -5,9 +5,10 @@
  * A grid over the front element keeps the cells that may hold a visible ray,
  * judged by the box of their corners' stop positions and by their relative
  * radii, both with a margin for what bends in between; then a finer grid over
- * what was kept, until it no longer shrinks. Limits: a visible part that is
- * smaller than a 64th of the front element and whose surroundings bend by more
- * than the margin can be missed.
+ * what was kept, until it no longer shrinks. Where that finds nothing, a spot
+ * on the light's plane is looked for. Limits: a visible part that is smaller
+ * than a 64th of the front element and whose surroundings bend by more than the
+ * margin can be missed if it is long or lies aside.
  */
 #include "glint/bake.h"
 
@@ -16,6 +17,10 @@
 #include "bake/degrees.h"
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
+
+enum {
+    LINES = 4
+}; /* times ACROSS: cells of the line that spots are found on */
 
 /* Later rounds look at less and get by with a coarser grid. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
@@ -186,6 +191,77 @@ static struct glint_pupil surroundings(const struct glint_pupil *box,
         .y1_mm = fmin(front->y1_mm, 1.5 * box->y1_mm + 0.02 * front->y1_mm)};
 }
 
+/* Rounds of grids over P, the first of ACROSS x DOWN cells. */
+static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
+                      int down)
+{
+    bool found = true;
+
+    for (int round = 0; round < ROUNDS && found; round++) {
+        const double before = extent(p);
+
+        s->across = round ? NEXT_ACROSS : across;
+        s->down = round ? NEXT_DOWN : down;
+        found = shrink(s, p);
+        if (round > 0 && extent(p) > 0.8 * before)
+            break;
+    }
+    return found;
+}
+
+/* -------------------------------------------------------------------- slivers
+ */
+
+/* The part of the light's plane that may hold rays that get through, judged by
+ * near neighbours; FRONT is all that can enter. */
+static bool find_on_line(struct search *s, const struct glint_pupil *front,
+                         double x_mm[2])
+{
+    const double step = (front->x1_mm - front->x0_mm) / (LINES * ACROSS);
+    bool found = false;
+
+    for (int k = 0; k < LINES; k++) {
+        const double x0 = front->x0_mm + k * ACROSS * step;
+        const struct glint_row row = {
+            ACROSS + 1,
+            x0,
+            step,
+            0,
+            {s->direction[0], s->direction[1], s->direction[2]}};
+
+        glint_trace_row(s->path, &row, s->ray[0], s->status[0], NULL);
+        for (int i = 0; i < ACROSS; i++) {
+            struct bounds pair = {.n = 0};
+
+            for (int end = 0; end < 2; end++)
+                if (s->status[0][i + end] == GLINT_RAY_OK)
+                    bounds_add(&pair, &s->ray[0][i + end]);
+            if (pair.n < 2 || !may_pass(s, &pair))
+                continue;
+            x_mm[0] = found ? x_mm[0] : x0 + i * step;
+            x_mm[1] = x0 + (i + 1) * step;
+            found = true;
+        }
+    }
+    return found;
+}
+
+/* What comes through a spot that is smaller than a cell of the first grid and
+ * has lost rays around it: the light's plane goes through its middle. What is
+ * far larger the other way lies at the rim of something and is no spot. */
+static bool find_spot(struct search *s, const struct glint_pupil *front,
+                      struct glint_pupil *p)
+{
+    double x[2], more;
+
+    if (!find_on_line(s, front, x))
+        return false;
+    more = x[1] - x[0];
+    *p = (struct glint_pupil){
+        .x0_mm = x[0] - more, .x1_mm = x[1] + more, .y1_mm = more};
+    return shrink_on(s, p, NEXT_ACROSS, NEXT_DOWN) && p->y1_mm < more;
+}
+
 bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm,
                       const struct glint_pupil *near)
@@ -200,9 +276,9 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
                              const struct glint_pupil *near)
 {
     struct search s; /* 120 KB: the offline half has the stack for it */
-    struct glint_pupil p;
+    struct glint_pupil whole, p;
     const struct glint_event *front = NULL;
-    bool found = true;
+    bool found;
 
     for (int k = 0; k < path->n_events && !front; k++)
         if (path->event[k].kind != GLINT_STOP)
@@ -215,18 +291,11 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
     s.direction[2] = glint_cos_deg(theta_deg);
     s.stop_mm = stop_radius_mm;
     s.field_mm = field_mm;
-    p = whole_front(front, s.direction);
-    if (near)
-        p = surroundings(near, &p);
-    for (int round = 0; round < ROUNDS && found; round++) {
-        const double before = extent(&p);
-
-        s.across = round || near ? NEXT_ACROSS : ACROSS;
-        s.down = round || near ? NEXT_DOWN : DOWN;
-        found = shrink(&s, &p);
-        if (round > 0 && extent(&p) > 0.8 * before)
-            break;
-    }
+    whole = whole_front(front, s.direction);
+    p = near ? surroundings(near, &whole) : whole;
+    found = shrink_on(&s, &p, near ? NEXT_ACROSS : ACROSS,
+                      near ? NEXT_DOWN : DOWN) ||
+            find_spot(&s, &whole, &p);
     if (found)
         *pupil = p;
     return found;

@@ -94,6 +94,30 @@ static void test_itoh(void **state)
     scan_lens("itoh-zoom-long", 7);
 }
 
+/* The stop is seen so small through this ghost that all of its light comes
+ * through a spot of a twentieth of a millimetre. */
+static void test_spot(void **state)
+{
+    (void)state;
+    load_lens(&lens, "nikon-zoom-short");
+    glint_optics_of(&lens, &optics);
+    glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
+    for (int k = 0; k < 19; k++) {
+        const double t = 0.5 * k * 3.14159265358979 / 180;
+        const double direction[3] = {sin(t), 0, cos(t)};
+        struct glint_pupil box;
+        struct glint_path path;
+        struct glint_ray ray;
+
+        glint_path_init(&path, &lens, &ghosts[87], 532);
+        assert_true(glint_pupil_find(&box, &path, 0.5 * k,
+                                     optics.stop_radius_mm, NULL));
+        assert_true(box.x1_mm - box.x0_mm < 0.1 && box.y1_mm < 0.1);
+        assert_true(
+            passes(&path, 0.5 * (box.x0_mm + box.x1_mm), 0, direction, &ray));
+    }
+}
+
 /* Straight into the stop from far aside nothing gets through. */
 static void test_nothing_gets_through(void **state)
 {
@@ -115,6 +139,7 @@ int main(void)
         cmocka_unit_test(test_heliar),
         cmocka_unit_test(test_angenieux),
         cmocka_unit_test(test_itoh),
+        cmocka_unit_test(test_spot),
         cmocka_unit_test(test_nothing_gets_through),
     };
 
