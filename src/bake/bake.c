@@ -14,7 +14,7 @@
 
 enum {
     FLUX_POWERS = 6,
-    REVISION = 7 /* of what is made of a lens: raised when models change */
+    REVISION = 8 /* of what is made of a lens: raised when models change */
 };
 
 /* Everything one model takes. */
@@ -229,6 +229,7 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
         .barrel = 4e-4 * t,
+        .escape = 1e-3 * t,
         .energy = 1.2e-3 * t,
         .ease = 10,
         .brightness = &k->brightness};

@@ -202,7 +202,8 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
     set_part(f, p, &zone);
     system->wave_lo = f->fit.hunt->wave_lo;
     system->wave_hi = f->fit.hunt->wave_hi;
-    glint_zone_survey_barrels(&zone, f->fit.hunt, &f->survey, &f->fit.rays);
+    glint_zone_survey_barrels(&zone, f->fit.hunt, f->fit.tolerance->escape,
+                              &f->survey, &f->fit.rays);
     if (f->fit.rays.n_barrels > 2 && degrees_between(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
     glint_zone_trace(&zone, f->fit.hunt, &f->fit.rays, &f->fit.energies);

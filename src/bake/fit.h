@@ -32,6 +32,7 @@
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, barrel, energy;
     double faint_sensor_mm; /* the most for any ghost */
+    double escape; /* past a barrel that is left out, relative radius */
     double ease;
     const struct glint_brightness *brightness;
 };

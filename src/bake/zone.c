@@ -420,14 +420,16 @@ static double escapes(const struct survey *s, int *chosen, int n, double *most)
     return sum;
 }
 
-/* Takes barrels, the most useful first, until what escapes does not show. */
-static void choose_barrels(const struct survey *s, struct glint_rays *rays)
+/* Takes barrels, the most useful first, until no ray gets farther past the
+ * others than SHOWS. */
+static void choose_barrels(const struct survey *s, double shows,
+                           struct glint_rays *rays)
 {
     double most;
 
     rays->n_barrels = 0;
     escapes(s, rays->barrel, 0, &most);
-    while (most > 1e-3 && rays->n_barrels < GLINT_MAX_BARRELS) {
+    while (most > shows && rays->n_barrels < GLINT_MAX_BARRELS) {
         const int n = rays->n_barrels;
         double least = HUGE_VAL;
         int best = 0;
@@ -584,14 +586,14 @@ static void trace_energies(const struct glint_zone *zone,
 }
 
 void glint_zone_survey_barrels(const struct glint_zone *zone,
-                               const struct glint_hunt *hunt,
+                               const struct glint_hunt *hunt, double shows,
                                glint_zone_survey *survey,
                                struct glint_rays *rays)
 {
     struct survey s = {.radius = *survey};
 
     run_survey(zone, hunt, &s);
-    choose_barrels(&s, rays);
+    choose_barrels(&s, shows, rays);
 }
 
 void glint_zone_trace(const struct glint_zone *zone,

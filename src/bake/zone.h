@@ -99,9 +99,10 @@ double glint_rays_spread(const struct glint_rays *rays);
 enum { GLINT_SURVEY_RAYS = 6000 };
 typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
 
-/* Chooses the barrels of RAYS. */
+/* Chooses the barrels of RAYS: no ray gets farther past the others than SHOWS,
+ * a relative radius. */
 void glint_zone_survey_barrels(const struct glint_zone *zone,
-                               const struct glint_hunt *hunt,
+                               const struct glint_hunt *hunt, double shows,
                                glint_zone_survey *survey,
                                struct glint_rays *rays);
 
