@@ -57,7 +57,8 @@ struct glint_tracks_config {
     int32_t match_q15;  /* of the width: how far a spot may be from where the
                            track should be */
     int32_t cut_q15;    /* of the flux: a cut is where as much of it goes and
-                           as much is new; above 32768: never */
+                           as much is new, or three lights or more go or come
+                           all at once; above 32768: never */
     int32_t attack_ms;  /* from 0 to full level, or to a greater flux */
     int32_t release_ms; /* the other way */
     int32_t leave_ms;   /* the same for lamps that left the picture */

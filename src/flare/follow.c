@@ -32,6 +32,11 @@ int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us)
     return (int32_t)((((int64_t)elapsed_us << 15) + sum / 2) / sum);
 }
 
+int32_t glint_pace_share_q15(int32_t elapsed_us, int32_t time_us)
+{
+    return q_clamp_sat(((int64_t)elapsed_us << 15) / time_us, 0, ONE_Q15);
+}
+
 struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us)
 {
     return (struct glint_pace){
@@ -48,8 +53,8 @@ void glint_follow_start(struct glint_follow *f, int64_t value, int64_t spread)
 void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
                         int32_t time_us)
 {
-    const int64_t part_q15 = ((int64_t)elapsed_us << 15) / time_us;
-    const int64_t step = part_of(f->stride, q_clamp_sat(part_q15, 0, ONE_Q15));
+    const int64_t step =
+        part_of(f->stride, glint_pace_share_q15(elapsed_us, time_us));
 
     if (size_of(f->offset) <= step)
         f->offset = f->stride = 0;

@@ -45,6 +45,9 @@ struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us);
  * that time goes; TIME_US >= 1. */
 int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us);
 
+/* ELAPSED_US / TIME_US, 1 at most: the part of the way at a steady speed. */
+int32_t glint_pace_share_q15(int32_t elapsed_us, int32_t time_us);
+
 /* Begins at VALUE, whose errors are taken to be SPREAD until they are known. */
 void glint_follow_start(struct glint_follow *f, int64_t value, int64_t spread);
 

@@ -250,14 +250,16 @@ static void follow_light(struct glint_record *r,
     const int64_t before = f->value, shown = glint_follow_shown(f);
     const int64_t larger = target > before ? target : before;
     const int64_t floor = floor_of(channel, larger);
+    int32_t share_q15;
     int64_t change;
 
     glint_follow_step_q15(
         f, target, floor, &step->pace,
         judge_light(target - before, larger, floor, is_repeat));
     change = f->value - before;
-    if (f->offset != 0 || size_of(change) > larger * step->pace.elapsed_us /
-                                                blend_us(step->cfg, change))
+    share_q15 = glint_pace_share_q15(step->pace.elapsed_us,
+                                     blend_us(step->cfg, change));
+    if (f->offset != 0 || size_of(change) > (larger * share_q15) >> 15)
         glint_follow_jump(f, f->value, shown);
 }
 
@@ -321,6 +323,22 @@ void glint_record_see(struct glint_record *r,
     r->lost_us = 0;
 }
 
+/* So far out that it never comes back, or into any picture's flare. */
+static int is_far(const struct glint_record *r)
+{
+    const int64_t limit_q16 = (int64_t)4 * GLINT_MAX_SIDE << 16;
+
+    return size_of(r->of[X].value) > limit_q16 ||
+           size_of(r->of[X + 1].value) > limit_q16;
+}
+
+static int is_over(const struct glint_record *r,
+                   const struct glint_record_step *step)
+{
+    return r->level_q30 == 0 && (r->state == GLINT_TRACK_LEAVING ||
+                                 r->lost_us / 1000 >= step->cfg->memory_ms);
+}
+
 void glint_record_miss(struct glint_record *r,
                        const struct glint_record_step *step)
 {
@@ -330,8 +348,7 @@ void glint_record_miss(struct glint_record *r,
             is_leaving(r, step) ? GLINT_TRACK_LEAVING : GLINT_TRACK_FADING;
     coast(r, step);
     r->lost_us += step->pace.elapsed_us > 0 ? step->pace.elapsed_us : 1;
-    if (r->level_q30 == 0 && (r->state == GLINT_TRACK_LEAVING ||
-                              r->lost_us / 1000 >= step->cfg->memory_ms))
+    if (is_over(r, step) || is_far(r))
         r->id = 0;
 }
 

@@ -14,7 +14,13 @@
 #include "flare/match.h"
 #include "flare/record.h"
 
-enum { MAX_SPOTS = 1024, MAX_TRACKS = 1024, MAX_MS = 60000, FEW_SPOTS = 8 };
+enum {
+    MAX_SPOTS = 1024,
+    MAX_TRACKS = 1024,
+    MAX_MS = 60000,
+    FEW_SPOTS = 8,
+    MANY_LIGHTS = 3
+};
 
 #define MAX_ELAPSED_US 10000000
 #define REACH_US       1000000 /* a lost light may be as far again */
@@ -187,9 +193,19 @@ static int64_t kept_of(const struct glint_seeker *s,
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-static int is_most(const struct glint_tracks *t, int64_t part, int64_t whole)
+/* One side of a cut: what is seen in one picture, and what of it both have. */
+struct side {
+    int64_t flux, kept;
+    int n;
+};
+
+/* Whether most of A is not in B. Where nothing is seen on this side, many
+ * lights on the other speak for a cut: they came or went all at once. */
+static int is_apart(const struct glint_tracks *t, const struct side *a,
+                    const struct side *b)
 {
-    return whole > 0 && part >= (whole * t->cfg.cut_q15) >> 15;
+    return a->flux > 0 ? a->flux - a->kept >= (a->flux * t->cfg.cut_q15) >> 15
+                       : b->n >= MANY_LIGHTS;
 }
 
 /* Whether most of what was seen is gone and most of what is seen is new. */
@@ -197,22 +213,27 @@ static int is_cut(const struct glint_tracks *t, const struct glint_spot *spots,
                   int n)
 {
     const int64_t limit2_q16 = near2_q16(t, n);
-    int64_t before = 0, now = 0, kept = 0;
+    struct side before = {0, 0, 0}, now = {0, 0, 0};
 
     for (int i = 0; i < n; i++)
-        if (!spots[i].faint || t->match.taken[i])
-            now += glint_record_flux_q16(&spots[i]);
+        if (!spots[i].faint || t->match.taken[i]) {
+            now.flux += glint_record_flux_q16(&spots[i]);
+            now.n++;
+        }
     for (int i = 0; i < t->match.n_seekers; i++) {
         const struct glint_seeker *s = &t->match.seeker[i];
         const struct glint_spot *last = &t->record[t->owner[i]].last;
+        const int64_t kept =
+            s->spot < 0 ? 0 : kept_of(s, last, &spots[s->spot], limit2_q16);
 
+        now.kept += kept;
         if (s->is_lost)
             continue;
-        before += glint_record_flux_q16(last);
-        if (s->spot >= 0)
-            kept += kept_of(s, last, &spots[s->spot], limit2_q16);
+        before.flux += glint_record_flux_q16(last);
+        before.kept += kept;
+        before.n++;
     }
-    return is_most(t, before - kept, before) && is_most(t, now - kept, now);
+    return is_apart(t, &before, &now) && is_apart(t, &now, &before);
 }
 
 /* Gives each track its spot, or after a cut none. */

@@ -568,6 +568,33 @@ static void test_cut_restarts_in_one_frame(void **state)
     night_close(&night);
 }
 
+/* Three lamps that go or come all at once are a cut to the dark or from it; two
+ * may be behind something, and fade. */
+static void test_cut_to_the_dark(void **state)
+{
+    static const struct night_lamp lamp[] = {
+        {60, 50, 6, 3}, {200, 120, 5, 2}, {120, 160, 4, 4}};
+
+    (void)state;
+    for (int n = 2; n <= 3; n++) {
+        open_night(320, 200, 2);
+        for (int frame = 0; frame < 5; frame++)
+            night_step(&night, lamp, n, FPS30);
+        night_step(&night, lamp, 0, FPS30);
+        assert_int_equal(night.n_tracks, n == 3 ? 0 : 2);
+        for (int frame = 0; frame < 20; frame++)
+            night_step(&night, lamp, 0, FPS30);
+        assert_int_equal(night.n_tracks, 0);
+        night_step(&night, lamp, n, FPS30);
+        assert_int_equal(night.n_tracks, n);
+        for (int i = 0; i < n; i++) {
+            assert_int_equal(night.track[i].level_q15 == FULL, n == 3);
+            assert_int_equal(night.track[i].id > (unsigned)n, n == 3);
+        }
+        night_close(&night);
+    }
+}
+
 /* One lamp of three going out, another coming on, a pan: no cuts. */
 static void test_what_is_no_cut(void **state)
 {
@@ -877,6 +904,7 @@ int main(void)
         cmocka_unit_test(test_leaving_lamp_moves_on_and_fades),
         cmocka_unit_test(test_rise_does_not_depend_on_the_rate),
         cmocka_unit_test(test_cut_restarts_in_one_frame),
+        cmocka_unit_test(test_cut_to_the_dark),
         cmocka_unit_test(test_what_is_no_cut),
         cmocka_unit_test(test_a_pole_makes_nothing_pop),
         cmocka_unit_test(test_merging_and_splitting),
