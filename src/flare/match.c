@@ -51,6 +51,8 @@ static int spot_before(const void *ctx, int32_t a, int32_t b)
     const struct glint_spot *spots = ctx;
     int64_t p[SPOT_NUMBERS], q[SPOT_NUMBERS];
 
+    if (spots[a].x_q8 != spots[b].x_q8)
+        return spots[a].x_q8 < spots[b].x_q8;
     list_numbers(&spots[a], p);
     list_numbers(&spots[b], q);
     for (int i = 0; i < SPOT_NUMBERS; i++)
