@@ -191,23 +191,44 @@ static int lamps_of(struct look *look, const struct glint_image *image,
     return n;
 }
 
+/* Whether codes are luma and chroma, or grey: then black may be 16. */
+static bool is_luma(enum glint_pixel_format format)
+{
+    return format != GLINT_RGB24 && format != GLINT_BGR24 &&
+           format != GLINT_XRGB8888 && format != GLINT_RGB565;
+}
+
+/* The codes of black that bytes of plane PLANE have in turn. */
+static void black_of(const struct glint_image *image, int plane,
+                     uint8_t code[2])
+{
+    const bool limited =
+        is_luma(image->format) && image->range == GLINT_RANGE_LIMITED;
+
+    code[0] = code[1] = plane > 0 ? 128 : limited ? 16 : 0;
+    if (image->format == GLINT_YUYV)
+        code[1] = 128;
+    else if (image->format == GLINT_UYVY)
+        code[0] = 128;
+}
+
 /* Black, in the codes of IMAGE. */
 static void blacken(const struct glint_image *image)
 {
     for (int p = 0; p < glint_image_planes(image->format); p++) {
         const int rows =
             glint_image_plane_height(image->format, p, image->height);
-        const int bytes =
-            (int)glint_image_row_bytes(image->format, p, image->width);
-        const int code = p > 0 ? 128
-                         : image->range == GLINT_RANGE_LIMITED &&
-                                 image->format != GLINT_RGB24
-                             ? 16
-                             : 0;
+        const size_t bytes =
+            glint_image_row_bytes(image->format, p, image->width);
+        uint8_t code[2];
 
-        for (int y = 0; y < rows; y++)
-            memset(image->plane[p] + y * image->stride_bytes[p], code,
-                   (size_t)bytes);
+        black_of(image, p, code);
+        for (int y = 0; y < rows; y++) {
+            uint8_t *row = image->plane[p] + y * image->stride_bytes[p];
+
+            for (size_t i = 0; i < bytes; i++)
+                row[i] = code[i & 1];
+        }
     }
 }
 

@@ -258,6 +258,42 @@ static void silence_and_snapshot(int wait)
         raise(SIGUSR2);
 }
 
+static void snapshot_at_2(int wait)
+{
+    if (wait == 2)
+        raise(SIGUSR2);
+}
+
+/* The flare alone is on black, in every kind of codes. */
+static void test_black(void **state)
+{
+    static const uint32_t kind[] = {V4L2_PIX_FMT_YUYV,  V4L2_PIX_FMT_UYVY,
+                                    V4L2_PIX_FMT_NV12,  V4L2_PIX_FMT_BGR24,
+                                    V4L2_PIX_FMT_RGB24, V4L2_PIX_FMT_RGB565,
+                                    V4L2_PIX_FMT_GREY};
+
+    (void)state;
+    for (size_t i = 0; i < 2 * sizeof kind / sizeof *kind; i++) {
+        const char *rgb;
+
+        fake_camera_reset();
+        camera.mode[0].fourcc = camera.now.fourcc = kind[i / 2];
+        script = snapshot_at_2;
+        assert_int_equal(
+            live(i % 2 ? "--count 3 --layer flare --exposure -60 --range full "
+                         "--snapshot /tmp/glint-test-live-%02d.ppm"
+                       : "--count 3 --layer flare --exposure -60 --range "
+                         "limited --snapshot /tmp/glint-test-live-%02d.ppm"),
+            EXIT_OK);
+        must_leave_nothing();
+        rgb = snapshot(1) + strlen("P6\n64 48\n255\n");
+        for (int k = 0; k < 3 * 64 * 48; k++)
+            if (rgb[k] != 0)
+                fail_msg("%.4s: byte %d is %d", (const char *)&kind[i / 2], k,
+                         rgb[k]);
+    }
+}
+
 /* It waits for the next frame, and so does the program. */
 static void test_snapshot_waits(void **state)
 {
@@ -374,6 +410,7 @@ int main(void)
         cmocka_unit_test(test_skip),
         cmocka_unit_test(test_reloads),
         cmocka_unit_test(test_bad_reloads),
+        cmocka_unit_test(test_black),
         cmocka_unit_test(test_snapshot_waits),
         cmocka_unit_test(test_unplugged),
         cmocka_unit_test(test_comes_back),
