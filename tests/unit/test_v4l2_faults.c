@@ -445,6 +445,20 @@ static void test_signal_lost(void **state)
     }
 }
 
+/* Without one there are no timings to set; what the input has will do. */
+static void test_no_signal_yet(void **state)
+{
+    (void)state;
+    use_hdmi();
+    camera.has_signal = false;
+    must_open(NULL);
+    assert_false(v4l2.device.has_signal);
+    assert_int_equal(camera.n_s_dv_timings, 0);
+    fake_camera_deliver(0, 1);
+    must_get(1);
+    must_close();
+}
+
 /* Changes without a frame between them, for longer than patience: a cable
  * being plugged in. */
 static void test_signal_wavers(void **state)
@@ -619,6 +633,7 @@ int main(void)
         cmocka_unit_test(test_source_changes),
         cmocka_unit_test(test_timings_change),
         cmocka_unit_test(test_signal_lost),
+        cmocka_unit_test(test_no_signal_yet),
         cmocka_unit_test(test_signal_wavers),
         cmocka_unit_test(test_endless_changes),
         cmocka_unit_test(test_anew_otherwise),
