@@ -293,8 +293,9 @@ static int32_t elapsed_us(struct live *l, int64_t time_us)
                                          : (int32_t)elapsed;
 }
 
-/* Draws FRAME and shows it. Returns -1 to go on. */
-static int show(struct live *l, const struct glint_source_frame *frame)
+/* Draws FRAME, asked for at TAKEN_US, and shows it. Returns -1 to go on. */
+static int show(struct live *l, const struct glint_source_frame *frame,
+                int64_t taken_us)
 {
     struct look *look = &l->o->look;
     const struct glint_image *image = &frame->image;
@@ -303,7 +304,7 @@ static int show(struct live *l, const struct glint_source_frame *frame)
     int64_t at_us[4];
     int code;
 
-    at_us[0] = glint_v4l2_now_us();
+    at_us[0] = taken_us; /* a JPEG was decoded since */
     if (!frame->cached)
         image = live_copy(&l->copy, image);
     code = image ? take_size(l, image) : tool_fail(l->tool, GLINT_E_MEMORY, "");
@@ -350,6 +351,7 @@ static int step(struct live *l)
     struct glint_source_frame frame;
     struct glint_error error = {""};
     const int n_restarts = l->camera.n_restarts;
+    const int64_t taken_us = glint_v4l2_now_us();
     const enum glint_status status = source->next(source, &frame, &error);
     int code = -1;
 
@@ -365,7 +367,7 @@ static int step(struct live *l)
     if (l->o->skip > 0)
         l->o->skip--;
     else
-        code = show(l, &frame);
+        code = show(l, &frame, taken_us);
     source->done(source, &frame);
     return code;
 }
@@ -408,7 +410,9 @@ static void report(struct live *l)
 {
     const int64_t now_us = glint_v4l2_now_us();
 
-    if (!live_stats_due(&l->stats, now_us) && !live_signal(LIVE_REPORT_NOW))
+    const bool is_asked = live_signal(LIVE_REPORT_NOW);
+
+    if (!live_stats_due(&l->stats, now_us) && !is_asked)
         return;
     print_report(l, false);
     live_stats_next(&l->stats, now_us);

@@ -143,6 +143,8 @@ bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
                             struct glint_image *image)
 {
     const bool rgb = is_rgb(image->format);
+    /* sensors without colour use all codes, and so does vivid */
+    const bool is_grey = image->format == GLINT_GREY;
     const uint32_t space = colour->colorspace;
     uint32_t enc = colour->ycbcr_enc;
     uint32_t quantization = colour->quantization;
@@ -151,7 +153,8 @@ bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
     if (enc == V4L2_YCBCR_ENC_DEFAULT)
         enc = V4L2_MAP_YCBCR_ENC_DEFAULT(space);
     if (quantization == V4L2_QUANTIZATION_DEFAULT)
-        quantization = V4L2_MAP_QUANTIZATION_DEFAULT(rgb, space, enc);
+        quantization =
+            V4L2_MAP_QUANTIZATION_DEFAULT(rgb || is_grey, space, enc);
     if (xfer == V4L2_XFER_FUNC_DEFAULT)
         xfer = V4L2_MAP_XFER_FUNC_DEFAULT(space);
     image->range = rgb || quantization == V4L2_QUANTIZATION_FULL_RANGE

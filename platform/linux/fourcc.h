@@ -38,7 +38,8 @@ struct glint_v4l2_colour {
 };
 
 /* Sets range, matrix and transfer of IMAGE, whose format is set, from COLOUR;
- * where it says "default", by the rules of videodev2.h. False: it says what
+ * where it says "default", by the rules of videodev2.h, but grey
+ * of full range. False: it says what
  * glint has no word for (BT.2020, linear, RGB of limited range ...), and the
  * nearest is set. */
 bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,

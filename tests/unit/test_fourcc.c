@@ -141,6 +141,8 @@ static void test_colour_defaults(void **state)
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
     assert_true(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
+    assert_true(read_colour(&i, GLINT_GREY, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_int_equal(i.range, GLINT_RANGE_FULL);
 }
 
 static void test_colour_stated(void **state)
