@@ -409,7 +409,6 @@ static void print_report(const struct live *l, bool total)
 static void report(struct live *l)
 {
     const int64_t now_us = glint_v4l2_now_us();
-
     const bool is_asked = live_signal(LIVE_REPORT_NOW);
 
     if (!live_stats_due(&l->stats, now_us) && !is_asked)

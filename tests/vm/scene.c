@@ -3,8 +3,8 @@
  * scene [-n FRAMES] [-m DX,DY] [-s SIGMA] YUYV|NV12|y4m WxH OUT [X,Y,R]...
  *
  * A night with lamps at X, Y (pixels) of radius R, that move by DX, DY each
- * frame, under noise of SIGMA codes: frames as a camera would send them, the
- * same on every run. y4m has the samples of YUYV.
+ * frame, under noise of SIGMA codes, over colour bars: frames as a camera would
+ * send them, the same on every run. y4m has the samples of YUYV.
  */
 #include <math.h>
 #include <stdint.h>
@@ -58,23 +58,62 @@ static uint8_t luma_at(const struct scene *s, int frame, int x, int y)
     return (uint8_t)fmax(16, fmin(235, floor(v + 0.5)));
 }
 
+/* Y, Cb, Cr of the bar at X: BT.709, 75 %, white to black. */
+static const uint8_t *bar_at(const struct scene *s, int x)
+{
+    static const uint8_t bar[8][3] = {
+        {180, 128, 128}, {168, 44, 136}, {145, 147, 44}, {133, 63, 52},
+        {63, 193, 204},  {51, 109, 212}, {28, 212, 120}, {16, 128, 128}};
+
+    return bar[8 * x / s->width];
+}
+
+/* Bars fill the lowest sixth. */
+static int is_bar(const struct scene *s, int y)
+{
+    return y >= s->height - s->height / 6;
+}
+
+static uint8_t chroma_at(const struct scene *s, int x, int y, int which)
+{
+    return is_bar(s, y) ? bar_at(s, x)[which] : 128;
+}
+
+static void put_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
+{
+    for (int y = 0; y < s->height; y++)
+        for (int x = 0; x < s->width; x++) {
+            putc(luma[y * s->width + x], file);
+            putc(chroma_at(s, x & ~1, y, 1 + (x & 1)), file);
+        }
+}
+
+/* Chroma of two planes, halved across; or interleaved and halved both ways. */
+static void put_planes(const struct scene *s, const uint8_t *luma, int nv12,
+                       FILE *file)
+{
+    fwrite(luma, 1, (size_t)s->width * (size_t)s->height, file);
+    if (nv12)
+        for (int y = 0; y < s->height; y += 2)
+            for (int x = 0; x < s->width; x++)
+                putc(chroma_at(s, x & ~1, y, 1 + (x & 1)), file);
+    else
+        for (int which = 1; which <= 2; which++)
+            for (int y = 0; y < s->height; y++)
+                for (int x = 0; x < s->width; x += 2)
+                    putc(chroma_at(s, x, y, which), file);
+}
+
 static void put_frame(const struct scene *s, const char *format,
                       const uint8_t *luma, FILE *file)
 {
-    const size_t n = (size_t)s->width * (size_t)s->height;
-
     if (strcmp(format, "YUYV") == 0) {
-        for (size_t i = 0; i < n; i++) {
-            putc(luma[i], file);
-            putc(128, file);
-        }
+        put_yuyv(s, luma, file);
         return;
     }
     if (strcmp(format, "y4m") == 0)
         fputs("FRAME\n", file);
-    fwrite(luma, 1, n, file);
-    for (size_t i = 0; i < (strcmp(format, "y4m") == 0 ? n : n / 2); i++)
-        putc(128, file);
+    put_planes(s, luma, strcmp(format, "NV12") == 0, file);
 }
 
 int main(int argc, char **argv)
@@ -113,7 +152,8 @@ int main(int argc, char **argv)
     for (int f = 0; f < s.n_frames; f++) {
         for (int y = 0; y < s.height; y++)
             for (int x = 0; x < s.width; x++)
-                luma[y * s.width + x] = luma_at(&s, f, x, y);
+                luma[y * s.width + x] =
+                    is_bar(&s, y) ? bar_at(&s, x)[0] : luma_at(&s, f, x, y);
         put_frame(&s, format, luma, file);
     }
     free(luma);
