@@ -280,11 +280,13 @@ static size_t bytes_for(struct frame *f, int primitives)
     return glint_flare_bytes(&f->cfg);
 }
 
-enum glint_status frame_reserve(struct frame *f, size_t bytes, int n_lamps)
+enum glint_status frame_reserve(struct frame *f, size_t bytes, int n_lamps,
+                                int n_drawn)
 {
     int most = 0;
 
-    f->cfg.max_bundles = bundles_of(f, smaller(f->max_lights, n_lamps));
+    f->max_lights = smaller(f->max_lights, smaller(n_drawn, n_lamps));
+    f->cfg.max_bundles = bundles_of(f, f->max_lights);
     for (int step = 1 << 24; step > 0; step /= 2) {
         const size_t need = bytes_for(f, most + step);
 

@@ -70,10 +70,12 @@ struct frame_report {
 void frame_init(struct frame *frame, const struct glint_setup *setup,
                 struct glint_view view, struct glint_workers *workers);
 
-/* Takes BYTES for all frames to come, of up to N_LAMPS lamps each: nothing is
- * allocated while drawing, and what does not fit is left out and counted.
- * GLINT_E_MEMORY: there are not so many, or they do not hold one light. */
-enum glint_status frame_reserve(struct frame *frame, size_t bytes, int n_lamps);
+/* Takes BYTES for all frames to come, of up to N_LAMPS lamps each, of which
+ * N_DRAWN are drawn and more merge: nothing is allocated while drawing, and
+ * what does not fit is left out and counted. GLINT_E_MEMORY: there are not so
+ * many, or they do not hold one light. */
+enum glint_status frame_reserve(struct frame *frame, size_t bytes, int n_lamps,
+                                int n_drawn);
 
 /* Reads the stop from a mask of NODES^2 distances rather than its sides. */
 enum glint_status frame_use_mask(struct frame *frame, int nodes);

@@ -26,8 +26,9 @@ struct live {
     struct frame asked; /* the look's frame before it was adapted */
     struct live_stats stats;
     int n_shown, n_snapshots;
-    int n_short;     /* frames that did not fit into memory */
-    int64_t time_us; /* of the last frame */
+    struct glint_error why; /* the camera could not be opened, last time */
+    int n_short;            /* frames that did not fit into memory */
+    int64_t time_us;        /* of the last frame */
     enum live_report report;
     int64_t retry_us; /* when a lost output is tried again; 0: never lost */
     bool had_signal;
@@ -108,8 +109,8 @@ static int open_output(struct live *l, const struct glint_image *image)
         return EXIT_OK;
     if (glint_v4l2_now_us() < l->retry_us)
         return EXIT_OK;
-    status = live_output_open(&l->output, image, f->fps_num, f->fps_den,
-                              l->o->fit, &error);
+    status =
+        live_output_open(&l->output, image, f->fps_num, f->fps_den, &error);
     if (status == GLINT_OK)
         say_output(l);
     if (status == GLINT_OK || (l->retry_us && status == GLINT_E_DEVICE)) {
@@ -275,10 +276,14 @@ static int lose_output(struct live *l, enum glint_status status,
 
 static void retry_camera(struct live *l)
 {
-    struct glint_error unsaid;
+    struct glint_error error = {""};
 
-    if (open_camera(l, &unsaid) != GLINT_OK)
-        live_signals_wait(-1, RETRY_MS);
+    if (open_camera(l, &error) == GLINT_OK)
+        return;
+    if (strcmp(error.text, l->why.text) != 0)
+        say(l, error.text);
+    l->why = error;
+    live_signals_wait(-1, RETRY_MS);
 }
 
 /* Since the frame before; of the first, what a frame takes. */
@@ -418,13 +423,13 @@ static void report(struct live *l)
 }
 
 /* The last word: how it went, and what was left out. */
-static void conclude(struct live *l)
+static void conclude(struct live *l, int code)
 {
     const struct live_sums *t = &l->stats.total;
     char text[200];
 
     print_report(l, true);
-    if (l->report != LIVE_REPORT_LINE)
+    if (l->report != LIVE_REPORT_LINE || code != EXIT_OK || l->n_shown == 0)
         return;
     snprintf(text, sizeof text,
              "%d frames, %ld of them not taken by the output; %llu dropped, "
@@ -462,19 +467,35 @@ static int loop(struct live *l)
     return code < 0 ? EXIT_OK : code;
 }
 
+/* What can be told before a lens is baked, is. */
+static enum glint_status look_at_camera(const struct live *l,
+                                        struct glint_error *error)
+{
+    struct glint_v4l2_device device;
+    const enum glint_status status =
+        glint_v4l2_device_attach(&device, l->o->camera.device, error);
+
+    if (status == GLINT_OK)
+        glint_v4l2_device_close(&device);
+    return status;
+}
+
 static int start(struct live *l)
 {
     struct glint_error error = {""};
     struct glint_image image;
-    enum glint_status status;
+    enum glint_status status = look_at_camera(l, &error);
     int code = EXIT_OK;
 
+    if (status != GLINT_OK)
+        return tool_fail(l->tool, status, error.text);
     if (live_output_is_flexible(&l->output))
         code = open_output(l, &(struct glint_image){.width = 0});
     if (code == EXIT_OK)
         code = look_open(l->tool, &l->o->look);
     if (code != EXIT_OK)
         return code;
+    live_signals_take(); /* until here, whoever is impatient may kill it */
     status = open_camera(l, &error);
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, error.text);
@@ -499,10 +520,11 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
                 : tool->quiet                 ? LIVE_REPORT_NONE
                                               : LIVE_REPORT_LINE;
     live_adapt_init(&l->adapt);
-    live_signals_take();
     code = live_output_parse(&l->output, o->output)
                ? EXIT_OK
                : tool_usage(tool, "-o: '%s' is no output", o->output);
+    l->output.fit = o->fit;
+    l->output.dither = o->look.scene.dither;
     l->is_piped =
         l->output.kind == LIVE_OUTPUT_Y4M && strcmp(l->output.path, "-") == 0;
     if (code == EXIT_OK)
@@ -510,7 +532,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     if (code == EXIT_OK) {
         live_stats_start(&l->stats, glint_v4l2_now_us());
         code = loop(l);
-        conclude(l);
+        conclude(l, code);
     }
     if (l->camera.source.fd >= 0)
         l->camera.source.close(&l->camera.source);

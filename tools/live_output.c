@@ -27,10 +27,10 @@ bool live_output_is_flexible(const struct live_output *o)
 }
 
 static enum glint_status open_fb(struct live_output *o,
-                                 enum glint_panel_fit fit,
                                  struct glint_error *error)
 {
-    const struct glint_fbdev_options options = {.fit = fit, .console = true};
+    const struct glint_fbdev_options options = {
+        .fit = o->fit, .dither = o->dither, .console = true};
     const enum glint_status status =
         glint_fbdev_open(&o->as.fb, o->path, &options, error);
 
@@ -51,12 +51,11 @@ static enum glint_status open_v4l2(struct live_output *o,
 
 enum glint_status live_output_open(struct live_output *o,
                                    const struct glint_image *image, int fps_num,
-                                   int fps_den, enum glint_panel_fit fit,
-                                   struct glint_error *error)
+                                   int fps_den, struct glint_error *error)
 {
     switch (o->kind) {
     case LIVE_OUTPUT_FB:
-        return open_fb(o, fit, error);
+        return open_fb(o, error);
     case LIVE_OUTPUT_V4L2:
         return open_v4l2(o, image, fps_num, fps_den, error);
     case LIVE_OUTPUT_Y4M:

@@ -24,7 +24,9 @@ enum live_output_kind {
 
 struct live_output {
     enum live_output_kind kind;
-    const char *path;        /* NULL: the default */
+    const char *path; /* NULL: the default */
+    enum glint_panel_fit fit;
+    bool dither;             /* of panels with 16 bits a pixel */
     struct glint_sink *sink; /* NULL: closed */
     union {
         struct glint_fbdev fb;
@@ -43,8 +45,7 @@ bool live_output_is_flexible(const struct live_output *output);
 /* IMAGE says format and size; of no meaning to a flexible output. */
 enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
-                                   int fps_den, enum glint_panel_fit fit,
-                                   struct glint_error *error);
+                                   int fps_den, struct glint_error *error);
 
 /* Frames it could not take because it was busy. */
 long live_output_dropped(const struct live_output *output);

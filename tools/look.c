@@ -136,6 +136,16 @@ static enum glint_status open_finder(struct look *look, int width, int height)
     return lamp_finder_open(&look->finder, &cfg);
 }
 
+/* While lamps change places, those that fade are drawn with those that rise. */
+static enum glint_status reserve(struct look *look)
+{
+    const int n_by_hand = look->n_hand + look->list.n;
+
+    return frame_reserve(&look->frame, look->reserve_bytes,
+                         n_by_hand + LAMP_FINDER_MAX,
+                         n_by_hand + 2 * look->finder.max);
+}
+
 int look_size(const struct tool *tool, struct look *look, int width, int height)
 {
     enum glint_status status;
@@ -149,8 +159,7 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
     look->sized = true;
     status = open_finder(look, width, height);
     if (status == GLINT_OK && look->reserve_bytes)
-        status = frame_reserve(&look->frame, look->reserve_bytes,
-                               look->n_hand + look->list.n + look->finder.max);
+        status = reserve(look);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 

@@ -10,23 +10,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "linux/request.h"
 #include "posix/at_death.h"
 #include "posix/error.h"
 
 #ifndef FBIO_WAITFORVSYNC
 #define FBIO_WAITFORVSYNC _IOW('F', 0x20, uint32_t)
 #endif
-
-/* As ioctl(), but not ended by signals. */
-static int request(int fd, unsigned long number, void *arg)
-{
-    int result;
-
-    do
-        result = ioctl(fd, number, arg);
-    while (result < 0 && errno == EINTR);
-    return result;
-}
 
 /* REQUEST failed, as errno says. */
 static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
@@ -179,7 +169,7 @@ static bool pan(struct glint_fbdev *fb, int page)
 
     to.xoffset = 0;
     to.yoffset = (uint32_t)page * fb->var.yres;
-    return request(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
+    return glint_ioctl(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
 }
 
 /* Whether there are two screens to change between. Tried with both black, so
@@ -210,7 +200,7 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
     fb->home = fb->var;
     if (fb->home.yoffset == fb->var.yres)
         fb->home.yoffset = 0; /* as one of us left it who was killed */
-    if (request(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
+    if (glint_ioctl(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
         return lost(fb, "FBIOGET_FSCREENINFO", error);
     status = adopt(fb, &fix, error);
     if (!status)
@@ -245,7 +235,7 @@ static enum glint_status follow_mode(struct glint_fbdev *fb,
 {
     const struct fb_var_screeninfo old = fb->var;
 
-    if (request(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
+    if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
         return lost(fb, "FBIOGET_VSCREENINFO", error);
     return fb->map && is_same_mode(&old, &fb->var) ? GLINT_OK
                                                    : enter_mode(fb, error);
@@ -301,7 +291,7 @@ static enum glint_status draw_seen(struct glint_fbdev *fb,
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
                                   "shows what is not in its memory, at %u, %u",
                                   fb->var.xoffset, first);
-    if (fb->has_vsync && request(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
+    if (fb->has_vsync && glint_ioctl(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
         fb->has_vsync = false;
     draw(fb, image, row_at(fb, first) + left, 0);
     return GLINT_OK;
@@ -387,7 +377,7 @@ static enum glint_status open_device(struct glint_fbdev *fb,
     fb->fd = open(fb->name, O_RDWR | O_CLOEXEC);
     if (fb->fd < 0)
         return report_open(fb, error);
-    if (request(fb->fd, FBIOGET_VSCREENINFO, &fb->var) == 0)
+    if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) == 0)
         return GLINT_OK;
     if (errno == ENOTTY || errno == EINVAL)
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
@@ -413,7 +403,7 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     if (!status && options->console) {
         fb->has_note = !glint_console_take(&fb->console_held, &fb->note);
         /* taking it may have moved what is seen */
-        if (request(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
+        if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
             status = lost(fb, "FBIOGET_VSCREENINFO", error);
     }
     if (!status)

@@ -334,7 +334,9 @@ static enum glint_status next(struct glint_source *source,
     switch (take_newest(v, &newest, frame)) {
     case GLINT_V4L2_TAKEN:
         show(v, &newest, frame);
-        return GLINT_OK;
+        if (frame->image.plane[0] || v->n_useless < USELESS)
+            return GLINT_OK;
+        break;
     case GLINT_V4L2_NOTHING:
         return is_stalled(v) ? start_anew(v, "no frames come", error)
                              : GLINT_OK;

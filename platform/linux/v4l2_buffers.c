@@ -11,7 +11,8 @@
 
 #include "linux/request.h"
 
-#define PAGE 4096
+#define PAGE       4096
+#define MAX_AGE_US 5000000 /* of a frame that comes from the driver */
 
 int64_t glint_v4l2_now_us(void)
 {
@@ -68,12 +69,19 @@ int glint_v4l2_queue(struct glint_v4l2 *v, int index)
     return 0;
 }
 
+/* v4l2loopback does not say which clock its stamps are of; what lies within
+ * some seconds of the monotonic one is of that. None lies ahead. */
 static int64_t capture_time_us(const struct v4l2_buffer *b)
 {
-    return (b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) ==
-                   V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC
-               ? (int64_t)b->timestamp.tv_sec * 1000000 + b->timestamp.tv_usec
-               : glint_v4l2_now_us();
+    const uint32_t clock = b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
+    const int64_t now_us = glint_v4l2_now_us();
+    const int64_t stamp_us =
+        (int64_t)b->timestamp.tv_sec * 1000000 + b->timestamp.tv_usec;
+    const bool is_it = clock == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC ||
+                       (clock == V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN &&
+                        now_us - stamp_us < MAX_AGE_US);
+
+    return is_it && stamp_us <= now_us ? stamp_us : now_us;
 }
 
 static enum glint_v4l2_outcome outcome_of(int number)

@@ -11,18 +11,8 @@
 #include <linux/videodev2.h>
 
 #include "linux/fourcc.h"
+#include "linux/request.h"
 #include "posix/error.h"
-
-/* As ioctl(), but not ended by signals. */
-static int request(int fd, unsigned long number, void *arg)
-{
-    int result;
-
-    do
-        result = ioctl(fd, number, arg);
-    while (result < 0 && errno == EINTR);
-    return result;
-}
 
 /* WHAT failed, as errno says. */
 static enum glint_status failed(const struct glint_v4l2_sink *out,
@@ -51,7 +41,7 @@ static enum glint_status check_node(struct glint_v4l2_sink *out,
     struct v4l2_capability cap = {.capabilities = 0};
     uint32_t can;
 
-    if (request(out->fd, VIDIOC_QUERYCAP, &cap) < 0)
+    if (glint_ioctl(out->fd, VIDIOC_QUERYCAP, &cap) < 0)
         return errno == ENOTTY || errno == EINVAL
                    ? glint_error_report(error, GLINT_E_DEVICE, out->name,
                                         "is not a video device")
@@ -90,7 +80,7 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
     px->quantization = colour.quantization;
     px->xfer_func = colour.xfer_func;
     px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* the last three are meant */
-    if (request(out->fd, VIDIOC_S_FMT, f) < 0)
+    if (glint_ioctl(out->fd, VIDIOC_S_FMT, f) < 0)
         return failed(out, "VIDIOC_S_FMT", error);
     if (glint_fourcc_to_format(px->pixelformat, &format) &&
         format == like->format && px->width == (uint32_t)like->width &&
@@ -112,7 +102,7 @@ static void claim(const struct glint_v4l2_sink *out)
 {
     int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
 
-    request(out->fd, VIDIOC_STREAMON, &type);
+    glint_ioctl(out->fd, VIDIOC_STREAMON, &type);
 }
 
 /* Rates are for readers to know; not every driver cares. */
@@ -124,7 +114,7 @@ static void set_rate(const struct glint_v4l2_sink *out, int num, int den)
         return;
     parm.parm.output.timeperframe.numerator = (uint32_t)den;
     parm.parm.output.timeperframe.denominator = (uint32_t)num;
-    request(out->fd, VIDIOC_S_PARM, &parm);
+    glint_ioctl(out->fd, VIDIOC_S_PARM, &parm);
 }
 
 /* Lays the frame out as the driver said: all planes in one block, the rows of

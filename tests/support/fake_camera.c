@@ -542,7 +542,8 @@ static int dequeue(struct v4l2_buffer *b)
     if (camera.says_index)
         b->index = (uint32_t)camera.says_index - 1;
     b->sequence = f.sequence;
-    b->flags = f.flags | V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+    b->flags = f.flags | (f.unknown_clock ? V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN
+                                          : V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC);
     b->timestamp.tv_sec = f.time_us / 1000000;
     b->timestamp.tv_usec = f.time_us % 1000000;
     for (int k = 0; k < blocks_of(camera.now.fourcc); k++) {

@@ -34,8 +34,9 @@ struct fake_frame {
     uint32_t bytesused[3]; /* 0: all, unless is_odd */
     uint32_t data_offset[3];
     int64_t time_us;
-    bool is_odd; /* bytesused is meant */
-    int error;   /* DQBUF fails with this instead */
+    bool unknown_clock; /* that time_us is of */
+    bool is_odd;        /* bytesused is meant */
+    int error;          /* DQBUF fails with this instead */
 };
 
 struct fake_buffer {

@@ -263,7 +263,7 @@ static void integers(struct glint_view view, const struct glint_lamp *lamps,
     assert_int_equal(
         frame_draw_alone(&frame, lamps, n_lamps, 1, linear, report), GLINT_OK);
     for (int i = 0; i < 3 * view.width * view.height; i++)
-        out[i] = linear[i];
+        out[i] = (double)linear[i];
     frame_finish(&frame);
 }
 

@@ -112,7 +112,8 @@ static void test_same_as_grown(void **state)
 
     (void)state;
     make(&reserved);
-    assert_int_equal(frame_reserve(&reserved, 8 << 20, N_LAMPS), GLINT_OK);
+    assert_int_equal(frame_reserve(&reserved, 8 << 20, N_LAMPS, N_LAMPS),
+                     GLINT_OK);
     assert_true(reserved.bytes <= 8 << 20);
     for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
         n_asked = 0;
@@ -153,7 +154,7 @@ static void test_too_little(void **state)
         int lost;
 
         make(&frame);
-        if (frame_reserve(&frame, bytes, N_LAMPS) != GLINT_OK) {
+        if (frame_reserve(&frame, bytes, N_LAMPS, N_LAMPS) != GLINT_OK) {
             frame_finish(&frame);
             break;
         }
@@ -171,7 +172,8 @@ static void test_too_little(void **state)
     assert_true(n_lost >= 5);
     assert_true(n_darker >= 5);
     make(&frame);
-    assert_int_equal(frame_reserve(&frame, 1000, N_LAMPS), GLINT_E_MEMORY);
+    assert_int_equal(frame_reserve(&frame, 1000, N_LAMPS, N_LAMPS),
+                     GLINT_E_MEMORY);
     frame_finish(&frame);
 }
 
@@ -185,7 +187,8 @@ static void test_more_lamps(void **state)
     (void)state;
     make(&frame);
     frame.max_lights = 2;
-    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS), GLINT_OK);
+    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS, N_LAMPS),
+                     GLINT_OK);
     n_asked = 0;
     draw(&frame, N_LAMPS, got, &report);
     assert_int_equal(n_asked, 0);
@@ -213,7 +216,8 @@ static void test_retune(void **state)
 
     (void)state;
     make(&frame);
-    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS), GLINT_OK);
+    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS, N_LAMPS),
+                     GLINT_OK);
     for (size_t i = 0; i < sizeof setting / sizeof *setting; i++) {
         struct frame *const both[2] = {&frame, &fresh};
 

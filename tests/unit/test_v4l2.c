@@ -467,6 +467,33 @@ static void test_newest(void **state)
     must_close();
 }
 
+static int64_t stamp_of(int64_t stamp_us, bool unknown_clock)
+{
+    struct fake_frame *f = fake_camera_deliver(0, 1);
+
+    f->time_us = stamp_us;
+    f->unknown_clock = unknown_clock;
+    must_get(1);
+    return frame.time_us;
+}
+
+/* A stamp of no clock in particular is believed if it can be; none lies ahead.
+ */
+static void test_stamps(void **state)
+{
+    const int64_t now_us = fake_camera_now();
+
+    (void)state;
+    fake_camera_reset();
+    must_open(NULL);
+    assert_int_equal(stamp_of(now_us - 30000, false), now_us - 30000);
+    assert_int_equal(stamp_of(now_us - 30000, true), now_us - 30000);
+    assert_int_equal(stamp_of(now_us - 9000000, true), now_us);
+    assert_int_equal(stamp_of(now_us + 5000, false), now_us);
+    assert_int_equal(stamp_of(now_us + 5000, true), now_us);
+    must_close();
+}
+
 /* The lent frame stays as it is while others come and go. */
 static void test_lent(void **state)
 {
@@ -685,6 +712,7 @@ int main(void)
         cmocka_unit_test(test_damaged),
         cmocka_unit_test(test_damaged_among_whole),
         cmocka_unit_test(test_newest),
+        cmocka_unit_test(test_stamps),
         cmocka_unit_test(test_lent),
         cmocka_unit_test(test_sequence),
         cmocka_unit_test(test_gaps_add_up),

@@ -6,6 +6,7 @@
 #include "support/camera_check.h"
 
 #include <linux/videodev2.h>
+#include "jpeg/mjpeg.h"
 
 /* ------------------------------------------------------------------ requests
  */
@@ -258,17 +259,24 @@ static void test_gone(void **state)
     }
 }
 
-static void test_all_damaged(void **state)
+/* Frames that the driver says are damaged, or that do not decode. */
+static void damaged_to_the_end(bool as_jpeg)
 {
+    static const char garbage[] = "not a JPEG at all";
     uint32_t sequence = 0;
     enum glint_status status = GLINT_OK;
     int n_corrupt = 0, n_frames;
 
-    (void)state;
     fake_camera_reset();
+    if (as_jpeg)
+        camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
     must_open(NULL);
     for (n_frames = 0; status == GLINT_OK && n_frames < 200; n_frames++) {
-        fake_camera_deliver(sequence++, 1)->flags = V4L2_BUF_FLAG_ERROR;
+        struct fake_frame *f = fake_camera_deliver(sequence++, 1);
+
+        f->flags = as_jpeg ? 0 : V4L2_BUF_FLAG_ERROR;
+        f->data = as_jpeg ? garbage : NULL;
+        f->bytesused[0] = as_jpeg ? sizeof garbage : 0;
         status = next();
         n_corrupt += frame.n_corrupt;
         assert_int_equal(v4l2.n_restarts,
@@ -282,6 +290,14 @@ static void test_all_damaged(void **state)
     assert_int_equal(n_frames, 60); /* two seconds */
     assert_int_equal(n_corrupt, 60);
     must_close();
+}
+
+static void test_all_damaged(void **state)
+{
+    (void)state;
+    damaged_to_the_end(false);
+    if (glint_mjpeg_available())
+        damaged_to_the_end(true);
 }
 
 /* Now and then a whole one is no reason for anything. */
