@@ -484,15 +484,17 @@ static int start(struct live *l)
 {
     struct glint_error error = {""};
     struct glint_image image;
-    enum glint_status status = look_at_camera(l, &error);
+    enum glint_status status;
     int code = EXIT_OK;
 
-    if (status != GLINT_OK)
-        return tool_fail(l->tool, status, error.text);
     if (live_output_is_flexible(&l->output))
         code = open_output(l, &(struct glint_image){.width = 0});
-    if (code == EXIT_OK)
-        code = look_open(l->tool, &l->o->look);
+    if (code != EXIT_OK)
+        return code;
+    status = look_at_camera(l, &error);
+    if (status != GLINT_OK)
+        return tool_fail(l->tool, status, error.text);
+    code = look_open(l->tool, &l->o->look);
     if (code != EXIT_OK)
         return code;
     live_signals_take(); /* until here, whoever is impatient may kill it */

@@ -49,6 +49,8 @@ x86_64)
     live virtio:640x480 x8r8g8b8 640x480
     live cirrus r5g6b5 1024x768
     live vesa:0x310 x1r5g5b5-shifted 640x480
+    live vesa:0x344 a8r8g8b8 1024x768
+    live vfb:640x480-32@60 a8b8g8r8 640x480
     fit=centre live vesa:0x315 r8g8b8 800x600 --fit centre
     ;;
 *)

@@ -10,8 +10,8 @@
 host=build/x86_64
 lens=$(model heliar-tronnier)
 strace=$(command -v strace) || skip "it needs strace"
-make -s --no-print-directory CONFIG=asan OUT=build/asan build/asan/glint || exit
-cp build/asan/glint "$out/glint-asan"
+asan=$(asan_glint) || exit
+cp "$asan" "$out/glint-asan"
 size=64x36
 # a lamp that goes there, out of the picture, and is back
 $host/vm/scene -n 90 -m 1,0.3 YUYV $size "$out/moving" -12,5,4 20,20,3 || exit
