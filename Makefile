@@ -110,6 +110,10 @@ else
 UNIT += config_absent
 endif
 
+ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
+UNIT := $(filter bake exact flare workers output at_death frame live,$(UNIT))
+endif
+
 CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \
         kernels/composite_sse41 kernels/composite_avx2
 CORE_aarch64 := kernels/horner_neon kernels/composite_neon
