@@ -317,7 +317,9 @@ vm-deps:
 	@tools/deps "cameras, panels and ARM in an emulator" qemu-system-x86 \
 	        qemu-system-arm qemu-system-data seabios cpio kmod xz-utils \
 	        device-tree-compiler debian-archive-keyring gcc-aarch64-linux-gnu \
-	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross strace
+	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross strace xxd
+	@[ "$(DEPS)" = no ] || for a in x86_64 $(VM_ARCHS); do \
+	        tests/vm/prepare $$a || exit 1; done
 check-vm: vm-deps
 	@tests/vm/possible $(VM_ARCHS) || exit 0; set -e; \
 	for a in x86_64 $(VM_ARCHS); do tests/vm/prepare $$a; \
