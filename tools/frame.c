@@ -9,9 +9,6 @@
 #include "frame_feed.h"
 #include "tool.h"
 
-/* Hundreds of ghosts that each stay below half a code can be seen together. */
-#define FAINTEST_CODES 0.125
-
 /* What one frame may take, by edges and by cells. */
 enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_CELLS = 65535 };
 
@@ -29,7 +26,8 @@ void frame_init(struct frame *frame, const struct glint_setup *setup,
                             .max_lights = FRAME_MAX_LIGHTS,
                             .apart_px = FRAME_APART_PX,
                             .max_cells = 64,
-                            .faintest_codes = FAINTEST_CODES,
+                            .faintest_codes = FRAME_CULL_CODES,
+                            .whole_codes = FRAME_WHOLE_CODES,
                             .only_ghost = -1};
     glint_setup_stop(setup, &frame->cfg.stop);
 }
@@ -178,7 +176,8 @@ static struct glint_rays rays_of(const struct frame *f, double faintest_light)
         .uniform = f->uniform,
         .narrow = f->narrow,
         .only_ghost = f->only_ghost,
-        .faintest = glint_real_of(faintest_light)};
+        .faintest = glint_real_of(faintest_light),
+        .whole_codes_q8 = (int)lrint(f->whole_codes * 256)};
 }
 
 /* --------------------------------------------------------------------- memory

@@ -21,6 +21,11 @@
 #define FRAME_MAX_LIGHTS 128
 #define FRAME_APART_PX   0.125
 
+/* Codes. Hundreds of ghosts that each stay below half of one can be seen
+ * together. */
+#define FRAME_CULL_CODES  0.125
+#define FRAME_WHOLE_CODES 4.0
+
 struct frame {
     const struct glint_setup *setup;
     const struct glint_lens *lens; /* its model; NULL: exact rays */
@@ -31,6 +36,7 @@ struct frame {
     double apart_px; /* lights whose images are nearer are one */
     int max_cells;
     double faintest_codes; /* codes near black that a ghost may stay below */
+    double whole_codes;    /* edges of less lie on whole pixels */
     bool uniform;          /* the same grid for all ghosts */
     bool narrow;           /* rays in 16-bit lanes */
     int only_ghost;        /* -1: all */

@@ -19,6 +19,8 @@ void scene_defaults(struct scene *scene)
                             .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
+                            .whole_codes = FRAME_WHOLE_CODES,
+                            .cull_codes = FRAME_CULL_CODES,
                             .antialias = true};
 }
 
@@ -75,7 +77,8 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
-/* Sets the grid, the steps of irradiance, and how exact a model is that is
+/* Sets the grid, the steps of irradiance, which edges lie on whole pixels, and
+ * how exact a model is that is
  * baked for it. */
 static bool take_quality(const char *text, struct scene *s)
 {
@@ -88,6 +91,7 @@ static bool take_quality(const char *text, struct scene *s)
     s->grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
     s->tolerance = q <= 0.25 ? 4 : q < 0.75 ? 1 : 0.25;
     s->quantum = exp2(4 - 8 * q); /* 1 percent by default */
+    s->whole_codes = FRAME_WHOLE_CODES * exp2(2 - 4 * q);
     return true;
 }
 
@@ -148,6 +152,12 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_QUANTUM:
         return tool_number(value, &s->quantum) && s->quantum >= 0 &&
                s->quantum <= 50;
+    case OPT_WHOLE:
+        return tool_number(value, &s->whole_codes) && s->whole_codes >= 0 &&
+               s->whole_codes <= 100;
+    case OPT_CULL:
+        return tool_number(value, &s->cull_codes) && s->cull_codes >= 0 &&
+               s->cull_codes <= 100;
     case OPT_QUALITY:
         return take_quality(value, s);
     case OPT_RAYS:
@@ -369,6 +379,8 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
         scene->quantum > 0
             ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / scene->quantum)))
             : 0;
+    frame->whole_codes = scene->whole_codes;
+    frame->faintest_codes = scene->cull_codes;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
     frame->cfg.antialias = scene->antialias;

@@ -36,6 +36,7 @@ struct scene {
 
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma, quantum;
+    double whole_codes, cull_codes; /* see struct frame */
     enum glint_raster raster;
     enum glint_weights weights;
     bool uniform, narrow, antialias, dither, has_exposure, balance;
@@ -61,6 +62,8 @@ enum scene_option {
     OPT_NO_ANTIALIAS,
     OPT_DITHER,
     OPT_QUANTUM,
+    OPT_WHOLE,
+    OPT_CULL,
     OPT_QUALITY,
     OPT_RAYS,
     OPT_LANES,
@@ -90,6 +93,8 @@ enum scene_option {
         {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},     \
         {"dither", no_argument, NULL, OPT_DITHER},                 \
         {"quantum", required_argument, NULL, OPT_QUANTUM},         \
+        {"whole", required_argument, NULL, OPT_WHOLE},             \
+        {"cull", required_argument, NULL, OPT_CULL},               \
         {"quality", required_argument, NULL, OPT_QUALITY},         \
         {"rays", required_argument, NULL, OPT_RAYS},               \
         {"lanes", required_argument, NULL, OPT_LANES},             \
@@ -151,6 +156,12 @@ enum scene_option {
     "                      percent, 0 (not) to 50 (default 1); edges "         \
     "between\n"                                                                \
     "                      cells of equal irradiance cost nothing\n"           \
+    "  --whole CODES       of pictures in codes: edges across which light "    \
+    "changes\n"                                                                \
+    "                      by less lie on whole pixels (default 4)\n"          \
+    "  --cull CODES        of pictures in codes: ghosts that stay below so "   \
+    "many\n"                                                                   \
+    "                      near black are left out (default 0.125)\n"          \
     "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
     "                      where edges agree within GAMMA (default 0,0)\n"     \
     "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \

@@ -112,6 +112,10 @@ struct glint_rays {
      * stays below may be left out, and the fainter a ghost, the coarser its
      * grid and its steps of irradiance. 0: a picture in linear light. */
     struct glint_real faintest;
+    /* Of such a picture: edges across which light changes by less than so many
+     * codes, 0 .. 2^15, lie on whole pixels, which takes a fraction of the
+     * time. 0: none. */
+    int whole_codes_q8;
 };
 
 /* Merges beams in place, and returns how many are left, the brightest first;

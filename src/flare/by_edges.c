@@ -101,6 +101,7 @@ static void emit_bundle(struct glint_flare *f, int bundle,
         glint_plan_transfer(&f->plan, &f->source[bundle], &w->plan->transfer);
         ghost.transfer = &w->plan->transfer;
         ghost.coded = f->plan.rays->faintest.mantissa != 0;
+        ghost.whole_codes_q8 = ghost.coded ? f->plan.rays->whole_codes_q8 : 0;
         ghost.place = glint_plan_place(&f->plan, f->source[bundle].beam);
     }
     glint_ghost_edges_emit(&ghost);

@@ -17,6 +17,21 @@ typedef int32_t point_q8[2];
 /* --------------------------------------------------------------------- edges
  */
 
+/* Whether a change from LIGHT to OTHER is less than what edges need to be
+ * smooth for. */
+static int is_weak(const struct glint_ghost_edges *g, int32_t light,
+                   int32_t other)
+{
+    const int64_t a_q20 = glint_light_q20(light);
+    const int64_t b_q20 = glint_light_q20(other);
+    const uint64_t size = (uint64_t)(a_q20 < 0 ? -a_q20 : a_q20) |
+                          (uint64_t)(b_q20 < 0 ? -b_q20 : b_q20) | 1;
+    const int64_t change_q20 = a_q20 - b_q20;
+    const int32_t weak_q20 = g->rows->weak_q20[bit_length(size) - 1];
+
+    return change_q20 < weak_q20 && change_q20 > -weak_q20;
+}
+
 /* Adds the edge A to B with LIGHT to its inner side and OTHER beyond, if it can
  * change a pixel. */
 static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
@@ -32,7 +47,9 @@ static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
     if (g->n_edges++ >= g->max_edges)
         return;
     glint_edge_set(&edge, a_q8, b_q8, light, other);
-    edge.bundle = g->number;
+    edge.bundle = g->number & 0x7fffffff;
+    if (is_weak(g, light, other))
+        glint_edge_make_whole(&edge);
     g->edge[g->n_edges - 1] = edge;
 }
 
@@ -141,6 +158,22 @@ static void set_steps(struct glint_ghost_edges *g)
         g->rows->steps[log2] = (uint16_t)((steps_q8 + 255) >> 8);
         if (g->coded && log2 <= WHITE_LOG2)
             steps_q8 = steps_q8 > 256 + 32 ? steps_q8 / 8 * 7 : steps_q8;
+    }
+}
+
+/* What a code is worth: its change of light shrinks by 2^(7/12) with each
+ * octave below white down to where codes are linear. */
+static void set_weak(struct glint_ghost_edges *g)
+{
+    const int32_t least_q20 = 318;
+    int32_t code_q20 = 9869; /* at white */
+
+    for (int log2 = OCTAVES - 1; log2 >= 0; log2--) {
+        g->rows->weak_q20[log2] =
+            q_narrow((int64_t)code_q20 * g->whole_codes_q8 >> 8);
+        if (log2 <= WHITE_LOG2)
+            code_q20 =
+                code_q20 * 2 / 3 > least_q20 ? code_q20 * 2 / 3 : least_q20;
     }
 }
 
@@ -447,6 +480,7 @@ void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
 
     ghost->n_edges = ghost->n_dropped = 0;
     set_steps(ghost);
+    set_weak(ghost);
     set_nodes(ghost, 0);
     for (int i = 0; i < n; i++)
         r->light[1][i] = 0;

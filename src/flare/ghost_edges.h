@@ -38,6 +38,8 @@ struct glint_ghost_rows {
     uint8_t beyond[2][GLINT_MAX_CELLS + 1];  /* the picture, on which sides */
     int32_t light[2][GLINT_MAX_CELLS];       /* of cells, packed */
     uint16_t steps[GLINT_LIGHT_OCTAVES];     /* of irradiance, by octave */
+    int32_t weak_q20[GLINT_LIGHT_OCTAVES];   /* smaller changes of light, by its
+                                                octave: on whole pixels */
 };
 
 struct glint_ghost_edges {
@@ -53,6 +55,7 @@ struct glint_ghost_edges {
     int32_t limit_q8;  /* of a cell's light in a pixel, energy 1 */
     int steps;         /* per octave of irradiance; 0: not rounded */
     int coded; /* the picture has codes, which tell less apart of faint light */
+    int whole_codes_q8; /* see struct glint_rays */
     struct glint_ghost_rows *rows;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;

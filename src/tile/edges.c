@@ -28,6 +28,13 @@ int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
     return 1;
 }
 
+/* Half a pixel on, the nearest one is the one that it is in. */
+void glint_edge_make_whole(struct glint_edge *edge)
+{
+    edge->x_q8 += edge->whole ? 0 : 128;
+    edge->whole = 1;
+}
+
 /* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
  * slope is rounded towards 0, so it never lies beyond its ends. */
 static int64_t x_at_q40(const struct glint_edge *e, int32_t y_q8)
@@ -252,6 +259,46 @@ static uint64_t rows_between(int a, int b)
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
+/* All of a row's light from the pixel on that the edge is in there, X_Q40; that
+ * of one left of the picture from its side. */
+static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
+                             int64_t height_q16)
+{
+    const int x = q_narrow(x_q40 >> 40);
+
+    if (x < r->x0 ? r->x0 == 0 : x < r->x1)
+        change(r, mode, x < r->x0 ? 0 : x, units(mode, height_q16));
+}
+
+/* The rows of an edge on whole pixels, from height Y to END. */
+static inline void add_wholes(struct run *r, enum mode mode,
+                              const struct glint_edge *e, int stride,
+                              int32_t y_q8, int32_t end_q8)
+{
+    int64_t x_q40 = x_at_q40(e, y_q8), step_q40;
+
+    if (y_q8 & 255) {
+        const int32_t height_q8 = sooner((y_q8 | 255) + 1, end_q8) - y_q8;
+        const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;
+
+        add_whole(r, mode, x_q40 / 2 + next_q40 / 2, height_q8 * INT64_C(256));
+        next_row(r, stride);
+        x_q40 = next_q40;
+        y_q8 += height_q8;
+    }
+    step_q40 = end_q8 - y_q8 >= 256 ? e->slope_q40 * 256 : 0;
+    x_q40 += step_q40 / 2;
+    for (; end_q8 - y_q8 >= 256; y_q8 += 256) {
+        add_whole(r, mode, x_q40, ONE_Q16);
+        next_row(r, stride);
+        x_q40 += step_q40;
+    }
+    x_q40 -= step_q40 / 2;
+    if (y_q8 < end_q8)
+        add_whole(r, mode, x_q40 + e->slope_q40 * ((end_q8 - y_q8) / 2),
+                  (end_q8 - y_q8) * INT64_C(256));
+}
+
 /* All rows of one channel. */
 static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
                                const struct glint_edge *e, int64_t light,
@@ -264,11 +311,16 @@ static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
     const ptrdiff_t at =
         (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
     struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light, 0};
-    int64_t step_q40, x_q40 = x_at_q40(e, y_q8);
+    int64_t step_q40, x_q40;
 
+    s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
+    if (e->whole) {
+        add_wholes(&r, mode, e, s->stride, y_q8, end_q8);
+        return;
+    }
+    x_q40 = x_at_q40(e, y_q8);
     if (x_q40 >> 40 != x_at_q40(e, end_q8) >> 40)
         r.rise_q32 = rise_of(e->slope_q40);
-    s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
     if (y_q8 & 255) {
         const int32_t height_q8 = sooner((y_q8 | 255) + 1, end_q8) - y_q8;
         const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;

@@ -39,7 +39,7 @@ struct glint_edge {     /* 32 bytes */
     /* Light on its left and right side, packed; negative where a ghost is
      * mirrored. */
     int32_t left, right;
-    uint32_t bundle;
+    unsigned bundle : 31, whole : 1;
 };
 
 /* Light of 25 bits and an exponent: the product of all but the lower five bits
@@ -83,6 +83,11 @@ struct glint_edge_sums {
  * is level. */
 int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
                    const int32_t b_q8[2], int32_t light, int32_t other);
+
+/* Lets the light of EDGE begin at a whole pixel in each row, the nearest one: a
+ * fraction of the work, for changes that hardly show. What cancels still
+ * does, as it is heights that do. */
+void glint_edge_make_whole(struct glint_edge *edge);
 
 /* Puts EDGE, number INDEX, into the tiles it crosses (or counts it): glint_bins
  * with a box for each row of tiles. What lies left of the picture belongs to

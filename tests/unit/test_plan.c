@@ -15,7 +15,9 @@
 #include "base/real.h"
 #include "flare/plan.h"
 #include "glint/flare.h"
+#include "glint/kernels.h"
 #include "support/model_builder.h"
+#include "support/shuffle.h"
 
 enum { WIDTH = 160, HEIGHT = 120 };
 
@@ -276,6 +278,89 @@ static void test_steps_follow_codes(void **state)
     close_fixture(&f);
 }
 
+/* Edges on whole pixels keep all light, and codes are nearly the same. */
+static void test_whole_edges(void **state)
+{
+    static int32_t smooth[3 * WIDTH * HEIGHT], whole[3 * WIDTH * HEIGHT];
+    struct glint_flare_stats s;
+    struct fixture f;
+    int n_changed = 0;
+
+    (void)state;
+    open_fixture(&f);
+    f.rays.faintest = real_of(1, -20);
+    f.cfg.irradiance_steps = 70;
+    for (int e = 8; e > -8; e--) {
+        double flux[2] = {0, 0}, sum = 0;
+
+        f.beam.power = real_of(1, e);
+        f.rays.whole_codes_q8 = 0;
+        draw(&f, smooth, &s);
+        f.rays.whole_codes_q8 = 4 << 8;
+        draw(&f, whole, &s);
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+            const double off = code_of(whole[i]) - code_of(smooth[i]);
+
+            n_changed += whole[i] != smooth[i];
+            flux[0] += smooth[i];
+            flux[1] += whole[i];
+            sum += off * off;
+            assert_true(fabs(off) < 5);
+        }
+        assert_true(sum / (3 * WIDTH * HEIGHT) < 0.05); /* 61 dB */
+        /* the sides of an upright outline may be half a pixel off */
+        assert_true(fabs(flux[1] - flux[0]) < (e > 2 ? 1e-3 : 1e-2) * flux[0]);
+    }
+    assert_true(n_changed > 10000);
+    close_fixture(&f);
+}
+
+/* With every setting of the plan a picture has the same bits whatever the
+ * tiles, the workers, the order of jobs and the kernels. */
+static void test_same_bits(void **state)
+{
+    static const int whole_q8[] = {0, 64, 1024, 1 << 15};
+    static const enum glint_pixel_format formats[] = {GLINT_RGB24, GLINT_YUYV,
+                                                      GLINT_LINEAR_Q20};
+    static int32_t px[2][3 * WIDTH * HEIGHT];
+    uint32_t seed = 7;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    f.cfg.irradiance_steps = 70;
+    f.beam.power = real_of(1, 2);
+    f.rays.faintest = real_of(163, -22);
+    for (int i = 0; i < 4 * 3 * 12; i++) {
+        struct glint_image image = {.format = formats[i / 12 % 3],
+                                    .width = WIDTH - 7,
+                                    .height = HEIGHT - 3};
+        const int first = i % 12 == 0;
+        struct glint_flare_stats s;
+        struct shuffle shuffle;
+
+        shuffle_init(&shuffle, first ? 1 : 1 + i % 3, shuffle_next(&seed));
+        f.rays.whole_codes_q8 = whole_q8[i / 36];
+        f.cfg.width = image.width;
+        f.cfg.height = image.height;
+        f.cfg.workers = &shuffle.workers;
+        f.cfg.tile_log2 = first ? 6 : 3 + (int)(shuffle_next(&seed) % 4);
+        f.cfg.sets = first ? 0 : shuffle_next(&seed) & glint_sets_here();
+        memset(px[!first], 0, sizeof px[0]);
+        glint_image_place(&image, px[!first]);
+        start(&f);
+        glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
+        glint_flare_bin(f.flare, &s);
+        assert_true(s.bundles > 0 && s.dropped_bundles == 0);
+        glint_flare_draw(f.flare, &image);
+        free(f.mem);
+        f.mem = NULL;
+        if (!first)
+            assert_memory_equal(px[0], px[1], sizeof px[0]);
+    }
+    close_fixture(&f);
+}
+
 /* Lights that none shows by itself are seen together, in codes as well. */
 static void test_many_faint_lights(void **state)
 {
@@ -465,6 +550,8 @@ int main(void)
         cmocka_unit_test(test_what_is_seen),
         cmocka_unit_test(test_faint),
         cmocka_unit_test(test_steps_follow_codes),
+        cmocka_unit_test(test_whole_edges),
+        cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_many_faint_lights),
         cmocka_unit_test(test_room),
         cmocka_unit_test(test_rows_and_grids),
