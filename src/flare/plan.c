@@ -5,8 +5,10 @@
 #include "base/real.h"
 
 enum {
-    ACROSS = GLINT_PLAN_ACROSS,
-    DOWN = GLINT_PLAN_DOWN,
+    /* a row is as many rays as are computed at once */
+    FEW_ACROSS = GLINT_RAYS - 1,
+    FEW_DOWN = 4,
+    FEW_INSIDE = 12,
     FINE_LOG2 = 6, /* squares are of differences over so much */
     LEAST = 8,     /* cells a side */
     FOLD_OCTAVES = 3
@@ -22,11 +24,14 @@ static int64_t in_units(const struct glint_transfer *t, int kind, int64_t x_q16)
                         INT64_C(1) << 31);
 }
 
-static void begin(struct glint_plan_survey *s, const struct glint_transfer *t)
+static void begin(struct glint_plan_survey *s, const struct glint_transfer *t,
+                  int across, int down)
 {
     const int64_t near_q16 = 68813; /* 1.05 */
 
-    s->n_bends = s->up = s->down = s->n_inside = 0;
+    s->across = across;
+    s->down = down;
+    s->n_bends = s->n_up = s->n_down = s->n_inside = 0;
     s->low = INT32_MAX;
     s->high = -INT32_MAX;
     s->wide = s->energy = 0;
@@ -54,28 +59,29 @@ static int is_inside(const struct glint_plan_survey *s,
     return 1;
 }
 
-/* Rays of row J, v = J / DOWN. */
+/* Rays of row J, v = J / s->down. */
 static void survey_row(struct glint_plan_survey *s, struct glint_transfer *t,
                        int j)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     struct glint_plan_node *row = s->row[j % 3];
 
-    for (int first = 0; first <= ACROSS; first += GLINT_RAYS) {
+    for (int first = 0; first <= s->across; first += GLINT_RAYS) {
         int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
 
         for (int i = 0; i < GLINT_RAYS; i++)
-            u_q30[i] = first + i < ACROSS
-                           ? one_q30 / (ACROSS / 2) * (first + i) - one_q30
+            u_q30[i] = first + i < s->across
+                           ? 2 * (one_q30 / s->across) * (first + i) - one_q30
                            : one_q30;
-        glint_transfer_rays(t, one_q30 / DOWN * j, u_q30, first == 0, out);
-        for (int i = 0; i < GLINT_RAYS && first + i <= ACROSS; i++) {
+        glint_transfer_rays(t, one_q30 / s->down * j, u_q30, first == 0, out);
+        for (int i = 0; i < GLINT_RAYS && first + i <= s->across; i++) {
             struct glint_plan_node *n = &row[first + i];
 
             for (int k = 0; k < s->n_kinds; k++)
                 n->at[s->kind[k]] = out[s->kind[k]][i];
             n->at[GLINT_OUT_ENERGY] = out[GLINT_OUT_ENERGY][i];
-            n->inside = is_inside(s, t, n->at) && !(t->hollow && 2 * j < DOWN);
+            n->inside =
+                is_inside(s, t, n->at) && !(t->hollow && 2 * j < s->down);
         }
     }
 }
@@ -118,8 +124,8 @@ static void add_cell(struct glint_plan_survey *s,
 
     if (!(a->inside || b->inside || c->inside))
         return;
-    s->up += turn > 0;
-    s->down += turn < 0;
+    s->n_up += turn > 0;
+    s->n_down += turn < 0;
     s->least_area = area < s->least_area ? area : s->least_area;
 }
 
@@ -138,22 +144,23 @@ static void add_extent(struct glint_plan_survey *s,
                                                     : s->energy;
 }
 
-static void run_survey(struct glint_plan_survey *s, struct glint_transfer *t)
+static void run_survey(struct glint_plan_survey *s, struct glint_transfer *t,
+                       int across, int down)
 {
-    begin(s, t);
-    for (int j = 0; j <= DOWN; j++) {
+    begin(s, t, across, down);
+    for (int j = 0; j <= down; j++) {
         const struct glint_plan_node *here = s->row[j % 3];
         const struct glint_plan_node *above = s->row[(j + 2) % 3];
         const struct glint_plan_node *top = s->row[(j + 1) % 3];
 
         survey_row(s, t, j);
-        for (int i = 0; i <= ACROSS; i++) {
+        for (int i = 0; i <= across; i++) {
             add_extent(s, &here[i]);
-            if (i > 0 && i < ACROSS)
-                add_bend(s, &here[i - 1], &here[i], &here[i + 1], ACROSS);
+            if (i > 0 && i < across)
+                add_bend(s, &here[i - 1], &here[i], &here[i + 1], across);
             if (j > 1)
-                add_bend(s, &top[i], &above[i], &here[i], 2 * DOWN);
-            if (j > 0 && i < ACROSS)
+                add_bend(s, &top[i], &above[i], &here[i], 2 * down);
+            if (j > 0 && i < across)
                 add_cell(s, &above[i], &above[i + 1], &here[i]);
         }
     }
@@ -189,7 +196,7 @@ static int64_t bend_of(const struct glint_plan_survey *s, int a, int b)
 static int cells_for_codes(const struct glint_plan_survey *s,
                            struct glint_real light, int n)
 {
-    const int folded = s->up && s->down;
+    const int folded = s->n_up && s->n_down;
     int octaves = -(light.exponent + 31) - (folded ? FOLD_OCTAVES : 0);
 
     if (!folded)
@@ -207,7 +214,7 @@ static int cells_of(const struct glint_plan *p,
                     const struct glint_transfer *t, struct glint_real light)
 {
     const struct glint_rays *r = p->rays;
-    const int most = (s->up && s->down ? 4 : 2) * r->fineness;
+    const int most = (s->n_up && s->n_down ? 4 : 2) * r->fineness;
     int64_t bend = bend_of(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
     int64_t outline = bend_of(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
     int64_t bend_q8;
@@ -307,14 +314,15 @@ static int64_t peak_q20(const struct glint_plan *p,
     const int64_t most = INT64_C(1) << 40;
     struct glint_real area;
 
-    if (p->rays->faintest.mantissa == 0 || (s->up && s->down) ||
+    if (p->rays->faintest.mantissa == 0 || (s->n_up && s->n_down) ||
         s->least_area < 2 || s->least_area == UINT64_MAX)
         return most;
     area =
         real_times(real_of((int64_t)(s->least_area >> 1),
                            2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
                    real_times(p->rays->pixels_per_mm, p->rays->pixels_per_mm));
-    flux.exponent -= 4 + 4 - 1; /* 16 x 16 cells in the box */
+    flux.exponent += 1;
+    area = real_times(area, real_of(s->across * 2 * s->down, 0)); /* the box */
     return real_integer(real_over(real_over(flux, area), p->rays->faintest), 20,
                         most);
 }
@@ -379,7 +387,9 @@ void glint_plan_bundle(const struct glint_plan *plan,
         return;
     transfer->sets = plan->sets;
     colour = colour_of(&r->wave[source->wave], b, bundle->rgb_q14);
-    run_survey(s, transfer);
+    run_survey(s, transfer, FEW_ACROSS, FEW_DOWN);
+    if (s->n_inside < FEW_INSIDE)
+        run_survey(s, transfer, GLINT_PLAN_ACROSS, GLINT_PLAN_DOWN);
     if (s->n_inside == 0 || colour.mantissa == 0 || b->power.mantissa == 0)
         return;
     wide_q8 = pixels_q8(plan, transfer, (s->high - s->low) * 3 / 5) + 256;

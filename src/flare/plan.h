@@ -36,7 +36,7 @@ struct glint_plan {
 };
 
 /* What a few rays of a bundle say, in cells across the pupil and down half of
- * it.
+ * it: few, and more where these hardly find anything.
  */
 enum { GLINT_PLAN_ACROSS = 16, GLINT_PLAN_DOWN = 8 };
 
@@ -53,9 +53,10 @@ struct glint_plan_change {
 struct glint_plan_survey {
     struct glint_plan_node row[3][GLINT_PLAN_ACROSS + 1]; /* the last three */
     struct glint_plan_change change[GLINT_OUT_KINDS];
+    int across, down; /* cells */
     int n_bends, n_inside, n_kinds;
     uint8_t kind[GLINT_OUT_KINDS]; /* of outputs that there are, but energy */
-    int up, down;                  /* cells by the way they are turned */
+    int n_up, n_down;              /* cells by the way they are turned */
     int64_t low, high, wide; /* sensor x, and largest y, of what is inside */
     int64_t energy;
     uint64_t least_area;            /* of half a cell on the sensor */
