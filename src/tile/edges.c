@@ -5,6 +5,7 @@
 #include "base/q.h"
 
 #define ONE_Q16 (INT64_C(1) << 16)
+#define ONE_Q40 (INT64_C(1) << 40)
 
 /* --------------------------------------------------------------------- edge
  */
@@ -55,77 +56,67 @@ static int32_t sooner(int32_t a, int32_t b)
 /* --------------------------------------------------------------------- bins
  */
 
-/* The pixels that EDGE crosses between two heights; what lies left of REGION is
- * taken for its first column. */
-static struct glint_box reach(const struct glint_edge *e,
-                              const struct glint_box *region, int32_t top_q8,
-                              int32_t bottom_q8)
-{
-    const int64_t a = x_at_q40(e, top_q8) >> 40;
-    const int64_t b = x_at_q40(e, bottom_q8) >> 40;
-    const int64_t low = a < b ? a : b, high = a < b ? b : a;
-    const int x0 = q_clamp_sat(low, region->x0, region->x1);
-    const int x1 = q_clamp_sat(high, region->x0, region->x1);
+enum visit { COUNT, PUT, SPAN };
 
-    return (struct glint_box){x0, top_q8 >> 8, x1 + 1, (bottom_q8 + 255) >> 8};
+/* Column X of pixels, within REGION or its last one. */
+static inline int held(int64_t x, int first, int last)
+{
+    return (int)(x < first ? first : x > last ? last : x);
 }
 
-typedef void box_fn(struct glint_bins *bins, struct glint_box box, void *ctx);
-
-/* Calls DO_BOX with a box for each row of tiles. */
-static void each_box(const struct glint_edge *e, struct glint_bins *bins,
-                     box_fn *do_box, void *ctx)
+/* Visits the tiles that EDGE crosses, by rows of tiles; what lies left of the
+ * region is taken for its first column. Returns how many. */
+static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
+                                   const struct glint_bins *bins,
+                                   enum visit visit, int32_t index)
 {
     const struct glint_box *r = &bins->region;
+    const int log2 = bins->tile_log2;
     const int32_t end_q8 = sooner(e->end_y_q8, r->y1 * 256);
     int32_t y_q8 = later(e->y_q8, r->y0 * 256);
+    int64_t x = x_at_q40(e, y_q8) >> 40;
+    int n = 0;
 
     while (y_q8 < end_q8) {
-        const int row = ((y_q8 >> 8) - r->y0) >> bins->tile_log2;
-        const int32_t floor_q8 =
-            (r->y0 + ((row + 1) * (1 << bins->tile_log2))) * 256;
+        const int row = ((y_q8 >> 8) - r->y0) >> log2;
+        const int32_t floor_q8 = (r->y0 + ((row + 1) * (1 << log2))) * 256;
         const int32_t next_q8 = sooner(end_q8, floor_q8);
+        const int64_t next_x = x_at_q40(e, next_q8) >> 40;
+        const int64_t low = x < next_x ? x : next_x;
+        const int64_t high = x < next_x ? next_x : x;
+        int32_t *start = bins->start + (ptrdiff_t)row * bins->tiles_x;
 
-        do_box(bins, reach(e, r, y_q8, next_q8), ctx);
         y_q8 = next_q8;
+        x = next_x;
+        if (low >= r->x1)
+            continue;
+        for (int k = (held(low, r->x0, r->x1 - 1) - r->x0) >> log2;
+             k <= (held(high, r->x0, r->x1 - 1) - r->x0) >> log2; k++) {
+            n++;
+            if (visit == PUT)
+                bins->ref[start[k]] = index;
+            if (visit != SPAN)
+                start[k]++;
+        }
     }
-}
-
-static void count_box(struct glint_bins *bins, struct glint_box box, void *ctx)
-{
-    (void)ctx;
-    glint_bins_count(bins, box);
-}
-
-static void put_box(struct glint_bins *bins, struct glint_box box, void *ctx)
-{
-    glint_bins_put(bins, box, *(const int32_t *)ctx);
-}
-
-static void span_box(struct glint_bins *bins, struct glint_box box, void *ctx)
-{
-    *(int *)ctx += glint_bins_span(bins, box);
+    return n;
 }
 
 void glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins)
 {
-    each_box(edge, bins, count_box, NULL);
+    each_tile(edge, bins, COUNT, 0);
 }
 
 void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
                     int32_t index)
 {
-    each_box(edge, bins, put_box, &index);
+    each_tile(edge, bins, PUT, index);
 }
 
 int glint_edge_span(const struct glint_edge *edge,
                     const struct glint_bins *bins)
 {
-    struct glint_bins same = *bins;
-    int n = 0;
-
-    each_box(edge, &same, span_box, &n);
-    return n;
+    return each_tile(edge, bins, SPAN, 0);
 }
 
 /* --------------------------------------------------------------------- add
@@ -270,33 +261,75 @@ static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
         change(r, mode, x < r->x0 ? 0 : x, units(mode, height_q16));
 }
 
-/* The rows of an edge on whole pixels, from height Y to END. */
-static inline void add_wholes(struct run *r, enum mode mode,
-                              const struct glint_edge *e, int stride,
-                              int32_t y_q8, int32_t end_q8)
+/* What of an edge runs through one row, from X to NEXT over HEIGHT. */
+static inline void add_row(const struct run *r, enum mode mode, int whole,
+                           int64_t x_q40, int64_t next_q40, int64_t height_q16)
 {
-    int64_t x_q40 = x_at_q40(e, y_q8), step_q40;
+    if (whole)
+        add_whole(r, mode, x_q40 + (next_q40 - x_q40) / 2, height_q16);
+    else
+        add_piece(r, mode, x_q40, next_q40, height_q16);
+}
 
-    if (y_q8 & 255) {
-        const int32_t height_q8 = sooner((y_q8 | 255) + 1, end_q8) - y_q8;
-        const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;
-
-        add_whole(r, mode, x_q40 / 2 + next_q40 / 2, height_q8 * INT64_C(256));
-        next_row(r, stride);
-        x_q40 = next_q40;
-        y_q8 += height_q8;
-    }
-    step_q40 = end_q8 - y_q8 >= 256 ? e->slope_q40 * 256 : 0;
-    x_q40 += step_q40 / 2;
-    for (; end_q8 - y_q8 >= 256; y_q8 += 256) {
-        add_whole(r, mode, x_q40, ONE_Q16);
-        next_row(r, stride);
+/* N whole rows from X on, STEP further in each. */
+static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
+                            int64_t step_q40, int stride)
+{
+    for (; n > 0; n--) {
+        add_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
+        next_row(&r, stride);
         x_q40 += step_q40;
     }
-    x_q40 -= step_q40 / 2;
-    if (y_q8 < end_q8)
-        add_whole(r, mode, x_q40 + e->slope_q40 * ((end_q8 - y_q8) / 2),
-                  (end_q8 - y_q8) * INT64_C(256));
+}
+
+/* The same on whole pixels. */
+static inline void add_whole_rows(struct run r, enum mode mode, int n,
+                                  int64_t x_q40, int64_t step_q40, int stride)
+{
+    const int64_t full = units(mode, ONE_Q16);
+    const unsigned wide = (unsigned)(r.x1 - r.x0);
+
+    x_q40 += step_q40 / 2 - r.x0 * ONE_Q40;
+    r.wide += r.x0;
+    r.narrow_q24 += r.x0;
+    for (; n > 0; n--) {
+        const int x = (int)(x_q40 >> 40);
+
+        if ((unsigned)x < wide)
+            change(&r, mode, x, full);
+        else if (x < 0 && r.x0 == 0)
+            change(&r, mode, 0, full);
+        next_row(&r, stride);
+        x_q40 += step_q40;
+    }
+}
+
+/* Smooth ones where all of them lie within the tile, one pixel or two in each.
+ */
+static inline void add_rows_within(struct run r, enum mode mode, int n,
+                                   int64_t x_q40, int64_t step_q40, int stride)
+{
+    const int64_t full = units(mode, ONE_Q16);
+
+    for (; n > 0; n--) {
+        const int64_t next = x_q40 + step_q40;
+        const int64_t low = x_q40 < next ? x_q40 : next;
+        const int64_t high = x_q40 < next ? next : x_q40;
+        const int first = (int)(low >> 40), last = (int)(high >> 40);
+
+        if (first == last) {
+            const int64_t far_q16 =
+                2 * ONE_Q16 - ((low >> 24) & 0xffff) - ((high >> 24) & 0xffff);
+            const int64_t area = units(mode, far_q16 >> 1);
+
+            change(&r, mode, first, area);
+            change(&r, mode, first + 1, full - area);
+        } else {
+            add_two(&r, mode, first, low, high, ONE_Q16);
+        }
+        next_row(&r, stride);
+        x_q40 = next;
+    }
 }
 
 /* All rows of one channel. */
@@ -307,39 +340,47 @@ static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
     const struct glint_box *t = &s->tile;
     const int32_t end_q8 = sooner(e->end_y_q8, t->y1 * 256);
     int32_t y_q8 = later(e->y_q8, t->y0 * 256);
-    const int row = (y_q8 >> 8) - t->y0;
+    const int row = (y_q8 >> 8) - t->y0, whole = (int)e->whole;
     const ptrdiff_t at =
         (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
     struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light, 0};
-    int64_t step_q40, x_q40;
+    int64_t x_q40 = x_at_q40(e, y_q8);
+    const int64_t end_q40 = x_at_q40(e, end_q8);
+    const int64_t low_q40 = x_q40 < end_q40 ? x_q40 : end_q40;
+    const int64_t high_q40 = x_q40 < end_q40 ? end_q40 : x_q40;
+    int n;
 
     s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
-    if (e->whole) {
-        add_wholes(&r, mode, e, s->stride, y_q8, end_q8);
-        return;
-    }
-    x_q40 = x_at_q40(e, y_q8);
-    if (x_q40 >> 40 != x_at_q40(e, end_q8) >> 40)
+    if (!whole && low_q40 >> 40 != high_q40 >> 40)
         r.rise_q32 = rise_of(e->slope_q40);
     if (y_q8 & 255) {
         const int32_t height_q8 = sooner((y_q8 | 255) + 1, end_q8) - y_q8;
         const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;
 
-        add_piece(&r, mode, x_q40, next_q40, height_q8 * INT64_C(256));
+        add_row(&r, mode, whole, x_q40, next_q40, height_q8 * INT64_C(256));
         next_row(&r, s->stride);
         x_q40 = next_q40;
         y_q8 += height_q8;
     }
-    /* an edge so flat that this would overflow has no whole row */
-    step_q40 = end_q8 - y_q8 >= 256 ? e->slope_q40 * 256 : 0;
-    for (; end_q8 - y_q8 >= 256; y_q8 += 256) {
-        add_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
-        next_row(&r, s->stride);
-        x_q40 += step_q40;
+    n = (end_q8 - y_q8) >> 8;
+    if (n > 0) { /* else so flat an edge's step might overflow */
+        const int64_t step_q40 = e->slope_q40 * 256;
+        const int is_narrow = step_q40 < ONE_Q40 && step_q40 > -ONE_Q40;
+
+        if (whole)
+            add_whole_rows(r, mode, n, x_q40, step_q40, s->stride);
+        else if (low_q40 >> 40 < t->x0 || high_q40 >> 40 >= t->x1 || !is_narrow)
+            add_rows(r, mode, n, x_q40, step_q40, s->stride);
+        else
+            add_rows_within(r, mode, n, x_q40, step_q40, s->stride);
+        r.wide += (ptrdiff_t)n * s->stride;
+        r.narrow_q24 += (ptrdiff_t)n * s->stride;
+        x_q40 += n * step_q40;
+        y_q8 += n * 256;
     }
     if (y_q8 < end_q8)
-        add_piece(&r, mode, x_q40, x_q40 + e->slope_q40 * (end_q8 - y_q8),
-                  (end_q8 - y_q8) * INT64_C(256));
+        add_row(&r, mode, whole, x_q40, end_q40,
+                (end_q8 - y_q8) * INT64_C(256));
 }
 
 static int64_t coloured_q20(int32_t light, int32_t colour_q14)
