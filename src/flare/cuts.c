@@ -17,27 +17,43 @@ static int64_t radius2_q32(const struct glint_vertex *v)
            (int64_t)v->stop_y_q16 * v->stop_y_q16;
 }
 
-static uint64_t sides_of(const struct glint_stop *stop,
-                         const struct glint_vertex *v)
+/* Sides that V lies on or beyond: as glint_side_q16() rounds, that is where
+ * what it takes from the apothem, _q46, comes to LEAST. */
+static inline uint64_t sides_of(const struct glint_stop *stop,
+                                const struct glint_vertex *v, int64_t least_q46)
 {
-    const int64_t apothem_q16 = stop->apothem_q16;
     uint64_t sides = 0;
 
-    if (stop->n_blades == 0)
-        return radius2_q32(v) >= INT64_C(1) << 32;
-    if (radius2_q32(v) < (apothem_q16 - 1) * (apothem_q16 - 1))
-        return 0;
-    for (int k = 0; k < stop->n_blades; k++)
-        sides |= (uint64_t)(glint_side_q16(stop, k, v) <= 0) << k;
+    for (int k = 0; k < stop->n_blades; k++) {
+        const int64_t along_q46 =
+            (int64_t)stop->normal_q30[k][0] * v->stop_x_q16 +
+            (int64_t)stop->normal_q30[k][1] * v->stop_y_q16;
+
+        sides |= (uint64_t)(along_q46 >= least_q46) << k;
+    }
     return sides;
 }
 
-struct glint_outside glint_cuts_outside(const struct glint_stop *stop,
-                                        const struct glint_vertex *v)
+void glint_cuts_row(const struct glint_stop *stop,
+                    const struct glint_vertex *row, int n, uint64_t *sides,
+                    uint8_t *barrels)
 {
-    return (struct glint_outside){sides_of(stop, v),
-                                  (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
-                                            2 * (v->barrel_q16[1] >= 1 << 16))};
+    const int64_t apothem_q16 = stop->apothem_q16;
+    const int64_t least_q46 =
+        apothem_q16 * (INT64_C(1) << 30) - (INT64_C(1) << 29);
+    const int64_t within_q32 = stop->n_blades == 0
+                                   ? INT64_C(1) << 32
+                                   : (apothem_q16 - 1) * (apothem_q16 - 1);
+
+    for (int i = 0; i < n; i++) {
+        const struct glint_vertex *v = &row[i];
+
+        sides[i] = radius2_q32(v) < within_q32 ? 0
+                   : stop->n_blades == 0       ? 1
+                                               : sides_of(stop, v, least_q46);
+        barrels[i] = (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
+                               2 * (v->barrel_q16[1] >= 1 << 16));
+    }
 }
 
 int glint_cuts_count(struct glint_outside o)

@@ -23,8 +23,10 @@ struct glint_outside {
     uint8_t barrels;
 };
 
-struct glint_outside glint_cuts_outside(const struct glint_stop *stop,
-                                        const struct glint_vertex *v);
+/* Those of N nodes in a row; of lost ones they mean nothing. */
+void glint_cuts_row(const struct glint_stop *stop,
+                    const struct glint_vertex *row, int n, uint64_t *sides,
+                    uint8_t *barrels);
 
 /* How many cuts there are in a set; 3 for all above. */
 int glint_cuts_count(struct glint_outside o);

@@ -10,7 +10,9 @@ enum {
     WHITE_LOG2 = 20 /* of display white, q20 */
 };
 
-enum { LOST = 4 }; /* of a node: no ray; bits 0 and 1 are the barrels */
+/* Of a node, beside the barrels: no ray; the sides of the picture that it lies
+ * beyond, not the left one, as light runs in from there. */
+enum { BARRELS = 3, LOST = 4, ABOVE = 8, BELOW = 16, RIGHT = 32 };
 
 typedef int32_t point_q8[2];
 
@@ -65,18 +67,10 @@ static const struct glint_vertex *node(const struct glint_ghost_edges *g, int i,
 
 static int vertex_valid(const struct glint_vertex *v)
 {
-    return v->energy_q16 >= 0 && v->x_q8 > -GLINT_VERTEX_LIMIT_Q8 &&
-           v->x_q8 < GLINT_VERTEX_LIMIT_Q8 &&
-           v->y_q8 > -GLINT_VERTEX_LIMIT_Q8 && v->y_q8 < GLINT_VERTEX_LIMIT_Q8;
-}
+    const uint32_t most = GLINT_VERTEX_LIMIT_Q8 - 1;
 
-/* Bits of the sides of the picture that V lies beyond; not of the left one, as
- * light runs in from there. */
-static uint8_t beyond(const struct glint_ghost_edges *g,
-                      const struct glint_vertex *v)
-{
-    return (uint8_t)((v->y_q8 <= 0) + 2 * (v->y_q8 >= g->height * 256) +
-                     4 * (v->x_q8 >= g->width * 256));
+    return v->energy_q16 >= 0 && (uint32_t)v->x_q8 + most <= 2 * most &&
+           (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
 static void set_nodes(struct glint_ghost_edges *g, int j)
@@ -84,25 +78,24 @@ static void set_nodes(struct glint_ghost_edges *g, int j)
     const int n = g->bundle->n_cells;
     uint64_t *sides = g->rows->sides[j & 1];
     uint8_t *barrels = g->rows->barrels[j & 1];
+    const int32_t floor = g->height * 256, right = g->width * 256;
 
     if (g->transfer)
         glint_transfer_row(g->transfer, &g->place, n, j,
                            g->rows->vertex[j & 1]);
     g->row[j & 1] = g->transfer ? g->rows->vertex[j & 1]
                                 : g->vertex + (ptrdiff_t)j * (n + 1);
+    glint_cuts_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
     for (int i = 0; i <= n; i++) {
         const struct glint_vertex *v = node(g, i, j);
-        struct glint_outside outside;
 
         if (!vertex_valid(v)) {
             sides[i] = 0;
             barrels[i] = LOST;
-            continue;
-        }
-        g->rows->beyond[j & 1][i] = beyond(g, v);
-        outside = glint_cuts_outside(g->stop, v);
-        sides[i] = outside.sides;
-        barrels[i] = outside.barrels;
+        } else
+            barrels[i] |=
+                (uint8_t)(ABOVE * (v->y_q8 <= 0) + BELOW * (v->y_q8 >= floor) +
+                          RIGHT * (v->x_q8 >= right));
     }
 }
 
@@ -124,7 +117,8 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
 
         c->corner[k] = node(g, across, down);
         c->at[k] = (struct glint_outside){r->sides[down & 1][across],
-                                          r->barrels[down & 1][across]};
+                                          r->barrels[down & 1][across] &
+                                              (BARRELS | LOST)};
     }
 }
 
@@ -370,14 +364,6 @@ static void add_odd(struct glint_ghost_edges *g, const struct cell *c,
         add_alone(g, c->corner, 4, 0);
 }
 
-/* Whether no edge of the cell, or shared with it, can be drawn. */
-static int is_beyond(const struct glint_ghost_rows *r, int i, int j)
-{
-    const uint8_t *a = r->beyond[j & 1] + i, *b = r->beyond[~j & 1] + i;
-
-    return a[0] & a[1] & b[0] & b[1];
-}
-
 /* The light of the cell at (I, J) towards its neighbours: what is drawn by
  * itself has none, and nearly all cells lie outside of what is seen or wholly
  * inside. */
@@ -386,20 +372,21 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     const struct glint_ghost_rows *r = g->rows;
     const uint64_t *s = r->sides[j & 1] + i, *t = r->sides[~j & 1] + i;
     const uint8_t *a = r->barrels[j & 1] + i, *b = r->barrels[~j & 1] + i;
+    const uint8_t some = a[0] | a[1] | b[0] | b[1];
     const struct glint_outside any = {s[0] | s[1] | t[0] | t[1],
-                                      a[0] | a[1] | b[0] | b[1]};
+                                      some & BARRELS};
     struct glint_corners corners;
     struct cell cell;
     int32_t light;
     int cuts, turn, odd;
 
-    if (any.barrels & LOST) {
+    if (some & LOST) {
         set_cell(g, i, j, &cell);
         add_triangles(g, &cell);
         return 0;
     }
-    if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]) ||
-        is_beyond(r, i, j))
+    /* all is cut off by one side or barrel, or no edge of it can be drawn */
+    if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;
     set_corners(g, i, j, &corners);
     turn = convexity(&corners);
@@ -444,7 +431,7 @@ static struct glint_outside outside_at(const struct glint_ghost_edges *g, int i,
                                        int j)
 {
     return (struct glint_outside){g->rows->sides[j & 1][i],
-                                  g->rows->barrels[j & 1][i]};
+                                  g->rows->barrels[j & 1][i] & BARRELS};
 }
 
 /* The edges between two rows of cells; the nodes of row J. */

@@ -34,8 +34,8 @@ struct glint_ghost_rows {
     struct glint_outline outline;
     struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* of the stop: bit set = outside */
-    uint8_t barrels[2][GLINT_MAX_CELLS + 1]; /* the same; LOST */
-    uint8_t beyond[2][GLINT_MAX_CELLS + 1];  /* the picture, on which sides */
+    uint8_t barrels[2][GLINT_MAX_CELLS + 1]; /* the same; LOST; where beyond the
+                                                picture */
     int32_t light[2][GLINT_MAX_CELLS];       /* of cells, packed */
     uint16_t steps[GLINT_LIGHT_OCTAVES];     /* of irradiance, by octave */
     int32_t weak_q20[GLINT_LIGHT_OCTAVES];   /* smaller changes of light, by its

@@ -4,24 +4,6 @@
 #include "base/compiler.h"
 #include "base/q.h"
 
-void glint_corners_set(struct glint_corners *corners,
-                       const struct glint_vertex *const *at, int n)
-{
-    const struct glint_vertex *const *p = corners->at;
-
-    corners->n = n;
-    for (int i = 0; i < 4; i++)
-        corners->at[i] = at[i < n ? i : 0];
-    /* The cross product of the diagonals, or of two sides. */
-    if (n == 4)
-        corners->area2_q16 =
-            (int64_t)(p[2]->x_q8 - p[0]->x_q8) * (p[3]->y_q8 - p[1]->y_q8) -
-            (int64_t)(p[2]->y_q8 - p[0]->y_q8) * (p[3]->x_q8 - p[1]->x_q8);
-    else
-        corners->area2_q16 = glint_turn_q16(p[0]->x_q8, p[0]->y_q8, p[1]->x_q8,
-                                            p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
-}
-
 void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n)
@@ -80,28 +62,9 @@ int glint_corners_tiny(const struct glint_corners *corners, int part)
     return e.x1 - e.x0 <= size && e.y1 - e.y0 <= size;
 }
 
-/* Of two vectors the sum of all sizes. */
-static int64_t reach_of(const struct glint_vertex *a,
-                        const struct glint_vertex *b)
+int glint_corners_lean(const struct glint_corners *corners)
 {
-    const int64_t x = (int64_t)a->x_q8 - b->x_q8,
-                  y = (int64_t)a->y_q8 - b->y_q8;
-
-    return (x < 0 ? -x : x) + (y < 0 ? -y : y);
-}
-
-/* Surely not: its diagonals are longer than it is wide and high. */
-static int is_stout(const struct glint_corners *c)
-{
-    return c->n == 4 && (c->area2_q16 < 0 ? -c->area2_q16 : c->area2_q16) >=
-                            32 * (reach_of(c->at[0], c->at[2]) +
-                                  reach_of(c->at[1], c->at[3]));
-}
-
-int glint_corners_thin(const struct glint_corners *corners)
-{
-    const struct glint_box e =
-        is_stout(corners) ? (struct glint_box){0, 0, 0, 0} : extent_q8(corners);
+    const struct glint_box e = extent_q8(corners);
     const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;
     const int64_t area2 =
         corners->area2_q16 < 0 ? -corners->area2_q16 : corners->area2_q16;

@@ -60,18 +60,58 @@ static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
 int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
                              int64_t area, int frac, int32_t limit_q8);
 
-/* Whether CORNERS are thinner than a sixteenth of a pixel. */
-int glint_corners_thin(const struct glint_corners *corners);
-
 /* Every pixel that CORNERS, or the strip in their place, may cover. */
 struct glint_box glint_corners_reach(const struct glint_corners *corners,
                                      int width, int height);
 
-/* Sets the N (3 or 4) corners AT, or gathers those with the numbers VERTEX of
- * V.
- */
-void glint_corners_set(struct glint_corners *corners,
-                       const struct glint_vertex *const *at, int n);
+/* Sets the N (3 or 4) corners AT. */
+static inline void glint_corners_set(struct glint_corners *corners,
+                                     const struct glint_vertex *const *at,
+                                     int n)
+{
+    const struct glint_vertex *const *p = corners->at;
+
+    corners->n = n;
+    for (int i = 0; i < 4; i++)
+        corners->at[i] = at[i < n ? i : 0];
+    /* The cross product of the diagonals, or of two sides. */
+    if (n == 4)
+        corners->area2_q16 =
+            (int64_t)(p[2]->x_q8 - p[0]->x_q8) * (p[3]->y_q8 - p[1]->y_q8) -
+            (int64_t)(p[2]->y_q8 - p[0]->y_q8) * (p[3]->x_q8 - p[1]->x_q8);
+    else
+        corners->area2_q16 = glint_turn_q16(p[0]->x_q8, p[0]->y_q8, p[1]->x_q8,
+                                            p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
+}
+
+/* Of two vectors the sum of all sizes. */
+static inline int64_t glint_reach(const struct glint_vertex *a,
+                                  const struct glint_vertex *b)
+{
+    const int64_t x = (int64_t)a->x_q8 - b->x_q8,
+                  y = (int64_t)a->y_q8 - b->y_q8;
+
+    return (x < 0 ? -x : x) + (y < 0 ? -y : y);
+}
+
+/* Surely not: its diagonals are longer than it is wide and high. */
+static inline int glint_corners_stout(const struct glint_corners *c)
+{
+    return c->n == 4 && (c->area2_q16 < 0 ? -c->area2_q16 : c->area2_q16) >=
+                            32 * (glint_reach(c->at[0], c->at[2]) +
+                                  glint_reach(c->at[1], c->at[3]));
+}
+
+/* Whether CORNERS are thinner than a sixteenth of a pixel; lean: the same, for
+ * those that are not stout. */
+int glint_corners_lean(const struct glint_corners *corners);
+static inline int glint_corners_thin(const struct glint_corners *corners)
+{
+    return corners->area2_q16 == 0 ||
+           (!glint_corners_stout(corners) && glint_corners_lean(corners));
+}
+
+/* Gathers the N corners with the numbers VERTEX of V. */
 void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n);
