@@ -11,31 +11,30 @@
 #define w_load       vld1q_s32
 #define w_store      vst1q_s32
 
+/* Values are below 2^fraction: raised by what is missing to 31 bits, twice
+ * their product's upper half is what a shift by the fraction leaves, and rounds
+ * alike. */
 struct shift {
-    int64x2_t right;
+    W up;
 };
 
 static inline struct shift shift_by(int fraction)
 {
-    return (struct shift){vdupq_n_s64(-fraction)};
+    return (struct shift){vdupq_n_s32(31 - fraction)};
 }
 
 struct factor {
-    int32x2_t low, high;
+    W x;
 };
 
 static inline struct factor factor_of(W x)
 {
-    return (struct factor){vget_low_s32(x), vget_high_s32(x)};
+    return (struct factor){x};
 }
 
-static inline W w_times(W a, struct factor x, struct shift s)
+static inline W w_times(W a, struct factor by, struct shift s)
 {
-    const int64x2_t low = vmull_s32(vget_low_s32(a), x.low);
-    const int64x2_t high = vmull_s32(vget_high_s32(a), x.high);
-
-    return vcombine_s32(vmovn_s64(vrshlq_s64(low, s.right)),
-                        vmovn_s64(vrshlq_s64(high, s.right)));
+    return vqrdmulhq_s32(vshlq_s32(a, s.up), by.x);
 }
 
 #include "kernels/horner_v.h"

@@ -72,7 +72,8 @@ typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
 
 /* N values of a polynomial, Horner's way: ((c[D] x + c[D - 1]) x + ...) + c[0]
  * with each product rounded to integers by a shift of FRACTION bits, 2 .. 30.
- * Products stay below 2^62 and sums below 2^31: the caller's promise.
+ * Values of the polynomial stay below 2^FRACTION in magnitude, X within
+ * +-2^FRACTION: the caller's promise.
  *   along   of one polynomial at x[0 .. N - 1]
  *   across  of N polynomials, whose coefficients C[k] begin STRIDE apart, at X
  */

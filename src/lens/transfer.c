@@ -360,7 +360,7 @@ static void rays_of_rows(const struct glint_transfer *t,
         for (int i = 0; t->shift[kind] && i < RAYS; i++)
             out[kind][i] *= INT32_C(1) << t->shift[kind];
     }
-    for (int i = 0; i < RAYS; i++)
+    for (int i = 0; (t->head || t->roots) && i < RAYS; i++)
         out[GLINT_OUT_ENERGY][i] = energy_of(t, out[GLINT_OUT_ENERGY][i]);
 }
 
@@ -445,9 +445,9 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
     }
     if (is_new)
         set_rows(transfer, k, v_q30, transfer->of_u);
-    for (int i = 0; i < RAYS; i++)
+    for (int i = 0; transfer->fraction == 15 && i < RAYS; i++)
         u[i] = variable_of(transfer, u_q30[i]);
-    rays_of_rows(transfer, k, u, out);
+    rays_of_rows(transfer, k, transfer->fraction == 15 ? u : u_q30, out);
 }
 
 /* ----------------------------------------------------------------- vertices */
@@ -470,14 +470,14 @@ static int64_t raised(int64_t x, int up, int *lost)
 /* X / 2^SHIFT if that is below LIMIT in magnitude; else *LOST. */
 static inline int32_t scaled(int64_t x, int shift, int32_t limit, int *lost)
 {
-    const int64_t y = shift < 0    ? raised(x, -shift, lost)
-                      : shift < 63 ? q_shift(x, shift)
-                                   : 0;
+    const int64_t y = shift > 0 && shift < 63 ? q_shift(x, shift)
+                      : shift <= 0            ? raised(x, -shift, lost)
+                                              : 0;
 
-    if (y < limit && y > -limit)
-        return (int32_t)y;
-    *lost = 1;
-    return 0;
+    const int fits = y < limit && y > -limit;
+
+    *lost |= !fits;
+    return fits ? (int32_t)y : 0;
 }
 
 enum { LIMIT_Q16 = 1 << 30 };
