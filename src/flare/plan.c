@@ -214,7 +214,8 @@ static int cells_of(const struct glint_plan *p,
                     const struct glint_transfer *t, struct glint_real light)
 {
     const struct glint_rays *r = p->rays;
-    const int most = (s->n_up && s->n_down ? 4 : 2) * r->fineness;
+    const int folds = (s->n_up && s->n_down ? 4 : 2) * r->fineness;
+    const int most = folds < GLINT_MAX_CELLS ? folds : GLINT_MAX_CELLS;
     int64_t bend = bend_of(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
     int64_t outline = bend_of(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
     int64_t bend_q8;
@@ -241,7 +242,7 @@ static int cells_of(const struct glint_plan *p,
         n = cells_for_codes(s, light, n);
     n = n < LEAST ? LEAST : n;
     n = (n + 3) / 4 * 4;
-    return n < most ? n : most < GLINT_MAX_CELLS ? most : GLINT_MAX_CELLS;
+    return n < most ? n : most;
 }
 
 /* X of the sensor as pixels, q8. */

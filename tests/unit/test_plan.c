@@ -480,6 +480,31 @@ static void test_rows_and_grids(void **state)
     close_fixture(&f);
 }
 
+/* The finest grid there is has as many cells as its rows have room for, however
+ * much a ghost bends. */
+static void test_finest_grid(void **state)
+{
+    static struct glint_plan_scratch scratch;
+    struct fixture f;
+    struct glint_plan plan;
+    int most = 0;
+
+    (void)state;
+    open_fixture(&f);
+    f.rays.pixels_per_mm = real_of(12000, 0);
+    f.rays.fineness = GLINT_MAX_CELLS;
+    plan = (struct glint_plan){&f.rays, &f.beam, 1, WIDTH, HEIGHT, 0};
+    for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++) {
+        struct glint_source source = {.ghost = ghost};
+        struct glint_bundle bundle;
+
+        glint_plan_bundle(&plan, &source, &bundle, &scratch);
+        most = bundle.n_cells > most ? bundle.n_cells : most;
+    }
+    assert_int_equal(most, GLINT_MAX_CELLS);
+    close_fixture(&f);
+}
+
 /* Of beams beyond the lens nothing is drawn, whatever its polynomials say, and
  * no room is asked for unless others come after them. */
 static void test_beyond(void **state)
@@ -555,6 +580,7 @@ int main(void)
         cmocka_unit_test(test_many_faint_lights),
         cmocka_unit_test(test_room),
         cmocka_unit_test(test_rows_and_grids),
+        cmocka_unit_test(test_finest_grid),
         cmocka_unit_test(test_beyond),
         cmocka_unit_test(test_dark_frame),
     };
