@@ -231,4 +231,48 @@ void glint_flare_draw(struct glint_flare *flare,
 /* Small tiles that the last draw touched. */
 int glint_flare_tiles(const struct glint_flare *flare);
 
+/* ------------------------------------------------------------ what and why */
+
+/* What became of the rays of one ghost, beam and wave. */
+enum glint_fate {
+    GLINT_FATE_DRAWN,
+    GLINT_FATE_EMPTY,  /* planned, but its grid has no edge in the picture */
+    GLINT_FATE_OTHER,  /* only_ghost asks for another one */
+    GLINT_FATE_BEYOND, /* the beam comes from farther out than the model goes */
+    GLINT_FATE_CLOSED, /* of this angle the model says: no ray gets through */
+    GLINT_FATE_BLOCKED, /* the stop and the barrels take all rays looked at */
+    GLINT_FATE_DARK,    /* the beam has no light in this wave */
+    GLINT_FATE_OUTSIDE, /* it lies beside the picture */
+    GLINT_FATE_FAINT,   /* no pixel can show it, of all beams together */
+    GLINT_FATE_NO_ROOM, /* a capacity is full */
+    GLINT_FATES
+};
+
+/* What it took. All but the fate is 0 unless DRAWN, EMPTY or NO_ROOM; edges to
+ * tiles are 0 unless DRAWN. */
+struct glint_account {
+    enum glint_fate fate;
+    int surveyed;         /* rays that the plan looked at */
+    int cells, vertices;  /* of the grid: a side, all */
+    int outputs, barrels; /* polynomials of a ray; of these, barrels that cut */
+    int terms;            /* of all of them, with angle and wavelength put in */
+    int edges;    /* drawn; all edges of all bundles are the primitives */
+    int64_t rows; /* of pixels that they cross */
+    int refs;     /* entries in the lists of tiles */
+    struct glint_real flux; /* as planned, before stop, barrels and the
+                               picture's sides: display white times pixels */
+};
+
+/* The account of ghost GHOST (or part) of the lens, of beam BEAM and wave WAVE
+ * of the frame that was planned and binned last, by edges. It asks the plan
+ * again, so that what plan was given must still be there; changes nothing that
+ * is drawn. Costs as much as planning that bundle. */
+void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
+                         int wave, struct glint_account *account);
+
+/* Of the bundles planned and binned last, by edges, keeps in the tiles those of
+ * GHOST, BEAM and WAVE, each -1 for all: draw draws these alone, until the next
+ * time that this or bin is called. */
+void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave);
+
 #endif

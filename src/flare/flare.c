@@ -205,28 +205,12 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 /* ---------------------------------------------------------------------- plan
  */
 
-/* Whether ghost or part GHOST is of the pair asked for. */
-static int is_wanted(const struct glint_rays *r, int ghost)
-{
-    const struct glint_model_ghost *g = &r->lens->ghost[ghost];
-    const struct glint_model_ghost *only =
-        &r->lens->ghost[r->only_ghost < 0 ? ghost : r->only_ghost];
-
-    return g->i == only->i && g->j == only->j;
-}
-
-/* Whether the lens was never looked at from where B comes. */
-static int is_beyond(const struct glint_lens *lens, const struct glint_beam *b)
-{
-    return b->sine_q30 > lens->header->sine_hi_q30;
-}
-
 /* N beams without the last ones that are beyond the lens: a frame that has no
  * others takes no time. */
 static int n_within(const struct glint_lens *lens,
                     const struct glint_beam *beams, int n)
 {
-    while (n > 0 && is_beyond(lens, &beams[n - 1]))
+    while (n > 0 && glint_plan_is_beyond(lens, &beams[n - 1]))
         n--;
     return n;
 }
@@ -243,10 +227,6 @@ static void plan_job(void *ctx, int job, int worker)
 
         if (at >= f->cfg.max_bundles)
             return;
-        f->bundle[at].n_cells = 0;
-        if (!is_wanted(r, job % n_ghosts) ||
-            is_beyond(r->lens, &f->plan.beam[job / n_ghosts]))
-            continue;
         f->source[at] = (struct glint_source){
             .ghost = job % n_ghosts, .beam = job / n_ghosts, .wave = wave};
         glint_plan_bundle(&f->plan, &f->source[at], &f->bundle[at],

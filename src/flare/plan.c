@@ -370,9 +370,26 @@ static void set_flux(struct glint_bundle *b, struct glint_real flux)
     b->flux_exponent = cell.exponent > 400 ? 431 : cell.exponent + 31;
 }
 
-void glint_plan_bundle(const struct glint_plan *plan,
-                       struct glint_source *source, struct glint_bundle *bundle,
-                       struct glint_plan_scratch *scratch)
+int glint_plan_is_beyond(const struct glint_lens *lens,
+                         const struct glint_beam *beam)
+{
+    return beam->sine_q30 > lens->header->sine_hi_q30;
+}
+
+/* Whether ghost or part GHOST is of the pair asked for. */
+static int is_wanted(const struct glint_rays *r, int ghost)
+{
+    const struct glint_model_ghost *g = &r->lens->ghost[ghost];
+    const struct glint_model_ghost *only =
+        &r->lens->ghost[r->only_ghost < 0 ? ghost : r->only_ghost];
+
+    return g->i == only->i && g->j == only->j;
+}
+
+enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
+                                  struct glint_source *source,
+                                  struct glint_bundle *bundle,
+                                  struct glint_plan_scratch *scratch)
 {
     const struct glint_rays *r = plan->rays;
     const struct glint_beam *b = &plan->beam[source->beam];
@@ -383,31 +400,38 @@ void glint_plan_bundle(const struct glint_plan *plan,
     int exponent;
 
     bundle->n_cells = 0;
+    if (!is_wanted(r, source->ghost))
+        return GLINT_FATE_OTHER;
+    if (glint_plan_is_beyond(r->lens, b))
+        return GLINT_FATE_BEYOND;
     if (!glint_transfer_init(transfer, r->lens, source->ghost, b->sine_q30,
                              r->wave[source->wave].wave_q24))
-        return;
+        return GLINT_FATE_CLOSED;
     transfer->sets = plan->sets;
     colour = colour_of(&r->wave[source->wave], b, bundle->rgb_q14);
+    if (colour.mantissa == 0 || b->power.mantissa == 0)
+        return GLINT_FATE_DARK;
     run_survey(s, transfer, FEW_ACROSS, FEW_DOWN);
     if (s->n_inside < FEW_INSIDE)
         run_survey(s, transfer, GLINT_PLAN_ACROSS, GLINT_PLAN_DOWN);
-    if (s->n_inside == 0 || colour.mantissa == 0 || b->power.mantissa == 0)
-        return;
+    if (s->n_inside == 0)
+        return GLINT_FATE_BLOCKED;
     wide_q8 = pixels_q8(plan, transfer, (s->high - s->low) * 3 / 5) + 256;
     high_q8 = pixels_q8(plan, transfer, s->wide + s->wide / 10) + 256;
     if (!is_in_view(plan, b, pixels_q8(plan, transfer, (s->low + s->high) / 2),
                     wide_q8, high_q8))
-        return;
+        return GLINT_FATE_OUTSIDE;
     source->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - source->energy_up;
     source->flux = flux_of(plan, source, transfer, colour, exponent);
     source->peak_q20 = peak_q20(plan, s, transfer, source->flux);
     if (plan->n_beams == 1 && source->peak_q20 < 1 << 20)
-        return;
+        return GLINT_FATE_FAINT;
     source->light = real_over(
         source->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
     bundle->n_cells = cells_of(plan, s, transfer, source->light);
     if (transfer->hollow) /* its rim has to be a row */
         bundle->n_cells = (bundle->n_cells + 3) / 4 * 4;
     set_flux(bundle, source->flux);
+    return GLINT_FATE_DRAWN;
 }

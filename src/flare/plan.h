@@ -69,11 +69,16 @@ struct glint_plan_scratch {
     struct glint_plan_survey survey;
 };
 
-/* Plans one bundle: BUNDLE->n_cells is 0 where nothing of it can be seen.
- * SOURCE has ghost, beam and wave set. */
-void glint_plan_bundle(const struct glint_plan *plan,
-                       struct glint_source *source, struct glint_bundle *bundle,
-                       struct glint_plan_scratch *scratch);
+/* Whether the lens was never looked at from where BEAM comes. */
+int glint_plan_is_beyond(const struct glint_lens *lens,
+                         const struct glint_beam *beam);
+
+/* Plans one bundle: BUNDLE->n_cells is 0 where nothing of it can be seen, and
+ * what is returned says why. SOURCE has ghost, beam and wave set. */
+enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
+                                  struct glint_source *source,
+                                  struct glint_bundle *bundle,
+                                  struct glint_plan_scratch *scratch);
 
 /* The polynomials of a bundle that was planned. */
 void glint_plan_transfer(const struct glint_plan *plan,

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What became of a frame's bundles, and why. Nothing else refers to this file:
+ * a program that does not ask links none of it.
+ */
+#include "base/q.h"
+#include "flare/state.h"
+
+/* Where a bundle is among all there could be. */
+static int64_t number_of(const struct glint_flare *f, int ghost, int beam,
+                         int wave)
+{
+    const struct glint_rays *r = f->plan.rays;
+
+    return ((int64_t)beam * (int)r->lens->header->n_ghosts + ghost) *
+               r->n_waves +
+           wave;
+}
+
+/* Where it is among those planned, which are in that order; -1: nowhere. */
+static int find(const struct glint_flare *f, int64_t number)
+{
+    int low = 0, high = f->n_bundles;
+
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        const struct glint_source *s = &f->source[middle];
+
+        if (number_of(f, s->ghost, s->beam, s->wave) < number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low == f->n_bundles)
+        return -1;
+    return number_of(f, f->source[low].ghost, f->source[low].beam,
+                     f->source[low].wave) == number
+               ? low
+               : -1;
+}
+
+static int terms_of(const struct glint_transfer *t, int kind)
+{
+    int n = 0;
+
+    if (t->basis == GLINT_BASIS_SPARSE)
+        return t->of.sparse[kind].n_terms;
+    for (int v = 0; v <= t->degree_v[kind]; v++)
+        for (int u = 0; u <= t->degree_u[kind]; u++)
+            n += t->of.table[kind][v][u] != 0;
+    return n;
+}
+
+static void count_outputs(const struct glint_transfer *t,
+                          struct glint_account *a)
+{
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (t->outputs >> kind & 1) {
+            a->outputs++;
+            a->barrels += kind >= GLINT_OUT_RADIUS;
+            a->terms += terms_of(t, kind);
+        }
+}
+
+/* Rows of the picture that EDGE crosses. */
+static int rows_of(const struct glint_edge *edge, int height)
+{
+    const int first = edge->y_q8 > 0 ? edge->y_q8 >> 8 : 0;
+    const int end = (edge->end_y_q8 + 255) >> 8;
+
+    return (end < height ? end : height) - first;
+}
+
+static void count_edges(const struct glint_flare *f,
+                        const struct glint_bundle_slot *slot,
+                        struct glint_account *a)
+{
+    a->edges = slot->n;
+    for (int i = slot->first; i < slot->first + slot->n; i++) {
+        a->rows += rows_of(&f->edge[i], f->cfg.height);
+        a->refs = glint_flare_add_need(a->refs,
+                                       glint_edge_span(&f->edge[i], &f->bins));
+    }
+}
+
+void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
+                         int wave, struct glint_account *account)
+{
+    struct glint_plan_scratch *scratch = flare->worker[0].plan;
+    const int64_t number = number_of(flare, ghost, beam, wave);
+    const int at = find(flare, number);
+    struct glint_source source = {.ghost = ghost, .beam = beam, .wave = wave};
+    struct glint_bundle bundle;
+
+    *account = (struct glint_account){GLINT_FATE_DRAWN};
+    account->fate = glint_plan_bundle(&flare->plan, &source, &bundle, scratch);
+    if (account->fate != GLINT_FATE_OTHER &&
+        account->fate != GLINT_FATE_BEYOND &&
+        account->fate != GLINT_FATE_CLOSED)
+        account->surveyed = (GLINT_PLAN_ACROSS + 1) * (GLINT_PLAN_DOWN + 1);
+    if (number >= flare->cfg.max_bundles &&
+        number < flare->stats.need_bundles) {
+        account->surveyed = 0; /* by the account alone, not by the plan */
+        account->fate = GLINT_FATE_NO_ROOM;
+    } else if (at >= flare->n_drawn)
+        account->fate = GLINT_FATE_NO_ROOM;
+    else if (at < 0 && account->fate == GLINT_FATE_DRAWN)
+        account->fate = GLINT_FATE_FAINT;
+    if (at < 0)
+        return;
+    account->flux = flare->source[at].flux;
+    account->cells = flare->bundle[at].n_cells;
+    account->vertices = (account->cells + 1) * (account->cells + 1);
+    glint_plan_transfer(&flare->plan, &source, &scratch->transfer);
+    count_outputs(&scratch->transfer, account);
+    if (account->fate == GLINT_FATE_NO_ROOM)
+        return;
+    count_edges(flare, &flare->slot[at], account);
+    if (account->edges == 0)
+        account->fate = GLINT_FATE_EMPTY;
+}
+
+static int is_of(const struct glint_source *s, int ghost, int beam, int wave)
+{
+    return (ghost < 0 || s->ghost == ghost) && (beam < 0 || s->beam == beam) &&
+           (wave < 0 || s->wave == wave);
+}
+
+void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
+{
+    glint_bins_open(&flare->bins);
+    for (int put = 0; put < 2; put++) {
+        for (int i = 0; i < flare->n_drawn; i++) {
+            const struct glint_bundle_slot *slot = &flare->slot[i];
+
+            if (!is_of(&flare->source[i], ghost, beam, wave))
+                continue;
+            for (int k = slot->first; k < slot->first + slot->n; k++)
+                if (put)
+                    glint_edge_put(&flare->edge[k], &flare->bins, k);
+                else
+                    glint_edge_count(&flare->edge[k], &flare->bins);
+        }
+        if (!put)
+            glint_bins_sum(&flare->bins);
+    }
+    glint_bins_close(&flare->bins);
+}

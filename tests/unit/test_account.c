@@ -1,0 +1,401 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What became of a frame's bundles: every fate by a cause of its own, counts
+ * that are those of the frame that is drawn, and pictures of parts that add up
+ * to the whole.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/real.h"
+#include "glint/flare.h"
+#include "support/model_builder.h"
+
+enum {
+    WIDTH = 160,
+    HEIGHT = 120,
+    WAVES = 2,
+    MAX_BEAMS = 4,
+    N = WIDTH * HEIGHT
+};
+
+struct fixture {
+    struct model_image m;
+    struct glint_lens lens;
+    struct glint_wave wave[WAVES];
+    struct glint_beam beam[MAX_BEAMS];
+    int n_beams;
+    struct glint_rays rays;
+    struct glint_flare_config cfg;
+    struct glint_flare_stats stats;
+    void *mem;
+    struct glint_flare *flare;
+};
+
+static const int32_t square[4][2] = {
+    {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
+
+/* Beams at a sine of 1/8, all round. */
+static void open_fixture(struct fixture *f, int n_beams)
+{
+    const char *reason;
+
+    *f = (struct fixture){.m = model_auto(), .n_beams = n_beams};
+    assert_int_equal(glint_lens_open(&f->lens, f->m.data, f->m.bytes, &reason),
+                     GLINT_OK);
+    for (int i = 0; i < WAVES; i++)
+        f->wave[i] =
+            (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,
+                                {i ? 0 : 16384, i ? 16384 : 0, 0},
+                                real_of(1, 0)};
+    for (int i = 0; i < MAX_BEAMS; i++)
+        f->beam[i] = (struct glint_beam){1 << 27,
+                                         1065344904,
+                                         (int32_t)lrint(cos(i) * 0x1p30),
+                                         (int32_t)lrint(sin(i) * 0x1p30),
+                                         real_of(1000 + i, 0),
+                                         {16384, 16384, 16384}};
+    f->rays = (struct glint_rays){.lens = &f->lens,
+                                  .wave = f->wave,
+                                  .n_waves = WAVES,
+                                  .pixels_per_mm = real_of(64, 0),
+                                  .fineness = 16,
+                                  .only_ghost = -1};
+    f->cfg = (struct glint_flare_config){.width = WIDTH,
+                                         .height = HEIGHT,
+                                         .tile_log2 = 4,
+                                         .max_bundles = 64,
+                                         .max_primitives = 60000,
+                                         .max_refs = 120000};
+    f->cfg.stop.n_blades = 4;
+    f->cfg.stop.apothem_q16 = 26214; /* 0.4: cuts the ghost */
+    memcpy(f->cfg.stop.normal_q30, square, sizeof square);
+}
+
+static void bin(struct fixture *f)
+{
+    const size_t bytes = glint_flare_bytes(&f->cfg);
+
+    free(f->mem);
+    assert_int_equal(posix_memalign(&f->mem, 64, bytes), 0);
+    assert_int_equal(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes),
+                     GLINT_OK);
+    glint_flare_plan(f->flare, &f->rays, f->beam, f->n_beams);
+    glint_flare_bin(f->flare, &f->stats);
+}
+
+static void close_fixture(struct fixture *f)
+{
+    free(f->mem);
+    free(f->m.data);
+}
+
+/* The coefficient of term TERM of output KIND of system SYSTEM. */
+static int32_t *coefficient(struct fixture *f, int system, int kind, int term)
+{
+    const struct glint_model_system *s = &f->lens.system[system];
+    const struct glint_model_output *o =
+        (const void *)(f->m.data + s->output_at);
+
+    while (o->kind != kind)
+        o++;
+    return (int32_t *)(void *)(f->m.data + o->coef_at) + term;
+}
+
+struct sums {
+    int of[GLINT_FATES], n, edges, refs;
+    double flux;
+};
+
+/* The accounts of all bundles together, and what must be so of each. */
+static struct sums accounts(struct fixture *f)
+{
+    struct sums sums = {.n = 0};
+
+    for (int beam = 0; beam < f->n_beams; beam++)
+        for (int ghost = 0; ghost < (int)f->lens.header->n_ghosts; ghost++)
+            for (int wave = 0; wave < WAVES; wave++) {
+                struct glint_account a;
+
+                glint_flare_account(f->flare, ghost, beam, wave, &a);
+                sums.of[a.fate]++;
+                sums.n++;
+                sums.edges += a.edges;
+                sums.refs += a.refs;
+                sums.flux += ldexp(a.flux.mantissa, a.flux.exponent);
+                assert_int_equal(a.vertices,
+                                 a.cells ? (a.cells + 1) * (a.cells + 1) : 0);
+                assert_int_equal(a.fate == GLINT_FATE_DRAWN, a.edges > 0);
+                assert_true(a.rows >= a.edges);
+                if (a.cells)
+                    assert_int_equal(a.surveyed, 17 * 9);
+            }
+    return sums;
+}
+
+static void assert_totals(struct fixture *f)
+{
+    const struct sums s = accounts(f);
+    struct glint_real brightest, flux;
+
+    assert_int_equal(s.of[GLINT_FATE_DRAWN] + s.of[GLINT_FATE_EMPTY],
+                     f->stats.bundles);
+    assert_int_equal(s.of[GLINT_FATE_NO_ROOM], f->stats.dropped_bundles);
+    assert_int_equal(s.edges, f->stats.primitives);
+    assert_int_equal(s.refs, f->stats.refs);
+    glint_flare_light(f->flare, &brightest, &flux);
+    assert_true(fabs(s.flux - ldexp(flux.mantissa, flux.exponent)) <=
+                1e-6 * s.flux);
+}
+
+/* FATE is that of so many, and they and the drawn are all there are. */
+static void assert_fate(struct fixture *f, enum glint_fate fate, int n)
+{
+    struct sums s;
+
+    bin(f);
+    assert_totals(f);
+    s = accounts(f);
+    assert_int_equal(s.of[fate], n);
+    assert_int_equal(
+        s.of[fate] + s.of[GLINT_FATE_CLOSED] +
+            (fate == GLINT_FATE_DRAWN ? 0 : s.of[GLINT_FATE_DRAWN]),
+        s.n);
+}
+
+/* ---------------------------------------------------------------------- tests
+ */
+
+/* Ghost 1 is never seen, ghost 2 not within a sine of 1/8. */
+static void test_drawn_and_closed(void **state)
+{
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 3);
+    assert_fate(&f, GLINT_FATE_DRAWN, 3 * 2 * WAVES);
+    assert_int_equal(accounts(&f).of[GLINT_FATE_CLOSED], 3 * WAVES);
+    f.beam[1].sine_q30 = 1 << 26;
+    assert_fate(&f, GLINT_FATE_DRAWN, (3 * 2 - 1) * WAVES);
+    close_fixture(&f);
+}
+
+static void test_other(void **state)
+{
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 2);
+    f.rays.only_ghost = 2;
+    assert_fate(&f, GLINT_FATE_OTHER, 2 * 2 * WAVES);
+    close_fixture(&f);
+}
+
+static void test_beyond(void **state)
+{
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 3);
+    for (int i = 0; i < 3; i++) {
+        f.beam[i].sine_q30 = 1 << 29; /* 30 degrees */
+        ((struct glint_model_header *)f.m.data)->sine_hi_q30 = 1 << 28;
+        assert_fate(&f, GLINT_FATE_BEYOND, (i + 1) * 3 * WAVES);
+    }
+    close_fixture(&f);
+}
+
+static void test_dark(void **state)
+{
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 2);
+    f.beam[1].rgb_q14[0] = 0; /* no red, which is wave 0 */
+    assert_fate(&f, GLINT_FATE_DARK, 2);
+    f.beam[0].power = real_of(0, 0);
+    assert_fate(&f, GLINT_FATE_DARK, 2 + 4);
+    close_fixture(&f);
+}
+
+static void test_blocked(void **state)
+{
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 2);
+    *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* 1.1 */
+    *coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
+    assert_fate(&f, GLINT_FATE_BLOCKED, 2 * WAVES);
+    close_fixture(&f);
+}
+
+/* Ghost 0 to the right of the picture, which is 2.5 mm wide: far, and just so.
+ */
+static void test_outside(void **state)
+{
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 1);
+    f.beam[0].sine_q30 = 1 << 26;
+    *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
+    assert_fate(&f, GLINT_FATE_OUTSIDE, WAVES);
+    *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 469762048; /* 1.75 mm */
+    assert_fate(&f, GLINT_FATE_EMPTY, WAVES);
+    *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 402653184; /* 1.5 mm */
+    assert_fate(&f, GLINT_FATE_DRAWN, WAVES);
+    close_fixture(&f);
+}
+
+/* One light by itself, and many that are counted together. */
+static void test_faint(void **state)
+{
+    struct fixture f;
+
+    (void)state;
+    for (int n = 1; n <= MAX_BEAMS; n++) {
+        open_fixture(&f, n);
+        f.rays.faintest = real_of(1, 60);
+        assert_fate(&f, GLINT_FATE_FAINT, n * 2 * WAVES);
+        close_fixture(&f);
+    }
+}
+
+static void test_no_room(void **state)
+{
+    struct glint_flare_stats all;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 4);
+    bin(&f);
+    all = f.stats;
+    f.cfg.max_bundles = 8;
+    bin(&f);
+    assert_totals(&f);
+    assert_int_equal(accounts(&f).of[GLINT_FATE_NO_ROOM], 4 * 3 * WAVES - 8);
+    f.cfg.max_bundles = 64;
+    for (int part = 1; part < 4; part++) {
+        f.cfg.max_primitives = all.primitives * part / 4;
+        f.cfg.max_refs = all.refs;
+        bin(&f);
+        assert_totals(&f);
+        assert_true(accounts(&f).of[GLINT_FATE_NO_ROOM] > 0);
+        f.cfg.max_primitives = all.primitives;
+        f.cfg.max_refs = all.refs * part / 4;
+        bin(&f);
+        assert_totals(&f);
+        assert_true(accounts(&f).of[GLINT_FATE_NO_ROOM] > 0);
+    }
+    close_fixture(&f);
+}
+
+static void draw(struct fixture *f, int32_t *px_q20)
+{
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
+
+    memset(px_q20, 0, sizeof *px_q20 * 3 * N);
+    glint_image_place(&image, px_q20);
+    glint_flare_draw(f->flare, &image);
+}
+
+/* By ghost, by beam, by wave: each way the parts are the whole, but for the
+ * rounding of each to 2^-20; what an account says, and kept alone draws
+ * nothing, has no light. */
+static void test_parts(void **state)
+{
+    static int32_t whole[3 * N], part[3 * N];
+    static int64_t sum[3 * N];
+    const int parts[3] = {3, 2, WAVES};
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 2);
+    bin(&f);
+    draw(&f, whole);
+    for (int by = 0; by < 3; by++) {
+        memset(sum, 0, sizeof sum);
+        for (int k = 0; k < parts[by]; k++) {
+            int64_t any = 0;
+
+            glint_flare_keep(f.flare, by == 0 ? k : -1, by == 1 ? k : -1,
+                             by == 2 ? k : -1);
+            draw(&f, part);
+            for (int i = 0; i < 3 * N; i++) {
+                sum[i] += part[i];
+                any |= part[i];
+            }
+            assert_int_equal(any != 0, by != 0 || k != 1);
+        }
+        for (int i = 0; i < 3 * N; i++)
+            assert_true(llabs(sum[i] - whole[i]) <= parts[by]);
+    }
+    glint_flare_keep(f.flare, -1, -1, -1);
+    draw(&f, part);
+    assert_memory_equal(part, whole, sizeof whole);
+    close_fixture(&f);
+}
+
+/* Asking changes nothing. */
+static void test_asking(void **state)
+{
+    static int32_t before[3 * N], after[3 * N];
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 4);
+    bin(&f);
+    draw(&f, before);
+    bin(&f);
+    accounts(&f);
+    draw(&f, after);
+    assert_memory_equal(before, after, sizeof before);
+    close_fixture(&f);
+}
+
+/* The terms of ghost 0: x 2, and v^2 s but in the middle of the range of
+ * angles; y 2, stop 1 and 2, energy 1 with the wavelength put in, barrel 2. */
+static void test_terms(void **state)
+{
+    struct glint_account a;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 1);
+    for (int off = 0; off < 2; off++) {
+        f.beam[0].sine_q30 = (1 << 27) - (off << 26);
+        bin(&f);
+        glint_flare_account(f.flare, 0, 0, 0, &a);
+        assert_int_equal(a.fate, GLINT_FATE_DRAWN);
+        assert_int_equal(a.outputs, 6);
+        assert_int_equal(a.barrels, 1);
+        assert_int_equal(a.terms, 2 + off + 2 + 1 + 2 + 1 + 2);
+    }
+    close_fixture(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_drawn_and_closed),
+        cmocka_unit_test(test_other),
+        cmocka_unit_test(test_beyond),
+        cmocka_unit_test(test_dark),
+        cmocka_unit_test(test_blocked),
+        cmocka_unit_test(test_outside),
+        cmocka_unit_test(test_faint),
+        cmocka_unit_test(test_no_room),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_asking),
+        cmocka_unit_test(test_terms),
+    };
+
+    return cmocka_run_group_tests_name("account", tests, NULL, NULL);
+}
