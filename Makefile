@@ -88,7 +88,7 @@ PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
-        model_report measure lamps show_lights frame frame_feed scene look live_adapt \
+        model_report measure lamps paint show_lights frame frame_feed scene look live_adapt \
         live_signals live_output live_picture live_stats live_loop \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_live cmd_compare \
         bench_cases bench_growth bench_report cmd_bench

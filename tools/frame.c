@@ -359,15 +359,16 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
            double scale, const struct glint_image *image,
            struct glint_flare_stats *stats, double times[5])
 {
-    const struct glint_rays rays = rays_of(f, faintest(f, image));
     enum glint_status status;
 
+    f->rays = rays_of(f, faintest(f, image));
+    f->scale = scale;
     times[0] = tool_seconds();
     status = set_beams(f, lamps, n_lamps, scale);
 
     set_waves(f);
     while (status == GLINT_OK) {
-        status = plan(f, &rays);
+        status = plan(f, &f->rays);
         if (status != GLINT_OK)
             return status;
         times[1] = times[2] = tool_seconds();

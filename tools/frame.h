@@ -48,6 +48,8 @@ struct frame {
     int n_beams, max_beams;
     int n_apart;  /* lights that can be told apart */
     int n_beyond; /* left out before: the model ends before them */
+    struct glint_rays rays; /* of the last frame, with a model */
+    double scale;           /* by which its lights were multiplied */
     bool *seen;   /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
 
     /* exact rays */

@@ -183,8 +183,8 @@ void look_close(struct look *look)
 
 /* ------------------------------------------------------------------ drawing */
 
-static int lamps_of(struct look *look, const struct glint_image *image,
-                    int32_t elapsed_us)
+int look_lamps(struct look *look, const struct glint_image *image,
+               int32_t elapsed_us)
 {
     const double focal = look->scene.setup.optics.focal_mm;
     int n = look->n_hand;
@@ -273,7 +273,7 @@ enum glint_status look_draw(struct look *look, const struct glint_image *image,
     enum glint_status status;
     double found;
 
-    look->n_lamps = lamps_of(look, image, elapsed_us);
+    look->n_lamps = look_lamps(look, image, elapsed_us);
     found = tool_seconds();
     if (look->flare_only)
         blacken(image);

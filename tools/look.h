@@ -100,6 +100,10 @@ int look_open(const struct tool *tool, struct look *look);
 int look_size(const struct tool *tool, struct look *look, int width,
               int height);
 
+/* Sets the lamps of IMAGE, as look_draw does; returns how many there are. */
+int look_lamps(struct look *look, const struct glint_image *image,
+               int32_t elapsed_us);
+
 /* Adds the flare to IMAGE, of that size and ELAPSED_US after the one before; 0:
  * a picture by itself. GLINT_E_MEMORY. */
 enum glint_status look_draw(struct look *look, const struct glint_image *image,

@@ -271,7 +271,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
                          int wave, struct glint_account *account);
 
 /* Of the bundles planned and binned last, by edges, keeps in the tiles those of
- * GHOST, BEAM and WAVE, each -1 for all: draw draws these alone, until the next
+ * GHOST with all its parts, BEAM and WAVE, each -1 for all: draw draws these alone, until the next
  * time that this or bin is called. */
 void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave);
 

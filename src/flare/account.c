@@ -120,10 +120,15 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
         account->fate = GLINT_FATE_EMPTY;
 }
 
-static int is_of(const struct glint_source *s, int ghost, int beam, int wave)
+static int is_of(const struct glint_flare *f, const struct glint_source *s,
+                 int ghost, int beam, int wave)
 {
-    return (ghost < 0 || s->ghost == ghost) && (beam < 0 || s->beam == beam) &&
-           (wave < 0 || s->wave == wave);
+    const struct glint_model_ghost *of = f->plan.rays->lens->ghost;
+    const struct glint_model_ghost *here = &of[s->ghost];
+
+    return (ghost < 0 ||
+            (here->i == of[ghost].i && here->j == of[ghost].j)) &&
+           (beam < 0 || s->beam == beam) && (wave < 0 || s->wave == wave);
 }
 
 void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
@@ -133,7 +138,7 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
         for (int i = 0; i < flare->n_drawn; i++) {
             const struct glint_bundle_slot *slot = &flare->slot[i];
 
-            if (!is_of(&flare->source[i], ghost, beam, wave))
+            if (!is_of(flare, &flare->source[i], ghost, beam, wave))
                 continue;
             for (int k = slot->first; k < slot->first + slot->n; k++)
                 if (put)
