@@ -90,7 +90,8 @@ PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
         model_report measure lamps paint show_lights frame frame_feed scene look live_adapt \
         live_signals live_output live_picture live_stats live_loop \
-        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_live cmd_compare \
+        explain explain_table explain_picture \
+        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve resolve lights flare plan account beams pnm y4m picture output workers \

@@ -125,6 +125,13 @@ static bool is_beyond(const struct frame *f, const struct glint_beam *b)
     return f->lens && b->sine_q30 > f->lens->header->sine_hi_q30;
 }
 
+bool frame_is_beyond(const struct frame *frame, const struct glint_lamp *lamp)
+{
+    const struct glint_beam b = beam_of(lamp, 1);
+
+    return is_beyond(frame, &b);
+}
+
 static enum glint_status hold_beams(struct frame *f, int n)
 {
     struct glint_beam *beam;

@@ -46,11 +46,11 @@ struct frame {
     struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
     struct glint_beam *beam;
     int n_beams, max_beams;
-    int n_apart;  /* lights that can be told apart */
-    int n_beyond; /* left out before: the model ends before them */
+    int n_apart;            /* lights that can be told apart */
+    int n_beyond;           /* left out before: the model ends before them */
     struct glint_rays rays; /* of the last frame, with a model */
     double scale;           /* by which its lights were multiplied */
-    bool *seen;   /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+    bool *seen;             /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
 
     /* exact rays */
     struct glint_lamp *merged; /* lamps, where some merged; [n_beams] */
@@ -93,6 +93,9 @@ enum glint_status frame_draw(struct frame *frame,
                              const struct glint_lamp *lamps, int n_lamps,
                              double scale, const struct glint_image *image,
                              struct frame_report *report);
+
+/* Whether LAMP is farther off the axis than FRAME's model goes. */
+bool frame_is_beyond(const struct frame *frame, const struct glint_lamp *lamp);
 
 /* Takes over what changed in cfg since memory was taken; no more of it is. */
 void frame_retune(struct frame *frame);

@@ -18,6 +18,7 @@ static const char help[] =
     "  glint render LENS|MODEL -o OUT  the flare alone\n"
     "  glint overlay IN -o OUT ...     the flare of the lamps in a picture or\n"
     "                                  video, on top of it\n"
+    "  glint explain IN | --size WxH   what a frame models, what not, and why\n"
     "  glint live                      the same, from a camera to the panel\n"
     "  glint compare A B               how far two pictures are apart\n"
     "  glint bench                     what a frame costs\n"
@@ -35,9 +36,9 @@ struct command {
 };
 
 static const struct command commands[] = {
-    {"info", cmd_info},       {"trace", cmd_trace}, {"render", cmd_render},
-    {"overlay", cmd_overlay}, {"live", cmd_live},   {"compare", cmd_compare},
-    {"bake", cmd_bake},       {"bench", cmd_bench},
+    {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
+    {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
+    {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
 };
 
 static volatile sig_atomic_t reader_gone;

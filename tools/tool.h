@@ -120,6 +120,7 @@ int cmd_info(int argc, char **argv);
 int cmd_trace(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_overlay(int argc, char **argv);
+int cmd_explain(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 int cmd_live(int argc, char **argv);
 int cmd_bake(int argc, char **argv);

@@ -236,7 +236,7 @@ int glint_flare_tiles(const struct glint_flare *flare);
 /* What became of the rays of one ghost, beam and wave. */
 enum glint_fate {
     GLINT_FATE_DRAWN,
-    GLINT_FATE_EMPTY,  /* planned, but its grid has no edge in the picture */
+    GLINT_FATE_EMPTY,  /* planned, but no edge of its grid changes a pixel */
     GLINT_FATE_OTHER,  /* only_ghost asks for another one */
     GLINT_FATE_BEYOND, /* the beam comes from farther out than the model goes */
     GLINT_FATE_CLOSED, /* of this angle the model says: no ray gets through */
@@ -271,8 +271,12 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
                          int wave, struct glint_account *account);
 
 /* Of the bundles planned and binned last, by edges, keeps in the tiles those of
- * GHOST with all its parts, BEAM and WAVE, each -1 for all: draw draws these alone, until the next
- * time that this or bin is called. */
+ * GHOST with all its parts, BEAM and WAVE, each -1 for all: draw draws these
+ * alone, until the next time that this or bin is called. */
 void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave);
+
+/* Edges in the list of small tile TILE, row by row; light that runs in from the
+ * left is in none. */
+int glint_flare_listed(const struct glint_flare *flare, int tile);
 
 #endif

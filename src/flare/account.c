@@ -126,8 +126,7 @@ static int is_of(const struct glint_flare *f, const struct glint_source *s,
     const struct glint_model_ghost *of = f->plan.rays->lens->ghost;
     const struct glint_model_ghost *here = &of[s->ghost];
 
-    return (ghost < 0 ||
-            (here->i == of[ghost].i && here->j == of[ghost].j)) &&
+    return (ghost < 0 || (here->i == of[ghost].i && here->j == of[ghost].j)) &&
            (beam < 0 || s->beam == beam) && (wave < 0 || s->wave == wave);
 }
 
@@ -150,4 +149,11 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
             glint_bins_sum(&flare->bins);
     }
     glint_bins_close(&flare->bins);
+}
+
+int glint_flare_listed(const struct glint_flare *flare, int tile)
+{
+    const int32_t *start = flare->bins.start;
+
+    return flare->n_drawn ? start[tile + 1] - start[tile] : 0;
 }
