@@ -96,13 +96,13 @@ static void print_title(const struct explain *e, const struct explain_title *t)
            "%d of %d\n",
            e->n_beams, t->n_lamps, ghosts_drawn(e), e->n_ghosts,
            explain_drawn(all), explain_bundles(all), all->tiles, e->n_tiles);
-    printf("barrels that cut:");
-    for (int n = 0; n < EXPLAIN_BARRELS; n++)
-        if (e->barrels[n])
-            printf(" %d in %d bundles,", n, e->barrels[n]);
-    printf(" terms of a ray: %.1f\n",
+    printf("barrels that cut: ");
+    for (int k = 0, some = 0; k < EXPLAIN_BARRELS; k++)
+        if (e->barrels[k])
+            printf("%s%d in %d bundles", some++ ? ", " : "", k, e->barrels[k]);
+    printf("\nterms of a ray: %.1f in the mean\n",
            all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
-    printf("work, about %.1f M instructions:", 1e-6 * all->work);
+    printf("work: about %.1f M instructions\n     ", 1e-6 * all->work);
     for (int i = 0; i < EXPLAIN_STAGES && all->work > 0; i++)
         printf("%s %s %.1f %%", i ? "," : "", stages[i],
                100 * e->stage[i] / all->work);
@@ -128,7 +128,7 @@ static void print_waves(const struct explain *e)
 {
     print_head("wavelength             bundles");
     for (int i = 0; i < e->n_waves; i++) {
-        printf("%7.1f nm %20d", e->frame->setup->wavelength_nm[i],
+        printf("%7.1f nm %19d", e->frame->setup->wavelength_nm[i],
                explain_drawn(&e->wave[i]));
         print_costs(&e->wave[i]);
     }
