@@ -69,7 +69,7 @@ endif
 
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/sort base/image base/workers \
-        kernels/sets kernels/kernels kernels/horner_c kernels/composite_c \
+        kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/composite_c \
         lens/model lens/transfer flare/bright flare/regions flare/lights \
         flare/match flare/follow flare/record flare/tracks tile/primitive \
         tile/clip tile/outline tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
@@ -282,7 +282,7 @@ run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
 	        $(replay_bins)
 # NEON kernels against their C definitions, in an emulator.
 CORE_TEST := tests/unit/test_kernels.c src/base/status.c src/base/q.c \
-        src/tile/curve.c src/tile/mix.c src/kernels/sets.c src/kernels/kernels.c \
+        src/tile/curve.c src/tile/mix.c src/kernels/sets.c src/kernels/kernels.c src/kernels/horner.c \
         $(wildcard src/kernels/*_c.c src/kernels/*_neon.c)
 check-neon:
 	@tools/deps "NEON kernels in an emulator" gcc-aarch64-linux-gnu \

@@ -3,11 +3,10 @@
 
 #include "glint/kernels.h"
 
-#define KERNELS(set)                                                          \
-    {                                                                         \
-        glint_horner_along_##set, glint_horner_across_##set,                  \
-            glint_add_luma_##set, glint_add_pairs_##set,                      \
-            glint_add_packed_##set, glint_add_code_##set, glint_run_sum_##set \
+#define KERNELS(set)                                                         \
+    {                                                                        \
+        glint_add_luma_##set, glint_add_pairs_##set, glint_add_packed_##set, \
+            glint_add_code_##set, glint_run_sum_##set                        \
     }
 
 const struct glint_kernels *glint_kernels_of(unsigned sets)

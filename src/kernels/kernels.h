@@ -82,9 +82,8 @@ typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
 typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
                                     int degree, int32_t x, int fraction, int n);
 
+/* What pictures take. */
 struct glint_kernels {
-    glint_horner_along_fn *horner_along;
-    glint_horner_across_fn *horner_across;
     glint_add_luma_fn *add_luma;
     glint_add_pairs_fn *add_pairs;
     glint_add_packed_fn *add_packed;
@@ -92,8 +91,16 @@ struct glint_kernels {
     glint_run_sum_fn *run_sum;
 };
 
+/* What rays take: apart, so that a program that has only one of them links
+ * nothing of the other. */
+struct glint_horner {
+    glint_horner_along_fn *along;
+    glint_horner_across_fn *across;
+};
+
 /* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C. */
 const struct glint_kernels *glint_kernels_of(unsigned sets);
+const struct glint_horner *glint_horner_of(unsigned sets);
 
 glint_horner_along_fn glint_horner_along_c, glint_horner_along_sse41,
     glint_horner_along_avx2, glint_horner_along_neon;

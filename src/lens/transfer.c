@@ -311,21 +311,21 @@ static int is_odd(int kind)
 
 /* An output's polynomial in u along one row of the grid. */
 static void set_row(const struct glint_transfer *t,
-                    const struct glint_kernels *k, int kind, int32_t v,
+                    const struct glint_horner *k, int kind, int32_t v,
                     int32_t v2, int32_t *of_u)
 {
     const int odd = is_odd(kind);
 
-    k->horner_across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
-                     (t->degree_v[kind] - odd) / 2, v2, t->fraction,
-                     t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
+    k->across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
+              (t->degree_v[kind] - odd) / 2, v2, t->fraction,
+              t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
     for (int a = 0; odd && a <= t->degree_u[kind]; a++)
         of_u[a] = times(t, of_u[a], v, 0);
 }
 
 /* Fills the polynomials in u of the rays at V. */
 static void set_rows(const struct glint_transfer *t,
-                     const struct glint_kernels *k, int32_t v_q30,
+                     const struct glint_horner *k, int32_t v_q30,
                      int32_t (*of_u)[GLINT_TABLE_WIDTH])
 {
     const int32_t v = variable_of(t, v_q30), v2 = times(t, v, v, 0);
@@ -349,14 +349,14 @@ static int32_t energy_of(const struct glint_transfer *t, int32_t polynomial)
 
 /* The rays at U, by kind. */
 static void rays_of_rows(const struct glint_transfer *t,
-                         const struct glint_kernels *k, const int32_t *u,
+                         const struct glint_horner *k, const int32_t *u,
                          int32_t (*out)[RAYS])
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
         if (!has(t, kind))
             continue;
-        k->horner_along(out[kind], t->of_u[kind], t->degree_u[kind], u,
-                        t->fraction, RAYS);
+        k->along(out[kind], t->of_u[kind], t->degree_u[kind], u, t->fraction,
+                 RAYS);
         for (int i = 0; t->shift[kind] && i < RAYS; i++)
             out[kind][i] *= INT32_C(1) << t->shift[kind];
     }
@@ -400,7 +400,7 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
     const struct glint_transfer *t = transfer;
     const int32_t u = variable_of(t, u_q30), v = variable_of(t, v_q30);
     const int32_t v2 = times(t, v, v, 0);
-    const struct glint_kernels *k = glint_kernels_of(0);
+    const struct glint_horner *k = glint_horner_of(0);
 
     if (transfer->basis == GLINT_BASIS_SPARSE) {
         ray_of_terms(transfer, u_q30, v_q30, out);
@@ -413,8 +413,7 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
         if (!has(t, kind))
             continue;
         set_row(t, k, kind, v, v2, of_u);
-        k->horner_along(&out->at[kind], of_u, t->degree_u[kind], &u,
-                        t->fraction, 1);
+        k->along(&out->at[kind], of_u, t->degree_u[kind], &u, t->fraction, 1);
         out->at[kind] *= INT32_C(1) << t->shift[kind];
     }
     out->at[GLINT_OUT_ENERGY] = energy_of(t, out->at[GLINT_OUT_ENERGY]);
@@ -436,7 +435,7 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS])
 {
-    const struct glint_kernels *k = glint_kernels_of(transfer->sets);
+    const struct glint_horner *k = glint_horner_of(transfer->sets);
     int32_t u[RAYS];
 
     if (transfer->basis == GLINT_BASIS_SPARSE) {

@@ -338,9 +338,9 @@ static void check_sum(const struct glint_kernels *k, const char *name)
 }
 
 /* Coefficients whose magnitudes sum to less than 2^30, as bake proves. */
-static void check_horner(const struct glint_kernels *k, const char *name)
+static void check_horner(const struct glint_horner *k, const char *name)
 {
-    const struct glint_kernels *plain = glint_kernels_of(0);
+    const struct glint_horner *plain = glint_horner_of(0);
     int32_t *c = fenced(160 * sizeof *c), *x = fenced(N * sizeof *x);
     int32_t *want = fenced(N * sizeof *want), *got = fenced(N * sizeof *got);
 
@@ -357,17 +357,17 @@ static void check_horner(const struct glint_kernels *k, const char *name)
                 x[i] = -32767;
             want[i] = got[i] = 7;
         }
-        plain->horner_along(want, c, degree, x, fraction, n);
-        k->horner_along(got, c, degree, x, fraction, n);
+        plain->along(want, c, degree, x, fraction, n);
+        k->along(got, c, degree, x, fraction, n);
         EXPECT_SAME(got, want, 4 * N);
-        plain->horner_across(want, c, 16, degree, x[0], fraction, 16);
-        k->horner_across(got, c, 16, degree, x[0], fraction, 16);
+        plain->across(want, c, 16, degree, x[0], fraction, 16);
+        k->across(got, c, 16, degree, x[0], fraction, 16);
         EXPECT_SAME(got, want, 4 * N);
     }
-    BENCH("along 9", name, plain->horner_along(want, c, 9, x, 30, N),
-          k->horner_along(got, c, 9, x, 30, N));
-    BENCH("across 4", name, plain->horner_across(want, c, 32, 4, x[0], 30, 16),
-          k->horner_across(got, c, 32, 4, x[0], 30, 16));
+    BENCH("along 9", name, plain->along(want, c, 9, x, 30, N),
+          k->along(got, c, 9, x, 30, N));
+    BENCH("across 4", name, plain->across(want, c, 32, 4, x[0], 30, 16),
+          k->across(got, c, 32, 4, x[0], 30, 16));
 }
 
 static void test_same_bits(void)
@@ -377,7 +377,7 @@ static void test_same_bits(void)
 
         if (!(variants[v].set & glint_sets_here()))
             continue;
-        check_horner(k, variants[v].name);
+        check_horner(glint_horner_of(variants[v].set), variants[v].name);
         check_luma(k, variants[v].name);
         check_pairs(k, variants[v].name);
         check_packed(k, variants[v].name);
