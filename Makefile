@@ -73,7 +73,7 @@ CORE := base/status base/arena base/q base/sort base/image base/workers \
         lens/model lens/transfer flare/bright flare/regions flare/lights \
         flare/match flare/follow flare/record flare/tracks tile/primitive \
         tile/clip tile/outline tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
-        tile/resolve flare/beams flare/plan flare/ghost_grid flare/cuts \
+        tile/resolve tile/composite flare/beams flare/plan flare/ghost_grid flare/cuts \
         flare/ghost_edges flare/by_cells flare/by_edges flare/flare flare/account
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
@@ -94,7 +94,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
         bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
-        exact curve resolve lights flare plan account beams pnm y4m picture output workers \
+        exact curve resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame show_lights explain live
 FUZZ := lens model y4m pnm

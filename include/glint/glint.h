@@ -23,6 +23,7 @@
 #define GLINT_GLINT_H
 
 #include "glint/bake.h"
+#include "glint/composite.h"
 #include "glint/flare.h"
 #include "glint/image.h"
 #include "glint/kernels.h"

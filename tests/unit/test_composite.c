@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Light of a program's own: what the definition says in linear light, in every
+ * format and size alike, and nothing beside it.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/composite.h"
+#include "glint/kernels.h"
+
+enum { MOST = 150, N_MOST = MOST * MOST };
+
+static uint16_t light[3][N_MOST];
+
+/* A lamp of three colours near (30, 20), none from column 100 on. */
+static struct glint_layer lamp(int width, int height)
+{
+    static const int most[3] = {65535, 30000, 900};
+
+    for (int c = 0; c < 3; c++)
+        for (int y = 0; y < height; y++)
+            for (int x = 0; x < width; x++) {
+                const int r2 = (x - 30) * (x - 30) + (y - 20) * (y - 20);
+
+                light[c][y * MOST + x] =
+                    (uint16_t)(x < 100 ? most[c] / (1 + r2 / 16) : 0);
+            }
+    return (struct glint_layer){{light[0], light[1], light[2]}, MOST};
+}
+
+static struct glint_composite *make(const struct glint_image *image,
+                                    unsigned sets, void **mem)
+{
+    const size_t bytes = glint_composite_bytes();
+    struct glint_composite *c;
+
+    assert_int_equal(posix_memalign(mem, 64, bytes), 0);
+    assert_int_equal(glint_composite_init(&c, image, sets, 0, *mem, bytes),
+                     GLINT_OK);
+    return c;
+}
+
+static void add(const struct glint_image *image, unsigned sets)
+{
+    const struct glint_layer layer = lamp(image->width, image->height);
+    void *mem;
+
+    glint_composite_add(make(image, sets, &mem), image, &layer);
+    free(mem);
+}
+
+static double linear_of(double code)
+{
+    const double x = code / 255;
+
+    return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+}
+
+static double code_of(double x)
+{
+    return x >= 1 ? 255
+                  : 255 * (x <= 0.0031308 ? 12.92 * x
+                                          : 1.055 * pow(x, 1 / 2.4) - 0.055);
+}
+
+static void test_definition(void **state)
+{
+    static uint8_t rgb[3 * N_MOST];
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = 131, .height = 77};
+
+    (void)state;
+    for (int code = 0; code < 256; code += 15) {
+        memset(rgb, code, sizeof rgb);
+        glint_image_place(&image, rgb);
+        add(&image, 0);
+        for (int y = 0; y < 77; y++)
+            for (int x = 0; x < 131; x++)
+                for (int c = 0; c < 3; c++) {
+                    const double want = code_of(
+                        linear_of(code) + light[c][y * MOST + x] / 65535.0);
+
+                    assert_true(fabs(rgb[3 * (131 * y + x) + c] - want) < 0.65);
+                    if (light[c][y * MOST + x] == 0)
+                        assert_int_equal(rgb[3 * (131 * y + x) + c], code);
+                }
+    }
+}
+
+/* Sets give the same bits; what has no light stays; guards are not touched. */
+static void test_formats(void **state)
+{
+    enum { GUARD = 256, BYTES = 3 * N_MOST + 2 * GUARD };
+    static uint8_t plain[BYTES], fast[BYTES];
+
+    (void)state;
+    for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
+        if (format == GLINT_LINEAR_Q20 || format == GLINT_XRGB8888)
+            continue;
+        for (int size = 1; size < MOST; size += 1 + size / 2) {
+            struct glint_image image = {.format =
+                                            (enum glint_pixel_format)format,
+                                        .width = size,
+                                        .height = MOST - size};
+            const size_t bytes =
+                glint_image_bytes(image.format, image.width, image.height);
+            int changed = 0;
+
+            memset(plain, 99, sizeof plain);
+            memset(fast, 99, sizeof fast);
+            glint_image_place(&image, plain + GUARD);
+            add(&image, 0);
+            glint_image_place(&image, fast + GUARD);
+            add(&image, glint_sets_here());
+            assert_memory_equal(plain, fast, sizeof plain);
+            for (size_t i = 0; i < BYTES; i++) {
+                changed += plain[i] != 99;
+                if (i < GUARD || i >= GUARD + bytes)
+                    assert_int_equal(plain[i], 99);
+            }
+            assert_true(changed > 0);
+        }
+    }
+}
+
+static void test_refusals(void **state)
+{
+    const struct glint_image linear = {
+        .format = GLINT_LINEAR_Q20, .width = 8, .height = 8};
+    const struct glint_image image = {
+        .format = GLINT_YUYV, .width = 8, .height = 8};
+    const size_t bytes = glint_composite_bytes();
+    struct glint_composite *c;
+    void *mem;
+
+    (void)state;
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_composite_init(&c, &linear, 0, 0, mem, bytes),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(
+        glint_composite_init(&c, &image, 0, 0, (char *)mem + 8, bytes),
+        GLINT_E_ARGUMENT);
+    assert_int_equal(glint_composite_init(&c, &image, 0, 0, mem, bytes - 1),
+                     GLINT_E_MEMORY);
+    assert_int_equal(glint_composite_init(&c, &image, 0, 0, mem, bytes),
+                     GLINT_OK);
+    free(mem);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_definition),
+        cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_refusals),
+    };
+
+    return cmocka_run_group_tests_name("composite", tests, NULL, NULL);
+}
