@@ -9,6 +9,7 @@
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
+#   make size     bytes of the run-time library, and of programs with parts of it
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   also: oiio table bake-table accuracy-table ray-table inputs fuzz format
 #         golden-update clean
@@ -22,6 +23,7 @@ endif
 CXX     := g++
 AR      ?= ar
 NM      ?= nm
+SIZE    ?= size
 OBJDUMP ?= objdump
 PREFIX  ?= /usr/local
 # Static, for boards and the emulator:  TARGET=aarch64|armv7|x86_64, with the
@@ -43,6 +45,7 @@ CROSS   := $(CROSS_$(TARGET))
 CC      := $(CROSS)gcc
 AR      := $(CROSS)ar
 NM      := $(CROSS)nm
+SIZE    := $(CROSS)size
 OBJDUMP := $(CROSS)objdump
 LDFLAGS += -static
 JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
@@ -139,8 +142,9 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
         -DGLINT_LENS_DIR='"$(PREFIX)/share/glint/lenses"' \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
-# Run-time half: no library, small stack frames.
-$(core_o): CFLAGS += -ffreestanding -Wframe-larger-than=1024
+# Run-time half: no library, small stack frames; --gc-sections takes out what is
+# not called.
+$(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024
 # An instruction set is a file-name suffix; nothing else may use its flags.
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
@@ -209,6 +213,15 @@ always:
 $(OUT)/glint: $(OUT)/tools/glint.o $(libs)
 	$(link)
 
+# Programs that take one part of the run-time library, and no other half.
+EXAMPLES := ghost_rays add_glow find_lamps
+example_bins := $(EXAMPLES:%=$(OUT)/examples/%)
+$(OUT)/tools/examples/%.o: CPPFLAGS += -Itools/examples
+$(example_bins): $(OUT)/examples/%: $(OUT)/tools/examples/%.o $(OUT)/libglint.a
+	@mkdir -p $(@D)
+	$(say) LD $@
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$@.map $^ -lm -o $@
+
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.
 oiio: build/glint-oiio.so
 build/glint-oiio.so: platform/oiio/oiio.cc platform/oiio/oiio.h
@@ -240,6 +253,8 @@ bench: all
 	@build/glint bench
 growth: all
 	@tools/growth
+size: $(OUT)/libglint.a $(example_bins)
+	@tools/size $(SIZE) $(OUT) $(EXAMPLES)
 memory-table: all
 	@tools/memory-table
 bench-insn: all
@@ -277,7 +292,7 @@ check:
 	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
 	        ! tests/vm/possible $(VM_ARCHS) || \
 	        $(MAKE) --no-print-directory DEPS=no check-vm
-run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan
+run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(example_bins)
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
 # NEON kernels against their C definitions, in an emulator.
@@ -374,7 +389,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn growth memory-table check run-check check-neon check-vm vm-deps vm-programs golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check check-neon check-vm vm-deps vm-programs golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * find_lamps PICTURE.ppm - where the lamps of a picture are. Links of glint the
+ * finder alone.
+ */
+#include "glint/lights.h"
+#include "ppm.h"
+
+enum { MOST = 32 };
+
+static int find(const struct glint_image *image)
+{
+    struct glint_lights_config cfg;
+    struct glint_lights *finder;
+    struct glint_spot spot[MOST];
+    void *mem = NULL;
+    size_t bytes;
+    int n;
+
+    glint_lights_defaults(&cfg, image->width, image->height);
+    bytes = glint_lights_bytes(&cfg);
+    if (posix_memalign(&mem, 64, bytes) != 0 ||
+        glint_lights_init(&finder, &cfg, mem, bytes) != GLINT_OK) {
+        fprintf(stderr, "out of memory\n");
+        free(mem);
+        return 1;
+    }
+    n = glint_lights_find(finder, image, spot, MOST);
+    for (int i = 0; i < n; i++)
+        printf("%.2f,%.2f,%.3f\n", spot[i].x_q8 / 256.0, spot[i].y_q8 / 256.0,
+               (double)spot[i].flux_q16 / 65536);
+    free(mem);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct glint_image image;
+    int code;
+
+    if (argc != 2) {
+        fprintf(stderr, "find_lamps PICTURE.ppm\n");
+        return 2;
+    }
+    code = ppm_read(argv[1], &image);
+    if (code == 0) {
+        code = find(&image);
+        free(image.plane[0]);
+    }
+    return code;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The simplest of pictures, for the examples: binary PPM of 8 bits.
+ */
+#ifndef GLINT_EXAMPLES_PPM_H
+#define GLINT_EXAMPLES_PPM_H
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "glint/image.h"
+
+/* Reads PATH into an image of sRGB codes whose plane is to be freed. Returns 0,
+ * or 3 after saying what is wrong. */
+static inline int ppm_read(const char *path, struct glint_image *image)
+{
+    FILE *file = fopen(path, "rb");
+    uint8_t *codes = NULL;
+    int width = 0, height = 0;
+
+    if (file && fscanf(file, "P6 %d %d 255", &width, &height) == 2 &&
+        fgetc(file) != EOF && width > 0 && height > 0 &&
+        width <= GLINT_MAX_SIDE && height <= GLINT_MAX_SIDE) {
+        const size_t bytes = 3 * (size_t)width * (size_t)height;
+
+        codes = malloc(bytes);
+        if (codes && fread(codes, 1, bytes, file) != bytes) {
+            free(codes);
+            codes = NULL;
+        }
+    }
+    if (file)
+        fclose(file);
+    if (!codes) {
+        fprintf(stderr, "%s: not a binary PPM of 8 bits, or cut short\n", path);
+        return 3;
+    }
+    *image = (struct glint_image){
+        .format = GLINT_RGB24, .width = width, .height = height};
+    glint_image_place(image, codes);
+    return 0;
+}
+
+#endif
