@@ -6,6 +6,7 @@
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
+#   make mutants  planted faults, each of which a unit test has to catch
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
@@ -295,6 +296,9 @@ check:
 run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(example_bins)
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
+# Faults planted in copies of the tree: MUTANTS=names, or all.
+mutants: $(test_bins)
+	@tests/mutants/run $(OUT) $(MUTANTS)
 # NEON kernels against their C definitions, in an emulator.
 CORE_TEST := tests/unit/test_kernels.c src/base/status.c src/base/q.c \
         src/tile/curve.c src/tile/mix.c src/kernels/sets.c src/kernels/kernels.c src/kernels/horner.c \
@@ -389,7 +393,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check check-neon check-vm vm-deps vm-programs golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-neon check-vm vm-deps vm-programs golden-update fuzz format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
