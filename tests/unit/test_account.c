@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "base/real.h"
+#include "flare/state.h"
 #include "glint/flare.h"
 #include "support/model_builder.h"
 
@@ -381,6 +382,89 @@ static void test_terms(void **state)
     close_fixture(&f);
 }
 
+/* Rows by looking at each: does any of it lie between the edge's ends? */
+static void test_rows(void **state)
+{
+    struct fixture f;
+    int64_t want = 0, got = 0;
+
+    (void)state;
+    open_fixture(&f, 2);
+    f.rays.pixels_per_mm = real_of(200, 0); /* larger than the picture */
+    bin(&f);
+    for (int i = 0; i < f.stats.primitives; i++)
+        for (int y = 0; y < HEIGHT; y++)
+            want += f.flare->edge[i].y_q8 < 256 * (y + 1) &&
+                    f.flare->edge[i].end_y_q8 > 256 * y;
+    for (int beam = 0; beam < 2; beam++)
+        for (int ghost = 0; ghost < 3; ghost++)
+            for (int wave = 0; wave < WAVES; wave++) {
+                struct glint_account a;
+
+                glint_flare_account(f.flare, ghost, beam, wave, &a);
+                got += a.rows;
+            }
+    assert_true(want > 1000);
+    assert_int_equal(got, want);
+    close_fixture(&f);
+}
+
+/* Light in the middle of PICTURE, as large as the small ones are. */
+static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
+{
+    int64_t sum = 0;
+
+    for (int y = (height - HEIGHT) / 2; y < (height + HEIGHT) / 2; y++)
+        for (int x = 3 * (width - WIDTH) / 2; x < 3 * (width + WIDTH) / 2; x++)
+            sum += px_q20[3 * width * y + x];
+    return sum;
+}
+
+/* A ghost that is said to lie outside has no light where the picture is: a
+ * larger picture about it shows that. All azimuths, ever farther out. */
+static void test_outside_is_outside(void **state)
+{
+    enum { WIDE = 4 * WIDTH, HIGH = 4 * HEIGHT };
+    static int32_t px_q20[3 * WIDE * HIGH];
+    int n_outside = 0, n_drawn = 0;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f, 1);
+    for (int degrees = 0; degrees < 360; degrees += 15)
+        for (int x_q28 = 1 << 27; x_q28 < 536870912; x_q28 += 1 << 25) {
+            struct glint_image image = {
+                .format = GLINT_LINEAR_Q20, .width = WIDE, .height = HIGH};
+            struct glint_account a;
+
+            f.rays.pixels_per_mm = real_of(100, 0);
+            f.beam[0].sine_q30 = 1 << 26;
+            f.beam[0].cos_q30 =
+                (int32_t)lrint(cos(degrees / 57.29578) * 0x1p30);
+            f.beam[0].sin_q30 =
+                (int32_t)lrint(sin(degrees / 57.29578) * 0x1p30);
+            *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
+            f.cfg.width = WIDTH;
+            f.cfg.height = HEIGHT;
+            bin(&f);
+            glint_flare_account(f.flare, 0, 0, 0, &a);
+            if (a.fate != GLINT_FATE_OUTSIDE) {
+                n_drawn++;
+                continue;
+            }
+            n_outside++;
+            f.cfg.width = WIDE;
+            f.cfg.height = HIGH;
+            bin(&f);
+            memset(px_q20, 0, sizeof px_q20);
+            glint_image_place(&image, px_q20);
+            glint_flare_draw(f.flare, &image);
+            assert_true(light_in_middle(px_q20, WIDE, HIGH) == 0);
+        }
+    assert_true(n_outside > 20 && n_drawn > 20);
+    close_fixture(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -395,6 +479,8 @@ int main(void)
         cmocka_unit_test(test_parts),
         cmocka_unit_test(test_asking),
         cmocka_unit_test(test_terms),
+        cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_outside_is_outside),
     };
 
     return cmocka_run_group_tests_name("account", tests, NULL, NULL);

@@ -494,6 +494,40 @@ static void test_rays(void **state)
     free(m.data);
 }
 
+/* An energy that is the square, or the square of the square, of its polynomial,
+ * which counts 2^head times: half of the most is a quarter of it, and a
+ * sixteenth; what is below 0 is none. */
+static void test_roots(void **state)
+{
+    const int32_t half = (1 << 28) / 2; /* of 2^(29 - head), head 1 */
+
+    (void)state;
+    for (int roots = 0; roots <= 2; roots++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            struct model_image m = model_auto();
+            const struct glint_model_system *s =
+                (const void *)(m.data + model_header(&m)->system_at);
+            struct glint_model_output *o =
+                (void *)(m.data + s->output_at + 4 * sizeof *o);
+            int32_t *coef = (void *)(m.data + o->coef_at);
+            static struct glint_transfer t;
+            struct glint_lens lens;
+
+            assert_int_equal(o->kind, GLINT_OUT_ENERGY);
+            o->head = 1;
+            o->roots = (uint8_t)roots;
+            coef[0] = sign * half;
+            coef[1] = 0;
+            model_seal(&m);
+            lens = open_image(&m);
+            assert_int_equal(
+                glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
+            assert_int_equal(ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
+                             sign < 0 ? 0 : (1 << 29) >> (1 << roots));
+            free(m.data);
+        }
+}
+
 /* Ranges, bands, and the box. */
 static void test_init(void **state)
 {
@@ -792,6 +826,7 @@ int main(void)
         cmocka_unit_test(test_no_ghosts),
         cmocka_unit_test(test_shared_tables),
         cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_roots),
         cmocka_unit_test(test_init),
         cmocka_unit_test(test_sparse_rays),
         cmocka_unit_test(test_extremes),
