@@ -273,4 +273,10 @@ void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row);
 
+/* Row J and, for little more, row N_CELLS - J, its mirror image. */
+void glint_transfer_rows(struct glint_transfer *transfer,
+                         const struct glint_place *place, int n_cells, int j,
+                         struct glint_vertex *row,
+                         struct glint_vertex *mirrored);
+
 #endif

@@ -73,6 +73,24 @@ static int vertex_valid(const struct glint_vertex *v)
            (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
+/* Row J of the grid; valid until the next but one. */
+static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
+{
+    const int n = g->bundle->n_cells;
+    struct glint_ghost_rows *r = g->rows;
+    struct glint_vertex *row = r->vertex[j & 1];
+
+    if (!g->transfer)
+        return g->vertex + (ptrdiff_t)j * (n + 1);
+    if (n > GLINT_HELD_CELLS || 2 * j == n)
+        glint_transfer_row(g->transfer, &g->place, n, j, row);
+    else if (2 * j < n)
+        glint_transfer_rows(g->transfer, &g->place, n, j, row, r->held[j]);
+    else
+        return r->held[n - j];
+    return row;
+}
+
 static void set_nodes(struct glint_ghost_edges *g, int j)
 {
     const int n = g->bundle->n_cells;
@@ -80,11 +98,7 @@ static void set_nodes(struct glint_ghost_edges *g, int j)
     uint8_t *barrels = g->rows->barrels[j & 1];
     const int32_t floor = g->height * 256, right = g->width * 256;
 
-    if (g->transfer)
-        glint_transfer_row(g->transfer, &g->place, n, j,
-                           g->rows->vertex[j & 1]);
-    g->row[j & 1] = g->transfer ? g->rows->vertex[j & 1]
-                                : g->vertex + (ptrdiff_t)j * (n + 1);
+    g->row[j & 1] = row_of(g, j);
     glint_cuts_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
     for (int i = 0; i <= n; i++) {
         const struct glint_vertex *v = node(g, i, j);

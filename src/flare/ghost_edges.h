@@ -27,12 +27,18 @@
 #include "tile/edges.h"
 #include "tile/outline.h"
 
-enum { GLINT_LIGHT_OCTAVES = 45 }; /* of irradiance _q20 */
+enum {
+    GLINT_LIGHT_OCTAVES = 45, /* of irradiance _q20 */
+    GLINT_HELD_CELLS = 64     /* of grids whose second half is held */
+};
 
 /* Scratch of a worker: of the nodes of two rows, and the cells between. */
 struct glint_ghost_rows {
     struct glint_outline outline;
     struct glint_vertex vertex[2][GLINT_MAX_CELLS + 1];
+    /* The rows behind the middle, first to last the lower half's mirror images:
+     * computed with these, if the grid is small. */
+    struct glint_vertex held[GLINT_HELD_CELLS / 2][GLINT_HELD_CELLS + 1];
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* of the stop: bit set = outside */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1]; /* the same; LOST; where beyond the
                                                 picture */

@@ -513,17 +513,15 @@ static void set_barrels(const struct glint_transfer *t,
     }
 }
 
-/* How rays of one side of the light's plane lie in the picture: cosine and sine
- * of the azimuth, for the sensor times pixels per mm, and the shifts to the
- * formats of a vertex. */
+/* How rays lie in the picture: cosine and sine of the azimuth, for the sensor
+ * times pixels per mm, and the shifts to the formats of a vertex. */
 struct turn {
     int64_t cos, sin, sensor_cos, sensor_sin;
-    int mirror, to_q8, to_q16;
+    int to_q8, to_q16;
 };
 
-/* MIRROR is -1 for the other side of the plane. */
 static struct turn turn_of(const struct glint_transfer *t,
-                           const struct glint_place *p, int mirror)
+                           const struct glint_place *p)
 {
     const struct glint_real size = p->pixels_per_mm;
     const int64_t c = p->cos_q30, s = p->sin_q30;
@@ -533,40 +531,74 @@ static struct turn turn_of(const struct glint_transfer *t,
         .sin = s,
         .sensor_cos = q_shift(c * size.mantissa, 30),
         .sensor_sin = q_shift(s * size.mantissa, 30),
-        .mirror = mirror,
         .to_q8 = -(t->exponent[GLINT_OUT_SENSOR_X] + size.exponent + 8),
         .to_q16 = 30 - (t->exponent[GLINT_OUT_STOP_X] + 16)};
 }
 
-/* Of ray I. Coordinates are below 2^30, so that sums of two products are below
- * 2^62. */
-static void set_vertex(const struct glint_transfer *t,
-                       const struct glint_place *p, const struct turn *turn,
-                       const int32_t (*rays)[RAYS], int i,
-                       struct glint_vertex *v)
+/* The parts of a turned point that the place across the light's plane has no
+ * share in, and those that are its own: x cos, x sin, y cos, y sin. */
+struct parts {
+    int64_t xc, xs, yc, ys;
+};
+
+/* Coordinates are below 2^30, so that sums of two products are below 2^62. */
+static inline void place_vertex(const struct glint_place *p,
+                                const struct turn *turn, struct parts sensor,
+                                struct parts stop, struct glint_vertex *v)
 {
-    const int64_t x = rays[GLINT_OUT_SENSOR_X][i];
-    const int64_t y = (int64_t)turn->mirror * rays[GLINT_OUT_SENSOR_Y][i];
-    const int64_t a = rays[GLINT_OUT_STOP_X][i];
-    const int64_t b = (int64_t)turn->mirror * rays[GLINT_OUT_STOP_Y][i];
+    int lost = v->energy_q16 < 0;
+
+    v->x_q8 = p->middle_x_q8 + scaled(sensor.xc - sensor.ys, turn->to_q8,
+                                      GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
+    v->y_q8 = p->middle_y_q8 - scaled(sensor.xs + sensor.yc, turn->to_q8,
+                                      GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
+    v->stop_x_q16 = scaled(stop.xc - stop.ys, turn->to_q16, LIMIT_Q16, &lost);
+    v->stop_y_q16 = scaled(stop.xs + stop.yc, turn->to_q16, LIMIT_Q16, &lost);
+    v->energy_q16 = lost ? -1 : v->energy_q16;
+}
+
+static inline struct parts parts_of(int64_t x, int64_t y, int64_t c, int64_t s)
+{
+    return (struct parts){x * c, x * s, y * c, y * s};
+}
+
+static inline struct parts mirrored_parts(struct parts p)
+{
+    return (struct parts){p.xc, p.xs, -p.yc, -p.ys};
+}
+
+/* Of ray I: into V, and with the other side of the light's plane into MIRRORED,
+ * unless they are NULL. */
+static void set_vertices(const struct glint_transfer *t,
+                         const struct glint_place *p, const struct turn *turn,
+                         const int32_t (*rays)[RAYS], int i,
+                         struct glint_vertex *v, struct glint_vertex *mirrored)
+{
+    const struct parts sensor =
+        parts_of(rays[GLINT_OUT_SENSOR_X][i], rays[GLINT_OUT_SENSOR_Y][i],
+                 turn->sensor_cos, turn->sensor_sin);
+    const struct parts stop =
+        parts_of(rays[GLINT_OUT_STOP_X][i], rays[GLINT_OUT_STOP_Y][i],
+                 turn->cos, turn->sin);
+    struct glint_vertex both;
     int lost = 0;
 
-    v->x_q8 =
-        p->middle_x_q8 + scaled(x * turn->sensor_cos - y * turn->sensor_sin,
-                                turn->to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
-    v->y_q8 =
-        p->middle_y_q8 - scaled(x * turn->sensor_sin + y * turn->sensor_cos,
-                                turn->to_q8, GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
-    v->stop_x_q16 =
-        scaled(a * turn->cos - b * turn->sin, turn->to_q16, LIMIT_Q16, &lost);
-    v->stop_y_q16 =
-        scaled(a * turn->sin + b * turn->cos, turn->to_q16, LIMIT_Q16, &lost);
-    set_barrels(t, rays, i, v, &lost);
-    v->energy_q16 = lost ? -1
-                         : q_clamp_sat(q_shift(rays[GLINT_OUT_ENERGY][i] *
-                                                   (INT64_C(1) << t->energy_up),
-                                               13),
-                                       0, 1 << 16);
+    set_barrels(t, rays, i, &both, &lost);
+    both.energy_q16 =
+        lost ? -1
+             : q_clamp_sat(q_shift(rays[GLINT_OUT_ENERGY][i] *
+                                       (INT64_C(1) << t->energy_up),
+                                   13),
+                           0, 1 << 16);
+    if (v) {
+        *v = both;
+        place_vertex(p, turn, sensor, stop, v);
+    }
+    if (mirrored) {
+        *mirrored = both;
+        place_vertex(p, turn, mirrored_parts(sensor), mirrored_parts(stop),
+                     mirrored);
+    }
 }
 
 static int32_t node_q30(int k, int n_cells)
@@ -590,8 +622,7 @@ static void set_row_pair(struct glint_transfer *t,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored)
 {
-    const struct turn turn = turn_of(t, place, 1);
-    const struct turn back = turn_of(t, place, -1);
+    const struct turn turn = turn_of(t, place);
 
     if (t->n_nodes != n_cells + 1) {
         t->n_nodes = n_cells + 1;
@@ -603,14 +634,10 @@ static void set_row_pair(struct glint_transfer *t,
 
         glint_transfer_rays(t, t->node_q30[j], t->node_q30 + first, first == 0,
                             rays);
-        for (int i = 0; i < RAYS && first + i <= n_cells; i++) {
-            if (mirrored)
-                set_vertex(t, place, &back, (const int32_t(*)[RAYS])rays, i,
-                           &mirrored[first + i]);
-            if (row)
-                set_vertex(t, place, &turn, (const int32_t(*)[RAYS])rays, i,
-                           &row[first + i]);
-        }
+        for (int i = 0; i < RAYS && first + i <= n_cells; i++)
+            set_vertices(t, place, &turn, (const int32_t(*)[RAYS])rays, i,
+                         row ? &row[first + i] : NULL,
+                         mirrored ? &mirrored[first + i] : NULL);
     }
 }
 
@@ -632,6 +659,22 @@ void glint_transfer_row(struct glint_transfer *transfer,
         set_row_pair(transfer, place, n_cells, j, row, NULL);
     else
         set_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
+}
+
+void glint_transfer_rows(struct glint_transfer *transfer,
+                         const struct glint_place *place, int n_cells, int j,
+                         struct glint_vertex *row,
+                         struct glint_vertex *mirrored)
+{
+    if (is_hidden(transfer, n_cells, j)) {
+        lose_row(row, n_cells);
+        lose_row(mirrored, n_cells);
+    } else if (transfer->basis == GLINT_BASIS_SPARSE) {
+        set_row_pair(transfer, place, n_cells, j, row, NULL);
+        set_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
+    } else {
+        set_row_pair(transfer, place, n_cells, j, row, mirrored);
+    }
 }
 
 void glint_transfer_grid(struct glint_transfer *transfer,
