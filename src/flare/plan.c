@@ -8,7 +8,7 @@ enum {
     /* a row is as many rays as are computed at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
-    FEW_INSIDE = 12,
+    FEW_INSIDE = 6,
     FINE_LOG2 = 6, /* squares are of differences over so much */
     LEAST = 8,     /* cells a side */
     FOLD_OCTAVES = 3
