@@ -296,8 +296,10 @@ static const char *check_box_at_knot(const int32_t box[3])
  * angles, at either end of the band. */
 static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
 {
-    for (int32_t k = 0; k <= 1 << BOX_NODES_LOG2; k++) {
-        const int32_t s_q30 = k * (LIMIT >> (BOX_NODES_LOG2 - 1)) - LIMIT;
+    const int32_t half = 1 << (BOX_NODES_LOG2 - 1);
+
+    for (int32_t k = -half; k <= half; k++) {
+        const int32_t s_q30 = k * (LIMIT / half);
 
         if (box_side(p, s_q30, -LIMIT) < 0 || box_side(p, s_q30, LIMIT) < 0)
             return 1;
