@@ -27,6 +27,14 @@ static bool frame_ok(double frame)
     return frame == -1 || (frame >= 0 && frame < 1e9 && frame == floor(frame));
 }
 
+bool lamp_power_ok(double power, const double rgb[3])
+{
+    const double most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
+
+    return power >= 0 && power <= LAMP_MAX_POWER && most <= LAMP_MAX_POWER &&
+           power * most <= LAMP_MAX_POWER;
+}
+
 /* NULL, or what is wrong with the values of a row. */
 static const char *check_row(const double *v)
 {
@@ -34,11 +42,11 @@ static const char *check_row(const double *v)
         return "frame must be a whole number from 0, or *";
     if (fabs(v[1]) > 1e6 || fabs(v[2]) > 1e6)
         return "x and y must be within a million pixels";
-    if (v[3] < 0 || v[3] > 1e30)
-        return "power must be 0 to 1e30";
     for (int c = 4; c < 7; c++)
         if (v[c] < 0)
             return "r, g and b must not be negative";
+    if (!lamp_power_ok(v[3], v + 4))
+        return "power, also times r, g or b, must be 0 to 1e30";
     return v[7] < 0 ? "size must not be negative" : NULL;
 }
 
@@ -172,33 +180,43 @@ static enum glint_status parse_text(struct lamp_list *list, char *text,
     return GLINT_OK;
 }
 
+enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
+                                  size_t bytes, const char *name,
+                                  struct glint_error *error)
+{
+    enum glint_status status;
+    char *copy;
+
+    *list = (struct lamp_list){NULL, 0};
+    if (bytes && memchr(text, '\0', bytes))
+        return glint_error_report(error, GLINT_E_FORMAT, name,
+                                  "not a text file");
+    copy = malloc(bytes + 1);
+    if (!copy)
+        return glint_error_report(error, GLINT_E_MEMORY, name, "no memory");
+    if (bytes)
+        memcpy(copy, text, bytes);
+    copy[bytes] = '\0';
+    status = parse_text(list, copy, name, error);
+    free(copy);
+    if (status != GLINT_OK)
+        lamp_list_free(list);
+    return status;
+}
+
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error)
 {
     uint8_t *data = NULL;
     size_t bytes = 0;
-    char *text;
     enum glint_status status =
         glint_input_slurp(&data, &bytes, path, 1 << 28, error);
 
     *list = (struct lamp_list){NULL, 0};
     if (status != GLINT_OK)
         return status;
-    if (memchr(data, '\0', bytes)) {
-        free(data);
-        return glint_error_report(error, GLINT_E_FORMAT, path,
-                                  "not a text file");
-    }
-    text = realloc(data, bytes + 1);
-    if (!text) {
-        free(data);
-        return glint_error_report(error, GLINT_E_MEMORY, path, "no memory");
-    }
-    text[bytes] = '\0';
-    status = parse_text(list, text, path, error);
-    free(text);
-    if (status != GLINT_OK)
-        lamp_list_free(list);
+    status = lamp_list_parse(list, (const char *)data, bytes, path, error);
+    free(data);
     return status;
 }
 

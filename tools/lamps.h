@@ -5,9 +5,16 @@
 #ifndef GLINT_TOOLS_LAMPS_H
 #define GLINT_TOOLS_LAMPS_H
 
+#include <stdbool.h>
+
 #include "glint/glint.h"
 
 enum { LAMP_LIST_MAX_ROWS = 1 << 20, LAMP_FINDER_MAX = 1024 };
+
+#define LAMP_MAX_POWER 1e30 /* of a lamp: still finite in every output */
+
+/* POWER and each of POWER * RGB, which are not negative, are no more. */
+bool lamp_power_ok(double power, const double rgb[3]);
 
 /* One line of a list. X and Y are pixels from the top left corner, also outside
  * of the picture. */
@@ -27,6 +34,11 @@ struct lamp_list {
  * ERROR names file, line and cause. */
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error);
+
+/* The same from memory. NAME is for errors. */
+enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
+                                  size_t bytes, const char *name,
+                                  struct glint_error *error);
 void lamp_list_free(struct lamp_list *list);
 
 /* The lamps of frame FRAME, at most MAX; returns how many. */

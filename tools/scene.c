@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lamps.h"
 #include "model_cache.h"
 
 void scene_defaults(struct scene *scene)
@@ -201,8 +202,8 @@ bool scene_lamp(const char *text, struct glint_lamp *lamp)
     double v[6] = {0, 0, 1, 1, 1, 1};
     const int n = tool_numbers(text, v, 6);
 
-    if ((n != 2 && n != 3 && n != 6) || v[0] < 0 || v[0] > 89.9 || v[2] < 0 ||
-        v[2] > SCENE_MAX_POWER || v[3] < 0 || v[4] < 0 || v[5] < 0)
+    if ((n != 2 && n != 3 && n != 6) || v[0] < 0 || v[0] > 89.9 || v[3] < 0 ||
+        v[4] < 0 || v[5] < 0 || !lamp_power_ok(v[2], v + 3))
         return false;
     *lamp = (struct glint_lamp){v[0], v[1], v[2], {v[3], v[4], v[5]}};
     return true;

@@ -11,8 +11,6 @@
 
 enum { SCENE_MAX_LAMPS = 1024 }; /* by hand; a file may have more */
 
-#define SCENE_MAX_POWER 1e30 /* of a lamp: still finite in every output */
-
 /* What the integer engine's rays come from. */
 enum scene_rays { SCENE_RAYS_MODEL, SCENE_RAYS_EXACT };
 

@@ -163,6 +163,39 @@ static void test_lists(void **state)
     }
 }
 
+/* What is no list is refused, with its line; the third is where power times
+ * colour is not finite in a picture any more. */
+static void test_refused_lists(void **state)
+{
+    static const char *const text_and_error[][2] = {
+        {"0,1,2,nan\n", "list: 1: expected 4, 7 or 8 numbers"},
+        {"*,1,2,3\n0,1,2,-3\n", "list: 2: power, also times r, g or b"},
+        {"0,1,2,1e20,1,2e10,1\n", "list: 1: power, also times r, g or b"},
+        {"0,1,2,0,1,1e31,1\n", "list: 1: power, also times r, g or b"},
+        {"0,1,2,3,1,-1,1\n", "list: 1: r, g and b must not be negative"},
+        {"{\"x\":1,\"y\":2}\n", "list: 1: x, y and power are needed"}};
+    struct lamp_list list;
+    struct glint_error error;
+
+    (void)state;
+    for (size_t k = 0; k < sizeof text_and_error / sizeof *text_and_error;
+         k++) {
+        const char *const text = text_and_error[k][0];
+        const char *const wanted = text_and_error[k][1];
+
+        assert_int_equal(
+            lamp_list_parse(&list, text, strlen(text), "list", &error),
+            GLINT_E_FORMAT);
+        assert_memory_equal(error.text, wanted, strlen(wanted));
+        assert_null(list.row);
+    }
+    assert_int_equal(lamp_list_parse(&list, "0,1,2,3\0", 8, "list", &error),
+                     GLINT_E_FORMAT);
+    assert_string_equal(error.text, "list: not a text file");
+    assert_int_equal(lamp_list_parse(&list, NULL, 0, "list", &error), GLINT_OK);
+    assert_int_equal(list.n, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -170,6 +203,7 @@ int main(void)
         cmocka_unit_test(test_tracked_lamps),
         cmocka_unit_test(test_most_lamps),
         cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_refused_lists),
     };
 
     return cmocka_run_group_tests_name("lamps", tests, NULL, NULL);
