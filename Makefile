@@ -7,13 +7,14 @@
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
 #   make mutants  planted faults, each of which a unit test has to catch
+#   make fuzz     every fuzzer for SECONDS=60, two at a time;  FUZZ=lens: that one
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make growth   how that grows, as plots;  memory-table: what it takes
-#   also: oiio table bake-table accuracy-table ray-table inputs fuzz format
-#         golden-update clean
+#   also: oiio table bake-table accuracy-table ray-table inputs format
+#         golden-update fuzz-keep clean
 
 MAKEFLAGS += -r
 .DEFAULT_GOAL := all
@@ -38,7 +39,10 @@ CROSS_x86_64  := x86_64-linux-gnu-
 CROSS_aarch64 := aarch64-linux-gnu-
 CROSS_armv7   := arm-linux-gnueabihf-
 MACHINE_armv7 := -march=armv7-a -mfpu=neon-vfpv4 -mfloat-abi=hard
-ifneq ($(filter $(TARGETS),$(TARGET)),)
+ifdef TARGET
+ifeq ($(filter $(TARGETS),$(TARGET)),)
+$(error TARGET is one of $(TARGETS))
+endif
 ifneq ($(CONFIG),release)
 $(error TARGET=$(TARGET) is for CONFIG=release)
 endif
@@ -101,16 +105,16 @@ UNIT := arena kernels model prescription optics trace pupil published quantise b
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame show_lights explain live
-FUZZ := lens model y4m pnm
+FUZZERS := lens model y4m pnm lights
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
-FUZZ += mjpeg
+FUZZERS += mjpeg
 else
 UNIT += mjpeg_absent
 endif
 ifeq ($(WITH_INIH),yes)
 UNIT += config
-FUZZ += config
+FUZZERS += config
 else
 UNIT += config_absent
 endif
@@ -167,6 +171,10 @@ $(core_o): CFLAGS += -Wno-frame-larger-than
 else ifeq ($(CONFIG),tsan)
 CPPFLAGS += -DGLINT_SANITIZED
 CFLAGS += -O1 -fsanitize=thread
+$(core_o): CFLAGS += -Wno-frame-larger-than
+else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
+CPPFLAGS += -DGLINT_SANITIZED
+CFLAGS += -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 $(core_o): CFLAGS += -Wno-frame-larger-than
 else ifeq ($(CONFIG),qcheck)
 CPPFLAGS += -DGLINT_Q_CHECK
@@ -279,7 +287,7 @@ $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
 $(fake_bins): $(OUT)/tests/support/fake_camera.o
 $(test_bins): $(OUT)/tests/unit/test_%: $(OUT)/tests/unit/test_%.o $(libs)
 	$(link)
-replay_bins := $(FUZZ:%=$(OUT)/tests/fuzz/replay_%)
+replay_bins := $(FUZZERS:%=$(OUT)/tests/fuzz/replay_%)
 $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
         $(OUT)/tests/fuzz/replay.o $(libs)
 	$(link)
@@ -349,24 +357,23 @@ check-vm: vm-deps
 golden-update: $(OUT)/tests/unit/test_flare
 	@GLINT_GOLDEN_UPDATE=1 $<
 
-# One fuzzer for SECONDS:  make fuzz TARGET=lens SECONDS=60
-FUZZ_SETS_x86_64 := -mavx2
-TARGET  ?= lens
+# Every fuzzer for SECONDS, or one:  make fuzz FUZZ=lens SECONDS=600. What they
+# come to know stays in build/fuzz; fuzz-keep takes from there into the corpora
+# what reaches code that these do not.
+FUZZ    ?= $(FUZZERS)
 SECONDS ?= 60
-ifeq ($(filter $(TARGETS) $(FUZZ),$(TARGET)),)
-$(error TARGET is one of $(TARGETS); for fuzz one of $(FUZZ))
+ifneq ($(filter-out $(FUZZERS),$(FUZZ)),)
+$(error FUZZ is one of $(FUZZERS))
 endif
-fuzz:
+fuzz_bins := $(FUZZ:%=$(OUT)/fuzz_%)
+$(fuzz_bins): LDFLAGS += -fsanitize=fuzzer
+$(fuzz_bins): $(OUT)/fuzz_%: $(OUT)/tests/fuzz/fuzz_%.o $(libs)
+	$(link)
+fuzz fuzz-keep:
 	@tools/deps "libFuzzer" clang libclang-rt-14-dev
-	@mkdir -p build/fuzz/$(TARGET)
-	clang -std=c99 -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Isrc \
-	        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L -ffp-contract=off \
-	        tests/fuzz/fuzz_$(TARGET).c $(BAKE:%=src/%.c) $(CORE:%=src/%.c) \
-	        $(CORE_$(ARCH):%=src/%.c) $(FUZZ_SETS_$(ARCH)) \
-	        $(PLATFORM:%=platform/%.c) $(TOOLS:%=tools/%.c) $(JPEG_CPPFLAGS) $(INIH_CPPFLAGS) $(LDLIBS) \
-	        -o build/fuzz/fuzz_$(TARGET)
-	build/fuzz/fuzz_$(TARGET) -max_total_time=$(SECONDS) -timeout=10 \
-	        build/fuzz/$(TARGET) tests/fuzz/corpus/$(TARGET)
+	@$(MAKE) --no-print-directory CC=clang CONFIG=fuzz run-$@
+run-fuzz run-fuzz-keep: $(fuzz_bins)
+	@tests/fuzz/run $(@:run-%=%) $(SECONDS) $^
 
 sources = $(shell find include src platform tools tests -name '*.[ch]')
 format:
@@ -393,7 +400,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-neon check-vm vm-deps vm-programs golden-update fuzz format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-neon check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

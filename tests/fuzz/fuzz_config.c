@@ -4,7 +4,7 @@
  * value of its kind without control characters; a file that is refused by the
  * parser has given nothing, and one that is not gives as much again.
  *
- *     make fuzz TARGET=config SECONDS=60
+ *     make fuzz FUZZ=config SECONDS=60
  */
 #include <stdlib.h>
 #include <string.h>

@@ -3,9 +3,7 @@
  * Any bytes as a lens table. What parses must have finite optics, a list of
  * ghosts that fits, and rays whose records are numbers.
  *
- *     clang -g -O1 -fsanitize=fuzzer,address,undefined -Iinclude -Isrc \
- *         tests/fuzz/fuzz_lens.c src/bake/text.c ... -lm
- *     ./fuzz_lens tests/fuzz/corpus/lens
+ *     make fuzz FUZZ=lens SECONDS=60
  */
 #include <math.h>
 #include <stddef.h>

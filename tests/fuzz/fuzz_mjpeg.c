@@ -3,7 +3,7 @@
  * Any bytes as an MJPEG frame, up to 256 x 128 pixels. What decodes does so
  * again, to the same samples, after a frame that is cut in half.
  *
- *     make fuzz TARGET=mjpeg SECONDS=60
+ *     make fuzz FUZZ=mjpeg SECONDS=60
  */
 #include <stdlib.h>
 #include <string.h>

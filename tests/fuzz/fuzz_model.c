@@ -6,7 +6,7 @@
  * of the pupil, to places near and far, and a whole frame; no integer leaves
  * the range that the rays rely on.
  *
- *     make fuzz TARGET=model SECONDS=120
+ *     make fuzz FUZZ=model SECONDS=120
  */
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * Any bytes as a PPM, PGM or PFM. What is read is there to its last sample, can
  * be written, and had its samples in the file.
  *
- *     make fuzz TARGET=pnm SECONDS=60
+ *     make fuzz FUZZ=pnm SECONDS=60
  */
 #include <stdint.h>
 #include <stdlib.h>

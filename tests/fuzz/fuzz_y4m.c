@@ -4,7 +4,7 @@
  * header that parses prints as one that parses to the same; every frame that
  * is delivered is there to its last sample and can be written.
  *
- *     make fuzz TARGET=y4m SECONDS=60
+ *     make fuzz FUZZ=y4m SECONDS=60
  */
 #include <stdlib.h>
 #include <string.h>
