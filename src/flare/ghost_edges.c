@@ -195,7 +195,7 @@ static int64_t in_steps(int64_t x, const uint16_t *steps_of)
 
     if (steps == 0 || x <= steps)
         return x;
-    base = INT64_C(1) << log2;
+    base = INT64_C(1) << log2; /* NOLINT: x | 1 has a bit, so log2 >= 0 */
     k = (uint32_t)(((x - base) * steps + base / 2) >> log2);
     return base + (((int64_t)((k << 19) / (uint32_t)steps) << log2) >> 19);
 }
