@@ -274,6 +274,7 @@ static bool pick_corners(const struct glint_cells *c, int i, int j, int half,
 
     for (int k = 0; k < 3; k++) {
         corner[k] = q[pick[k]];
+        /* NOLINTNEXTLINE: all nodes were traced, with or by their mirror */
         if (corner[k][NODE_STATE] == 0)
             return false;
     }
@@ -335,6 +336,7 @@ double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm)
     for (int j = 0; j <= cells.n / 2; j++)
         glint_cells_trace(&cells, j);
     for (int k = 0; k < 2 * cells.n * cells.n; k++) {
+        /* NOLINTNEXTLINE: n is 256 */
         glint_cells_clip(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1,
                          &piece);
         if (piece.n)

@@ -118,6 +118,7 @@ static const struct glint_profile *profile_of(struct fitter *f,
 
     if (is_whole_band(p->w0, p->w1))
         return &f->profile;
+    /* NOLINTNEXTLINE: other bits for equal numbers cost a profile, no more */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
         glint_hunt_narrow(&f->in_band, f->hunt, p->w0, p->w1);
         glint_hunt_profile(&f->in_band, range, &f->band_profile);
@@ -146,13 +147,13 @@ static void cut_out(struct fitter *f, const struct pending *p,
 static void set_part(struct fitter *f, struct pending *p,
                      struct glint_zone *zone)
 {
-    const struct glint_zone whole = *zone;
+    const struct glint_zone uncropped = *zone;
     double rest = p->by_all_means ? 0 : 1;
 
     cut_out(f, p, zone);
     for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
         rest = glint_zone_crop(zone, f->fit.hunt, &p->part);
-        *zone = whole;
+        *zone = uncropped;
         cut_out(f, p, zone);
     }
 }

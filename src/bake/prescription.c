@@ -303,7 +303,7 @@ static bool read_surface(struct parser *p)
 {
     const int k = p->lens.n_surfaces;
     struct glint_surface *s = &p->lens.surface[k];
-    struct medium before = {1.0, 0.0}, medium;
+    struct medium before = {1.0, 0.0}, medium = before;
     struct glint_text_place semi;
 
     if (k == GLINT_MAX_SURFACES)

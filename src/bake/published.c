@@ -437,7 +437,7 @@ glint_published_fit(const struct glint_setup *setup, int ghost,
         free(job.knots[k].joint);
     }
     free(job.rays);
-    free(job.zone);
+    free(job.zone); /* NOLINT: n_ranges counts a range before its memory */
     if (status != GLINT_OK)
         glint_fitted_finish(out);
     return status;

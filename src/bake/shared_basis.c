@@ -35,10 +35,11 @@ static void add_candidate(struct search *s,
                           const struct glint_shared_basis *basis,
                           const int power[GLINT_VARIABLES])
 {
-    uint8_t *to = s->candidate[s->n_candidates];
+    uint8_t *to;
 
     if (s->n_candidates == MAX_CANDIDATES || power[1] % 2 != odd(s->kind))
         return;
+    to = s->candidate[s->n_candidates];
     for (int k = 0; k < GLINT_VARIABLES; k++) {
         if (power[k] < 0 || power[k] > GLINT_MAX_POWER)
             return;

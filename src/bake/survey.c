@@ -48,7 +48,7 @@ static void probe_ray(struct probe *p, const struct glint_path *path, double x,
 static void mark_alone(const struct probe *p, int n, int *weight)
 {
     const double margin = 1.1;
-    double worst = p->stop_r2, second = 0;
+    double worst = p->traced ? p->stop_r2 : 0, second = 0;
     int at = -1;
 
     for (int k = 0; k < n && p->traced; k++) {
@@ -212,7 +212,7 @@ void glint_survey_run(struct glint_survey *survey,
         for (int i = 0; i <= side; i++) {
             probe_ray(&r.row[j % 3][i], path,
                       p->x0_mm + (p->x1_mm - p->x0_mm) * i / side,
-                      p->y1_mm * j / (side / 2), direction, stop_radius_mm);
+                      p->y1_mm * 2 * j / side, direction, stop_radius_mm);
             look_back(&r, i, j, path->n_events, weight, &bend);
         }
     survey->bend_mm = survey->outline_mm = 0;
