@@ -140,19 +140,25 @@ static int add_test(struct bench *b, const struct scene *scene,
     struct test *t = &b->test[b->n_tests];
     const int width = v->width ? v->width : b->width;
     const int height = v->height ? v->height : b->height;
+    struct glint_lamp *lamp;
     int code;
 
     if (b->n_tests == MAX_CASES)
         return EXIT_OK;
     t->scene = scene;
     t->canvas = canvas_of(b, width, height);
-    t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp);
-    if (!t->canvas || !t->lamp)
+    lamp = calloc((size_t)v->lights + 1, sizeof *lamp);
+    if (!t->canvas || !lamp) {
+        free(lamp);
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    }
     code = scene_frame(b->tool, scene, scene_view(scene, width, height),
                        &t->frame);
-    if (code != EXIT_OK)
+    if (code != EXIT_OK) {
+        free(lamp);
         return code;
+    }
+    t->lamp = lamp;
     t->threads = v->two_threads       ? 2
                  : b->tool->n_threads ? b->tool->n_threads
                                       : 1;

@@ -138,7 +138,7 @@ static int bake_into(struct glint_output *out, struct tool *tool,
         glint_output_abort(out);
     if (status != GLINT_OK)
         code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
-    else if (strcmp(b->output, "-"))
+    else if (strcmp(b->output, "-") != 0)
         code = report(tool, model, bytes, tool_seconds() - start, &r);
     free(model);
     return code;

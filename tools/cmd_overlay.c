@@ -297,7 +297,7 @@ static void name_of(char *name, size_t bytes, const char *pattern, int number)
 static int run_sequence(struct tool *tool, struct overlay *o)
 {
     char from[1024], to[1024];
-    int number = o->start_number, code = EXIT_OK;
+    int number = o->start_number;
 
     if (!is_pattern(o->input) || !is_pattern(o->output))
         return tool_usage(tool, "a sequence needs one %%04d in both names");
@@ -307,6 +307,8 @@ static int run_sequence(struct tool *tool, struct overlay *o)
     }
     o->elapsed_us = 1000000 / 25;
     for (;; number++) {
+        int code;
+
         name_of(from, sizeof from, o->input, number);
         if (access(from, F_OK) != 0)
             break;

@@ -183,7 +183,7 @@ static enum glint_status prepare_parts(const struct glint_lens *model,
 
     for (uint32_t k = ghost; k < end; k++)
         n += is_part(model, k, ghost);
-    tracer->part = malloc(n * sizeof *tracer->part);
+    tracer->part = calloc(n, sizeof *tracer->part);
     if (!tracer->part)
         return GLINT_E_MEMORY;
     for (uint32_t k = ghost; k < end; k++)

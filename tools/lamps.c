@@ -191,12 +191,11 @@ enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
     if (bytes && memchr(text, '\0', bytes))
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "not a text file");
-    copy = malloc(bytes + 1);
+    copy = calloc(bytes + 1, 1);
     if (!copy)
         return glint_error_report(error, GLINT_E_MEMORY, name, "no memory");
     if (bytes)
         memcpy(copy, text, bytes);
-    copy[bytes] = '\0';
     status = parse_text(list, copy, name, error);
     free(copy);
     if (status != GLINT_OK)

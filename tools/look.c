@@ -163,7 +163,7 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-void look_replace(struct look *look, struct look *fresh)
+void look_replace(struct look *look, const struct look *fresh)
 {
     look_close(look);
     *look = *fresh;

@@ -110,7 +110,7 @@ enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us);
 
 /* Closes LOOK and moves FRESH there, which is open and not yet sized. */
-void look_replace(struct look *look, struct look *fresh);
+void look_replace(struct look *look, const struct look *fresh);
 
 void look_close(struct look *look);
 

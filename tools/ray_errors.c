@@ -336,10 +336,11 @@ int main(int argc, char **argv)
         .only = -1, .nm = {650, 532, 450}, .n_nm = 3, .worst = false};
     const struct tool tool = {.name = "ray_errors"};
     double step_deg = 0.7;
-    bool ok = true;
     int c, code;
 
     while ((c = getopt(argc, argv, "n:s:g:w")) >= 0) {
+        bool ok;
+
         if (c == 'n')
             ok = (t.n_nm = tool_numbers(optarg, t.nm, GLINT_MAX_WAVELENGTHS)) >
                  0;

@@ -183,7 +183,7 @@ static bool try_pages(struct glint_fbdev *fb,
         fb->var.yres_virtual / 2 < height ||
         fb->mem_bytes / fb->stride_bytes / 2 < height)
         return false;
-    memset(row_at(fb, 0), 0, 2 * height * fb->stride_bytes);
+    memset(row_at(fb, 0), 0, 2 * (size_t)height * fb->stride_bytes);
     watch_pan(fb);
     return pan(fb, 1) && pan(fb, 0);
 }

@@ -374,23 +374,23 @@ static void close_camera(struct glint_source *source)
     v->source.fd = -1;
 }
 
-enum glint_status glint_v4l2_open(struct glint_v4l2 *v,
+enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                   const struct glint_v4l2_config *wish,
                                   enum glint_v4l2_io io, int n_buffers,
                                   struct glint_error *error)
 {
     enum glint_status status;
 
-    *v = (struct glint_v4l2){
+    *camera = (struct glint_v4l2){
         .source = {.fd = -1, .next = next, .done = done, .close = close_camera},
         .wish_io = io,
         .wish_buffers = n_buffers};
-    status = glint_v4l2_device_open(&v->device, wish, error);
+    status = glint_v4l2_device_open(&camera->device, wish, error);
     if (status != GLINT_OK)
         return status;
-    status = start(v, error);
+    status = start(camera, error);
     if (status != GLINT_OK)
-        close_camera(&v->source);
-    v->source.fd = v->device.fd;
+        close_camera(&camera->source);
+    camera->source.fd = camera->device.fd;
     return status;
 }

@@ -124,12 +124,13 @@ static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
 {
     struct glint_image *const f = &out->frame;
     const size_t least = glint_image_row_bytes(f->format, 0, f->width);
+    const int n_planes = glint_image_planes(f->format);
     size_t at[3];
 
     if (stride < least)
         stride = least;
     out->bytes = 0;
-    for (int i = 0; i < glint_image_planes(f->format); i++) {
+    for (int i = 0; i < n_planes; i++) {
         const size_t row = glint_image_row_bytes(f->format, i, f->width);
         const size_t each = i == 0                 ? stride
                             : 2 * row <= least + 1 ? stride / 2
@@ -150,7 +151,7 @@ static enum glint_status lay_out(struct glint_v4l2_sink *out, size_t stride,
         return glint_error_report(error, GLINT_E_MEMORY, out->name,
                                   "no memory for a %d x %d frame", f->width,
                                   f->height);
-    for (int i = 0; i < glint_image_planes(f->format); i++)
+    for (int i = 0; i < n_planes; i++)
         f->plane[i] = out->mem + at[i];
     return GLINT_OK;
 }

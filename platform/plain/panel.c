@@ -208,7 +208,7 @@ void glint_panel_draw(struct glint_panel *panel,
         const int from_y =
             panel->seen.y + nearest(y, panel->seen.height, to->height);
 
-        if (from_y != made || panel->pack.dither)
+        if (!row || from_y != made || panel->pack.dither)
             row = make_row(panel, image, from_y, y);
         made = from_y;
         memcpy(mem + (to->y + y) * stride + to->x * bytes, row,

@@ -96,9 +96,11 @@ static enum glint_status read_head(struct glint_input *in, uint8_t **data,
 
     *bytes = 0;
     *data = malloc(HEAD_BYTES);
-    if (!*data)
-        return glint_error_report(error, GLINT_E_MEMORY, in->name,
-                                  "no memory for a buffer");
+    if (!*data) {
+        (void)glint_error_report(error, GLINT_E_MEMORY, in->name,
+                                 "no memory for a buffer");
+        return GLINT_E_MEMORY;
+    }
     while (n > 0 && *bytes < HEAD_BYTES) {
         n = glint_input_some(in, *data + *bytes, HEAD_BYTES - *bytes);
         *bytes += n > 0 ? (size_t)n : 0;
@@ -153,6 +155,11 @@ static enum glint_status load(struct loaded *loaded, const char *path,
     status = load_opened(loaded, &in, &data, error);
     glint_input_close(&in);
     free(data);
+    if (!status && !loaded->floats.rgb && !loaded->image.plane[0]) {
+        /* whatever the plug-in says */
+        (void)glint_error_report(error, GLINT_E_FORMAT, path, "has no pixels");
+        status = GLINT_E_FORMAT;
+    }
     return status;
 }
 
@@ -300,6 +307,13 @@ static const struct file_type *find_type(const char *path,
     return NULL;
 }
 
+static bool is_native(const char *path, enum glint_picture_kind kind)
+{
+    const struct file_type *const type = find_type(path, kind);
+
+    return type && type->is_native;
+}
+
 bool glint_picture_is_float(const char *path)
 {
     const struct file_type *const type = find_type(path, GLINT_PICTURE_8BIT);
@@ -378,7 +392,7 @@ enum glint_status glint_picture_save(const char *path,
         status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
     if (status)
         return status;
-    if (find_type(path, GLINT_PICTURE_8BIT)->is_native)
+    if (is_native(path, GLINT_PICTURE_8BIT))
         status = glint_pnm_write(&out, image, error);
     else
         status = write_by_plugin(&out, &pixels, image->stride_bytes[0], error);
@@ -401,7 +415,7 @@ glint_picture_save_float(const char *path,
         status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
     if (status)
         return status;
-    if (find_type(path, GLINT_PICTURE_FLOAT)->is_native)
+    if (is_native(path, GLINT_PICTURE_FLOAT))
         status = glint_pfm_write(&out, floats, error);
     else
         status = write_by_plugin(&out, &pixels, (ptrdiff_t)row_bytes, error);

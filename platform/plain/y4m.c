@@ -373,7 +373,7 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
 static enum glint_status read_frame_line(struct glint_y4m_reader *r, bool *more,
                                          struct glint_error *error)
 {
-    char line[sizeof "FRAME" - 1 + GLINT_Y4M_FRAME_TAGS];
+    char line[sizeof "FRAME" - 1 + GLINT_Y4M_FRAME_TAGS] = "";
     size_t len;
     const enum line_end end = read_line(r, line, sizeof line, &len);
 
