@@ -7,7 +7,9 @@
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
 #   make mutants  planted faults, each of which a unit test has to catch
+#   make check-valgrind   memory that was never written, by valgrind
 #   make fuzz     every fuzzer for SECONDS=60, two at a time;  FUZZ=lens: that one
+#   make analyze  clang-tidy, gcc -fanalyzer and cppcheck; zero findings
 #   make lint     layers, Q formats, formatting, symbols, purity
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
@@ -176,6 +178,10 @@ else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
 CPPFLAGS += -DGLINT_SANITIZED
 CFLAGS += -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 $(core_o): CFLAGS += -Wno-frame-larger-than
+else ifeq ($(CONFIG),analyze) # what make analyze builds; gcc only
+# as it is written: -O0 keeps functions and their messages apart
+ANALYZER := -O0 -fanalyzer -Wno-frame-larger-than
+TIDY = $(Q)clang-tidy --quiet $< -- $(CPPFLAGS) $(filter-out $(WARN),$(CFLAGS))
 else ifeq ($(CONFIG),qcheck)
 CPPFLAGS += -DGLINT_Q_CHECK
 else ifneq ($(CONFIG),release)
@@ -191,7 +197,8 @@ $(OUT)/%.o: %.c
 	@mkdir -p $(@D)
 	$(say) CC $<
 	$(if $(NOTE),@echo ' $(NOTE)')
-	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) -c $< -o $@
+	$(TIDY)
+	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) $(ANALYZER) -c $< -o $@
 
 $(OUT)/libglint.a: $(core_o)
 $(OUT)/libglint-bake.a: $(bake_o)
@@ -307,6 +314,23 @@ run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(example_bi
 # Faults planted in copies of the tree: MUTANTS=names, or all.
 mutants: $(test_bins)
 	@tests/mutants/run $(OUT) $(MUTANTS)
+# What valgrind says of memory that was never written, which no sanitizer of
+# gcc's does: the run-time half, what reads files, and the fuzzers' corpora.
+VALGRIND := $(filter arena kernels model curve resolve lights flare plan beams pnm y4m \
+        picture bright match lamps mjpeg config prescription trace,$(UNIT))
+check-valgrind:
+	@tools/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \
+	        libjpeg62-turbo-dev libinih-dev
+	@$(MAKE) --no-print-directory WERROR=-Werror run-valgrind
+run-valgrind: $(VALGRIND:%=$(OUT)/valgrind/unit/test_%) \
+        $(FUZZERS:%=$(OUT)/valgrind/fuzz/replay_%)
+$(OUT)/valgrind/%: $(OUT)/tests/% always
+	@mkdir -p $(@D)
+	$(say) VALGRIND $*
+	@GLINT_QUICK=valgrind valgrind -q --error-exitcode=9 --leak-check=full \
+	        --errors-for-leak-kinds=definite --log-file=$@.log $< \
+	        $(patsubst fuzz/replay_%,tests/fuzz/corpus/%,$(filter fuzz/%,$*)) \
+	        >$@.out 2>&1 || { cat $@.out $@.log; exit 1; }
 # NEON kernels against their C definitions, in an emulator.
 CORE_TEST := tests/unit/test_kernels.c src/base/status.c src/base/q.c \
         src/tile/curve.c src/tile/mix.c src/kernels/sets.c src/kernels/kernels.c src/kernels/horner.c \
@@ -375,6 +399,20 @@ fuzz fuzz-keep:
 run-fuzz run-fuzz-keep: $(fuzz_bins)
 	@tests/fuzz/run $(@:run-%=%) $(SECONDS) $^
 
+# Static analysis, of what has changed since the last time.
+analyze:
+	@tools/deps "static analysis" gcc clang-tidy cppcheck
+	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
+run-analyze: $(core_o) $(bake_o) $(platform_o) $(tools_o) $(OUT)/tools/glint.o
+	$(say) CPPCHECK 'src platform tools'
+	@mkdir -p $(OUT)/cppcheck
+	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \
+	        --enable=warning,performance,portability,style --inline-suppr \
+	        --suppressions-list=tools/cppcheck-suppressions \
+	        --cppcheck-build-dir=$(OUT)/cppcheck -Iinclude -Isrc -Iplatform -Itools \
+	        -D__x86_64__ -D__GNUC__ -D_POSIX_C_SOURCE=200809L \
+	        $(patsubst $(OUT)/%.o,%.c,$(filter %.o,$^))
+
 sources = $(shell find include src platform tools tests -name '*.[ch]')
 format:
 	clang-format -i $(sources)
@@ -400,7 +438,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-neon check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-neon check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
