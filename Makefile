@@ -102,7 +102,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
-        bench_cases bench_growth bench_report cmd_bench
+        yardstick bench_cases bench_growth bench_report cmd_bench
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
@@ -159,7 +159,7 @@ $(OUT)/src/kernels/%.o $(OUT)/src/tile/codes.o \
 $(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o $(OUT)/src/flare/bright.o \
 $(OUT)/src/flare/cuts.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
 # the floor that everything is measured by is as fast as can be
-$(OUT)/tools/bench_cases.o: CFLAGS += -O3
+$(OUT)/tools/yardstick.o: CFLAGS += -O3
 # what every frame of a camera goes through on its way to a panel
 $(OUT)/platform/plain/split.o $(OUT)/platform/plain/row_rgb.o \
 $(OUT)/platform/plain/row_pack.o $(OUT)/platform/plain/planar.o: CFLAGS += -O3

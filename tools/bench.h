@@ -6,25 +6,22 @@
 #ifndef GLINT_TOOLS_BENCH_H
 #define GLINT_TOOLS_BENCH_H
 
-#include "scene.h"
+#include "yardstick.h"
 
-enum { MAX_CASES = 256, MAX_ROUNDS = 1000, MAX_LENSES = 16 };
+enum { MAX_CASES = 256, MAX_ROUNDS = YARDSTICK_MAX, MAX_LENSES = 16 };
 
 /* Drawing is accumulating light, which is timed by itself, and compositing it
  * with the picture, which is the rest. */
 enum stage { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE, STAGES };
 
-/* A picture to draw on, and what touching it costs. */
-struct canvas {
-    struct glint_image image;
-    uint8_t *fresh, *mem;
-    size_t bytes;
+struct bench_canvas {
+    struct canvas of;
     double floor_ms[MAX_ROUNDS];
 };
 
 struct test {
     const struct scene *scene;
-    struct canvas *canvas;
+    struct bench_canvas *canvas;
     struct frame frame;
     struct glint_lamp *lamp;
     int n_lamps, threads;
@@ -42,7 +39,7 @@ struct bench {
     struct tool *tool;
     struct scene base, scene[MAX_LENSES];
     int n_scenes, n_canvases, n_tests, rounds;
-    struct canvas canvas[8];
+    struct bench_canvas canvas[8];
     struct test *test;
     struct glint_workers *one, *two;
     enum glint_pixel_format format;
@@ -62,9 +59,8 @@ int bench_add_one(struct bench *b, const struct scene *scene, int width,
 /* Adds those of b->growth. */
 int bench_add_growth(struct bench *b, const struct scene *scene);
 
-/* Times round ROUND of a case, and of what touching its memory costs. */
+/* Times round ROUND of a case. */
 enum glint_status bench_run(struct test *t, int round);
-double bench_floor(struct canvas *c);
 
 /* Compares T with exact rays of the lens's table: t->psnr_db. */
 int bench_psnr(struct bench *b, struct test *t);

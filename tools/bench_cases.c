@@ -10,63 +10,19 @@
 /* -------------------------------------------------------------------- canvas
  */
 
-/* A dim evening: luma rises to the right, colours turn downwards. */
-static void paint(struct canvas *c)
+static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
 {
-    for (size_t i = 0; i < c->bytes; i++)
-        c->fresh[i] = (uint8_t)(16 + i % 97 / 3 + (i >> 12) % 40);
-}
-
-static struct canvas *canvas_of(struct bench *b, int width, int height)
-{
-    struct canvas *c = &b->canvas[b->n_canvases];
+    struct bench_canvas *c = &b->canvas[b->n_canvases];
 
     for (int i = 0; i < b->n_canvases; i++)
-        if (b->canvas[i].image.width == width &&
-            b->canvas[i].image.height == height)
+        if (b->canvas[i].of.image.width == width &&
+            b->canvas[i].of.image.height == height)
             return &b->canvas[i];
-    if (b->n_canvases == 8)
+    if (b->n_canvases == 8 ||
+        canvas_init(&c->of, b->format, width, height) != GLINT_OK)
         return NULL;
-    c->image = (struct glint_image){.format = b->format,
-                                    .width = width,
-                                    .height = height,
-                                    .range = GLINT_RANGE_LIMITED,
-                                    .matrix = GLINT_MATRIX_BT709,
-                                    .transfer = GLINT_TONE_BT709};
-    c->bytes = glint_image_bytes(b->format, width, height);
-    c->fresh = malloc(c->bytes);
-    c->mem = malloc(c->bytes);
-    if (!c->fresh || !c->mem)
-        return NULL;
-    glint_image_place(&c->image, c->mem);
-    paint(c);
     b->n_canvases++;
     return c;
-}
-
-/* In place, with a layer that stays in the cache; written so that compilers
- * make vectors of it. */
-static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
-                      size_t bytes)
-{
-    for (size_t i = 0; i + 256 <= bytes; i += 256)
-        for (size_t k = 0; k < 256; k++) {
-            const uint8_t sum = (uint8_t)(px[i + k] + layer[k]);
-
-            px[i + k] = sum < layer[k] ? 255 : sum;
-        }
-}
-
-double bench_floor(struct canvas *c)
-{
-    static uint8_t layer[256];
-    double t0;
-
-    layer[1]++;
-    memcpy(c->mem, c->fresh, c->bytes);
-    t0 = tool_seconds();
-    add_layer(c->mem, layer, c->bytes);
-    return 1e3 * (tool_seconds() - t0);
 }
 
 /* --------------------------------------------------------------------- tests
@@ -100,27 +56,10 @@ static const struct variation variations[] = {
     {0, 0, 1, 0, 0, NULL, ~0U, 75}, /* farther out than models go */
 };
 
-/* Equal lights, but of hundreds few are bright: the kth brightest has 1 / k of
- * the power of the first. */
-static double power_of(int i, int n)
-{
-    return 1.0 / (n > 64 ? 1 + i : n);
-}
-
-static void set_lamps(struct test *t, int n, double angle)
-{
-    t->n_lamps = n;
-    for (int i = 0; i < n; i++)
-        t->lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
-                                         fmod(33 + 137.5 * i, 360),
-                                         power_of(i, n),
-                                         {1, 1, 1}};
-}
-
 /* The exposure at which the flare is as bright as the picture's white. */
 static enum glint_status expose(struct test *t)
 {
-    const int w = t->canvas->image.width, h = t->canvas->image.height;
+    const int w = t->canvas->of.image.width, h = t->canvas->of.image.height;
     struct glint_float_image flare = {
         w, h, malloc(3 * (size_t)w * (size_t)h * sizeof(float))};
     enum glint_status status = GLINT_E_MEMORY;
@@ -146,6 +85,7 @@ static int add_test(struct bench *b, const struct scene *scene,
     if (b->n_tests == MAX_CASES)
         return EXIT_OK;
     t->scene = scene;
+    t->n_lamps = v->lights;
     t->canvas = canvas_of(b, width, height);
     lamp = calloc((size_t)v->lights + 1, sizeof *lamp);
     if (!t->canvas || !lamp) {
@@ -170,15 +110,15 @@ static int add_test(struct bench *b, const struct scene *scene,
     if (v->by_cells)
         t->frame.cfg.raster = GLINT_RASTER_CELLS;
     t->frame.cfg.sets &= v->sets;
-    set_lamps(t, v->lights, v->angle);
+    yardstick_lamps(t->lamp, v->lights, v->angle);
     b->n_tests++;
     if (expose(t) != GLINT_OK)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     if (v->angle != 12) { /* exposed as if it were in the picture */
-        set_lamps(t, v->lights, 12);
+        yardstick_lamps(t->lamp, v->lights, 12);
         if (expose(t) != GLINT_OK)
             return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-        set_lamps(t, v->lights, v->angle);
+        yardstick_lamps(t->lamp, v->lights, v->angle);
     }
     return EXIT_OK;
 }
@@ -231,12 +171,12 @@ static double accumulate_ms(const struct test *t)
 
 enum glint_status bench_run(struct test *t, int round)
 {
-    struct canvas *c = t->canvas;
+    struct canvas *c = &t->canvas->of;
     enum glint_status status;
     clock_t cpu0 = 0;
     double t0, cpu_ms;
 
-    memcpy(c->mem, c->fresh, c->bytes);
+    canvas_fresh(c);
     if (t->series) /* a system call would cool the caches of small frames */
         cpu0 = clock();
     t0 = tool_seconds();
@@ -255,73 +195,10 @@ enum glint_status bench_run(struct test *t, int round)
     return status;
 }
 
-/* --------------------------------------------------------------------- exact
- */
-
-/* The same by exact rays of the lens's table. */
-static enum glint_status draw_exact(const struct bench *b, const struct test *t,
-                                    struct glint_float_image *to)
-{
-    const struct scene *s = t->scene;
-    const size_t n = 3 * (size_t)to->width * (size_t)to->height;
-    struct glint_setup *setup = malloc(sizeof *setup);
-    double *rgb = malloc(n * sizeof *rgb);
-    struct tool_progress progress;
-    struct glint_exact_config cfg = {.setup = setup,
-                                     .view = t->frame.view,
-                                     .lamps = t->lamp,
-                                     .n_lamps = t->n_lamps,
-                                     .grid = 128,
-                                     .only_ghost = s->only_ghost,
-                                     .workers = b->tool->workers,
-                                     .progress = tool_progress_show,
-                                     .progress_ctx = &progress};
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_E_MEMORY;
-
-    tool_progress_start(&progress, b->tool, "exact");
-    if (setup && rgb)
-        status = glint_setup_init(setup, &s->lens, s->n_blades,
-                                  s->blade_rotation_deg, s->wavelength_nm,
-                                  s->n_wavelengths, &error);
-    if (status == GLINT_OK && s->balance)
-        glint_setup_balance(setup);
-    if (status == GLINT_OK)
-        status = glint_exact_render(&cfg, rgb);
-    for (size_t i = 0; i < n && status == GLINT_OK; i++)
-        to->rgb[i] = (float)rgb[i];
-    tool_progress_end(&progress);
-    free(setup);
-    free(rgb);
-    return status;
-}
-
-/* The flare alone as codes on black, exposed as WANT is: what a frame draws for
- * codes is not what it draws in linear light. */
-static enum glint_status draw_codes(struct test *t,
-                                    const struct glint_float_image *want,
-                                    struct glint_float_image *to)
-{
-    struct glint_image layer = {
-        .format = GLINT_RGB24, .width = to->width, .height = to->height};
-    uint8_t *codes = calloc(3 * (size_t)to->width, (size_t)to->height);
-    const double exposure = measure_exposure(want);
-    enum glint_status status = GLINT_E_MEMORY;
-
-    if (codes) {
-        glint_image_place(&layer, codes);
-        status = frame_draw(&t->frame, t->lamp, t->n_lamps, exposure, &layer,
-                            &t->report);
-        measure_decode(codes, exposure, to);
-    }
-    free(codes);
-    return status;
-}
-
 /* PSNR of the flare alone against exact rays. */
 int bench_psnr(struct bench *b, struct test *t)
 {
-    const int w = t->canvas->image.width, h = t->canvas->image.height;
+    const int w = t->canvas->of.image.width, h = t->canvas->of.image.height;
     const size_t n = 3 * (size_t)w * (size_t)h;
     struct glint_float_image want = {w, h, malloc(n * sizeof(float))};
     struct glint_float_image got = {w, h, malloc(n * sizeof(float))};
@@ -329,9 +206,11 @@ int bench_psnr(struct bench *b, struct test *t)
     struct measure m;
 
     if (want.rgb && got.rgb)
-        status = draw_exact(b, t, &want);
+        status =
+            yardstick_exact(b->tool, t->scene, t->lamp, t->n_lamps, 128, &want);
     if (status == GLINT_OK)
-        status = draw_codes(t, &want, &got);
+        status = yardstick_codes(&t->frame, t->lamp, t->n_lamps,
+                                 measure_exposure(&want), &got, &t->report);
     if (status == GLINT_OK && measure_compare(&want, &got, false, &m))
         t->psnr_db = m.psnr_db;
     free(want.rgb);

@@ -8,22 +8,6 @@
 static const char *const stage_names[STAGES] = {
     "plan", "transfer", "bin", "draw", "accumulate", "composite", "whole"};
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
-static double median(const double *values, int n)
-{
-    double sorted[MAX_ROUNDS];
-
-    memcpy(sorted, values, (size_t)n * sizeof *values);
-    qsort(sorted, (size_t)n, sizeof *sorted, by_size);
-    return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
-}
-
 static const char *raster_of(const struct test *t)
 {
     return t->frame.cfg.raster == GLINT_RASTER_CELLS || t->frame.mask ? "cells"
@@ -45,14 +29,15 @@ static int column(int stage)
 
 static void print_test(const struct bench *b, const struct test *t)
 {
-    const double floor_ms = median(t->canvas->floor_ms, b->rounds);
-    const double ms = median(t->ms[WHOLE], b->rounds);
+    const double floor_ms = yardstick_median(t->canvas->floor_ms, b->rounds);
+    const double ms = yardstick_median(t->ms[WHOLE], b->rounds);
 
     printf("%-22s %4dx%-4d %5d %2d %-5s %-5s %8.3f %7.1f ", t->scene->lens.name,
-           t->canvas->image.width, t->canvas->image.height, t->n_lamps,
+           t->canvas->of.image.width, t->canvas->of.image.height, t->n_lamps,
            t->threads, raster_of(t), t->kernels, ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
-        printf(" %*.2f", column(s), median(t->ms[s], b->rounds) / floor_ms);
+        printf(" %*.2f", column(s),
+               yardstick_median(t->ms[s], b->rounds) / floor_ms);
     printf("  %7d %6.2f", t->report.stats.primitives,
            (double)t->report.peak_bytes / (1 << 20));
     if (!isnan(t->psnr_db))
@@ -63,8 +48,9 @@ static void print_test(const struct bench *b, const struct test *t)
 void bench_print(const struct bench *b)
 {
     printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
-           median(b->canvas[0].floor_ms, b->rounds), b->canvas[0].image.width,
-           b->canvas[0].image.height, b->format_word, b->rounds);
+           yardstick_median(b->canvas[0].floor_ms, b->rounds),
+           b->canvas[0].of.image.width, b->canvas[0].of.image.height,
+           b->format_word, b->rounds);
     printf("%-22s %9s %5s %2s %-5s %-5s %8s %7s ", "lens", "size", "light",
            "th", "by", "sets", "ms", "ratio");
     for (int s = 0; s < WHOLE; s++)
@@ -76,8 +62,8 @@ void bench_print(const struct bench *b)
 
 static void json_test(const struct bench *b, const struct test *t, bool last)
 {
-    const double floor_ms = median(t->canvas->floor_ms, b->rounds);
-    const double ms = median(t->ms[WHOLE], b->rounds);
+    const double floor_ms = yardstick_median(t->canvas->floor_ms, b->rounds);
+    const double ms = yardstick_median(t->ms[WHOLE], b->rounds);
 
     printf("{\"lens\": ");
     tool_json_string(stdout, t->scene->lens.name);
@@ -87,12 +73,12 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
            "%d, \"threads\": %d, \"raster\": \"%s\", "
            "\"kernels\": \"%s\", "
            "\"quality\": %.3f, \"ms\": %.4f, \"ratio\": %.3f, ",
-           t->canvas->image.width, t->canvas->image.height, b->format_word,
-           t->n_lamps, t->threads, raster_of(t), t->kernels, quality_of(t), ms,
-           ms / floor_ms);
+           t->canvas->of.image.width, t->canvas->of.image.height,
+           b->format_word, t->n_lamps, t->threads, raster_of(t), t->kernels,
+           quality_of(t), ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
         printf("\"%s_ms\": %.4f, ", stage_names[s],
-               median(t->ms[s], b->rounds));
+               yardstick_median(t->ms[s], b->rounds));
     if (isnan(t->psnr_db))
         printf("\"psnr_db\": null, ");
     else
@@ -108,7 +94,7 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
 void bench_print_json(const struct bench *b)
 {
     printf("{\"floor_ms\": %.5f, \"rounds\": %d, \"cases\": [\n",
-           median(b->canvas[0].floor_ms, b->rounds), b->rounds);
+           yardstick_median(b->canvas[0].floor_ms, b->rounds), b->rounds);
     for (int i = 0; i < b->n_tests; i++)
         json_test(b, &b->test[i], i + 1 == b->n_tests);
     printf("]}\n");

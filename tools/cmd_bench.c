@@ -63,7 +63,7 @@ static int run_rounds(struct bench *b)
         const int at = round < 0 ? 0 : round;
 
         for (int i = 0; i < b->n_canvases; i++)
-            b->canvas[i].floor_ms[at] = bench_floor(&b->canvas[i]);
+            b->canvas[i].floor_ms[at] = canvas_floor_ms(&b->canvas[i].of);
         for (int i = 0; i < b->n_tests && status == GLINT_OK; i++)
             status = bench_run(&b->test[i], at);
         tool_progress_show(&progress, (round + 2.0) / (b->rounds + 1));
@@ -117,10 +117,8 @@ static void close_bench(struct bench *b)
         frame_finish(&b->test[i].frame);
         free(b->test[i].some_ghosts);
     }
-    for (int i = 0; i < b->n_canvases; i++) {
-        free(b->canvas[i].fresh);
-        free(b->canvas[i].mem);
-    }
+    for (int i = 0; i < b->n_canvases; i++)
+        canvas_finish(&b->canvas[i].of);
     for (int i = 0; i < b->n_scenes; i++)
         scene_close(&b->scene[i]);
     glint_pool_destroy(b->one);
