@@ -2,7 +2,8 @@
 #
 #   make          build/glint; needs a C compiler only, and takes in libjpeg
 #                 and inih where it finds them
-#   make TARGET=aarch64|armv7|x86_64   build/TARGET/glint, static
+#   make TARGET=aarch64|armv7-neon|armv7|armv6-soft|x86_64
+#                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
@@ -10,7 +11,8 @@
 #   make check-valgrind   memory that was never written, by valgrind
 #   make fuzz     every fuzzer for SECONDS=60, two at a time;  FUZZ=lens: that one
 #   make analyze  clang-tidy, gcc -fanalyzer and cppcheck; zero findings
-#   make lint     layers, Q formats, formatting, symbols, purity
+#   make lint     layers, Q formats, formatting, symbols;  purity: that the
+#                 run-time half has no floats and calls nobody (TARGET= too)
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
@@ -30,17 +32,23 @@ NM      ?= nm
 SIZE    ?= size
 OBJDUMP ?= objdump
 PREFIX  ?= /usr/local
-# Static, for boards and the emulator:  TARGET=aarch64|armv7|x86_64, with the
-# libraries of SYSROOT, if given (tests/vm/prepare makes one). STATIC=1: this
-# machine's own.
-TARGETS := x86_64 aarch64 armv7
+# Static, for boards and the emulator, with the libraries of SYSROOT, if given
+# (tests/vm/prepare makes one): armv7 has NEON kernels and those in C and takes
+# what the CPU has, armv7-neon takes NEON for granted, armv6-soft has neither
+# NEON nor a float unit. DYNAMIC=1: linked with the board's libraries. STATIC=1:
+# this machine's own.
+TARGETS := x86_64 aarch64 armv7-neon armv7 armv6-soft
 ifdef STATIC
 TARGET := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
 endif
 CROSS_x86_64  := x86_64-linux-gnu-
 CROSS_aarch64 := aarch64-linux-gnu-
 CROSS_armv7   := arm-linux-gnueabihf-
-MACHINE_armv7 := -march=armv7-a -mfpu=neon-vfpv4 -mfloat-abi=hard
+CROSS_armv7-neon := $(CROSS_armv7)
+CROSS_armv6-soft := arm-linux-gnueabi-
+MACHINE_armv7 := -march=armv7-a -mfpu=vfpv3-d16 -mfloat-abi=hard
+MACHINE_armv7-neon := -march=armv7-a -mfpu=neon-vfpv4 -mfloat-abi=hard
+MACHINE_armv6-soft := -march=armv6 -mfloat-abi=soft
 ifdef TARGET
 ifeq ($(filter $(TARGETS),$(TARGET)),)
 $(error TARGET is one of $(TARGETS))
@@ -54,27 +62,33 @@ AR      := $(CROSS)ar
 NM      := $(CROSS)nm
 SIZE    := $(CROSS)size
 OBJDUMP := $(CROSS)objdump
+ifndef DYNAMIC
 LDFLAGS += -static
+endif
 JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JPEG_LIBS     := $(SYSROOT:%=-L%/lib) -ljpeg
 INIH_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 INIH_LIBS     := $(SYSROOT:%=-L%/lib) -linih
 endif
 ARCH := $(if $(CROSS),$(TARGET),$(firstword $(subst -, ,$(shell $(CC) -dumpmachine))))
-OUT  := build/$(if $(CROSS),$(TARGET),$(ARCH)-$(notdir $(CC))-$(CONFIG))
+ifeq ($(ARCH),arm) # of which there are many
+ARCH := $(shell $(CC) -dM -E -x c /dev/null | \
+        awk '$$2 == "__ARM_ARCH" { print $$3 < 7 ? "armv6" : "armv7" }')
+endif
+OUT  := build/$(if $(CROSS),$(TARGET)$(if $(DYNAMIC),-dynamic),$(ARCH)-$(notdir $(CC))-$(CONFIG))
 export DEPS OUT
 
 # Libraries that glint can do without:  WITH_JPEG=yes|no  says which are used,
-# else it is whether the compiler finds the header.
-has = $(shell printf '\043include <stdio.h>\n\043include <%s>\n' $(1) | $(CC) \
-        $(CPPFLAGS) $(2) -fsyntax-only -x c - 2>/dev/null && echo yes || echo no)
+# else it is whether a program with them can be built.
+has = $(shell printf '\043include <stdio.h>\n\043include <%s>\nint main(void) { return 0; }\n' $(1) | \
+        $(CC) $(CPPFLAGS) $(2) -x c - $(LDFLAGS) $(3) -o /dev/null 2>/dev/null && echo yes || echo no)
 JPEG_LIBS ?= -ljpeg
 ifndef WITH_JPEG
-WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS))
+WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS),$(JPEG_LIBS))
 endif
 INIH_LIBS ?= -linih
 ifndef WITH_INIH
-WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS))
+WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS),$(INIH_LIBS))
 endif
 
 # Sources in the order the data flows.
@@ -93,7 +107,7 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
         plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request \
-        linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \
+        linux/sets linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \
         linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
@@ -129,6 +143,7 @@ CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \
         kernels/composite_sse41 kernels/composite_avx2
 CORE_aarch64 := kernels/horner_neon kernels/composite_neon
 CORE_armv7   := $(CORE_aarch64)
+CORE_armv7-neon := $(CORE_aarch64)
 ifdef CROSS # a static program has no plug-ins
 PLATFORM := $(PLATFORM:oiio/loader=oiio/absent)
 endif
@@ -155,6 +170,9 @@ $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024
 # An instruction set is a file-name suffix; nothing else may use its flags.
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
+ifeq ($(ARCH),armv7)
+$(OUT)/src/%_neon.o: CFLAGS += -mfpu=neon
+endif
 $(OUT)/src/kernels/%.o $(OUT)/src/tile/codes.o \
 $(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o $(OUT)/src/flare/bright.o \
 $(OUT)/src/flare/cuts.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
@@ -347,7 +365,7 @@ check-neon:
 	qemu-arm-static build/neon/test_kernels_armv7
 # glint on Debian's kernels in an emulator: cameras, panels, ARM. One:
 # VMFILTER=aarch64/camera, as tests/vm/check says.
-VM_ARCHS ?= $(TARGETS)
+VM_ARCHS ?= x86_64 aarch64 armv7
 VM_TOOLS := as bars ctl feed grab vt
 vm_cache := $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/glint/vm
 $(OUT)/vm/%: tests/vm/%.c tests/vm/device.h tests/vm/layout.h
@@ -420,10 +438,14 @@ lint: $(OUT)/libglint.a $(OUT)/libglint-bake.a
 	@tools/lint-layers && tools/lint-q
 	@tools/lint-symbols $(NM) $(OUT)/libglint.a $(OUT)/libglint-bake.a
 	@[ $(CONFIG) != release ] || \
-	        tools/lint-purity $(NM) $(OBJDUMP) $(OUT)/libglint.a
+	        $(MAKE) -s --no-print-directory purity
 	@clang-format --dry-run -Werror $(sources)
 	@for h in include/glint/*.h; do \
 	        $(CC) -Iinclude -std=c99 -fsyntax-only -x c $$h || exit 1; done
+
+# Of the objects alone, so for machines that cannot be run here, too.
+purity: $(OUT)/libglint.a
+	@tools/lint-purity $(NM) $(OBJDUMP) $<
 
 # ---------------------------------------------------------------- to install
 install: all
@@ -439,7 +461,7 @@ install: all
 clean:
 	rm -rf build
 .PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-neon check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
-        lint install clean
+        lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
 -include $(shell find $(OUT) -name '*.d' 2>/dev/null)

@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "bench.h"
+#include "linux/sets.h"
 #include "measure.h"
 
 /* -------------------------------------------------------------------- canvas
@@ -154,7 +155,7 @@ int bench_add(struct bench *b, const struct scene *scene)
         return add_sizes(b, scene);
     for (int i = 0; i < n && code == EXIT_OK; i++)
         if (variations[i].sets == ~0U ||
-            !(variations[i].sets & ~glint_sets_here()))
+            !(variations[i].sets & ~glint_system_sets()))
             code = add_test(b, scene, &variations[i]);
     return code;
 }

@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "linux/sets.h"
 #include "posix/input.h"
 #include "posix/workers.h"
 
@@ -60,7 +61,7 @@ int tool_fail(const struct tool *tool, enum glint_status status,
 
 static int show_version(void)
 {
-    const unsigned sets = glint_sets_here();
+    const unsigned sets = glint_system_sets();
 
     printf("glint %s (kernels: c%s%s%s; MIT licence)\n", GLINT_VERSION,
            sets & GLINT_SET_SSE41 ? " sse41" : "",
@@ -79,7 +80,7 @@ static bool take_sets(struct tool *tool, const char *value)
                                     GLINT_SET_NEON, ~0U};
     const int word = tool_word(value, words);
 
-    if (word < 0 || (word < 4 && (sets[word] & ~glint_sets_here())))
+    if (word < 0 || (word < 4 && (sets[word] & ~glint_system_sets())))
         return false;
     tool->sets_off = ~sets[word];
     tool->kernels = words[word];
@@ -162,7 +163,7 @@ void tool_finish(struct tool *tool)
 
 unsigned tool_sets(const struct tool *tool)
 {
-    return glint_sets_here() & ~tool->sets_off;
+    return glint_system_sets() & ~tool->sets_off;
 }
 
 /* ------------------------------------------------------------------ numbers */

@@ -5,6 +5,10 @@
 #ifndef GLINT_BASE_COMPILER_H
 #define GLINT_BASE_COMPILER_H
 
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "glint runs on little-endian machines: models are used where they lie"
+#endif
+
 #include <stdint.h>
 
 #define STATIC_ASSERT(condition) \

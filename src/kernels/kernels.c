@@ -19,7 +19,7 @@ const struct glint_kernels *glint_kernels_of(unsigned sets)
     return sets & GLINT_SET_AVX2    ? &avx2
            : sets & GLINT_SET_SSE41 ? &sse41
                                     : &plain;
-#elif defined(__ARM_NEON)
+#elif defined(KERNELS_NEON)
     static const struct glint_kernels neon = KERNELS(neon);
 
     return sets & GLINT_SET_NEON ? &neon : &plain;

@@ -17,6 +17,14 @@
 
 #include "kernels/tone.h"
 
+/* NEON kernels are built for every ARM that may have NEON; whether this one
+ * has, its compiler or its system says. */
+#if defined(__aarch64__) || defined(__ARM_NEON) ||               \
+    (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
+     __ARM_ARCH >= 7)
+#define KERNELS_NEON 1
+#endif
+
 /* Adds light to N pixels of one row of Y'CbCr.
  *   luma    codes, changed in place
  *   cb, cr  codes, one for each pixel

@@ -1,6 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 #include "glint/kernels.h"
 
+#include "kernels/kernels.h"
+
+unsigned glint_sets_built(void)
+{
+#if defined(__x86_64__)
+    return GLINT_SET_SSE41 | GLINT_SET_AVX2;
+#elif defined(KERNELS_NEON)
+    return GLINT_SET_NEON;
+#else
+    return 0;
+#endif
+}
+
 #if defined(__x86_64__)
 
 #include <cpuid.h>

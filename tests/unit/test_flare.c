@@ -14,6 +14,7 @@
 
 #include "glint/flare.h"
 #include "glint/kernels.h"
+#include "linux/sets.h"
 #include "posix/workers.h"
 #include "support/shuffle.h"
 
@@ -701,7 +702,7 @@ static void draw_picture(const struct glint_flare_config *cfg,
 
 static unsigned random_sets(void)
 {
-    return (unsigned)draw_number(8) & glint_sets_here();
+    return (unsigned)draw_number(8) & glint_system_sets();
 }
 
 /* From far below a code to far above what 32-bit sums hold: never darker. */

@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include "glint/kernels.h"
+#include "linux/sets.h"
 
 enum {
     MAX_SIDE = 40,
@@ -640,7 +641,7 @@ static void test_long_stretches_are_short_ones(void **state)
             for (int i = 0; i < 3 * 64; i++)
                 light.rgb_q16[i / 64][0][i % 64] = (uint16_t)draw_random(9000);
             glint_resolve_init(&resolve, &image, 0,
-                               k & 2 ? glint_sets_here() : 0u);
+                               k & 2 ? glint_system_sets() : 0u);
             glint_image_place(&image, got);
             glint_resolve_stretch(&resolve, &image, 0, 0, n, 1, &light, &rows);
             glint_image_place(&image, want);
