@@ -6,6 +6,7 @@
 #                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
+#   make check-arm  the run-time half's on ARM, in an emulator
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
 #   make mutants  planted faults, each of which a unit test has to catch
 #   make check-valgrind   memory that was never written, by valgrind
@@ -297,7 +298,11 @@ bench-insn: all
 
 # ------------------------------------------------------------------- to test
 test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
-$(test_bins): EXTRA := -lcmocka
+$(test_bins): EXTRA := $(SYSROOT:%=-L%/lib) -lcmocka
+ifdef CROSS # of which Debian has a shared library only
+$(OUT)/tests/%.o: CPPFLAGS += $(SYSROOT:%=-isystem %/include)
+$(test_bins): LDFLAGS := $(filter-out -static,$(LDFLAGS))
+endif
 # Calls that tests answer themselves, or let fail.
 $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
@@ -349,20 +354,33 @@ $(OUT)/valgrind/%: $(OUT)/tests/% always
 	        --errors-for-leak-kinds=definite --log-file=$@.log $< \
 	        $(patsubst fuzz/replay_%,tests/fuzz/corpus/%,$(filter fuzz/%,$*)) \
 	        >$@.out 2>&1 || { cat $@.out $@.log; exit 1; }
-# NEON kernels against their C definitions, in an emulator.
-CORE_TEST := tests/unit/test_kernels.c src/base/status.c src/base/q.c \
-        src/tile/curve.c src/tile/mix.c src/kernels/sets.c src/kernels/kernels.c src/kernels/horner.c \
-        $(wildcard src/kernels/*_c.c src/kernels/*_neon.c)
-check-neon:
-	@tools/deps "NEON kernels in an emulator" gcc-aarch64-linux-gnu \
-	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf \
-	        libc6-dev-armhf-cross qemu-user-static
-	@mkdir -p build/neon
-	$(foreach t,aarch64 armv7,$(CROSS_$t)gcc $(MACHINE_$t) -std=c99 -O2 -static $(WARN) \
-	        $(CPPFLAGS) -Isrc -Itests -D_POSIX_C_SOURCE=200809L $(CORE_TEST) \
-	        -o build/neon/test_kernels_$t &&) true
-	qemu-aarch64-static build/neon/test_kernels_aarch64
-	qemu-arm-static build/neon/test_kernels_armv7
+# The run-time half on ARM, in an emulator that runs programs: the same tests,
+# the same hashes, with models baked here (tests/arm/check).
+ARM_TARGETS := aarch64 armv7 armv7-neon armv6-soft
+ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
+ARM_UNIT := arena kernels model curve resolve lights flare plan beams bright match \
+        tracks quantise pnm y4m output workers measure lamps fourcc panel frame src/kernels/horner.c \
+        show_lights live_stats live_adapt
+build/models/%.glint: lenses/%.lens $(OUT)/libglint-bake.a | $(OUT)/glint
+	@mkdir -p $(@D)
+	$(say) BAKE $@
+	$(Q)$(OUT)/glint bake $< -q -o $@
+$(OUT)/scenes: $(OUT)/tests/arm/scenes.o $(libs)
+	$(link)
+arm-tests: $(ARM_UNIT:%=$(OUT)/tests/unit/test_%)
+check-arm:
+	@tools/deps "ARM in an emulator" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
+	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross gcc-arm-linux-gnueabi \
+	        libc6-dev-armel-cross qemu-user-static debian-archive-keyring
+	@$(MAKE) --no-print-directory WERROR=-Werror $(OUT)/scenes \
+	        $(ARM_MODELS:%=build/models/%.glint)
+	@set -e; for t in $(ARM_TARGETS); do \
+	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t purity \
+	                build/$$t/scenes; done; \
+	for t in aarch64 armv7; do s=$$(tests/arm/prepare $$t); \
+	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t \
+	                SYSROOT=$$s arm-tests; done
+	@tests/arm/check $(ARM_MODELS:%=build/models/%.glint) -- $(ARM_UNIT)
 # glint on Debian's kernels in an emulator: cameras, panels, ARM. One:
 # VMFILTER=aarch64/camera, as tests/vm/check says.
 VM_ARCHS ?= x86_64 aarch64 armv7
@@ -460,7 +478,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-neon check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

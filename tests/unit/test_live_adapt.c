@@ -61,7 +61,7 @@ static void test_easy(void **state)
     live_adapt_init(&adapt);
     run(cost, 600);
     assert_int_equal(adapt.step, 0);
-    assert_int_equal(seen.last_change_s, -1);
+    assert_true(seen.last_change_s < 0); /* none */
 }
 
 /* Half a second of misses is what it takes, and a step at a time. */

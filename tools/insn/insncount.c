@@ -5,8 +5,17 @@
  *
  *     qemu-aarch64 -plugin ./insncount.so,top=20 -d plugin PROGRAM ...
  *
- * A block of instructions counts for the function that it begins in. QEMU ships
- * no header for plug-ins; what is used of its interface is declared here.
+ * A block of instructions counts for the function that it begins in.
+ *
+ * By stages, with what a stage calls:  frame=F,idle=G,skip=N,at=H:NAME,at=...
+ * From when G first runs, each time that F is entered after G is a frame; a
+ * function H of it begins the stage NAME, and F itself is stage 0, "rest".
+ * Functions without a name of their own here belong to the stage that calls
+ * them, so that who calls a stage must have one. The first N frames are left
+ * out; what is printed is the mean of the others. Of one thread.
+ *
+ * QEMU ships no header for plug-ins; what is used of its interface is declared
+ * here.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -30,6 +39,9 @@ qemu_plugin_tb_get_insn(const struct qemu_plugin_tb *tb, size_t i);
 const char *qemu_plugin_insn_symbol(const struct qemu_plugin_insn *insn);
 void qemu_plugin_register_vcpu_tb_exec_inline(struct qemu_plugin_tb *tb, int op,
                                               void *counter, uint64_t by);
+void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *tb,
+                                          void (*fn)(unsigned cpu, void *ctx),
+                                          int flags, void *ctx);
 void qemu_plugin_outs(const char *text);
 int qemu_plugin_install(uint64_t id, const struct qemu_info *info, int argc,
                         char **argv);
@@ -46,6 +58,88 @@ struct function {
 static struct function function[MAX_FUNCTIONS];
 static uint16_t slot[SLOTS]; /* 1 + index, by hash of the name; 0: free */
 static int n_functions, n_top = 30;
+
+/* -------------------------------------------------------------------- stages
+ */
+
+enum { MAX_MARKS = 32, ASLEEP = -2, IDLE = -1, REST = 0, INHERIT = -3 };
+
+struct block {
+    int n, stage; /* ASLEEP: the idle function; else as STAGE, or INHERIT */
+};
+
+static struct {
+    const char *function, *name;
+} mark[MAX_MARKS];
+static int n_marks = 1; /* 0: that of the frame */
+static const char *idle;
+static int stage = ASLEEP, n_frames, n_skipped;
+static uint64_t spent[MAX_MARKS];
+
+static int stage_of(const char *function)
+{
+    if (idle && strcmp(function, idle) == 0)
+        return ASLEEP;
+    for (int i = 0; i < n_marks; i++)
+        if (mark[i].function && strcmp(function, mark[i].function) == 0)
+            return i;
+    return INHERIT;
+}
+
+static void enter(unsigned cpu, void *ctx)
+{
+    const struct block *b = ctx;
+
+    (void)cpu;
+    if (b->stage == ASLEEP)
+        stage = IDLE;
+    else if (stage == IDLE && b->stage == REST) {
+        stage = REST;
+        n_frames++;
+    } else if (stage >= REST && b->stage >= REST)
+        stage = b->stage;
+    if (stage >= REST && n_frames > n_skipped)
+        spent[stage] += (uint64_t)b->n;
+}
+
+/* The same name may stand for several functions. */
+static void report_stages(void)
+{
+    const int n = n_frames > n_skipped ? n_frames - n_skipped : 1;
+    char line[256];
+
+    for (int i = 0; i < n_marks; i++) {
+        uint64_t sum = spent[i];
+
+        for (int k = 0; k < i; k++)
+            if (strcmp(mark[k].name, mark[i].name) == 0)
+                sum = 0;
+        for (int k = i + 1; k < n_marks && sum; k++)
+            if (strcmp(mark[k].name, mark[i].name) == 0)
+                sum += spent[k];
+        if (sum) {
+            snprintf(line, sizeof line, "%14llu %s\n",
+                     (unsigned long long)(sum / (uint64_t)n), mark[i].name);
+            qemu_plugin_outs(line);
+        }
+    }
+    snprintf(line, sizeof line, "%14d frames\n", n_frames - n_skipped);
+    qemu_plugin_outs(line);
+}
+
+static void take_mark(char *text)
+{
+    char *colon = strchr(text, ':');
+
+    if (!colon || n_marks == MAX_MARKS)
+        return;
+    *colon = '\0';
+    mark[n_marks].function = text;
+    mark[n_marks++].name = colon + 1;
+}
+
+/* ----------------------------------------------------------------- functions
+ */
 
 static struct function *function_of(const char *name)
 {
@@ -68,6 +162,16 @@ static void count(uint64_t id, struct qemu_plugin_tb *tb)
     const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
 
     (void)id;
+    if (idle) {
+        struct block *b = malloc(sizeof *b); /* kept, as code is */
+
+        if (!b)
+            abort();
+        b->n = (int)qemu_plugin_tb_n_insns(tb);
+        b->stage = stage_of(name ? name : "?");
+        qemu_plugin_register_vcpu_tb_exec_cb(tb, enter, 0, b);
+        return;
+    }
     qemu_plugin_register_vcpu_tb_exec_inline(tb, ADD_U64,
                                              &function_of(name ? name : "?")->n,
                                              qemu_plugin_tb_n_insns(tb));
@@ -88,6 +192,10 @@ static void report(uint64_t id, void *ctx)
 
     (void)id;
     (void)ctx;
+    if (idle) {
+        report_stages();
+        return;
+    }
     qsort(function, (size_t)n_functions, sizeof *function, by_count);
     for (int i = 0; i < n_functions; i++)
         total += function[i].n;
@@ -104,9 +212,27 @@ EXPORTED int qemu_plugin_install(uint64_t id, const struct qemu_info *info,
                                  int argc, char **argv)
 {
     (void)info;
-    for (int i = 0; i < argc; i++)
-        if (strncmp(argv[i], "top=", 4) == 0)
-            n_top = atoi(argv[i] + 4);
+    mark[0].name = "rest";
+    for (int i = 0; i < argc; i++) {
+        char *text = strdup(argv[i]); /* kept */
+        char *value = text ? strchr(text, '=') : NULL;
+
+        if (!value)
+            return -1;
+        *value++ = '\0';
+        if (strcmp(text, "top") == 0)
+            n_top = atoi(value);
+        else if (strcmp(text, "frame") == 0)
+            mark[0].function = value;
+        else if (strcmp(text, "idle") == 0)
+            idle = value;
+        else if (strcmp(text, "skip") == 0)
+            n_skipped = atoi(value);
+        else if (strcmp(text, "at") == 0)
+            take_mark(value);
+        else
+            return -1;
+    }
     qemu_plugin_register_vcpu_tb_trans_cb(id, count);
     qemu_plugin_register_atexit_cb(id, report, NULL);
     return 0;

@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scenes SET N MODEL... - N random scenes drawn by the run-time half alone, and
+ * a hash of all that came out: the same on every CPU, whatever it was compiled
+ * for and whatever kernels were used. SET is c, sse41, avx2, neon or best.
+ *
+ *     heliar.glint ...: 240 scenes, 236 with light, 1b3f...
+ *
+ * Models, directions, powers, formats, sizes, tiles, rasterisers are drawn at
+ * random, in integers: no libm has a say. Of each picture the lights are found,
+ * too. Exit code 3: a model is refused.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/real.h"
+#include "glint/glint.h"
+#include "linux/sets.h"
+#include "posix/input.h"
+#include "support/shuffle.h"
+
+enum {
+    MAX_MODELS = 16,
+    MAX_BEAMS = 12,
+    MAX_SPOTS = 32,
+    ARENA_BYTES = 48 << 20,
+    FINDER_BYTES = 8 << 20
+};
+
+static struct glint_lens lens[MAX_MODELS];
+static int n_models;
+static unsigned sets;
+static uint32_t seed = 2026;
+static void *arena, *finder_memory;
+
+/* One to a statement: C does not say in which order arguments are evaluated. */
+static int number(int below)
+{
+    return (int)(shuffle_next(&seed) % (uint32_t)below);
+}
+
+/* ---------------------------------------------------------------------- hash
+ */
+
+static const uint64_t hash_start = UINT64_C(14695981039346656037);
+
+static uint64_t hash(uint64_t h, const void *data, size_t bytes)
+{
+    const uint8_t *p = data;
+
+    for (size_t i = 0; i < bytes; i++) /* FNV-1a */
+        h = (h ^ p[i]) * UINT64_C(1099511628211);
+    return h;
+}
+
+static uint64_t hash_number(uint64_t h, int64_t x)
+{
+    for (int i = 0; i < 8; i++) {
+        const uint8_t byte = (uint8_t)((uint64_t)x >> 8 * i);
+
+        h = hash(h, &byte, 1);
+    }
+    return h;
+}
+
+/* -------------------------------------------------------------------- a scene
+ */
+
+/* Sine and cosine, _q30, of twice the angle whose tangent is T / 2^15. */
+static void circle(int32_t t, int32_t *sine, int32_t *cosine)
+{
+    const int64_t one = INT64_C(1) << 30, t2 = (int64_t)t * t;
+
+    *sine = (int32_t)((((int64_t)t << 46) / (one + t2)));
+    *cosine = (int32_t)(((one - t2) << 30) / (one + t2));
+}
+
+static void make_beam(struct glint_beam *b)
+{
+    int32_t sine, cosine;
+    int exponent;
+
+    circle(number(7000), &b->sine_q30, &b->cosine_q30); /* up to 24 degrees */
+    circle(number(1 << 15), &sine, &cosine);
+    b->sin_q30 = number(2) ? sine : -sine;
+    b->cos_q30 = number(2) ? cosine : -cosine;
+    exponent = number(14) - 20;
+    b->power = real_of(1 + number(1 << 30), exponent);
+    for (int c = 0; c < 3; c++)
+        b->rgb_q14[c] = 4096 + number(12289);
+}
+
+static void make_waves(struct glint_wave wave[3])
+{
+    static const struct glint_wave plain[3] = {
+        {39709472, {16384, 1200, 0}, {0, 0}},  /* 650 nm */
+        {59279172, {0, 16384, 900}, {0, 0}},   /* 532 nm */
+        {82850510, {700, -300, 16384}, {0, 0}} /* 450 nm */
+    };
+
+    for (int i = 0; i < 3; i++) {
+        wave[i] = plain[i];
+        wave[i].weight = real_of(1 + number(1 << 20), -30);
+    }
+}
+
+static struct glint_flare_config make_config(struct shuffle *shuffle)
+{
+    static const int32_t side[4][2] = {
+        {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
+    struct glint_flare_config c = {.workers = &shuffle->workers,
+                                   .sets = sets,
+                                   .weights = GLINT_WEIGHTS_WACHSPRESS,
+                                   .antialias = 1,
+                                   .max_bundles = MAX_BEAMS * 3 * 512,
+                                   .max_primitives = 150000,
+                                   .max_refs = 600000};
+
+    c.width = 1 + number(400);
+    c.height = 1 + number(300);
+    c.tile_log2 = 3 + number(4);
+    shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
+    c.raster = number(6) ? GLINT_RASTER_EDGES : GLINT_RASTER_CELLS;
+    if (c.raster == GLINT_RASTER_CELLS)
+        c.max_vertices = 200000;
+    c.irradiance_steps = number(3) * 30;
+    c.dither = number(2);
+    if (number(2)) {
+        c.stop.n_blades = 4;
+        c.stop.apothem_q16 = 46341;
+        memcpy(c.stop.normal_q30, side, sizeof side);
+    }
+    return c;
+}
+
+static void make_picture(struct glint_image *image, uint8_t *mem, size_t bytes)
+{
+    image->range = (enum glint_range)number(2);
+    image->matrix = (enum glint_matrix)number(2);
+    image->transfer = (enum glint_tone)number(2);
+    glint_image_place(image, mem);
+    for (size_t i = 0; i < bytes; i++)
+        mem[i] = (uint8_t)(image->format == GLINT_LINEAR_Q20
+                               ? 0
+                               : (i * 7 + (i >> 8)) % 61 + 16);
+}
+
+static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
+{
+    struct glint_lights_config c;
+    struct glint_lights *finder;
+    struct glint_spot spot[MAX_SPOTS];
+    int n;
+
+    glint_lights_defaults(&c, image->width, image->height);
+    c.threshold_high = 100 + number(100);
+    if (image->format == GLINT_LINEAR_Q20 ||
+        glint_lights_init(&finder, &c, finder_memory, FINDER_BYTES) != GLINT_OK)
+        return h;
+    n = glint_lights_find(finder, image, spot, MAX_SPOTS);
+    for (int i = 0; i < n; i++) {
+        const struct glint_spot *s = &spot[i];
+        const int64_t all[] = {s->x_q8,       s->y_q8,       s->size_q8,
+                               s->area,       s->n_clipped,  s->flux_q16,
+                               s->rgb_q15[0], s->rgb_q15[1], s->rgb_q15[2]};
+
+        for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+            h = hash_number(h, all[k]);
+    }
+    return hash_number(h, n);
+}
+
+static void draw_flare(const struct glint_flare_config *c,
+                       const struct glint_image *image)
+{
+    struct glint_beam beam[MAX_BEAMS];
+    struct glint_wave wave[3];
+    struct glint_flare_stats stats;
+    struct glint_flare *flare;
+    struct glint_rays rays = {.wave = wave,
+                              .pixels_per_mm = real_of(image->width, -5),
+                              .only_ghost = -1};
+    const int n_given = 1 + number(MAX_BEAMS);
+    const int most = 1 + number(MAX_BEAMS);
+    const int32_t near_q30 = 1 << number(24);
+    int n, n_apart;
+
+    if (glint_flare_init(&flare, c, arena, ARENA_BYTES) != GLINT_OK) {
+        fputs("scenes: the arena is too small\n", stderr);
+        exit(1);
+    }
+    rays.lens = &lens[number(n_models)];
+    rays.n_waves = 1 + number(3);
+    rays.fineness = 8 << number(4);
+    rays.narrow = number(4) == 0;
+    make_waves(wave);
+    for (int i = 0; i < n_given; i++)
+        make_beam(&beam[i]);
+    if (image->format != GLINT_LINEAR_Q20)
+        rays.faintest = real_of(1, -13);
+    n = glint_beams_merge(beam, n_given, near_q30, most, &n_apart);
+    glint_flare_plan(flare, &rays, beam, n);
+    glint_flare_bin(flare, &stats);
+    glint_flare_draw(flare, image);
+}
+
+/* Draws one; returns whether light was added. */
+static int draw_scene(uint64_t *h)
+{
+    struct shuffle shuffle;
+    const struct glint_flare_config c = make_config(&shuffle);
+    struct glint_image image = {
+        .format = (enum glint_pixel_format)number(GLINT_RGB565 + 1),
+        .width = c.width,
+        .height = c.height};
+    const size_t bytes = glint_image_bytes(image.format, c.width, c.height);
+    uint8_t *mem = malloc(bytes);
+    uint64_t before, after;
+
+    if (!mem)
+        exit(1);
+    make_picture(&image, mem, bytes);
+    before = hash(hash_start, mem, bytes);
+    draw_flare(&c, &image);
+    after = hash(hash_start, mem, bytes);
+    *h = hash_lights(hash_number(*h, (int64_t)(after >> 1)), &image);
+    free(mem);
+    return before != after;
+}
+
+/* ---------------------------------------------------------------------- start
+ */
+
+static void open_model(const char *path)
+{
+    struct glint_error error = {""};
+    const char *reason = "";
+    uint8_t *data;
+    size_t bytes;
+
+    if (glint_input_slurp(&data, &bytes, path, 1 << 28, &error) != GLINT_OK ||
+        glint_lens_open(&lens[n_models], data, bytes, &reason) != GLINT_OK) {
+        fprintf(stderr, "scenes: %s: %s%s\n", path, error.text, reason);
+        exit(3);
+    }
+    n_models++;
+}
+
+static unsigned sets_of(const char *word)
+{
+    static const struct {
+        const char *word;
+        unsigned sets;
+    } of[] = {{"c", 0},
+              {"sse41", GLINT_SET_SSE41},
+              {"avx2", GLINT_SET_AVX2},
+              {"neon", GLINT_SET_NEON},
+              {"best", ~0U}};
+
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++)
+        if (strcmp(word, of[i].word) == 0 &&
+            (of[i].sets == ~0U || !(of[i].sets & ~glint_system_sets())))
+            return of[i].sets & glint_system_sets();
+    fprintf(stderr, "scenes: no kernels '%s' here\n", word);
+    exit(2);
+}
+
+int main(int argc, char **argv)
+{
+    const int n = argc > 3 ? atoi(argv[2]) : 0;
+    uint64_t h = hash_start;
+    int lit = 0;
+
+    if (n < 1 || argc - 3 > MAX_MODELS) {
+        fputs("scenes SET N MODEL...\n", stderr);
+        return 2;
+    }
+    sets = sets_of(argv[1]);
+    for (int i = 3; i < argc; i++)
+        open_model(argv[i]);
+    if (posix_memalign(&arena, 64, ARENA_BYTES) != 0 ||
+        posix_memalign(&finder_memory, 64, FINDER_BYTES) != 0)
+        return 1;
+    for (int i = 0; i < n; i++) {
+        lit += draw_scene(&h);
+        if (getenv("GLINT_EACH")) /* to find the one that differs */
+            printf("%d %08lx\n", i, (unsigned long)(h >> 32));
+    }
+    printf("%d scenes, %d with light, %08lx%08lx\n", n, lit,
+           (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffff));
+    return 0;
+}
