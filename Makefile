@@ -17,6 +17,7 @@
 #   make install  DESTDIR= PREFIX=/usr/local
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
+#   make budget   what a frame costs on ARM, in instructions and bytes
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   also: oiio table bake-table accuracy-table ray-table inputs format
 #         golden-update fuzz-keep clean
@@ -292,6 +293,13 @@ size: $(OUT)/libglint.a $(example_bins)
 	@tools/size $(SIZE) $(OUT) $(EXAMPLES)
 memory-table: all
 	@tools/memory-table
+budget: all
+	@tools/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
+	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf \
+	        libc6-dev-armhf-cross qemu-user valgrind >&2
+	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
+	        build/$$t/glint >&2 || exit 1; done
+	@tools/budget
 bench-insn: all
 	@tools/deps "instruction counts" valgrind
 	@tools/bench-insn
@@ -478,7 +486,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn size growth memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

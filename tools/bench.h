@@ -46,6 +46,7 @@ struct bench {
     const char *format_word;
     int width, height;
     bool all, sizes, growth, psnr;
+    bool moving; /* lights: from round to round */
 };
 
 /* Adds the cases of SCENE that are asked for, or the plain one. Returns an exit
@@ -58,6 +59,9 @@ int bench_add_one(struct bench *b, const struct scene *scene, int width,
 
 /* Adds those of b->growth. */
 int bench_add_growth(struct bench *b, const struct scene *scene);
+
+/* Puts the light of a case where it is in round ROUND of N, if it moves. */
+void bench_move(struct test *t, int round, int n);
 
 /* Times round ROUND of a case. */
 enum glint_status bench_run(struct test *t, int round);

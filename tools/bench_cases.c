@@ -160,6 +160,12 @@ int bench_add(struct bench *b, const struct scene *scene)
     return code;
 }
 
+void bench_move(struct test *t, int round, int n)
+{
+    if (t->n_lamps > 0)
+        t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / n;
+}
+
 /* What of drawing the last frame did not touch the picture. */
 static double accumulate_ms(const struct test *t)
 {

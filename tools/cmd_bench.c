@@ -33,6 +33,7 @@ static const char help[] =
     "them\n"
     "  --size WxH      default 1920x1080\n"
     "  --repeat N      rounds (default 15)\n"
+    "  --moving        the first light goes from 8 to 16 degrees meanwhile\n"
     "  --psnr          also draw each lens exactly and compare, which takes\n"
     "                  minutes\n"
     "  --format F      yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 | "
@@ -54,19 +55,24 @@ static const enum glint_pixel_format formats[] = {GLINT_YUYV,     GLINT_I420,
 
 static int run_rounds(struct bench *b)
 {
+    const int warm = b->moving ? b->rounds : 1;
     struct tool_progress progress;
     enum glint_status status = GLINT_OK;
 
     tool_progress_start(&progress, b->tool, "bench");
-    /* the first round only warms up */
-    for (int round = -1; round < b->rounds && status == GLINT_OK; round++) {
-        const int at = round < 0 ? 0 : round;
+    /* the first ones only warm up, for each place of a moving light */
+    for (int round = -warm; round < b->rounds && status == GLINT_OK; round++) {
+        const int at = round < 0 ? round + warm : round;
 
         for (int i = 0; i < b->n_canvases; i++)
             b->canvas[i].floor_ms[at] = canvas_floor_ms(&b->canvas[i].of);
-        for (int i = 0; i < b->n_tests && status == GLINT_OK; i++)
+        for (int i = 0; i < b->n_tests && status == GLINT_OK; i++) {
+            if (b->moving)
+                bench_move(&b->test[i], at, b->rounds);
             status = bench_run(&b->test[i], at);
-        tool_progress_show(&progress, (round + 2.0) / (b->rounds + 1));
+        }
+        tool_progress_show(&progress,
+                           (round + warm + 1.0) / (b->rounds + warm));
     }
     tool_progress_end(&progress);
     return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
@@ -141,6 +147,9 @@ static int take(struct tool *tool, struct bench *b, int c)
     case 'm':
         b->sizes = true;
         return -1;
+    case 'M':
+        b->moving = true;
+        return -1;
     case 'p':
         b->psnr = true;
         return -1;
@@ -172,6 +181,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
         {"all", no_argument, NULL, 'a'},
         {"growth", no_argument, NULL, 'g'},
         {"sizes", no_argument, NULL, 'm'},
+        {"moving", no_argument, NULL, 'M'},
         {"psnr", no_argument, NULL, 'p'},
         {"size", required_argument, NULL, 's'},
         {"repeat", required_argument, NULL, 'r'},
