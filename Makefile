@@ -119,10 +119,12 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         explain explain_table explain_picture \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
         yardstick bench_cases bench_growth bench_report cmd_bench
+EXTREMES := angles powers frames lenses
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
-        fbdev sinks live_stats live_adapt frame show_lights explain live
+        fbdev sinks live_stats live_adapt frame show_lights explain live \
+        $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights
 ifeq ($(WITH_JPEG),yes)
 UNIT += mjpeg
@@ -323,6 +325,8 @@ $(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
         -Wl,--wrap=realloc,--wrap=posix_memalign
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
 $(fake_bins): $(OUT)/tests/support/fake_camera.o
+extreme_bins := $(EXTREMES:%=$(OUT)/tests/unit/test_extremes_%)
+$(extreme_bins): $(OUT)/tests/support/stage.o
 $(test_bins): $(OUT)/tests/unit/test_%: $(OUT)/tests/unit/test_%.o $(libs)
 	$(link)
 replay_bins := $(FUZZERS:%=$(OUT)/tests/fuzz/replay_%)

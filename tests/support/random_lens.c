@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/random_lens.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "support/stage.h"
+
+enum { MOST_TRIES = 20000 };
+
+struct glass {
+    const char *name;
+    double nd, vd;
+};
+
+static const struct glass catalogue[] = {
+    {"BK7", 1.5168, 64.17},    {"FK51", 1.48656, 84.47},
+    {"F2", 1.62004, 36.37},    {"SF6", 1.80518, 25.43},
+    {"SF11", 1.78472, 25.76},  {"LaK9", 1.691, 54.71},
+    {"LaSF9", 1.85025, 32.17}, {"BaF10", 1.67003, 47.11},
+    {"SSK8", 1.61772, 49.83},  {"CaF2", 1.43385, 95.23}};
+
+enum { N_CATALOGUE = sizeof catalogue / sizeof *catalogue };
+
+static double log_uniform(uint64_t *r, double low, double high)
+{
+    return exp(stage_uniform(r, log(low), log(high)));
+}
+
+static bool chance(uint64_t *r, double p)
+{
+    return stage_uniform(r, 0, 1) < p;
+}
+
+static int below(uint64_t *r, int n)
+{
+    return (int)(stage_random(r) % (uint64_t)n);
+}
+
+static void set_glass(uint64_t *r, struct glint_surface *s)
+{
+    const struct glass *g = &catalogue[below(r, N_CATALOGUE)];
+
+    s->nd = g->nd;
+    s->vd = g->vd;
+    if (chance(r, 0.5)) {
+        s->nd = stage_uniform(r, 1.4, 2.1);
+        s->vd = stage_uniform(r, 18, 95);
+    }
+}
+
+static double sag(double radius, double height)
+{
+    return radius == 0
+               ? 0
+               : radius -
+                     copysign(sqrt(radius * radius - height * height), radius);
+}
+
+/* Surfaces about one unit across, weaker where there are many. */
+static void set_shapes(uint64_t *r, struct glint_prescription *l)
+{
+    const double weak = sqrt(l->n_surfaces / 4.0);
+    double semi = stage_uniform(r, 0.1, 0.5);
+    int left = 0; /* surfaces of this group still to come */
+
+    for (int k = 0; k < l->n_surfaces; k++) {
+        struct glint_surface *s = &l->surface[k];
+        const int rest = l->n_surfaces - k;
+
+        *s = (struct glint_surface){.nd = 1};
+        if (left == 0) /* groups of 2 to 4, none of one */
+            left = rest <= 3 ? rest : rest == 4 ? 2 : 2 + below(r, 3);
+        left--;
+        if (left > 0)
+            set_glass(r, s);
+        semi *= stage_uniform(r, 0.9, 1.1);
+        s->semi_mm = semi;
+        if (!chance(r, 0.12))
+            s->radius_mm = (chance(r, 0.5) ? 1 : -1) *
+                           fmax(1.05 * semi, weak * log_uniform(r, 0.4, 8));
+    }
+}
+
+/* Thick enough for the rims, and a little more; the stop is a plane of its own
+ * that may lie anywhere. */
+static void set_places(uint64_t *r, struct glint_prescription *l)
+{
+    l->stop_after = below(r, l->n_surfaces + 1);
+    l->stop_semi_mm =
+        l->surface[l->stop_after == 0 ? 0 : l->stop_after - 1].semi_mm *
+        stage_uniform(r, 0.5, 1);
+    for (int k = 0; k < l->n_surfaces; k++) {
+        struct glint_surface *s = &l->surface[k];
+        const bool last = k == l->n_surfaces - 1;
+        const bool to_stop = l->stop_after == k + 1;
+        const double height =
+            last ? s->semi_mm : fmin(s->semi_mm, s[1].semi_mm);
+        const double out = sag(s->radius_mm, fmin(height, s->semi_mm));
+        const double in = last ? 0 : sag(s[1].radius_mm, height);
+        const double more = log_uniform(r, 0.003, 0.15);
+
+        if (to_stop) {
+            s->thickness_mm = fmax(0, out) + more;
+            l->stop_thickness_mm = fmax(0, -in) + more;
+        } else
+            s->thickness_mm = fmax(0, out - in) + more;
+    }
+    if (l->stop_after == 0)
+        l->stop_thickness_mm =
+            fmax(0, -sag(l->surface[0].radius_mm, l->surface[0].semi_mm)) +
+            log_uniform(r, 0.003, 0.15);
+}
+
+static void set_coatings(uint64_t *r, struct glint_prescription *l)
+{
+    const double coated = stage_uniform(r, -0.3, 1.3);
+    double before = 0; /* vd of the medium in front: 0 is air */
+
+    for (int k = 0; k < l->n_surfaces; k++) {
+        struct glint_surface *s = &l->surface[k];
+
+        if ((before > 0) != (s->vd > 0) && chance(r, coated)) {
+            s->coating_nm = stage_uniform(r, 350, 800);
+            s->coating_n = chance(r, 0.5) ? 1.38 : stage_uniform(r, 1.2, 2.3);
+        }
+        before = s->vd;
+    }
+}
+
+/* All lengths times FACTOR. */
+static void scale(struct glint_prescription *l, double factor)
+{
+    for (int k = 0; k < l->n_surfaces; k++) {
+        l->surface[k].radius_mm *= factor;
+        l->surface[k].thickness_mm *= factor;
+        l->surface[k].semi_mm *= factor;
+    }
+    l->stop_thickness_mm *= factor;
+    l->stop_semi_mm *= factor;
+}
+
+static double *last_gap(struct glint_prescription *l)
+{
+    return l->stop_after == l->n_surfaces
+               ? &l->stop_thickness_mm
+               : &l->surface[l->n_surfaces - 1].thickness_mm;
+}
+
+/* False: it has no image, or one inside the lens. */
+static bool set_focus(uint64_t *r, struct glint_prescription *l)
+{
+    struct glint_optics o;
+    double behind;
+
+    l->f_number = 1;
+    glint_optics_of(l, &o);
+    if (!(o.focal_mm > 1e-3 && o.focal_mm < 1e3 && o.stop_radius_mm > 1e-6))
+        return false;
+    scale(l, log_uniform(r, 1, 1e4) / o.focal_mm);
+    glint_optics_of(l, &o);
+    behind = o.back_focal_mm;
+    if (l->stop_after == l->n_surfaces)
+        behind -= l->surface[l->n_surfaces - 1].thickness_mm;
+    *last_gap(l) = behind * stage_uniform(r, 0.98, 1.02);
+    l->f_number = fmin(1000, fmax(0.5, o.stop_radius_mm / l->stop_semi_mm *
+                                           log_uniform(r, 1.001, 30)));
+    l->film_width_mm =
+        fmin(100, fmax(1, o.focal_mm * log_uniform(r, 0.05, 1.5)));
+    l->film_height_mm = l->film_width_mm / stage_uniform(r, 1, 2.4);
+    return behind > 0;
+}
+
+static int print(char *text, int at, const char *format, double a, double b,
+                 double c)
+{
+    return at + snprintf(text + at, (size_t)(RANDOM_LENS_TEXT - at), format, a,
+                         b, c);
+}
+
+static int print_stop(const struct glint_prescription *l, char *text, int at)
+{
+    return print(text, at, "stop %.9g %.9g\n", l->stop_thickness_mm,
+                 l->stop_semi_mm, 0);
+}
+
+static int print_surface(const struct glint_surface *s, bool cemented,
+                         char *text, int at)
+{
+    if (s->radius_mm == 0)
+        at = print(text, at, "surface flat %.9g %.9g ", s->thickness_mm,
+                   s->semi_mm, 0);
+    else
+        at = print(text, at, "surface %.9g %.9g %.9g ", s->radius_mm,
+                   s->thickness_mm, s->semi_mm);
+    at = s->vd > 0 ? print(text, at, "%.6g %.6g", s->nd, s->vd, 0)
+                   : print(text, at, "air", 0, 0, 0);
+    if (cemented)
+        return print(text, at, "\n", 0, 0, 0);
+    return s->coating_nm > 0 ? print(text, at, " coating %.6g %.6g\n",
+                                     s->coating_nm, s->coating_n, 0)
+                             : print(text, at, " coating none\n", 0, 0, 0);
+}
+
+static void write_table(const struct glint_prescription *l, int number,
+                        char *text)
+{
+    int at = print(text, 0, "name random-%.0f\nf-number %.9g\n", number,
+                   l->f_number, 0);
+
+    at = print(text, at, "film %.9g %.9g\n", l->film_width_mm,
+               l->film_height_mm, 0);
+    for (int k = 0; k < l->n_surfaces; k++) {
+        if (l->stop_after == k)
+            at = print_stop(l, text, at);
+        at = print_surface(&l->surface[k],
+                           k > 0 && l->surface[k].vd > 0 &&
+                               l->surface[k - 1].vd > 0,
+                           text, at);
+    }
+    if (l->stop_after == l->n_surfaces)
+        print_stop(l, text, at);
+}
+
+static bool try_one(uint64_t *r, struct glint_prescription *l, int number,
+                    char *text)
+{
+    struct glint_error error;
+    /* mostly few surfaces: ghosts grow with their square */
+    const double u = stage_uniform(r, 0, 1);
+    const int n = (int)floor(2 * pow(32.5, u * u));
+
+    memset(l, 0, sizeof *l);
+    l->n_surfaces = n < 64 ? n : 64;
+    set_shapes(r, l);
+    set_places(r, l);
+    set_coatings(r, l);
+    if (!set_focus(r, l))
+        return false;
+    write_table(l, number, text);
+    return glint_prescription_parse(l, text, strlen(text), "random", &error) ==
+           GLINT_OK;
+}
+
+int random_lens(struct glint_prescription *lens, uint64_t seed, int number,
+                char text[RANDOM_LENS_TEXT])
+{
+    uint64_t r = seed * UINT64_C(0x9e3779b97f4a7c15) + (uint64_t)number;
+
+    for (int tries = 0; tries < MOST_TRIES; tries++)
+        if (try_one(&r, lens, number, text))
+            return tries;
+    return -1;
+}

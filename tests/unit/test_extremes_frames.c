@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Extreme frames: one pixel, one row, 8192 x 8192, odd sizes, strides longer
+ * than rows and negative ones.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/extreme.h"
+#include "support/stage.h"
+
+static struct stage heliar;
+
+/* Well exposed by a light 7.5 degrees off at one pixel a millimetre; as pixels
+ * shrink, so does the light that falls on one. */
+static double power_of_mm;
+
+static int open_stage(void **state)
+{
+    const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
+
+    (void)state;
+    if (!stage_load(&heliar, "heliar-tronnier") || !stage_prepare(&heliar, 8) ||
+        !stage_model(&heliar, 1, 60))
+        return 1;
+    stage_view(&heliar, 252, 168, 36);
+    power_of_mm = stage_power(&heliar, &lamp) / 7 / 7;
+    return 0;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&heliar);
+    return 0;
+}
+
+static void *take(size_t bytes)
+{
+    void *p = malloc(bytes);
+
+    assert_non_null(p);
+    return p;
+}
+
+/* Draws FORMAT at WIDTH x HEIGHT, PX_MM pixels a millimetre. */
+static void draw(enum glint_pixel_format format, int width, int height,
+                 double px_mm, uint8_t *bytes)
+{
+    const struct glint_lamp lamp =
+        stage_lamp(7.5, 33, power_of_mm * px_mm * px_mm);
+    struct glint_image image = {
+        .format = format, .width = width, .height = height};
+
+    stage_view(&heliar, width, height, width / px_mm);
+    glint_image_place(&image, bytes);
+    assert_int_equal(
+        frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
+        GLINT_OK);
+}
+
+/* ----------------------------------------------------------------------- sizes
+ */
+
+/* A picture is the middle of every larger one of the same scale whose sides
+ * have the same parity: light that a small frame leaves out lies outside of it.
+ * Not a bit may differ, but where one frame leaves out a ghost that the other
+ * has, as what lies beside a picture may count as lit there. */
+static int differing(int width, int height, const uint8_t *large, int large_w,
+                     int large_h, double px_mm)
+{
+    uint8_t *small = take((size_t)width * (size_t)height * 3);
+    const int x0 = (large_w - width) / 2, y0 = (large_h - height) / 2;
+    int n = 0;
+
+    memset(small, 40, (size_t)width * (size_t)height * 3);
+    draw(GLINT_RGB24, width, height, px_mm, small);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < 3 * width; x++)
+            n += small[(size_t)y * 3 * (size_t)width + (size_t)x] !=
+                 large[(size_t)(y + y0) * 3 * (size_t)large_w +
+                       (size_t)(3 * x0 + x)];
+    free(small);
+    return n;
+}
+
+static void test_every_size(void **state)
+{
+    static const int sizes[][2] = {{1, 1},   {1, 199},   {301, 1},  {3, 199},
+                                   {65, 63}, {301, 3},   {17, 129}, {127, 65},
+                                   {7, 9},   {299, 199}, {193, 1},  {1, 65}};
+    enum { W = 301, H = 199 };
+    uint8_t *large = take(3 * W * H);
+    int n = 0, lit = 0;
+
+    (void)state;
+    memset(large, 40, 3 * W * H);
+    draw(GLINT_RGB24, W, H, 7, large);
+    for (int i = 0; i < 3 * W * H; i++)
+        lit += large[i] != 40;
+    assert_true(lit > W * H);
+    for (int i = 0; i < 12; i++)
+        n += differing(sizes[i][0], sizes[i][1], large, W, H, 7);
+    free(large);
+    assert_true(extreme_at_most("frames: 1x1 to 301x199, samples that differ "
+                                "from the large frame's middle",
+                                n, 0, "samples"));
+}
+
+/* The largest frame there is against its own middle drawn by itself: places
+ * far from the middle have no fewer bits, and nothing runs over. */
+static void test_largest(void **state)
+{
+    enum { SIDE = 8192, MIDDLE = 512 };
+    uint8_t *large = take((size_t)SIDE * SIDE), *small = take(MIDDLE * MIDDLE);
+    int n = 0, corners = 0;
+
+    (void)state;
+    memset(large, 0, (size_t)SIDE * SIDE);
+    memset(small, 0, MIDDLE * MIDDLE);
+    draw(GLINT_GREY, SIDE, SIDE, 250, large);
+    assert_int_equal(heliar.drawn.stats.dropped_bundles, 0);
+    draw(GLINT_GREY, MIDDLE, MIDDLE, 250, small);
+    for (int y = 0; y < MIDDLE; y++)
+        for (int x = 0; x < MIDDLE; x++)
+            n += small[y * MIDDLE + x] !=
+                 large[(size_t)(y + (SIDE - MIDDLE) / 2) * SIDE +
+                       (size_t)(x + (SIDE - MIDDLE) / 2)];
+    for (size_t i = 0; i < (size_t)SIDE * SIDE; i += 997)
+        corners += large[i] != 0;
+    free(large);
+    free(small);
+    assert_true(corners > 1000);
+    assert_true(extreme_at_most(
+        "frames: 8192x8192 against its middle by itself", n, 0, "samples"));
+}
+
+/* --------------------------------------------------------------------- strides
+ */
+
+/* Every format with rows apart, rows upside down and both: the same samples,
+ * and not a byte beside them is touched. */
+static int strided(enum glint_pixel_format format, int pad, int down)
+{
+    enum { W = 157, H = 83, ROOM = 1 << 19 };
+    static uint8_t want[ROOM], got[ROOM];
+    struct glint_image plain = {.format = format, .width = W, .height = H};
+    struct glint_image image = plain;
+    const struct glint_lamp lamp =
+        stage_lamp(7.5, 33, power_of_mm * W * W / 24 / 24);
+    uint8_t *at = got + 4096;
+    int n = 0;
+
+    stage_view(&heliar, W, H, 24);
+    memset(want, 90, sizeof want);
+    glint_image_place(&plain, want);
+    assert_int_equal(
+        frame_draw(&heliar.frame, &lamp, 1, 1, &plain, &heliar.drawn),
+        GLINT_OK);
+    memset(got, 90, sizeof got);
+    for (int p = 0; p < glint_image_planes(format); p++) {
+        const int rows = glint_image_plane_height(format, p, H);
+        const ptrdiff_t stride =
+            (ptrdiff_t)glint_image_row_bytes(format, p, W) + pad;
+
+        image.plane[p] = down > 0 ? at : at + (rows - 1) * stride;
+        image.stride_bytes[p] = down * stride;
+        at += rows * stride + 64;
+    }
+    assert_true(at < got + ROOM);
+    assert_int_equal(
+        frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
+        GLINT_OK);
+    for (int p = 0; p < glint_image_planes(format); p++)
+        for (int y = 0; y < glint_image_plane_height(format, p, H); y++) {
+            const size_t bytes = glint_image_row_bytes(format, p, W);
+            uint8_t *row = image.plane[p] + y * image.stride_bytes[p];
+
+            n += memcmp(row, plain.plane[p] + y * plain.stride_bytes[p],
+                        bytes) != 0;
+            memset(row, 90, bytes); /* and what is left must be untouched */
+        }
+    for (int i = 0; i < ROOM; i++)
+        n += got[i] != 90;
+    return n;
+}
+
+static void test_strides(void **state)
+{
+    int n = 0;
+
+    (void)state;
+    for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
+        /* YUYV and UYVY have an even stride by nature; int32 four bytes */
+        n += strided((enum glint_pixel_format)format, 52, 1);
+        n += strided((enum glint_pixel_format)format, 0, -1);
+        n += strided((enum glint_pixel_format)format, 4, -1);
+    }
+    assert_true(extreme_at_most("frames: strides of 13 formats, rows or bytes "
+                                "that differ",
+                                n, 0, ""));
+}
+
+/* ----------------------------------------------------------------------- tiles
+ */
+
+/* A cell whose sides lie exactly on borders of tiles and of pixels lights the
+ * pixels within and no other, whatever the tiles are: what it brings is its
+ * flux. */
+static void test_on_tile_borders(void **state)
+{
+    enum { W = 192, H = 192 };
+    static int32_t pixels[3 * W * H], first[3 * W * H];
+    double worst = 0;
+    int outside = 0, differ = 0;
+
+    (void)state;
+    for (int log2 = 3; log2 <= 6; log2++) {
+        struct glint_flare_config c = {.width = W,
+                                       .height = H,
+                                       .tile_log2 = log2,
+                                       .max_bundles = 1,
+                                       .max_primitives = 100,
+                                       .max_vertices = 100,
+                                       .max_refs = 10000};
+        const struct glint_bundle b = {.n_cells = 1,
+                                       .flux_q31 = 1 << 30,
+                                       .flux_exponent = 13, /* 4096 */
+                                       .rgb_q14 = {16384, 16384, 16384}};
+        struct glint_image image = {
+            .format = GLINT_LINEAR_Q20, .width = W, .height = H};
+        const size_t bytes = glint_flare_bytes(&c);
+        struct glint_flare_stats stats;
+        struct glint_flare *f;
+        struct glint_vertex *v;
+        double sum = 0;
+        void *mem;
+
+        assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+        assert_int_equal(glint_flare_init(&f, &c, mem, bytes), GLINT_OK);
+        v = glint_flare_add(f, &b);
+        assert_non_null(v);
+        for (int k = 0; k < 4; k++)
+            v[k] = (struct glint_vertex){.x_q8 = k % 2 ? 128 * 256 : 64 * 256,
+                                         .y_q8 = k / 2 ? 64 * 256 : 128 * 256,
+                                         .energy_q16 = 65536};
+        memset(pixels, 0, sizeof pixels);
+        glint_image_place(&image, pixels);
+        glint_flare_bin(f, &stats);
+        glint_flare_draw(f, &image);
+        for (int i = 0; i < 3 * W * H; i++) {
+            const int x = i / 3 % W, y = i / 3 / W;
+            const int in = x >= 64 && x < 128 && y >= 64 && y < 128;
+
+            outside += !in && pixels[i] != 0;
+            sum += pixels[i] / 1048576.0;
+            differ += log2 > 3 && pixels[i] != first[i];
+        }
+        worst = fmax(worst, fabs(sum / 3 / 4096 - 1));
+        memcpy(first, pixels, sizeof first);
+        free(mem);
+    }
+    assert_true(extreme_at_most("frames: a cell on borders of tiles, samples "
+                                "lit outside or by tile size",
+                                outside + differ, 0, "samples"));
+    assert_true(extreme_at_most("frames: a cell on borders of tiles, flux",
+                                worst, 1e-6, ""));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_size),
+        cmocka_unit_test(test_largest),
+        cmocka_unit_test(test_strides),
+        cmocka_unit_test(test_on_tile_borders),
+    };
+
+    return cmocka_run_group_tests_name("extremes: frames", tests, open_stage,
+                                       close_stage);
+}
