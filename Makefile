@@ -19,6 +19,7 @@
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
 #   make growth   how that grows, as plots;  memory-table: what it takes
+#   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   also: oiio table bake-table accuracy-table ray-table inputs format
 #         golden-update fuzz-keep clean
 
@@ -108,22 +109,23 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
-        plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request \
+        plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request linux/instructions \
         linux/sets linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \
         linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
-        model_report measure lamps paint show_lights frame frame_feed scene look live_adapt \
+        model_report measure lamps paint show_lights frame frame_feed dials ladder scene look live_adapt \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
-        yardstick bench_cases bench_growth bench_report cmd_bench
+        yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
 EXTREMES := angles powers frames lenses
+        sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
-        fbdev sinks live_stats live_adapt frame show_lights explain live \
+        fbdev sinks live_stats live_adapt frame show_lights sweep explain live \
         $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights
 ifeq ($(WITH_JPEG),yes)
@@ -293,6 +295,9 @@ growth: all
 	@tools/growth
 size: $(OUT)/libglint.a $(example_bins)
 	@tools/size $(SIZE) $(OUT) $(EXAMPLES)
+trade: all
+	@build/glint sweep -o build/trade $(TRADE)
+	@echo build/trade/index.html
 memory-table: all
 	@tools/memory-table
 budget: all
@@ -490,7 +495,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -166,7 +166,7 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
 
 static double faintest(const struct frame *f, const struct glint_image *image)
 {
-    return image->format == GLINT_LINEAR_Q20
+    return image->format == GLINT_LINEAR_Q20 && !f->for_codes
                ? 0
                : f->faintest_codes / 255 /
                      (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);

@@ -20,6 +20,8 @@
  * exact than lights so near. */
 #define FRAME_MAX_LIGHTS 128
 #define FRAME_APART_PX   0.125
+/* Hundreds of ghosts that each stay below half a code can be seen together. */
+#define FRAME_CULL_CODES 0.125
 
 /* Codes. Hundreds of ghosts that each stay below half of one can be seen
  * together. */
@@ -37,6 +39,7 @@ struct frame {
     int max_cells;
     double faintest_codes; /* codes near black that a ghost may stay below */
     double whole_codes;    /* edges of less lie on whole pixels */
+    bool for_codes;        /* a linear picture is planned as if for codes */
     bool uniform;          /* the same grid for all ghosts */
     bool narrow;           /* rays in 16-bit lanes */
     int only_ghost;        /* -1: all */

@@ -22,6 +22,7 @@ static const char help[] =
     "  glint live                      the same, from a camera to the panel\n"
     "  glint compare A B               how far two pictures are apart\n"
     "  glint bench                     what a frame costs\n"
+    "  glint sweep -o FOLDER           what accuracy costs: plots, pictures\n"
     "\n"
     "  glint COMMAND --help            all options of a command\n"
     "  glint --version\n"
@@ -39,6 +40,7 @@ static const struct command commands[] = {
     {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
     {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
+    {"sweep", cmd_sweep},
 };
 
 static volatile sig_atomic_t reader_gone;

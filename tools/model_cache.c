@@ -78,6 +78,20 @@ static void make_folders(char *path)
         }
 }
 
+bool model_cache_path(char *path, size_t bytes, const char *file)
+{
+    size_t used;
+
+    if (!cache_folder(path, bytes))
+        return false;
+    used = strlen(path);
+    if ((size_t)snprintf(path + used, bytes - used, "/%s", file) >=
+        bytes - used)
+        return false;
+    make_folders(path);
+    return true;
+}
+
 static void keep(const struct tool *tool, char *path,
                  const struct model_file *model)
 {

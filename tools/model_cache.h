@@ -16,4 +16,7 @@
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);
 
+/* Where FILE is kept, whose folder is made. False: nowhere. */
+bool model_cache_path(char *path, size_t bytes, const char *file);
+
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "lamps.h"
+#include "ladder.h"
 #include "model_cache.h"
 
 void scene_defaults(struct scene *scene)
@@ -21,7 +22,7 @@ void scene_defaults(struct scene *scene)
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
                             .whole_codes = FRAME_WHOLE_CODES,
-                            .cull_codes = FRAME_CULL_CODES,
+                            .cull = FRAME_CULL_CODES,
                             .antialias = true};
 }
 
@@ -76,24 +77,6 @@ static bool parse_side(const char *text, int low, int high, int *log2)
             return true;
     *log2 = 0;
     return side == 0 && low > 3;
-}
-
-/* Sets the grid, the steps of irradiance, which edges lie on whole pixels, and
- * how exact a model is that is
- * baked for it. */
-static bool take_quality(const char *text, struct scene *s)
-{
-    static const char *const words[] = {"draft", "default", "high", NULL};
-    const int word = tool_word(text, words);
-    double q = 0.25 * (word + 1);
-
-    if (word < 0 && (!tool_number(text, &q) || q < 0 || q > 1))
-        return false;
-    s->grid = (int)lrint(16 * exp2(4 * q) / 4) * 4;
-    s->tolerance = q <= 0.25 ? 4 : q < 0.75 ? 1 : 0.25;
-    s->quantum = exp2(4 - 8 * q); /* 1 percent by default */
-    s->whole_codes = FRAME_WHOLE_CODES * exp2(2 - 4 * q);
-    return true;
 }
 
 static bool take(struct scene *s, int option, const char *value)
@@ -156,11 +139,8 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_WHOLE:
         return tool_number(value, &s->whole_codes) && s->whole_codes >= 0 &&
                s->whole_codes <= 100;
-    case OPT_CULL:
-        return tool_number(value, &s->cull_codes) && s->cull_codes >= 0 &&
-               s->cull_codes <= 100;
     case OPT_QUALITY:
-        return take_quality(value, s);
+        return ladder_take(s, value);
     case OPT_RAYS:
         word = tool_word(value, rays);
         s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
@@ -169,6 +149,8 @@ static bool take(struct scene *s, int option, const char *value)
         word = tool_word(value, lanes);
         s->narrow = word == 0;
         return word >= 0;
+    case OPT_CULL:
+        return tool_number(value, &s->cull) && s->cull >= 0 && s->cull <= 16;
     case OPT_BALANCE:
         return s->balance = true;
     case OPT_MAX_LIGHTS:
@@ -367,6 +349,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->narrow = scene->narrow;
     frame->only_ghost = scene->only_ghost;
     frame->apart_px = scene->apart_px;
+    frame->faintest_codes = scene->cull;
     if (scene->max_lights)
         frame->max_lights = scene->max_lights;
     frame->cfg.tile_log2 = scene->tile_log2;
@@ -381,7 +364,6 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
             ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / scene->quantum)))
             : 0;
     frame->whole_codes = scene->whole_codes;
-    frame->faintest_codes = scene->cull_codes;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
     frame->cfg.antialias = scene->antialias;

@@ -33,8 +33,8 @@ struct scene {
     double apart_px; /* lights whose images are nearer are one */
 
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
-    double merge_gamma, quantum;
-    double whole_codes, cull_codes; /* see struct frame */
+    double merge_gamma, quantum, cull;
+    double whole_codes; /* see struct frame */
     enum glint_raster raster;
     enum glint_weights weights;
     bool uniform, narrow, antialias, dither, has_exposure, balance;
@@ -61,10 +61,10 @@ enum scene_option {
     OPT_DITHER,
     OPT_QUANTUM,
     OPT_WHOLE,
-    OPT_CULL,
     OPT_QUALITY,
     OPT_RAYS,
     OPT_LANES,
+    OPT_CULL,
     OPT_BALANCE,
     OPT_ONLY,
     OPT_MAX_LIGHTS,
@@ -92,10 +92,10 @@ enum scene_option {
         {"dither", no_argument, NULL, OPT_DITHER},                 \
         {"quantum", required_argument, NULL, OPT_QUANTUM},         \
         {"whole", required_argument, NULL, OPT_WHOLE},             \
-        {"cull", required_argument, NULL, OPT_CULL},               \
         {"quality", required_argument, NULL, OPT_QUALITY},         \
         {"rays", required_argument, NULL, OPT_RAYS},               \
         {"lanes", required_argument, NULL, OPT_LANES},             \
+        {"cull", required_argument, NULL, OPT_CULL},               \
         {"balance", no_argument, NULL, OPT_BALANCE},               \
         {"only", required_argument, NULL, OPT_ONLY},               \
         {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},   \
@@ -132,9 +132,13 @@ enum scene_option {
     "                      (default 16)\n"                                     \
     "  --apart PX          lights whose images are nearer are one (default "   \
     "0.125)\n"                                                                 \
-    "  --quality Q         0 to 1, or draft, default, high: sets grid and "    \
-    "quantum,\n"                                                               \
-    "                      and how exact a model is that has to be baked\n"    \
+    "  --quality Q         0 to 1, or least, draft, default, high: what is "   \
+    "below,\n"                                                                 \
+    "                      along the measured front of accuracy over time, "   \
+    "and how\n"                                                                \
+    "                      exact a model is that has to be baked; exact: 1, "  \
+    "and\n"                                                                    \
+    "                      --rays exact\n"                                     \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
     "  --lanes 16|32       bits a model's rays are computed with (default "    \
@@ -142,6 +146,11 @@ enum scene_option {
     "is\n"                                                                     \
     "                      0.03 pixel coarser, for vectors of twice the "      \
     "lanes\n"                                                                  \
+    "  --cull CODES        in 8 bits: what stays so many codes near black, 0 " \
+    "to 16,\n"                                                                 \
+    "                      may be left out, and faint ghosts are drawn "       \
+    "coarser\n"                                                                \
+    "                      (default 0.125)\n"                                  \
     "  --grid N            fineness of the ray grids, 4 to 1024: ghosts get "  \
     "as\n"                                                                     \
     "                      many cells a side as their bending asks for, 8 "    \
@@ -157,9 +166,6 @@ enum scene_option {
     "  --whole CODES       of pictures in codes: edges across which light "    \
     "changes\n"                                                                \
     "                      by less lie on whole pixels (default 4)\n"          \
-    "  --cull CODES        of pictures in codes: ghosts that stay below so "   \
-    "many\n"                                                                   \
-    "                      near black are left out (default 0.125)\n"          \
     "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
     "                      where edges agree within GAMMA (default 0,0)\n"     \
     "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \

@@ -125,5 +125,6 @@ int cmd_compare(int argc, char **argv);
 int cmd_live(int argc, char **argv);
 int cmd_bake(int argc, char **argv);
 int cmd_bench(int argc, char **argv);
+int cmd_sweep(int argc, char **argv);
 
 #endif

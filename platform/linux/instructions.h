@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * linux/instructions.h - instructions of the calling thread, in user space.
+ *
+ *     int counter = glint_instructions_open();       -1: not to be had here
+ *     before = glint_instructions_read(counter);
+ */
+#ifndef GLINT_LINUX_INSTRUCTIONS_H
+#define GLINT_LINUX_INSTRUCTIONS_H
+
+#include <stdint.h>
+
+/* Begins to count. -1: the processor does not, or the system does not let us
+ * (/proc/sys/kernel/perf_event_paranoid above 2). */
+int glint_instructions_open(void);
+
+/* So far, or 0 where that cannot be read. */
+uint64_t glint_instructions_read(int counter);
+
+void glint_instructions_close(int counter);
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One dial for all: quality 0 to 1 along the measured front of accuracy over
+ * time.
+ */
+#ifndef GLINT_TOOLS_LADDER_H
+#define GLINT_TOOLS_LADDER_H
+
+#include "scene.h"
+
+/* Names of qualities, the coarsest first; the last one's rays are exact. */
+enum { LADDER_NAMES = 5 };
+extern const char *const ladder_name[LADDER_NAMES + 1]; /* and NULL */
+double ladder_named(int name);
+
+/* Sets the dials of SCENE for QUALITY, 0 to 1; 0.5 is what it has by default.
+ */
+void ladder_set(struct scene *scene, double quality);
+
+/* The same from a number or a name. False: neither. */
+bool ladder_take(struct scene *scene, const char *text);
+
+#endif

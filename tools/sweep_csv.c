@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+
+#include "sweep.h"
+
+static const char *const kinds[] = {"standard", "alone", "together", "quality",
+                                    "growth"};
+
+/* As CSV an empty field, as JSON null, where there is nothing. */
+static void number(FILE *file, double x, const char *none)
+{
+    if (isfinite(x))
+        fprintf(file, "%.7g", x);
+    else
+        fputs(none, file);
+}
+
+void sweep_csv(const struct sweep *s, FILE *file)
+{
+    fputs("lens,width,height,lights,angle,kind,dial,quality", file);
+    for (int d = 0; d < n_dials; d++)
+        fprintf(file, ",%s", dials[d].name);
+    fputs(",ms,floor_ms,ratio,instructions,arena_bytes,model_bytes,psnr_db,"
+          "ssim,p99,flux_error,ghosts,bundles,edges,tiles,front\n",
+          file);
+    for (int i = 0; i < s->n_points; i++) {
+        const struct sweep_point *p = &s->point[i];
+        const struct sweep_case *c = &s->scase[p->of];
+        const double measured[] = {p->ms, p->floor_ms, p->ratio,
+                                   p->instructions};
+        const double quality[] = {p->psnr_db, p->ssim, p->p99, p->flux_error};
+
+        fprintf(file, "%s,%d,%d,%d,%g,%s,%s,", s->lens[c->lens], c->width,
+                c->height, c->n_lamps, c->angle, kinds[p->set.kind],
+                p->set.dial >= 0 ? dials[p->set.dial].name : "");
+        number(file, p->set.quality >= 0 ? p->set.quality : (double)NAN, "");
+        for (int d = 0; d < n_dials; d++)
+            fprintf(file, ",%.7g", p->set.value[d]);
+        for (int k = 0; k < 4; k++)
+            fputc(',', file), number(file, measured[k], "");
+        fprintf(file, ",%zu,%zu", p->arena_bytes, p->model_bytes);
+        for (int k = 0; k < 4; k++)
+            fputc(',', file), number(file, quality[k], "");
+        fprintf(file, ",%d,%d,%d,%d,%d\n", p->report.ghosts,
+                p->report.stats.bundles, p->report.stats.primitives,
+                p->report.tiles, p->front);
+    }
+}
+
+static void member(FILE *file, const char *name, double x)
+{
+    fprintf(file, ", \"%s\": ", name);
+    number(file, x, "null");
+}
+
+static void json_point(const struct sweep *s, const struct sweep_point *p,
+                       FILE *file)
+{
+    const struct sweep_case *c = &s->scase[p->of];
+
+    fputs("{\"lens\": ", file);
+    tool_json_string(file, s->lens[c->lens]);
+    fprintf(file,
+            ", \"width\": %d, \"height\": %d, \"lights\": %d, \"angle\": %g, "
+            "\"kind\": \"%s\"",
+            c->width, c->height, c->n_lamps, c->angle, kinds[p->set.kind]);
+    member(file, "quality", p->set.quality >= 0 ? p->set.quality : (double)NAN);
+    for (int d = 0; d < n_dials; d++)
+        member(file, dials[d].name, p->set.value[d]);
+    member(file, "ms", p->ms);
+    member(file, "floor_ms", p->floor_ms);
+    member(file, "ratio", p->ratio);
+    member(file, "instructions", p->instructions);
+    member(file, "arena_bytes", (double)p->arena_bytes);
+    member(file, "model_bytes", (double)p->model_bytes);
+    member(file, "psnr_db", p->psnr_db);
+    member(file, "ssim", p->ssim);
+    member(file, "p99", p->p99);
+    member(file, "flux_error", p->flux_error);
+    fprintf(file, ", \"front\": %s}", p->front ? "true" : "false");
+}
+
+void sweep_json(const struct sweep *s, FILE *file)
+{
+    fprintf(file, "{\"rounds\": %d, \"points\": [\n", s->rounds);
+    for (int i = 0; i < s->n_points; i++) {
+        json_point(s, &s->point[i], file);
+        fputs(i + 1 < s->n_points ? ",\n" : "\n", file);
+    }
+    fputs("]}\n", file);
+}
+
+void sweep_names(const struct sweep *s, FILE *file)
+{
+    fputs("| lens | quality | cost | PSNR dB | flux % | KiB | model KiB "
+          "|\n|---|---|---|---|---|---|---|\n",
+          file);
+    for (int i = 0; i < s->n_points; i++) {
+        const struct sweep_point *p = &s->point[i];
+        const double at = p->set.quality * (LADDER_NAMES - 1);
+
+        if (p->set.kind == SWEEP_LADDER && at == floor(at))
+            fprintf(file, "| %s | %s | %.1f | %.1f | %+.2f | %zu | %zu |\n",
+                    s->lens[s->scase[p->of].lens], ladder_name[(int)at],
+                    sweep_cost(s, p), p->psnr_db, 100 * p->flux_error,
+                    p->arena_bytes / 1024, p->model_bytes / 1024);
+    }
+}
