@@ -115,17 +115,17 @@ PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
-        model_report measure lamps paint show_lights frame frame_feed dials ladder scene look live_adapt \
+        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene look live_adapt \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
-EXTREMES := angles powers frames lenses
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
+EXTREMES := angles powers frames lenses
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
-        fbdev sinks live_stats live_adapt frame show_lights sweep explain live \
+        fbdev sinks live_stats live_adapt frame show_lights sweep explain budget live \
         $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights
 ifeq ($(WITH_JPEG),yes)
@@ -328,6 +328,7 @@ fake_bins := $(patsubst %,$(OUT)/tests/unit/test_%,v4l2 v4l2_faults live)
 $(OUT)/tests/unit/test_live: LDFLAGS += -Wl,--wrap=ppoll
 $(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
         -Wl,--wrap=realloc,--wrap=posix_memalign
+$(OUT)/tests/unit/test_budget: LDFLAGS += -Wl,--wrap=tool_seconds
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
 $(fake_bins): $(OUT)/tests/support/fake_camera.o
 extreme_bins := $(EXTREMES:%=$(OUT)/tests/unit/test_extremes_%)

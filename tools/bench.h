@@ -8,7 +8,12 @@
 
 #include "yardstick.h"
 
-enum { MAX_CASES = 256, MAX_ROUNDS = YARDSTICK_MAX, MAX_LENSES = 16 };
+enum {
+    MAX_CASES = 256,
+    MAX_ROUNDS = YARDSTICK_MAX,
+    MAX_LENSES = 16,
+    MAX_BUDGETS = 16
+};
 
 /* Drawing is accumulating light, which is timed by itself, and compositing it
  * with the picture, which is the rest. */
@@ -33,6 +38,7 @@ struct test {
     struct frame_report report;
     double cpu_ms; /* of growth: of all threads, the least of a frame; or 0 */
     double ms[STAGES][MAX_ROUNDS];
+    double wrong[MAX_ROUNDS]; /* with a budget: predicted over measured - 1 */
 };
 
 struct bench {
@@ -47,6 +53,8 @@ struct bench {
     int width, height;
     bool all, sizes, growth, psnr;
     bool moving; /* lights: from round to round */
+    int n_budgets;
+    double budget_ms[MAX_BUDGETS];
 };
 
 /* Adds the cases of SCENE that are asked for, or the plain one. Returns an exit

@@ -144,6 +144,30 @@ static int add_sizes(struct bench *b, const struct scene *scene)
     return code;
 }
 
+/* Frames that a budget has to settle. */
+enum { SETTLING = 12 };
+
+/* The plain case, held to each budget. */
+static int add_budgets(struct bench *b, const struct scene *scene)
+{
+    int code = EXIT_OK;
+
+    for (int i = 0; i < b->n_budgets && code == EXIT_OK; i++) {
+        struct test *t = &b->test[b->n_tests];
+        const int n = b->n_tests;
+
+        code = bench_add_one(b, scene, 0, 0, 1);
+        if (b->n_tests == n || code != EXIT_OK)
+            break;
+        budget_init(&t->frame.budget, b->budget_ms[i]);
+        code = scene_calibrate(b->tool, scene, &t->frame.budget);
+        for (int k = 0; k < SETTLING && code == EXIT_OK; k++)
+            if (bench_run(t, 0) != GLINT_OK)
+                code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    }
+    return code;
+}
+
 int bench_add(struct bench *b, const struct scene *scene)
 {
     const int n = b->all ? (int)(sizeof variations / sizeof *variations) : 1;
@@ -151,6 +175,8 @@ int bench_add(struct bench *b, const struct scene *scene)
 
     if (b->growth)
         return bench_add_growth(b, scene);
+    if (b->n_budgets)
+        return add_budgets(b, scene);
     if (b->sizes)
         return add_sizes(b, scene);
     for (int i = 0; i < n && code == EXIT_OK; i++)
@@ -193,6 +219,10 @@ enum glint_status bench_run(struct test *t, int round)
     cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
     if (t->cpu_ms == 0 || cpu_ms < t->cpu_ms)
         t->cpu_ms = cpu_ms;
+    t->wrong[round] =
+        t->report.predicted_ms /
+            (t->report.plan_ms + t->report.bin_ms + t->report.draw_ms) -
+        1;
     t->ms[PLAN][round] = t->report.plan_ms;
     t->ms[TRANSFER][round] = t->report.trace_ms;
     t->ms[BIN][round] = t->report.bin_ms;

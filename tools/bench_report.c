@@ -16,7 +16,9 @@ static const char *raster_of(const struct test *t)
 
 static double quality_of(const struct test *t)
 {
-    return log2((t->scene->grid ? t->scene->grid : 64) / 16.0) / 4;
+    return t->report.quality >= 0
+               ? t->report.quality
+               : log2((t->scene->grid ? t->scene->grid : 64) / 16.0) / 4;
 }
 
 /* Characters across. */
@@ -25,6 +27,16 @@ static int column(int stage)
     const int n = (int)strlen(stage_names[stage]);
 
     return n > 7 ? n : 7;
+}
+
+/* Median of what predictions were off by. */
+static double off_by(const struct bench *b, const struct test *t)
+{
+    double size[MAX_ROUNDS];
+
+    for (int i = 0; i < b->rounds; i++)
+        size[i] = fabs(t->wrong[i]);
+    return yardstick_median(size, b->rounds);
 }
 
 static void print_test(const struct bench *b, const struct test *t)
@@ -42,6 +54,11 @@ static void print_test(const struct bench *b, const struct test *t)
            (double)t->report.peak_bytes / (1 << 20));
     if (!isnan(t->psnr_db))
         printf("  %.1f", t->psnr_db);
+    if (t->frame.budget.ms > 0)
+        printf(
+            "  budget %g: %.2f of it, quality %.2f, predicted within %.0f %%",
+            t->frame.budget.ms, ms / t->frame.budget.ms, t->report.quality,
+            100 * off_by(b, t));
     printf("%s%s\n", t->series ? "  " : "", t->series ? t->series : "");
 }
 
@@ -83,6 +100,10 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
         printf("\"psnr_db\": null, ");
     else
         printf("\"psnr_db\": %.2f, ", t->psnr_db);
+    if (t->frame.budget.ms > 0)
+        printf("\"budget_ms\": %g, \"achieved\": %.4f, "
+               "\"prediction_error\": %.4f, ",
+               t->frame.budget.ms, ms / t->frame.budget.ms, off_by(b, t));
     printf("\"drawn_lights\": %d, \"ghosts\": %d, \"bundles\": %d, "
            "\"primitives\": %d, \"tiles\": "
            "%d, \"arena_bytes\": %zu}%s\n",

@@ -31,6 +31,9 @@ static const char help[] =
     "  --growth        instead: 1 to 64 lights, 360p to 2160p, some of the\n"
     "                  ghosts, other quanta and grids; tools/growth draws "
     "them\n"
+    "  --budgets LIST  instead: held to so many milliseconds each, and how far "
+    "what\n"
+    "                  was told beforehand is off\n"
     "  --size WxH      default 1920x1080\n"
     "  --repeat N      rounds (default 15)\n"
     "  --moving        the first light goes from 8 to 16 degrees meanwhile\n"
@@ -153,6 +156,17 @@ static int take(struct tool *tool, struct bench *b, int c)
     case 'p':
         b->psnr = true;
         return -1;
+    case 'b':
+        b->n_budgets = tool_numbers(optarg, b->budget_ms, MAX_BUDGETS);
+        for (int i = 0; i < b->n_budgets; i++)
+            if (b->budget_ms[i] <= 0)
+                b->n_budgets = 0;
+        return b->n_budgets > 0
+                   ? -1
+                   : tool_usage(tool,
+                                "--budgets takes up to %d numbers of "
+                                "milliseconds, not '%s'",
+                                MAX_BUDGETS, optarg);
     case 's':
         if (tool_size(optarg, &b->width, &b->height))
             return -1;
@@ -183,6 +197,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
         {"sizes", no_argument, NULL, 'm'},
         {"moving", no_argument, NULL, 'M'},
         {"psnr", no_argument, NULL, 'p'},
+        {"budgets", required_argument, NULL, 'b'},
         {"size", required_argument, NULL, 's'},
         {"repeat", required_argument, NULL, 'r'},
         {"format", required_argument, NULL, 'F'},

@@ -370,6 +370,7 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
 
     f->rays = rays_of(f, faintest(f, image));
     f->scale = scale;
+    budget_begin(&f->budget);
     times[0] = tool_seconds();
     status = set_beams(f, lamps, n_lamps, scale);
 
@@ -378,6 +379,10 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
             return status;
+        if (f->budget.ms > 0 && budget_choose(&f->budget, f)) {
+            f->rays = rays_of(f, faintest(f, image));
+            continue;
+        }
         times[1] = times[2] = tool_seconds();
         glint_flare_bin(f->flare, stats);
         if (is_served(f, stats))
@@ -459,9 +464,10 @@ enum glint_status frame_draw(struct frame *frame,
                              struct frame_report *report)
 {
     double times[5] = {0, 0, 0, 0, 0};
+    const size_t bytes = frame->bytes;
     enum glint_status status;
 
-    *report = (struct frame_report){.lights = n_lamps};
+    *report = (struct frame_report){.lights = n_lamps, .quality = -1};
     if (n_lamps == 0) { /* the picture is not so much as looked at */
         report->arena_bytes = frame->bytes;
         return GLINT_OK;
@@ -478,6 +484,12 @@ enum glint_status frame_draw(struct frame *frame,
     report->trace_ms = 1e3 * (times[2] - times[1]);
     report->bin_ms = 1e3 * (times[3] - times[2]);
     report->draw_ms = 1e3 * (times[4] - times[3]);
+    if (frame->lens && frame->budget.ms > 0) {
+        report->predicted_ms = frame->budget.predicted_ms;
+        report->quality = budget_quality(&frame->budget);
+        if (frame->bytes == bytes) /* else it made room, once */
+            budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
+    }
     report->beyond_lights = frame->n_beyond;
     report->apart_lights = frame->n_apart;
     report->drawn_lights = frame->n_beams;

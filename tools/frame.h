@@ -14,6 +14,7 @@
 
 #include <stdbool.h>
 
+#include "budget.h"
 #include "glint/glint.h"
 
 /* Lights: so many cost less than three times what 64 do, and a model is less
@@ -44,6 +45,7 @@ struct frame {
     bool narrow;           /* rays in 16-bit lanes */
     int only_ghost;        /* -1: all */
     int16_t *mask;         /* of the stop, unless NULL */
+    struct budget budget;  /* of models; turns dials of the above */
     bool reserved;         /* memory is what it is */
 
     struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
@@ -76,6 +78,7 @@ struct frame_report {
     size_t arena_bytes; /* what the run-time half was given */
     size_t peak_bytes;  /* what its largest frame took of it */
     double plan_ms, trace_ms, bin_ms, draw_ms;
+    double predicted_ms, quality; /* with a budget, else 0 and -1 */
 };
 
 void frame_init(struct frame *frame, const struct glint_setup *setup,

@@ -8,7 +8,7 @@
 
 #include "scene.h"
 
-/* Names of qualities, the coarsest first; the last one's rays are exact. */
+/* Names of qualities, the coarsest first. */
 enum { LADDER_NAMES = 5 };
 extern const char *const ladder_name[LADDER_NAMES + 1]; /* and NULL */
 double ladder_named(int name);
@@ -17,7 +17,16 @@ double ladder_named(int name);
  */
 void ladder_set(struct scene *scene, double quality);
 
-/* The same from a number or a name. False: neither. */
+/* The same of FRAME, but for how exact its model is; frame_retune() comes after
+ * it. */
+void ladder_frame(struct frame *frame, double quality);
+
+/* The least quality whose outlines are off by PX pixels in the mean at most.
+ */
+double ladder_for_error(double px);
+
+/* The same as ladder_set from a number or a name; "exact" is the finest with
+ * exact rays. False: neither. */
 bool ladder_take(struct scene *scene, const char *text);
 
 #endif

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "ladder.h"
+
 #define TIGHT      0.9  /* of a period: a step down */
 #define SPARE      0.55 /* of a period: a step up, later */
 #define SETTLE_S   0.3  /* after a step, before the next one down */
@@ -10,15 +12,14 @@
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 
-/* How far each step goes from what was asked for. */
+/* Down the ladder from its middle, what was asked for if that is coarser; then
+ * lights go. */
 static const struct {
-    double grid, steps; /* of what was asked */
-    double codes;       /* ghosts fainter than so many codes are left out */
+    double quality;
     int max_lights;
 } step_of[LIVE_MAX_STEP + 1] = {
-    {1.0, 1.0, 0, 1 << 20}, {0.75, 0.5, 0.125, 64}, {0.5, 0.25, 0.25, 32},
-    {0.35, 0.12, 0.5, 16},  {0.25, 0.06, 1, 12},    {0.25, 0.06, 2, 8},
-    {0.25, 0.06, 4, 4},     {0.25, 0.06, 8, 2},
+    {0.5, 1 << 20}, {0.375, 64}, {0.25, 32}, {0.125, 16},
+    {0, 12},        {0, 8},      {0, 4},     {0, 2},
 };
 
 void live_adapt_init(struct live_adapt *a)
@@ -60,23 +61,21 @@ bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
     return a->below_s >= a->hold_s && go(a, -1);
 }
 
-/* PART of ASKED, but not less than LEAST unless that was asked for. */
-static int part_of(int asked, double part, int least)
+static int smaller(int a, int b)
 {
-    return (int)fmin(asked, fmax(least, rint(asked * part)));
+    return a < b ? a : b;
 }
 
 void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
                       const struct frame *asked)
 {
-    const int step = a->step;
+    struct frame rung = *asked;
 
-    frame->max_cells = part_of(asked->max_cells, step_of[step].grid, 16);
+    if (a->step > 0)
+        ladder_frame(&rung, step_of[a->step].quality);
+    frame->max_cells = smaller(asked->max_cells, rung.max_cells);
     frame->cfg.irradiance_steps =
-        part_of(asked->cfg.irradiance_steps, step_of[step].steps, 4);
-    frame->faintest_codes = fmax(asked->faintest_codes, step_of[step].codes);
-    frame->max_lights = asked->max_lights < step_of[step].max_lights
-                            ? asked->max_lights
-                            : step_of[step].max_lights;
+        smaller(asked->cfg.irradiance_steps, rung.cfg.irradiance_steps);
+    frame->max_lights = smaller(asked->max_lights, step_of[a->step].max_lights);
     frame_retune(frame);
 }

@@ -4,8 +4,8 @@
  *
  * A step down at once when frames are missed or hardly any time is left; a step
  * up only after a while with time to spare, and a longer while each time that
- * proved to be too early. Which dial costs least for the time it gives is
- * measured (README, "The price of accuracy"); steps follow that order.
+ * proved to be too early. Steps go down the ladder of --quality; below it there
+ * are fewer lights.
  */
 #ifndef GLINT_TOOLS_LIVE_ADAPT_H
 #define GLINT_TOOLS_LIVE_ADAPT_H

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "lamps.h"
+#include "cost.h"
 #include "ladder.h"
 #include "model_cache.h"
 
@@ -79,6 +80,16 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
+static bool take_error(const char *text, struct scene *s)
+{
+    double px;
+
+    if (!tool_number(text, &px) || px <= 0)
+        return false;
+    ladder_set(s, ladder_for_error(px));
+    return true;
+}
+
 static bool take(struct scene *s, int option, const char *value)
 {
     static const char *const weights[] = {"loop-derose", "wachspress", NULL};
@@ -141,6 +152,11 @@ static bool take(struct scene *s, int option, const char *value)
                s->whole_codes <= 100;
     case OPT_QUALITY:
         return ladder_take(s, value);
+    case OPT_ERROR:
+        return take_error(value, s);
+    case OPT_BUDGET:
+        return tool_number(value, &s->budget_ms) && s->budget_ms > 0 &&
+               s->budget_ms <= 1e6;
     case OPT_RAYS:
         word = tool_word(value, rays);
         s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
@@ -358,11 +374,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
         scene->coarse_log2 > scene->tile_log2 ? scene->coarse_log2 : 0;
     frame->cfg.raster = scene->raster;
     frame->cfg.weights = scene->weights;
-    /* the mean step, as steps are even within an octave */
-    frame->cfg.irradiance_steps =
-        scene->quantum > 0
-            ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / scene->quantum)))
-            : 0;
+    frame->cfg.irradiance_steps = scene_steps(scene->quantum);
     frame->whole_codes = scene->whole_codes;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
@@ -371,7 +383,54 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     if (scene->mask_nodes &&
         frame_use_mask(frame, scene->mask_nodes) != GLINT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    if (scene->budget_ms > 0 && frame->lens) {
+        budget_init(&frame->budget, scene->budget_ms);
+        ladder_frame(frame, budget_quality(&frame->budget));
+        return scene_calibrate(tool, scene, &frame->budget);
+    }
     return EXIT_OK;
+}
+
+int scene_calibrate(const struct tool *tool, const struct scene *scene,
+                    struct budget *budget)
+{
+    const struct glint_lamp lamp = {12, 33, 1e4, {1, 1, 1}};
+    struct glint_image image = {
+        .format = GLINT_YUYV, .width = 640, .height = 360};
+    struct scene plain = *scene;
+    struct frame_report report;
+    struct frame frame;
+    void *mem = calloc(1, glint_image_bytes(GLINT_YUYV, 640, 360));
+    double least_ms = 1e9;
+    struct cost cost;
+    int code;
+
+    plain.budget_ms = 0;
+    plain.mask_nodes = 0;
+    code = scene_frame(tool, &plain, scene_view(scene, 640, 360), &frame);
+    for (int i = 0; i < 4 && mem && code == EXIT_OK; i++) {
+        glint_image_place(&image, mem);
+        if (frame_draw(&frame, &lamp, 1, 1, &image, &report) != GLINT_OK)
+            code = tool_fail(tool, GLINT_E_MEMORY, NULL);
+        /* the first one takes memory */
+        if (i > 0)
+            least_ms =
+                fmin(least_ms, report.plan_ms + report.bin_ms + report.draw_ms);
+    }
+    if (mem && code == EXIT_OK) {
+        cost = cost_of(&frame, frame.max_cells, frame.cfg.irradiance_steps);
+        budget->ms_per_minsn = least_ms / cost_minsn(&cost);
+    }
+    frame_finish(&frame);
+    free(mem);
+    return code;
+}
+
+/* The mean step, as steps are even within an octave. */
+int scene_steps(double quantum)
+{
+    return quantum > 0 ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / quantum)))
+                       : 0;
 }
 
 double scene_scale(const struct scene *scene)
@@ -394,6 +453,9 @@ void scene_json(const struct frame_report *r)
            r->arena_bytes, r->peak_bytes, r->stats.refs, r->stats.merged_cells,
            r->stats.dropped_bundles, r->stats.dropped_cells, r->plan_ms,
            r->trace_ms, r->bin_ms, r->draw_ms);
+    if (r->quality >= 0)
+        printf(", \"quality\": %.4f, \"predicted_ms\": %.3f", r->quality,
+               r->predicted_ms);
 }
 
 void scene_lights_text(const struct frame_report *r, char text[64])

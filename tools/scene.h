@@ -35,6 +35,7 @@ struct scene {
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma, quantum, cull;
     double whole_codes; /* see struct frame */
+    double budget_ms; /* 0: none */
     enum glint_raster raster;
     enum glint_weights weights;
     bool uniform, narrow, antialias, dither, has_exposure, balance;
@@ -62,6 +63,8 @@ enum scene_option {
     OPT_QUANTUM,
     OPT_WHOLE,
     OPT_QUALITY,
+    OPT_ERROR,
+    OPT_BUDGET,
     OPT_RAYS,
     OPT_LANES,
     OPT_CULL,
@@ -93,6 +96,8 @@ enum scene_option {
         {"quantum", required_argument, NULL, OPT_QUANTUM},         \
         {"whole", required_argument, NULL, OPT_WHOLE},             \
         {"quality", required_argument, NULL, OPT_QUALITY},         \
+        {"error", required_argument, NULL, OPT_ERROR},             \
+        {"budget", required_argument, NULL, OPT_BUDGET},           \
         {"rays", required_argument, NULL, OPT_RAYS},               \
         {"lanes", required_argument, NULL, OPT_LANES},             \
         {"cull", required_argument, NULL, OPT_CULL},               \
@@ -132,13 +137,21 @@ enum scene_option {
     "                      (default 16)\n"                                     \
     "  --apart PX          lights whose images are nearer are one (default "   \
     "0.125)\n"                                                                 \
-    "  --quality Q         0 to 1, or least, draft, default, high: what is "   \
+    "  --quality Q         0 to 1, or least, draft, default, high, finest: "   \
+    "what is "                                                                 \
     "below,\n"                                                                 \
     "                      along the measured front of accuracy over time, "   \
     "and how\n"                                                                \
     "                      exact a model is that has to be baked; exact: 1, "  \
     "and\n"                                                                    \
     "                      --rays exact\n"                                     \
+    "  --error PX          instead: the least of these whose outlines are "    \
+    "off by\n"                                                                 \
+    "                      so many pixels in the mean at most (0.1 by "        \
+    "default)\n"                                                               \
+    "  --budget MS         instead, of each frame: the most that takes so "    \
+    "many\n"                                                                   \
+    "                      milliseconds, as its plan tells\n"                  \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
     "  --lanes 16|32       bits a model's rays are computed with (default "    \
@@ -209,6 +222,14 @@ struct glint_view scene_view(const struct scene *scene, int width, int height);
 /* Makes FRAME as the options say. Returns an exit code. */
 int scene_frame(const struct tool *tool, const struct scene *scene,
                 struct glint_view view, struct frame *frame);
+
+/* Steps of irradiance an octave for a quantum in percent. */
+int scene_steps(double quantum);
+
+/* Draws a lamp with SCENE's lens a few times to see what an instruction takes
+ * here. */
+int scene_calibrate(const struct tool *tool, const struct scene *scene,
+                    struct budget *budget);
 
 /* gain * 2^EV */
 double scene_scale(const struct scene *scene);

@@ -6,6 +6,7 @@
 #ifndef GLINT_TOOLS_SWEEP_H
 #define GLINT_TOOLS_SWEEP_H
 
+#include "cost.h"
 #include "dials.h"
 #include "ladder.h"
 #include "plain/pfm.h"
@@ -42,7 +43,8 @@ struct sweep_point {
     size_t arena_bytes, model_bytes;
     double psnr_db, ssim, p99, flux_error;
     struct frame_report report;
-    bool front; /* no other of its case is both cheaper and better */
+    struct cost cost; /* as the plan tells it */
+    bool front;       /* no other of its case is both cheaper and better */
     int picture;
 };
 
@@ -113,8 +115,8 @@ struct sweep_mean {
     bool front;
 };
 
-/* Returns how many, at most MAX; those on the front are marked: of flux errors
- * above 2 percent none. */
+/* Returns how many, at most MAX, the cheapest first; those on the front are
+ * marked: of flux errors above 2 percent none. */
 int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max);
 
 /* "grid 32, quantum 2": what differs from the standard. */

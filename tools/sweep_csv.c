@@ -21,7 +21,8 @@ void sweep_csv(const struct sweep *s, FILE *file)
     for (int d = 0; d < n_dials; d++)
         fprintf(file, ",%s", dials[d].name);
     fputs(",ms,floor_ms,ratio,instructions,arena_bytes,model_bytes,psnr_db,"
-          "ssim,p99,flux_error,ghosts,bundles,edges,tiles,front\n",
+          "ssim,p99,flux_error,ghosts,bundles,edges,tiles,"
+          "vertices,edges_told,rows_told,lit_told,minsn_told,front\n",
           file);
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];
@@ -41,9 +42,11 @@ void sweep_csv(const struct sweep *s, FILE *file)
         fprintf(file, ",%zu,%zu", p->arena_bytes, p->model_bytes);
         for (int k = 0; k < 4; k++)
             fputc(',', file), number(file, quality[k], "");
-        fprintf(file, ",%d,%d,%d,%d,%d\n", p->report.ghosts,
-                p->report.stats.bundles, p->report.stats.primitives,
-                p->report.tiles, p->front);
+        fprintf(file, ",%d,%d,%d,%d", p->report.ghosts, p->report.stats.bundles,
+                p->report.stats.primitives, p->report.tiles);
+        for (int k = COST_VERTICES; k < COST_KINDS; k++)
+            fprintf(file, ",%.0f", p->cost.count[k]);
+        fprintf(file, ",%.4g,%d\n", cost_minsn(&p->cost), p->front);
     }
 }
 

@@ -146,6 +146,13 @@ static void mark_means(struct sweep_mean *mean, int n)
     free(front);
 }
 
+static int by_mean_cost(const void *a, const void *b)
+{
+    const struct sweep_mean *x = a, *y = b;
+
+    return (x->cost > y->cost) - (x->cost < y->cost);
+}
+
 int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max)
 {
     int first = 0, n = 0;
@@ -156,5 +163,6 @@ int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max)
         if (mean_of(s, &s->point[s->scase[first].first + i].set, &mean[n]))
             n++;
     mark_means(mean, n);
+    qsort(mean, (size_t)n, sizeof *mean, by_mean_cost);
     return n;
 }

@@ -98,6 +98,8 @@ static enum glint_status add_ladder(struct sweep *s, int c)
         struct sweep_setting set = standard(SWEEP_LADDER);
         struct scene scene = s->base;
 
+        for (int d = 0; d < n_dials; d++)
+            dial_set(&scene, &dials[d], dials[d].standard);
         set.quality = (double)i / LADDER_STEPS;
         ladder_set(&scene, set.quality);
         for (int d = 0; d < n_dials; d++)

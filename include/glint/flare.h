@@ -211,6 +211,18 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
  * of the statistics. */
 int glint_flare_ghost(const struct glint_flare *flare, int i);
 
+/* What bundle I of those planned, and not yet binned, is: for telling what a
+ * frame will take before it is drawn. */
+struct glint_planned {
+    int n_cells;             /* per side */
+    struct glint_real flux;  /* display white times pixels */
+    struct glint_real light; /* the same over the pixels it falls on */
+};
+
+/* 0: there are not so many. */
+int glint_flare_planned(const struct glint_flare *flare, int i,
+                        struct glint_planned *planned);
+
 /* Of what was planned, display white: the largest mean irradiance of a bundle,
  * and the flux of all, times pixels. */
 void glint_flare_light(const struct glint_flare *flare,

@@ -330,6 +330,17 @@ int glint_flare_ghost(const struct glint_flare *flare, int i)
     return flare->source[i].ghost;
 }
 
+int glint_flare_planned(const struct glint_flare *flare, int i,
+                        struct glint_planned *planned)
+{
+    if (i >= flare->n_bundles)
+        return 0;
+    *planned =
+        (struct glint_planned){flare->bundle[i].n_cells, flare->source[i].flux,
+                               flare->source[i].light};
+    return 1;
+}
+
 void glint_flare_light(const struct glint_flare *flare,
                        struct glint_real *brightest, struct glint_real *flux)
 {

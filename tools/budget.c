@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT */
+#include "budget.h"
+
+#include <math.h>
+
+#include "cost.h"
+#include "ladder.h"
+
+#define ROOM     0.98 /* of the budget that is planned for */
+#define SPARE    0.93 /* less than so much of it: finer */
+#define LEARNING 0.5  /* of what a prediction was wrong by, in octaves */
+#define SPREAD   0.1  /* of that for other qualities, too; of the first more */
+
+/* Plans of one frame; of fineness far from the one that is chosen they tell
+ * little, so one more may be needed. */
+enum { MAX_TRIES = 3 };
+
+void budget_init(struct budget *b, double ms)
+{
+    *b = (struct budget){
+        .ms = ms, .ms_per_minsn = 0.1, .step = BUDGET_STEPS / 2};
+}
+
+double budget_quality(const struct budget *b)
+{
+    return (double)b->step / BUDGET_STEPS;
+}
+
+void budget_begin(struct budget *b)
+{
+    b->n_tries = 0;
+}
+
+/* Between the two rungs beside STEP. */
+static double octaves_at(const struct budget *b, int step)
+{
+    const double at = (double)step * BUDGET_RUNGS / BUDGET_STEPS;
+    const int below = at < BUDGET_RUNGS ? (int)at : BUDGET_RUNGS - 1;
+
+    return b->octaves[below] +
+           (at - below) * (b->octaves[below + 1] - b->octaves[below]);
+}
+
+/* Of FRAME, planned as it is, at another quality. */
+static double predict(const struct budget *b, const struct frame *frame,
+                      int step)
+{
+    struct frame then = *frame;
+    struct cost cost;
+
+    ladder_frame(&then, (double)step / BUDGET_STEPS);
+    cost = cost_of(frame, then.max_cells, then.cfg.irradiance_steps);
+    return b->ms_per_minsn * exp2(octaves_at(b, step)) * cost_minsn(&cost);
+}
+
+/* The best within the budget, or the coarsest. */
+static int best_step(const struct budget *b, const struct frame *frame)
+{
+    int low = 0, high = BUDGET_STEPS;
+
+    while (low < high) {
+        const int middle = (low + high + 1) / 2;
+
+        if (predict(b, frame, middle) <= ROOM * b->ms)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+bool budget_choose(struct budget *b, struct frame *frame)
+{
+    int step;
+
+    b->predicted_ms = predict(b, frame, b->step);
+    if (++b->n_tries >= MAX_TRIES ||
+        (b->predicted_ms <= b->ms &&
+         (b->predicted_ms >= SPARE * b->ms || b->step == BUDGET_STEPS)))
+        return false;
+    step = best_step(b, frame);
+    if (step == b->step)
+        return false;
+    b->step = step;
+    ladder_frame(frame, budget_quality(b));
+    frame_retune(frame);
+    return true;
+}
+
+/* What was learned of a quality holds for the rungs beside it, so that the same
+ * prediction would be less wrong by LEARNING; and at first for all. */
+void budget_note(struct budget *b, double ms)
+{
+    const double at = (double)b->step * BUDGET_RUNGS / BUDGET_STEPS;
+    const double part = at - floor(at);
+    const double both = part * part + (1 - part) * (1 - part);
+    const double spread = fmax(SPREAD, 1. / ++b->n_noted);
+    /* a frame that waited for other programs says little */
+    const double wrong = fmax(-0.5, fmin(0.5, log2(ms / b->predicted_ms)));
+
+    for (int i = 0; i <= BUDGET_RUNGS && ms > 0; i++) {
+        const double near = fmax(0, 1 - fabs(at - i)) / both;
+
+        b->octaves[i] += LEARNING * wrong * fmax(spread, near);
+    }
+}

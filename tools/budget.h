@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Holds frames to a time: the best quality of the ladder whose frame, as its
+ * plan tells, will not take longer.
+ *
+ *     budget_init(&frame.budget, 5.0);
+ *     scene_calibrate(tool, &scene, &frame.budget);      once, some 20 ms
+ *     frame_draw(&frame, ...);          chooses, and learns from what it took
+ */
+#ifndef GLINT_TOOLS_BUDGET_H
+#define GLINT_TOOLS_BUDGET_H
+
+#include <stdbool.h>
+
+struct frame;
+
+enum { BUDGET_STEPS = 64, BUDGET_RUNGS = 8 }; /* of quality */
+
+struct budget {
+    double ms;                        /* of a frame; 0: none is kept to */
+    double ms_per_minsn;              /* of this machine, this lens; */
+    double octaves[BUDGET_RUNGS + 1]; /* learned beyond that, by quality */
+    int step;            /* quality of the last frame, of BUDGET_STEPS */
+    int n_noted;         /* frames that it has learned from */
+    int n_tries;         /* of the frame being planned */
+    double predicted_ms; /* of the last frame, by its last plan */
+};
+
+void budget_init(struct budget *budget, double ms);
+
+/* Begins a frame. */
+void budget_begin(struct budget *budget);
+
+/* After a plan: whether FRAME's dials were turned and it has to plan anew. */
+bool budget_choose(struct budget *budget, struct frame *frame);
+
+/* Notes what the frame took in all. */
+void budget_note(struct budget *budget, double ms);
+
+double budget_quality(const struct budget *budget);
+
+#endif
