@@ -238,19 +238,27 @@ int bench_psnr(struct bench *b, struct test *t)
     const int w = t->canvas->of.image.width, h = t->canvas->of.image.height;
     const size_t n = 3 * (size_t)w * (size_t)h;
     struct glint_float_image want = {w, h, malloc(n * sizeof(float))};
-    struct glint_float_image got = {w, h, malloc(n * sizeof(float))};
+    uint8_t *want_codes = NULL, *got = malloc(n);
     enum glint_status status = GLINT_E_MEMORY;
+    double exposure;
     struct measure m;
 
-    if (want.rgb && got.rgb)
+    if (want.rgb && got)
         status =
             yardstick_exact(b->tool, t->scene, t->lamp, t->n_lamps, 128, &want);
-    if (status == GLINT_OK)
-        status = yardstick_codes(&t->frame, t->lamp, t->n_lamps,
-                                 measure_exposure(&want), &got, &t->report);
-    if (status == GLINT_OK && measure_compare(&want, &got, false, &m))
+    if (status == GLINT_OK) {
+        exposure = measure_exposure(&want);
+        want_codes = measure_encode(&want, exposure);
+        status = want_codes ? yardstick_codes(&t->frame, t->lamp, t->n_lamps,
+                                              exposure, got, &t->report)
+                            : GLINT_E_MEMORY;
+    }
+    if (status == GLINT_OK) {
+        measure_codes(want_codes, got, w, h, &m);
         t->psnr_db = m.psnr_db;
+    }
     free(want.rgb);
-    free(got.rgb);
+    free(want_codes);
+    free(got);
     return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
 }

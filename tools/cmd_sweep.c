@@ -29,6 +29,7 @@ static const char help[] =
     "  front.svg     error against time, and what nothing else is better than\n"
     "  dials.svg     each dial by itself\n"
     "  growth.svg    time against pixels, lights and ghosts\n"
+    "  table.md      the named qualities\n"
     "  index.html    these, tables, and pictures to judge by; one file\n"
     "Exact pictures and models are kept where models are, so that a second "
     "time\n"

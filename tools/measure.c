@@ -54,18 +54,6 @@ uint8_t *measure_encode(const struct glint_float_image *image, double exposure)
     return codes;
 }
 
-void measure_decode(const uint8_t *codes, double exposure,
-                    struct glint_float_image *image)
-{
-    for (size_t i = 0; i < samples(image); i++) {
-        const double v = codes[i] / 255.0;
-
-        image->rgb[i] =
-            (float)((v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4)) /
-                    exposure);
-    }
-}
-
 static double best_factor(const struct glint_float_image *a,
                           const struct glint_float_image *b)
 {
@@ -148,6 +136,13 @@ static double ssim(const uint8_t *a, const uint8_t *b, int width, int height)
     return n ? total / n : 1;
 }
 
+void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
+                   int height, struct measure *result)
+{
+    difference(reference, test, 3 * (size_t)width * (size_t)height, result);
+    result->ssim = ssim(reference, test, width, height);
+}
+
 bool measure_compare(const struct glint_float_image *reference,
                      const struct glint_float_image *test, bool fit,
                      struct measure *result)
@@ -160,10 +155,8 @@ bool measure_compare(const struct glint_float_image *reference,
     result->flux = total > 0 ? result->factor * sum(test) / total : 1;
     a = measure_encode(reference, result->exposure);
     b = measure_encode(test, result->exposure * result->factor);
-    if (a && b) {
-        difference(a, b, samples(reference), result);
-        result->ssim = ssim(a, b, reference->width, reference->height);
-    }
+    if (a && b)
+        measure_codes(a, b, reference->width, reference->height, result);
     free(a);
     free(b);
     return a && b;

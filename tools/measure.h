@@ -28,9 +28,9 @@ double measure_exposure(const struct glint_float_image *image);
 /* LINEAR times EXPOSURE as sRGB codes, [height][width][3]; NULL: no memory. */
 uint8_t *measure_encode(const struct glint_float_image *image, double exposure);
 
-/* The linear light of sRGB codes that were exposed so. */
-void measure_decode(const uint8_t *codes, double exposure,
-                    struct glint_float_image *image);
+/* The PSNR, SSIM and p99 of codes, [height][width][3]; else RESULT stays. */
+void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
+                   int height, struct measure *result);
 
 /* Compares TEST with REFERENCE, of one size. FIT: times the factor that fits
  * best in the squares first. False: no memory. */

@@ -316,30 +316,25 @@ static bool is_pictured(const struct sweep_point *p)
     return p->set.kind == SWEEP_LADDER && named == floor(named);
 }
 
+/* CODES is room for them. */
 static enum glint_status measure_point(struct bay *b, struct run *r,
                                        const uint8_t *exact_codes,
-                                       double exposure)
+                                       double exposure, uint8_t *codes)
 {
     struct frame_report report;
     struct measure m;
-    enum glint_status status = yardstick_codes(
-        &r->frame, b->lamp, b->c->n_lamps, exposure, &b->got, &report);
-    uint8_t *codes = NULL;
+    const enum glint_status status = yardstick_codes(
+        &r->frame, b->lamp, b->c->n_lamps, exposure, codes, &report);
 
     if (status != GLINT_OK)
         return status;
-    if (!measure_compare(&b->exact, &b->got, false, &m))
-        return GLINT_E_MEMORY;
+    measure_codes(exact_codes, codes, b->c->width, b->c->height, &m);
     r->point->psnr_db = m.psnr_db;
     r->point->ssim = m.ssim;
     r->point->p99 = m.p99;
-    if (is_pictured(r->point)) {
-        codes = measure_encode(&b->got, exposure);
-        if (!codes || !keep_picture(b, r, codes, exact_codes))
-            status = GLINT_E_MEMORY;
-    }
-    free(codes);
-    return status == GLINT_OK ? measure_flux(b, r) : status;
+    if (is_pictured(r->point) && !keep_picture(b, r, codes, exact_codes))
+        return GLINT_E_MEMORY;
+    return measure_flux(b, r);
 }
 
 static enum glint_status measure_all(struct bay *b,
@@ -348,10 +343,10 @@ static enum glint_status measure_all(struct bay *b,
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
     enum glint_status status = GLINT_E_MEMORY;
-    uint8_t *exact_codes = NULL;
+    uint8_t *exact_codes = NULL, *codes = malloc(n);
 
     b->exact.rgb = malloc(n * sizeof(float));
-    if (b->exact.rgb)
+    if (b->exact.rgb && codes)
         status = sweep_exact(b->s->tool, &b->open[0], b->lamp, b->c->n_lamps,
                              b->s->grid, &b->exact);
     if (status == GLINT_OK) {
@@ -361,12 +356,13 @@ static enum glint_status measure_all(struct bay *b,
         if (!exact_codes || !keep_picture(b, NULL, exact_codes, NULL))
             status = GLINT_E_MEMORY;
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
-            status = measure_point(b, &b->run[i], exact_codes, exposure);
+            status = measure_point(b, &b->run[i], exact_codes, exposure, codes);
             tool_progress_show(progress,
                                from + (to - from) * (i + 1) / b->c->n);
         }
     }
     free(exact_codes);
+    free(codes);
     return status;
 }
 

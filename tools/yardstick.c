@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure.h"
-
 /* -------------------------------------------------------------------- canvas
  */
 
@@ -137,21 +135,16 @@ enum glint_status yardstick_exact(const struct tool *tool,
 
 enum glint_status yardstick_codes(struct frame *frame,
                                   const struct glint_lamp *lamp, int n_lamps,
-                                  double exposure, struct glint_float_image *to,
+                                  double exposure, uint8_t *codes,
                                   struct frame_report *report)
 {
-    struct glint_image layer = {
-        .format = GLINT_RGB24, .width = to->width, .height = to->height};
-    uint8_t *codes = calloc(3 * (size_t)to->width, (size_t)to->height);
-    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_image layer = {.format = GLINT_RGB24,
+                                .width = frame->cfg.width,
+                                .height = frame->cfg.height};
 
-    if (codes) {
-        glint_image_place(&layer, codes);
-        status = frame_draw(frame, lamp, n_lamps, exposure, &layer, report);
-        measure_decode(codes, exposure, to);
-    }
-    free(codes);
-    return status;
+    memset(codes, 0, 3 * (size_t)layer.width * (size_t)layer.height);
+    glint_image_place(&layer, codes);
+    return frame_draw(frame, lamp, n_lamps, exposure, &layer, report);
 }
 
 static int by_size(const void *a, const void *b)

@@ -33,18 +33,18 @@ double canvas_floor_ms(struct canvas *canvas);
 void yardstick_lamps(struct glint_lamp *lamp, int n, double angle);
 
 /* The flare of LAMP as every ray in double draws it, of cells GRID a side, with
- * the lens, stop and wavelengths of SCENE, opened from a table. To is
+ * the lens, stop and wavelengths of SCENE, opened from a table. TO is
  * allocated. GLINT_E_MEMORY. */
 enum glint_status yardstick_exact(const struct tool *tool,
                                   const struct scene *scene,
                                   const struct glint_lamp *lamp, int n_lamps,
                                   int grid, struct glint_float_image *to);
 
-/* The flare alone as codes on black, exposed: what a frame draws for codes is
- * not what it draws in linear light. TO is allocated, as the above. */
+/* The flare alone as codes on black, [height][width][3], exposed: what a frame
+ * draws for codes is not what it draws in linear light. */
 enum glint_status yardstick_codes(struct frame *frame,
                                   const struct glint_lamp *lamp, int n_lamps,
-                                  double exposure, struct glint_float_image *to,
+                                  double exposure, uint8_t *codes,
                                   struct frame_report *report);
 
 /* Of N values, which stay as they are; N is 1 to YARDSTICK_MAX. */
