@@ -27,6 +27,7 @@ static const char help[] =
     "percentile of the differences in codes, and flux. FOLDER gets\n"
     "  sweep.csv     all of it\n"
     "  front.svg     error against time, and what nothing else is better than\n"
+    "  trade.svg     the same of all lenses together, small\n"
     "  dials.svg     each dial by itself\n"
     "  growth.svg    time against pixels, lights and ghosts\n"
     "  table.md      the named qualities\n"
@@ -158,9 +159,10 @@ static int save_all(const struct sweep *s, const char *folder)
         const char *name;
         write_fn *write;
     } files[] = {
-        {"sweep.csv", sweep_csv},       {"front.svg", sweep_svg_front},
-        {"dials.svg", sweep_svg_dials}, {"growth.svg", sweep_svg_growth},
-        {"table.md", sweep_names},      {"index.html", sweep_page}};
+        {"sweep.csv", sweep_csv},         {"front.svg", sweep_svg_front},
+        {"trade.svg", sweep_svg_trade},   {"dials.svg", sweep_svg_dials},
+        {"growth.svg", sweep_svg_growth}, {"table.md", sweep_names},
+        {"index.html", sweep_page}};
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)

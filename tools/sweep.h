@@ -127,6 +127,8 @@ void sweep_words(const struct sweep_setting *set, char *text, size_t bytes);
 void sweep_csv(const struct sweep *s, FILE *file);
 void sweep_json(const struct sweep *s, FILE *file);
 void sweep_svg_front(const struct sweep *s, FILE *file);
+/* The means alone, with each dial's: small. */
+void sweep_svg_trade(const struct sweep *s, FILE *file);
 void sweep_svg_dials(const struct sweep *s, FILE *file);
 void sweep_svg_growth(const struct sweep *s, FILE *file);
 void sweep_page(const struct sweep *s, FILE *file);

@@ -32,7 +32,8 @@ static int by_cost(const void *a, const void *b)
 }
 
 /* Combinations first, so that the rest lies on top of them. */
-static void draw_dots(const struct plot *p, const struct dot *dot, int n)
+static void draw_dots(const struct plot *p, const struct dot *dot, int n,
+                      bool tips)
 {
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < n; i++) {
@@ -52,7 +53,7 @@ static void draw_dots(const struct plot *p, const struct dot *dot, int n)
                           together                   ? GREY
                           : set->kind == SWEEP_ALONE ? plot_colour(set->dial)
                                                      : FRONT,
-                          tip);
+                          tips ? tip : NULL);
         }
 }
 
@@ -71,7 +72,7 @@ static void draw_front(const struct plot *p, const struct dot *dot, int n)
 }
 
 static void front_panel(FILE *file, int number, const char *title,
-                        const char *words, struct dot *dot, int n)
+                        const char *words, struct dot *dot, int n, bool tips)
 {
     struct plot p;
     bool seen[MAX_DIALS] = {false};
@@ -93,7 +94,7 @@ static void front_panel(FILE *file, int number, const char *title,
                      dials[dot[i].set->dial].name);
         }
     draw_front(&p, dot, n);
-    draw_dots(&p, dot, n);
+    draw_dots(&p, dot, n, tips);
 }
 
 /* The means over all cases that are swept together, and each of these. */
@@ -113,7 +114,7 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
         dot[i] = (struct dot){mean[i].set, mean[i].cost, mean[i].psnr_db,
                               mean[i].front};
     front_panel(file, 0, "All lenses: mean error and relative cost",
-                "times the default's", dot, n);
+                "times the default's", dot, n, true);
     n_panels = 1;
     for (int c = 0; c < s->n_cases && dot; c++) {
         const struct sweep_case *k = &s->scase[c];
@@ -128,8 +129,79 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
             continue;
         snprintf(title, sizeof title, "%s, %dx%d", s->lens[k->lens], k->width,
                  k->height);
-        front_panel(file, n_panels++, title, cost_words(s), dot, k->n);
+        front_panel(file, n_panels++, title, cost_words(s), dot, k->n, true);
     }
+    plot_close(file);
+    free(mean);
+    free(dot);
+}
+
+/* ---------------------------------------------------------------------- means
+ */
+
+/* Of dial D alone, through the standard, by the order of its values. */
+static void mean_curve(const struct plot *p, const struct sweep_mean *mean,
+                       int n, int d)
+{
+    const struct sweep_mean *last = NULL;
+
+    for (int v = 0; v < dials[d].n_values; v++)
+        for (int i = 0; i < n; i++) {
+            const struct sweep_setting *set = mean[i].set;
+
+            if ((set->dial != d && set->kind != SWEEP_STANDARD) ||
+                set->value[d] != dials[d].value[v])
+                continue;
+            if (last)
+                plot_line(p, last->cost, last->psnr_db, mean[i].cost,
+                          mean[i].psnr_db, plot_colour(d), false);
+            plot_mark(p, mean[i].cost, mean[i].psnr_db, 'o', plot_colour(d),
+                      NULL);
+            last = &mean[i];
+        }
+}
+
+/* All dials in one panel, without what is far off the others. */
+static void dials_panel(FILE *file, int number, const struct sweep_mean *mean,
+                        int n)
+{
+    bool seen[MAX_DIALS] = {false};
+    struct plot p;
+
+    plot_init(&p, file, number, "Each dial by itself");
+    p.x.is_log = true;
+    p.x.words = "times the default's";
+    p.y.words = "PSNR, dB";
+    for (int i = 0; i < n; i++)
+        if (mean[i].set->dial >= 0 && mean[i].flux_error < 0.02 &&
+            mean[i].cost < 6) {
+            plot_stretch(&p, mean[i].cost, mean[i].psnr_db);
+            seen[mean[i].set->dial] = true;
+        }
+    plot_frame(&p);
+    for (int d = 0; d < n_dials; d++)
+        if (seen[d]) {
+            plot_key(&p, 'o', plot_colour(d), dials[d].name);
+            mean_curve(&p, mean, n, d);
+        }
+}
+
+void sweep_svg_trade(const struct sweep *s, FILE *file)
+{
+    const size_t most = (size_t)s->n_points + 1;
+    struct sweep_mean *mean = malloc(most * sizeof *mean);
+    struct dot *dot = malloc(most * sizeof *dot);
+    const int n = mean && dot ? sweep_means(s, mean, s->n_points) : 0;
+    int n_near = 0;
+
+    for (int i = 0; i < n; i++)
+        if (mean[i].flux_error < 0.02 && mean[i].cost < 8)
+            dot[n_near++] = (struct dot){mean[i].set, mean[i].cost,
+                                         mean[i].psnr_db, mean[i].front};
+    plot_open(file, 2);
+    front_panel(file, 0, "Error against cost, all lenses",
+                "times the default's", dot, n_near, false);
+    dials_panel(file, 1, mean, n);
     plot_close(file);
     free(mean);
     free(dot);
