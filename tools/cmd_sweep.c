@@ -96,7 +96,7 @@ static void add_growth(struct sweep *s, int lens)
         other.n_lamps = lights[i];
         add_case(s, other);
     }
-    for (int angle = 0; angle < 20; angle += 4) { /* other numbers of ghosts */
+    for (int angle = 0; angle < 20; angle += 5) { /* other numbers of ghosts */
         struct sweep_case other = c;
 
         other.angle = angle;

@@ -18,7 +18,8 @@ static const char head[] =
     "#ddd}td:first-child,th:first-child{text-align:left}figure{display:inline-"
     "block;margin:0 8px 14px "
     "0;vertical-align:top;font-size:12px}figcaption{max-width:320px}img{"
-    "display:block;max-width:320px}svg{max-width:100%;height:auto}.worse{color:"
+    "display:block;width:320px}"
+    "svg{max-width:100%;height:auto}.worse{color:"
     "#b01e1e}</style></head><body>\n"
     "<h1>What accuracy costs</h1>\n"
     "<p>The same frames with each dial turned by itself (coloured), with some "
@@ -126,9 +127,11 @@ static void strips(const struct sweep *s, FILE *file)
                     s->lens[c->lens], c->width, c->height, c->n_lamps,
                     c->n_lamps > 1 ? "s" : "", c->angle);
         of = q->of;
+        fputs("<div>", file); /* two abreast */
         figure(s, file, q, q->rgb, "");
         if (q->difference)
             figure(s, file, q, q->difference, ", difference");
+        fputs("</div>\n", file);
     }
 }
 
