@@ -127,16 +127,18 @@ static void tick(const struct plot *p, bool is_x, double v)
     }
 }
 
-/* At 1, 2, 5, 10 ... of logarithms, else every 1, 2 or 5 times a power of ten.
+/* At 1, 2, 5, 10 ... of logarithms, at more where they span little; else every
+ * 1, 2 or 5 times a power of ten.
  */
 static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
 {
-    static const double mantissa[] = {1, 2, 5};
+    static const double mantissa[] = {1, 2, 5, 0.7, 1.5, 3};
+    const int n = a->hi / a->lo < 12 ? 6 : 3;
     double step = pow(10, floor(log10((a->hi - a->lo) / 4)));
 
     if (a->is_log) {
         for (int e = -6; e <= 9; e++)
-            for (int k = 0; k < 3; k++) {
+            for (int k = 0; k < n; k++) {
                 const double v = mantissa[k] * pow(10, e);
 
                 if (v >= a->lo && v <= a->hi)

@@ -93,19 +93,33 @@ void sweep_json(const struct sweep *s, FILE *file)
     fputs("]}\n", file);
 }
 
-void sweep_names(const struct sweep *s, FILE *file)
+/* The points of case C with a named quality, the coarsest first. */
+static void names_row(const struct sweep *s, int c, FILE *file)
 {
-    fputs("| lens | quality | cost | PSNR dB | flux % | KiB | model KiB "
-          "|\n|---|---|---|---|---|---|---|\n",
-          file);
-    for (int i = 0; i < s->n_points; i++) {
-        const struct sweep_point *p = &s->point[i];
+    const struct sweep_case *k = &s->scase[c];
+
+    fprintf(file, "| %s, %dx%d, %d |", s->lens[k->lens], k->width, k->height,
+            k->n_lamps);
+    for (int i = 0; i < k->n; i++) {
+        const struct sweep_point *p = &s->point[k->first + i];
         const double at = p->set.quality * (LADDER_NAMES - 1);
 
         if (p->set.kind == SWEEP_LADDER && at == floor(at))
-            fprintf(file, "| %s | %s | %.1f | %.1f | %+.2f | %zu | %zu |\n",
-                    s->lens[s->scase[p->of].lens], ladder_name[(int)at],
-                    sweep_cost(s, p), p->psnr_db, 100 * p->flux_error,
-                    p->arena_bytes / 1024, p->model_bytes / 1024);
+            fprintf(file, " %.1f; %.1f; %zu + %zu |", sweep_cost(s, p),
+                    p->psnr_db, p->arena_bytes / 1024, p->model_bytes / 1024);
     }
+    fputc('\n', file);
+}
+
+void sweep_names(const struct sweep *s, FILE *file)
+{
+    fprintf(file,
+            "%s; PSNR, dB; KiB of arena + model\n\n| lens, size, lights |",
+            s->by_instructions ? "Million instructions" : "Times memory floor");
+    for (int i = 0; i < LADDER_NAMES; i++)
+        fprintf(file, " %s |", ladder_name[i]);
+    fputs("\n|---|---|---|---|---|---|\n", file);
+    for (int c = 0; c < s->n_cases; c++)
+        if (!s->scase[c].growth)
+            names_row(s, c, file);
 }
