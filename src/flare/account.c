@@ -92,7 +92,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
     struct glint_source source = {.ghost = ghost, .beam = beam, .wave = wave};
     struct glint_bundle bundle;
 
-    *account = (struct glint_account){GLINT_FATE_DRAWN};
+    *account = (struct glint_account){.fate = GLINT_FATE_DRAWN};
     account->fate = glint_plan_bundle(&flare->plan, &source, &bundle, scratch);
     if (account->fate != GLINT_FATE_OTHER &&
         account->fate != GLINT_FATE_BEYOND &&
