@@ -94,10 +94,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
 
     *account = (struct glint_account){.fate = GLINT_FATE_DRAWN};
     account->fate = glint_plan_bundle(&flare->plan, &source, &bundle, scratch);
-    if (account->fate != GLINT_FATE_OTHER &&
-        account->fate != GLINT_FATE_BEYOND &&
-        account->fate != GLINT_FATE_CLOSED)
-        account->surveyed = (GLINT_PLAN_ACROSS + 1) * (GLINT_PLAN_DOWN + 1);
+    account->surveyed = scratch->survey.n_rays;
     if (number >= flare->cfg.max_bundles &&
         number < flare->stats.need_bundles) {
         account->surveyed = 0; /* by the account alone, not by the plan */

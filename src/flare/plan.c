@@ -148,6 +148,7 @@ static void run_survey(struct glint_plan_survey *s, struct glint_transfer *t,
                        int across, int down)
 {
     begin(s, t, across, down);
+    s->n_rays += (across + 1) * (down + 1);
     for (int j = 0; j <= down; j++) {
         const struct glint_plan_node *here = s->row[j % 3];
         const struct glint_plan_node *above = s->row[(j + 2) % 3];
@@ -399,7 +400,7 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     int64_t wide_q8, high_q8;
     int exponent;
 
-    bundle->n_cells = 0;
+    bundle->n_cells = s->n_rays = 0;
     if (!is_wanted(r, source->ghost))
         return GLINT_FATE_OTHER;
     if (glint_plan_is_beyond(r->lens, b))

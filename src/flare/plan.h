@@ -54,6 +54,7 @@ struct glint_plan_survey {
     struct glint_plan_node row[3][GLINT_PLAN_ACROSS + 1]; /* the last three */
     struct glint_plan_change change[GLINT_OUT_KINDS];
     int across, down; /* cells */
+    int n_rays;       /* of all surveys of the bundle */
     int n_bends, n_inside, n_kinds;
     uint8_t kind[GLINT_OUT_KINDS]; /* of outputs that there are, but energy */
     int n_up, n_down;              /* cells by the way they are turned */

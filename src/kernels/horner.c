@@ -17,7 +17,7 @@ const struct glint_horner *glint_horner_of(unsigned sets)
     return sets & GLINT_SET_AVX2    ? &avx2
            : sets & GLINT_SET_SSE41 ? &sse41
                                     : &plain;
-#elif defined(__ARM_NEON)
+#elif defined(KERNELS_NEON)
     static const struct glint_horner neon = HORNER(neon);
 
     return sets & GLINT_SET_NEON ? &neon : &plain;

@@ -134,7 +134,8 @@ static struct sums accounts(struct fixture *f)
                 assert_int_equal(a.fate == GLINT_FATE_DRAWN, a.edges > 0);
                 assert_true(a.rows >= a.edges);
                 if (a.cells)
-                    assert_int_equal(a.surveyed, 17 * 9);
+                    assert_true(a.surveyed == 8 * 5 ||
+                                a.surveyed == 8 * 5 + 17 * 9);
             }
     return sums;
 }
