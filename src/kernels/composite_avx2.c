@@ -3,34 +3,126 @@
 
 #include <immintrin.h>
 
-#define V                   __m256i
-#define V_N                 16
-#define KERNEL(name)        name##_avx2
-#define OP(name)            _mm256_##name
-#define WHOLE(name)         _mm256_##name##_si256
-#define v_places(high, low) _mm256_set_epi64x(high, low, high, low)
+#define V                  __m256i
+#define V_N                16
+#define V_PARTS            1
+#define KERNEL(name)       name##_avx2
+#define OP(name)           _mm256_##name
+#define WHOLE(name)        _mm256_##name##_si256
+#define v_bytes(high, low) _mm256_set_epi64x(high, low, high, low)
+#define v_half(p)                \
+    _mm256_broadcastsi128_si256( \
+        _mm_load_si128((const __m128i *)(const void *)(p)))
+
+static inline void v_pairs_of(__m128i codes, V x[1]);
+static inline void v_chroma_of(__m128i codes, V c[2]);
+static inline __m128i b_of_pairs(const V x[1]);
+static inline __m128i b_of_chroma(const V c[2]);
 
 #include "kernels/composite_x86.h"
 
 /* Eight values, over and over. */
 static inline V v_repeat(const int16_t *p)
 {
-    return _mm256_broadcastsi128_si256(
-        _mm_loadu_si128((const __m128i *)(const void *)p));
+    return _mm256_broadcastsi128_si256(b_load(p));
 }
 
 static inline V v_load_codes(const uint8_t *p)
 {
-    return _mm256_cvtepu8_epi16(
-        _mm_loadu_si128((const __m128i *)(const void *)p));
+    return v_left(_mm256_cvtepu8_epi16(b_load(p)), 7);
 }
 
-/* Held to 0 .. 255. */
 static inline void v_store_codes(uint8_t *p, V x)
 {
-    _mm_storeu_si128((__m128i *)(void *)p,
-                     _mm_packus_epi16(_mm256_castsi256_si128(x),
-                                      _mm256_extracti128_si256(x, 1)));
+    x = v_right_signed(x, 7);
+    b_store(p, _mm_packus_epi16(_mm256_castsi256_si128(x),
+                                _mm256_extracti128_si256(x, 1)));
+}
+
+/* Even lanes to the lower half, odd ones to the upper. */
+static inline void v_load_pairs(const uint16_t *p, V x[1])
+{
+    x[0] = _mm256_permute4x64_epi64(
+        v_shuffle(v_load((const int16_t *)p),
+                  v_bytes(0x0f0e0b0a07060302, 0x0d0c090805040100)),
+        0xd8);
+}
+
+/* CODES twice, those at EVEN in the lower half and at ODD in the upper, _q7. */
+static inline V spread(__m128i codes, V places)
+{
+    return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);
+}
+
+/* Bytes 0, 2, 4 ... and 1, 3, 5 ... to the upper bytes of lanes. */
+#define EVENS 0x0e800c800a800880, 0x0680048002800080
+#define ODDS  0x0f800d800b800980, 0x0780058003800180
+
+static inline void v_pairs_of(__m128i codes, V x[1])
+{
+    x[0] = spread(codes, _mm256_set_epi64x(ODDS, EVENS));
+}
+
+static inline void v_chroma_of(__m128i codes, V c[2])
+{
+    c[0] = spread(codes, _mm256_set_epi64x(EVENS, EVENS));
+    c[1] = spread(codes, _mm256_set_epi64x(ODDS, ODDS));
+}
+
+/* Codes of X and Y in their lower halves by turns. */
+static inline __m128i woven(V x, V y)
+{
+    const __m128i both =
+        _mm_packus_epi16(_mm_srai_epi16(_mm256_castsi256_si128(x), 7),
+                         _mm_srai_epi16(_mm256_castsi256_si128(y), 7));
+
+    return _mm_shuffle_epi8(
+        both, _mm_set_epi64x(0x0f070e060d050c04, 0x0b030a0209010800));
+}
+
+/* The other half first. */
+static inline V turned(V x)
+{
+    return _mm256_permute2x128_si256(x, x, 1);
+}
+
+static inline __m128i b_of_pairs(const V x[1])
+{
+    return woven(x[0], turned(x[0]));
+}
+
+static inline __m128i b_of_chroma(const V c[2])
+{
+    return woven(c[0], c[1]);
+}
+
+/* Eight thresholds for sixteen pixels; the two of chroma by turns. */
+static inline void v_round_pairs(const int16_t *p, V x[1])
+{
+    x[0] = v_shuffle(v_repeat(p),
+                     _mm256_set_epi64x(0x0f0e0b0a07060302, 0x0f0e0b0a07060302,
+                                       0x0d0c090805040100, 0x0d0c090805040100));
+}
+
+static inline void v_round_chroma(const int16_t *p, V c[2])
+{
+    c[0] =
+        v_shuffle(v_repeat(p), v_bytes(0x0d0c090805040100, 0x0d0c090805040100));
+    c[1] =
+        v_shuffle(v_repeat(p), v_bytes(0x0f0e0b0a07060302, 0x0f0e0b0a07060302));
+}
+
+#define v_load_mean v_repeat
+
+static inline void v_store_mean(int16_t *p, V x)
+{
+    b_store(p, _mm256_castsi256_si128(x));
+}
+
+/* Of pairs: even pixels and odd ones, in both halves. */
+static inline V v_pair_mean(const V x[1])
+{
+    return v_mean(x[0], turned(x[0]));
 }
 
 static inline uint32_t w_first(W x)

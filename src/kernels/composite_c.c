@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "kernels/kernels.h"
 
+#include <stddef.h>
+
+#include "base/compiler.h"
+
 static int16_t held(int x, int low, int high)
 {
     return (int16_t)(x < low ? low : x > high ? high : x);
@@ -17,69 +21,67 @@ static int16_t times(int a, int b)
     return (int16_t)((a * b + (1 << 14)) >> 15);
 }
 
-static uint16_t decode(const struct glint_tone16 *t, int16_t code_q7)
+static uint16_t decode(const struct glint_tone16 *t, int16_t code)
 {
-    const int k = code_q7 >> 12, place_q15 = (code_q7 & 4095) << 3;
-    int x = t->piece[2][k], light;
+    const int16_t *f = t->factor.one;
+    const int w = code > t->toe_end[0] ? code - t->toe_end[0] : 0;
+    int rise = t->rise[1][0] + times(w, f[GLINT_TONE_RISE]);
 
-    if (code_q7 < t->toe_end_q7[0])
-        return (uint16_t)times(code_q7, t->toe_q15[0]);
-    x = t->piece[1][k] + times(place_q15, x);
-    light = (uint16_t)t->piece[0][k] + times(place_q15, x);
-    return (uint16_t)(light < 65535 ? light : 65535);
+    rise = t->rise[0][0] + times(w, rise);
+    return (uint16_t)(times(code, f[GLINT_TONE_TOE]) +
+                      times(times(w, w), rise));
 }
 
-static int16_t encode(const struct glint_tone16 *t, uint16_t light_q16)
+static int16_t encode(const struct glint_tone16 *t, uint16_t light)
 {
-    const int k = 4 - (light_q16 >= 1 << 8) - (light_q16 >= 1 << 10) -
-                  (light_q16 >= 1 << 12) - (light_q16 >= 1 << 14);
-    const int m_q15 = ((light_q16 * t->lift[k] & 65535) >> 1) - 20480;
-    int power_q15 = t->power_q15[4][0];
+    const int zeros = 16 - bit_length(light);
+    const int16_t z = (int16_t)(uint16_t)((uint32_t)light << zeros);
+    const int turn = t->turn[0] + times(z, t->factor.one[GLINT_TONE_TURN]);
+    int x;
 
-    if (light_q16 < t->toe_end_q16[0])
-        return (int16_t)((((light_q16 << 3) & 65535) *
-                          (unsigned)(uint16_t)t->toe_q13[0]) >>
-                         16);
-    for (int i = 3; i >= 0; i--)
-        power_q15 = t->power_q15[i][0] + times(m_q15, power_q15);
-    return (
-        int16_t)((int)(2 * (unsigned)power_q15 * (uint16_t)t->scale[k] >> 16) -
-                 t->offset_q7[0]);
+    if (zeros == 16)
+        return 0;
+    x = t->slope[zeros] + times(z, times(turn, t->curve[zeros]));
+    return (int16_t)(t->level[zeros] + times(z, x));
 }
 
 /* What CODE changes by. */
-static int16_t change_of(const struct glint_tone16 *t, int16_t code_q7,
+static int16_t change_of(const struct glint_tone16 *t, int16_t code,
                          uint16_t light_q16)
 {
-    const unsigned sum = decode(t, code_q7) + (unsigned)light_q16;
-    const int16_t lit = encode(t, (uint16_t)(sum < 65535 ? sum : 65535));
+    const int16_t lit =
+        encode(t, (uint16_t)(decode(t, code) + (light_q16 >> 1)));
 
-    return light_q16 && lit > code_q7 ? (int16_t)(lit - code_q7) : 0;
+    return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Adds light to one pixel: returns its luma, and what R', G', B' change by. */
+/* Of the changes of R', G', B', Y' of a pixel, those that chroma goes by. */
+static const int kept[3] = {0, 2, 3};
+
+/* Adds light to one pixel: returns its luma, and what R', G', B' and Y' (_q7)
+ * change by. */
 static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
-                         int16_t change[3], const struct glint_mix *mix,
+                         int16_t change[4], const struct glint_mix *mix,
                          int16_t round_q7)
 {
-    const int y_q6 = (luma - mix->black[0]) * 64;
-    const int base_q6 = y_q6 + times(y_q6, mix->luma_q15[0]);
-    const int b_q8 = (cb - 128) * 256, r_q8 = (cr - 128) * 256;
-    int16_t tint_q6[3], sum_q7 = round_q7;
+    const int16_t *from = mix->from_ycc.one, *to = mix->to_ycc.one;
+    const int base = times(luma * 128, from[GLINT_MIX_BASE]) + mix->black[0];
+    const int b_q7 = cb * 128 - (1 << 14), r_q7 = cr * 128 - (1 << 14);
+    const int tint[3] = {times(r_q7, from[GLINT_MIX_RED_CR]),
+                         times(b_q7, from[GLINT_MIX_GREEN_CB]) +
+                             times(r_q7, from[GLINT_MIX_GREEN_CR]),
+                         2 * times(b_q7, from[GLINT_MIX_BLUE_CB])};
 
-    tint_q6[0] = times(r_q8, mix->red_cr_q15[0]);
-    tint_q6[1] = (int16_t)(times(b_q8, mix->green_cb_q15[0]) +
-                           times(r_q8, mix->green_cr_q15[0]));
-    tint_q6[2] = times(b_q8, mix->blue_cb_q15[0]);
-    for (int c = 0; c < 3; c++) {
-        const int16_t half_q7 = sum_sat(tint_q6[c], base_q6);
-        const int16_t code_q7 =
-            held(sum_sat(half_q7, half_q7), 0, GLINT_WHITE_Q7);
+    change[0] = change[1] = change[2] = change[3] = 0;
+    for (int c = 0; c < 3 && (light[0] | light[1] | light[2]); c++) {
+        const int16_t half = sum_sat(base, tint[c]);
 
-        change[c] = change_of(&mix->tone, code_q7, light[c]);
-        sum_q7 = sum_sat(sum_q7, times(change[c], mix->to_luma_q15[c][0]));
+        change[c] =
+            change_of(&mix->tone, held(2 * half, 0, GLINT_WHITE_Q15), light[c]);
+        change[3] =
+            (int16_t)(change[3] + times(change[c], to[GLINT_MIX_LUMA + c]));
     }
-    return (uint8_t)held(luma + (sum_q7 >> 7), 0, 255);
+    return (uint8_t)(sum_sat(luma * 128 + round_q7, change[3]) >> 7);
 }
 
 void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
@@ -88,12 +90,12 @@ void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
 {
     for (int i = 0; i < n; i++) {
         const uint16_t here[3] = {light[0][i], light[1][i], light[2][i]};
-        int16_t changed[3];
+        int16_t changed[4];
 
         luma[i] =
             add_pixel(luma[i], cb[i], cr[i], here, changed, mix, round[i & 7]);
         for (int c = 0; c < 3; c++)
-            change[c][i] = changed[c];
+            change[c][i] = changed[kept[c]];
     }
 }
 
@@ -103,15 +105,16 @@ static int16_t mean_of(int a, int b)
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* A code of chroma, Cb (K = 0) or Cr (1), whose pixels change by CHANGE. */
-static uint8_t add_chroma(int code, int k, const int16_t change[3],
+/* A code of chroma whose pixels' own colour, B' or R', changes by OWN and whose
+ * Y' by LUMA; K: the first of its factors. */
+static uint8_t add_chroma(int code, int own, int luma, int k,
                           const struct glint_mix *mix, int16_t round_q7)
 {
-    int16_t sum_q7 = round_q7;
+    const int16_t *to = mix->to_ycc.one;
+    const int change_q7 = times(own, to[k]) - times(luma, to[k + 1]);
 
-    for (int c = 0; c < 3; c++)
-        sum_q7 = sum_sat(sum_q7, times(change[c], mix->to_chroma_q15[c][k]));
-    return (uint8_t)held(code + (sum_q7 >> 7), 0, 255);
+    return (uint8_t)(held(code * 128 + round_q7 + change_q7, 0, INT16_MAX) >>
+                     7);
 }
 
 void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
@@ -121,7 +124,7 @@ void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
                        const int16_t *round_chroma)
 {
     for (int i = 0; i < n; i += 2) {
-        int16_t changed[2][3], own[3];
+        int16_t changed[2][4], own[3];
 
         for (int k = 0; k < 2; k++) {
             const uint16_t here[3] = {light[0][i + k], light[1][i + k],
@@ -131,15 +134,19 @@ void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
                                     changed[k], mix, round[(i + k) & 7]);
         }
         for (int c = 0; c < 3; c++) {
-            own[c] = mean_of(changed[0][c], changed[1][c]);
+            own[c] = mean_of(changed[0][kept[c]], changed[1][kept[c]]);
             if (step == GLINT_PAIRS_FIRST)
-                mean[c][i] = mean[c][i + 1] = own[c];
+                mean[c][i / 2] = own[c];
             if (step == GLINT_PAIRS_SECOND)
-                own[c] = mean_of(own[c], mean[c][i]);
+                own[c] = mean_of(own[c], mean[c][i / 2]);
         }
-        for (int k = 0; k < 2 && step != GLINT_PAIRS_FIRST; k++)
-            chroma[i + k] = add_chroma(chroma[i + k], k, own, mix,
-                                       round_chroma[(i + k) & 7]);
+        if (step == GLINT_PAIRS_FIRST)
+            continue;
+        chroma[i] = add_chroma(chroma[i], own[1], own[2], GLINT_MIX_CB_BLUE,
+                               mix, round_chroma[i & 7]);
+        chroma[i + 1] =
+            add_chroma(chroma[i + 1], own[0], own[2], GLINT_MIX_CR_RED, mix,
+                       round_chroma[(i + 1) & 7]);
     }
 }
 
@@ -148,23 +155,21 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
                         const int16_t *round, const int16_t *round_chroma)
 {
     for (int i = 0; i < n; i += 2) {
-        uint8_t *luma = pixels + 2 * i + luma_at;
-        uint8_t *chroma = pixels + 2 * i + 1 - luma_at;
-        const int cb = chroma[0], cr = chroma[2];
-        int16_t changed[2][3], own[3];
+        const uint16_t *const here[3] = {light[0] + i, light[1] + i,
+                                         light[2] + i};
+        const int16_t turned[2] = {round[i & 7], round[(i + 1) & 7]};
+        const int16_t turned_chroma[2] = {round_chroma[i & 7],
+                                          round_chroma[(i + 1) & 7]};
+        uint8_t *px = pixels + 2 * i, *at[2] = {px + luma_at, px + 1 - luma_at};
+        uint8_t luma[2] = {at[0][0], at[0][2]};
+        uint8_t chroma[2] = {at[1][0], at[1][2]};
 
+        glint_add_pairs_c(luma, chroma, here, NULL, 2, GLINT_PAIRS_ALONE, mix,
+                          turned, turned_chroma);
         for (int k = 0; k < 2; k++) {
-            const uint16_t here[3] = {light[0][i + k], light[1][i + k],
-                                      light[2][i + k]};
-
-            luma[2 * k] = add_pixel(luma[2 * k], cb, cr, here, changed[k], mix,
-                                    round[(i + k) & 7]);
+            at[0][2 * k] = luma[k];
+            at[1][2 * k] = chroma[k];
         }
-        for (int c = 0; c < 3; c++)
-            own[c] = mean_of(changed[0][c], changed[1][c]);
-        for (int k = 0; k < 2; k++)
-            chroma[2 * k] = add_chroma(chroma[2 * k], k, own, mix,
-                                       round_chroma[(i + k) & 7]);
     }
 }
 
@@ -172,11 +177,15 @@ void glint_add_code_c(uint8_t *code, const uint16_t *light, int n,
                       const struct glint_tone16 *tone, const int16_t *round)
 {
     for (int i = 0; i < n; i++) {
-        const int16_t code_q7 = (int16_t)(code[i] * 128);
-        const int16_t change_q7 = change_of(tone, code_q7, light[i]);
+        const int16_t change =
+            light[i]
+                ? change_of(tone, (int16_t)((code[i] * 257) >> 1), light[i])
+                : 0;
+        const int16_t change_q7 =
+            times(change, tone->factor.one[GLINT_TONE_Q7]);
 
-        code[i] = (uint8_t)held(
-            code[i] + (sum_sat(change_q7, round[i & 7]) >> 7), 0, 255);
+        code[i] =
+            (uint8_t)(sum_sat(code[i] * 128 + round[i & 7], change_q7) >> 7);
     }
 }
 

@@ -5,119 +5,242 @@
 
 #define V            int16x8_t
 #define V_N          8
+#define V_PARTS      2
 #define KERNEL(name) name##_neon
 
 #define U(x) vreinterpretq_u16_s16(x)
 #define S(x) vreinterpretq_s16_u16(x)
 
-#define v_set              vdupq_n_s16
-#define v_load             vld1q_s16
-#define v_store            vst1q_s16
-#define v_repeat           vld1q_s16
-#define v_add              vaddq_s16
-#define v_sub              vsubq_s16
-#define v_add_sat          vqaddq_s16
-#define v_times            vqrdmulhq_s16
-#define v_low_product      vmulq_s16
-#define v_min              vminq_s16
-#define v_max              vmaxq_s16
-#define v_and              vandq_s16
-#define v_or               vorrq_s16
-#define v_left             vshlq_n_s16
-#define v_right_signed     vshrq_n_s16
-#define v_right(x, n)      S(vshrq_n_u16(U(x), n))
-#define v_pick(mask, a, b) vbslq_s16(U(mask), a, b)
+#define v_set                    vdupq_n_s16
+#define v_load                   vld1q_s16
+#define v_store                  vst1q_s16
+#define v_repeat                 vld1q_s16
+#define v_load_mean              vld1q_s16
+#define v_store_mean             vst1q_s16
+#define v_add                    vaddq_s16
+#define v_sub                    vsubq_s16
+#define v_add_sat                vqaddq_s16
+#define v_times                  vqrdmulhq_s16
+#define v_max                    vmaxq_s16
+#define v_or                     vorrq_s16
+#define v_right(x, n)            S(vshrq_n_u16(U(x), n))
+#define v_sub_unsigned_sat(a, b) S(vqsubq_u16(U(a), U(b)))
+#define v_and_not(mask, x)       vbicq_s16(x, mask)
+#define v_equal(a, b)            S(vceqq_s16(a, b))
 
-/* As they lie, from any address. */
-static inline V v_load_bytes(const uint8_t *p)
-{
-    return vreinterpretq_s16_u8(vld1q_u8(p));
-}
+/* Makes X wait for Y. */
+#define AFTER(x, y) __asm__("" : "+w"(x) : "w"(y))
 
-static inline void v_store_bytes(uint8_t *p, V x)
-{
-    vst1q_u8(p, vreinterpretq_u8_s16(x));
-}
-
-static inline V v_load_codes(const uint8_t *p)
-{
-    return S(vmovl_u8(vld1_u8(p)));
-}
-
-/* Held to 0 .. 255. */
-static inline void v_store_codes(uint8_t *p, V x)
-{
-    vst1_u8(p, vqmovun_s16(x));
-}
-
-static inline V v_add_unsigned_sat(V a, V b)
-{
-    return S(vqaddq_u16(U(a), U(b)));
-}
-
-static inline V v_high_product(V a, V b)
-{
-    const uint32x4_t low = vmull_u16(vget_low_u16(U(a)), vget_low_u16(U(b)));
-    const uint32x4_t high = vmull_u16(vget_high_u16(U(a)), vget_high_u16(U(b)));
-
-    return S(vcombine_u16(vshrn_n_u32(low, 16), vshrn_n_u32(high, 16)));
-}
-
-static inline V v_and_not(V mask, V x)
-{
-    return vbicq_s16(x, mask);
-}
-
-static inline V v_equal(V a, V b)
-{
-    return S(vceqq_s16(a, b));
-}
-
-static inline V v_greater(V a, V b)
-{
-    return S(vcgtq_s16(a, b));
-}
+/* A plus half of B, unsigned. */
+#define v_add_half(a, b) S(vsraq_n_u16(U(a), U(b), 1))
 
 /* Rounded up; of values of 0 or more. */
 #define v_mean vrhaddq_s16
 
-/* Of each pair of lanes: the other one, twice the first, twice the second. */
-#define v_swap     vrev32q_s16
-#define v_evens(x) vtrnq_s16(x, x).val[0]
-#define v_odds(x)  vtrnq_s16(x, x).val[1]
-
-/* Unsigned. */
-static inline V v_not_less(V a, V b)
-{
-    return S(vcgeq_u16(U(a), U(b)));
-}
-
-/* Places of the bytes of the entries K + BASE of a table, 0 .. 7. */
-static inline V v_index(V k, V entry, int base)
-{
-    return vmlaq_s16(v_set((int16_t)(0x0100 + base * 0x0202)), k, entry);
-}
-
 static inline int v_is_zero(V x)
 {
+#if defined(__aarch64__)
+    return vmaxvq_u32(vreinterpretq_u32_s16(x)) == 0;
+#else
     const uint64x2_t both = vreinterpretq_u64_s16(x);
 
-    return (vgetq_lane_u64(both, 0) | vgetq_lane_u64(both, 1)) == 0;
-}
-
-static inline V v_look(V table, V index)
-{
-    const uint8x16_t t = vreinterpretq_u8_s16(table);
-    const uint8x16_t k = vreinterpretq_u8_s16(index);
-#if defined(__aarch64__)
-    return vreinterpretq_s16_u8(vqtbl1q_u8(t, k));
-#else
-    const uint8x8x2_t halves = {{vget_low_u8(t), vget_high_u8(t)}};
-
-    return vreinterpretq_s16_u8(vcombine_u8(vtbl2_u8(halves, vget_low_u8(k)),
-                                            vtbl2_u8(halves, vget_high_u8(k))));
+    return vget_lane_u64(vorr_u64(vget_low_u64(both), vget_high_u64(both)),
+                         0) == 0;
 #endif
 }
+
+/* ----------------------------------------------------------------- constants
+ */
+
+/* Constants stay in registers, factors eight to one. Compilers keep a table in
+ * two registers that follow each other if it is a variable, not part of one. */
+struct v_tone {
+    int16x8_t factor, toe_end, rise[2], turn;
+    const uint8x16x2_t *level, *slope, *curve;
+};
+
+struct v_mix {
+    struct v_tone tone;
+    int16x8_t from_ycc, to_ycc, black;
+};
+
+#define TONE        struct v_tone
+#define MIX         struct v_mix
+#define CONSTANT(c) (c)
+
+#if defined(__aarch64__)
+#define TIMES(x, f, i) vqrdmulhq_laneq_s16(x, f, i)
+#else
+#define TIMES(x, f, i) \
+    vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
+#endif
+
+#define TABLES(t, tone)                                     \
+    const uint8x16x2_t t##_level = table_at((tone)->level), \
+                       t##_slope = table_at((tone)->slope), \
+                       t##_curve = table_at((tone)->curve)
+
+#define TONE_HERE(t, tone)                                              \
+    {                                                                   \
+        vld1q_s16((tone)->factor.one), vld1q_s16((tone)->toe_end),      \
+            {vld1q_s16((tone)->rise[0]), vld1q_s16((tone)->rise[1])},   \
+            vld1q_s16((tone)->turn), &t##_level, &t##_slope, &t##_curve \
+    }
+
+#define LOAD_TONE(t, tone)                             \
+    TABLES(t, tone);                                   \
+    const struct v_tone t##_here = TONE_HERE(t, tone); \
+    const struct v_tone *const t = &t##_here
+
+#define LOAD_MIX(m, mix)                                            \
+    TABLES(m, &(mix)->tone);                                        \
+    const struct v_mix m##_here = {                                 \
+        TONE_HERE(m, &(mix)->tone), vld1q_s16((mix)->from_ycc.one), \
+        vld1q_s16((mix)->to_ycc.one), vld1q_s16((mix)->black)};     \
+    const struct v_mix *const m = &m##_here
+
+static inline uint8x16x2_t table_at(const int16_t *p)
+{
+#if defined(__aarch64__)
+    return vld1q_u8_x2((const uint8_t *)p);
+#else
+    const uint8x16x2_t t = {{vreinterpretq_u8_s16(vld1q_s16(p)),
+                             vreinterpretq_u8_s16(vld1q_s16(p + 8))}};
+
+    return t;
+#endif
+}
+
+/* -------------------------------------------------------------------- tables
+ */
+
+/* Zeros that lead, 0 .. 16. */
+#define v_zeros vclzq_s16
+
+/* Places of the two bytes of an entry; past the end 0 is found. */
+#define PLACES uint8x16_t
+
+static inline PLACES v_places_of(const TONE *t, V k)
+{
+#if defined(__aarch64__)
+    const V twice = vmulq_laneq_s16(k, t->factor, GLINT_TONE_ENTRY);
+#else
+    const V twice =
+        vmulq_lane_s16(k, vget_high_s16(t->factor), GLINT_TONE_ENTRY & 3);
+#endif
+    return vreinterpretq_u8_s16(vorrq_s16(twice, v_set(0x0100)));
+}
+
+static inline V v_look(const uint8x16x2_t *table, PLACES at)
+{
+#if defined(__aarch64__)
+    return vreinterpretq_s16_u8(vqtbl2q_u8(*table, at));
+#else
+    const uint8x8x4_t quarters = {
+        {vget_low_u8(table->val[0]), vget_high_u8(table->val[0]),
+         vget_low_u8(table->val[1]), vget_high_u8(table->val[1])}};
+
+    return vreinterpretq_s16_u8(
+        vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
+                    vtbl4_u8(quarters, vget_high_u8(at))));
+#endif
+}
+
+/* X times 2^ZEROS. */
+static inline V v_raise(const TONE *t, V x, V zeros, PLACES at)
+{
+    (void)t;
+    (void)at;
+    return vshlq_s16(x, zeros);
+}
+
+/* ------------------------------------------------------------ codes to lanes
+ *
+ * Codes of 8 bits come as _q7 and go from it, held to 0 .. 255.
+ */
+
+static inline V v_load_codes(const uint8_t *p)
+{
+    return S(vshll_n_u8(vld1_u8(p), 7));
+}
+
+static inline void v_store_codes(uint8_t *p, V x)
+{
+    vst1_u8(p, vqshrun_n_s16(x, 7));
+}
+
+static inline void v_load_pairs(const uint16_t *p, V x[2])
+{
+    const uint16x8x2_t pairs = vld2q_u16(p);
+
+    x[0] = S(pairs.val[0]);
+    x[1] = S(pairs.val[1]);
+}
+
+static inline void v_load_code_pairs(const uint8_t *p, V x[2])
+{
+    const uint8x8x2_t pairs = vld2_u8(p);
+
+    x[0] = S(vshll_n_u8(pairs.val[0], 7));
+    x[1] = S(vshll_n_u8(pairs.val[1], 7));
+}
+
+static inline void v_store_code_pairs(uint8_t *p, const V x[2])
+{
+    const uint8x8x2_t pairs = {
+        {vqshrun_n_s16(x[0], 7), vqshrun_n_s16(x[1], 7)}};
+
+    vst2_u8(p, pairs);
+}
+
+#define v_load_chroma  v_load_code_pairs
+#define v_store_chroma v_store_code_pairs
+
+/* Luma, and chroma, of pairs of two bytes each; luma second if LUMA_AT. */
+static inline void v_load_packed(const uint8_t *p, int luma_at, V y[2], V c[2])
+{
+    const uint8x8x4_t quads = vld4_u8(p);
+
+    for (int k = 0; k < 2; k++) {
+        const V even = S(vshll_n_u8(quads.val[2 * k], 7));
+        const V odd = S(vshll_n_u8(quads.val[2 * k + 1], 7));
+
+        y[k] = luma_at ? odd : even;
+        c[k] = luma_at ? even : odd;
+    }
+}
+
+static inline void v_store_packed(uint8_t *p, int luma_at, const V y[2],
+                                  const V c[2])
+{
+    uint8x8x4_t quads;
+
+    for (int k = 0; k < 2; k++) {
+        quads.val[2 * k] = vqshrun_n_s16(luma_at ? c[k] : y[k], 7);
+        quads.val[2 * k + 1] = vqshrun_n_s16(luma_at ? y[k] : c[k], 7);
+    }
+    vst4_u8(p, quads);
+}
+
+/* Eight thresholds for sixteen pixels; the two of chroma by turns. */
+static inline void v_round_pairs(const int16_t *p, V x[2])
+{
+    const int16x8x2_t pairs = vuzpq_s16(vld1q_s16(p), vld1q_s16(p));
+
+    x[0] = pairs.val[0];
+    x[1] = pairs.val[1];
+}
+
+#define v_round_chroma v_round_pairs
+
+/* Of pairs: even pixels and odd ones. */
+static inline V v_pair_mean(const V x[2])
+{
+    return v_mean(x[0], x[1]);
+}
+
+/* ---------------------------------------------------------------------- sums
+ */
 
 #define W          uint32x4_t
 #define w_set      vdupq_n_u32

@@ -5,27 +5,82 @@
 
 #define V            __m128i
 #define V_N          8
+#define V_PARTS      2
 #define KERNEL(name) name##_sse41
 #define OP(name)     _mm_##name
 #define WHOLE(name)  _mm_##name##_si128
-#define v_places     _mm_set_epi64x
+#define v_bytes      _mm_set_epi64x
+#define v_half(p)    _mm_load_si128((const __m128i *)(const void *)(p))
+
+static inline void v_pairs_of(V codes, V x[2]);
+static inline V b_of_pairs(const V x[2]);
+#define v_chroma_of v_pairs_of
+#define b_of_chroma b_of_pairs
 
 #include "kernels/composite_x86.h"
 
 static inline V v_repeat(const int16_t *p)
 {
-    return _mm_loadu_si128((const __m128i *)(const void *)p);
+    return b_load(p);
 }
 
 static inline V v_load_codes(const uint8_t *p)
 {
-    return _mm_cvtepu8_epi16(_mm_loadl_epi64((const __m128i *)(const void *)p));
+    return v_left(
+        _mm_cvtepu8_epi16(_mm_loadl_epi64((const __m128i *)(const void *)p)),
+        7);
 }
 
-/* Held to 0 .. 255. */
 static inline void v_store_codes(uint8_t *p, V x)
 {
+    x = v_right_signed(x, 7);
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(x, x));
+}
+
+/* Even lanes, then odd ones. */
+static inline V parted(V x)
+{
+    return v_shuffle(x, v_bytes(0x0f0e0b0a07060302, 0x0d0c090805040100));
+}
+
+static inline void v_load_pairs(const uint16_t *p, V x[2])
+{
+    const V a = parted(v_half(p)), b = parted(v_half(p + 8));
+
+    x[0] = _mm_unpacklo_epi64(a, b);
+    x[1] = _mm_unpackhi_epi64(a, b);
+}
+
+static inline void v_pairs_of(V codes, V x[2])
+{
+    x[0] = v_right(v_left(codes, 8), 1);
+    x[1] = v_right(v_and(codes, v_set((int16_t)0xff00)), 1);
+}
+
+static inline V b_of_pairs(const V x[2])
+{
+    return v_shuffle(
+        _mm_packus_epi16(v_right_signed(x[0], 7), v_right_signed(x[1], 7)),
+        v_bytes(0x0f070e060d050c04, 0x0b030a0209010800));
+}
+
+/* Eight thresholds for sixteen pixels; the two of chroma by turns. */
+static inline void v_round_pairs(const int16_t *p, V x[2])
+{
+    const V both = parted(b_load(p));
+
+    x[0] = _mm_unpacklo_epi64(both, both);
+    x[1] = _mm_unpackhi_epi64(both, both);
+}
+
+#define v_round_chroma v_round_pairs
+#define v_load_mean    v_load
+#define v_store_mean   v_store
+
+/* Of pairs: even pixels and odd ones. */
+static inline V v_pair_mean(const V x[2])
+{
+    return v_mean(x[0], x[1]);
 }
 
 static inline uint32_t w_first(W x)

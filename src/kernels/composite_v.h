@@ -1,89 +1,108 @@
 /* SPDX-License-Identifier: MIT
  *
  * composite_c.c in vectors, for whoever defines the vectors: V, of V_N int16
- * lanes, and the operations used here. Included once by each variant, which
- * names the functions by KERNEL(name).
+ * lanes, V_PARTS of which are sixteen, and the operations used here. Included
+ * once by each variant, which names the functions by KERNEL(name).
+ *
+ * Pixels go by sixteen, first the even ones of each pair and then the odd ones,
+ * in V_PARTS vectors; chroma and what is of whole pairs fills one vector, where
+ * that has sixteen lanes, twice.
+ *
+ * TONE, MIX: constants as this variant wants them, which LOAD_TONE and LOAD_MIX
+ * make of the plain ones. CONSTANT(c) is one of their lanes, TIMES(x, f, I) x
+ * times factor I of F.
  */
 
-#include "base/compiler.h"
+enum { BLOCK = V_N * V_PARTS };
 
-/* The lanes of A where MASK is all ones, else those of B. */
-#define PICK(mask, a, b) v_pick(mask, a, b)
-
-static inline V decode(const struct glint_tone16 *t, V code)
+static WHOLLY_INLINE V decode(const TONE *t, V code)
 {
-    const V k = v_index(v_right(code, 12), v_load(t->entry), 0);
-    const V place = v_left(v_and(code, v_set(4095)), 3);
-    V x = v_look(v_load(t->piece[2]), k);
+    const V w = v_sub_unsigned_sat(code, CONSTANT(t->toe_end));
+    V rise = v_add(CONSTANT(t->rise[1]), TIMES(w, t->factor, GLINT_TONE_RISE));
 
-    x = v_add(v_look(v_load(t->piece[1]), k), v_times(place, x));
-    x = v_add_unsigned_sat(v_look(v_load(t->piece[0]), k), v_times(place, x));
-    return PICK(v_greater(v_load(t->toe_end_q7), code),
-                v_times(code, v_load(t->toe_q15)), x);
+    rise = v_add(CONSTANT(t->rise[0]), v_times(w, rise));
+    return v_add(TIMES(code, t->factor, GLINT_TONE_TOE),
+                 v_times(v_times(w, w), rise));
 }
 
-static inline V encode(const struct glint_tone16 *t, V light)
+static WHOLLY_INLINE V encode(const TONE *t, V light)
 {
-    const V half = v_right(light, 1); /* compares are of signed lanes */
-    const V k = v_index(v_add(v_add(v_greater(half, v_set((1 << 7) - 1)),
-                                    v_greater(half, v_set((1 << 9) - 1))),
-                              v_add(v_greater(half, v_set((1 << 11) - 1)),
-                                    v_greater(half, v_set((1 << 13) - 1)))),
-                        v_load(t->entry), 4);
-    const V m =
-        v_sub(v_right(v_low_product(light, v_look(v_load(t->lift), k)), 1),
-              v_set(20480));
-    const V toe = v_high_product(v_left(light, 3), v_load(t->toe_q13));
-    V x = v_load(t->power_q15[4]);
+    const V zeros = v_zeros(light);
+    const PLACES at = v_places_of(t, zeros);
+    const V z = v_raise(t, light, zeros, at);
+    const V turn =
+        v_add(CONSTANT(t->turn), TIMES(z, t->factor, GLINT_TONE_TURN));
+    V x = v_times(turn, v_look(t->curve, at));
 
-    for (int i = 3; i >= 0; i--)
-        x = v_add(v_load(t->power_q15[i]), v_times(m, x));
-    x = v_sub(v_high_product(v_left(x, 1), v_look(v_load(t->scale), k)),
-              v_load(t->offset_q7));
-    return PICK(v_not_less(light, v_load(t->toe_end_q16)), x, toe);
+    x = v_add(v_look(t->slope, at), v_times(z, x));
+    return v_add(v_look(t->level, at), v_times(z, x));
 }
 
-static inline V change_of(const struct glint_tone16 *t, V code, V light)
+static WHOLLY_INLINE V change_of(const TONE *t, V code, V light)
 {
-    const V lit = encode(t, v_add_unsigned_sat(decode(t, code), light));
-    const V change = v_max(v_sub(lit, code), v_set(0));
-
-    return v_and_not(v_equal(light, v_set(0)), change);
+    return v_sub_unsigned_sat(encode(t, v_add_half(decode(t, code), light)),
+                              code);
 }
 
-/* Whether pixels I .. I + V_N - 1 get no light. */
-static inline int is_dark(const uint16_t *const light[3], int i)
+static WHOLLY_INLINE void tint_of(const MIX *m, V cb_q7, V cr_q7, V tint[3])
 {
-    return v_is_zero(v_or(v_or(v_load((const int16_t *)light[0] + i),
-                               v_load((const int16_t *)light[1] + i)),
-                          v_load((const int16_t *)light[2] + i)));
+    const V half = v_set(1 << 14);
+    const V b = v_sub(cb_q7, half), r = v_sub(cr_q7, half);
+    const V blue = TIMES(b, m->from_ycc, GLINT_MIX_BLUE_CB);
+
+    tint[0] = TIMES(r, m->from_ycc, GLINT_MIX_RED_CR);
+    tint[1] = v_add(TIMES(b, m->from_ycc, GLINT_MIX_GREEN_CB),
+                    TIMES(r, m->from_ycc, GLINT_MIX_GREEN_CR));
+    tint[2] = v_add(blue, blue);
 }
 
-/* Adds light to the pixels of LUMA, CB, CR: returns their luma, and what R',
- * G', B' change by. */
-static inline V add_pixels(const struct glint_mix *m, V luma, V cb, V cr,
-                           const uint16_t *const light[3], int i, V rounding,
-                           V change[3])
+static WHOLLY_INLINE V change_part(const MIX *m, V base, V tint, V light)
 {
-    const V half = v_set(128), white = v_set(GLINT_WHITE_Q7);
-    const V y = v_left(v_sub(luma, v_load(m->black)), 6);
-    const V base = v_add(y, v_times(y, v_load(m->luma_q15)));
-    const V b = v_left(v_sub(cb, half), 8), r = v_left(v_sub(cr, half), 8);
-    const V tint[3] = {v_times(r, v_load(m->red_cr_q15)),
-                       v_add(v_times(b, v_load(m->green_cb_q15)),
-                             v_times(r, v_load(m->green_cr_q15))),
-                       v_times(b, v_load(m->blue_cb_q15))};
-    V sum = rounding;
+    const V half = v_add_sat(base, tint);
 
-    for (int c = 0; c < 3; c++) {
-        const V l = v_load((const int16_t *)light[c] + i);
-        const V halved = v_add_sat(tint[c], base);
-        const V own = v_min(v_max(v_add_sat(halved, halved), v_set(0)), white);
+    return change_of(&m->tone, v_max(v_add_sat(half, half), v_set(0)), light);
+}
 
-        change[c] = change_of(&m->tone, own, l);
-        sum = v_add_sat(sum, v_times(change[c], v_load(m->to_luma_q15[c])));
+/* What one channel of N vectors, 1 or 2, changes by; no loop, as those would be
+ * too long for compilers to unroll. */
+static WHOLLY_INLINE void change_channel(const MIX *m, int n, const V *base,
+                                         V tint, const V *light, V *change)
+{
+    change[0] = change_part(m, base[0], tint, light[0]);
+    if (n > 1)
+        change[n - 1] = change_part(m, base[n - 1], tint, light[n - 1]);
+}
+
+/* What R', B' and Y' of N vectors of pixels of LUMA_Q7 change by: channel by
+ * channel, so that no more is under way than there are registers for. */
+static WHOLLY_INLINE void change_pixels(const MIX *m, int n, const V *luma_q7,
+                                        V tint[3], V light[3][V_PARTS],
+                                        V kept[3][V_PARTS])
+{
+    V base[V_PARTS], green[V_PARTS], sum[V_PARTS];
+
+    for (int k = 0; k < n; k++)
+        base[k] = v_add(TIMES(luma_q7[k], m->from_ycc, GLINT_MIX_BASE),
+                        CONSTANT(m->black));
+    change_channel(m, n, base, tint[0], light[0], kept[0]);
+    for (int k = 0; k < n; k++)
+        sum[k] = TIMES(kept[0][k], m->to_ycc, GLINT_MIX_LUMA);
+    AFTER(tint[1], sum[n - 1]);
+    change_channel(m, n, base, tint[1], light[1], green);
+    for (int k = 0; k < n; k++)
+        sum[k] = v_add(sum[k], TIMES(green[k], m->to_ycc, GLINT_MIX_LUMA + 1));
+    AFTER(tint[2], sum[n - 1]);
+    change_channel(m, n, base, tint[2], light[2], kept[1]);
+    for (int k = 0; k < n; k++) {
+        const V dark = v_equal(
+            v_or(v_or(light[0][k], light[1][k]), light[2][k]), v_set(0));
+
+        sum[k] =
+            v_add(sum[k], TIMES(kept[1][k], m->to_ycc, GLINT_MIX_LUMA + 2));
+        kept[0][k] = v_and_not(dark, kept[0][k]);
+        kept[1][k] = v_and_not(dark, kept[1][k]);
+        kept[2][k] = v_and_not(dark, sum[k]);
     }
-    return v_add(luma, v_right_signed(sum, 7));
 }
 
 void KERNEL(glint_add_luma)(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
@@ -92,18 +111,59 @@ void KERNEL(glint_add_luma)(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                             const struct glint_mix *mix, const int16_t *round)
 {
     const V rounding = v_repeat(round);
+    LOAD_MIX(m, mix);
 
     for (int i = 0; i < n; i += V_N) {
-        V d[3];
+        const V y_q7 = v_load_codes(luma + i);
+        V l[3][V_PARTS], tint[3], d[3][V_PARTS];
 
-        FORGET(mix);
-        v_store_codes(luma + i,
-                      add_pixels(mix, v_load_codes(luma + i),
-                                 v_load_codes(cb + i), v_load_codes(cr + i),
-                                 light, i, rounding, d));
         for (int c = 0; c < 3; c++)
-            v_store(change[c] + i, d[c]);
+            l[c][0] = v_load((const int16_t *)light[c] + i);
+        tint_of(m, v_load_codes(cb + i), v_load_codes(cr + i), tint);
+        change_pixels(m, 1, &y_q7, tint, l, d);
+        v_store_codes(luma + i, v_add_sat(v_add(y_q7, rounding), d[2][0]));
+        for (int c = 0; c < 3; c++)
+            v_store(change[c] + i, d[c][0]);
     }
+}
+
+/* What light does to sixteen pixels: to luma at once, and to what their chroma
+ * goes by: the means of R', B' and Y' of the pairs. */
+static WHOLLY_INLINE void change_block(const MIX *m, V luma_q7[V_PARTS],
+                                       V cb_q7, V cr_q7, V light[3][V_PARTS],
+                                       const V rounding[V_PARTS], V mean[3])
+{
+    V tint[3], d[3][V_PARTS];
+
+    tint_of(m, cb_q7, cr_q7, tint);
+    change_pixels(m, V_PARTS, luma_q7, tint, light, d);
+    for (int k = 0; k < V_PARTS; k++)
+        luma_q7[k] = v_add_sat(v_add(luma_q7[k], rounding[k]), d[2][k]);
+    for (int c = 0; c < 3; c++)
+        mean[c] = v_pair_mean(d[c]);
+}
+
+/* OWN, K: as in composite_c.c. */
+#define ADD_CHROMA(m, code_q7, rounding, own, luma, k) \
+    v_add_sat(                                         \
+        v_add(code_q7, rounding),                      \
+        v_sub(TIMES(own, (m)->to_ycc, k), TIMES(luma, (m)->to_ycc, (k) + 1)))
+
+/* Whether none of sixteen pixels gets light. */
+static WHOLLY_INLINE int all_dark(V light[3][V_PARTS])
+{
+    V any = v_set(0);
+
+    for (int k = 0; k < V_PARTS; k++)
+        any = v_or(any, v_or(v_or(light[0][k], light[1][k]), light[2][k]));
+    return v_is_zero(any);
+}
+
+static WHOLLY_INLINE void load_light(const uint16_t *const light[3], int i,
+                                     V l[3][V_PARTS])
+{
+    for (int c = 0; c < 3; c++)
+        v_load_pairs(light[c] + i, l[c]);
 }
 
 void KERNEL(glint_add_pairs)(uint8_t *luma, uint8_t *chroma,
@@ -113,29 +173,33 @@ void KERNEL(glint_add_pairs)(uint8_t *luma, uint8_t *chroma,
                              const struct glint_mix *mix, const int16_t *round,
                              const int16_t *round_chroma)
 {
-    const V rounding = v_repeat(round),
-            chroma_rounding = v_repeat(round_chroma);
+    LOAD_MIX(m, mix);
+    V rounding[V_PARTS], c_rounding[2];
 
-    for (int i = 0; i < n; i += V_N) {
-        const V code = v_load_codes(chroma + i);
-        V sum = chroma_rounding, d[3];
+    v_round_pairs(round, rounding);
+    v_round_chroma(round_chroma, c_rounding);
+    for (int i = 0; i < n; i += BLOCK) {
+        V l[3][V_PARTS], y[V_PARTS], c[2], d[3];
 
-        if (step == GLINT_PAIRS_ALONE && is_dark(light, i))
+        load_light(light, i, l);
+        if (step == GLINT_PAIRS_ALONE && all_dark(l))
             continue;
-        FORGET(mix);
-        v_store_codes(luma + i,
-                      add_pixels(mix, v_load_codes(luma + i), v_evens(code),
-                                 v_odds(code), light, i, rounding, d));
-        for (int c = 0; c < 3; c++) {
-            d[c] = v_mean(d[c], v_swap(d[c]));
+        v_load_code_pairs(luma + i, y);
+        v_load_chroma(chroma + i, c);
+        change_block(m, y, c[0], c[1], l, rounding, d);
+        v_store_code_pairs(luma + i, y);
+        for (int k = 0; k < 3; k++) {
             if (step == GLINT_PAIRS_FIRST)
-                v_store(mean[c] + i, d[c]);
+                v_store_mean(mean[k] + i / 2, d[k]);
             if (step == GLINT_PAIRS_SECOND)
-                d[c] = v_mean(d[c], v_load(mean[c] + i));
-            sum = v_add_sat(sum, v_times(d[c], v_load(mix->to_chroma_q15[c])));
+                d[k] = v_mean(d[k], v_load_mean(mean[k] + i / 2));
         }
-        if (step != GLINT_PAIRS_FIRST)
-            v_store_codes(chroma + i, v_add(code, v_right_signed(sum, 7)));
+        if (step == GLINT_PAIRS_FIRST)
+            continue;
+        c[0] =
+            ADD_CHROMA(m, c[0], c_rounding[0], d[1], d[2], GLINT_MIX_CB_BLUE);
+        c[1] = ADD_CHROMA(m, c[1], c_rounding[1], d[0], d[2], GLINT_MIX_CR_RED);
+        v_store_chroma(chroma + i, c);
     }
 }
 
@@ -143,30 +207,23 @@ void KERNEL(glint_add_packed)(uint8_t *pixels, const uint16_t *const light[3],
                               int n, int luma_at, const struct glint_mix *mix,
                               const int16_t *round, const int16_t *round_chroma)
 {
-    const V rounding = v_repeat(round),
-            chroma_rounding = v_repeat(round_chroma);
-    const V white = v_set(255);
+    LOAD_MIX(m, mix);
+    V rounding[V_PARTS], c_rounding[2];
 
-    for (int i = 0; i < n; i += V_N) {
-        const V words = v_load_bytes(pixels + 2 * i);
-        const V low = v_and(words, white), high = v_right(words, 8);
-        const V code = luma_at ? low : high;
-        V luma = luma_at ? high : low;
-        V sum = chroma_rounding, d[3], chroma;
+    v_round_pairs(round, rounding);
+    v_round_chroma(round_chroma, c_rounding);
+    for (int i = 0; i < n; i += BLOCK) {
+        V l[3][V_PARTS], y[V_PARTS], c[2], d[3];
 
-        if (is_dark(light, i))
+        load_light(light, i, l);
+        if (all_dark(l))
             continue;
-        FORGET(mix);
-        luma = v_min(add_pixels(mix, luma, v_evens(code), v_odds(code), light,
-                                i, rounding, d),
-                     white);
-        for (int c = 0; c < 3; c++)
-            sum = v_add_sat(sum, v_times(v_mean(d[c], v_swap(d[c])),
-                                         v_load(mix->to_chroma_q15[c])));
-        chroma =
-            v_min(v_max(v_add(code, v_right_signed(sum, 7)), v_set(0)), white);
-        v_store_bytes(pixels + 2 * i, luma_at ? v_or(chroma, v_left(luma, 8))
-                                              : v_or(luma, v_left(chroma, 8)));
+        v_load_packed(pixels + 2 * i, luma_at, y, c);
+        change_block(m, y, c[0], c[1], l, rounding, d);
+        c[0] =
+            ADD_CHROMA(m, c[0], c_rounding[0], d[1], d[2], GLINT_MIX_CB_BLUE);
+        c[1] = ADD_CHROMA(m, c[1], c_rounding[1], d[0], d[2], GLINT_MIX_CR_RED);
+        v_store_packed(pixels + 2 * i, luma_at, y, c);
     }
 }
 
@@ -175,19 +232,20 @@ void KERNEL(glint_add_code)(uint8_t *code, const uint16_t *light, int n,
                             const int16_t *round)
 {
     const V rounding = v_repeat(round);
+    LOAD_TONE(t, tone);
 
     for (int i = 0; i < n; i += V_N) {
-        const V c = v_load_codes(code + i);
+        const V c_q7 = v_load_codes(code + i);
         const V l = v_load((const int16_t *)light + i);
+        V change;
 
         if (v_is_zero(l))
             continue;
-        FORGET(tone);
-        v_store_codes(
-            code + i,
-            v_add(c, v_right_signed(
-                         v_add_sat(change_of(tone, v_left(c, 7), l), rounding),
-                         7)));
+        change = v_and_not(v_equal(l, v_set(0)),
+                           change_of(t, v_add(c_q7, v_right(c_q7, 8)), l));
+        v_store_codes(code + i,
+                      v_add_sat(v_add(c_q7, rounding),
+                                TIMES(change, t->factor, GLINT_TONE_Q7)));
     }
 }
 

@@ -30,14 +30,15 @@
  *   cb, cr  codes, one for each pixel
  *   light   R, G, B: _q16, white = 65535
  *   round   _q7, of pixel i: round[i & 7], below 1
- *   change  R', G', B': what it changes by, _q7, 0 or more; 0 where there is
- *           no light */
+ *   change  of R', B' (_q15, white = 32767) and Y' (_q7), each 0 or more; 0
+ *           where there is no light at all */
 typedef void
 glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* What a row of pairs does with the mean changes of R', G', B' of its pairs. */
+/* What a row of pairs does with the mean changes of R', B' and Y' of its
+ * pairs. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* its chroma is its own */
     GLINT_PAIRS_FIRST, /* of two rows: keeps them */
@@ -49,8 +50,8 @@ enum glint_pair_step {
  *   chroma  codes Cb, Cr of each pair; changed unless STEP is FIRST
  *   light, round  as above
  *   round_chroma  the same for chroma[i]
- *   mean    [3][n], of the two pixels of each pair twice, _q7: kept for the
- *           second row by the first */
+ *   mean    R', B' (_q15), Y' (_q7), of each pair: kept for the second row by
+ *           the first */
 typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,
                                 const uint16_t *const light[3],
                                 int16_t *const mean[3], int n,

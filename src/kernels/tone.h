@@ -2,19 +2,23 @@
  *
  * Between codes and linear light in 16 bits, for the kernels.
  *
- * A full-range code v has 7 fraction bits (_q7, 255 << 7 is white), light has
- * 16 (65535 is white).
+ * A full-range code v and light x are _q15: 32767 is white, so that a code of 8
+ * bits is 128.5 steps. x is unsigned and may pass white.
  *
- *   decode: below the toe's end v times a constant; above it a parabola in
- *   each of eight pieces of 32 codes
+ *   decode: toe v + w^2 (r0 + w (r1 + w r2)), w = what v passes the toe's end
+ *   by. Nowhere a choice, as w is 0 in the toe.
  *
- *   encode: below the toe's end a constant times the light; above it
- *   scale * m^e - offset with light = m / 4^k, m from 1/4 to 1, and m^e a
- *   polynomial of degree 4 in m - 5/8
+ *   encode: a cubic in each octave of light: with z = -1 .. 0 from its lower to
+ *   its upper end, level + z (slope + z curve (turn0 + z turn1)), level, slope
+ *   and curve looked up by the zeros that lead. Where the curve is a power the
+ *   cubics of all octaves are alike, so that turn0 and turn1 serve all of them;
+ *   in the toe curve is 0, and beyond white slope, too.
  *
- * Fitted by least squares to sRGB and BT.709. Over all 32641 codes and 65536
- * values of light: decode is within 0.05 of a code, encode within 0.08, encode
- * of decode within 0.08. Both rise.
+ * Least greatest errors against sRGB and BT.709, in codes of 8 bits over all
+ * 32768 codes and lights: decode 0.17 (most of it steps of light, which are 0.1
+ * code in the toe; 0.09 without), encode 0.06. encode rises: within an octave
+ * as every rounded factor of it does, from one to the next by the choice of
+ * levels.
  */
 #ifndef GLINT_KERNELS_TONE_H
 #define GLINT_KERNELS_TONE_H
@@ -25,34 +29,57 @@
 
 #define GLINT_LANES 16
 
-enum { GLINT_WHITE_Q7 = 255 << 7 };
+enum { GLINT_WHITE_Q15 = INT16_MAX };
 
-/* A constant in all lanes of the widest vector, and a table of eight in both of
- * its halves: operands as they lie in memory. */
+/* A constant in all lanes of the widest vector, or a table: operands as they
+ * lie in memory. */
 typedef ALIGNED(32) int16_t glint_lanes[GLINT_LANES];
 
-struct glint_tone16 {
-    glint_lanes toe_end_q7, toe_q15; /* of decode: light _q16 per code _q7 */
-    glint_lanes piece[3]; /* of powers of the place within, light _q16 */
-    glint_lanes toe_end_q16, toe_q13; /* of encode: code _q7 per light _q16,
-                                         unsigned */
-    glint_lanes power_q15[5];
-    glint_lanes lift;  /* 4^k, by k = 0 .. 4 */
-    glint_lanes scale; /* white _q7 / 4^(k e), unsigned */
-    glint_lanes offset_q7;
-    glint_lanes entry; /* from entries of a table to places of their bytes;
-                          here, lest compilers make sums of the product */
+/* Factors, _q15: one in each lane, and each in all lanes; some CPUs want these,
+ * some those. */
+enum { GLINT_FACTORS = 8 };
+struct glint_factors {
+    ALIGNED(16) int16_t one[GLINT_FACTORS];
+    glint_lanes all[GLINT_FACTORS];
 };
 
-/* How Y', Cb, Cr and R', G', B' mix. */
+enum {
+    GLINT_TONE_TOE,  /* light per code below the toe's end */
+    GLINT_TONE_RISE, /* r2 */
+    GLINT_TONE_TURN, /* turn1 */
+    GLINT_TONE_Q7,   /* from steps of a code, 1 / 128.5, to _q7 */
+    GLINT_TONE_ENTRY /* from entries of a table to places of their bytes; here,
+                        lest compilers make sums of the product */
+};
+
+struct glint_tone16 {
+    struct glint_factors factor;
+    glint_lanes toe_end, rise[2], turn;
+    glint_lanes level, slope, curve; /* tables, by zeros that lead; of 16: 0 */
+    glint_lanes power;               /* 2^zeros, unsigned */
+};
+
+/* R', G', B' are twice base + tint: base = Y' GLINT_MIX_BASE + black, and tint
+ * from Cb and Cr. What they change by makes what Y', Cb, Cr change by, _q7:
+ * Cb = B' GLINT_MIX_CB_BLUE - Y' GLINT_MIX_CB_LUMA, and Cr likewise. */
+enum { /* factors of from_ycc */
+       GLINT_MIX_BASE,
+       GLINT_MIX_RED_CR,
+       GLINT_MIX_GREEN_CB,
+       GLINT_MIX_GREEN_CR,
+       GLINT_MIX_BLUE_CB, /* half of it */
+       /* of to_ycc */
+       GLINT_MIX_LUMA = 0, /* of R', G', B' */
+       GLINT_MIX_CB_BLUE = 3,
+       GLINT_MIX_CB_LUMA,
+       GLINT_MIX_CR_RED,
+       GLINT_MIX_CR_LUMA
+};
+
 struct glint_mix {
     struct glint_tone16 tone;
-    glint_lanes black;    /* code of Y' = 0 */
-    glint_lanes luma_q15; /* R'G'B' per Y', less 1 */
-    /* R', G', B' per Cb and Cr, a quarter; _q15 */
-    glint_lanes red_cr_q15, green_cb_q15, green_cr_q15, blue_cb_q15;
-    glint_lanes to_luma_q15[3];   /* Y' per R', G', B' */
-    glint_lanes to_chroma_q15[3]; /* Cb and Cr by turns */
+    struct glint_factors from_ycc, to_ycc;
+    glint_lanes black;
 };
 
 #endif

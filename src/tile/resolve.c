@@ -54,6 +54,20 @@ static void luminance(const struct glint_light_rows *light, int row, int n,
                                  16);
 }
 
+/* One row of chroma for whole pixels. OWN: what B' or R' changes by, LUMA: what
+ * Y' does, and two factors of them. */
+static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
+                       const int16_t *factor_q15, int n, const int16_t *round)
+{
+    for (int i = 0; i < n; i++) {
+        const int32_t change_q7 = q_mul(own[i], factor_q15[0], 15) -
+                                  q_mul(luma[i], factor_q15[1], 15);
+
+        code[i] = (uint8_t)q_clamp_sat(
+            code[i] + ((change_q7 + round[i & 7]) >> 7), 0, 255);
+    }
+}
+
 /* Chroma of its own for every pixel, or none. */
 static void resolve_whole(const struct glint_resolve *r,
                           const struct glint_image *image, int y, int n,
@@ -75,15 +89,11 @@ static void resolve_whole(const struct glint_resolve *r,
     }
     r->kernels->add_luma(code[0], code[1], code[2], rgb, change, padded(n),
                          &r->mix, round);
-    for (int k = 1; k < 3 && !grey; k++)
-        for (int i = 0; i < n; i++) {
-            int64_t change_q22 = (int64_t)round[i & 7] << 15;
-
-            for (int c = 0; c < 3; c++)
-                change_q22 += change[c][i] * r->mix.to_chroma_q15[c][k - 1];
-            code[k][i] =
-                (uint8_t)q_clamp_sat(code[k][i] + (change_q22 >> 22), 0, 255);
-        }
+    for (int k = 0; k < 2 && !grey; k++)
+        add_chroma(code[1 + k], change[1 - k], change[2],
+                   r->mix.to_ycc.one +
+                       (k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE),
+                   n, round);
 }
 
 /* A stretch of odd width ends with half a pair: the other half is the same. */

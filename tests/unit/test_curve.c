@@ -79,12 +79,17 @@ static void test_decode_rises(void **state)
     }
 }
 
-/* Worst error of the code that light makes of a code, beyond rounding: over all
- * codes and lights. */
-static double worst_of(enum glint_tone transfer)
+/* Errors of the codes that light makes of all codes, against exact ones that
+ * are not rounded. */
+struct errors {
+    double worst, squares;
+    int n;
+};
+
+static struct errors errors_of(enum glint_tone transfer)
 {
     const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};
-    double worst = 0;
+    struct errors e = {0, 0, 0};
 
     for (int code = 0; code < 256; code++)
         for (int first = 1; first < 65536; first += 7 * GLINT_LANES) {
@@ -101,22 +106,30 @@ static double worst_of(enum glint_tone transfer)
                 const double sum =
                     light_of(transfer, code / 255.0) + light[i] / 65535.0;
                 const double want = 255 * code_of(transfer, fmin(1, sum));
+                const double error = fabs(lit[i] - want);
 
-                worst = fmax(worst, fabs(lit[i] - want) - 0.5);
+                e.worst = fmax(e.worst, error);
+                if (sum < 1) {
+                    e.squares += error * error;
+                    e.n++;
+                }
             }
         }
-    return worst;
+    return e;
 }
 
+/* Rounding alone is 0.5 at most, 0.289 root mean square. */
 static void test_added_light(void **state)
 {
     (void)state;
     for (int t = 0; t < 2; t++) {
-        const double worst = worst_of(transfers[t]);
+        const struct errors e = errors_of(transfers[t]);
+        const double rms = sqrt(e.squares / e.n);
 
-        print_message("codes under light are within %.3f and rounding\n",
-                      worst);
-        assert_true(worst <= 0.12);
+        print_message("codes under light are within %.3f, %.4f RMS\n", e.worst,
+                      rms);
+        assert_true(e.worst <= 0.62);
+        assert_true(rms <= 0.3);
     }
 }
 

@@ -229,8 +229,7 @@ static void check_pairs(const struct glint_kernels *k, const char *name)
             for (int c = 0; c < 3; c++) {
                 want.light[c][i] = got.light[c][i] = draw_light();
                 want.mean[c][i] = got.mean[c][i] =
-                    i & 1 ? want.mean[c][i - 1]
-                          : (int16_t)(draw() % (GLINT_WHITE_Q7 + 1));
+                    (int16_t)(draw() % (GLINT_WHITE_Q15 + 1));
             }
         }
         add_pairs(plain, &want, n, step, &mix, round);
