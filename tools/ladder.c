@@ -13,19 +13,19 @@
  * baking. */
 /* clang-format off */
 static const struct rung {
-    double grid, quantum, cull, tolerance;
+    double grid, quantum, whole, cull, tolerance;
     bool narrow;
 } rung[] = {
     /* instructions over the default's, mean PSNR */
-    { 16, 8,      FRAME_CULL_CODES, 1,    false}, /* 0.69, 46.0 dB */
-    { 24, 3,      FRAME_CULL_CODES, 1,    false}, /* 0.73, 50.0 dB */
-    { 40, 3,      FRAME_CULL_CODES, 1,    false}, /* 0.78, 51.7 dB */
-    { 48, 2,      FRAME_CULL_CODES, 1,    false}, /* 0.86, 54.6 dB */
-    { 64, 1,      FRAME_CULL_CODES, 1,    false}, /* 1.00, 56.8 dB */
-    { 96, 0.5,    FRAME_CULL_CODES, 0.25, false}, /* 1.35, 60.8 dB */
-    {128, 0.25,   FRAME_CULL_CODES, 0.25, false}, /* 1.81, 62.2 dB */
-    {192, 0.125,  FRAME_CULL_CODES, 0.25, false}, /* 2.97, 63.9 dB */
-    {256, 0.0625, FRAME_CULL_CODES, 0.25, false}, /* 4.57, 64.0 dB */
+    { 16, 8,      16,  FRAME_CULL_CODES, 1,    false}, /* 0.69, 46.0 dB */
+    { 24, 3,      8,   FRAME_CULL_CODES, 1,    false}, /* 0.73, 50.0 dB */
+    { 40, 3,      8,   FRAME_CULL_CODES, 1,    false}, /* 0.78, 51.7 dB */
+    { 48, 2,      8,   FRAME_CULL_CODES, 1,    false}, /* 0.86, 54.6 dB */
+    { 64, 1,      4,   FRAME_CULL_CODES, 1,    false}, /* 1.00, 56.8 dB */
+    { 96, 0.5,    2,   FRAME_CULL_CODES, 0.25, false}, /* 1.35, 60.8 dB */
+    {128, 0.25,   1,   FRAME_CULL_CODES, 0.25, false}, /* 1.81, 62.2 dB */
+    {192, 0.125,  0.5, FRAME_CULL_CODES, 0.25, false}, /* 2.97, 63.9 dB */
+    {256, 0.0625, 0,   FRAME_CULL_CODES, 0.25, false}, /* 4.57, 64.0 dB */
 };
 /* clang-format on */
 
@@ -55,6 +55,7 @@ static struct rung rung_at(double quality)
 
     r.grid = between(a->grid, b->grid, at - below);
     r.quantum = between(a->quantum, b->quantum, at - below);
+    r.whole = between(a->whole, b->whole, at - below);
     r.cull = between(a->cull, b->cull, at - below);
     return r;
 }
@@ -71,6 +72,7 @@ void ladder_set(struct scene *s, double quality)
 
     s->grid = cells_of(&r);
     s->quantum = r.quantum;
+    s->whole_codes = r.whole;
     s->cull = r.cull;
     s->tolerance = r.tolerance;
     s->narrow = r.narrow;
@@ -82,6 +84,7 @@ void ladder_frame(struct frame *frame, double quality)
 
     frame->max_cells = cells_of(&r);
     frame->cfg.irradiance_steps = scene_steps(r.quantum);
+    frame->whole_codes = r.whole;
     frame->faintest_codes = r.cull;
     frame->narrow = r.narrow;
 }
