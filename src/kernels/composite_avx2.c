@@ -125,31 +125,36 @@ static inline V v_pair_mean(const V x[1])
     return v_mean(x[0], turned(x[0]));
 }
 
-static inline uint32_t w_first(W x)
+#include "kernels/composite_v.h"
+
+/* ---------------------------------------------------------------------- sums
+ */
+
+static inline uint32_t w_first(V x)
 {
     return (uint32_t)_mm256_cvtsi256_si32(x);
 }
 
 /* Of each lane and those before it. */
-static inline W w_sums(W x)
+static inline V w_sums(V x)
 {
-    W low;
+    V low;
 
-    x = w_add(x, _mm256_slli_si256(x, 4));
-    x = w_add(x, _mm256_slli_si256(x, 8));
+    x = OP(add_epi32)(x, _mm256_slli_si256(x, 4));
+    x = OP(add_epi32)(x, _mm256_slli_si256(x, 8));
     low = _mm256_permute2x128_si256(x, x, 0x08); /* 0, lower half */
-    return w_add(x, _mm256_shuffle_epi32(low, 0xff));
+    return OP(add_epi32)(x, _mm256_shuffle_epi32(low, 0xff));
 }
 
-static inline W w_last(W x)
+static inline V w_last(V x)
 {
     return _mm256_permutevar8x32_epi32(x, _mm256_set1_epi32(7));
 }
 
 /* Held to 0 .. 65535. */
-static inline V w_narrow(W a, W b)
+static inline V w_narrow(V a, V b)
 {
     return _mm256_permute4x64_epi64(_mm256_packus_epi32(a, b), 0xd8);
 }
 
-#include "kernels/composite_v.h"
+#include "kernels/run_sum_x86.h"

@@ -199,7 +199,7 @@ void glint_run_sum_c(uint32_t *change_q24, uint32_t *carry_q24,
 
         sum_q24 += change_q24[i];
         change_q24[i] = 0;
-        light = (int32_t)(sum_q24 + 128) >> 8;
+        light = (((int32_t)sum_q24 >> 7) + 1) >> 1;
         light_q16[i] = (uint16_t)(light < 0       ? 0
                                   : light < 65535 ? light
                                                   : 65535);

@@ -239,37 +239,55 @@ static inline V v_pair_mean(const V x[2])
     return v_mean(x[0], x[1]);
 }
 
+#include "kernels/composite_v.h"
+
 /* ---------------------------------------------------------------------- sums
  */
 
-#define W          uint32x4_t
-#define w_set      vdupq_n_u32
-#define w_load     vld1q_u32
-#define w_add      vaddq_u32
-#define w_clear(p) vst1q_u32(p, vdupq_n_u32(0))
-#define w_first(x) vgetq_lane_u32(x, 0)
-#define w_last(x)  vdupq_n_u32(vgetq_lane_u32(x, 3))
-
-static inline W w_right_signed(W x, int n)
+/* Rounded, held to 0 .. 65535. */
+static inline uint16x4_t rounded(uint32x4_t sum_q24)
 {
-    return vreinterpretq_u32_s32(
-        vshlq_s32(vreinterpretq_s32_u32(x), vdupq_n_s32(-n)));
+    return vqrshrun_n_s32(vreinterpretq_s32_u32(sum_q24), 8);
 }
 
-/* Of each lane and those before it. */
-static inline W w_sums(W x)
+/* Sixteen lanes by fours: of each four what is summed up in it, in place, then
+ * what all before it sum up to. Fours without a change are common. */
+void glint_run_sum_neon(uint32_t *change_q24, uint32_t *carry_q24,
+                        uint16_t *light_q16, int n)
 {
-    const W zero = vdupq_n_u32(0);
+    const uint32x4_t zero = vdupq_n_u32(0);
+    uint32x4_t carry = vdupq_n_u32(*carry_q24);
 
-    x = vaddq_u32(x, vextq_u32(zero, x, 3));
-    return vaddq_u32(x, vextq_u32(zero, x, 2));
+    for (int i = 0; i < n; i += BLOCK) {
+        uint32_t *at = change_q24 + i;
+        const uint32x4x4_t x = vld4q_u32(at);
+        const uint32x4_t x01 = vaddq_u32(x.val[0], x.val[1]);
+        const uint32x4_t x012 = vaddq_u32(x01, x.val[2]);
+        const uint32x4_t all = vaddq_u32(x012, x.val[3]);
+        const uint32x4_t any = vorrq_u32(vorrq_u32(x.val[0], x.val[1]),
+                                         vorrq_u32(x.val[2], x.val[3]));
+        uint32x4_t sum;
+        uint16x4x4_t light;
+
+        if (v_is_zero(vreinterpretq_s16_u32(any))) {
+            const uint16x4_t same = rounded(carry);
+
+            vst1q_u16(light_q16 + i, vcombine_u16(same, same));
+            vst1q_u16(light_q16 + i + 8, vcombine_u16(same, same));
+            continue;
+        }
+        for (int k = 0; k < 4; k++)
+            vst1q_u32(at + 4 * k, zero);
+        sum = vaddq_u32(all, vextq_u32(zero, all, 3));
+        sum = vaddq_u32(sum, vextq_u32(zero, sum, 2));
+        sum = vaddq_u32(sum, carry);
+        carry = vextq_u32(carry, sum, 3); /* what is before each four */
+        light.val[0] = rounded(vaddq_u32(x.val[0], carry));
+        light.val[1] = rounded(vaddq_u32(x01, carry));
+        light.val[2] = rounded(vaddq_u32(x012, carry));
+        light.val[3] = rounded(sum);
+        vst4_u16(light_q16 + i, light);
+        carry = vdupq_n_u32(vgetq_lane_u32(sum, 3));
+    }
+    *carry_q24 = vgetq_lane_u32(carry, 0);
 }
-
-/* Held to 0 .. 65535. */
-static inline V w_narrow(W a, W b)
-{
-    return S(vcombine_u16(vqmovun_s32(vreinterpretq_s32_u32(a)),
-                          vqmovun_s32(vreinterpretq_s32_u32(b))));
-}
-
-#include "kernels/composite_v.h"

@@ -83,19 +83,24 @@ static inline V v_pair_mean(const V x[2])
     return v_mean(x[0], x[1]);
 }
 
-static inline uint32_t w_first(W x)
+#include "kernels/composite_v.h"
+
+/* ---------------------------------------------------------------------- sums
+ */
+
+static inline uint32_t w_first(V x)
 {
     return (uint32_t)_mm_cvtsi128_si32(x);
 }
 
 /* Of each lane and those before it. */
-static inline W w_sums(W x)
+static inline V w_sums(V x)
 {
-    x = w_add(x, _mm_slli_si128(x, 4));
-    return w_add(x, _mm_slli_si128(x, 8));
+    x = OP(add_epi32)(x, _mm_slli_si128(x, 4));
+    return OP(add_epi32)(x, _mm_slli_si128(x, 8));
 }
 
-static inline W w_last(W x)
+static inline V w_last(V x)
 {
     return _mm_shuffle_epi32(x, 0xff);
 }
@@ -103,4 +108,4 @@ static inline W w_last(W x)
 /* Held to 0 .. 65535. */
 #define w_narrow _mm_packus_epi32
 
-#include "kernels/composite_v.h"
+#include "kernels/run_sum_x86.h"

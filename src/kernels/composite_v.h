@@ -248,22 +248,3 @@ void KERNEL(glint_add_code)(uint8_t *code, const uint16_t *light, int n,
                                 TIMES(change, t->factor, GLINT_TONE_Q7)));
     }
 }
-
-void KERNEL(glint_run_sum)(uint32_t *change_q24, uint32_t *carry_q24,
-                           uint16_t *light_q16, int n)
-{
-    W carry = w_set(*carry_q24);
-
-    for (int i = 0; i < n; i += V_N) {
-        const W a = w_add(w_sums(w_load(change_q24 + i)), carry);
-        const W b = w_add(w_sums(w_load(change_q24 + i + V_N / 2)), w_last(a));
-
-        w_clear(change_q24 + i);
-        w_clear(change_q24 + i + V_N / 2);
-        carry = w_last(b);
-        v_store((int16_t *)light_q16 + i,
-                w_narrow(w_right_signed(w_add(a, w_set(128)), 8),
-                         w_right_signed(w_add(b, w_set(128)), 8)));
-    }
-    *carry_q24 = w_first(carry);
-}

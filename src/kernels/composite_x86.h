@@ -169,25 +169,3 @@ static inline void v_store_chroma(uint8_t *p, const V c[2])
 {
     b_store(p, b_of_chroma(c));
 }
-
-/* ---------------------------------------------------------------------- sums
- */
-
-#define W              V
-#define w_add          OP(add_epi32)
-#define w_right_signed OP(srai_epi32)
-
-static inline W w_set(uint32_t x)
-{
-    return OP(set1_epi32)((int32_t)x);
-}
-
-static inline W w_load(const uint32_t *p)
-{
-    return WHOLE(load)((const W *)(const void *)p);
-}
-
-static inline void w_clear(uint32_t *p)
-{
-    WHOLE(store)((W *)(void *)p, WHOLE(setzero)());
-}
