@@ -4,6 +4,8 @@
 #                 and inih where it finds them
 #   make TARGET=aarch64|armv7-neon|armv7|armv6-soft|x86_64
 #                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
+#   make glint-live   build/.../glint-live: the live command alone, for
+#                 baked models; with TARGET= for a board
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-arm  the run-time half's on ARM, in an emulator
@@ -68,6 +70,9 @@ OBJDUMP := $(CROSS)objdump
 ifndef DYNAMIC
 LDFLAGS += -static
 endif
+# only what a program calls is in it
+SECTIONS := -ffunction-sections -fdata-sections
+LDFLAGS += -Wl,--gc-sections
 JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JPEG_LIBS     := $(SYSROOT:%=-L%/lib) -ljpeg
 INIH_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
@@ -115,7 +120,7 @@ PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
-        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene look live_adapt \
+        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene look live_adapt \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
@@ -161,7 +166,7 @@ tools_o    := $(TOOLS:%=$(OUT)/tools/%.o)
 CPPFLAGS := -Iinclude -D_FILE_OFFSET_BITS=64
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
         -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef $(WERROR)
-CFLAGS := $(MACHINE_$(TARGET)) -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
+CFLAGS := $(MACHINE_$(TARGET)) $(SECTIONS) -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
         $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) -lm -lpthread -ldl
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
@@ -172,7 +177,10 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
 # Run-time half: no library, small stack frames; --gc-sections takes out what is
 # not called.
-$(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024
+$(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 -fno-asynchronous-unwind-tables
+# What runs once, or once for a lamp, is small rather than fast.
+$(patsubst %,$(OUT)/src/%.o,base/status base/image lens/model flare/lights flare/match \
+        flare/follow flare/record flare/tracks flare/beams tile/curve tile/mix): CFLAGS += -Os
 # An instruction set is a file-name suffix; nothing else may use its flags.
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
@@ -261,6 +269,12 @@ $(example_bins): $(OUT)/examples/%: $(OUT)/tools/examples/%.o $(OUT)/libglint.a
 	@mkdir -p $(@D)
 	$(say) LD $@
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -Wl,--gc-sections,-Map=$@.map $^ -lm -o $@
+
+# The live command alone, for baked models, stripped.
+glint-live: $(OUT)/glint-live
+$(OUT)/glint-live: LDFLAGS += -s -Wl,--gc-sections
+$(OUT)/glint-live: $(OUT)/tools/glint_live.o $(OUT)/tools/models_only.o $(libs)
+	$(link)
 
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.
 oiio: build/glint-oiio.so
@@ -397,7 +411,7 @@ check-arm:
 	                build/$$t/scenes; done; \
 	for t in aarch64 armv7; do s=$$(tests/arm/prepare $$t); \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t \
-	                SYSROOT=$$s arm-tests; done
+	                SYSROOT=$$s arm-tests glint-live; done
 	@tests/arm/check $(ARM_MODELS:%=build/models/%.glint) -- $(ARM_UNIT)
 # glint on Debian's kernels in an emulator: cameras, panels, ARM. One:
 # VMFILTER=aarch64/camera, as tests/vm/check says.
@@ -496,7 +510,7 @@ install: all
 	        $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

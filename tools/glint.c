@@ -2,8 +2,6 @@
  *
  * glint - the command: finds the subcommand and runs it.
  */
-#include <errno.h>
-#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -43,25 +41,6 @@ static const struct command commands[] = {
     {"sweep", cmd_sweep},
 };
 
-static volatile sig_atomic_t reader_gone;
-
-static void note_reader(int signal_number)
-{
-    (void)signal_number;
-    reader_gone = 1;
-}
-
-/* What was printed must have arrived, unless the reader has had enough. */
-static int close_output(int code)
-{
-    errno = 0;
-    if ((fflush(stdout) == 0 && !ferror(stdout)) || reader_gone)
-        return code;
-    fprintf(stderr, "glint: standard output: %s\n",
-            errno ? strerror(errno) : "write failed");
-    return code == EXIT_OK ? EXIT_OUTPUT : code;
-}
-
 static int run(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
@@ -86,8 +65,6 @@ static int run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    struct sigaction note = {.sa_handler = note_reader};
-
-    sigaction(SIGPIPE, &note, NULL); /* the write fails, too */
-    return close_output(run(argc, argv));
+    tool_watch_reader();
+    return tool_end(run(argc, argv));
 }

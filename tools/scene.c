@@ -8,7 +8,7 @@
 #include "lamps.h"
 #include "cost.h"
 #include "ladder.h"
-#include "model_cache.h"
+#include "scene_table.h"
 
 void scene_defaults(struct scene *scene)
 {
@@ -264,49 +264,6 @@ static int open_model(const struct tool *tool, struct scene *scene,
     return EXIT_OK;
 }
 
-/* The options under which a model serves this scene. */
-static struct glint_bake_options bake_options(const struct scene *scene)
-{
-    const struct glint_prescription *l = &scene->lens;
-    const double film = hypot(l->film_width_mm, l->film_height_mm);
-    const double sensor = hypot(scene->sensor_mm[0], scene->sensor_mm[1]);
-    struct glint_bake_options o;
-
-    glint_bake_defaults(&o);
-    o.tolerance = scene->tolerance;
-    for (int i = 0; i < scene->n_wavelengths; i++) {
-        const double nm = scene->wavelength_nm[i];
-
-        o.band_nm[0] = fmin(o.band_nm[0], fmax(300, 10 * floor(nm / 10)));
-        o.band_nm[1] = fmax(o.band_nm[1], fmin(1100, 10 * ceil(nm / 10)));
-    }
-    if (sensor > film)
-        o.field_mm = 0.55 * sensor;
-    if (scene->max_deg > o.max_deg)
-        o.max_deg = 89;
-    return o;
-}
-
-static int open_table(const struct tool *tool, struct scene *scene,
-                      const char *name)
-{
-    struct glint_error error = {""};
-    enum glint_status status = GLINT_OK;
-    const int code = tool_lens(tool, name, &scene->lens);
-
-    if (code != EXIT_OK)
-        return code;
-    if (scene->f_number > 0)
-        status = glint_prescription_set_f_number(&scene->lens, scene->f_number,
-                                                 &error);
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    return scene->rays == SCENE_RAYS_EXACT
-               ? EXIT_OK
-               : model_cached(tool, &scene->lens, bake_options(scene),
-                              &scene->model);
-}
-
 static int set_up(const struct tool *tool, struct scene *s)
 {
     struct glint_error error = {""};
@@ -315,9 +272,7 @@ static int set_up(const struct tool *tool, struct scene *s)
             ? glint_setup_from_model(&s->setup, &s->model.lens, s->n_blades,
                                      s->blade_rotation_deg, s->wavelength_nm,
                                      s->n_wavelengths, &error)
-            : glint_setup_init(&s->setup, &s->lens, s->n_blades,
-                               s->blade_rotation_deg, s->wavelength_nm,
-                               s->n_wavelengths, &error);
+            : scene_table_setup(s, &error);
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
@@ -333,7 +288,7 @@ static int set_up(const struct tool *tool, struct scene *s)
 int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
 {
     int code = tool_is_model(lens) ? open_model(tool, scene, lens)
-                                   : open_table(tool, scene, lens);
+                                   : scene_open_table(tool, scene, lens);
 
     if (code == EXIT_OK && scene->model.data)
         code = check_band(tool, scene);

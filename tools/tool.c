@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -159,6 +160,31 @@ void tool_finish(struct tool *tool)
 {
     glint_pool_destroy(tool->workers);
     tool->workers = NULL;
+}
+
+static volatile sig_atomic_t reader_gone;
+
+static void note_reader(int signal_number)
+{
+    (void)signal_number;
+    reader_gone = 1;
+}
+
+void tool_watch_reader(void)
+{
+    struct sigaction note = {.sa_handler = note_reader};
+
+    sigaction(SIGPIPE, &note, NULL); /* the write fails, too */
+}
+
+int tool_end(int code)
+{
+    errno = 0;
+    if ((fflush(stdout) == 0 && !ferror(stdout)) || reader_gone)
+        return code;
+    fprintf(stderr, "glint: standard output: %s\n",
+            errno ? strerror(errno) : "write failed");
+    return code == EXIT_OK ? EXIT_OUTPUT : code;
 }
 
 unsigned tool_sets(const struct tool *tool)

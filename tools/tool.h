@@ -57,6 +57,11 @@ int tool_option(struct tool *tool, int option, const char *value);
 int tool_start(struct tool *tool);
 void tool_finish(struct tool *tool);
 
+/* At the start and the end of a program: what was printed must have arrived,
+ * unless the reader has had enough. CODE, or EXIT_OUTPUT. */
+void tool_watch_reader(void);
+int tool_end(int code);
+
 /* Instruction sets for the kernels. */
 unsigned tool_sets(const struct tool *tool);
 
