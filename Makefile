@@ -16,7 +16,7 @@
 #   make analyze  clang-tidy, gcc -fanalyzer and cppcheck; zero findings
 #   make lint     layers, Q formats, formatting, symbols;  purity: that the
 #                 run-time half has no floats and calls nobody (TARGET= too)
-#   make install  DESTDIR= PREFIX=/usr/local
+#   make install  DESTDIR= PREFIX=/usr/local, TARGET= for a board
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
@@ -498,16 +498,23 @@ purity: $(OUT)/libglint.a
 	@tools/lint-purity $(NM) $(OBJDUMP) $<
 
 # ---------------------------------------------------------------- to install
-install: all
+# With TARGET= for a board: copy DESTDIR there, or make it a part of its image.
+program := $(if $(CROSS),$(OUT)/glint,build/glint)
+install: all glint-live
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/glint \
-	        $(DESTDIR)$(PREFIX)/lib/glint $(DESTDIR)$(PREFIX)/share/glint/lenses
-	install -m 755 build/glint $(DESTDIR)$(PREFIX)/bin
+	        $(DESTDIR)$(PREFIX)/lib/glint $(DESTDIR)$(PREFIX)/share/glint/lenses \
+	        $(DESTDIR)$(PREFIX)/lib/systemd/system
+	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
+	        $(program) $(OUT)/glint-live $(DESTDIR)$(PREFIX)/bin
 	install -m 644 include/glint/*.h $(DESTDIR)$(PREFIX)/include/glint
 	install -m 644 $(OUT)/libglint.a $(OUT)/libglint-bake.a \
 	        $(DESTDIR)$(PREFIX)/lib
 	install -m 644 lenses/*.lens $(DESTDIR)$(PREFIX)/share/glint/lenses
-	[ ! -f build/glint-oiio.so ] || install -m 755 build/glint-oiio.so \
-	        $(DESTDIR)$(PREFIX)/lib/glint
+	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
+	        >$(DESTDIR)$(PREFIX)/lib/systemd/system/glint-live.service
+	chmod 644 $(DESTDIR)$(PREFIX)/lib/systemd/system/glint-live.service
+	[ ! -f build/glint-oiio.so ] || [ -n "$(CROSS)" ] || install -m 755 \
+	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
 .PHONY: all glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
