@@ -430,7 +430,7 @@ $(VM_HOST:%=$(OUT)/vm/%): $(OUT)/vm/%: tests/vm/%.c tests/vm/layout.h $(libs)
 	$(say) CC $<
 	$(Q)$(CC) $(CPPFLAGS) -Iplatform -D_POSIX_C_SOURCE=200809L $(CFLAGS) \
 	        $(LDFLAGS) $< $(libs) $(LDLIBS) -o $@
-vm-programs: $(OUT)/glint $(VM_TOOLS:%=$(OUT)/vm/%) \
+vm-programs: $(OUT)/glint $(OUT)/glint-live $(VM_TOOLS:%=$(OUT)/vm/%) \
         $(if $(filter x86_64,$(TARGET)),$(VM_HOST:%=$(OUT)/vm/%))
 	@:
 vm-deps:
