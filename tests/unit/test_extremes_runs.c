@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Long runs: a light that goes round and round gives the same frames each time,
+ * bit for bit, from the same memory. 600 frames, or 100 000 with GLINT_LONG.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "support/extreme.h"
+#include "support/stage.h"
+
+enum { W = 80, H = 54, N = 3 * W * H, ROUND = 200 };
+
+static struct stage heliar;
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&heliar);
+    return 0;
+}
+
+static uint64_t hash_of(const uint8_t *codes)
+{
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+
+    for (int i = 0; i < N; i++)
+        hash = (hash ^ codes[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+/* KiB of this process, 0 where that cannot be known. */
+static long resident_kib(void)
+{
+    FILE *file = fopen("/proc/self/statm", "r");
+    long size = 0, pages = 0;
+
+    if (file && fscanf(file, "%ld %ld", &size, &pages) != 2)
+        pages = 0;
+    if (file)
+        fclose(file);
+    return pages * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+/* Out of the picture on one side and in on the other, near the axis in between,
+ * and a second light that comes and goes: what a frame needs rises and falls.
+ */
+static int lamps_at(int k, struct glint_lamp *lamp)
+{
+    const double t = 6.283185307179586 * k / ROUND;
+
+    lamp[0] = stage_lamp(fabs(14 * cos(t)), 33 + 40 * sin(3 * t), 3000);
+    lamp[1] = stage_lamp(6 + 5 * sin(2 * t), -100 + 360.0 * k / ROUND, 800);
+    return k % ROUND < ROUND / 3 ? 2 : 1;
+}
+
+static void test_round_and_round(void **state)
+{
+    const int n = extreme_long() ? 100000 : 600;
+    static uint64_t first[ROUND];
+    static uint8_t codes[N];
+    size_t bytes = 0;
+    long resident = 0;
+    int differ = 0;
+
+    (void)state;
+    assert_true(stage_load(&heliar, "heliar-tronnier"));
+    assert_true(stage_prepare(&heliar, 8) && stage_model(&heliar, 1, 60));
+    stage_view(&heliar, W, H, 0);
+    for (int k = 0; k < n; k++) {
+        struct glint_lamp lamp[2];
+        uint64_t hash;
+
+        memset(codes, 30, sizeof codes);
+        assert_true(stage_codes(&heliar, lamp, lamps_at(k, lamp), codes));
+        hash = hash_of(codes);
+        if (k < ROUND)
+            first[k] = hash;
+        differ += hash != first[k % ROUND];
+        if (k == 2 * ROUND - 1) {
+            bytes = heliar.frame.bytes;
+            resident = resident_kib();
+        }
+        if (extreme_long() && k % 1000 == 0)
+            fprintf(stderr, "\rframe %d of %d ", k, n);
+    }
+    if (extreme_long())
+        fprintf(stderr, "\r%d frames            \n", n);
+    /* all frames alike would pass as well */
+    assert_true(first[0] != first[ROUND / 4]);
+    assert_true(extreme_at_most(extreme_long()
+                                    ? "runs: 100 000 frames, that differ from "
+                                      "the first round's"
+                                    : "runs: 600 frames, that differ from the "
+                                      "first round's",
+                                differ, 0, "frames"));
+    assert_int_equal(heliar.frame.bytes, bytes);
+#ifndef GLINT_SANITIZED
+    /* what stdio and the allocator may take for once, over any number */
+    assert_true(extreme_at_most("runs: memory at the end, above the second "
+                                "round's",
+                                (double)(resident_kib() - resident), 256,
+                                "KiB"));
+#else
+    (void)resident;
+#endif
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_round_and_round),
+    };
+
+    return cmocka_run_group_tests_name("extremes: runs", tests, NULL,
+                                       close_stage);
+}

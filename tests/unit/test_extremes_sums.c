@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Sums at their bounds: thousands of lights, bundles that add up to the most
+ * that a picture holds and one more, and the traps of CONFIG=qcheck.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "base/q.h"
+#include "support/extreme.h"
+#include "support/stage.h"
+
+enum { W = 96, H = 64, N = 3 * W * H, LIGHTS = 10000 };
+
+static struct stage heliar;
+static float test[N], part[N];
+static struct glint_lamp lamp[LIGHTS];
+
+static int open_stage(void **state)
+{
+    (void)state;
+    if (!stage_load(&heliar, "heliar-tronnier") || !stage_prepare(&heliar, 8) ||
+        !stage_model(&heliar, 1, 60))
+        return 1;
+    stage_view(&heliar, W, H, 0);
+    return 0;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&heliar);
+    return 0;
+}
+
+/* ---------------------------------------------------------------------- lights
+ */
+
+/* 10 000 lights at one place are one of 10 000 times the power: powers are
+ * added with 31 bits, 10 000 times. */
+static void test_same_place(void **state)
+{
+    const struct glint_lamp sum = stage_lamp(7.5, 33, LIGHTS);
+    double apart = 0, most = 0;
+
+    (void)state;
+    for (int i = 0; i < LIGHTS; i++)
+        lamp[i] = stage_lamp(7.5, 33, 1);
+    assert_true(stage_linear(&heliar, lamp, LIGHTS, test));
+    assert_true(stage_linear(&heliar, &sum, 1, part));
+    assert_int_equal(heliar.drawn.drawn_lights, 1);
+    for (int i = 0; i < N; i++) {
+        apart = fmax(apart, fabs((double)test[i] - (double)part[i]));
+        most = fmax(most, (double)part[i]);
+    }
+    assert_true(extreme_at_most("sums: 10 000 lights at one place",
+                                apart / most, 1e-5, "of the brightest pixel"));
+}
+
+/* Spread over the frame they merge to 128; the light of all is there: merged
+ * ones draw their ghosts in one place, of which some leave the frame that would
+ * have stayed, so 3 % rather than none. */
+static void test_spread(void **state)
+{
+    const int n = extreme_long() ? LIGHTS : 1000;
+    uint64_t r = 11;
+    double whole = 0;
+
+    (void)state;
+    for (int i = 0; i < n; i++)
+        lamp[i] =
+            stage_lamp(stage_uniform(&r, 0, 12), stage_uniform(&r, -180, 180),
+                       exp(stage_uniform(&r, -4, 4)));
+    heliar.frame.max_cells = 16;
+    assert_true(stage_linear(&heliar, lamp, n, test));
+    assert_int_equal(heliar.drawn.drawn_lights, 128);
+    for (int i = 0; i < n; i += 125) {
+        assert_true(
+            stage_linear(&heliar, lamp + i, n - i < 125 ? n - i : 125, part));
+        whole += stage_flux(&heliar, part);
+    }
+    heliar.frame.max_cells = 64;
+    assert_true(
+        extreme_at_most(extreme_long() ? "sums: 10 000 lights merged, flux"
+                                       : "sums: 1000 lights merged, flux",
+                        fabs(stage_flux(&heliar, test) / whole - 1), 0.03, ""));
+}
+
+/* And 10 000 suns leave white, not what is left of it modulo anything. */
+static void test_ten_thousand_suns(void **state)
+{
+    static uint8_t codes[N];
+    uint64_t r = 12;
+    int dark = 0;
+
+    (void)state;
+    for (int i = 0; i < LIGHTS; i++)
+        lamp[i] = stage_lamp(stage_uniform(&r, 0, 10),
+                             stage_uniform(&r, -180, 180), 1e9);
+    memset(codes, 9, sizeof codes);
+    assert_true(stage_codes(&heliar, lamp, LIGHTS, codes));
+    for (int i = 0; i < N; i++)
+        dark += codes[i] != 255;
+    assert_true(extreme_at_most("sums: 10 000 suns, samples that are not white",
+                                dark, 0, "samples"));
+}
+
+/* --------------------------------------------------------------------- bundles
+ */
+
+enum { SIDE = 64, MANY = 1 << 15 };
+
+/* COUNT bundles of 2^LOG2 times white over the whole picture, in codes and in
+ * linear light. Returns what one pixel holds in linear light, -1: not all hold
+ * the same, or codes are not white. */
+static double pile(int count, int log2)
+{
+    struct glint_flare_config c = {.width = SIDE,
+                                   .height = SIDE,
+                                   .tile_log2 = 6,
+                                   .max_bundles = count,
+                                   .max_vertices = 4 * count,
+                                   .max_primitives = 4 * count,
+                                   .max_refs = 8 * count};
+    const struct glint_bundle b = {.n_cells = 1,
+                                   .flux_q31 = 1 << 30,
+                                   .flux_exponent = 13 + log2, /* 64^2 px */
+                                   .rgb_q14 = {16384, 16384, 16384}};
+    static int32_t linear[3 * SIDE * SIDE];
+    static uint8_t codes[3 * SIDE * SIDE];
+    struct glint_image image = {
+        .format = GLINT_LINEAR_Q20, .width = SIDE, .height = SIDE};
+    const size_t bytes = glint_flare_bytes(&c);
+    struct glint_flare_stats stats;
+    struct glint_flare *f;
+    double value;
+    void *mem;
+
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_flare_init(&f, &c, mem, bytes), GLINT_OK);
+    for (int i = 0; i < count; i++) {
+        struct glint_vertex *v = glint_flare_add(f, &b);
+
+        assert_non_null(v);
+        for (int k = 0; k < 4; k++)
+            v[k] = (struct glint_vertex){.x_q8 = k % 2 ? SIDE * 256 : 0,
+                                         .y_q8 = k / 2 ? 0 : SIDE * 256,
+                                         .energy_q16 = 65536};
+    }
+    memset(linear, 0, sizeof linear);
+    memset(codes, 0, sizeof codes);
+    glint_flare_bin(f, &stats);
+    glint_image_place(&image, linear);
+    glint_flare_draw(f, &image);
+    image.format = GLINT_RGB24;
+    glint_image_place(&image, codes);
+    glint_flare_draw(f, &image);
+    free(mem);
+    value = linear[0] == INT32_MAX ? 2048 : linear[0] / 1048576.0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        if (linear[i] != linear[0] || codes[i] != 255)
+            return -1;
+    return value;
+}
+
+/* A pixel of linear light holds 2048 times white less a step: what adds up to a
+ * whole number below is that number, what reaches it or passes it by any
+ * factor is held there. A cell gives a pixel 2048 at most, and all together
+ * 2^24; more is cut down before it is added (by_edges.c). */
+static void test_piles(void **state)
+{
+    static const struct {
+        int count, log2;
+        double holds;
+    } piles[] = {
+        {1, 0, 1},        {1, 10, 1024},    {2047, 0, 2047},  {1023, 1, 2046},
+        {2048, 0, 2048},  {2049, 0, 2048},  {MANY, 0, 2048},  {1, 11, 2048},
+        {1, 12, 2048},    {1, 40, 2048},    {8191, 11, 2048}, {8192, 11, 2048},
+        {8193, 11, 2048}, {MANY, 11, 2048}, {MANY, 60, 2048},
+    };
+    double worst = 0;
+
+    (void)state;
+    for (int k = 0; k < 15; k++) {
+        const double got = pile(piles[k].count, piles[k].log2);
+
+        if (fabs(got - piles[k].holds) > 0)
+            print_message("  %d x 2^%d: %.6f\n", piles[k].count, piles[k].log2,
+                          got);
+        worst = fmax(worst, fabs(got - piles[k].holds));
+    }
+    assert_true(extreme_at_most("sums: piles of light up to 2^75 white, off by",
+                                worst, 0, "white"));
+}
+
+/* ----------------------------------------------------------------------- traps
+ */
+
+/* Whether F traps: 1, or 0. */
+static int traps(void (*f)(void))
+{
+    const pid_t pid = fork();
+    int status = 0;
+
+    if (pid == 0) {
+        f();
+        _exit(0);
+    }
+    assert_true(pid > 0);
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    return WIFSIGNALED(status);
+}
+
+static volatile int64_t one = 1;
+static volatile int64_t sink;
+
+static void narrow_most(void)
+{
+    sink = q_narrow(INT32_MAX * one) + q_narrow(INT32_MIN * one);
+}
+static void narrow_above(void)
+{
+    sink = q_narrow(INT32_MAX + one);
+}
+static void narrow_below(void)
+{
+    sink = q_narrow(INT32_MIN - one);
+}
+static void shift_most(void)
+{
+    sink = q_shift(one << 62, 1) + q_shift(-(one << 62), 1);
+}
+static void shift_above(void)
+{
+    sink = q_shift((one << 62) + one, 1);
+}
+static void multiply_most(void)
+{
+    sink = q_mul((int32_t)(INT32_MAX * one), 1 << 30, 30);
+}
+static void multiply_above(void)
+{
+    sink = q_mul((int32_t)(INT32_MAX * one), INT32_MAX, 30);
+}
+
+/* The bound itself passes everywhere; one more traps where ranges are checked,
+ * and only there. */
+static void test_traps(void **state)
+{
+#ifdef GLINT_Q_CHECK
+    const int checked = 1;
+#else
+    const int checked = 0;
+#endif
+    int wrong = 0;
+
+    (void)state;
+    wrong += traps(narrow_most) + traps(shift_most) + traps(multiply_most);
+    wrong += traps(narrow_above) != checked;
+    wrong += traps(narrow_below) != checked;
+    wrong += traps(shift_above) != checked;
+    wrong += traps(multiply_above) != checked;
+    assert_true(extreme_at_most(checked ? "sums: bounds of q.h, with traps"
+                                        : "sums: bounds of q.h, without traps",
+                                wrong, 0, "cases"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_place),
+        cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_ten_thousand_suns),
+        cmocka_unit_test(test_piles),
+        cmocka_unit_test(test_traps),
+    };
+
+    return cmocka_run_group_tests_name("extremes: sums", tests, open_stage,
+                                       close_stage);
+}
