@@ -156,6 +156,62 @@ static bool tighten(const struct glint_hunt *h, const struct glint_path *path,
     return found;
 }
 
+/* By how much RAY misses what it has to get through: 1 or less is visible. */
+static double miss_of(const struct glint_hunt *h, const struct glint_ray *ray)
+{
+    const double stop =
+        hypot(ray->stop_x_mm, ray->stop_y_mm) / h->setup->optics.stop_radius_mm;
+    const double field =
+        hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
+
+    return fmax(ray->rel_radius, fmax(stop, field));
+}
+
+/* Closes BOX around the ray of a grid that misses by least, a cell and a half
+ * to each side. Returns by how much it does; HUGE_VAL: all were lost. */
+static double close_in(const struct glint_hunt *h,
+                       const struct glint_path *path, double sine,
+                       struct glint_pupil *box)
+{
+    enum { DOWN = 32 };
+    const double dx = (box->x1_mm - box->x0_mm) / ACROSS;
+    const double dy = box->y1_mm / DOWN, x0 = box->x0_mm;
+    struct glint_row row = {
+        ACROSS + 1, x0, dx, 0, {sine, 0, sqrt(1 - sine * sine)}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+    double least = HUGE_VAL;
+
+    for (int j = 0; j <= DOWN; j++) {
+        row.y_mm = dy * j;
+        glint_trace_row(path, &row, ray, status, NULL);
+        for (int i = 0; i <= ACROSS; i++) {
+            if (status[i] != GLINT_RAY_OK || miss_of(h, &ray[i]) >= least)
+                continue;
+            least = miss_of(h, &ray[i]);
+            box->x0_mm = x0 + (i - 1.5) * dx;
+            box->x1_mm = x0 + (i + 1.5) * dx;
+            box->y1_mm = (j + 1.5) * dy;
+        }
+    }
+    return least;
+}
+
+/* What a grid over BOX steps over: where the field is far smaller than the
+ * front, so is the part of the pupil that it is seen through. */
+static bool seek(const struct glint_hunt *h, const struct glint_path *path,
+                 double sine, struct glint_pupil *box)
+{
+    enum { ROUNDS = 4 };
+
+    if (h->field_mm > 0.1 * h->setup->lens->surface[0].semi_mm)
+        return false;
+    for (int round = 0; round < ROUNDS; round++)
+        if (close_in(h, path, sine, box) <= 1)
+            return enclose(h, path, sine, box);
+    return false;
+}
+
 static double degrees_of(double sine)
 {
     return asin(sine) * (180 / GLINT_PI);
@@ -164,10 +220,17 @@ static double degrees_of(double sine)
 static bool find_box(const struct glint_hunt *h, const struct glint_path *path,
                      double sine, struct glint_pupil *box)
 {
-    return glint_pupil_find_within(box, path, degrees_of(sine),
-                                   h->setup->optics.stop_radius_mm, h->field_mm,
-                                   NULL) &&
-           tighten(h, path, sine, box);
+    struct glint_pupil spot;
+
+    if (!glint_pupil_find_within(box, path, degrees_of(sine),
+                                 h->setup->optics.stop_radius_mm, h->field_mm,
+                                 NULL))
+        return false;
+    spot = *box;
+    if (tighten(h, path, sine, box))
+        return true;
+    *box = spot;
+    return seek(h, path, sine, box) && tighten(h, path, sine, box);
 }
 
 /* The same, looked for around NEAR first. */

@@ -8,8 +8,9 @@
  *
  * A ghost may appear, vanish and come back. Limits: ranges narrower than the
  * step of the scan, or without the middle of the band, can be missed, and so
- * can a visible part that is smaller than a thirtieth of its own box, or that
- * is there for less than four angles apart from the one that is followed.
+ * can a visible part that is smaller than a thirtieth of its own box (unless
+ * the field is so small that it is closed in upon), or that is there for less
+ * than four angles apart from the one that is followed.
  */
 #ifndef GLINT_BAKE_HUNT_H
 #define GLINT_BAKE_HUNT_H
