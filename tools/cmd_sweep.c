@@ -37,7 +37,8 @@ static const char help[] =
     "goes faster. Without lenses: one of each kind that comes with glint.\n"
     "\n"
     "  -o, --output FOLDER\n"
-    "  --size WxH[,...]    where dials are turned (default 1280x720)\n"
+    "  --size WxH[,...]    where dials are turned (default 1280x720; of the\n"
+    "                      first lens also 640x360, with one light and 16)\n"
     "  --lights N[,...]    how many (default 1)\n"
     "  --angle A[,...]     degrees off the axis of the first light (default "
     "12)\n"
@@ -65,6 +66,7 @@ struct asked {
     int n_angles;
     double angle[MAX_LIST];
     bool no_growth;
+    bool plain; /* sizes, lights and angles were not said */
 };
 
 /* ---------------------------------------------------------------------- cases
@@ -104,6 +106,19 @@ static void add_growth(struct sweep *s, int lens)
     }
 }
 
+/* Of the first lens also a smaller picture, and lights that can merge: the
+ * exact picture takes as long as there are lights. */
+static void add_more(struct sweep *s)
+{
+    const struct sweep_case c = {
+        .width = 640, .height = 360, .n_lamps = 1, .angle = 12};
+    struct sweep_case many = c;
+
+    many.n_lamps = 16;
+    add_case(s, c);
+    add_case(s, many);
+}
+
 static void add_cases(struct sweep *s, const struct asked *a)
 {
     for (int lens = 0; lens < s->n_lenses; lens++) {
@@ -117,6 +132,8 @@ static void add_cases(struct sweep *s, const struct asked *a)
                                     .n_lamps = a->lights[k],
                                     .angle = a->angle[m],
                                     .together = i == 0 && k == 0 && m == 0});
+        if (lens == 0 && a->plain)
+            add_more(s);
         if (!a->no_growth)
             add_growth(s, lens);
     }
@@ -397,6 +414,7 @@ static void fill_in(struct sweep *s, struct asked *a)
 
     for (int i = 0; s->lens[0] == NULL || (i > 0 && i < n); i++)
         s->lens[s->n_lenses++] = default_lenses[i];
+    a->plain = !s->small && a->n_sizes + a->n_lights + a->n_angles == 0;
     if (a->n_sizes == 0) {
         a->size[0][0] = s->small ? 160 : 1280;
         a->size[0][1] = s->small ? 90 : 720;

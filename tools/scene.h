@@ -138,13 +138,12 @@ enum scene_option {
     "  --apart PX          lights whose images are nearer are one (default "   \
     "0.125)\n"                                                                 \
     "  --quality Q         0 to 1, or least, draft, default, high, finest: "   \
-    "what is "                                                                 \
-    "below,\n"                                                                 \
-    "                      along the measured front of accuracy over time, "   \
-    "and how\n"                                                                \
-    "                      exact a model is that has to be baked; exact: 1, "  \
-    "and\n"                                                                    \
-    "                      --rays exact\n"                                     \
+    "what\n"                                                                   \
+    "                      is below, along the measured front of accuracy "    \
+    "over\n"                                                                   \
+    "                      time, and how exact a model is that has to be "     \
+    "baked;\n"                                                                 \
+    "                      exact: finest, and --rays exact\n"                  \
     "  --error PX          instead: the least of these whose outlines are "    \
     "off by\n"                                                                 \
     "                      so many pixels in the mean at most (0.1 by "        \

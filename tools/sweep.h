@@ -12,12 +12,7 @@
 #include "plain/pfm.h"
 #include "yardstick.h"
 
-enum {
-    SWEEP_LENSES = 16,
-    SWEEP_CASES = 128,
-    SWEEP_ROUNDS = 100,
-    SWEEP_PICTURES = 6 /* of a case, in the strip */
-};
+enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 
 /* What a point is of. */
 enum sweep_kind {

@@ -24,7 +24,7 @@ static int dominates(const double *cost, const double *quality, int a, int b)
 static void test_front_by_hand(void **state)
 {
     static const double cost[] = {5, 1, 3, 2, 4, 3, 0, 2};
-    static const double quality[] = {50, 20, 40, 10, 40, 30, NAN, 35};
+    static const double quality[] = {50, 20, 40, 10, 40, 30, (double)NAN, 35};
     int front[8];
 
     (void)state;
