@@ -6,10 +6,11 @@
 #include "cost.h"
 #include "ladder.h"
 
-#define ROOM     0.98 /* of the budget that is planned for */
-#define SPARE    0.93 /* less than so much of it: finer */
-#define LEARNING 0.5  /* of what a prediction was wrong by, in octaves */
-#define SPREAD   0.1  /* of that for other qualities, too; of the first more */
+#define ROOM       0.98 /* of the budget that is planned for */
+#define SPARE      0.93 /* less than so much of it: finer */
+#define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
+#define MOST_WRONG 0.8  /* octaves that one frame can say */
+#define SPREAD     0.1  /* of that for other qualities, too, at least */
 
 /* Plans of one frame; of fineness far from the one that is chosen they tell
  * little, so one more may be needed. */
@@ -88,15 +89,17 @@ bool budget_choose(struct budget *b, struct frame *frame)
 }
 
 /* What was learned of a quality holds for the rungs beside it, so that the same
- * prediction would be less wrong by LEARNING; and at first for all. */
+ * prediction would be less wrong by LEARNING; the more it was wrong, the more
+ * of that holds for all, as when the machine has become slower. */
 void budget_note(struct budget *b, double ms)
 {
     const double at = (double)b->step * BUDGET_RUNGS / BUDGET_STEPS;
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
-    const double spread = fmax(SPREAD, 1. / ++b->n_noted);
     /* a frame that waited for other programs says little */
-    const double wrong = fmax(-0.5, fmin(0.5, log2(ms / b->predicted_ms)));
+    const double wrong =
+        fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
+    const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
 
     for (int i = 0; i <= BUDGET_RUNGS && ms > 0; i++) {
         const double near = fmax(0, 1 - fabs(at - i)) / both;

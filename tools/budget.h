@@ -21,7 +21,6 @@ struct budget {
     double ms_per_minsn;              /* of this machine, this lens; */
     double octaves[BUDGET_RUNGS + 1]; /* learned beyond that, by quality */
     int step;            /* quality of the last frame, of BUDGET_STEPS */
-    int n_noted;         /* frames that it has learned from */
     int n_tries;         /* of the frame being planned */
     double predicted_ms; /* of the last frame, by its last plan */
 };
