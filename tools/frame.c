@@ -184,7 +184,8 @@ static struct glint_rays rays_of(const struct frame *f, double faintest_light)
         .narrow = f->narrow,
         .only_ghost = f->only_ghost,
         .faintest = glint_real_of(faintest_light),
-        .whole_codes_q8 = (int)lrint(f->whole_codes * 256)};
+        .whole_codes_q8 = (int)lrint(f->whole_codes * 256),
+        .half = f->half};
 }
 
 /* --------------------------------------------------------------------- memory

@@ -41,6 +41,7 @@ struct frame {
     double faintest_codes; /* codes near black that a ghost may stay below */
     double whole_codes;    /* edges of less lie on whole pixels */
     bool for_codes;        /* a linear picture is planned as if for codes */
+    bool half;             /* half as many pixels each way */
     bool uniform;          /* the same grid for all ghosts */
     bool narrow;           /* rays in 16-bit lanes */
     int only_ghost;        /* -1: all */

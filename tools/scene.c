@@ -150,6 +150,8 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_WHOLE:
         return tool_number(value, &s->whole_codes) && s->whole_codes >= 0 &&
                s->whole_codes <= 100;
+    case OPT_HALF:
+        return s->half = true;
     case OPT_QUALITY:
         return ladder_take(s, value);
     case OPT_ERROR:
@@ -331,6 +333,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->cfg.weights = scene->weights;
     frame->cfg.irradiance_steps = scene_steps(scene->quantum);
     frame->whole_codes = scene->whole_codes;
+    frame->half = scene->half;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
     frame->cfg.antialias = scene->antialias;

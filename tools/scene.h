@@ -38,7 +38,7 @@ struct scene {
     double budget_ms; /* 0: none */
     enum glint_raster raster;
     enum glint_weights weights;
-    bool uniform, narrow, antialias, dither, has_exposure, balance;
+    bool half, uniform, narrow, antialias, dither, has_exposure, balance;
 };
 
 /* Long options of this file, for a command's array; all above 1000. */
@@ -62,6 +62,7 @@ enum scene_option {
     OPT_DITHER,
     OPT_QUANTUM,
     OPT_WHOLE,
+    OPT_HALF,
     OPT_QUALITY,
     OPT_ERROR,
     OPT_BUDGET,
@@ -95,6 +96,7 @@ enum scene_option {
         {"dither", no_argument, NULL, OPT_DITHER},                 \
         {"quantum", required_argument, NULL, OPT_QUANTUM},         \
         {"whole", required_argument, NULL, OPT_WHOLE},             \
+        {"half", no_argument, NULL, OPT_HALF},                     \
         {"quality", required_argument, NULL, OPT_QUALITY},         \
         {"error", required_argument, NULL, OPT_ERROR},             \
         {"budget", required_argument, NULL, OPT_BUDGET},           \
@@ -178,6 +180,9 @@ enum scene_option {
     "  --whole CODES       of pictures in codes: edges across which light "    \
     "changes\n"                                                                \
     "                      by less lie on whole pixels (default 4)\n"          \
+    "  --half              of pictures in codes: ghosts with half as many "    \
+    "pixels\n"                                                                 \
+    "                      each way; not with exact rays\n"                    \
     "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
     "                      where edges agree within GAMMA (default 0,0)\n"     \
     "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \

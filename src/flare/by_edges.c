@@ -88,8 +88,8 @@ static void emit_bundle(struct glint_flare *f, int bundle,
                                       .bundle = &f->bundle[bundle],
                                       .number = (uint32_t)bundle,
                                       .stop = &f->cfg.stop,
-                                      .width = f->cfg.width,
-                                      .height = f->cfg.height,
+                                      .width = f->width,
+                                      .height = f->height,
                                       .limit_q8 = f->limit_q8,
                                       .steps = f->cfg.irradiance_steps,
                                       .rows = w->rows,
@@ -362,6 +362,58 @@ static void resolve_codes(const struct draw *d,
     }
 }
 
+/* N pixels of FROM, each twice. */
+static void double_row(const uint16_t *from, int n, uint16_t *to)
+{
+    for (int i = 0; i < n; i++)
+        to[2 * i] = to[2 * i + 1] = from[i];
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* A row of pixels as two rows of twice as many, half a tile at once. */
+static void resolve_doubled(const struct draw *d,
+                            const struct glint_flare_worker *w,
+                            const struct glint_edge_sums *s, int y)
+{
+    const struct glint_flare *f = d->flare;
+    const int half = GLINT_CODES_WIDTH / 2, n = s->tile.x1 - s->tile.x0;
+    const int n_y = smaller(2, f->cfg.height - 2 * y);
+
+    for (int first = 0; first < n; first += half) {
+        const int x = 2 * (s->tile.x0 + first), part = smaller(half, n - first);
+
+        for (int c = 0; c < 3; c++)
+            for (int row = 0; row < 2; row++)
+                double_row(w->light->rgb_q16[c][0] + first, part,
+                           w->wide_light->rgb_q16[c][row]);
+        glint_resolve_stretch(f->resolve, d->image, x, 2 * y,
+                              smaller(2 * part, f->cfg.width - x), n_y,
+                              w->wide_light, w->codes);
+    }
+}
+
+static void resolve_half(const struct draw *d,
+                         const struct glint_flare_worker *w,
+                         const struct glint_edge_sums *s)
+{
+    for (int y = s->tile.y0; y < s->tile.y1; y++) {
+        int lit = 0;
+
+        if (glint_edge_dark(s, y - s->tile.y0))
+            continue;
+        for (int c = 0; c < 3; c++)
+            lit |= glint_edge_light(s, c, y - s->tile.y0,
+                                    d->flare->resolve->kernels,
+                                    w->light->rgb_q16[c][0]);
+        if (lit && d->image)
+            resolve_doubled(d, w, s, y);
+    }
+}
+
 static void draw_tile(const struct draw *d, struct glint_flare_worker *w,
                       struct glint_edge_sums *s, int tile)
 {
@@ -375,6 +427,8 @@ static void draw_tile(const struct draw *d, struct glint_flare_worker *w,
     w->n_tiles++;
     if (s->linear)
         resolve_linear(d, w, s);
+    else if (f->half)
+        resolve_half(d, w, s);
     else
         resolve_codes(d, w, s);
     s->lit = is_lit(s);

@@ -42,6 +42,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
         c->coarse_log2 ? (size_t)1 << (2 * (c->coarse_log2 - c->tile_log2)) : 0;
 
     w->light = glint_arena_take(a, 1, sizeof *w->light);
+    w->wide_light = glint_arena_take(a, 1, sizeof *w->wide_light);
     w->light_q20 = glint_arena_take(a, 3 * side, sizeof *w->light_q20);
     w->codes = glint_arena_take(a, 1, sizeof *w->codes);
     w->plan = glint_arena_take(a, 1, sizeof *w->plan);
@@ -159,8 +160,6 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
         return GLINT_E_MEMORY;
     f = carve(&arena, cfg);
     f->cfg = *cfg;
-    glint_bins_init(&f->bins, (struct glint_box){0, 0, cfg->width, cfg->height},
-                    first_level_log2(cfg), f->bins.start, f->bins.ref);
     for (int i = 0; i < glint_workers_count(cfg->workers); i++) {
         f->worker[i].n_tiles = 0;
         if (by_edges(cfg))
@@ -173,8 +172,19 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
 
 /* ------------------------------------------------------------------ bundles */
 
+/* Makes the frame's pixels the picture's, or HALF as many each way. */
+static void set_size(struct glint_flare *f, int half)
+{
+    f->half = half;
+    f->width = (f->cfg.width + half) >> half;
+    f->height = (f->cfg.height + half) >> half;
+    glint_bins_init(&f->bins, (struct glint_box){0, 0, f->width, f->height},
+                    first_level_log2(&f->cfg), f->bins.start, f->bins.ref);
+}
+
 void glint_flare_begin(struct glint_flare *flare)
 {
+    set_size(flare, 0);
     flare->n_bundles = flare->n_vertices = flare->n_drawn = 0;
     flare->plan.rays = NULL;
     flare->stats = (struct glint_flare_stats){0};
@@ -308,9 +318,15 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
     const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
 
     glint_flare_begin(flare);
-    flare->plan = (struct glint_plan){
-        rays,           beams, n_beams, flare->cfg.width, flare->cfg.height,
-        flare->cfg.sets};
+    set_size(flare, rays->half && rays->faintest.mantissa != 0 &&
+                        by_edges(&flare->cfg));
+    flare->plan = (struct glint_plan){.rays = rays,
+                                      .beam = beams,
+                                      .n_beams = n_beams,
+                                      .width = flare->cfg.width,
+                                      .height = flare->cfg.height,
+                                      .sets = flare->cfg.sets,
+                                      .half = flare->half};
     flare->stats.need_bundles = need;
     flare->stats.dropped_bundles = need - n;
     if (n > 0)

@@ -191,6 +191,14 @@ static int64_t bend_of(const struct glint_plan_survey *s, int a, int b)
     return first ? second * sensor / first : 0; /* 2^30 * 2^31 */
 }
 
+static struct glint_real pixels_per_mm(const struct glint_plan *p)
+{
+    struct glint_real x = p->rays->pixels_per_mm;
+
+    x.exponent -= p->half;
+    return x;
+}
+
 /* What codes need of N cells a side. Errors of a faint ghost are the less seen:
  * in codes its light shrinks by 2^(5/12) with each octave, its errors with the
  * square of the cells. Folds are brighter than their ghost's mean. */
@@ -233,7 +241,7 @@ static int cells_of(const struct glint_plan *p,
     bend = bend > outline / 10 ? bend : outline / 10;
     bend_q8 = real_integer(
         real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] + FINE_LOG2),
-                   r->pixels_per_mm),
+                   pixels_per_mm(p)),
         8, INT64_C(1) << 40);
     /* the root of 12.5 times as much, times fineness / 64 */
     n = q_narrow(
@@ -251,7 +259,7 @@ static int64_t pixels_q8(const struct glint_plan *p,
                          const struct glint_transfer *t, int64_t x)
 {
     return real_integer(real_times(real_of(x, t->exponent[GLINT_OUT_SENSOR_X]),
-                                   p->rays->pixels_per_mm),
+                                   pixels_per_mm(p)),
                         8, INT64_C(1) << 31);
 }
 
@@ -264,8 +272,10 @@ static int is_in_view(const struct glint_plan *p, const struct glint_beam *b,
     const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
     const int64_t m = middle_q8 < 0 ? -middle_q8 : middle_q8;
 
-    return ((m - wide_q8) * c - s * high_q8) >> 30 <= p->width * 128 &&
-           ((m - wide_q8) * s - c * high_q8) >> 30 <= p->height * 128;
+    return ((m - wide_q8) * c - s * high_q8) >> 30 <= p->width * 128 >>
+               p->half &&
+           ((m - wide_q8) * s - c * high_q8) >> 30 <= p->height * 128 >>
+               p->half;
 }
 
 static struct glint_real box_side(const struct glint_transfer *t, int k)
@@ -301,6 +311,7 @@ static struct glint_real flux_of(const struct glint_plan *p,
     struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
 
     x.exponent += 2 + exponent; /* both are halves */
+    x.exponent -= 2 * p->half;  /* over pixels as large as four */
     x = real_times(x, real_of(b->cosine_q30, -30));
     x = real_times(x, real_times(w->weight, b->power));
     return real_times(x, colour);
@@ -319,10 +330,9 @@ static int64_t peak_q20(const struct glint_plan *p,
     if (p->rays->faintest.mantissa == 0 || (s->n_up && s->n_down) ||
         s->least_area < 2 || s->least_area == UINT64_MAX)
         return most;
-    area =
-        real_times(real_of((int64_t)(s->least_area >> 1),
-                           2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
-                   real_times(p->rays->pixels_per_mm, p->rays->pixels_per_mm));
+    area = real_times(real_of((int64_t)(s->least_area >> 1),
+                              2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
+                      real_times(pixels_per_mm(p), pixels_per_mm(p)));
     flux.exponent += 1;
     area = real_times(area, real_of(s->across * 2 * s->down, 0)); /* the box */
     return real_integer(real_over(real_over(flux, area), p->rays->faintest), 20,
@@ -348,9 +358,10 @@ struct glint_place glint_plan_place(const struct glint_plan *plan, int beam)
 {
     return (struct glint_place){.cos_q30 = plan->beam[beam].cos_q30,
                                 .sin_q30 = plan->beam[beam].sin_q30,
-                                .pixels_per_mm = plan->rays->pixels_per_mm,
-                                .middle_x_q8 = plan->width * 128,
-                                .middle_y_q8 = plan->height * 128};
+                                .pixels_per_mm = pixels_per_mm(plan),
+                                .middle_x_q8 = plan->width * 128 >> plan->half,
+                                .middle_y_q8 =
+                                    plan->height * 128 >> plan->half};
 }
 
 /* How far energies can be lifted, with a quarter more than the survey saw. */

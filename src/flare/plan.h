@@ -31,8 +31,9 @@ struct glint_source {
 struct glint_plan {
     const struct glint_rays *rays;
     const struct glint_beam *beam;
-    int n_beams, width, height;
+    int n_beams, width, height; /* of the picture */
     unsigned sets;
+    int half; /* pixels are twice as wide and high as the picture's */
 };
 
 /* What a few rays of a bundle say, in cells across the pupil and down half of

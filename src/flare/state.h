@@ -18,8 +18,9 @@
 
 /* What one worker needs while it draws. */
 struct glint_flare_worker {
-    struct glint_light_rows *light; /* two rows of a tile */
-    int32_t *light_q20;             /* [3][side]: one of a linear picture */
+    struct glint_light_rows *light;      /* two rows of a tile */
+    struct glint_light_rows *wide_light; /* of half as many pixels, doubled */
+    int32_t *light_q20; /* [3][side]: one of a linear picture */
     struct glint_resolve_rows *codes;
     int n_tiles; /* small tiles that it drew */
     struct glint_plan_scratch *plan;
@@ -48,9 +49,11 @@ struct glint_bundle_slot {
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    int n_bundles, n_vertices;         /* taken in */
-    struct glint_plan plan;            /* of a lens, unless rays is NULL */
-    struct glint_source *source;       /* of each bundle planned */
+    int half, width, height;     /* of the frame: see struct glint_rays; what is
+                                    drawn has this size */
+    int n_bundles, n_vertices;   /* taken in */
+    struct glint_plan plan;      /* of a lens, unless rays is NULL */
+    struct glint_source *source; /* of each bundle planned */
     struct glint_real flux, brightest; /* of what was planned */
     int n_drawn;                       /* of these, the bundles that bin kept */
     struct glint_bundle *bundle;

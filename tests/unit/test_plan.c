@@ -315,6 +315,49 @@ static void test_whole_edges(void **state)
     close_fixture(&f);
 }
 
+/* Half as many pixels each way: nearly all light is where it was. */
+static void test_half(void **state)
+{
+    static uint8_t codes[2][3 * WIDTH * HEIGHT];
+    double flux[2] = {0, 0}, sum = 0;
+    struct fixture f;
+    int n;
+
+    (void)state;
+    open_fixture(&f);
+    f.cfg.width = WIDTH - 7;
+    f.cfg.height = HEIGHT - 3;
+    f.cfg.irradiance_steps = 70;
+    f.beam.power = real_of(1, 2);
+    f.rays.faintest = real_of(163, -22);
+    n = 3 * f.cfg.width * f.cfg.height;
+    for (int half = 0; half < 2; half++) {
+        struct glint_image image = {.format = GLINT_RGB24,
+                                    .width = f.cfg.width,
+                                    .height = f.cfg.height};
+        struct glint_flare_stats s;
+
+        f.rays.half = half;
+        glint_image_place(&image, codes[half]);
+        start(&f);
+        glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
+        glint_flare_bin(f.flare, &s);
+        glint_flare_draw(f.flare, &image);
+        free(f.mem);
+        f.mem = NULL;
+    }
+    for (int i = 0; i < n; i++) {
+        const double off = codes[1][i] - codes[0][i];
+
+        sum += off * off;
+        flux[0] += pow(codes[0][i], 2.2);
+        flux[1] += pow(codes[1][i], 2.2);
+    }
+    assert_true(fabs(flux[1] - flux[0]) < 0.02 * flux[0]);
+    assert_true(sum > 0.01 * n && sum < 40 * n); /* not the same, 32 dB */
+    close_fixture(&f);
+}
+
 /* With every setting of the plan a picture has the same bits whatever the
  * tiles, the workers, the order of jobs and the kernels. */
 static void test_same_bits(void **state)
@@ -331,7 +374,7 @@ static void test_same_bits(void **state)
     f.cfg.irradiance_steps = 70;
     f.beam.power = real_of(1, 2);
     f.rays.faintest = real_of(163, -22);
-    for (int i = 0; i < 4 * 3 * 12; i++) {
+    for (int i = 0; i < 2 * 4 * 3 * 12; i++) {
         struct glint_image image = {.format = formats[i / 12 % 3],
                                     .width = WIDTH - 7,
                                     .height = HEIGHT - 3};
@@ -340,7 +383,8 @@ static void test_same_bits(void **state)
         struct shuffle shuffle;
 
         shuffle_init(&shuffle, first ? 1 : 1 + i % 3, shuffle_next(&seed));
-        f.rays.whole_codes_q8 = whole_q8[i / 36];
+        f.rays.whole_codes_q8 = whole_q8[i / 36 % 4];
+        f.rays.half = i / 144;
         f.cfg.width = image.width;
         f.cfg.height = image.height;
         f.cfg.workers = &shuffle.workers;
@@ -454,7 +498,7 @@ static void test_rows_and_grids(void **state)
     start(&f);
     glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
     picture(&f, rows);
-    plan = (struct glint_plan){&f.rays, &f.beam, 1, WIDTH, HEIGHT, 0};
+    plan = (struct glint_plan){&f.rays, &f.beam, 1, WIDTH, HEIGHT, 0, 0};
     glint_flare_begin(f.flare);
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++)
         for (int wave = 0; wave < 2; wave++) {
@@ -576,6 +620,7 @@ int main(void)
         cmocka_unit_test(test_faint),
         cmocka_unit_test(test_steps_follow_codes),
         cmocka_unit_test(test_whole_edges),
+        cmocka_unit_test(test_half),
         cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_many_faint_lights),
         cmocka_unit_test(test_room),
