@@ -483,7 +483,7 @@ run-analyze: $(core_o) $(bake_o) $(platform_o) $(tools_o) $(OUT)/tools/glint.o
 
 sources = $(shell find include src platform tools tests -name '*.[ch]')
 format:
-	clang-format -i $(sources)
+	$(Q)clang-format -i $(sources)
 lint: $(OUT)/libglint.a $(OUT)/libglint-bake.a
 	@tools/lint-layers && tools/lint-q
 	@tools/lint-symbols $(NM) $(OUT)/libglint.a $(OUT)/libglint-bake.a
