@@ -393,6 +393,8 @@ ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
 ARM_UNIT := arena kernels model curve resolve lights flare plan beams bright match \
         tracks quantise pnm y4m output workers measure lamps fourcc panel frame src/kernels/horner.c \
         show_lights live_stats live_adapt
+# Those that want a model bake it here first, for all.
+ARM_BAKES := $(OUT)/tests/unit/test_frame
 build/models/%.glint: lenses/%.lens $(OUT)/libglint-bake.a | $(OUT)/glint
 	@mkdir -p $(@D)
 	$(say) BAKE $@
@@ -404,7 +406,7 @@ check-arm:
 	@tools/deps "ARM in an emulator" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross gcc-arm-linux-gnueabi \
 	        libc6-dev-armel-cross qemu-user-static debian-archive-keyring
-	@$(MAKE) --no-print-directory WERROR=-Werror $(OUT)/scenes \
+	@$(MAKE) --no-print-directory WERROR=-Werror $(OUT)/scenes $(ARM_BAKES) \
 	        $(ARM_MODELS:%=build/models/%.glint)
 	@set -e; for t in $(ARM_TARGETS); do \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t purity \
@@ -412,6 +414,7 @@ check-arm:
 	for t in aarch64 armv7; do s=$$(tests/arm/prepare $$t); \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t \
 	                SYSROOT=$$s arm-tests glint-live; done
+	@XDG_CACHE_HOME=$(CURDIR)/build/cache $(ARM_BAKES) >/dev/null 2>&1
 	@tests/arm/check $(ARM_MODELS:%=build/models/%.glint) -- $(ARM_UNIT)
 # glint on Debian's kernels in an emulator: cameras, panels, ARM. One:
 # VMFILTER=aarch64/camera, as tests/vm/check says.
