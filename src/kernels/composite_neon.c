@@ -28,8 +28,9 @@
 #define v_and_not(mask, x)       vbicq_s16(x, mask)
 #define v_equal(a, b)            S(vceqq_s16(a, b))
 
-/* Makes X wait for Y. */
-#define AFTER(x, y) __asm__("" : "+w"(x) : "w"(y))
+/* Makes X, or what is loaded from P, wait for Y. */
+#define AFTER(x, y)      __asm__("" : "+w"(x) : "w"(y))
+#define LOAD_AFTER(p, y) __asm__("" : "+r"(p) : "w"(y))
 
 /* A plus half of B, unsigned. */
 #define v_add_half(a, b) S(vsraq_n_u16(U(a), U(b), 1))

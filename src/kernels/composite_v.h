@@ -73,29 +73,48 @@ static WHOLLY_INLINE void change_channel(const MIX *m, int n, const V *base,
         change[n - 1] = change_part(m, base[n - 1], tint, light[n - 1]);
 }
 
+/* The light of N vectors of a channel from *AT on, which is loaded when WAIT is
+ * there: one vector is of pixels in their order, unless PAIRS. */
+static WHOLLY_INLINE void load_light(const uint16_t *at, int pairs, V wait,
+                                     V *light)
+{
+    LOAD_AFTER(at, wait);
+    if (pairs)
+        v_load_pairs(at, light);
+    else
+        light[0] = v_load((const int16_t *)at);
+}
+
 /* What R', B' and Y' of N vectors of pixels of LUMA_Q7 change by: channel by
  * channel, so that no more is under way than there are registers for. */
-static WHOLLY_INLINE void change_pixels(const MIX *m, int n, const V *luma_q7,
-                                        V tint[3], V light[3][V_PARTS],
+static WHOLLY_INLINE void change_pixels(const MIX *m, int n, int pairs,
+                                        const V *luma_q7, V tint[3],
+                                        const uint16_t *const light[3], int i,
                                         V kept[3][V_PARTS])
 {
-    V base[V_PARTS], green[V_PARTS], sum[V_PARTS];
+    V base[V_PARTS], green[V_PARTS], sum[V_PARTS], any[V_PARTS], l[V_PARTS];
 
     for (int k = 0; k < n; k++)
         base[k] = v_add(TIMES(luma_q7[k], m->from_ycc, GLINT_MIX_BASE),
                         CONSTANT(m->black));
-    change_channel(m, n, base, tint[0], light[0], kept[0]);
-    for (int k = 0; k < n; k++)
-        sum[k] = TIMES(kept[0][k], m->to_ycc, GLINT_MIX_LUMA);
-    AFTER(tint[1], sum[n - 1]);
-    change_channel(m, n, base, tint[1], light[1], green);
-    for (int k = 0; k < n; k++)
-        sum[k] = v_add(sum[k], TIMES(green[k], m->to_ycc, GLINT_MIX_LUMA + 1));
-    AFTER(tint[2], sum[n - 1]);
-    change_channel(m, n, base, tint[2], light[2], kept[1]);
+    load_light(light[0] + i, pairs, base[0], l);
+    change_channel(m, n, base, tint[0], l, kept[0]);
     for (int k = 0; k < n; k++) {
-        const V dark = v_equal(
-            v_or(v_or(light[0][k], light[1][k]), light[2][k]), v_set(0));
+        sum[k] = TIMES(kept[0][k], m->to_ycc, GLINT_MIX_LUMA);
+        any[k] = l[k];
+    }
+    load_light(light[1] + i, pairs, sum[n - 1], l);
+    AFTER(tint[1], sum[n - 1]);
+    change_channel(m, n, base, tint[1], l, green);
+    for (int k = 0; k < n; k++) {
+        sum[k] = v_add(sum[k], TIMES(green[k], m->to_ycc, GLINT_MIX_LUMA + 1));
+        any[k] = v_or(any[k], l[k]);
+    }
+    load_light(light[2] + i, pairs, sum[n - 1], l);
+    AFTER(tint[2], sum[n - 1]);
+    change_channel(m, n, base, tint[2], l, kept[1]);
+    for (int k = 0; k < n; k++) {
+        const V dark = v_equal(v_or(any[k], l[k]), v_set(0));
 
         sum[k] =
             v_add(sum[k], TIMES(kept[1][k], m->to_ycc, GLINT_MIX_LUMA + 2));
@@ -115,12 +134,10 @@ void KERNEL(glint_add_luma)(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
 
     for (int i = 0; i < n; i += V_N) {
         const V y_q7 = v_load_codes(luma + i);
-        V l[3][V_PARTS], tint[3], d[3][V_PARTS];
+        V tint[3], d[3][V_PARTS];
 
-        for (int c = 0; c < 3; c++)
-            l[c][0] = v_load((const int16_t *)light[c] + i);
         tint_of(m, v_load_codes(cb + i), v_load_codes(cr + i), tint);
-        change_pixels(m, 1, &y_q7, tint, l, d);
+        change_pixels(m, 1, 0, &y_q7, tint, light, i, d);
         v_store_codes(luma + i, v_add_sat(v_add(y_q7, rounding), d[2][0]));
         for (int c = 0; c < 3; c++)
             v_store(change[c] + i, d[c][0]);
@@ -130,13 +147,14 @@ void KERNEL(glint_add_luma)(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
 /* What light does to sixteen pixels: to luma at once, and to what their chroma
  * goes by: the means of R', B' and Y' of the pairs. */
 static WHOLLY_INLINE void change_block(const MIX *m, V luma_q7[V_PARTS],
-                                       V cb_q7, V cr_q7, V light[3][V_PARTS],
+                                       V cb_q7, V cr_q7,
+                                       const uint16_t *const light[3], int i,
                                        const V rounding[V_PARTS], V mean[3])
 {
     V tint[3], d[3][V_PARTS];
 
     tint_of(m, cb_q7, cr_q7, tint);
-    change_pixels(m, V_PARTS, luma_q7, tint, light, d);
+    change_pixels(m, V_PARTS, 1, luma_q7, tint, light, i, d);
     for (int k = 0; k < V_PARTS; k++)
         luma_q7[k] = v_add_sat(v_add(luma_q7[k], rounding[k]), d[2][k]);
     for (int c = 0; c < 3; c++)
@@ -150,20 +168,14 @@ static WHOLLY_INLINE void change_block(const MIX *m, V luma_q7[V_PARTS],
         v_sub(TIMES(own, (m)->to_ycc, k), TIMES(luma, (m)->to_ycc, (k) + 1)))
 
 /* Whether none of sixteen pixels gets light. */
-static WHOLLY_INLINE int all_dark(V light[3][V_PARTS])
+static WHOLLY_INLINE int all_dark(const uint16_t *const light[3], int i)
 {
     V any = v_set(0);
 
-    for (int k = 0; k < V_PARTS; k++)
-        any = v_or(any, v_or(v_or(light[0][k], light[1][k]), light[2][k]));
-    return v_is_zero(any);
-}
-
-static WHOLLY_INLINE void load_light(const uint16_t *const light[3], int i,
-                                     V l[3][V_PARTS])
-{
     for (int c = 0; c < 3; c++)
-        v_load_pairs(light[c] + i, l[c]);
+        for (int k = 0; k < BLOCK; k += V_N)
+            any = v_or(any, v_load((const int16_t *)light[c] + i + k));
+    return v_is_zero(any);
 }
 
 void KERNEL(glint_add_pairs)(uint8_t *luma, uint8_t *chroma,
@@ -179,14 +191,13 @@ void KERNEL(glint_add_pairs)(uint8_t *luma, uint8_t *chroma,
     v_round_pairs(round, rounding);
     v_round_chroma(round_chroma, c_rounding);
     for (int i = 0; i < n; i += BLOCK) {
-        V l[3][V_PARTS], y[V_PARTS], c[2], d[3];
+        V y[V_PARTS], c[2], d[3];
 
-        load_light(light, i, l);
-        if (step == GLINT_PAIRS_ALONE && all_dark(l))
+        if (step == GLINT_PAIRS_ALONE && all_dark(light, i))
             continue;
         v_load_code_pairs(luma + i, y);
         v_load_chroma(chroma + i, c);
-        change_block(m, y, c[0], c[1], l, rounding, d);
+        change_block(m, y, c[0], c[1], light, i, rounding, d);
         v_store_code_pairs(luma + i, y);
         for (int k = 0; k < 3; k++) {
             if (step == GLINT_PAIRS_FIRST)
@@ -203,9 +214,11 @@ void KERNEL(glint_add_pairs)(uint8_t *luma, uint8_t *chroma,
     }
 }
 
-void KERNEL(glint_add_packed)(uint8_t *pixels, const uint16_t *const light[3],
-                              int n, int luma_at, const struct glint_mix *mix,
-                              const int16_t *round, const int16_t *round_chroma)
+static WHOLLY_INLINE void add_packed(uint8_t *pixels,
+                                     const uint16_t *const light[3], int n,
+                                     int luma_at, const struct glint_mix *mix,
+                                     const int16_t *round,
+                                     const int16_t *round_chroma)
 {
     LOAD_MIX(m, mix);
     V rounding[V_PARTS], c_rounding[2];
@@ -213,18 +226,29 @@ void KERNEL(glint_add_packed)(uint8_t *pixels, const uint16_t *const light[3],
     v_round_pairs(round, rounding);
     v_round_chroma(round_chroma, c_rounding);
     for (int i = 0; i < n; i += BLOCK) {
-        V l[3][V_PARTS], y[V_PARTS], c[2], d[3];
+        V y[V_PARTS], c[2], d[3];
 
-        load_light(light, i, l);
-        if (all_dark(l))
+        if (all_dark(light, i))
             continue;
         v_load_packed(pixels + 2 * i, luma_at, y, c);
-        change_block(m, y, c[0], c[1], l, rounding, d);
+        change_block(m, y, c[0], c[1], light, i, rounding, d);
         c[0] =
             ADD_CHROMA(m, c[0], c_rounding[0], d[1], d[2], GLINT_MIX_CB_BLUE);
         c[1] = ADD_CHROMA(m, c[1], c_rounding[1], d[0], d[2], GLINT_MIX_CR_RED);
         v_store_packed(pixels + 2 * i, luma_at, y, c);
     }
+}
+
+/* Twice, as choosing for every block costs as much as adding a channel's light
+ * to a pixel. */
+void KERNEL(glint_add_packed)(uint8_t *pixels, const uint16_t *const light[3],
+                              int n, int luma_at, const struct glint_mix *mix,
+                              const int16_t *round, const int16_t *round_chroma)
+{
+    if (luma_at)
+        add_packed(pixels, light, n, 1, mix, round, round_chroma);
+    else
+        add_packed(pixels, light, n, 0, mix, round, round_chroma);
 }
 
 void KERNEL(glint_add_code)(uint8_t *code, const uint16_t *light, int n,
