@@ -77,8 +77,8 @@ static void resolve_whole(const struct glint_resolve *r,
     const int grey = image->format == GLINT_GREY;
     const uint16_t *rgb[3] = {light->rgb_q16[0][row], light->rgb_q16[1][row],
                               light->rgb_q16[2][row]};
-    int16_t *const change[3] = {rows->change_q7[0], rows->change_q7[1],
-                                rows->change_q7[2]};
+    int16_t *const change[3] = {rows->change[0], rows->change[1],
+                                rows->change[2]};
     const int16_t *round = r->round_q7[y & 7];
     uint8_t *code[3] = {rows->codes.sample[0][row], rows->codes.sample[1][row],
                         rows->codes.sample[2][row]};
@@ -109,8 +109,8 @@ static void resolve_pairs(const struct glint_resolve *r,
                           struct glint_light_rows *light,
                           struct glint_resolve_rows *rows)
 {
-    int16_t *const mean[3] = {rows->change_q7[0], rows->change_q7[1],
-                              rows->change_q7[2]};
+    int16_t *const mean[3] = {rows->change[0], rows->change[1],
+                              rows->change[2]};
 
     if (n_x & 1)
         mirror_last(light, n_x, n_y);

@@ -16,8 +16,8 @@
  * Grey pictures: what is added is the luminance of the light, with the weights
  * of BT.709, the primaries of linear light here; the matrix has no say.
  *
- * Before rounding to codes, the error is below 0.1 code (kernels/tone.h), and
- * light comes in steps that are worth 0.05 code at most.
+ * Before rounding to codes, the error of R', G', B' is below 0.11 code
+ * (kernels/tone.h); light counts in steps that are worth 0.1 code at most.
  */
 #ifndef GLINT_TILE_RESOLVE_H
 #define GLINT_TILE_RESOLVE_H
@@ -45,7 +45,7 @@ struct glint_light_rows {
 /* Scratch of a worker. */
 struct glint_resolve_rows {
     ALIGNED(32) struct glint_codes codes;
-    ALIGNED(32) int16_t change_q7[3][GLINT_CODES_WIDTH];
+    ALIGNED(32) int16_t change[3][GLINT_CODES_WIDTH]; /* as kernels have it */
     ALIGNED(32) uint16_t grey_q16[GLINT_CODES_WIDTH];
 };
 
