@@ -16,9 +16,7 @@ static const char *raster_of(const struct test *t)
 
 static double quality_of(const struct test *t)
 {
-    return t->report.quality >= 0
-               ? t->report.quality
-               : log2((t->scene->grid ? t->scene->grid : 64) / 16.0) / 4;
+    return t->report.quality >= 0 ? t->report.quality : t->scene->quality;
 }
 
 /* Characters across. */

@@ -70,6 +70,7 @@ void ladder_set(struct scene *s, double quality)
 {
     const struct rung r = rung_at(quality);
 
+    s->quality = quality;
     s->grid = cells_of(&r);
     s->quantum = r.quantum;
     s->whole_codes = r.whole;

@@ -23,6 +23,7 @@ void scene_defaults(struct scene *scene)
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
                             .whole_codes = FRAME_WHOLE_CODES,
+                            .quality = 0.5,
                             .cull = FRAME_CULL_CODES,
                             .antialias = true};
 }

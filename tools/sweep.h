@@ -14,6 +14,8 @@
 
 enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 
+#define MAX_FLUX_ERROR 0.02 /* brightness must not depend on a dial */
+
 /* What a point is of. */
 enum sweep_kind {
     SWEEP_STANDARD,

@@ -5,8 +5,6 @@
 
 #include "sweep.h"
 
-#define MAX_FLUX_ERROR 0.02 /* brightness must not depend on a dial */
-
 double sweep_cost(const struct sweep *s, const struct sweep_point *p)
 {
     return s->by_instructions ? 1e-6 * p->instructions : p->ratio;

@@ -29,7 +29,8 @@ static const char head[] =
     "codes, 8 bits, exposed so that the exact picture's 99.9th percentile is "
     "white; flux is compared before it becomes codes. The line is the front: "
     "nothing that was measured is both cheaper and better, among what keeps "
-    "its flux within 2 percent. Marks say what they are under the "
+    "its flux within 2 percent; the rest is not shown in fronts. Marks say "
+    "what they are under the "
     "pointer.</p>\n";
 
 /* ---------------------------------------------------------------------- table
@@ -50,15 +51,15 @@ static void table_of_names(const struct sweep *s, FILE *file)
 
         if (p->set.kind != SWEEP_LADDER || at != floor(at))
             continue;
-        fprintf(file,
-                "<tr><td>%s</td><td>%dx%d, %d</td><td>%s</td><td>%.1f</td>"
-                "<td>%.1f</td><td>%.4f</td><td>%g</td><td%s>%+.2f</td>"
-                "<td>%zu</td><td>%zu</td></tr>\n",
-                s->lens[c->lens], c->width, c->height, c->n_lamps,
-                ladder_name[(int)at], sweep_cost(s, p), p->psnr_db, p->ssim,
-                p->p99, fabs(p->flux_error) > 0.02 ? " class=\"worse\"" : "",
-                100 * p->flux_error, p->arena_bytes / 1024,
-                p->model_bytes / 1024);
+        fprintf(
+            file,
+            "<tr><td>%s</td><td>%dx%d, %d</td><td>%s</td><td>%.1f</td>"
+            "<td>%.1f</td><td>%.4f</td><td>%g</td><td%s>%+.2f</td>"
+            "<td>%zu</td><td>%zu</td></tr>\n",
+            s->lens[c->lens], c->width, c->height, c->n_lamps,
+            ladder_name[(int)at], sweep_cost(s, p), p->psnr_db, p->ssim, p->p99,
+            fabs(p->flux_error) > MAX_FLUX_ERROR ? " class=\"worse\"" : "",
+            100 * p->flux_error, p->arena_bytes / 1024, p->model_bytes / 1024);
     }
     fputs("</table>\n", file);
 }

@@ -103,7 +103,7 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
     const size_t most = (size_t)s->n_points + 1;
     struct sweep_mean *mean = malloc(most * sizeof *mean);
     struct dot *dot = malloc(most * sizeof *dot);
-    int n_panels = 1, n;
+    int n_panels = 1, n_dots = 0, n;
     char title[160];
 
     for (int c = 0; c < s->n_cases; c++)
@@ -111,10 +111,11 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
     plot_open(file, n_panels);
     n = mean && dot ? sweep_means(s, mean, s->n_points) : 0;
     for (int i = 0; i < n; i++)
-        dot[i] = (struct dot){mean[i].set, mean[i].cost, mean[i].psnr_db,
-                              mean[i].front};
+        if (mean[i].flux_error < MAX_FLUX_ERROR)
+            dot[n_dots++] = (struct dot){mean[i].set, mean[i].cost,
+                                         mean[i].psnr_db, mean[i].front};
     front_panel(file, 0, "All lenses: mean error and relative cost",
-                "times the default's", dot, n, true);
+                "times the default's", dot, n_dots, true);
     n_panels = 1;
     for (int c = 0; c < s->n_cases && dot; c++) {
         const struct sweep_case *k = &s->scase[c];
@@ -129,7 +130,7 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
             continue;
         snprintf(title, sizeof title, "%s, %dx%d", s->lens[k->lens], k->width,
                  k->height);
-        front_panel(file, n_panels++, title, cost_words(s), dot, k->n, true);
+        front_panel(file, n_panels++, title, cost_words(s), dot, n_dots, true);
     }
     plot_close(file);
     free(mean);
@@ -173,7 +174,7 @@ static void dials_panel(FILE *file, int number, const struct sweep_mean *mean,
     p.x.words = "times the default's";
     p.y.words = "PSNR, dB";
     for (int i = 0; i < n; i++)
-        if (mean[i].set->dial >= 0 && mean[i].flux_error < 0.02 &&
+        if (mean[i].set->dial >= 0 && mean[i].flux_error < MAX_FLUX_ERROR &&
             mean[i].cost < 6) {
             plot_stretch(&p, mean[i].cost, mean[i].psnr_db);
             seen[mean[i].set->dial] = true;
@@ -195,7 +196,7 @@ void sweep_svg_trade(const struct sweep *s, FILE *file)
     int n_near = 0;
 
     for (int i = 0; i < n; i++)
-        if (mean[i].flux_error < 0.02 && mean[i].cost < 8)
+        if (mean[i].flux_error < MAX_FLUX_ERROR && mean[i].cost < 8)
             dot[n_near++] = (struct dot){mean[i].set, mean[i].cost,
                                          mean[i].psnr_db, mean[i].front};
     plot_open(file, 2);
@@ -271,7 +272,7 @@ static void dial_panel(const struct sweep *s, FILE *file, int number, int dial)
         if (s->scase[c].together || dials[dial].many_lights)
             dial_curve(s, &p, c, dial);
     for (int i = 0; i < s->n_lenses; i++) {
-        char name[18];
+        char name[16];
 
         snprintf(name, sizeof name, "%s", s->lens[i]);
         plot_key(&p, 'o', plot_colour(i), name);
@@ -360,7 +361,7 @@ static void growth_panel(const struct sweep *s, FILE *file, enum against what)
             plot_frame(&p);
     }
     for (int i = 0; i < s->n_lenses; i++) {
-        char name[18];
+        char name[16];
 
         snprintf(name, sizeof name, "%s", s->lens[i]);
         plot_key(&p, 'o', plot_colour(i), name);
