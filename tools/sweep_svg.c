@@ -120,14 +120,16 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
     for (int c = 0; c < s->n_cases && dot; c++) {
         const struct sweep_case *k = &s->scase[c];
 
+        if (!k->together)
+            continue;
+        n_dots = 0;
         for (int i = 0; i < k->n; i++) {
             const struct sweep_point *p = &s->point[k->first + i];
 
-            dot[i] =
-                (struct dot){&p->set, sweep_cost(s, p), p->psnr_db, p->front};
+            if (fabs(p->flux_error) < MAX_FLUX_ERROR)
+                dot[n_dots++] = (struct dot){&p->set, sweep_cost(s, p),
+                                             p->psnr_db, p->front};
         }
-        if (!k->together)
-            continue;
         snprintf(title, sizeof title, "%s, %dx%d", s->lens[k->lens], k->width,
                  k->height);
         front_panel(file, n_panels++, title, cost_words(s), dot, n_dots, true);
