@@ -14,6 +14,7 @@
 #   make check-valgrind   memory that was never written, by valgrind
 #   make fuzz     every fuzzer for SECONDS=60, two at a time;  FUZZ=lens: that one
 #   make analyze  clang-tidy, gcc -fanalyzer and cppcheck; zero findings
+#   make extremes  the list of extremes, each with the worst figure seen and its bound
 #   make lint     layers, Q formats, formatting, symbols;  purity: that the
 #                 run-time half has no floats and calls nobody (TARGET= too)
 #   make install  DESTDIR= PREFIX=/usr/local, TARGET= for a board
@@ -126,7 +127,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
-EXTREMES := powers lenses frames sums runs
+EXTREMES := angles powers lenses frames sums runs
 UNIT := arena kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
@@ -359,6 +360,11 @@ $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
 	$(link)
 $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
 	$(link)
+$(OUT)/motion: $(OUT)/tests/support/motion.o $(OUT)/tests/support/stage.o $(libs)
+	$(link)
+$(OUT)/random_lenses: $(OUT)/tests/support/random_lenses.o \
+        $(OUT)/tests/support/random_lens.o $(OUT)/tests/support/stage.o $(libs)
+	$(link)
 
 check:
 	@tools/deps "unit tests, lint" gcc libc6-dev binutils \
@@ -367,9 +373,14 @@ check:
 	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
 	        ! tests/vm/possible $(VM_ARCHS) || \
 	        $(MAKE) --no-print-directory DEPS=no check-vm
-run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(example_bins)
+run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(example_bins) \
+        $(OUT)/motion $(OUT)/random_lenses
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
+	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick
+# Long cases and random lenses too:  make extremes SEED=1 COUNT=500
+extremes: $(extreme_bins) $(OUT)/random_lenses $(OUT)/motion
+	@tests/extremes $(SEED:%=--seed %) $(COUNT:%=--count %)
 # Faults planted in copies of the tree: MUTANTS=names, or all.
 mutants: $(test_bins)
 	@tests/mutants/run $(OUT) $(MUTANTS)
@@ -524,7 +535,7 @@ install: all glint-live
 	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Extreme angles: the axis and a millionth of a degree beside it, the borders
+ * of zones and of what is seen of each ghost, the largest angles, all azimuths,
+ * lights on pixel borders.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/extreme.h"
+#include "support/stage.h"
+
+enum { W = 240, H = 160, SIDE = 192 };
+
+static struct stage heliar;
+static float test[3 * W * H], exact[3 * W * H];
+static uint8_t codes[3][3 * W * H];
+
+#define DEGREE 0.017453292519943295
+
+/* What another grid may make of the same light: in codes outlines are off by
+ * 0.1 pixel over (3/4)^2, as grids have 3/4 of the cells, and an outline that
+ * moves so far along a block of 8 x 8 changes its mean by 255 x 0.18 / 8. */
+#define GRID_CODES 5.7
+
+static int open_stage(void **state)
+{
+    (void)state;
+    return !(stage_load(&heliar, "heliar-tronnier") &&
+             stage_prepare(&heliar, 8) && stage_model(&heliar, 1, 60));
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&heliar);
+    return 0;
+}
+
+static void draw(struct stage *s, const struct glint_lamp *lamp, uint8_t *to)
+{
+    memset(to, 0, sizeof codes[0]);
+    assert_true(stage_codes(s, lamp, 1, to));
+}
+
+static double against_exact(struct stage *s, const struct glint_lamp *lamp)
+{
+    assert_true(stage_linear(s, lamp, 1, test));
+    assert_true(stage_exact(s, lamp, 1, 192, exact));
+    return stage_compare(s, exact, test).psnr_db;
+}
+
+/* ---------------------------------------------------------------------- axis
+ */
+
+/* Nothing is special about the axis: 45 dB is what pictures so small have
+ * anywhere else (test_exact asks the same of 480x270). A light a millionth of a
+ * degree away is one: its ghosts move by 1e-6 pixel. */
+static void test_near_the_axis(void **state)
+{
+    static const double theta[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
+    struct glint_lamp lamp = stage_lamp(0, 0, 1);
+    double worst = 999, jump = 0;
+
+    (void)state;
+    stage_view(&heliar, W, H, 0);
+    for (int i = 0; i < 5; i++) {
+        lamp = stage_lamp(theta[i], 77, 1);
+        worst = fmin(worst, against_exact(&heliar, &lamp));
+    }
+    lamp.theta_deg = 0;
+    lamp.power = stage_power(&heliar, &lamp);
+    draw(&heliar, &lamp, codes[0]);
+    for (int i = 1; i < 3; i++) {
+        lamp.theta_deg = theta[i];
+        draw(&heliar, &lamp, codes[1]);
+        jump = fmax(jump, stage_block_jump(&heliar, codes[0], codes[1]));
+    }
+    assert_true(extreme_at_least(
+        "angles: on the axis, and up to 0.1 deg beside", worst, 45, "dB"));
+    assert_true(extreme_at_most("angles: 1e-6 deg against 0, block mean", jump,
+                                0.05, "codes"));
+}
+
+/* On the axis the azimuth means nothing but where the grid's rows run. */
+static void test_azimuth_on_the_axis(void **state)
+{
+    struct glint_lamp lamp = stage_lamp(0, 0, 1);
+    double jump = 0;
+
+    (void)state;
+    stage_view(&heliar, W, H, 0);
+    lamp.power = stage_power(&heliar, &lamp);
+    draw(&heliar, &lamp, codes[0]);
+    for (int phi = 5; phi < 360; phi += 5) {
+        lamp.phi_deg = phi;
+        draw(&heliar, &lamp, codes[1]);
+        jump = fmax(jump, stage_block_jump(&heliar, codes[0], codes[1]));
+    }
+    assert_true(extreme_at_most("angles: azimuths of a light on the axis", jump,
+                                GRID_CODES, "codes"));
+}
+
+/* ------------------------------------------------------------------ azimuths
+ */
+
+/* Where all light lands in the picture its sum cannot depend on the azimuth;
+ * half a percent is what steps of a percent and chords of outlines may add
+ * here, where ghosts are ten pixels wide. */
+static void test_flux_of_all_azimuths(void **state)
+{
+    double least = INFINITY, most = 0;
+
+    (void)state;
+    stage_view(&heliar, SIDE, SIDE, 400);
+    for (int k = 0; k < 4 * 24; k++) {
+        /* also beside the quarters, by a step of q30 and less */
+        const double phi = k % 4 == 0 ? 15.0 * k / 4
+                           : k % 4 == 1
+                               ? 15.0 * (k / 4) + 1e-9 * (k & 8 ? 1 : -1)
+                           : k % 4 == 2 ? 15.0 * (k / 4) + 1e-6
+                                        : -15.0 * (k / 4) - 7.3;
+        const struct glint_lamp lamp = stage_lamp(7.5, phi, 1);
+        double flux;
+
+        assert_true(stage_linear(&heliar, &lamp, 1, test));
+        flux = stage_flux(&heliar, test);
+        least = fmin(least, flux);
+        most = fmax(most, flux);
+    }
+    assert_true(extreme_at_most("angles: flux over all azimuths",
+                                most / least - 1, 0.005, ""));
+}
+
+/* An octagon looks the same after a quarter turn, and so does a square picture:
+ * rows and columns change places, which shows in how edges are rounded. */
+static void test_quarter_turns(void **state)
+{
+    double worst = 0;
+
+    (void)state;
+    stage_view(&heliar, 160, 160, 24);
+    for (int k = 0; k < 6; k++) {
+        struct glint_lamp lamp = stage_lamp(3 + 2 * k, 61 * k, 1);
+
+        lamp.power = stage_power(&heliar, &lamp);
+        memset(codes[0], 0, sizeof codes[0]);
+        assert_true(stage_codes(&heliar, &lamp, 1, codes[0]));
+        for (int turn = 1; turn < 4; turn++) {
+            lamp.phi_deg += 90;
+            memset(codes[1], 0, sizeof codes[1]);
+            assert_true(stage_codes(&heliar, &lamp, 1, codes[1]));
+            for (int y = 0; y < 160; y++)
+                for (int x = 0; x < 160; x++) {
+                    const int to[4][2] = {
+                        {x, y}, {y, 159 - x}, {159 - x, 159 - y}, {159 - y, x}};
+                    const int at = 3 * (to[turn][1] * 160 + to[turn][0]);
+
+                    memcpy(codes[2] + 3 * (y * 160 + x), codes[1] + at, 3);
+                }
+            worst = fmax(worst, stage_block_jump(&heliar, codes[0], codes[2]));
+        }
+    }
+    assert_true(extreme_at_most(
+        "angles: quarter turns of the light, block mean", worst, 2, "codes"));
+}
+
+/* --------------------------------------------------------------------- zones
+ */
+
+/* The light whose beam has exactly this sine. */
+static struct glint_lamp at_sine(int32_t sine_q30, double power)
+{
+    return stage_lamp(asin(sine_q30 * 0x1p-30) / DEGREE, 33, power);
+}
+
+/* Whether SINE is a border between two zones of ghost G. */
+static int is_inner(const struct glint_lens *lens,
+                    const struct glint_model_ghost *g, int32_t sine_q30)
+{
+    int ends = 0, begins = 0;
+
+    for (uint32_t k = 0; k < g->n_systems; k++) {
+        const struct glint_model_system *s = &lens->system[g->first_system + k];
+
+        ends |= s->sine_hi_q30 == sine_q30;
+        begins |= s->sine_lo_q30 == sine_q30;
+    }
+    return ends && begins;
+}
+
+/* One step of 2^-30 to either side of SINE: how much the picture jumps. */
+static double jump_at(int32_t sine_q30, double *flux)
+{
+    const struct glint_lamp middle = at_sine(sine_q30, 1);
+    const double power = fmin(1e9, stage_power(&heliar, &middle));
+    double sum[3], jump = 0;
+
+    for (int k = 0; k < 3; k++) {
+        const int32_t at = sine_q30 + 2 * (k - 1);
+        const struct glint_lamp lamp = at_sine(at < 0 ? 0 : at, power);
+
+        draw(&heliar, &lamp, codes[k]);
+        sum[k] = 1e-9;
+        for (int i = 0; i < 3 * W * H; i++)
+            sum[k] += codes[k][i];
+        if (k > 0) {
+            jump =
+                fmax(jump, stage_block_jump(&heliar, codes[k], codes[k - 1]));
+            *flux = fmax(*flux, fabs(sum[k] / sum[k - 1] - 1));
+        }
+    }
+    return jump;
+}
+
+/* Neighbouring zones are fitted by themselves, energies to 0.6 % and what lies
+ * between rays to a percent; a flat part that is nearly white changes by 2
+ * codes at most, and by another two where either side falls on the next step of
+ * irradiance. Ghosts begin and end where nothing of them is left in the field,
+ * so these borders must not show at all. */
+static void test_zone_borders(void **state)
+{
+    const struct glint_lens *lens;
+    double inner = 0, outer = 0, flux = 0, flux_outer = 0;
+    int n = 0;
+
+    (void)state;
+    stage_view(&heliar, W, H, 0);
+    lens = &heliar.file.lens;
+    for (uint32_t g = 0; g < lens->header->n_ghosts; g++)
+        for (uint32_t k = 0; k < lens->ghost[g].n_systems; k++) {
+            const struct glint_model_ghost *ghost = &lens->ghost[g];
+            const struct glint_model_system *s =
+                &lens->system[ghost->first_system + k];
+            const int32_t border[2] = {s->sine_lo_q30, s->sine_hi_q30};
+
+            for (int e = 0; e < 2; e++) {
+                /* where a ghost is drawn at all */
+                if (border[e] == 0 || border[e] > 0.5 * 0x1p30)
+                    continue;
+                if (is_inner(lens, ghost, border[e])) {
+                    if (e == 0)
+                        continue; /* has been */
+                    inner = fmax(inner, jump_at(border[e], &flux));
+                } else
+                    outer = fmax(outer, jump_at(border[e], &flux_outer));
+                n++;
+            }
+        }
+    print_message("%d borders\n", n);
+    assert_true(n > 20);
+    assert_true(extreme_at_most("angles: across a zone's border, block mean",
+                                inner, 4, "codes"));
+    assert_true(extreme_at_most("angles: across a zone's border, all codes",
+                                flux, 0.002, ""));
+    assert_true(extreme_at_most("angles: where a ghost begins or ends, block "
+                                "mean",
+                                outer, 0.5, "codes"));
+    assert_true(extreme_at_most("angles: where a ghost begins or ends, all "
+                                "codes",
+                                flux_outer, 0.001, ""));
+}
+
+/* --------------------------------------------------------------- wide angles
+ */
+
+/* Up to the last step of the model it draws what is there; beyond it nothing,
+ * which is counted; nothing is undefined up to the horizon. */
+static void test_wide(void **state)
+{
+    static const double theta[] = {59.9, 60, 60.0001, 89, 89.9, 90};
+    double worst = 999;
+
+    (void)state;
+    stage_view(&heliar, W, H, 0);
+    for (int i = 0; i < 6; i++) {
+        const struct glint_lamp lamp = stage_lamp(theta[i], 20, 1e6);
+
+        worst = fmin(worst, against_exact(&heliar, &lamp));
+        assert_int_equal(heliar.drawn.beyond_lights, theta[i] > 60);
+        for (int k = 0; k < 3 * W * H; k++)
+            assert_true(isfinite(exact[k]) && exact[k] >= 0);
+    }
+    assert_true(extreme_at_least("angles: 60 to 90 deg, behind a dark field",
+                                 worst, 60, "dB"));
+}
+
+/* A ball lens sees to all sides: 45 dB as everywhere. */
+static void test_wide_ball(void **state)
+{
+    static struct stage ball;
+    double worst = 999;
+    int lit = 0;
+
+    (void)state;
+    assert_true(stage_parse(&ball, "name ball\nf-number 4\nfilm 40 30\n"
+                                   "surface 6 6 5.9 1.5168 64.17\n"
+                                   "stop 6 1.2\n"
+                                   "surface -6 2.8 5.9 1.62 36.4\n"
+                                   "surface -9 3.2 8.5 air\n"));
+    assert_true(stage_prepare(&ball, 8));
+    assert_true(stage_model(&ball, 1, 89));
+    stage_view(&ball, W, H, 0);
+    for (int deg = 10; deg < 90; deg += 13) {
+        const struct glint_lamp lamp = stage_lamp(deg, 140, 1);
+        const double db = against_exact(&ball, &lamp);
+
+        lit += stage_flux(&ball, exact) > 0;
+        worst = fmin(worst, db);
+    }
+    print_message("%d angles with light\n", lit);
+    assert_true(lit >= 3);
+    assert_true(
+        extreme_at_least("angles: a ball lens up to 88 deg", worst, 45, "dB"));
+    stage_close(&ball);
+}
+
+/* ------------------------------------------------------------- pixel borders
+ */
+
+/* A light whose image lies on the corner of a pixel or of a tile is one like
+ * any other: against the exact picture, and no jump where it crosses. */
+static void test_pixel_borders(void **state)
+{
+    static const double at[][2] = {{120, 80},  {64, 64},   {128, 64},  {0, 0},
+                                   {240, 160}, {64.5, 64}, {63.5, 0.5}};
+    const double step = 1.0 / 512;
+    double worst = 999, jump = 0;
+
+    (void)state;
+    stage_view(&heliar, W, H, 0);
+    for (int i = 0; i < 7; i++) {
+        struct glint_lamp lamp = stage_lamp(0, 0, 1);
+
+        glint_view_to_angles(&heliar.view, heliar.setup.optics.focal_mm,
+                             at[i][0], at[i][1], &lamp);
+        worst = fmin(worst, against_exact(&heliar, &lamp));
+        lamp.power = stage_power(&heliar, &lamp);
+        for (int k = 0; k < 2; k++) {
+            glint_view_to_angles(&heliar.view, heliar.setup.optics.focal_mm,
+                                 at[i][0] + (k ? step : -step),
+                                 at[i][1] + (k ? step : -step), &lamp);
+            draw(&heliar, &lamp, codes[k]);
+        }
+        jump = fmax(jump, stage_block_jump(&heliar, codes[0], codes[1]));
+    }
+    assert_true(extreme_at_least(
+        "angles: lights on borders of pixels and tiles", worst, 45, "dB"));
+    /* on the axis it also turns the grid round */
+    assert_true(extreme_at_most("angles: across the border of a pixel", jump,
+                                GRID_CODES, "codes"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_near_the_axis),
+        cmocka_unit_test(test_azimuth_on_the_axis),
+        cmocka_unit_test(test_flux_of_all_azimuths),
+        cmocka_unit_test(test_quarter_turns),
+        cmocka_unit_test(test_zone_borders),
+        cmocka_unit_test(test_wide),
+        cmocka_unit_test(test_wide_ball),
+        cmocka_unit_test(test_pixel_borders),
+    };
+
+    return cmocka_run_group_tests_name("extremes: angles", tests, open_stage,
+                                       close_stage);
+}
