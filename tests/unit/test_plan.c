@@ -537,7 +537,11 @@ static void test_finest_grid(void **state)
     open_fixture(&f);
     f.rays.pixels_per_mm = real_of(12000, 0);
     f.rays.fineness = GLINT_MAX_CELLS;
-    plan = (struct glint_plan){&f.rays, &f.beam, 1, WIDTH, HEIGHT, 0};
+    plan = (struct glint_plan){.rays = &f.rays,
+                               .beam = &f.beam,
+                               .n_beams = 1,
+                               .width = WIDTH,
+                               .height = HEIGHT};
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++) {
         struct glint_source source = {.ghost = ghost};
         struct glint_bundle bundle;
