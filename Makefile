@@ -195,6 +195,9 @@ ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)
 # else constants that are hoisted push out tables: a tenth more instructions
 $(OUT)/src/kernels/composite_neon.o: CFLAGS += -fno-move-loop-invariants
 endif
+ifneq ($(filter armv7%,$(ARCH)),) # 16 vectors for 40: the rest spills
+$(OUT)/src/kernels/composite_neon.o: CFLAGS += -Wframe-larger-than=1536
+endif
 # the floor that everything is measured by is as fast as can be
 $(OUT)/tools/yardstick.o: CFLAGS += -O3
 # what every frame of a camera goes through on its way to a panel
@@ -218,6 +221,8 @@ $(core_o): CFLAGS += -Wno-frame-larger-than
 else ifeq ($(CONFIG),analyze) # what make analyze builds; gcc only
 # as it is written: -O0 keeps functions and their messages apart
 ANALYZER := -O0 -fanalyzer -Wno-frame-larger-than
+# gcc 12 does not see what its own intrinsics write
+$(OUT)/src/%_sse41.o $(OUT)/src/%_avx2.o: ANALYZER := -O0 -Wno-frame-larger-than
 TIDY = $(Q)clang-tidy --quiet $< -- $(CPPFLAGS) $(filter-out $(WARN),$(CFLAGS))
 else ifeq ($(CONFIG),qcheck)
 CPPFLAGS += -DGLINT_Q_CHECK

@@ -35,7 +35,7 @@ struct scene {
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma, quantum, cull;
     double whole_codes; /* see struct frame */
-    double quality;   /* as asked for, 0.5 by default */
+    double quality;     /* as asked for, 0.5 by default */
     double budget_ms;   /* 0: none */
     enum glint_raster raster;
     enum glint_weights weights;

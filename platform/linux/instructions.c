@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE /* syscall */
+#define _DEFAULT_SOURCE    /* syscall; NOLINT(bugprone-reserved-identifier): \
+                              theirs */
 #include "linux/instructions.h"
 
 #include <linux/perf_event.h>

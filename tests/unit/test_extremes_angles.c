@@ -115,7 +115,7 @@ static void test_azimuth_on_the_axis(void **state)
  * here, where ghosts are ten pixels wide. */
 static void test_flux_of_all_azimuths(void **state)
 {
-    double least = INFINITY, most = 0;
+    double least = HUGE_VAL, most = 0;
 
     (void)state;
     stage_view(&heliar, SIDE, SIDE, 400);
