@@ -73,6 +73,7 @@ static void take_accounts(struct explain *e)
 
                 glint_flare_account(e->frame->flare, ghost, beam, wave, &a);
                 add(&e->all, &a);
+                /* NOLINTNEXTLINE: set_pairs() has set all of them */
                 add(&e->ghost[e->ghost_of[ghost]], &a);
                 add(&e->beam[beam], &a);
                 add(&e->wave[wave], &a);

@@ -149,8 +149,8 @@ static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
     step *= (a->hi - a->lo) / step > 15  ? 5
             : (a->hi - a->lo) / step > 7 ? 2
                                          : 1;
-    for (double v = ceil(a->lo / step) * step; v <= a->hi; v += step)
-        tick(p, is_x, fabs(v) < 1e-9 ? 0 : v);
+    for (int k = (int)ceil(a->lo / step); k * step <= a->hi; k++)
+        tick(p, is_x, k * step);
 }
 
 void plot_frame(struct plot *p)

@@ -283,10 +283,10 @@ static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
     *p = (struct sweep_picture){.of = (int)(b->c - s->scase),
                                 .point = r ? (int)(r->point - s->point) : -1,
                                 .width = width,
-                                .height = height,
-                                .rgb = malloc(bytes),
-                                .difference = r ? malloc(bytes) : NULL};
+                                .height = height};
     s->n_pictures++;
+    p->rgb = malloc(bytes);
+    p->difference = r ? malloc(bytes) : NULL;
     if (!p->rgb || (r && !p->difference))
         return false;
     shrink(codes, 3 * b->c->width, by, p->rgb, width, height);

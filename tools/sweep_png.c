@@ -77,7 +77,7 @@ static void put_pixels(struct bytes *b, const uint8_t *rows, size_t n)
         put(b, rows + at, part);
     }
     for (size_t i = 0; i < n; i++) {
-        a = (a + rows[i]) % 65521;
+        a = (a + rows[i]) % 65521; /* NOLINT: N of them are there */
         c = (c + a) % 65521;
     }
     put_u32(b, c << 16 | a);

@@ -77,7 +77,8 @@ static void front_panel(FILE *file, int number, const char *title,
     struct plot p;
     bool seen[MAX_DIALS] = {false};
 
-    qsort(dot, (size_t)n, sizeof *dot, by_cost);
+    if (n > 0)
+        qsort(dot, (size_t)n, sizeof *dot, by_cost);
     plot_init(&p, file, number, title);
     p.x.is_log = true;
     p.x.words = words;
