@@ -120,6 +120,10 @@ static void say_frame(const struct overlay *o)
 static void note_worst(struct frame_report *worst,
                        const struct frame_report *report)
 {
+    const int dropped =
+        worst->stats.dropped_bundles > report->stats.dropped_bundles
+            ? worst->stats.dropped_bundles
+            : report->stats.dropped_bundles;
     const int beyond = worst->beyond_lights > report->beyond_lights
                            ? worst->beyond_lights
                            : report->beyond_lights;
@@ -129,6 +133,7 @@ static void note_worst(struct frame_report *worst,
     if (report->apart_lights - report->drawn_lights >
         worst->apart_lights - worst->drawn_lights)
         *worst = *report;
+    worst->stats.dropped_bundles = dropped;
     worst->lights = lights;
     worst->beyond_lights = beyond;
 }
@@ -353,11 +358,6 @@ static void print_result(const struct tool *tool, const struct overlay *o)
                 o->look.n_frames / seconds, o->find_ms / n, o->flare_ms / n,
                 o->most_lights, o->look.report.ghosts,
                 o->look.report.arena_bytes, o->peak_bytes);
-        if (o->look.report.stats.dropped_bundles > 0)
-            fprintf(stderr,
-                    "%s: %d bundles were left out: fewer lights or a "
-                    "smaller --grid would fit\n",
-                    o->output, o->look.report.stats.dropped_bundles);
         if (o->most_lights == 0)
             fprintf(stderr,
                     "%s: no light was found, so nothing was drawn; "

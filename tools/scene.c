@@ -438,4 +438,9 @@ void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
                 "glint %s: %d lights that can be told apart were merged into "
                 "%d, the faint ones first (--max-lights)\n",
                 tool->name, r->apart_lights, r->drawn_lights);
+    if (r->stats.dropped_bundles > 0)
+        fprintf(stderr,
+                "glint %s: there was no room for %d bundles of rays, which are "
+                "missing: fewer lights or a smaller --grid would fit\n",
+                tool->name, r->stats.dropped_bundles);
 }

@@ -245,7 +245,8 @@ void scene_json(const struct frame_report *report);
 /* How many lights there were and are drawn, as text. */
 void scene_lights_text(const struct frame_report *report, char text[64]);
 
-/* Says on standard error if lights merged only because they were too many. */
+/* Says on standard error if lights merged only because they were too many, and,
+ * however quiet, if a part of the flare is missing. */
 void scene_warn_lights(const struct tool *tool,
                        const struct frame_report *report);
 
