@@ -14,7 +14,7 @@
 
 enum {
     FLUX_POWERS = 6,
-    REVISION = 9 /* of what is made of a lens: raised when models change */
+    REVISION = 10 /* of what is made of a lens: raised when models change */
 };
 
 /* Everything one model takes. */
@@ -232,6 +232,9 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
         .escape = 1e-3 * t,
         .energy = 1.2e-3 * t,
         .ease = 10,
+        .axis = fmin(1, t),
+        .part_depth =
+            4 + (int)fmin(GLINT_MAX_PART_DEPTH - 4, fmax(0, ceil(-log2(t)))),
         .brightness = &k->brightness};
     struct glint_hunt *hunt = malloc(sizeof *hunt);
     enum glint_status status = GLINT_E_MEMORY;

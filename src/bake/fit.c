@@ -33,7 +33,6 @@
 
 enum {
     BAND_DEPTH = 2, /* times that a band is, down to LEAST_BAND */
-    PART_DEPTH = 4, /* times that a zone's box is halved */
     CROPS = 2       /* it is done so many times */
 };
 
@@ -170,7 +169,8 @@ static double bearable(const struct fitter *f)
 static double hopeless(const struct fitter *f, const struct pending *p)
 {
     if (p->by_all_means)
-        return p->depth < PART_DEPTH ? HOPELESS * bearable(f) : 0;
+        return p->depth < f->fit.tolerance->part_depth ? HOPELESS * bearable(f)
+                                                       : 0;
     return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
 }
 
@@ -231,7 +231,9 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
     const bool helped = left <= STUCK * p->before;
     const double width =
         degrees_between(p->lo, p->hi) * (f->fit.ease < BRIGHT_EASE ? 2 : 1);
-    const bool stuck = width < LEAST_DEG || (!helped && width < STUCK_DEG);
+    const double least = p->lo <= 0 ? f->fit.tolerance->axis : 1;
+    const bool stuck =
+        width < least * LEAST_DEG || (!helped && width < least * STUCK_DEG);
 
     if (p->by_all_means && f->fit.off <= bearable(f))
         return KEEP;
@@ -239,7 +241,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
         p->w1 - p->w0 > LEAST_BAND)
         return BANDS;
     if (p->by_all_means)
-        return p->depth < PART_DEPTH ? PART : KEEP;
+        return p->depth < f->fit.tolerance->part_depth ? PART : KEEP;
     if (left <= 1)
         return KEEP;
     return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
@@ -279,8 +281,8 @@ static int push_halves(struct pending *stack, int n, struct pending p,
 /* Zones from the lowest angle up; the upper halves wait on a stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    /* halvings of a sine down to half of LEAST_DEG: 16 at most */
-    enum { DEEP = 24 + BAND_DEPTH + PART_DEPTH };
+    /* halvings of a sine down to half of LEAST_DEG, or a tenth of it: 20 */
+    enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_PART_DEPTH };
     struct pending stack[DEEP] = {
         {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};
     enum glint_status status = GLINT_OK;

@@ -21,6 +21,8 @@
 #include "bake/hunt.h"
 #include "glint/status.h"
 
+enum { GLINT_MAX_PART_DEPTH = 8 };
+
 /* The root mean square that is aimed at; single rays may be off by five times
  * as much. Stop and barrel positions draw the outline: EDGE_MM is what they may
  * shift it on the sensor, but neither is asked for less than STOP (stop radii)
@@ -34,6 +36,11 @@ struct glint_tolerance {
     double faint_sensor_mm; /* the most for any ghost */
     double escape; /* past a barrel that is left out, relative radius */
     double ease;
+    double axis;    /* zones at the axis, where light folds into rings: how
+                       narrow they may become, and how far off places may be,
+                       over the same of others */
+    int part_depth; /* times that a zone's box may be halved, up to
+                       GLINT_MAX_PART_DEPTH */
     const struct glint_brightness *brightness;
 };
 

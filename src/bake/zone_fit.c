@@ -150,10 +150,11 @@ static void set_tolerances(struct glint_zone_fit *f,
     const double share = share_of(f, zone);
     const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
     const double ease = fmin(t->ease, shows);
+    const double axis = zone->lo <= 0 ? t->axis : 1;
 
     f->ease = ease;
     f->edge_mm = ease * t->edge_mm;
-    f->sensor_mm = fmin(ease * t->sensor_mm, t->faint_sensor_mm);
+    f->sensor_mm = axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm);
     f->hidden = shows * t->sensor_mm / f->sensor_mm;
     f->stop = outline_tolerance(
         f, t->stop,
