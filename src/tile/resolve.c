@@ -135,7 +135,7 @@ static void resolve_pairs(const struct glint_resolve *r,
 static void resolve_packed(const struct glint_resolve *r,
                            const struct glint_layout *l,
                            const struct glint_image *image, int x, int y, int n,
-                           int row, const struct glint_light_rows *light,
+                           int row, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows)
 {
     uint8_t *px =
@@ -149,10 +149,13 @@ static void resolve_packed(const struct glint_resolve *r,
     r->kernels->add_packed(px, rgb, whole, luma_at, &r->mix, round, round);
     if (whole == n)
         return;
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         rgb[c] += whole;
-    for (int i = 0; i < 2 * (n - whole); i++)
-        rest[i] = px[2 * whole + i];
+        for (int i = n; i < whole + GLINT_LANES; i++)
+            light->rgb_q16[c][row][i] = 0;
+    }
+    for (int i = 0; i < 2 * GLINT_LANES; i++)
+        rest[i] = i < 2 * (n - whole) ? px[2 * whole + i] : 0;
     r->kernels->add_packed(rest, rgb, GLINT_LANES, luma_at, &r->mix, round,
                            round);
     for (int i = 0; i < 2 * (n - whole); i++)
