@@ -128,7 +128,8 @@ static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
 
     *u = (px_mm / unit - t->box[0]) / t->box[1];
     *v = py_mm / unit / t->box[2];
-    return fabs(*u) <= 1 && fabs(*v) <= 1 && !(t->hollow && fabs(*v) < 0.5);
+    return fabs(*u) <= 1 && fabs(*v) <= 1 &&
+           fabs(*v) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
 /* Lights on the other side of the axis and rays on the other side of its plane

@@ -155,7 +155,7 @@ static bool model_ray(const struct parts *parts, double x_mm, double y_mm,
         const double v = y_mm / unit / p->box[2];
         struct glint_outputs out;
 
-        if (fabs(u) > 1 || v > 1 || (p->hollow && v < 0.5))
+        if (fabs(u) > 1 || v > 1 || v < ldexp(glint_transfer_v(p, 0, 1), -30))
             continue;
         glint_transfer_ray(p, (int32_t)lrint(ldexp(u, 30)),
                            (int32_t)lrint(ldexp(v, 30)), &out);

@@ -106,8 +106,9 @@ struct glint_model_system {
     int32_t box_exponent;
     uint32_t output_at; /* struct glint_model_output, kinds rising */
     uint8_t n_outputs, box_terms;
-    uint8_t hollow; /* 1: what is seen within -1/2 < v < 1/2 is another part's
-                       and not this one's; only without knots */
+    uint8_t hollow; /* k: what is seen within |v| < k / (k + 1), its rim, is
+                       other parts' and not this one's; at most
+                       GLINT_MAX_HOLLOW, 0 with knots */
     uint8_t zero;
 };
 
@@ -116,6 +117,7 @@ enum {
     GLINT_BOX_POWERS = 6,   /* of s alone, the 0th among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
+    GLINT_MAX_HOLLOW = 15,
     GLINT_RAYS = 8,         /* that are computed at once */
     GLINT_TABLE_WIDTH = 16, /* of a row of powers of u: whole vectors */
     GLINT_MAX_MODEL_TERMS = 120
@@ -259,11 +261,16 @@ struct glint_place {
     int32_t middle_x_q8, middle_y_q8; /* the sensor's centre, pixels */
 };
 
+/* V, _q30, at J of N steps from the middle of the box, or from the rim of a
+ * hollow one, to 1. */
+int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
+
 /* Fills the vertices of a grid of N_CELLS a side over the whole box, row by
  * row, [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a
  * vertex is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does
- * not fit a vertex is lost, and so are a hollow one's rows within, whose rim is
- * a row where N_CELLS is a multiple of 4. */
+ * not fit a vertex is lost. Of a hollow box N_CELLS is even, at least 4; the
+ * row in the middle is lost, and those beside it are its rim: n_cells - 2 rows
+ * of cells cover what there is. */
 void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);

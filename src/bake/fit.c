@@ -247,7 +247,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
     return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
 }
 
-static const struct glint_part whole = {-1, 1, 1, -1, 1, false};
+static const struct glint_part whole = {-1, 1, 1, -1, 1, 0};
 
 /* Puts the halves of P on the stack: along v first, so that what is seen
  * through the middle gets apart from what is seen through the rim. Returns how
@@ -266,11 +266,14 @@ static int push_halves(struct pending *stack, int n, struct pending p,
         a.part = b.part = whole;
     } else {
         a.depth = b.depth = p.depth + 1;
-        if (p.depth % 2 || p.part.hollow) {
+        if (p.depth % 2) {
             a.part.u1 = b.part.u0 = u;
         } else {
-            a.part.top *= 0.5;
-            b.part.hollow = true;
+            const int k = p.part.hollow; /* k .. k + 1 is to be halved */
+
+            a.part.top *= (2 * k + 1) / (2 * k + 2.0);
+            a.part.hollow = 2 * k;
+            b.part.hollow = 2 * k + 1;
         }
     }
     stack[n] = b;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "bake/degrees.h"
+#include "bake/zone.h"
 
 enum { RAYS = 400, TRIES = 1600, PER_BUNDLE = 16 };
 
@@ -197,6 +198,7 @@ void glint_measure_system(const struct glint_hunt *hunt,
                           const struct glint_fitted_system *fitted,
                           struct glint_measured *out)
 {
+    const double rim = glint_zone_rim(fitted->hollow);
     struct random random = {(uint64_t)system * 977 + 1};
     double error[GLINT_OUT_KINDS][RAYS], energy[RAYS];
     struct bench b = {
@@ -211,8 +213,7 @@ void glint_measure_system(const struct glint_hunt *hunt,
         for (int i = 0; i < PER_BUNDLE && b.n < RAYS; i++) {
             const double u = next(&random), v = 0.5 + 0.5 * next(&random);
 
-            if (!fitted->hollow || v >= 0.5)
-                try_ray(&b, u, v);
+            try_ray(&b, u, rim + (1 - rim) * v);
         }
     }
     out->rays = b.n;

@@ -178,7 +178,7 @@ static void write_system(struct glint_draft *d, uint32_t where,
         .output_at = output_at,
         .n_outputs = (uint8_t)f->n_outputs,
         .box_terms = box_terms,
-        .hollow = f->hollow};
+        .hollow = (uint8_t)f->hollow};
 
     amend(d, where, &system, sizeof system);
 }

@@ -189,6 +189,11 @@ static void narrow(double side[GLINT_BOX_TERMS], double w0, double w1)
     }
 }
 
+double glint_zone_rim(int hollow)
+{
+    return hollow / (hollow + 1.0);
+}
+
 void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
@@ -248,13 +253,12 @@ struct together {
 static void together_add(struct together *t, const struct glint_zone *z,
                          const double x[GLINT_VARIABLES])
 {
-    const double s = x[2], w = x[3];
+    const double s = x[2], w = x[3], rim = glint_zone_rim(z->hollow);
     struct glint_launch *from = &t->from[t->n];
 
     for (int k = 0; k < GLINT_VARIABLES; k++)
         t->x[t->n][k] = x[k];
-    if (z->hollow)
-        t->x[t->n][1] = 0.5 + 0.5 * x[1];
+    t->x[t->n][1] = rim + (1 - rim) * x[1];
     from->x_mm =
         glint_zone_at(z->middle, s, w) + x[0] * glint_zone_at(z->half_x, s, w);
     from->y_mm = t->x[t->n][1] * glint_zone_at(z->half_y, s, w);

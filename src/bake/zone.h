@@ -30,14 +30,14 @@ struct glint_zone {
     double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     double fill; /* mean share of the box that the ghost needs */
-    bool hollow; /* -1/2 < v < 1/2 is not part of it */
+    int hollow;  /* as of struct glint_model_system */
 };
 
 /* A part of a zone's box and band: U0 .. U1 of its u, up to TOP of its v, W0 ..
  * W1 of its w. */
 struct glint_part {
     double u0, u1, top, w0, w1;
-    bool hollow;
+    int hollow;
 };
 
 /* One of these at S and W. */
@@ -48,6 +48,9 @@ double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_profile *profile, double lo, double hi,
                      bool by_colour);
+
+/* Where a hollow box begins, a share of its half height. */
+double glint_zone_rim(int hollow);
 
 /* Reduces the box to PART of it. */
 void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part);

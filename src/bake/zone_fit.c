@@ -95,7 +95,7 @@ static double share_of(const struct glint_zone_fit *f,
     for (int i = 0, next; i < r->n; i = next) {
         const struct sight v = look(r, i);
         const double s = r->x[2][i], w = r->x[3][i];
-        const double pupil = (zone->hollow ? 2 : 4) *
+        const double pupil = 4 * (1 - glint_zone_rim(zone->hollow)) *
                              glint_zone_at(zone->half_x, s, w) *
                              glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
         const double level = glint_brightness_at(
@@ -231,13 +231,10 @@ static enum glint_status keep(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-/* Fits VALUE over RAYS with CHANNEL_WEIGHT; *WORST becomes what is left, if
- * larger. */
-static enum glint_status fit_output(struct glint_zone_fit *f,
-                                    const struct glint_rays *r,
-                                    enum glint_channel kind, double rms,
-                                    struct glint_fitted_system *system,
-                                    double *worst)
+/* Fits VALUE over RAYS with CHANNEL_WEIGHT; returns what is left. */
+static double fit_poly(struct glint_zone_fit *f, const struct glint_rays *r,
+                       enum glint_channel kind, double rms,
+                       struct glint_poly *poly)
 {
     const struct glint_samples samples = {
         r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->channel_weight};
@@ -246,21 +243,28 @@ static enum glint_status fit_output(struct glint_zone_fit *f,
         : f->by_all_means && glint_rays_spread(&f->rays) > GLINT_STEEP
             ? steep_degrees
             : energy_degrees;
-    struct glint_poly poly;
-    double left, grain = rms; /* energy's is a share */
 
     if (f->by_all_means && kind != GLINT_OUT_ENERGY)
         degrees.terms = MANY_TERMS;
     degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->hopeless;
     degrees.patience = PATIENCE;
     degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
-    left = glint_regress_fit(f->scratch, &samples, f->value, &degrees, rms,
-                             PEAK * rms, &poly);
+    return glint_regress_fit(f->scratch, &samples, f->value, &degrees, rms,
+                             PEAK * rms, poly);
+}
+
+/* *WORST becomes what is left, if larger. */
+static enum glint_status fit_output(struct glint_zone_fit *f,
+                                    const struct glint_rays *r,
+                                    enum glint_channel kind, double rms,
+                                    struct glint_fitted_system *system,
+                                    double *worst)
+{
+    struct glint_poly poly;
+    const double left = fit_poly(f, r, kind, rms, &poly);
+
     *worst = fmax(*worst, left);
-    if (kind == GLINT_OUT_ENERGY)
-        for (int i = 0; i < r->n; i++)
-            grain = fmin(grain, rms / f->channel_weight[i]);
-    return keep(system, kind, &poly, grain, left <= 1);
+    return keep(system, kind, &poly, rms, left <= 1);
 }
 
 static enum glint_status fit_channel(struct glint_zone_fit *f, int channel,
@@ -287,32 +291,63 @@ static void energies_of(const struct glint_rays *r, double *least, double *most)
         }
 }
 
-/* Energy counts by its share, down to a two-hundredth of the most that is seen.
- * Towards total reflection it grows a thousandfold; its fourth root is as tame
- * as a position. */
-static enum glint_status fit_energy(struct glint_zone_fit *f,
-                                    struct glint_fitted_system *system,
-                                    double *worst)
+/* Sets VALUE to the energy, or its fourth root, and CHANNEL_WEIGHT, so that
+ * energy counts by its share, down to a two-hundredth of MOST. Returns the
+ * largest weight. */
+static double set_energies(struct glint_zone_fit *f, const struct glint_rays *r,
+                           double most, bool root)
 {
-    const struct glint_rays *r = f->energies.n ? &f->energies : &f->rays;
-    struct glint_fitted_output *o = &system->output[system->n_outputs];
-    double least = HUGE_VAL, most = 1e-30;
+    double largest = 0;
 
-    energies_of(r, &least, &most);
-    energies_of(&f->rays, &least, &most);
-    o->roots = f->by_all_means && most > WIDE_ENERGY * least ? 2 : 0;
-    o->most = least > most ? 0 : o->roots ? sqrt(sqrt(most)) : most;
     for (int i = 0; i < r->n; i++) {
         const double out = fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]);
         const double energy = r->at[RAY_ENERGY][i];
         const double share = fmax(energy, 0.005 * most);
 
         /* an error of the root is a quarter of the energy's */
-        f->value[i] = o->roots ? sqrt(sqrt(energy)) : energy;
+        f->value[i] = root ? sqrt(sqrt(energy)) : energy;
         f->channel_weight[i] = fmax(weight_past_edge(out), 0.001) /
-                               (o->roots ? 0.25 * sqrt(sqrt(share)) : share);
+                               (root ? 0.25 * sqrt(sqrt(share)) : share);
+        largest = fmax(largest, f->channel_weight[i]);
     }
-    return fit_output(f, r, GLINT_OUT_ENERGY, f->energy, system, worst);
+    return largest;
+}
+
+/* Towards total reflection energy grows a thousandfold; its fourth root is as
+ * tame as a position. Where a coating lets all light of some colour through,
+ * the root has a cusp and energy itself is tame. */
+static enum glint_status fit_energy(struct glint_zone_fit *f,
+                                    struct glint_fitted_system *system,
+                                    double *worst)
+{
+    const struct glint_rays *r = f->energies.n ? &f->energies : &f->rays;
+    struct glint_fitted_output *o = &system->output[system->n_outputs];
+    double least = HUGE_VAL, most = 1e-30, left, grain;
+    struct glint_poly poly, other;
+    bool root;
+
+    energies_of(r, &least, &most);
+    energies_of(&f->rays, &least, &most);
+    root = f->by_all_means && most > WIDE_ENERGY * least;
+    grain = f->energy / set_energies(f, r, most, root);
+    left = fit_poly(f, r, GLINT_OUT_ENERGY, f->energy, &poly);
+    if (root && left > 1) {
+        const double other_grain = f->energy / set_energies(f, r, most, false);
+        const double other_left =
+            fit_poly(f, r, GLINT_OUT_ENERGY, f->energy, &other);
+
+        if (other_left < left) {
+            root = false;
+            left = other_left;
+            grain = other_grain;
+            poly = other;
+        }
+    }
+    o->roots = root ? 2 : 0;
+    o->most = least > most ? 0 : root ? sqrt(sqrt(most)) : most;
+    *worst = fmax(*worst, left);
+    return keep(system, GLINT_OUT_ENERGY, &poly, fmin(grain, f->energy),
+                left <= 1);
 }
 
 /* Where the barrel cuts is what counts. */

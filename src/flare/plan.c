@@ -59,11 +59,12 @@ static int is_inside(const struct glint_plan_survey *s,
     return 1;
 }
 
-/* Rays of row J, v = J / s->down. */
+/* Rays of row J of s->down. */
 static void survey_row(struct glint_plan_survey *s, struct glint_transfer *t,
                        int j)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
+    const int32_t v_q30 = glint_transfer_v(t, j, s->down);
     struct glint_plan_node *row = s->row[j % 3];
 
     for (int first = 0; first <= s->across; first += GLINT_RAYS) {
@@ -73,15 +74,14 @@ static void survey_row(struct glint_plan_survey *s, struct glint_transfer *t,
             u_q30[i] = first + i < s->across
                            ? 2 * (one_q30 / s->across) * (first + i) - one_q30
                            : one_q30;
-        glint_transfer_rays(t, one_q30 / s->down * j, u_q30, first == 0, out);
+        glint_transfer_rays(t, v_q30, u_q30, first == 0, out);
         for (int i = 0; i < GLINT_RAYS && first + i <= s->across; i++) {
             struct glint_plan_node *n = &row[first + i];
 
             for (int k = 0; k < s->n_kinds; k++)
                 n->at[s->kind[k]] = out[s->kind[k]][i];
             n->at[GLINT_OUT_ENERGY] = out[GLINT_OUT_ENERGY][i];
-            n->inside =
-                is_inside(s, t, n->at) && !(t->hollow && 2 * j < s->down);
+            n->inside = is_inside(s, t, n->at);
         }
     }
 }
@@ -254,6 +254,14 @@ static int cells_of(const struct glint_plan *p,
     return n < most ? n : most;
 }
 
+/* As N, but even, and two more if there is room. */
+static int hollow_cells(int n)
+{
+    const int more = (n + 3) / 2 * 2;
+
+    return more < GLINT_MAX_CELLS ? more : GLINT_MAX_CELLS;
+}
+
 /* X of the sensor as pixels, q8. */
 static int64_t pixels_q8(const struct glint_plan *p,
                          const struct glint_transfer *t, int64_t x)
@@ -300,7 +308,7 @@ static struct glint_real colour_of(const struct glint_wave *w,
     return real_of(most, -28);
 }
 
-/* Flux of the whole box at energy 2^EXPONENT. */
+/* Flux of the whole box, or of what a hollow one is, at energy 2^EXPONENT. */
 static struct glint_real flux_of(const struct glint_plan *p,
                                  const struct glint_source *s,
                                  const struct glint_transfer *t,
@@ -312,6 +320,8 @@ static struct glint_real flux_of(const struct glint_plan *p,
 
     x.exponent += 2 + exponent; /* both are halves */
     x.exponent -= 2 * p->half;  /* over pixels as large as four */
+    if (t->hollow)
+        x = real_over(x, real_of(t->hollow + 1, 0));
     x = real_times(x, real_of(b->cosine_q30, -30));
     x = real_times(x, real_times(w->weight, b->power));
     return real_times(x, colour);
@@ -372,10 +382,12 @@ static int energy_up(int64_t energy)
     return up > 0 ? up : 0;
 }
 
-static void set_flux(struct glint_bundle *b, struct glint_real flux)
+static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
+                     struct glint_real flux)
 {
+    const int rows = b->n_cells - (t->hollow ? 2 : 0);
     const struct glint_real cell =
-        real_over(flux, real_of((int64_t)b->n_cells * b->n_cells, 0));
+        real_over(flux, real_of((int64_t)b->n_cells * rows, 0));
 
     /* far below what can be seen, or far above what is held anyway */
     b->flux_q31 = cell.exponent < -400 ? 0 : cell.mantissa;
@@ -442,8 +454,8 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     source->light = real_over(
         source->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
     bundle->n_cells = cells_of(plan, s, transfer, source->light);
-    if (transfer->hollow) /* its rim has to be a row */
-        bundle->n_cells = (bundle->n_cells + 3) / 4 * 4;
-    set_flux(bundle, source->flux);
+    if (transfer->hollow) /* two rows of cells are the middle's */
+        bundle->n_cells = hollow_cells(bundle->n_cells);
+    set_flux(bundle, transfer, source->flux);
     return GLINT_FATE_DRAWN;
 }

@@ -470,7 +470,7 @@ static const char *check_system(struct check *c,
     if (s->sine_lo_q30 < 0 || s->sine_lo_q30 >= s->sine_hi_q30 ||
         s->sine_hi_q30 > LIMIT)
         return "a system's angles are out of range";
-    if (s->hollow > 1 || (s->hollow && s->n_knots) || s->zero)
+    if (s->hollow > GLINT_MAX_HOLLOW || (s->hollow && s->n_knots) || s->zero)
         return "a system is hollow in a way that there is not";
     if (s->wave_lo_q24 <= 0 || s->wave_lo_q24 > s->wave_hi_q24)
         return "a system's band is out of range";

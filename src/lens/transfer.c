@@ -607,13 +607,29 @@ static int32_t node_q30(int k, int n_cells)
     return (int32_t)((int64_t)(2 * k - n_cells) * ONE_Q30 / n_cells);
 }
 
-/* Whether another part of the pupil has row J: those within a quarter of the
- * middle. */
+int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
+{
+    const int rim = transfer->hollow;
+
+    /* NOLINTNEXTLINE: there is a step */
+    return (int32_t)(ONE_Q30 * ((int64_t)rim * n + j) / ((rim + 1) * n));
+}
+
+/* Whether row J lies between the two sides of a hollow box. */
 static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
 {
-    const int from_rim = 2 * j > n_cells ? n_cells - j : j;
+    return t->hollow && 2 * j == n_cells;
+}
 
-    return t->hollow && from_rim > n_cells / 4;
+/* V of row J. */
+static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
+{
+    const int last = n_cells / 2 - 1; /* of the lower side, at its rim */
+
+    if (!t->hollow)
+        return node_q30(j, n_cells);
+    return j <= last ? -glint_transfer_v(t, last - j, last)
+                     : glint_transfer_v(t, last - (n_cells - j), last);
 }
 
 /* Row J of the lower half into ROW, and the one on the other side of the
@@ -624,6 +640,7 @@ static void set_row_pair(struct glint_transfer *t,
                          struct glint_vertex *mirrored)
 {
     const struct turn turn = turn_of(t, place);
+    const int32_t v_q30 = row_q30(t, n_cells, j);
 
     if (t->n_nodes != n_cells + 1) {
         t->n_nodes = n_cells + 1;
@@ -633,8 +650,7 @@ static void set_row_pair(struct glint_transfer *t,
     for (int first = 0; first <= n_cells; first += RAYS) {
         int32_t rays[GLINT_OUT_KINDS][RAYS];
 
-        glint_transfer_rays(t, t->node_q30[j], t->node_q30 + first, first == 0,
-                            rays);
+        glint_transfer_rays(t, v_q30, t->node_q30 + first, first == 0, rays);
         for (int i = 0; i < RAYS && first + i <= n_cells; i++)
             set_vertices(t, place, &turn, (const int32_t(*)[RAYS])rays, i,
                          row ? &row[first + i] : NULL,

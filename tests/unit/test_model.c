@@ -268,7 +268,8 @@ static const struct rule auto_rules[] = {
     {SYSTEM_(0, n_knots), 2, no_knots},
     {SYSTEM_(3, n_knots), UINT32_MAX, no_knots},
     {SYSTEM_(0, hollow), 1, NULL},
-    {SYSTEM_(3, hollow), 2, hollow},
+    {SYSTEM_(0, hollow), 15, NULL},
+    {SYSTEM_(3, hollow), 16, hollow},
     {SYSTEM_(0, hollow), 255, hollow},
     {SYSTEM_(0, box_at), 2, outside},
     {SYSTEM_(0, box_at), 0x7ffffffc, outside},
@@ -714,30 +715,36 @@ static void test_grid(void **state)
     free(m.data);
 }
 
-/* Within a hollow one nothing comes through, and on its rim it does. */
+/* A hollow one's rows lie between its rim and the box's, on both sides, where a
+ * finer grid of the whole box has them too. */
 static void test_hollow_grid(void **state)
 {
-    enum { N = 8, NODES = N + 1 };
+    enum { N = 16, NODES = N + 1, HOLLOW = 3, SHELL = 6 };
     struct model_image m = model_auto();
     const struct glint_lens lens = open_image(&m);
     const struct glint_place place = upright();
     static struct glint_transfer t;
-    static struct glint_vertex whole[NODES][NODES], shell[NODES][NODES];
+    static struct glint_vertex whole[NODES][NODES], shell[SHELL + 1][SHELL + 1];
 
     (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
     glint_transfer_grid(&t, &place, N, whole[0]);
-    t.hollow = 1;
-    glint_transfer_grid(&t, &place, N, shell[0]);
-    for (int j = 0; j < NODES; j++)
-        for (int i = 0; i < NODES; i++) {
-            const int within = j > N / 4 && j < N - N / 4;
+    t.hollow = HOLLOW;
+    glint_transfer_grid(&t, &place, SHELL, shell[0]);
+    for (int j = 0; j <= SHELL; j++)
+        for (int i = 0; i <= SHELL; i += SHELL / 2) {
+            const struct glint_vertex *v = &shell[j][i];
+            const struct glint_vertex *same =
+                &whole[2 * j < SHELL ? j : N - (SHELL - j)][i * N / SHELL];
 
-            assert_true(whole[j][i].energy_q16 > 0);
-            assert_int_equal(shell[j][i].energy_q16,
-                             within ? -1 : whole[j][i].energy_q16);
-            if (!within)
-                assert_int_equal(shell[j][i].x_q8, whole[j][i].x_q8);
+            assert_int_equal(v->energy_q16,
+                             2 * j == SHELL ? -1 : same->energy_q16);
+            if (2 * j != SHELL) {
+                assert_true(v->energy_q16 > 0);
+                assert_int_equal(v->x_q8, same->x_q8);
+                assert_int_equal(v->y_q8, same->y_q8);
+                assert_int_equal(v->stop_y_q16, same->stop_y_q16);
+            }
         }
     free(m.data);
 }
