@@ -256,7 +256,6 @@ static int push_halves(struct pending *stack, int n, struct pending p,
                        enum next how)
 {
     const double angle = 0.5 * (p.lo + p.hi);
-    const double u = 0.5 * (p.part.u0 + p.part.u1);
     struct pending a = p, b = p;
 
     if (how == HALVE) {
@@ -266,15 +265,7 @@ static int push_halves(struct pending *stack, int n, struct pending p,
         a.part = b.part = whole;
     } else {
         a.depth = b.depth = p.depth + 1;
-        if (p.depth % 2) {
-            a.part.u1 = b.part.u0 = u;
-        } else {
-            const int k = p.part.hollow; /* k .. k + 1 is to be halved */
-
-            a.part.top *= (2 * k + 1) / (2 * k + 2.0);
-            a.part.hollow = 2 * k;
-            b.part.hollow = 2 * k + 1;
-        }
+        glint_part_halve(&p.part, p.depth % 2 == 0, &a.part, &b.part);
     }
     stack[n] = b;
     stack[n + 1] = a;

@@ -194,6 +194,21 @@ double glint_zone_rim(int hollow)
     return hollow / (hollow + 1.0);
 }
 
+void glint_part_halve(const struct glint_part *part, bool along_v,
+                      struct glint_part *first, struct glint_part *second)
+{
+    const int k = part->hollow;
+
+    *first = *second = *part;
+    if (along_v) { /* k .. k + 1 in steps of 1 / (k + 1) of the height */
+        first->top *= (2 * k + 1) / (2 * k + 2.0);
+        first->hollow = 2 * k;
+        second->hollow = 2 * k + 1;
+    } else {
+        first->u1 = second->u0 = 0.5 * (part->u0 + part->u1);
+    }
+}
+
 void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {

@@ -52,6 +52,10 @@ void glint_zone_init(struct glint_zone *zone,
 /* Where a hollow box begins, a share of its half height. */
 double glint_zone_rim(int hollow);
 
+/* The halves of PART, along v (inner and outer) or along u. */
+void glint_part_halve(const struct glint_part *part, bool along_v,
+                      struct glint_part *first, struct glint_part *second);
+
 /* Reduces the box to PART of it. */
 void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part);
 

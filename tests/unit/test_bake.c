@@ -86,16 +86,26 @@ static void make_singlet(struct glint_prescription *lens)
                 "stop 94 10\n");
 }
 
+#define FAST_SINGLET                  \
+    "name fast\n"                     \
+    "source none\n"                   \
+    "f-number 1.8\n"                  \
+    "film 36 24\n"                    \
+    "surface 28 18 17 1.5168 64.17\n" \
+    "surface flat 2 17 air\n"         \
+    "stop 46 17\n"
+
 /* So fast, and to be fitted so closely, that its pupil is parted. */
-static void make_fast_singlet(struct glint_prescription *lens)
+static void bake_fast_singlet(struct baked *b, struct glint_prescription *lens,
+                              const char *text, double tolerance,
+                              double max_deg)
 {
-    parse(lens, "name fast\n"
-                "source none\n"
-                "f-number 1.8\n"
-                "film 36 24\n"
-                "surface 28 18 17 1.5168 64.17\n"
-                "surface flat 2 17 air\n"
-                "stop 46 17\n");
+    struct glint_bake_options o = options;
+
+    parse(lens, text);
+    o.tolerance = tolerance;
+    o.max_deg = max_deg;
+    bake(b, lens, &o);
 }
 
 static void make_doublet(struct glint_prescription *lens)
@@ -293,17 +303,13 @@ static void test_parts(void **state)
     static struct glint_transfer part[MOST];
     static struct glint_prescription lens;
     static struct glint_setup fast;
-    struct glint_bake_options o = options;
     const double nm = 480;
     struct glint_error error;
     int shared_deg = 0, n_rays = 0;
     struct baked b;
 
     (void)state;
-    make_fast_singlet(&lens);
-    o.tolerance = 0.1;
-    o.max_deg = 4;
-    bake(&b, &lens, &o);
+    bake_fast_singlet(&b, &lens, FAST_SINGLET, 0.1, 4);
     assert_int_equal(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error),
                      GLINT_OK);
     assert_int_equal(b.lens.header->n_ghosts - b.lens.header->n_parts, 1);
@@ -404,6 +410,44 @@ static void test_cut(void **state)
                     1e-12);
         assert_near(glint_zone_at(cut.half_y, s, w),
                     0.75 * glint_zone_at(zone.half_y, s, whole_w), 1e-12);
+    }
+}
+
+static bool part_has(const struct glint_part *p, double u, double v)
+{
+    return u >= p->u0 && u < p->u1 && v < p->top &&
+           v >= p->top * glint_zone_rim(p->hollow);
+}
+
+/* However often a box is halved, each place is in one half. */
+static void test_halves(void **state)
+{
+    enum { DEPTH = 8, PARTS = 1 << DEPTH };
+    static struct glint_part part[PARTS] = {{-1, 1, 1, -1, 1, 0}};
+    uint32_t seed = 5;
+    double area = 0;
+
+    (void)state;
+    for (int depth = 0; depth < DEPTH; depth++)
+        for (int k = (1 << depth) - 1; k >= 0; k--) {
+            const struct glint_part whole = part[k];
+
+            glint_part_halve(&whole, depth % 2 == 0, &part[2 * k],
+                             &part[2 * k + 1]);
+        }
+    for (int k = 0; k < PARTS; k++) {
+        assert_in_range(part[k].hollow, 0, GLINT_MAX_HOLLOW);
+        area += (part[k].u1 - part[k].u0) * part[k].top *
+                (1 - glint_zone_rim(part[k].hollow));
+    }
+    assert_near(area, 2, 1e-12);
+    for (int i = 0; i < 1000; i++) {
+        const double u = unit(&seed), v = fabs(unit(&seed));
+        int found = 0;
+
+        for (int k = 0; k < PARTS; k++)
+            found += part_has(&part[k], u, v);
+        assert_int_equal(found, 1);
     }
 }
 
@@ -602,6 +646,39 @@ static void test_errors_are_small(void **state)
         for (int kind = 0; kind < TRIED; kind++)
             assert_true(error_of(o[kind].rms) <= 1.6 * TOLERANCE * aim[kind]);
     }
+}
+
+/* Where light folds into rings, a finer tolerance is finer still. */
+static void test_axis_is_finer(void **state)
+{
+    const double tolerance = 0.25, aim_px = 0.04;
+    struct glint_prescription lens;
+    struct baked b;
+
+    (void)state;
+    bake_fast_singlet(&b, &lens, FAST_SINGLET, tolerance, 4);
+    assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
+    assert_true(error_of(outputs_of(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
+                1.6 * tolerance * tolerance * aim_px);
+    free(b.data);
+}
+
+/* A film as good as this lets all light of its colour through, and the energy
+ * of a ghost has a zero there. */
+static void test_energy_has_zeros(void **state)
+{
+    struct glint_prescription lens;
+    struct baked b;
+
+    (void)state;
+    bake_fast_singlet(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
+    assert_true(b.lens.header->n_parts > 0);
+    for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
+        const struct glint_model_output *o = outputs_of(&b, (int)k);
+
+        assert_true(error_of(o[GLINT_OUT_ENERGY].rms) < 1e-3);
+    }
+    free(b.data);
 }
 
 /* One coefficient's sign: both measurements tell, or they could not fail. */
@@ -829,9 +906,12 @@ int main(void)
         cmocka_unit_test(test_parts),
         cmocka_unit_test(test_near_barrels),
         cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_halves),
         cmocka_unit_test(test_crop),
         cmocka_unit_test(test_errors_are_true),
         cmocka_unit_test(test_errors_are_small),
+        cmocka_unit_test(test_axis_is_finer),
+        cmocka_unit_test(test_energy_has_zeros),
         cmocka_unit_test(test_planted_error),
         cmocka_unit_test(test_key),
         cmocka_unit_test(test_refusals),
