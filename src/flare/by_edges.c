@@ -103,6 +103,7 @@ static void emit_bundle(struct glint_flare *f, int bundle,
         ghost.coded = f->plan.rays->faintest.mantissa != 0;
         ghost.whole_codes_q8 = ghost.coded ? f->plan.rays->whole_codes_q8 : 0;
         ghost.place = glint_plan_place(&f->plan, f->source[bundle].beam);
+        ghost.sag_q16 = f->source[bundle].sag_q16;
     }
     glint_ghost_edges_emit(&ghost);
     slot->first = -1;

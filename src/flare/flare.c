@@ -326,7 +326,8 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                                       .width = flare->cfg.width,
                                       .height = flare->cfg.height,
                                       .sets = flare->cfg.sets,
-                                      .half = flare->half};
+                                      .half = flare->half,
+                                      .round = flare->cfg.stop.n_blades == 0};
     flare->stats.need_bundles = need;
     flare->stats.dropped_bundles = need - n;
     if (n > 0)

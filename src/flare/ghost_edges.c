@@ -73,6 +73,16 @@ static int vertex_valid(const struct glint_vertex *v)
            (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
+/* Lowers the barrels of a row by their sag. */
+static struct glint_vertex *lower(const struct glint_ghost_edges *g,
+                                  struct glint_vertex *row)
+{
+    for (int i = 0; i <= g->bundle->n_cells; i++)
+        for (int k = 0; k < 2; k++)
+            row[i].barrel_q16[k] -= g->sag_q16[k];
+    return row;
+}
+
 /* Row J of the grid; valid until the next but one. */
 static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
 {
@@ -87,8 +97,8 @@ static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
     else if (2 * j < n)
         glint_transfer_rows(g->transfer, &g->place, n, j, row, r->held[j]);
     else
-        return r->held[n - j];
-    return row;
+        return lower(g, r->held[n - j]);
+    return lower(g, row);
 }
 
 static void set_nodes(struct glint_ghost_edges *g, int j)

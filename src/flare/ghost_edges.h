@@ -54,6 +54,7 @@ struct glint_ghost_edges {
     const struct glint_vertex *vertex;
     struct glint_transfer *transfer;
     struct glint_place place;
+    const uint16_t *sag_q16; /* see struct glint_source */
     const struct glint_bundle *bundle;
     uint32_t number; /* of the bundle */
     const struct glint_stop *stop;

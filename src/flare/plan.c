@@ -32,13 +32,14 @@ static void begin(struct glint_plan_survey *s, const struct glint_transfer *t,
     s->across = across;
     s->down = down;
     s->n_bends = s->n_up = s->n_down = s->n_inside = 0;
+    s->n_bent[0] = s->n_bent[1] = 0;
     s->low = INT32_MAX;
     s->high = -INT32_MAX;
     s->wide = s->energy = 0;
     s->least_area = UINT64_MAX;
     s->n_kinds = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
-        s->change[k] = (struct glint_plan_change){0, 0};
+        s->change[k] = (struct glint_plan_change){0, 0, {0, 0}};
         s->limit[k] = in_units(t, k, near_q16);
         if (t->outputs >> k & 1 && k != GLINT_OUT_ENERGY)
             s->kind[s->n_kinds++] = (uint8_t)k;
@@ -86,11 +87,11 @@ static void survey_row(struct glint_plan_survey *s, struct glint_transfer *t,
     }
 }
 
-/* B between A and C, STEPS of which fit the box. */
+/* B between A and C, STEPS of which fit the box, across (WAY 0) or down. */
 static void add_bend(struct glint_plan_survey *s,
                      const struct glint_plan_node *a,
                      const struct glint_plan_node *b,
-                     const struct glint_plan_node *c, int steps)
+                     const struct glint_plan_node *c, int steps, int way)
 {
     if (!b->inside)
         return;
@@ -108,8 +109,10 @@ static void add_bend(struct glint_plan_survey *s,
 
         s->change[k].first += (uint64_t)(f * f) >> 10;
         s->change[k].second += (uint64_t)(d * d) >> 10;
+        s->change[k].bent[way] += d;
     }
     s->n_bends++;
+    s->n_bent[way]++;
 }
 
 static void add_cell(struct glint_plan_survey *s,
@@ -158,9 +161,9 @@ static void run_survey(struct glint_plan_survey *s, struct glint_transfer *t,
         for (int i = 0; i <= across; i++) {
             add_extent(s, &here[i]);
             if (i > 0 && i < across)
-                add_bend(s, &here[i - 1], &here[i], &here[i + 1], across);
+                add_bend(s, &here[i - 1], &here[i], &here[i + 1], across, 0);
             if (j > 1)
-                add_bend(s, &top[i], &above[i], &here[i], 2 * down);
+                add_bend(s, &top[i], &above[i], &here[i], 2 * down, 1);
             if (j > 0 && i < across)
                 add_cell(s, &above[i], &above[i + 1], &here[i]);
         }
@@ -191,6 +194,22 @@ static int64_t bend_of(const struct glint_plan_survey *s, int a, int b)
     return first ? second * sensor / first : 0; /* 2^30 * 2^31 */
 }
 
+/* The same of a round stop's outline, (1 + r^2) / 2 like a barrel's: where r is
+ * 1, that changes as fast as the stop position S does, and bends by S'^2. */
+static int64_t round_bend(const struct glint_plan_survey *s)
+{
+    const int64_t stop = root_mean(s->change[GLINT_OUT_STOP_X].first +
+                                       s->change[GLINT_OUT_STOP_Y].first,
+                                   s->n_bends);
+    const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
+                                         s->change[GLINT_OUT_SENSOR_Y].first,
+                                     s->n_bends);
+
+    /* 2^30 * 2^31 */
+    return (stop >> 2) * sensor /
+           ((s->limit[GLINT_OUT_STOP_X] >> (FINE_LOG2 + 2)) + 1);
+}
+
 static struct glint_real pixels_per_mm(const struct glint_plan *p)
 {
     struct glint_real x = p->rays->pixels_per_mm;
@@ -213,6 +232,14 @@ static int cells_for_codes(const struct glint_plan_survey *s,
     for (; octaves > 0 && n > LEAST; octaves--)
         n -= n / 8;
     return n;
+}
+
+/* A vertex has two barrels, of which the second is the tightest of all others:
+ * where three and more meet it has kinks, so that tips of outlines come and go
+ * with the grid. */
+static int has_kinks(const struct glint_transfer *t)
+{
+    return t->outputs >> GLINT_OUT_BARREL_2 & 1;
 }
 
 /* As many cells as keep what is straight between rays within a hundredth of a
@@ -238,7 +265,13 @@ static int cells_of(const struct glint_plan *p,
 
             outline = cut > outline ? cut : outline;
         }
-    bend = bend > outline / 10 ? bend : outline / 10;
+    if (p->round) {
+        const int64_t cut = round_bend(s);
+
+        outline = cut > outline ? cut : outline;
+    }
+    outline /= has_kinks(t) ? 5 : 10;
+    bend = bend > outline ? bend : outline;
     bend_q8 = real_integer(
         real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] + FINE_LOG2),
                    pixels_per_mm(p)),
@@ -260,6 +293,38 @@ static int hollow_cells(int n)
     const int more = (n + 3) / 2 * 2;
 
     return more < GLINT_MAX_CELLS ? more : GLINT_MAX_CELLS;
+}
+
+/* What kind K bends by over the box, all ways together, in its units over
+ * 2^FINE_LOG2. */
+static int64_t bowl_of(const struct glint_plan_survey *s, int k)
+{
+    int64_t sum = 0;
+
+    for (int way = 0; way < 2; way++)
+        sum += s->n_bent[way] ? s->change[k].bent[way] / s->n_bent[way] : 0;
+    return sum;
+}
+
+/* A barrel's (1 + r^2) / 2 is a bowl, and what is drawn as straight between
+ * rays lies above it: where a cell bends by D across and E down, by (D + E) /
+ * 12 in the mean. With that taken off, outlines lie as often outside as inside.
+ */
+static void set_sags(struct glint_source *source,
+                     const struct glint_plan_survey *s,
+                     const struct glint_transfer *t, int n_cells)
+{
+    for (int k = GLINT_OUT_BARREL_0; k <= GLINT_OUT_BARREL_1; k++) {
+        const int64_t bowl_q16 =
+            t->outputs >> k & 1
+                ? real_integer(
+                      real_of(bowl_of(s, k), t->exponent[k] + FINE_LOG2), 16,
+                      INT64_C(1) << 40)
+                : 0;
+
+        source->sag_q16[k - GLINT_OUT_BARREL_0] = (uint16_t)q_clamp_sat(
+            bowl_q16 / (12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
+    }
 }
 
 /* X of the sensor as pixels, q8. */
@@ -456,6 +521,7 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     bundle->n_cells = cells_of(plan, s, transfer, source->light);
     if (transfer->hollow) /* two rows of cells are the middle's */
         bundle->n_cells = hollow_cells(bundle->n_cells);
+    set_sags(source, s, transfer, bundle->n_cells);
     set_flux(bundle, transfer, source->flux);
     return GLINT_FATE_DRAWN;
 }

@@ -20,7 +20,10 @@
 /* Where the rays of a bundle come from. */
 struct glint_source {
     int32_t ghost, beam, wave;
-    uint8_t energy_up;       /* see struct glint_transfer */
+    uint8_t energy_up; /* see struct glint_transfer */
+    uint16_t
+        sag_q16[2]; /* of barrels: how far, in the mean, the grid's straight
+                       lines lie above what is bent between its rays */
     struct glint_real flux;  /* of the whole pupil, at the most energy seen;
                                 display white times pixels */
     struct glint_real light; /* the same over the pixels it falls on */
@@ -33,7 +36,8 @@ struct glint_plan {
     const struct glint_beam *beam;
     int n_beams, width, height; /* of the picture */
     unsigned sets;
-    int half; /* pixels are twice as wide and high as the picture's */
+    int half;  /* pixels are twice as wide and high as the picture's */
+    int round; /* the stop is */
 };
 
 /* What a few rays of a bundle say, in cells across the pupil and down half of
@@ -46,9 +50,11 @@ struct glint_plan_node {
     int inside; /* of the stop and the barrels, and a little around */
 };
 
-/* How a quantity changes from ray to ray: sums of squares of differences. */
+/* How a quantity changes from ray to ray: sums of squares of differences, and
+ * of second differences as they are, across the pupil and down. */
 struct glint_plan_change {
     uint64_t first, second;
+    int64_t bent[2];
 };
 
 struct glint_plan_survey {
@@ -56,7 +62,7 @@ struct glint_plan_survey {
     struct glint_plan_change change[GLINT_OUT_KINDS];
     int across, down; /* cells */
     int n_rays;       /* of all surveys of the bundle */
-    int n_bends, n_inside, n_kinds;
+    int n_bends, n_bent[2], n_inside, n_kinds;
     uint8_t kind[GLINT_OUT_KINDS]; /* of outputs that there are, but energy */
     int n_up, n_down;              /* cells by the way they are turned */
     int64_t low, high, wide; /* sensor x, and largest y, of what is inside */

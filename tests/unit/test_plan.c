@@ -498,7 +498,11 @@ static void test_rows_and_grids(void **state)
     start(&f);
     glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
     picture(&f, rows);
-    plan = (struct glint_plan){&f.rays, &f.beam, 1, WIDTH, HEIGHT, 0, 0};
+    plan = (struct glint_plan){.rays = &f.rays,
+                               .beam = &f.beam,
+                               .n_beams = 1,
+                               .width = WIDTH,
+                               .height = HEIGHT};
     glint_flare_begin(f.flare);
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++)
         for (int wave = 0; wave < 2; wave++) {
@@ -550,6 +554,32 @@ static void test_finest_grid(void **state)
         most = bundle.n_cells > most ? bundle.n_cells : most;
     }
     assert_int_equal(most, GLINT_MAX_CELLS);
+    close_fixture(&f);
+}
+
+/* The barrel's 0.5 + u^2 / 2 bends by 4 over the box, across only: straight
+ * lines between rays lie 4 / 12 / n^2 above it in the mean. */
+static void test_sag(void **state)
+{
+    static struct glint_plan_scratch scratch;
+    struct glint_source source = {.ghost = 0};
+    struct glint_bundle bundle;
+    struct glint_plan plan;
+    struct fixture f;
+    double sag;
+
+    (void)state;
+    open_fixture(&f);
+    plan = (struct glint_plan){.rays = &f.rays,
+                               .beam = &f.beam,
+                               .n_beams = 1,
+                               .width = WIDTH,
+                               .height = HEIGHT};
+    glint_plan_bundle(&plan, &source, &bundle, &scratch);
+    assert_true(bundle.n_cells >= 8);
+    sag = 65536 * 4.0 / 12 / (bundle.n_cells * bundle.n_cells);
+    assert_true(fabs(source.sag_q16[0] - sag) <= 1 + 0.01 * sag);
+    assert_int_equal(source.sag_q16[1], 0);
     close_fixture(&f);
 }
 
@@ -620,6 +650,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reals),
+        cmocka_unit_test(test_sag),
         cmocka_unit_test(test_what_is_seen),
         cmocka_unit_test(test_faint),
         cmocka_unit_test(test_steps_follow_codes),
