@@ -11,6 +11,8 @@
 #include "glint/flare.h"
 
 enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
+/* where the survey finds fewer rays, cells a stop radius */
+enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
 
 /* The ghost's box on the sensor, turned by the light's azimuth, meets the
  * picture. */
@@ -52,19 +54,27 @@ static void add_rim(const struct glint_feed_config *cfg,
 
 /* As many cells as keep what is straight between rays within a hundredth of a
  * pixel of what bends, at 64, and outlines within a tenth: light piles up along
- * folds, but not along cuts. */
-static int cells_of(const struct glint_feed_config *cfg, double bend_mm,
-                    double outline_mm, bool folds)
+ * folds, but not along cuts. And none that could step over the stop: where a
+ * rim next to total reflection comes through as well, the pupil is the whole
+ * front, of which the opening may be a hundredth. */
+static int cells_of(const struct glint_feed_config *cfg,
+                    const struct glint_survey *s)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
-    const double bend = fmax(bend_mm, 0.1 * outline_mm);
+    const double round = cfg->setup->n_blades == 0 ? s->round_mm : 0;
+    const double outline = fmax(s->outline_mm, round);
+    const double bend = fmax(s->bend_mm, 0.1 * outline);
     const double finer = cfg->max_cells / 64.0;
-    const double n = finer * sqrt(bend * pixels / (8 * 0.01));
-    const double most = fmin((folds ? 4 : 2) * cfg->max_cells, GLINT_MAX_CELLS);
+    const double most = (s->folds ? 4 : 2) * cfg->max_cells;
+    const double n = fmin(most, finer * sqrt(bend * pixels / (8 * 0.01)));
+    const double least =
+        s->n_inside < FEW_INSIDE
+            ? fmin(4 * cfg->max_cells, CELLS_A_RADIUS * s->step)
+            : 8;
 
     if (cfg->uniform)
         return cfg->max_cells;
-    return (int)ceil(fmin(most, fmax(8, n)) / 4) * 4;
+    return (int)ceil(fmin(GLINT_MAX_CELLS, fmax(fmax(8, least), n)) / 4) * 4;
 }
 
 static void light_direction(const struct glint_feed *feed, double direction[3])
@@ -112,8 +122,7 @@ void glint_feed_plan(const struct glint_feed_config *cfg,
         glint_survey_run(&survey, &path, &feed->pupil, direction,
                          s->optics.stop_radius_mm, SURVEY);
         choose_cuts(feed, &survey);
-        feed->n_cells =
-            cells_of(cfg, survey.bend_mm, survey.outline_mm, survey.folds);
+        feed->n_cells = cells_of(cfg, &survey);
         add_rim(cfg, feed);
     }
 }

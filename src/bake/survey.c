@@ -115,6 +115,8 @@ struct bend {
     struct change stop;
     struct change barrel[GLINT_MAX_EVENTS + 1]; /* of r^2 / 2 */
     int up, down; /* cells by how they are turned */
+    int n_steps;
+    double thick; /* rays a stop radius, sum */
 };
 
 static void add_change(struct change *change, double a, double b, double c)
@@ -158,6 +160,21 @@ static double outline_bend_mm(const struct bend *bend, const int *weight,
     return most;
 }
 
+/* From A to B the opening may be passed: it is as near as they are far apart.
+ * Where rays lie thick more light gets through, so that the mean is of that. */
+static void add_step(struct bend *bend, const struct probe *a,
+                     const struct probe *b)
+{
+    const double x = b->stop_x - a->stop_x, y = b->stop_y - a->stop_y;
+    const double step = hypot(x, y);
+
+    if (!a->traced || !b->traced || step == 0 ||
+        sqrt(fmin(a->stop_r2, b->stop_r2)) > 1 + step)
+        return;
+    bend->n_steps++;
+    bend->thick += 1 / step;
+}
+
 /* A cell whose first corner is A, with B beside and C below it. */
 static void add_turn(struct bend *bend, const struct probe *a,
                      const struct probe *b, const struct probe *c)
@@ -187,10 +204,14 @@ static void look_back(const struct rows *r, int i, int j, int n_events,
     const struct probe *above = &r->row[(j + 2) % 3][i];
 
     mark_alone(here, n_events, weight);
-    if (i > 0)
+    if (i > 0) {
         mark_between(here - 1, here, n_events, weight);
-    if (j > 0)
+        add_step(bend, here - 1, here);
+    }
+    if (j > 0) {
         mark_between(above, here, n_events, weight);
+        add_step(bend, above, here);
+    }
     if (i > 1)
         add_bend(bend, here - 2, here - 1, here, n_events);
     if (j > 1)
@@ -215,11 +236,17 @@ void glint_survey_run(struct glint_survey *survey,
                       p->y1_mm * 2 * j / side, direction, stop_radius_mm);
             look_back(&r, i, j, path->n_events, weight, &bend);
         }
-    survey->bend_mm = survey->outline_mm = 0;
+    survey->bend_mm = survey->outline_mm = survey->round_mm = 0;
+    survey->n_inside = bend.n;
+    survey->step = bend.n_steps ? bend.n_steps / bend.thick * side : 0;
     if (bend.n) {
         survey->bend_mm = sqrt(bend.sensor.second / bend.n) * side * side;
         survey->outline_mm =
             outline_bend_mm(&bend, weight, path->n_events) * side * side;
+        /* r^2 / 2 changes as fast as the stop position S does at its outline,
+         * and bends by S'^2 */
+        survey->round_mm =
+            sqrt(bend.stop.first * bend.sensor.first) / bend.n * side * side;
     }
     survey->folds = bend.up > 0 && bend.down > 0;
     survey->n_cuts = 0;

@@ -28,6 +28,10 @@ struct glint_survey {
                           a grid of n cells is off by bend / (8 n^2) */
     double outline_mm; /* the same of what the stop and the barrels cut by, the
                           one that bends most */
+    double round_mm;   /* the same of a round stop's outline */
+    int n_inside;      /* rays that pass, with neighbours that arrive */
+    double step;       /* stop radii over the pupil's box, harmonic mean of
+                          neighbouring rays that the opening may lie between */
     bool folds;        /* some light arrives turned over, some does not */
 };
 
