@@ -217,6 +217,10 @@ static void print_lost_lights(const struct explain *e,
     if (t->n_lamps && r->apart_lights < n)
         printf("%d lights are %d as they cannot be told apart (--apart)\n", n,
                r->apart_lights);
+    if (r->stats.held_cells)
+        printf("%d cells are so bright that they were cut down to what one may "
+               "give a pixel\n",
+               r->stats.held_cells);
     if (r->drawn_lights < r->apart_lights)
         printf("%d lights were merged into %d (--max-lights)\n",
                r->apart_lights, r->drawn_lights);
@@ -288,10 +292,11 @@ void explain_json(const struct explain *e, const struct explain_title *t)
     tool_json_string(stdout, t->lens);
     printf(", \"width\": %d, \"height\": %d, \"picture\": \"%s\", "
            "\"lights_given\": %d, \"lights_apart\": %d, \"all_tiles\": %d, "
+           "\"held_cells\": %d, \"held_samples\": %d, "
            "\"frame\": {",
            e->frame->view.width, e->frame->view.height,
            t->linear ? "linear" : "codes", t->n_lamps, t->report->apart_lights,
-           e->n_tiles);
+           e->n_tiles, t->report->stats.held_cells, t->report->held_samples);
     json_part(&e->all);
     printf("}, \"work\": {\"instructions\": %.0f", e->all.work);
     for (int i = 0; i < EXPLAIN_STAGES; i++)

@@ -495,6 +495,7 @@ enum glint_status frame_draw(struct frame *frame,
     report->apart_lights = frame->n_apart;
     report->drawn_lights = frame->n_beams;
     report->tiles = glint_flare_tiles(frame->flare);
+    report->held_samples = glint_flare_held(frame->flare);
     report->arena_bytes = frame->bytes;
     report->peak_bytes = bytes_used(frame, &report->stats);
     report->ghosts = count_ghosts(frame, n_drawn(frame, report));

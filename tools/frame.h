@@ -76,6 +76,7 @@ struct frame_report {
     int apart_lights;  /* that can be told apart */
     int drawn_lights;  /* after merging more, for their number */
     int ghosts, tiles;
+    int held_samples;   /* of a linear picture, saturated */
     size_t arena_bytes; /* what the run-time half was given */
     size_t peak_bytes;  /* what its largest frame took of it */
     double plan_ms, trace_ms, bin_ms, draw_ms;

@@ -405,13 +405,15 @@ void scene_json(const struct frame_report *r)
            "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
            "\"peak_bytes\": %zu, \"refs\": %d, \"merged_cells\": %d, "
            "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
+           "\"held_cells\": %d, \"held_samples\": %d, "
            "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
            "\"draw_ms\": %.3f",
            r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
            r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
            r->arena_bytes, r->peak_bytes, r->stats.refs, r->stats.merged_cells,
-           r->stats.dropped_bundles, r->stats.dropped_cells, r->plan_ms,
-           r->trace_ms, r->bin_ms, r->draw_ms);
+           r->stats.dropped_bundles, r->stats.dropped_cells,
+           r->stats.held_cells, r->held_samples, r->plan_ms, r->trace_ms,
+           r->bin_ms, r->draw_ms);
     if (r->quality >= 0)
         printf(", \"quality\": %.4f, \"predicted_ms\": %.3f", r->quality,
                r->predicted_ms);

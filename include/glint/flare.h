@@ -181,6 +181,10 @@ struct glint_flare_stats {
     int dropped_cells;   /* of bundles that were drawn: with a lost ray, a
                             vertex out of range, or no area */
     int merged_cells;    /* cells that went into a larger primitive */
+    int held_cells; /* of bundles that were drawn, cells or halves of one with
+                       more light than one may give a pixel (2048 times white,
+                       less if all together would pass 2^24): cut down to that
+                     */
 };
 
 struct glint_flare; /* opaque, in the caller's memory */
@@ -245,6 +249,10 @@ void glint_flare_draw(struct glint_flare *flare,
 
 /* Small tiles that the last draw touched. */
 int glint_flare_tiles(const struct glint_flare *flare);
+
+/* Samples of a linear picture that the last draw brought to an end of their
+ * range, where they saturate. */
+int glint_flare_held(const struct glint_flare *flare);
 
 /* ------------------------------------------------------------ what and why */
 

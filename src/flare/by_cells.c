@@ -45,6 +45,7 @@ static void emit_job(void *ctx, int job, int worker)
 
     (void)worker;
     glint_ghost_grid_emit(&grid, job, f->primitive + f->slot[job].first);
+    f->slot[job].n_held = grid.n_held;
 }
 
 /* Gives each bundle its place among the primitives, as far as they fit. */
@@ -178,8 +179,7 @@ static const int64_t *sums_of(const struct glint_flare *f,
     return w->acc_q20 + (ptrdiff_t)(c * side + y) * side;
 }
 
-static void resolve_linear(const struct draw *d,
-                           const struct glint_flare_worker *w,
+static void resolve_linear(const struct draw *d, struct glint_flare_worker *w,
                            struct glint_box tile)
 {
     const int n = tile.x1 - tile.x0;
@@ -192,8 +192,8 @@ static void resolve_linear(const struct draw *d,
                 row_q20[c][x] =
                     q_clamp_sat(sums_of(d->flare, w, c, y - tile.y0)[x],
                                 INT32_MIN, INT32_MAX);
-        glint_resolve_linear(d->image, tile.x0, y, n,
-                             (const int32_t *const *)row_q20);
+        w->n_held += glint_resolve_linear(d->image, tile.x0, y, n,
+                                          (const int32_t *const *)row_q20);
     }
 }
 

@@ -109,6 +109,7 @@ static void emit_bundle(struct glint_flare *f, int bundle,
     slot->first = -1;
     slot->n = ghost.n_edges;
     slot->n_dropped = ghost.n_dropped;
+    slot->n_held = ghost.n_held;
     slot->n_merged = 0;
     if (ghost.n_edges > ghost.max_edges)
         return;
@@ -322,8 +323,7 @@ static int is_lit(const struct glint_edge_sums *s)
     return any != 0;
 }
 
-static void resolve_linear(const struct draw *d,
-                           const struct glint_flare_worker *w,
+static void resolve_linear(const struct draw *d, struct glint_flare_worker *w,
                            const struct glint_edge_sums *s)
 {
     const int side = 1 << s->tile_log2;
@@ -333,8 +333,9 @@ static void resolve_linear(const struct draw *d,
     for (int y = s->tile.y0; y < s->tile.y1; y++) {
         for (int c = 0; c < 3; c++)
             glint_edge_linear(s, c, y - s->tile.y0, row_q20[c]);
-        glint_resolve_linear(d->image, s->tile.x0, y, s->tile.x1 - s->tile.x0,
-                             (const int32_t *const *)row_q20);
+        w->n_held += glint_resolve_linear(d->image, s->tile.x0, y,
+                                          s->tile.x1 - s->tile.x0,
+                                          (const int32_t *const *)row_q20);
     }
 }
 

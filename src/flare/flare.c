@@ -378,6 +378,7 @@ static void total(struct glint_flare *f)
         s->primitives += f->slot[i].n;
         s->dropped_cells += f->slot[i].n_dropped;
         s->merged_cells += f->slot[i].n_merged;
+        s->held_cells += f->slot[i].n_held;
     }
 }
 
@@ -397,7 +398,7 @@ void glint_flare_draw(struct glint_flare *flare,
     static const struct glint_image none = {.format = GLINT_YUYV};
 
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
-        flare->worker[i].n_tiles = 0;
+        flare->worker[i].n_tiles = flare->worker[i].n_held = 0;
     if (flare->stats.primitives == 0)
         return; /* the bins may be another frame's */
     glint_resolve_init(flare->resolve, image ? image : &none, flare->cfg.dither,
@@ -414,5 +415,14 @@ int glint_flare_tiles(const struct glint_flare *flare)
 
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
         n += flare->worker[i].n_tiles;
+    return n;
+}
+
+int glint_flare_held(const struct glint_flare *flare)
+{
+    int n = 0;
+
+    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
+        n += flare->worker[i].n_held;
     return n;
 }

@@ -212,11 +212,11 @@ static int64_t in_steps(int64_t x, const uint16_t *steps_of)
 
 /* The light of 2^SHARE_LOG2 cells over AREA2 / 2^FRAC pixels, as it is packed;
  * SIGN -1: of a mirrored one. */
-static int32_t light_of(const struct glint_ghost_edges *g, int64_t area2,
-                        int frac, int share_log2, int64_t energy_q16, int sign)
+static int32_t light_of(struct glint_ghost_edges *g, int64_t area2, int frac,
+                        int share_log2, int64_t energy_q16, int sign)
 {
-    const int64_t irradiance_q22 =
-        glint_irradiance_q22(g->bundle, share_log2, area2, frac, g->limit_q8);
+    const int64_t irradiance_q22 = glint_irradiance_q22(
+        g->bundle, share_log2, area2, frac, g->limit_q8, &g->n_held);
 
     return glint_light_pack(
         sign *
@@ -489,7 +489,7 @@ void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
     struct glint_ghost_rows *r = ghost->rows;
     const int n = ghost->bundle->n_cells;
 
-    ghost->n_edges = ghost->n_dropped = 0;
+    ghost->n_edges = ghost->n_dropped = ghost->n_held = 0;
     set_steps(ghost);
     set_weak(ghost);
     set_nodes(ghost, 0);

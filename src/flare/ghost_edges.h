@@ -70,6 +70,7 @@ struct glint_ghost_edges {
     /* out */
     int n_edges;   /* all that there are; only max_edges are written */
     int n_dropped; /* cells without light for want of a corner */
+    int n_held;    /* cells, or halves, with more light than limit_q8 */
 };
 
 void glint_ghost_edges_emit(struct glint_ghost_edges *ghost);

@@ -203,7 +203,7 @@ static int emit_point(struct glint_ghost_grid *g,
     if (out) {
         p->flags = GLINT_POINT;
         p->irradiance_q20 = held_q20(glint_irradiance_q22(
-            g->bundle, p->share_log2, 1, 0, GLINT_LIMIT_Q8));
+            g->bundle, p->share_log2, 1, 0, GLINT_LIMIT_Q8, &g->n_held));
         out[g->n_primitives] = *p;
     }
     g->n_primitives++;
@@ -229,9 +229,9 @@ static int emit_cell(struct glint_ghost_grid *g,
         return 0;
     if (out) {
         p->flags |= (uint8_t)cut;
-        p->irradiance_q20 = held_q20(
-            glint_irradiance_q22(g->bundle, p->share_log2, corners->area2_q16,
-                                 2 * GLINT_VERTEX_FRAC + 1, GLINT_LIMIT_Q8));
+        p->irradiance_q20 = held_q20(glint_irradiance_q22(
+            g->bundle, p->share_log2, corners->area2_q16,
+            2 * GLINT_VERTEX_FRAC + 1, GLINT_LIMIT_Q8, &g->n_held));
         out[g->n_primitives] = *p;
     }
     g->n_primitives++;

@@ -34,6 +34,7 @@ struct glint_ghost_grid {
     int sampled;             /* all cells are that small */
     int focused;             /* the whole ghost is a few pixels wide */
     int n_primitives, n_dropped, n_merged;
+    int n_held; /* of those written: more light than a pixel gets of one */
 };
 
 /* Decides which blocks of cells become one. */

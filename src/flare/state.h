@@ -23,6 +23,7 @@ struct glint_flare_worker {
     int32_t *light_q20; /* [3][side]: one of a linear picture */
     struct glint_resolve_rows *codes;
     int n_tiles; /* small tiles that it drew */
+    int n_held;  /* samples of a linear picture at the end of their range */
     struct glint_plan_scratch *plan;
     /* by edges */
     struct glint_ghost_rows *rows;
@@ -42,7 +43,7 @@ struct glint_flare_worker {
 struct glint_bundle_slot {
     int first_vertex;
     int first; /* primitive or edge; -1: it found no place */
-    int n, n_dropped, n_merged;
+    int n, n_dropped, n_merged, n_held;
     int worker; /* by edges: who made it */
 };
 

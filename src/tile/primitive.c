@@ -88,20 +88,23 @@ struct glint_box glint_corners_reach(const struct glint_corners *corners,
 }
 
 /* MANTISSA * 2^UP, held to LIMIT: it is light. */
-static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit)
+static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit, int *n_held)
 {
     int64_t x;
 
     if (mantissa == 0 || up < -62)
         return 0;
     if (up > 0 && up + bit_length((uint64_t)mantissa) > 62)
-        return limit;
-    x = up > 0 ? mantissa << up : q_shift(mantissa, -up);
+        x = INT64_MAX;
+    else
+        x = up > 0 ? mantissa << up : q_shift(mantissa, -up);
+    *n_held += x > limit;
     return x < limit ? x : limit;
 }
 
 int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
-                             int64_t area, int frac, int32_t limit_q8)
+                             int64_t area, int frac, int32_t limit_q8,
+                             int *n_held)
 {
     /* flux and area are brought to 31 bits before they divide */
     const int lift = 62 - bit_length((uint64_t)area);
@@ -117,7 +120,7 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
     return scaled_sat(ratio,
                       bundle->flux_exponent - 31 + share_log2 + lift - 31 +
                           frac - 31 + 22,
-                      limit_q22);
+                      limit_q22, n_held);
 }
 
 struct glint_box glint_corners_pixel(const struct glint_corners *corners,

@@ -56,9 +56,11 @@ static inline int64_t glint_turn_q16(int32_t ax, int32_t ay, int32_t bx,
 }
 
 /* Irradiance of 2^SHARE_LOG2 cells spread over AREA / 2^FRAC pixels, FRAC up to
- * 33 and AREA at least 1; held so that no pixel gets more than LIMIT. */
+ * 33 and AREA at least 1; held so that no pixel gets more than LIMIT, and then
+ * counted in N_HELD. */
 int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
-                             int64_t area, int frac, int32_t limit_q8);
+                             int64_t area, int frac, int32_t limit_q8,
+                             int *n_held);
 
 /* Every pixel that CORNERS, or the strip in their place, may cover. */
 struct glint_box glint_corners_reach(const struct glint_corners *corners,

@@ -186,15 +186,20 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
     glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
 }
 
-void glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
-                          const int32_t *const light_q20[3])
+int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
+                         const int32_t *const light_q20[3])
 {
     int32_t *px_q20 =
         (int32_t *)(void *)(image->plane[0] + y * image->stride_bytes[0]) +
         3 * x;
 
+    int n_held = 0;
+
     for (int i = 0; i < n; i++, px_q20 += 3)
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             px_q20[c] = q_clamp_sat((int64_t)px_q20[c] + light_q20[c][i],
                                     INT32_MIN, INT32_MAX);
+            n_held += px_q20[c] == INT32_MAX || px_q20[c] == INT32_MIN;
+        }
+    return n_held;
 }

@@ -67,8 +67,8 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
 
 /* Adds N values of LIGHT, R, G, B by themselves, to a row of a LINEAR_Q20
  * picture (4-byte aligned) from (X, Y) on, as they are, saturating at the int32
- * range. */
-void glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
-                          const int32_t *const light_q20[3]);
+ * range; returns how many came to an end of it. */
+int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
+                         const int32_t *const light_q20[3]);
 
 #endif

@@ -121,8 +121,9 @@ enum { SIDE = 64, MANY = 1 << 15 };
 
 /* COUNT bundles of 2^LOG2 times white over the whole picture, in codes and in
  * linear light. Returns what one pixel holds in linear light, -1: not all hold
- * the same, or codes are not white. */
-static double pile(int count, int log2)
+ * the same, or codes are not white. HELD: what was cut down, of cells before
+ * they were added and of samples where they were. */
+static double pile(int count, int log2, int held[2])
 {
     struct glint_flare_config c = {.width = SIDE,
                                    .height = SIDE,
@@ -161,9 +162,12 @@ static double pile(int count, int log2)
     glint_flare_bin(f, &stats);
     glint_image_place(&image, linear);
     glint_flare_draw(f, &image);
+    held[0] = stats.held_cells;
+    held[1] = glint_flare_held(f);
     image.format = GLINT_RGB24;
     glint_image_place(&image, codes);
     glint_flare_draw(f, &image);
+    assert_int_equal(glint_flare_held(f), 0); /* codes are white, no more */
     free(mem);
     value = linear[0] == INT32_MAX ? 2048 : linear[0] / 1048576.0;
     for (int i = 0; i < 3 * SIDE * SIDE; i++)
@@ -175,23 +179,30 @@ static double pile(int count, int log2)
 /* A pixel of linear light holds 2048 times white less a step: what adds up to a
  * whole number below is that number, what reaches it or passes it by any
  * factor is held there. A cell gives a pixel 2048 at most, and all together
- * 2^24; more is cut down before it is added (by_edges.c). */
+ * 2^24; more is cut down before it is added (by_edges.c). Both are counted. */
 static void test_piles(void **state)
 {
     static const struct {
         int count, log2;
         double holds;
+        int held_cells;
     } piles[] = {
-        {1, 0, 1},        {1, 10, 1024},    {2047, 0, 2047},  {1023, 1, 2046},
-        {2048, 0, 2048},  {2049, 0, 2048},  {MANY, 0, 2048},  {1, 11, 2048},
-        {1, 12, 2048},    {1, 40, 2048},    {8191, 11, 2048}, {8192, 11, 2048},
-        {8193, 11, 2048}, {MANY, 11, 2048}, {MANY, 60, 2048},
+        {1, 0, 1, 0},           {1, 10, 1024, 0},       {2047, 0, 2047, 0},
+        {1023, 1, 2046, 0},     {2048, 0, 2048, 0},     {2049, 0, 2048, 0},
+        {MANY, 0, 2048, 0},     {1, 11, 2048, 0},       {1, 12, 2048, 1},
+        {1, 40, 2048, 1},       {8191, 11, 2048, 8191}, {8192, 11, 2048, 8192},
+        {8193, 11, 2048, 8193}, {MANY, 11, 2048, MANY}, {MANY, 60, 2048, MANY},
     };
     double worst = 0;
+    int miscounted = 0;
 
     (void)state;
     for (int k = 0; k < 15; k++) {
-        const double got = pile(piles[k].count, piles[k].log2);
+        int held[2];
+        const double got = pile(piles[k].count, piles[k].log2, held);
+        const int samples = piles[k].holds < 2048 ? 0 : 3 * SIDE * SIDE;
+
+        miscounted += held[0] != piles[k].held_cells || held[1] != samples;
 
         if (fabs(got - piles[k].holds) > 0)
             print_message("  %d x 2^%d: %.6f\n", piles[k].count, piles[k].log2,
@@ -200,6 +211,8 @@ static void test_piles(void **state)
     }
     assert_true(extreme_at_most("sums: piles of light up to 2^75 white, off by",
                                 worst, 0, "white"));
+    assert_true(extreme_at_most("sums: piles whose saturation is miscounted",
+                                miscounted, 0, "of 15"));
 }
 
 /* ----------------------------------------------------------------------- traps
