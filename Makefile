@@ -102,7 +102,8 @@ endif
 
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/sort base/image base/workers \
-        kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/composite_c \
+        kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/turn kernels/turn_c \
+        kernels/composite_c \
         lens/model lens/transfer flare/bright flare/regions flare/lights \
         flare/match flare/follow flare/record flare/tracks tile/primitive \
         tile/clip tile/outline tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
@@ -151,9 +152,9 @@ ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
 UNIT := $(filter bake exact flare workers output at_death frame live,$(UNIT))
 endif
 
-CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 \
+CORE_x86_64  := kernels/horner_sse41 kernels/horner_avx2 kernels/turn_sse41 kernels/turn_avx2 \
         kernels/composite_sse41 kernels/composite_avx2
-CORE_aarch64 := kernels/horner_neon kernels/composite_neon
+CORE_aarch64 := kernels/horner_neon kernels/turn_neon kernels/composite_neon
 CORE_armv7   := $(CORE_aarch64)
 CORE_armv7-neon := $(CORE_aarch64)
 ifdef CROSS # a static program has no plug-ins

@@ -12,6 +12,8 @@
 
 #include <stdint.h>
 
+#include "base/compiler.h"
+
 #ifdef GLINT_Q_CHECK
 void glint_q_overflow(const char *operation, int64_t exact);
 #define Q_FITS(op, r, lo, hi) \
@@ -42,6 +44,25 @@ static inline int32_t q_narrow(int64_t x)
 static inline int32_t q_mul(int32_t a, int32_t b, int s)
 {
     return q_narrow(q_shift((int64_t)a * b, s));
+}
+
+/* X / 2^S, rounded, S of any size, if that is below LIMIT (2^30 at most) in
+ * magnitude; else 0, and all bits of *LOST are set. */
+static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
+{
+    int64_t y = 0;
+    int fits = 1;
+
+    if (s > 0 && s < 63)
+        y = q_shift(x, s);
+    else if (s <= 0)
+        fits = x == 0 ||
+               (s >= -31 && bit_length((uint64_t)(x < 0 ? -x : x)) - s <= 32);
+    if (s <= 0 && s >= -31 && fits)
+        y = x * (INT64_C(1) << -s);
+    fits &= y < limit && y > -limit;
+    *lost |= -!fits;
+    return fits ? (int32_t)y : 0;
 }
 
 /* The root of X, rounded down: of a Q(2 n) it is a Q(n). */

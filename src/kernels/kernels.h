@@ -91,6 +91,25 @@ typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
 typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
                                     int degree, int32_t x, int fraction, int n);
 
+/* Turns points (X, Y) by an angle, and their mirror images (X, -Y):
+ *   out     x cos - y sin, x sin + y cos; x cos + y sin, x sin - y cos; each
+ *           over 2^shift, 0 where that is LIMIT or more in magnitude
+ *   lost    of points and of images: bits all set where one of theirs is; else
+ *           left as it is
+ * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
+ * 2^30 at most. Shifts are 1 .. 62; the C definition takes any. */
+enum { GLINT_TURNED = 8 }; /* at once */
+
+struct glint_turn {
+    int32_t cos, sin;
+    int shift;
+    int32_t limit;
+};
+
+typedef void glint_turn_fn(const struct glint_turn *turn, const int32_t *x,
+                           const int32_t *y, int32_t (*out)[GLINT_TURNED],
+                           int32_t (*lost)[GLINT_TURNED]);
+
 /* What pictures take. */
 struct glint_kernels {
     glint_add_luma_fn *add_luma;
@@ -110,11 +129,13 @@ struct glint_horner {
 /* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C. */
 const struct glint_kernels *glint_kernels_of(unsigned sets);
 const struct glint_horner *glint_horner_of(unsigned sets);
+glint_turn_fn *glint_turn_of(unsigned sets);
 
 glint_horner_along_fn glint_horner_along_c, glint_horner_along_sse41,
     glint_horner_along_avx2, glint_horner_along_neon;
 glint_horner_across_fn glint_horner_across_c, glint_horner_across_sse41,
     glint_horner_across_avx2, glint_horner_across_neon;
+glint_turn_fn glint_turn_c, glint_turn_sse41, glint_turn_avx2, glint_turn_neon;
 glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,
     glint_add_luma_neon;
 glint_add_pairs_fn glint_add_pairs_c, glint_add_pairs_sse41,

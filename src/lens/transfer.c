@@ -28,6 +28,8 @@ enum {
 
 #define ONE_Q30 (INT32_C(1) << ONE_LOG2)
 
+STATIC_ASSERT((int)RAYS == (int)GLINT_TURNED);
+
 /* ------------------------------------------------------------------- tables */
 
 static const void *at(const struct glint_lens *lens, uint32_t offset)
@@ -335,16 +337,16 @@ static void set_rows(const struct glint_transfer *t,
             set_row(t, k, kind, v, v2, of_u[kind]);
 }
 
-static int32_t energy_of(const struct glint_transfer *t, int32_t polynomial)
+/* From values of the polynomial of energy to N energies. */
+static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
 {
     const int32_t most = (INT32_C(1) << 29) >> t->head;
-    int32_t e = polynomial;
 
-    if (t->head || t->roots)
-        e = (int32_t)(q_clamp_sat(e, 0, most) * (INT32_C(1) << t->head));
+    for (int i = 0; (t->head || t->roots) && i < n; i++)
+        e[i] = (e[i] < 0 ? 0 : e[i] > most ? most : e[i]) * (1 << t->head);
     for (int k = 0; k < t->roots; k++)
-        e = q_mul(e, e, 29);
-    return e;
+        for (int i = 0; i < n; i++)
+            e[i] = q_mul(e[i], e[i], 29);
 }
 
 /* The rays at U, by kind. */
@@ -360,8 +362,7 @@ static void rays_of_rows(const struct glint_transfer *t,
         for (int i = 0; t->shift[kind] && i < RAYS; i++)
             out[kind][i] *= INT32_C(1) << t->shift[kind];
     }
-    for (int i = 0; (t->head || t->roots) && i < RAYS; i++)
-        out[GLINT_OUT_ENERGY][i] = energy_of(t, out[GLINT_OUT_ENERGY][i]);
+    raise_energies(t, out[GLINT_OUT_ENERGY], RAYS);
 }
 
 static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
@@ -416,7 +417,7 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
         k->along(&out->at[kind], of_u, t->degree_u[kind], &u, t->fraction, 1);
         out->at[kind] *= INT32_C(1) << t->shift[kind];
     }
-    out->at[GLINT_OUT_ENERGY] = energy_of(t, out->at[GLINT_OUT_ENERGY]);
+    raise_energies(t, &out->at[GLINT_OUT_ENERGY], 1);
 }
 
 static void rays_of_terms(const struct glint_transfer *t, const int32_t *u_q30,
@@ -451,154 +452,138 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
 
 /* ----------------------------------------------------------------- vertices */
 
-/* Shifts that bring each kind of output to the formats of a vertex. */
-struct shifts {
-    int sensor, stop, barrel, radius;
-};
-
-/* X * 2^UP if that is below 2^31 in magnitude; else *LOST. */
-static int64_t raised(int64_t x, int up, int *lost)
-{
-    if (up > 31 || bit_length((uint64_t)(x < 0 ? -x : x)) + up > 32) {
-        *lost |= x != 0;
-        return 0;
-    }
-    return x * (INT64_C(1) << up);
-}
-
-/* X / 2^SHIFT if that is below LIMIT in magnitude; else *LOST. */
-static inline int32_t scaled(int64_t x, int shift, int32_t limit, int *lost)
-{
-    const int64_t y = shift > 0 && shift < 63 ? q_shift(x, shift)
-                      : shift <= 0            ? raised(x, -shift, lost)
-                                              : 0;
-
-    const int fits = y < limit && y > -limit;
-
-    *lost |= !fits;
-    return fits ? (int32_t)y : 0;
-}
-
 enum { LIMIT_Q16 = 1 << 30 };
 
-static int32_t barrel_of(int32_t value, int shift, int *lost)
-{
-    const int32_t value_q16 = scaled(value, shift, LIMIT_Q16, lost);
+/* As many rays as are computed at once, on their way to vertices. */
+struct block {
+    /* x and y, and those of the other side of the light's plane */
+    int32_t sensor_q8[4][RAYS], stop_q16[4][RAYS];
+    int32_t barrel_q16[2][RAYS];
+    int32_t energy_q16[RAYS];
+    int32_t lost[2][RAYS]; /* here and there: all bits, or none */
+};
 
-    *lost |= value_q16 < 0;
-    return value_q16;
+/* The rays' values X over 2^SHIFT; where that is LIMIT or more, or negative, a
+ * ray is lost. */
+static void scale_rays(const int32_t *x, int shift, int32_t limit,
+                       int32_t *scaled, int32_t *lost)
+{
+    if (shift < 1 || shift > 31 || limit < LIMIT_Q16) {
+        for (int i = 0; i < RAYS; i++)
+            scaled[i] = q_scaled(x[i], shift, limit, &lost[i]);
+        return;
+    }
+    for (int i = 0; i < RAYS; i++) /* below 2^30 each */
+        scaled[i] = (x[i] + (INT32_C(1) << (shift - 1))) >> shift;
+}
+
+static void set_radius(const struct glint_transfer *t, const int32_t *rays,
+                       struct block *b)
+{
+    int32_t r_q16[RAYS];
+
+    scale_rays(rays, -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23, r_q16,
+               b->lost[0]);
+    for (int i = 0; i < RAYS; i++)
+        b->barrel_q16[0][i] =
+            (int32_t)(((INT64_C(1) << 16) +
+                       q_shift((int64_t)r_q16[i] * r_q16[i], 16)) /
+                      2);
 }
 
 static void set_barrels(const struct glint_transfer *t,
-                        const int32_t (*rays)[RAYS], int i,
-                        struct glint_vertex *v, int *lost)
+                        const int32_t (*rays)[RAYS], struct block *b)
 {
-    int32_t more;
-
-    v->barrel_q16[0] = v->barrel_q16[1] = 0;
-    if (has(t, GLINT_OUT_RADIUS)) {
-        more = scaled(rays[GLINT_OUT_RADIUS][i],
-                      -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23, lost);
-        v->barrel_q16[0] =
-            (int32_t)(((INT64_C(1) << 16) + q_shift((int64_t)more * more, 16)) /
-                      2);
-    }
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < RAYS; i++)
+            b->barrel_q16[k][i] = 0;
+    if (has(t, GLINT_OUT_RADIUS))
+        set_radius(t, rays[GLINT_OUT_RADIUS], b);
     for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
-        int32_t *to = &v->barrel_q16[kind > GLINT_OUT_BARREL_0];
+        int32_t *to = b->barrel_q16[kind > GLINT_OUT_BARREL_0];
+        int32_t more[RAYS];
 
         if (!has(t, kind))
             continue;
-        more = barrel_of(rays[kind][i], -(t->exponent[kind] + 16), lost);
-        *to = more > *to ? more : *to;
+        scale_rays(rays[kind], -(t->exponent[kind] + 16), LIMIT_Q16, more,
+                   b->lost[0]);
+        for (int i = 0; i < RAYS; i++) {
+            b->lost[0][i] |= more[i] >> 31;
+            to[i] = more[i] > to[i] ? more[i] : to[i];
+        }
     }
 }
 
-/* How rays lie in the picture: cosine and sine of the azimuth, for the sensor
- * times pixels per mm, and the shifts to the formats of a vertex. */
-struct turn {
-    int64_t cos, sin, sensor_cos, sensor_sin;
-    int to_q8, to_q16;
+/* Energies count 2^UP times, in 2^13, held to 0 .. 1. */
+static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
+{
+    const int raise = up > 13 ? up - 13 : 0, lower = up < 13 ? 13 - up : 0;
+    const int32_t half = lower ? INT32_C(1) << (lower - 1) : 0;
+    const int32_t most = (INT32_C(1) << 16) >> raise;
+
+    for (int i = 0; i < RAYS; i++) {
+        const int32_t e = (energy[i] + half) >> lower;
+
+        energy_q16[i] = (e < 0 ? 0 : e > most ? most : e) * (1 << raise);
+    }
+}
+
+/* How rays lie in the picture: the azimuth of the light, for the sensor times
+ * pixels per mm, and the shifts to the formats of a vertex. */
+struct turns {
+    struct glint_turn sensor, stop;
 };
 
-static struct turn turn_of(const struct glint_transfer *t,
-                           const struct glint_place *p)
+static struct turns turns_of(const struct glint_transfer *t,
+                             const struct glint_place *p)
 {
     const struct glint_real size = p->pixels_per_mm;
-    const int64_t c = p->cos_q30, s = p->sin_q30;
 
-    return (struct turn){
-        .cos = c,
-        .sin = s,
-        .sensor_cos = q_shift(c * size.mantissa, 30),
-        .sensor_sin = q_shift(s * size.mantissa, 30),
-        .to_q8 = -(t->exponent[GLINT_OUT_SENSOR_X] + size.exponent + 8),
-        .to_q16 = 30 - (t->exponent[GLINT_OUT_STOP_X] + 16)};
+    return (struct turns){
+        {(int32_t)q_shift((int64_t)p->cos_q30 * size.mantissa, 30),
+         (int32_t)q_shift((int64_t)p->sin_q30 * size.mantissa, 30),
+         -(t->exponent[GLINT_OUT_SENSOR_X] + size.exponent + 8),
+         GLINT_VERTEX_LIMIT_Q8 / 2},
+        {p->cos_q30, p->sin_q30, 30 - (t->exponent[GLINT_OUT_STOP_X] + 16),
+         LIMIT_Q16}};
 }
 
-/* The parts of a turned point that the place across the light's plane has no
- * share in, and those that are its own: x cos, x sin, y cos, y sin. */
-struct parts {
-    int64_t xc, xs, yc, ys;
-};
-
-/* Coordinates are below 2^30, so that sums of two products are below 2^62. */
-static inline void place_vertex(const struct glint_place *p,
-                                const struct turn *turn, struct parts sensor,
-                                struct parts stop, struct glint_vertex *v)
+static void turn(const struct glint_turn *turn, unsigned sets, const int32_t *x,
+                 const int32_t *y, int32_t (*out)[RAYS], int32_t (*lost)[RAYS])
 {
-    int lost = v->energy_q16 < 0;
+    const int usual = turn->shift >= 1 && turn->shift <= 62;
 
-    v->x_q8 = p->middle_x_q8 + scaled(sensor.xc - sensor.ys, turn->to_q8,
-                                      GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
-    v->y_q8 = p->middle_y_q8 - scaled(sensor.xs + sensor.yc, turn->to_q8,
-                                      GLINT_VERTEX_LIMIT_Q8 / 2, &lost);
-    v->stop_x_q16 = scaled(stop.xc - stop.ys, turn->to_q16, LIMIT_Q16, &lost);
-    v->stop_y_q16 = scaled(stop.xs + stop.yc, turn->to_q16, LIMIT_Q16, &lost);
-    v->energy_q16 = lost ? -1 : v->energy_q16;
+    glint_turn_of(usual ? sets : 0)(turn, x, y, out, lost);
 }
 
-static inline struct parts parts_of(int64_t x, int64_t y, int64_t c, int64_t s)
+static void set_block(const struct glint_transfer *t, const struct turns *turns,
+                      const int32_t (*rays)[RAYS], struct block *b)
 {
-    return (struct parts){x * c, x * s, y * c, y * s};
+    for (int i = 0; i < RAYS; i++)
+        b->lost[0][i] = 0;
+    set_barrels(t, rays, b);
+    for (int i = 0; i < RAYS; i++)
+        b->lost[1][i] = b->lost[0][i];
+    set_energies(rays[GLINT_OUT_ENERGY], t->energy_up, b->energy_q16);
+    turn(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
+         rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
+    turn(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X], rays[GLINT_OUT_STOP_Y],
+         b->stop_q16, b->lost);
 }
 
-static inline struct parts mirrored_parts(struct parts p)
+/* The first N of them on this side of the light's plane, or, SIDE 1, on the
+ * other one. */
+static void put_block(const struct block *b, const struct glint_place *p,
+                      int side, int n, struct glint_vertex *v)
 {
-    return (struct parts){p.xc, p.xs, -p.yc, -p.ys};
-}
-
-/* Of ray I: into V, and with the other side of the light's plane into MIRRORED,
- * unless they are NULL. */
-static void set_vertices(const struct glint_transfer *t,
-                         const struct glint_place *p, const struct turn *turn,
-                         const int32_t (*rays)[RAYS], int i,
-                         struct glint_vertex *v, struct glint_vertex *mirrored)
-{
-    const struct parts sensor =
-        parts_of(rays[GLINT_OUT_SENSOR_X][i], rays[GLINT_OUT_SENSOR_Y][i],
-                 turn->sensor_cos, turn->sensor_sin);
-    const struct parts stop =
-        parts_of(rays[GLINT_OUT_STOP_X][i], rays[GLINT_OUT_STOP_Y][i],
-                 turn->cos, turn->sin);
-    struct glint_vertex both;
-    int lost = 0;
-
-    set_barrels(t, rays, i, &both, &lost);
-    both.energy_q16 =
-        lost ? -1
-             : q_clamp_sat(q_shift(rays[GLINT_OUT_ENERGY][i] *
-                                       (INT64_C(1) << t->energy_up),
-                                   13),
-                           0, 1 << 16);
-    if (v) {
-        *v = both;
-        place_vertex(p, turn, sensor, stop, v);
-    }
-    if (mirrored) {
-        *mirrored = both;
-        place_vertex(p, turn, mirrored_parts(sensor), mirrored_parts(stop),
-                     mirrored);
-    }
+    for (int i = 0; i < n; i++)
+        v[i] = (struct glint_vertex){
+            .x_q8 = p->middle_x_q8 + b->sensor_q8[2 * side][i],
+            .y_q8 = p->middle_y_q8 - b->sensor_q8[2 * side + 1][i],
+            .stop_x_q16 = b->stop_q16[2 * side][i],
+            .stop_y_q16 = b->stop_q16[2 * side + 1][i],
+            .barrel_q16 = {b->barrel_q16[0][i], b->barrel_q16[1][i]},
+            .energy_q16 = b->energy_q16[i] | b->lost[side][i]};
 }
 
 static int32_t node_q30(int k, int n_cells)
@@ -639,7 +624,7 @@ static void set_row_pair(struct glint_transfer *t,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored)
 {
-    const struct turn turn = turn_of(t, place);
+    const struct turns turns = turns_of(t, place);
     const int32_t v_q30 = row_q30(t, n_cells, j);
 
     if (t->n_nodes != n_cells + 1) {
@@ -648,13 +633,16 @@ static void set_row_pair(struct glint_transfer *t,
             t->node_q30[i] = node_q30(i < n_cells ? i : n_cells, n_cells);
     }
     for (int first = 0; first <= n_cells; first += RAYS) {
+        const int n = n_cells + 1 - first < RAYS ? n_cells + 1 - first : RAYS;
         int32_t rays[GLINT_OUT_KINDS][RAYS];
+        struct block b;
 
         glint_transfer_rays(t, v_q30, t->node_q30 + first, first == 0, rays);
-        for (int i = 0; i < RAYS && first + i <= n_cells; i++)
-            set_vertices(t, place, &turn, (const int32_t(*)[RAYS])rays, i,
-                         row ? &row[first + i] : NULL,
-                         mirrored ? &mirrored[first + i] : NULL);
+        set_block(t, &turns, (const int32_t(*)[RAYS])rays, &b);
+        if (row)
+            put_block(&b, place, 0, n, row + first);
+        if (mirrored)
+            put_block(&b, place, 1, n, mirrored + first);
     }
 }
 

@@ -373,6 +373,52 @@ static void check_horner(const struct glint_horner *k, const char *name)
           k->across(got, c, 32, 4, x[0], 30, 16));
 }
 
+/* Below MOST in magnitude, of every size, its ends among them. */
+static int32_t draw_below(int64_t most)
+{
+    const uint32_t x = draw();
+    const int64_t size = x % 7 == 0 ? most - 1 : (x >> 3) % most >> x % 31;
+
+    return (int32_t)(x & 4 ? -size : size);
+}
+
+static void check_turn(glint_turn_fn *turn, const char *name)
+{
+    const int64_t most = INT64_C(1) << 30;
+    const size_t bytes = GLINT_TURNED * sizeof(int32_t);
+    int32_t *x = fenced(bytes), *y = fenced(bytes);
+    int32_t(*out[2])[GLINT_TURNED] = {fenced(4 * bytes), fenced(4 * bytes)};
+    int32_t(*lost[2])[GLINT_TURNED] = {fenced(2 * bytes), fenced(2 * bytes)};
+    struct glint_turn t = {0, 0, 1, 1};
+    int n_lost = 0, n_kept = 0;
+
+    for (int round = 0; round < 5 * ROUNDS; round++) {
+        /* where what comes out is about as large as may be, often */
+        const int near = (int)(draw() % 62) + 1;
+
+        t = (struct glint_turn){draw_below(2 * most), draw_below(2 * most),
+                                round % 2 ? near : 28 + near % 8,
+                                1 + abs(draw_below(most))};
+        for (int i = 0; i < GLINT_TURNED; i++) {
+            x[i] = draw_below(most);
+            y[i] = draw_below(most);
+            for (int k = 0; k < 2; k++)
+                lost[0][k][i] = lost[1][k][i] = draw() % 4 ? 0 : -1;
+        }
+        glint_turn_c(&t, x, y, out[0], lost[0]);
+        turn(&t, x, y, out[1], lost[1]);
+        EXPECT_SAME(out[0], out[1], 4 * bytes);
+        EXPECT_SAME(lost[0], lost[1], 2 * bytes);
+        for (int i = 0; i < GLINT_TURNED; i++) {
+            n_lost += lost[0][0][i] != 0;
+            n_kept += out[0][0][i] != 0;
+        }
+    }
+    EXPECT(n_lost > ROUNDS && n_kept > ROUNDS);
+    BENCH("turn 8", name, glint_turn_c(&t, x, y, out[0], lost[0]),
+          turn(&t, x, y, out[1], lost[1]));
+}
+
 static void test_same_bits(void)
 {
     for (int v = 0; v < N_VARIANTS; v++) {
@@ -381,6 +427,7 @@ static void test_same_bits(void)
         if (!(variants[v].set & glint_system_sets()))
             continue;
         check_horner(glint_horner_of(variants[v].set), variants[v].name);
+        check_turn(glint_turn_of(variants[v].set), variants[v].name);
         check_luma(k, variants[v].name);
         check_pairs(k, variants[v].name);
         check_packed(k, variants[v].name);

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+#include "kernels/kernels.h"
+
+#include <arm_neon.h>
+
+/* Products of four lanes with a factor. */
+struct products {
+    int64x2_t low, high;
+};
+
+static inline struct products times(int32x4_t x, int32x2_t factor)
+{
+    return (struct products){vmull_s32(vget_low_s32(x), factor),
+                             vmull_s32(vget_high_s32(x), factor)};
+}
+
+static inline struct products plus(struct products a, struct products b)
+{
+    return (struct products){vaddq_s64(a.low, b.low),
+                             vaddq_s64(a.high, b.high)};
+}
+
+static inline struct products minus(struct products a, struct products b)
+{
+    return (struct products){vsubq_s64(a.low, b.low),
+                             vsubq_s64(a.high, b.high)};
+}
+
+/* To where, and what still fits. */
+struct scale {
+    int64x2_t up;
+    int32x4_t limit;
+};
+
+/* Into OUT; returns where it fits. */
+static inline uint32x4_t scale(struct scale s, struct products sum,
+                               int32_t *out)
+{
+    const int32x4_t x = vcombine_s32(vqmovn_s64(vrshlq_s64(sum.low, s.up)),
+                                     vqmovn_s64(vrshlq_s64(sum.high, s.up)));
+    const uint32x4_t fits = vcltq_s32(vqabsq_s32(x), s.limit);
+
+    vst1q_s32(out, vandq_s32(x, vreinterpretq_s32_u32(fits)));
+    return fits;
+}
+
+static inline void lose(uint32x4_t x_fits, uint32x4_t y_fits, int32_t *lost)
+{
+    const int32x4_t fit = vreinterpretq_s32_u32(vandq_u32(x_fits, y_fits));
+
+    vst1q_s32(lost, vornq_s32(vld1q_s32(lost), fit));
+}
+
+void glint_turn_neon(const struct glint_turn *t, const int32_t *x,
+                     const int32_t *y, int32_t (*out)[GLINT_TURNED],
+                     int32_t (*lost)[GLINT_TURNED])
+{
+    const int32x2_t c = vdup_n_s32(t->cos), s = vdup_n_s32(t->sin);
+    const struct scale to = {vdupq_n_s64(-(int64_t)t->shift),
+                             vdupq_n_s32(t->limit)};
+
+    for (int i = 0; i < GLINT_TURNED; i += 4) {
+        const int32x4_t a = vld1q_s32(x + i), b = vld1q_s32(y + i);
+        const struct products xc = times(a, c), xs = times(a, s);
+        const struct products yc = times(b, c), ys = times(b, s);
+
+        lose(scale(to, minus(xc, ys), out[0] + i),
+             scale(to, plus(xs, yc), out[1] + i), lost[0] + i);
+        lose(scale(to, plus(xc, ys), out[2] + i),
+             scale(to, minus(xs, yc), out[3] + i), lost[1] + i);
+    }
+}
