@@ -4,6 +4,8 @@
 #include "base/compiler.h"
 #include "base/q.h"
 
+#include <stddef.h>
+
 #define ONE_Q16 (INT64_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
 
@@ -58,10 +60,10 @@ static int32_t sooner(int32_t a, int32_t b)
 
 enum visit { COUNT, PUT, SPAN };
 
-/* Column X of pixels, within REGION or its last one. */
-static inline int held(int64_t x, int first, int last)
+/* The tile of N that has column X of the region. */
+static inline int tile_of(int x, int last, int log2)
 {
-    return (int)(x < first ? first : x > last ? last : x);
+    return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
 
 /* Visits the tiles that EDGE crosses, by rows of tiles; what lies left of the
@@ -71,33 +73,34 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
                                    enum visit visit, int32_t index)
 {
     const struct glint_box *r = &bins->region;
-    const int log2 = bins->tile_log2;
+    const int log2 = bins->tile_log2, last = r->x1 - 1 - r->x0;
     const int32_t end_q8 = sooner(e->end_y_q8, r->y1 * 256);
     int32_t y_q8 = later(e->y_q8, r->y0 * 256);
-    int64_t x = x_at_q40(e, y_q8) >> 40;
+    const int row = ((y_q8 >> 8) - r->y0) >> log2;
+    int32_t floor_q8 = (r->y0 + ((row + 1) * (1 << log2))) * 256;
+    int32_t *start = bins->start + (ptrdiff_t)row * bins->tiles_x;
+    int64_t x_q40 = x_at_q40(e, y_q8) - r->x0 * ONE_Q40;
     int n = 0;
 
     while (y_q8 < end_q8) {
-        const int row = ((y_q8 >> 8) - r->y0) >> log2;
-        const int32_t floor_q8 = (r->y0 + ((row + 1) * (1 << log2))) * 256;
         const int32_t next_q8 = sooner(end_q8, floor_q8);
-        const int64_t next_x = x_at_q40(e, next_q8) >> 40;
-        const int64_t low = x < next_x ? x : next_x;
-        const int64_t high = x < next_x ? next_x : x;
-        int32_t *start = bins->start + (ptrdiff_t)row * bins->tiles_x;
+        const int64_t next_q40 = x_q40 + e->slope_q40 * (next_q8 - y_q8);
+        const int x = (int)(x_q40 >> 40), next_x = (int)(next_q40 >> 40);
+        const int low = sooner(x, next_x), high = later(x, next_x);
 
+        if (low <= last)
+            for (int k = tile_of(low, last, log2);
+                 k <= tile_of(high, last, log2); k++) {
+                n++;
+                if (visit == PUT)
+                    bins->ref[start[k]] = index;
+                if (visit != SPAN)
+                    start[k]++;
+            }
         y_q8 = next_q8;
-        x = next_x;
-        if (low >= r->x1)
-            continue;
-        for (int k = (held(low, r->x0, r->x1 - 1) - r->x0) >> log2;
-             k <= (held(high, r->x0, r->x1 - 1) - r->x0) >> log2; k++) {
-            n++;
-            if (visit == PUT)
-                bins->ref[start[k]] = index;
-            if (visit != SPAN)
-                start[k]++;
-        }
+        x_q40 = next_q40;
+        floor_q8 += 256 << log2;
+        start += bins->tiles_x;
     }
     return n;
 }
@@ -124,11 +127,13 @@ int glint_edge_span(const struct glint_edge *edge,
 
 enum mode { LINEAR, FINE, WIDE, NARROW };
 
-/* One row of one channel of a tile; pointers to where pixel 0 of the picture
- * would be. */
+/* One row of one channel of a tile, from where pixel 0 of the picture would be.
+ */
 struct run {
-    uint64_t *wide;
-    uint32_t *narrow_q24;
+    union {
+        uint64_t *wide;
+        uint32_t *narrow_q24;
+    } row;      /* by mode */
     int x0, x1; /* the tile's columns */
     int64_t light;
     int64_t rise_q32; /* see rise_of */
@@ -138,9 +143,9 @@ static inline void change(const struct run *r, enum mode mode, int x,
                           int64_t area)
 {
     if (mode == NARROW)
-        r->narrow_q24[x] += (uint32_t)r->light * (uint32_t)area;
+        r->row.narrow_q24[x] += (uint32_t)r->light * (uint32_t)area;
     else
-        r->wide[x] += (uint64_t)(r->light * area);
+        r->row.wide[x] += (uint64_t)(r->light * area);
 }
 
 /* AREA in the units of MODE. */
@@ -238,10 +243,13 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
     }
 }
 
-static inline void next_row(struct run *r, int stride)
+/* N rows further down. */
+static inline void go_down(struct run *r, enum mode mode, ptrdiff_t n)
 {
-    r->wide += stride;
-    r->narrow_q24 += stride;
+    if (mode == NARROW)
+        r->row.narrow_q24 += n;
+    else
+        r->row.wide += n;
 }
 
 /* Rows A .. B - 1, of 64. */
@@ -250,62 +258,18 @@ static uint64_t rows_between(int a, int b)
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
-/* All of a row's light from the pixel on that the edge is in there, X_Q40; that
- * of one left of the picture from its side. */
-static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
-                             int64_t height_q16)
-{
-    const int x = q_narrow(x_q40 >> 40);
-
-    if (x < r->x0 ? r->x0 == 0 : x < r->x1)
-        change(r, mode, x < r->x0 ? 0 : x, units(mode, height_q16));
-}
-
-/* What of an edge runs through one row, from X to NEXT over HEIGHT. */
-static inline void add_row(const struct run *r, enum mode mode, int whole,
-                           int64_t x_q40, int64_t next_q40, int64_t height_q16)
-{
-    if (whole)
-        add_whole(r, mode, x_q40 + (next_q40 - x_q40) / 2, height_q16);
-    else
-        add_piece(r, mode, x_q40, next_q40, height_q16);
-}
-
 /* N whole rows from X on, STEP further in each. */
 static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
                             int64_t step_q40, int stride)
 {
     for (; n > 0; n--) {
         add_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
-        next_row(&r, stride);
+        go_down(&r, mode, stride);
         x_q40 += step_q40;
     }
 }
 
-/* The same on whole pixels. */
-static inline void add_whole_rows(struct run r, enum mode mode, int n,
-                                  int64_t x_q40, int64_t step_q40, int stride)
-{
-    const int64_t full = units(mode, ONE_Q16);
-    const unsigned wide = (unsigned)(r.x1 - r.x0);
-
-    x_q40 += step_q40 / 2 - r.x0 * ONE_Q40;
-    r.wide += r.x0;
-    r.narrow_q24 += r.x0;
-    for (; n > 0; n--) {
-        const int x = (int)(x_q40 >> 40);
-
-        if ((unsigned)x < wide)
-            change(&r, mode, x, full);
-        else if (x < 0 && r.x0 == 0)
-            change(&r, mode, 0, full);
-        next_row(&r, stride);
-        x_q40 += step_q40;
-    }
-}
-
-/* Smooth ones where all of them lie within the tile, one pixel or two in each.
- */
+/* The same where all of them lie within the tile, one pixel or two in each. */
 static inline void add_rows_within(struct run r, enum mode mode, int n,
                                    int64_t x_q40, int64_t step_q40, int stride)
 {
@@ -327,60 +291,153 @@ static inline void add_rows_within(struct run r, enum mode mode, int n,
         } else {
             add_two(&r, mode, first, low, high, ONE_Q16);
         }
-        next_row(&r, stride);
+        go_down(&r, mode, stride);
         x_q40 = next;
     }
 }
 
-/* All rows of one channel. */
-static inline void add_channel(const struct glint_edge_sums *s, enum mode mode,
-                               const struct glint_edge *e, int64_t light,
-                               int channel)
+/* An edge's part in one channel of a tile. */
+struct part {
+    struct run run; /* its first row */
+    int32_t y_q8, end_q8;
+    int64_t x_q40; /* where it begins */
+};
+
+static inline struct part part_of(const struct glint_edge_sums *s,
+                                  enum mode mode, const struct glint_edge *e,
+                                  int64_t light, int channel)
 {
     const struct glint_box *t = &s->tile;
     const int32_t end_q8 = sooner(e->end_y_q8, t->y1 * 256);
-    int32_t y_q8 = later(e->y_q8, t->y0 * 256);
-    const int row = (y_q8 >> 8) - t->y0, whole = (int)e->whole;
+    const int32_t y_q8 = later(e->y_q8, t->y0 * 256);
+    const int row = (y_q8 >> 8) - t->y0;
     const ptrdiff_t at =
         (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
-    struct run r = {s->wide + at, s->narrow_q24 + at, t->x0, t->x1, light, 0};
-    int64_t x_q40 = x_at_q40(e, y_q8);
-    const int64_t end_q40 = x_at_q40(e, end_q8);
-    const int64_t low_q40 = x_q40 < end_q40 ? x_q40 : end_q40;
-    const int64_t high_q40 = x_q40 < end_q40 ? end_q40 : x_q40;
-    int n;
+    struct part p = {
+        {{NULL}, t->x0, t->x1, light, 0}, y_q8, end_q8, x_at_q40(e, y_q8)};
 
     s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
-    if (!whole && low_q40 >> 40 != high_q40 >> 40)
-        r.rise_q32 = rise_of(e->slope_q40);
-    if (y_q8 & 255) {
-        const int32_t height_q8 = sooner((y_q8 | 255) + 1, end_q8) - y_q8;
-        const int64_t next_q40 = x_q40 + e->slope_q40 * height_q8;
+    if (mode == NARROW)
+        p.run.row.narrow_q24 = s->narrow_q24 + at;
+    else
+        p.run.row.wide = s->wide + at;
+    return p;
+}
 
-        add_row(&r, mode, whole, x_q40, next_q40, height_q8 * INT64_C(256));
-        next_row(&r, s->stride);
-        x_q40 = next_q40;
-        y_q8 += height_q8;
+/* Of the row that P begins in, the part of it; not a whole one. */
+static inline int32_t height_of(const struct part *p)
+{
+    return sooner((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
+}
+
+/* All its rows. */
+static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
+                              const struct glint_edge *e, struct part p)
+{
+    const int64_t end_q40 = x_at_q40(e, p.end_q8);
+    const int64_t low_q40 = p.x_q40 < end_q40 ? p.x_q40 : end_q40;
+    const int64_t high_q40 = p.x_q40 < end_q40 ? end_q40 : p.x_q40;
+    int n;
+
+    if (low_q40 >> 40 != high_q40 >> 40)
+        p.run.rise_q32 = rise_of(e->slope_q40);
+    if (p.y_q8 & 255) {
+        const int32_t height_q8 = height_of(&p);
+        const int64_t next_q40 = p.x_q40 + e->slope_q40 * height_q8;
+
+        add_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * INT64_C(256));
+        go_down(&p.run, mode, s->stride);
+        p.x_q40 = next_q40;
+        p.y_q8 += height_q8;
     }
-    n = (end_q8 - y_q8) >> 8;
+    n = (p.end_q8 - p.y_q8) >> 8;
     if (n > 0) { /* else so flat an edge's step might overflow */
         const int64_t step_q40 = e->slope_q40 * 256;
         const int is_narrow = step_q40 < ONE_Q40 && step_q40 > -ONE_Q40;
 
-        if (whole)
-            add_whole_rows(r, mode, n, x_q40, step_q40, s->stride);
-        else if (low_q40 >> 40 < t->x0 || high_q40 >> 40 >= t->x1 || !is_narrow)
-            add_rows(r, mode, n, x_q40, step_q40, s->stride);
+        if (low_q40 >> 40 < p.run.x0 || high_q40 >> 40 >= p.run.x1 ||
+            !is_narrow)
+            add_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
         else
-            add_rows_within(r, mode, n, x_q40, step_q40, s->stride);
-        r.wide += (ptrdiff_t)n * s->stride;
-        r.narrow_q24 += (ptrdiff_t)n * s->stride;
-        x_q40 += n * step_q40;
-        y_q8 += n * 256;
+            add_rows_within(p.run, mode, n, p.x_q40, step_q40, s->stride);
+        go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+        p.x_q40 += n * step_q40;
+        p.y_q8 += n * 256;
     }
-    if (y_q8 < end_q8)
-        add_row(&r, mode, whole, x_q40, end_q40,
-                (end_q8 - y_q8) * INT64_C(256));
+    if (p.y_q8 < p.end_q8)
+        add_piece(&p.run, mode, p.x_q40, end_q40,
+                  (p.end_q8 - p.y_q8) * INT64_C(256));
+}
+
+/* All of a row's light, AREA, from the pixel on that the edge is in there,
+ * X_Q40 from the tile's first; that of one left of the picture from its side.
+ */
+static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
+                             int64_t area)
+{
+    const int x = (int)(x_q40 >> 40);
+
+    if ((unsigned)x < (unsigned)r->x1)
+        change(r, mode, x, area);
+    else if (x < 0 && r->x0 == 0)
+        change(r, mode, 0, area);
+}
+
+/* The same in N whole rows, STEP further in each. */
+static inline void add_full_rows(struct run r, enum mode mode, int n,
+                                 int64_t x_q40, int64_t step_q40, int stride)
+{
+    const uint64_t end_q40 = (uint64_t)(r.x1 * ONE_Q40);
+    const int64_t full = units(mode, ONE_Q16);
+
+    x_q40 += step_q40 / 2;
+    if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
+        for (; n > 0; n--, x_q40 += step_q40) {
+            add_whole(&r, mode, x_q40, full);
+            go_down(&r, mode, stride);
+        }
+        return;
+    }
+    /* into the tile, through it, and out of it for good */
+    for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
+        go_down(&r, mode, stride);
+    for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
+        change(&r, mode, (int)(x_q40 >> 40), full);
+        go_down(&r, mode, stride);
+    }
+}
+
+/* All its rows, on whole pixels. */
+static inline void add_whole_rows(const struct glint_edge_sums *s,
+                                  enum mode mode, const struct glint_edge *e,
+                                  struct part p)
+{
+    int n;
+
+    go_down(&p.run, mode, p.run.x0); /* from here on columns of the tile */
+    p.x_q40 -= p.run.x0 * ONE_Q40;
+    p.run.x1 -= p.run.x0;
+    if (p.y_q8 & 255) {
+        const int32_t height_q8 = height_of(&p);
+        const int64_t step_q40 = e->slope_q40 * height_q8;
+
+        add_whole(&p.run, mode, p.x_q40 + step_q40 / 2,
+                  units(mode, height_q8 * INT64_C(256)));
+        go_down(&p.run, mode, s->stride);
+        p.x_q40 += step_q40;
+        p.y_q8 += height_q8;
+    }
+    n = (p.end_q8 - p.y_q8) >> 8;
+    if (n > 0) { /* else so flat an edge's step might overflow */
+        add_full_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256, s->stride);
+        go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+        p.x_q40 += n * (e->slope_q40 * 256);
+        p.y_q8 += n * 256;
+    }
+    if (p.y_q8 < p.end_q8)
+        add_whole(&p.run, mode,
+                  p.x_q40 + e->slope_q40 * (p.end_q8 - p.y_q8) / 2,
+                  units(mode, (p.end_q8 - p.y_q8) * INT64_C(256)));
 }
 
 static int64_t coloured_q20(int32_t light, int32_t colour_q14)
@@ -421,7 +478,10 @@ static inline int64_t add_all(const struct glint_edge_sums *s, enum mode mode,
             if (step == 0)
                 continue;
             far[c] += step < 0 ? -step : step;
-            add_channel(s, mode, e, step, c);
+            if (e->whole)
+                add_whole_rows(s, mode, e, part_of(s, mode, e, step, c));
+            else
+                add_smooth(s, mode, e, part_of(s, mode, e, step, c));
         }
     }
     most = far[0] > far[1] ? far[0] : far[1];
