@@ -101,7 +101,7 @@ WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS),$(INIH_LIBS))
 endif
 
 # Sources in the order the data flows.
-CORE := base/status base/arena base/q base/sort base/image base/workers \
+CORE := base/status base/arena base/q base/divide base/sort base/image base/workers \
         kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/turn kernels/turn_c \
         kernels/composite_c \
         lens/model lens/transfer flare/bright flare/regions flare/lights \
@@ -129,7 +129,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 EXTREMES := angles powers lenses frames caustics sums runs
-UNIT := arena kernels model prescription optics trace pupil published quantise bake \
+UNIT := arena divide kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame show_lights sweep explain budget live \
@@ -413,7 +413,7 @@ $(OUT)/valgrind/%: $(OUT)/tests/% always
 # the same hashes, with models baked here (tests/arm/check).
 ARM_TARGETS := aarch64 armv7 armv7-neon armv6-soft
 ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
-ARM_UNIT := arena kernels model curve edges resolve composite lights flare plan account beams bright match \
+ARM_UNIT := arena divide kernels model curve edges resolve composite lights flare plan account beams bright match \
         tracks quantise pnm y4m output workers measure lamps fourcc panel frame \
         show_lights live_stats live_adapt
 # Those that want a model bake it here first, for all.

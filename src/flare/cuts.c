@@ -2,6 +2,7 @@
 #include "flare/cuts.h"
 
 #include "base/compiler.h"
+#include "base/divide.h"
 #include "base/q.h"
 #include "tile/outline.h"
 
@@ -91,7 +92,7 @@ static void shorten(const struct glint_stop *stop, struct interval *in, int cut,
         in->t_q30[1] = -1;
         return;
     }
-    t_q30 = fa * (INT64_C(1) << 30) / (fa - fb); /* 2^31.5 times 2^30 */
+    t_q30 = q_divide(fa * (INT64_C(1) << 30), fa - fb); /* 2^31.5 times 2^30 */
     if (fa <= 0 && t_q30 >= in->t_q30[0]) {
         in->t_q30[0] = t_q30;
         in->cut[0] = cut;
@@ -164,7 +165,7 @@ static int near_q16(int64_t x, int64_t y, int64_t *q16)
     y >>= down;
     if (y == 0)
         return 0;
-    *q16 = x * 65536 / y;
+    *q16 = q_divide(x * 65536, y);
     return *q16 > -3 * 16384 && *q16 < 3 * 16384;
 }
 

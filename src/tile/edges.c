@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "tile/edges.h"
 
-#include "base/compiler.h"
-#include "base/q.h"
-
 #include <stddef.h>
+
+#include "base/compiler.h"
+#include "base/divide.h"
+#include "base/q.h"
 
 #define ONE_Q16 (INT64_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
@@ -20,14 +21,15 @@ int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
 
     if (a_q8[1] == b_q8[1])
         return 0;
-    *edge = (struct glint_edge){.x_q8 = upper[0],
-                                .y_q8 = upper[1],
-                                .end_y_q8 = lower[1],
-                                .slope_q40 = ((int64_t)lower[0] - upper[0]) *
-                                             (INT64_C(1) << 32) /
-                                             ((int64_t)lower[1] - upper[1]),
-                                .left = up ? other : light,
-                                .right = up ? light : other};
+    *edge = (struct glint_edge){
+        .x_q8 = upper[0],
+        .y_q8 = upper[1],
+        .end_y_q8 = lower[1],
+        .slope_q40 =
+            q_divide(((int64_t)lower[0] - upper[0]) * (INT64_C(1) << 32),
+                     (int64_t)lower[1] - upper[1]),
+        .left = up ? other : light,
+        .right = up ? light : other};
     return 1;
 }
 
@@ -196,7 +198,7 @@ static int64_t rise_of(int64_t slope_q40)
     const int64_t least = INT64_C(1) << 24;
 
     /* 1/256 pixel of height is 2^8 of _q16 */
-    return (INT64_C(1) << 62) / (size > least ? size : least) << 2;
+    return q_divide(INT64_C(1) << 62, size > least ? size : least) * 4;
 }
 
 /* The same where it is two pixels, FIRST and the next, both in the tile. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "tile/outline.h"
 
+#include "base/divide.h"
 #include "base/q.h"
 
 enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
@@ -110,7 +111,7 @@ static int64_t value_at(const int64_t *value_q16, const struct glint_uv *p)
 /* A + (B - A) FA / (FA - FB): below 2^28 times 2^33. */
 static int32_t between(int32_t a_q28, int32_t b_q28, int64_t fa, int64_t fb)
 {
-    return a_q28 + (int32_t)((b_q28 - a_q28) * fa / (fa - fb));
+    return a_q28 + (int32_t)q_divide((b_q28 - a_q28) * fa, fa - fb);
 }
 
 /* Keeps what lies on the inner side of one half plane, given its values at the

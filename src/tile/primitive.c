@@ -2,6 +2,7 @@
 #include "tile/primitive.h"
 
 #include "base/compiler.h"
+#include "base/divide.h"
 #include "base/q.h"
 
 void glint_corners_gather(struct glint_corners *corners,
@@ -109,11 +110,11 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
     /* flux and area are brought to 31 bits before they divide */
     const int lift = 62 - bit_length((uint64_t)area);
     const int64_t area_31 = (area << lift) >> 31; /* 2^30 .. 2^31 - 1 */
-    const int64_t ratio = /* NOLINTNEXTLINE: area is not 0 */
-        ((int64_t)bundle->flux_q31 << 31) / area_31;
+    const int64_t ratio = q_divide((int64_t)bundle->flux_q31 << 31, area_31);
     /* light over less than a pixel: limit_q8 below 2^20, area at least 2^-33 */
-    const int64_t limit_q22 = /* NOLINTNEXTLINE: area is not 0 */
-        (area >> frac ? (int64_t)limit_q8 : ((int64_t)limit_q8 << frac) / area)
+    const int64_t limit_q22 =
+        (area >> frac ? (int64_t)limit_q8
+                      : q_divide((int64_t)limit_q8 << frac, area))
         << 14;
 
     /* flux 2^(e - 31), area = area_31 2^(31 - lift - frac), result q22 */

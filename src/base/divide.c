@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+#include "base/divide.h"
+
+#include "base/compiler.h"
+
+static uint32_t upper(uint32_t a, uint32_t b)
+{
+    return (uint32_t)((uint64_t)a * b >> 32);
+}
+
+/* 2^63 / X or a little less, X from 2^31 on: a line that is off by 1/17 at most
+ * and Newton's method, which squares that thrice. What is cut leaves it below.
+ */
+static uint32_t reciprocal(uint32_t x)
+{
+    /* 48/17 - 32/17 x, _q31 modulo 2^32, for x _q32 */
+    uint32_t r_q31 = 1768515944 - upper(x, 4042322161U);
+
+    for (int i = 0; i < 3; i++)
+        r_q31 =
+            (uint32_t)((uint64_t)r_q31 * (UINT32_MAX - upper(r_q31, x)) >> 31);
+    return r_q31;
+}
+
+static uint64_t size_of(int64_t x)
+{
+    return (uint64_t)(x < 0 ? -x : x);
+}
+
+/* Takes as many times D from the rest as the upper 32 bits of both say, never
+ * too many, until less is left than D: thirty bits of the quotient each time.
+ */
+int64_t glint_divide(int64_t n, int64_t d)
+{
+    const uint64_t by = size_of(d);
+    const int wide = bit_length(by);
+    const uint32_t top = (uint32_t)(by << (64 - wide) >> 32);
+    const uint32_t one_over = reciprocal(top < UINT32_MAX ? top + 1 : top);
+    uint64_t rest = size_of(n), q = 0;
+
+    while (rest >= by) {
+        const int more = bit_length(rest) - wide; /* 0 .. 63 */
+        const uint32_t of = (uint32_t)(rest << (64 - wide - more) >> 32);
+        const uint64_t ratio = upper(of, one_over); /* 2^31: 1 */
+        const uint64_t times = more < 2    ? 1
+                               : more < 31 ? ratio >> (31 - more)
+                                           : ratio << (more - 31);
+
+        q += times;
+        rest -= times * by;
+    }
+    return (n < 0) == (d < 0) ? (int64_t)q : -(int64_t)q;
+}

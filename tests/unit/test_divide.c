@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Division by words of 32 bits against the compiler's.
+ */
+#include "base/divide.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+static uint64_t seed = 12345;
+
+static uint64_t draw(void)
+{
+    seed ^= seed << 13;
+    seed ^= seed >> 7;
+    return seed ^= seed << 17;
+}
+
+static void expect(int64_t n, int64_t d)
+{
+    assert_int_equal(glint_divide(n, d), n / d);
+    assert_int_equal(q_divide(n, d), n / d);
+}
+
+/* Of every size, of either sign. */
+static int64_t draw_any(void)
+{
+    const int64_t size = (int64_t)(draw() >> (1 + draw() % 63));
+
+    return draw() & 1 ? -size : size;
+}
+
+static void test_any(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 1000000; i++) {
+        const int64_t n = draw_any(), d = draw_any();
+
+        if (d != 0)
+            expect(n, d);
+    }
+}
+
+/* Just at, below and above what divides, and powers of two. */
+static void test_borders(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 300000; i++) {
+        const int64_t d = 1 + (int64_t)(draw() >> (2 + draw() % 62));
+        const int64_t most = INT64_MAX / d - 1;
+        const int64_t q = (int64_t)(draw() >> (1 + draw() % 62)) % (most + 1);
+
+        for (int off = -1; off <= 1; off++)
+            expect(q * d + off, d);
+    }
+    for (int a = 0; a < 63; a++)
+        for (int b = 0; b < 63; b++)
+            for (int off = -1; off <= 1; off++)
+                if ((INT64_C(1) << b) + off != 0) {
+                    expect(INT64_C(1) << a, (INT64_C(1) << b) + off);
+                    expect((INT64_C(1) << a) - 1, (INT64_C(1) << b) + off);
+                }
+    expect(INT64_MAX, 1);
+    expect(INT64_MAX, INT64_MAX);
+    expect(INT64_MAX - 1, INT64_MAX);
+    expect(-INT64_MAX, 3);
+    expect(0, -7);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_any),
+                                       cmocka_unit_test(test_borders)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
