@@ -180,18 +180,20 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
 # Run-time half: no library, small stack frames; --gc-sections takes out what is
 # not called.
 $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 -fno-asynchronous-unwind-tables
-# What runs once, or once for a lamp, is small rather than fast.
+# What runs once, or once for a lamp or bundle, is small rather than fast, and so
+# is what only takes cells to tiles.
 $(patsubst %,$(OUT)/src/%.o,base/status base/image lens/model flare/lights flare/match \
-        flare/follow flare/record flare/tracks flare/beams tile/curve tile/mix): CFLAGS += -Os
+        flare/follow flare/record flare/tracks flare/beams flare/plan flare/flare flare/account \
+        flare/ghost_grid flare/by_cells tile/clip tile/curve tile/mix): CFLAGS += -Os
 # An instruction set is a file-name suffix; nothing else may use its flags.
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
 ifeq ($(ARCH),armv7)
 $(OUT)/src/%_neon.o: CFLAGS += -mfpu=neon
 endif
-$(OUT)/src/kernels/%.o $(OUT)/src/tile/codes.o \
-$(OUT)/src/tile/edges.o $(OUT)/src/tile/primitive.o $(OUT)/src/flare/bright.o \
-$(OUT)/src/flare/cuts.o $(OUT)/src/flare/by_edges.o $(OUT)/src/flare/ghost_edges.o $(OUT)/src/lens/transfer.o: CFLAGS += -O3
+# Hot loops: unrolled, or where that buys nothing but bytes in vectors alone.
+$(OUT)/src/kernels/%.o $(patsubst %,$(OUT)/src/%.o,tile/edges flare/bright flare/ghost_edges): CFLAGS += -O3
+$(patsubst %,$(OUT)/src/%.o,tile/codes flare/by_edges lens/transfer): CFLAGS += -ftree-vectorize
 ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)
 # else constants that are hoisted push out tables: a tenth more instructions
 $(OUT)/src/kernels/composite_neon.o: CFLAGS += -fno-move-loop-invariants

@@ -127,7 +127,8 @@ int glint_edge_span(const struct glint_edge *edge,
 /* --------------------------------------------------------------------- add
  */
 
-enum mode { LINEAR, FINE, WIDE, NARROW };
+/* Sums of 64 bits, or of 32. */
+enum mode { WIDE, NARROW };
 
 /* One row of one channel of a tile, from where pixel 0 of the picture would be.
  */
@@ -136,6 +137,8 @@ struct run {
         uint64_t *wide;
         uint32_t *narrow_q24;
     } row;      /* by mode */
+    int less;   /* bits of areas _q16 that do not count: 8, or of linear light 0
+                 */
     int x0, x1; /* the tile's columns */
     int64_t light;
     int64_t rise_q32; /* see rise_of */
@@ -150,10 +153,13 @@ static inline void change(const struct run *r, enum mode mode, int x,
         r->row.wide[x] += (uint64_t)(r->light * area);
 }
 
-/* AREA in the units of MODE. */
-static inline int64_t units(enum mode mode, int64_t area_q16)
+/* AREA in what sums count. */
+static inline int64_t units(const struct run *r, enum mode mode,
+                            int64_t area_q16)
 {
-    return mode == LINEAR ? area_q16 : (area_q16 + 128) >> 8;
+    const int less = mode == NARROW ? 8 : r->less;
+
+    return (area_q16 + (1 << less >> 1)) >> less;
 }
 
 /* A piece of an edge within one row, from A to B (A <= B) over HEIGHT, in
@@ -179,7 +185,8 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         /* how far the piece's ends lie from the pixel's right side */
         const int64_t far_q16 = (i > first ? ONE_Q16 : side_q16 - a_q16) +
                                 (i < last ? 0 : side_q16 - b_q16);
-        const int64_t area = units(mode, low + ((high - low) * far_q16 >> 17));
+        const int64_t area =
+            units(r, mode, low + ((high - low) * far_q16 >> 17));
 
         if (i >= r->x0)
             change(r, mode, i, area - before);
@@ -187,7 +194,7 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         low = high;
     }
     if (last < r->x1 && last >= r->x0)
-        change(r, mode, last + 1, units(mode, height_q16) - before);
+        change(r, mode, last + 1, units(r, mode, height_q16) - before);
 }
 
 /* How much an edge rises per pixel, _q16 per _q16, with 32 bits more. One that
@@ -208,13 +215,13 @@ static inline void add_two(const struct run *r, enum mode mode, int first,
     const int64_t far_q16 = (first + 1) * ONE_Q16 - (a_q40 >> 24);
     const int64_t left_q16 = (first + 2) * ONE_Q16 - (b_q40 >> 24);
     const int64_t low = r->rise_q32 * far_q16 >> 32;
-    const int64_t one = units(mode, low * far_q16 >> 17);
+    const int64_t one = units(r, mode, low * far_q16 >> 17);
     const int64_t two =
-        units(mode, low + ((height_q16 - low) * (ONE_Q16 + left_q16) >> 17));
+        units(r, mode, low + ((height_q16 - low) * (ONE_Q16 + left_q16) >> 17));
 
     change(r, mode, first, one);
     change(r, mode, first + 1, two - one);
-    change(r, mode, first + 2, units(mode, height_q16) - two);
+    change(r, mode, first + 2, units(r, mode, height_q16) - two);
 }
 
 /* From A to B, in any order, over HEIGHT. */
@@ -227,14 +234,14 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
 
     if (last < r->x0) { /* what lies left of the picture counts from its side */
         if (r->x0 == 0)
-            change(r, mode, 0, units(mode, height_q16));
+            change(r, mode, 0, units(r, mode, height_q16));
     } else if (first >= r->x1) {
         return;
     } else if (first == last) {
-        const int64_t height = units(mode, height_q16);
+        const int64_t height = units(r, mode, height_q16);
         const int64_t far_q16 = 2 * ONE_Q16 - ((low_q40 >> 24) & 0xffff) -
                                 ((high_q40 >> 24) & 0xffff);
-        const int64_t area = units(mode, (height_q16 * far_q16) >> 17);
+        const int64_t area = units(r, mode, (height_q16 * far_q16) >> 17);
 
         change(r, mode, first, area);
         change(r, mode, first + 1, height - area);
@@ -275,7 +282,7 @@ static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
 static inline void add_rows_within(struct run r, enum mode mode, int n,
                                    int64_t x_q40, int64_t step_q40, int stride)
 {
-    const int64_t full = units(mode, ONE_Q16);
+    const int64_t full = units(&r, mode, ONE_Q16);
 
     for (; n > 0; n--) {
         const int64_t next = x_q40 + step_q40;
@@ -286,7 +293,7 @@ static inline void add_rows_within(struct run r, enum mode mode, int n,
         if (first == last) {
             const int64_t far_q16 =
                 2 * ONE_Q16 - ((low >> 24) & 0xffff) - ((high >> 24) & 0xffff);
-            const int64_t area = units(mode, far_q16 >> 1);
+            const int64_t area = units(&r, mode, far_q16 >> 1);
 
             change(&r, mode, first, area);
             change(&r, mode, first + 1, full - area);
@@ -315,8 +322,10 @@ static inline struct part part_of(const struct glint_edge_sums *s,
     const int row = (y_q8 >> 8) - t->y0;
     const ptrdiff_t at =
         (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
-    struct part p = {
-        {{NULL}, t->x0, t->x1, light, 0}, y_q8, end_q8, x_at_q40(e, y_q8)};
+    struct part p = {{{NULL}, s->linear ? 0 : 8, t->x0, t->x1, light, 0},
+                     y_q8,
+                     end_q8,
+                     x_at_q40(e, y_q8)};
 
     s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
     if (mode == NARROW)
@@ -390,7 +399,7 @@ static inline void add_full_rows(struct run r, enum mode mode, int n,
                                  int64_t x_q40, int64_t step_q40, int stride)
 {
     const uint64_t end_q40 = (uint64_t)(r.x1 * ONE_Q40);
-    const int64_t full = units(mode, ONE_Q16);
+    const int64_t full = units(&r, mode, ONE_Q16);
 
     x_q40 += step_q40 / 2;
     if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
@@ -424,7 +433,7 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
         const int64_t step_q40 = e->slope_q40 * height_q8;
 
         add_whole(&p.run, mode, p.x_q40 + step_q40 / 2,
-                  units(mode, height_q8 * INT64_C(256)));
+                  units(&p.run, mode, height_q8 * INT64_C(256)));
         go_down(&p.run, mode, s->stride);
         p.x_q40 += step_q40;
         p.y_q8 += height_q8;
@@ -439,7 +448,7 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
     if (p.y_q8 < p.end_q8)
         add_whole(&p.run, mode,
                   p.x_q40 + e->slope_q40 * (p.end_q8 - p.y_q8) / 2,
-                  units(mode, (p.end_q8 - p.y_q8) * INT64_C(256)));
+                  units(&p.run, mode, (p.end_q8 - p.y_q8) * INT64_C(256)));
 }
 
 static int64_t coloured_q20(int32_t light, int32_t colour_q14)
@@ -450,24 +459,21 @@ static int64_t coloured_q20(int32_t light, int32_t colour_q14)
                                  : q_shift(light_q20 * colour_q14, 14);
 }
 
-/* What EDGE changes light by in one channel, in the units of MODE. */
-static int64_t step_of(const struct glint_edge *e, int32_t colour_q14,
-                       enum mode mode)
+/* What EDGE changes light by in one channel, without so many bits of _q20. */
+static int64_t step_of(const struct glint_edge *e, int32_t colour_q14, int less)
 {
-    const int64_t right_q20 = coloured_q20(e->right, colour_q14);
-    const int64_t left_q20 = coloured_q20(e->left, colour_q14);
-
-    return mode == LINEAR || mode == FINE
-               ? right_q20 - left_q20
-               : q_shift(right_q20, 4) - q_shift(left_q20, 4);
+    return q_shift(coloured_q20(e->right, colour_q14), less) -
+           q_shift(coloured_q20(e->left, colour_q14), less);
 }
 
 /* Returns how far sums can come from where they begin, all steps added up. */
-static inline int64_t add_all(const struct glint_edge_sums *s, enum mode mode,
-                              const struct glint_edge *edge,
-                              const struct glint_bundle *bundle,
-                              const int32_t *ref, int n_refs)
+static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
+                                     enum mode mode,
+                                     const struct glint_edge *edge,
+                                     const struct glint_bundle *bundle,
+                                     const int32_t *ref, int n_refs)
 {
+    const int less = mode == NARROW || !(s->linear || s->fine) ? 4 : 0;
     int64_t far[3] = {0, 0, 0}, most;
 
     for (int k = 0; k < n_refs; k++) {
@@ -475,7 +481,7 @@ static inline int64_t add_all(const struct glint_edge_sums *s, enum mode mode,
         const int32_t *rgb_q14 = bundle[e->bundle].rgb_q14;
 
         for (int c = 0; c < 3; c++) {
-            const int64_t step = rgb_q14[c] ? step_of(e, rgb_q14[c], mode) : 0;
+            const int64_t step = rgb_q14[c] ? step_of(e, rgb_q14[c], less) : 0;
 
             if (step == 0)
                 continue;
@@ -510,16 +516,9 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
     int64_t far_q24 = 0;
 
     sums->narrow = 0;
-    if (sums->linear) {
-        add_all(sums, LINEAR, edge, bundle, ref, n_refs);
-        return;
-    }
-    if (sums->fine) {
-        add_all(sums, FINE, edge, bundle, ref, n_refs);
-        return;
-    }
-    far_q24 = far_carry(sums);
-    if (far_q24 < most_q24) {
+    if (!sums->linear && !sums->fine)
+        far_q24 = far_carry(sums);
+    if (!sums->linear && !sums->fine && far_q24 < most_q24) {
         far_q24 +=
             add_all(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
         if (far_q24 + 128 < most_q24) {
