@@ -180,11 +180,12 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
 # Run-time half: no library, small stack frames; --gc-sections takes out what is
 # not called.
 $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 -fno-asynchronous-unwind-tables
-# What runs once, or once for a lamp or bundle, is small rather than fast, and so
-# is what only takes cells to tiles.
+# What runs once, or once for a lamp, bundle or row, is small rather than fast, and
+# so is what takes cells to tiles.
 $(patsubst %,$(OUT)/src/%.o,base/status base/image lens/model flare/lights flare/match \
         flare/follow flare/record flare/tracks flare/beams flare/plan flare/flare flare/account \
-        flare/ghost_grid flare/by_cells tile/clip tile/curve tile/mix): CFLAGS += -Os
+        flare/ghost_grid flare/by_cells tile/bins tile/clip tile/resolve tile/curve \
+        tile/mix): CFLAGS += -Os
 # An instruction set is a file-name suffix; nothing else may use its flags.
 $(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
@@ -277,7 +278,7 @@ $(OUT)/glint: $(OUT)/tools/glint.o $(libs)
 	$(link)
 
 # Programs that take one part of the run-time library, and no other half.
-EXAMPLES := ghost_rays add_glow find_lamps
+EXAMPLES := ghost_rays add_glow find_lamps draw_flare
 example_bins := $(EXAMPLES:%=$(OUT)/examples/%)
 $(OUT)/tools/examples/%.o: CPPFLAGS += -Itools/examples
 $(example_bins): $(OUT)/examples/%: $(OUT)/tools/examples/%.o $(OUT)/libglint.a

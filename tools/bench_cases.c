@@ -109,7 +109,7 @@ static int add_test(struct bench *b, const struct scene *scene,
                            : b->tool->n_threads ? b->tool->workers
                                                 : b->one;
     if (v->by_cells)
-        t->frame.cfg.raster = GLINT_RASTER_CELLS;
+        t->frame.cfg.raster = &glint_raster_cells;
     t->frame.cfg.sets &= v->sets;
     yardstick_lamps(t->lamp, v->lights, v->angle);
     b->n_tests++;

@@ -10,8 +10,7 @@ static const char *const stage_names[STAGES] = {
 
 static const char *raster_of(const struct test *t)
 {
-    return t->frame.cfg.raster == GLINT_RASTER_CELLS || t->frame.mask ? "cells"
-                                                                      : "edges";
+    return t->frame.cfg.raster == &glint_raster_cells ? "cells" : "edges";
 }
 
 static double quality_of(const struct test *t)

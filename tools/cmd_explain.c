@@ -103,8 +103,7 @@ static int check(struct tool *tool, const struct explain_command *c)
         return tool_usage(tool, "--picture linear goes with --size");
     if (!c->input && c->look.n_hand == 0 && !c->look.lights_file)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
-    if (s->raster != GLINT_RASTER_EDGES || s->mask_nodes ||
-        s->rays != SCENE_RAYS_MODEL)
+    if (s->raster || s->mask_nodes || s->rays != SCENE_RAYS_MODEL)
         return tool_usage(tool, "explains what is drawn by edges from a model, "
                                 "not --raster cells, --mask, --rays exact");
     return -1;

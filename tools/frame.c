@@ -40,6 +40,7 @@ enum glint_status frame_use_mask(struct frame *frame, int nodes)
     if (!frame->mask)
         return GLINT_E_MEMORY;
     glint_setup_mask(frame->setup, frame->mask, nodes, span);
+    frame->cfg.raster = &glint_raster_cells;
     frame->cfg.stop.mask_q13 = frame->mask;
     frame->cfg.stop.mask_nodes = nodes;
     frame->cfg.stop.mask_span_q16 = (int32_t)(span * 65536);
@@ -181,7 +182,7 @@ static struct glint_rays rays_of(const struct frame *f, double faintest_light)
         .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
         .fineness = f->max_cells,
         .uniform = f->uniform,
-        .narrow = f->narrow,
+        .narrow = f->narrow ? glint_transfer_narrow : NULL,
         .only_ghost = f->only_ghost,
         .faintest = glint_real_of(faintest_light),
         .whole_codes_q8 = (int)lrint(f->whole_codes * 256),
@@ -220,9 +221,8 @@ static enum glint_status regrow(struct frame *f)
 /* Bundles that N_BEAMS may need, as many as a frame may take. */
 static int bundles_of(const struct frame *f, int n_beams)
 {
-    const int most = f->cfg.raster == GLINT_RASTER_CELLS || f->mask
-                         ? MAX_BUNDLES_CELLS
-                         : MAX_BUNDLES;
+    const int most =
+        f->cfg.raster == &glint_raster_cells ? MAX_BUNDLES_CELLS : MAX_BUNDLES;
     const double need =
         (double)n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
 
@@ -278,7 +278,7 @@ static bool is_served(struct frame *f, const struct glint_flare_stats *s)
 /* References for each primitive, and vertices by cells: rather too many. */
 static size_t bytes_for(struct frame *f, int primitives)
 {
-    const bool by_cells = f->cfg.raster == GLINT_RASTER_CELLS || f->mask;
+    const bool by_cells = f->cfg.raster == &glint_raster_cells;
 
     f->cfg.max_primitives = primitives;
     f->cfg.max_refs = 2 * primitives;

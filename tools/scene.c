@@ -136,7 +136,7 @@ static bool take(struct scene *s, int option, const char *value)
         return word >= 0;
     case OPT_RASTER:
         word = tool_word(value, rasters);
-        s->raster = word == 1 ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
+        s->raster = word;
         return word >= 0;
     case OPT_MASK:
         return tool_integer(value, 2, 4096, &s->mask_nodes);
@@ -330,7 +330,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     /* no larger than the small ones: one level, and the same picture */
     frame->cfg.coarse_log2 =
         scene->coarse_log2 > scene->tile_log2 ? scene->coarse_log2 : 0;
-    frame->cfg.raster = scene->raster;
+    frame->cfg.raster = scene->raster ? &glint_raster_cells : NULL;
     frame->cfg.weights = scene->weights;
     frame->cfg.irradiance_steps = scene_steps(scene->quantum);
     frame->whole_codes = scene->whole_codes;

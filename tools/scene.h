@@ -37,7 +37,7 @@ struct scene {
     double whole_codes; /* see struct frame */
     double quality;     /* as asked for, 0.5 by default */
     double budget_ms;   /* 0: none */
-    enum glint_raster raster;
+    int raster;         /* 0: by edges, 1: by cells */
     enum glint_weights weights;
     bool half, uniform, narrow, antialias, dither, has_exposure, balance;
 };

@@ -103,10 +103,12 @@ struct glint_rays {
     const struct glint_wave *wave;
     int n_waves; /* 1 or more */
     struct glint_real pixels_per_mm;
-    int fineness;   /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
-                       between rays is off by 0.01 px, outlines by 0.1 */
-    int uniform;    /* all grids have so many cells a side */
-    int narrow;     /* rays in 16-bit lanes: glint_transfer_narrow */
+    int fineness; /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
+                     between rays is off by 0.01 px, outlines by 0.1 */
+    int uniform;  /* all grids have so many cells a side */
+    /* NULL, or for rays in 16-bit lanes glint_transfer_narrow, which only a
+     * program that names it links */
+    void (*narrow)(struct glint_transfer *transfer);
     int only_ghost; /* of the lens, with its parts; -1: all */
     /* Of a picture in codes: light that no pixel shows, display white. What
      * stays below may be left out, and the fainter a ghost, the coarser its
@@ -137,8 +139,10 @@ int glint_beams_merge(struct glint_beam *beams, int n_beams, int32_t near_q30,
 /* By edges: the exact area that each cell covers, one irradiance a cell; folds
  * and slivers keep their light; a primitive is an edge across which light
  * changes. By cells: interpolation at pixel centres, [Bodonyi23]; a primitive
- * is a cell; a stop with a mask always takes this one. */
-enum glint_raster { GLINT_RASTER_EDGES, GLINT_RASTER_CELLS };
+ * is a cell; a stop with a mask takes this one. A program that does not name
+ * the latter does not link it. */
+struct glint_raster;
+extern const struct glint_raster glint_raster_edges, glint_raster_cells;
 
 enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
 
@@ -148,7 +152,7 @@ struct glint_flare_config {
                       Changes no output */
     int width, height; /* of the picture, 1 .. GLINT_MAX_SIDE */
     int tile_log2;     /* small tiles of 2^n pixels square, 3 .. 6 */
-    enum glint_raster raster;
+    const struct glint_raster *raster; /* NULL: by edges */
     int dither;             /* when encoding to 8 bits; deterministic */
     struct glint_stop stop; /* copied; its mask is kept */
 

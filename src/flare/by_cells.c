@@ -6,6 +6,45 @@
 #include "base/q.h"
 #include "flare/state.h"
 
+static void carve(struct glint_flare *f, struct glint_arena *a,
+                  const struct glint_flare_config *c)
+{
+    f->level = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->level);
+    f->primitive =
+        glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->primitive);
+}
+
+static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
+                         const struct glint_flare_config *c)
+{
+    const size_t side = (size_t)1 << c->tile_log2;
+    const size_t tiles =
+        c->coarse_log2 ? (size_t)1 << (2 * (c->coarse_log2 - c->tile_log2)) : 0;
+
+    w->acc_q20 = glint_arena_take(a, 3 * side * side, sizeof *w->acc_q20);
+    w->clip = glint_arena_take(a, 1, sizeof *w->clip);
+    w->start = glint_arena_take(a, tiles + 1, sizeof *w->start);
+    w->ref = glint_arena_take(a, (size_t)c->max_tile_refs, sizeof *w->ref);
+}
+
+static void transfer_job(void *ctx, int job, int worker)
+{
+    struct glint_flare *f = ctx;
+    struct glint_transfer *t = &f->worker[worker].plan->transfer;
+    const struct glint_place place =
+        glint_plan_place(&f->plan, f->source[job].beam);
+
+    glint_plan_transfer(&f->plan, &f->source[job], t);
+    glint_transfer_grid(t, &place, f->bundle[job].n_cells,
+                        f->vertex + f->slot[job].first_vertex);
+}
+
+static void fill(struct glint_flare *flare)
+{
+    glint_workers_run(flare->cfg.workers, flare->n_bundles, transfer_job,
+                      flare);
+}
+
 static struct glint_ghost_grid grid_of(const struct glint_flare *f, int bundle)
 {
     const struct glint_bundle_slot *slot = &f->slot[bundle];
@@ -149,7 +188,7 @@ static void count_tile_refs(struct glint_flare *f)
                              : f->cfg.max_tile_refs;
 }
 
-void glint_flare_bin_cells(struct glint_flare *flare)
+static void bin(struct glint_flare *flare)
 {
     struct glint_workers *workers = flare->cfg.workers;
 
@@ -287,8 +326,7 @@ static void coarse_job(void *ctx, int job, int worker)
     draw_tiles(d, w, &bins, 0, bins.tiles_x * bins.tiles_y);
 }
 
-void glint_flare_draw_cells(struct glint_flare *flare,
-                            const struct glint_image *image)
+static void draw(struct glint_flare *flare, const struct glint_image *image)
 {
     const struct glint_flare_config *c = &flare->cfg;
     struct draw d = {.flare = flare,
@@ -307,3 +345,12 @@ void glint_flare_draw_cells(struct glint_flare *flare,
     else
         glint_workers_run(c->workers, flare->bins.tiles_y, row_job, &d);
 }
+
+const struct glint_raster glint_raster_cells = {.max_bundles = 65535,
+                                                .masks = 1,
+                                                .two_levels = 1,
+                                                .carve = carve,
+                                                .carve_worker = carve_worker,
+                                                .fill = fill,
+                                                .bin = bin,
+                                                .draw = draw};

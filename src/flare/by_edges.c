@@ -10,6 +10,57 @@
  * step of each may be missing, 1/40 of a code near black. */
 enum { FINE_BUNDLES = 1024 };
 
+/* -------------------------------------------------------------------- memory
+ */
+
+/* Bundles, or rows of tiles. */
+static size_t most_jobs(const struct glint_flare_config *c)
+{
+    const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
+
+    return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
+}
+
+static void carve(struct glint_flare *f, struct glint_arena *a,
+                  const struct glint_flare_config *c)
+{
+    f->edge = glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->edge);
+    f->order = glint_arena_take(a, most_jobs(c), sizeof *f->order);
+}
+
+static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
+                         const struct glint_flare_config *c)
+{
+    const size_t side = (size_t)1 << c->tile_log2;
+    const size_t sums = 3 * side * (size_t)GLINT_EDGE_STRIDE(c->tile_log2);
+
+    w->rows = glint_arena_take(a, 1, sizeof *w->rows);
+    w->wide = glint_arena_take(a, sums, sizeof *w->wide);
+    w->narrow_q24 = glint_arena_take(a, sums, sizeof *w->narrow_q24);
+    w->carry = glint_arena_take(a, 3 * side, sizeof *w->carry);
+    w->touched = glint_arena_take(a, 3, sizeof *w->touched);
+    w->at = glint_arena_take(
+        a, glint_flare_count_tiles(c->width, c->height, c->tile_log2) + 1,
+        sizeof *w->at);
+}
+
+/* Makes all sums 0, as they are between tiles. */
+static void begin(struct glint_flare *f)
+{
+    const int log2 = f->cfg.tile_log2;
+
+    for (int i = 0; i < glint_workers_count(f->cfg.workers); i++) {
+        struct glint_flare_worker *w = &f->worker[i];
+
+        for (int c = 0; c < 3; c++)
+            w->touched[c] = 0;
+        for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++) {
+            w->wide[k] = 0;
+            w->narrow_q24[k] = 0;
+        }
+    }
+}
+
 /* --------------------------------------------------------------------- order
  */
 
@@ -286,7 +337,7 @@ static void put_job(void *ctx, int job, int worker)
     }
 }
 
-void glint_flare_bin_edges(struct glint_flare *flare)
+static void bin(struct glint_flare *flare)
 {
     struct glint_flare_stats *s = &flare->stats;
 
@@ -459,21 +510,18 @@ static void row_job(void *ctx, int job, int worker)
         draw_tile(d, w, &s, row * f->bins.tiles_x + x);
 }
 
-void glint_flare_clear_edges(struct glint_flare_worker *w, int log2)
-{
-    for (int c = 0; c < 3; c++)
-        w->touched[c] = 0;
-    for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++) {
-        w->wide[k] = 0;
-        w->narrow_q24[k] = 0;
-    }
-}
-
-void glint_flare_draw_edges(struct glint_flare *flare,
-                            const struct glint_image *image)
+static void draw(struct glint_flare *flare, const struct glint_image *image)
 {
     struct draw d = {flare, image};
 
     set_order(flare, flare->bins.tiles_y, edges_in_row);
     glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }
+
+const struct glint_raster glint_raster_edges = {.max_bundles = 1 << 20,
+                                                .halves = 1,
+                                                .carve = carve,
+                                                .carve_worker = carve_worker,
+                                                .begin = begin,
+                                                .bin = bin,
+                                                .draw = draw};

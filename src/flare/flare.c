@@ -6,62 +6,28 @@
 
 /* ------------------------------------------------------------------- memory */
 
-static int by_edges(const struct glint_flare_config *c)
+static const struct glint_raster *raster_of(const struct glint_flare_config *c)
 {
-    return glint_flare_raster(c) == GLINT_RASTER_EDGES;
+    return c->raster ? c->raster : &glint_raster_edges;
 }
 
-/* Large tiles to sort into first are of use by cells only. */
 static int first_level_log2(const struct glint_flare_config *c)
 {
-    return c->coarse_log2 && !by_edges(c) ? c->coarse_log2 : c->tile_log2;
-}
-
-static size_t tile_count(int pixels_x, int pixels_y, int log2)
-{
-    const size_t side = (size_t)1 << log2;
-
-    return (((size_t)pixels_x + side - 1) >> log2) *
-           (((size_t)pixels_y + side - 1) >> log2);
-}
-
-/* Bundles, or rows of tiles. */
-static size_t most_jobs(const struct glint_flare_config *c)
-{
-    const size_t rows = tile_count(1, c->height, c->tile_log2);
-
-    return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
+    return c->coarse_log2 && raster_of(c)->two_levels ? c->coarse_log2
+                                                      : c->tile_log2;
 }
 
 static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
                          const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
-    const size_t stride = (size_t)GLINT_EDGE_STRIDE(c->tile_log2);
-    const size_t tiles =
-        c->coarse_log2 ? (size_t)1 << (2 * (c->coarse_log2 - c->tile_log2)) : 0;
 
     w->light = glint_arena_take(a, 1, sizeof *w->light);
     w->wide_light = glint_arena_take(a, 1, sizeof *w->wide_light);
     w->light_q20 = glint_arena_take(a, 3 * side, sizeof *w->light_q20);
     w->codes = glint_arena_take(a, 1, sizeof *w->codes);
     w->plan = glint_arena_take(a, 1, sizeof *w->plan);
-    if (by_edges(c)) {
-        w->rows = glint_arena_take(a, 1, sizeof *w->rows);
-        w->wide = glint_arena_take(a, 3 * side * stride, sizeof *w->wide);
-        w->narrow_q24 =
-            glint_arena_take(a, 3 * side * stride, sizeof *w->narrow_q24);
-        w->carry = glint_arena_take(a, 3 * side, sizeof *w->carry);
-        w->touched = glint_arena_take(a, 3, sizeof *w->touched);
-        w->at = glint_arena_take(
-            a, tile_count(c->width, c->height, c->tile_log2) + 1,
-            sizeof *w->at);
-        return;
-    }
-    w->acc_q20 = glint_arena_take(a, 3 * side * side, sizeof *w->acc_q20);
-    w->clip = glint_arena_take(a, 1, sizeof *w->clip);
-    w->start = glint_arena_take(a, tiles + 1, sizeof *w->start);
-    w->ref = glint_arena_take(a, (size_t)c->max_tile_refs, sizeof *w->ref);
+    raster_of(c)->carve_worker(w, a, c);
 }
 
 /* Runs twice: to measure, which gives NULL, and to place. */
@@ -82,18 +48,10 @@ static struct glint_flare *carve(struct glint_arena *a,
     f->slot = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->slot);
     f->source = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->source);
     f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
-    if (by_edges(c)) {
-        f->edge =
-            glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->edge);
-        f->order = glint_arena_take(a, most_jobs(c), sizeof *f->order);
-    } else {
-        f->level =
-            glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->level);
-        f->primitive = glint_arena_take(a, (size_t)c->max_primitives,
-                                        sizeof *f->primitive);
-    }
+    raster_of(c)->carve(f, a, c);
     f->bins.start = glint_arena_take(
-        a, tile_count(c->width, c->height, first_level_log2(c)) + 1,
+        a,
+        glint_flare_count_tiles(c->width, c->height, first_level_log2(c)) + 1,
         sizeof *f->bins.start);
     f->bins.ref = glint_arena_take(a, (size_t)c->max_refs, sizeof *f->bins.ref);
     f->worker = glint_arena_take(a, n_workers, sizeof *f->worker);
@@ -104,10 +62,10 @@ static struct glint_flare *carve(struct glint_arena *a,
     return placed;
 }
 
-static int stop_ok(const struct glint_stop *s)
+static int stop_ok(const struct glint_stop *s, int masks)
 {
     if (s->mask_q13)
-        return s->mask_nodes >= 2 && s->mask_nodes <= 4096 &&
+        return masks && s->mask_nodes >= 2 && s->mask_nodes <= 4096 &&
                s->mask_span_q16 >= 1 << 15 && s->mask_span_q16 <= 1 << 18;
     return s->n_blades == 0 ||
            (s->n_blades >= 3 && s->n_blades <= GLINT_MAX_BLADES &&
@@ -125,16 +83,13 @@ static int config_ok(const struct glint_flare_config *c)
             (c->coarse_log2 > c->tile_log2 && c->coarse_log2 <= 8)) &&
            c->merge_steps >= 0 && c->merge_steps <= 4 &&
            c->merge_gamma_q16 >= 0 && c->merge_gamma_q16 <= 1 << 16 &&
-           (c->raster == GLINT_RASTER_EDGES ||
-            c->raster == GLINT_RASTER_CELLS) &&
            (c->weights == GLINT_WEIGHTS_LOOP_DEROSE ||
             c->weights == GLINT_WEIGHTS_WACHSPRESS) &&
-           c->max_bundles >= 0 &&
-           c->max_bundles <= (by_edges(c) ? 1 << 20 : 65535) &&
+           c->max_bundles >= 0 && c->max_bundles <= raster_of(c)->max_bundles &&
            c->max_vertices >= 0 && c->max_primitives >= 0 && c->max_refs >= 0 &&
            c->max_tile_refs >= 0 && c->irradiance_steps >= 0 &&
            c->irradiance_steps <= 4096 && workers >= 1 && workers <= 64 &&
-           stop_ok(&c->stop);
+           stop_ok(&c->stop, raster_of(c)->masks);
 }
 
 size_t glint_flare_bytes(const struct glint_flare_config *cfg)
@@ -160,11 +115,11 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
         return GLINT_E_MEMORY;
     f = carve(&arena, cfg);
     f->cfg = *cfg;
-    for (int i = 0; i < glint_workers_count(cfg->workers); i++) {
+    f->cfg.raster = raster_of(cfg);
+    for (int i = 0; i < glint_workers_count(cfg->workers); i++)
         f->worker[i].n_tiles = 0;
-        if (by_edges(cfg))
-            glint_flare_clear_edges(&f->worker[i], cfg->tile_log2);
-    }
+    if (f->cfg.raster->begin)
+        f->cfg.raster->begin(f);
     glint_flare_begin(f);
     *flare = f;
     return GLINT_OK;
@@ -244,12 +199,12 @@ static void plan_job(void *ctx, int job, int worker)
     }
 }
 
-/* Cells of a stored grid; by edges rows come and go. */
+/* Vertices of a stored grid. */
 static int stored(const struct glint_flare *f, const struct glint_bundle *b)
 {
     const int n = b->n_cells + 1;
 
-    return by_edges(&f->cfg) ? 0 : n * n;
+    return f->cfg.raster->fill ? n * n : 0;
 }
 
 /* Of many beams none may be seen by itself, but all together: a ghost is left
@@ -295,19 +250,6 @@ static void keep_seen(struct glint_flare *f, int n)
     }
 }
 
-/* By cells: the vertices of a bundle. */
-static void transfer_job(void *ctx, int job, int worker)
-{
-    struct glint_flare *f = ctx;
-    struct glint_transfer *t = &f->worker[worker].plan->transfer;
-    const struct glint_place place =
-        glint_plan_place(&f->plan, f->source[job].beam);
-
-    glint_plan_transfer(&f->plan, &f->source[job], t);
-    glint_transfer_grid(t, &place, f->bundle[job].n_cells,
-                        f->vertex + f->slot[job].first_vertex);
-}
-
 void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                       const struct glint_beam *beams, int n_beams)
 {
@@ -319,7 +261,7 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
 
     glint_flare_begin(flare);
     set_size(flare, rays->half && rays->faintest.mantissa != 0 &&
-                        by_edges(&flare->cfg));
+                        flare->cfg.raster->halves);
     flare->plan = (struct glint_plan){.rays = rays,
                                       .beam = beams,
                                       .n_beams = n_beams,
@@ -337,9 +279,8 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     leave_out_faint(flare, n);
     keep_seen(flare, n);
-    if (!by_edges(&flare->cfg))
-        glint_workers_run(flare->cfg.workers, flare->n_bundles, transfer_job,
-                          flare);
+    if (flare->cfg.raster->fill)
+        flare->cfg.raster->fill(flare);
 }
 
 int glint_flare_ghost(const struct glint_flare *flare, int i)
@@ -384,10 +325,8 @@ static void total(struct glint_flare *f)
 
 void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
 {
-    if (flare->n_bundles > 0 && by_edges(&flare->cfg))
-        glint_flare_bin_edges(flare);
-    else if (flare->n_bundles > 0)
-        glint_flare_bin_cells(flare);
+    if (flare->n_bundles > 0)
+        flare->cfg.raster->bin(flare);
     total(flare);
     *stats = flare->stats;
 }
@@ -403,10 +342,7 @@ void glint_flare_draw(struct glint_flare *flare,
         return; /* the bins may be another frame's */
     glint_resolve_init(flare->resolve, image ? image : &none, flare->cfg.dither,
                        flare->cfg.sets);
-    if (by_edges(&flare->cfg))
-        glint_flare_draw_edges(flare, image);
-    else
-        glint_flare_draw_cells(flare, image);
+    flare->cfg.raster->draw(flare, image);
 }
 
 int glint_flare_tiles(const struct glint_flare *flare)

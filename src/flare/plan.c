@@ -424,7 +424,7 @@ void glint_plan_transfer(const struct glint_plan *plan,
                         plan->beam[source->beam].sine_q30,
                         r->wave[source->wave].wave_q24);
     if (r->narrow)
-        glint_transfer_narrow(transfer);
+        r->narrow(transfer);
     transfer->sets = plan->sets;
     transfer->energy_up = source->energy_up;
 }

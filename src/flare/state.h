@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a flare holds, and its two ways to draw: by edges (by_edges.c) and by
- * cells (by_cells.c). flare.c has what they share.
+ * What a flare holds, and what its two ways to draw, by edges (by_edges.c) and
+ * by cells (by_cells.c), are to flare.c, which has what they share.
  */
 #ifndef GLINT_FLARE_STATE_H
 #define GLINT_FLARE_STATE_H
@@ -71,12 +71,25 @@ struct glint_flare {
     struct glint_resolve *resolve; /* tables for the picture drawn last */
 };
 
-/* Texture is looked up at pixel centres. */
-static inline enum glint_raster
-glint_flare_raster(const struct glint_flare_config *c)
-{
-    return c->stop.mask_q13 ? GLINT_RASTER_CELLS : c->raster;
-}
+/* A way from bundles to pixels. */
+struct glint_raster {
+    int max_bundles;
+    int masks;      /* takes a stop with a mask */
+    int two_levels; /* tiles of tiles, if asked for */
+    int halves;     /* can draw half as many pixels each way */
+    /* Its own parts of flare and worker; see carve() of flare.c. */
+    void (*carve)(struct glint_flare *f, struct glint_arena *a,
+                  const struct glint_flare_config *c);
+    void (*carve_worker)(struct glint_flare_worker *w, struct glint_arena *a,
+                         const struct glint_flare_config *c);
+    void (*begin)(struct glint_flare *f); /* once placed; or NULL */
+    /* Fills the vertices of the bundles planned; NULL: they come and go. */
+    void (*fill)(struct glint_flare *f);
+    /* Sorts the bundles taken in into tiles: sets all statistics but the counts
+     * of bundles and vertices, n_drawn, and what draw needs. */
+    void (*bin)(struct glint_flare *f);
+    void (*draw)(struct glint_flare *f, const struct glint_image *image);
+};
 
 /* A + B, held at INT_MAX: a need that large cannot be served anyway. */
 static inline int glint_flare_add_need(int a, int b)
@@ -84,17 +97,14 @@ static inline int glint_flare_add_need(int a, int b)
     return a > INT32_MAX - b ? INT32_MAX : a + b;
 }
 
-/* Sorts the bundles taken in into tiles: sets all of STATS but the counts of
- * bundles and vertices, n_drawn, and what draw needs. */
-void glint_flare_bin_cells(struct glint_flare *flare);
-void glint_flare_bin_edges(struct glint_flare *flare);
+/* Tiles of so many pixels that cover a picture. */
+static inline size_t glint_flare_count_tiles(int pixels_x, int pixels_y,
+                                             int log2)
+{
+    const size_t side = (size_t)1 << log2;
 
-void glint_flare_draw_cells(struct glint_flare *flare,
-                            const struct glint_image *image);
-void glint_flare_draw_edges(struct glint_flare *flare,
-                            const struct glint_image *image);
-
-/* Makes the sums of W 0, as they are between tiles. */
-void glint_flare_clear_edges(struct glint_flare_worker *w, int log2);
+    return (((size_t)pixels_x + side - 1) >> log2) *
+           (((size_t)pixels_y + side - 1) >> log2);
+}
 
 #endif

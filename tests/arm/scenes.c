@@ -121,8 +121,8 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
     c.height = 1 + number(300);
     c.tile_log2 = 3 + number(4);
     shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
-    c.raster = number(6) ? GLINT_RASTER_EDGES : GLINT_RASTER_CELLS;
-    if (c.raster == GLINT_RASTER_CELLS)
+    c.raster = number(6) ? NULL : &glint_raster_cells;
+    if (c.raster)
         c.max_vertices = 200000;
     c.irradiance_steps = number(3) * 30;
     c.dither = number(2);
@@ -193,7 +193,7 @@ static void draw_flare(const struct glint_flare_config *c,
     rays.lens = &lens[number(n_models)];
     rays.n_waves = 1 + number(3);
     rays.fineness = 8 << number(4);
-    rays.narrow = number(4) == 0;
+    rays.narrow = number(4) ? NULL : glint_transfer_narrow;
     make_waves(wave);
     for (int i = 0; i < n_given; i++)
         make_beam(&beam[i]);

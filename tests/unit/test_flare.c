@@ -178,9 +178,9 @@ static void test_energy(void **state)
     /* the barrel is as wide as the stop's corners: cut it out of the way */
     c.stop.apothem_q16 = 60547;
     for (int raster = 0; raster < 2; raster++) {
-        const double off = raster == GLINT_RASTER_EDGES ? 0.001 : 0.005;
+        const double off = raster == 0 ? 0.001 : 0.005;
 
-        c.raster = (enum glint_raster)raster;
+        c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
         draw_list(c, &g, 1, pixels);
         assert_true(total(pixels, 0) > (1 - off) * flux);
         assert_true(total(pixels, 0) < (1 + off) * flux);
@@ -196,7 +196,7 @@ static void test_energy_is_kept(void **state)
     double first;
 
     (void)state;
-    c.raster = GLINT_RASTER_CELLS;
+    c.raster = &glint_raster_cells;
     draw_list(c, &g, 1, pixels);
     first = total(pixels, 0);
     g.size = 50;
@@ -225,7 +225,7 @@ static void test_focused_light_arrives(void **state)
                                 0,  0,          {16384, 0, 0}};
         const double off = k & 1 ? 0.1 : 0.001;
 
-        c.raster = k & 1 ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
+        c.raster = k & 1 ? &glint_raster_cells : &glint_raster_edges;
         draw_list(c, &g, 1, pixels);
         assert_true(total(pixels, 0) > (1 - off) * flux);
         assert_true(total(pixels, 0) < (1 + off) * flux);
@@ -247,7 +247,7 @@ static void test_flat_inside(void **state)
     struct glint_flare_config c = base_config();
 
     (void)state;
-    c.raster = GLINT_RASTER_CELLS;
+    c.raster = &glint_raster_cells;
     draw_list(c, &g, 1, pixels);
     for (int y = 65; y < 85; y++) {
         /* energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40 */
@@ -273,7 +273,7 @@ static void test_edges_agree_with_cells(void **state)
 
     (void)state;
     draw_list(c, &g, 1, pixels);
-    c.raster = GLINT_RASTER_CELLS;
+    c.raster = &glint_raster_cells;
     draw_list(c, &g, 1, want);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
         off += abs(pixels[i] - want[i]);
@@ -295,9 +295,9 @@ static void test_small_cells_agree(void **state)
         const struct ghost g = {16, 100, 75, 9 + k % 4,    60 * k,
                                 1,  300, -2, {16384, 0, 0}};
 
-        c.raster = GLINT_RASTER_EDGES;
+        c.raster = &glint_raster_edges;
         draw_list(c, &g, 1, pixels);
-        c.raster = GLINT_RASTER_CELLS;
+        c.raster = &glint_raster_cells;
         draw_list(c, &g, 1, want);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
             off += abs(pixels[i] - want[i]);
@@ -616,7 +616,7 @@ static void test_tiles_do_not_matter(void **state)
 
     (void)state;
     for (int raster = 0; raster < 2; raster++) {
-        c.raster = (enum glint_raster)raster;
+        c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
         draw_scene(c, want);
         assert_true(total(want, 0) > 1);
         for (size_t i = 0; i < sizeof levels / sizeof *levels; i++) {
@@ -633,7 +633,7 @@ static void test_threads_do_not_matter(void **state)
     for (int n = 0; n < 16; n++) {
         struct glint_flare_config c = base_config();
 
-        c.raster = (enum glint_raster)(n / 8);
+        c.raster = n / 8 ? &glint_raster_cells : NULL;
         draw_scene(c, want);
         assert_int_equal(glint_pool_create(&c.workers, n % 8 + 1), GLINT_OK);
         same_as_want(c);
@@ -650,7 +650,7 @@ static void test_order_does_not_matter(void **state)
         struct glint_flare_config c = base_config();
         struct shuffle shuffle;
 
-        c.raster = seed > 8;
+        c.raster = seed > 8 ? &glint_raster_cells : NULL;
         draw_scene(c, want);
         shuffle_init(&shuffle, 5, seed);
         c.workers = &shuffle.workers;
@@ -751,7 +751,7 @@ static void test_random_scenes(void **state)
             list[i].flux_exponent +=
                 draw_number(20) - 12; /* to and fro white */
         }
-        c.raster = k % 4 ? GLINT_RASTER_EDGES : GLINT_RASTER_CELLS;
+        c.raster = k % 4 ? &glint_raster_edges : &glint_raster_cells;
         c.stop.n_blades = k % 5 ? 8 : 0;
         c.irradiance_steps = draw_number(3) * 30;
         c.dither = draw_number(2);
@@ -784,7 +784,7 @@ static void test_bundle_order_does_not_matter(void **state)
     for (int raster = 0; raster < 2; raster++) {
         struct glint_flare_config c = base_config();
 
-        c.raster = (enum glint_raster)raster;
+        c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
         draw_scene(c, want);
         draw_list(c, turned, N_SCENE, pixels);
         assert_memory_equal(pixels, want, sizeof pixels);
@@ -843,7 +843,7 @@ static void test_into_nothing(void **state)
         int tiles;
         void *mem;
 
-        c.raster = raster ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
+        c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
         f = open_flare(&c, &mem);
         for (int i = 0; i < 3; i++)
             add_ghost(f, &scene[i]);
@@ -890,7 +890,7 @@ static void test_exact_capacity(void **state)
 }
 
 /* One less of anything: whole bundles go, counted, and the rest is right. */
-static void check_capacity(enum glint_raster raster)
+static void check_capacity(const struct glint_raster *raster)
 {
     struct glint_flare_config full = base_config();
     struct glint_flare_stats s, less;
@@ -922,12 +922,13 @@ static void check_capacity(enum glint_raster raster)
 static void test_too_little_capacity(void **state)
 {
     (void)state;
-    check_capacity(GLINT_RASTER_EDGES);
-    check_capacity(GLINT_RASTER_CELLS);
+    check_capacity(&glint_raster_edges);
+    check_capacity(&glint_raster_cells);
 }
 
 static void test_config_is_checked(void **state)
 {
+    static const int16_t mask_q13[4] = {0};
     struct glint_flare_config c = base_config();
 
     (void)state;
@@ -935,8 +936,13 @@ static void test_config_is_checked(void **state)
     c.tile_log2 = 7;
     assert_int_equal(glint_flare_bytes(&c), 0);
     c = base_config();
-    c.raster = 2;
+    c.stop.mask_q13 = mask_q13; /* by cells alone */
+    c.stop.mask_nodes = 2;
+    c.stop.mask_span_q16 = 1 << 16;
+    c.raster = &glint_raster_edges;
     assert_int_equal(glint_flare_bytes(&c), 0);
+    c.raster = &glint_raster_cells;
+    assert_int_not_equal(glint_flare_bytes(&c), 0);
     c = base_config();
     c.coarse_log2 = 3;
     assert_int_equal(glint_flare_bytes(&c), 0);
@@ -995,19 +1001,19 @@ static void test_golden(void **state)
     c.stop.n_blades = 0;
     golden_case(file, update, "edges-circle", c);
     c = base_config();
-    c.raster = GLINT_RASTER_CELLS;
+    c.raster = &glint_raster_cells;
     golden_case(file, update, "wachspress", c);
     c.weights = GLINT_WEIGHTS_LOOP_DEROSE;
     golden_case(file, update, "loop-derose", c);
     c.antialias = 0;
     golden_case(file, update, "pixel-centre", c);
     c = base_config();
-    c.raster = GLINT_RASTER_CELLS;
+    c.raster = &glint_raster_cells;
     c.merge_steps = 4;
     c.merge_gamma_q16 = 6554;
     golden_case(file, update, "merged", c);
     c = base_config();
-    c.raster = GLINT_RASTER_CELLS;
+    c.raster = &glint_raster_cells;
     c.stop.n_blades = 0;
     golden_case(file, update, "circle", c);
     fclose(file);

@@ -628,7 +628,7 @@ static void test_dark_frame(void **state)
         struct glint_flare_stats s;
 
         open_fixture(&f);
-        f.cfg.raster = raster ? GLINT_RASTER_CELLS : GLINT_RASTER_EDGES;
+        f.cfg.raster = raster ? &glint_raster_cells : NULL;
         start(&f);
         glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
         picture(&f, px_q20);

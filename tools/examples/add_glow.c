@@ -71,14 +71,8 @@ int main(int argc, char **argv)
     if (code != 0)
         return code;
     code = add(&image, atoi(argv[2]), atoi(argv[3]), atoi(argv[4]));
-    if (code == 0) {
-        const size_t bytes = 3 * (size_t)image.width * (size_t)image.height;
-
-        printf("P6\n%d %d\n255\n", image.width, image.height);
-        if (fwrite(image.plane[0], 1, bytes, stdout) != bytes ||
-            fflush(stdout) != 0)
-            code = 6;
-    }
+    if (code == 0)
+        code = ppm_write(&image);
     free(image.plane[0]);
     return code;
 }

@@ -5,33 +5,10 @@
  * alone.
  */
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-#include "glint/lens.h"
+#include "model.h"
 
 enum { FAN = 9 };
-
-/* The whole file, to be freed. NULL: it cannot be read. */
-static void *read_all(const char *path, size_t *bytes)
-{
-    FILE *file = fopen(path, "rb");
-    char *data = NULL;
-    long size = -1;
-
-    if (file && fseek(file, 0, SEEK_END) == 0)
-        size = ftell(file);
-    if (size > 0 && fseek(file, 0, SEEK_SET) == 0)
-        data = malloc((size_t)size);
-    if (data && fread(data, 1, (size_t)size, file) != (size_t)size) {
-        free(data);
-        data = NULL;
-    }
-    if (file)
-        fclose(file);
-    *bytes = (size_t)size;
-    return data;
-}
 
 /* Of the middle of the band, in the plane of the light. */
 static int print_fan(const struct glint_lens *lens, int ghost, double sine)
@@ -64,9 +41,7 @@ static int print_fan(const struct glint_lens *lens, int ghost, double sine)
 
 int main(int argc, char **argv)
 {
-    const char *reason = "cannot be read";
     struct glint_lens lens;
-    size_t bytes;
     void *data;
     int code = 5;
 
@@ -74,10 +49,10 @@ int main(int argc, char **argv)
         fprintf(stderr, "ghost_rays MODEL GHOST SINE\n");
         return 2;
     }
-    data = read_all(argv[1], &bytes);
-    if (!data || glint_lens_open(&lens, data, bytes, &reason) != GLINT_OK)
-        fprintf(stderr, "%s: %s\n", argv[1], reason);
-    else if (atoi(argv[2]) < 0 || atoi(argv[2]) >= (int)lens.header->n_ghosts)
+    data = model_read(argv[1], &lens);
+    if (!data)
+        return 5;
+    if (atoi(argv[2]) < 0 || atoi(argv[2]) >= (int)lens.header->n_ghosts)
         fprintf(stderr, "%s: has ghosts 0 to %d\n", argv[1],
                 (int)lens.header->n_ghosts - 1);
     else

@@ -41,4 +41,16 @@ static inline int ppm_read(const char *path, struct glint_image *image)
     return 0;
 }
 
+/* To standard output. Returns 0, or 6. */
+static inline int ppm_write(const struct glint_image *image)
+{
+    const size_t bytes = 3 * (size_t)image->width * (size_t)image->height;
+
+    printf("P6\n%d %d\n255\n", image->width, image->height);
+    return fwrite(image->plane[0], 1, bytes, stdout) == bytes &&
+                   fflush(stdout) == 0
+               ? 0
+               : 6;
+}
+
 #endif
