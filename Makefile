@@ -182,7 +182,7 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
 $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 -fno-asynchronous-unwind-tables
 # What runs once, or once for a lamp, bundle or row, is small rather than fast, and
 # so is what takes cells to tiles.
-$(patsubst %,$(OUT)/src/%.o,base/status base/image lens/model flare/lights flare/match \
+$(patsubst %,$(OUT)/src/%.o,base/status base/arena base/image base/workers lens/model flare/lights flare/match \
         flare/follow flare/record flare/tracks flare/beams flare/plan flare/flare flare/account \
         flare/ghost_grid flare/by_cells tile/bins tile/clip tile/resolve tile/curve \
         tile/mix): CFLAGS += -Os
@@ -195,6 +195,7 @@ endif
 # Hot loops: unrolled, or where that buys nothing but bytes in vectors alone.
 $(OUT)/src/kernels/%.o $(patsubst %,$(OUT)/src/%.o,tile/edges flare/bright flare/ghost_edges): CFLAGS += -O3
 $(patsubst %,$(OUT)/src/%.o,tile/codes flare/by_edges lens/transfer): CFLAGS += -ftree-vectorize
+$(OUT)/src/tile/edges.o: CFLAGS += -fno-tree-vectorize # short loops
 ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)
 # else constants that are hoisted push out tables: a tenth more instructions
 $(OUT)/src/kernels/composite_neon.o: CFLAGS += -fno-move-loop-invariants

@@ -70,7 +70,7 @@ static inline uint32_t q_root(uint64_t x)
 {
     uint64_t root = 0;
 
-    for (int bit = 31; bit >= 0; bit--) {
+    for (int bit = (bit_length(x) + 1) / 2 - 1; bit >= 0; bit--) {
         const uint64_t trial = root | (UINT64_C(1) << bit);
 
         if (trial * trial <= x)

@@ -284,16 +284,16 @@ static void emit(struct glint_flare *f)
 /* ---------------------------------------------------------------------- bins
  */
 
-/* Keeps the bundles whose entries fit. */
+/* Keeps the bundles whose entries fit; leaves counts that mean nothing. */
 static void drop_refs(struct glint_flare *f)
 {
+    struct glint_bins bins = bins_of(f, &f->worker[0]);
     int refs = 0, n_kept = 0;
 
     for (int i = 0; i < f->n_drawn; i++) {
         for (int k = 0; k < f->slot[i].n; k++)
             refs = glint_flare_add_need(
-                refs,
-                glint_edge_span(&f->edge[f->slot[i].first + k], &f->bins));
+                refs, glint_edge_count(&f->edge[f->slot[i].first + k], &bins));
         if (refs > f->cfg.max_refs)
             break;
         n_kept = i + 1;

@@ -18,27 +18,43 @@ static int64_t radius2_q32(const struct glint_vertex *v)
            (int64_t)v->stop_y_q16 * v->stop_y_q16;
 }
 
+/* Half the sides, where each has one opposite, parallel to it; else 0. */
+static int half_sides(const struct glint_stop *stop)
+{
+    const int half = stop->n_blades / 2;
+
+    for (int k = 0; k < half; k++)
+        for (int c = 0; c < 2; c++)
+            if (stop->normal_q30[k][c] != -stop->normal_q30[half + k][c])
+                return 0;
+    return stop->n_blades % 2 ? 0 : half;
+}
+
 /* Sides that V lies on or beyond: as glint_side_q16() rounds, that is where
- * what it takes from the apothem, _q46, comes to LEAST. */
-static inline uint64_t sides_of(const struct glint_stop *stop,
+ * what it takes from the apothem, _q46, comes to LEAST. HALF of them with those
+ * opposite, or 0. */
+static inline uint64_t sides_of(const struct glint_stop *stop, int half,
                                 const struct glint_vertex *v, int64_t least_q46)
 {
-    uint64_t sides = 0;
+    const int n = half ? half : stop->n_blades;
+    uint64_t sides = 0, opposite = 0;
 
-    for (int k = 0; k < stop->n_blades; k++) {
+    for (int k = n - 1; k >= 0; k--) {
         const int64_t along_q46 =
             (int64_t)stop->normal_q30[k][0] * v->stop_x_q16 +
             (int64_t)stop->normal_q30[k][1] * v->stop_y_q16;
 
-        sides |= (uint64_t)(along_q46 >= least_q46) << k;
+        sides = 2 * sides + (along_q46 >= least_q46);
+        opposite = 2 * opposite + (-along_q46 >= least_q46);
     }
-    return sides;
+    return half ? sides | opposite << half : sides;
 }
 
 void glint_cuts_row(const struct glint_stop *stop,
                     const struct glint_vertex *row, int n, uint64_t *sides,
                     uint8_t *barrels)
 {
+    const int half = half_sides(stop);
     const int64_t apothem_q16 = stop->apothem_q16;
     const int64_t least_q46 =
         apothem_q16 * (INT64_C(1) << 30) - (INT64_C(1) << 29);
@@ -51,7 +67,7 @@ void glint_cuts_row(const struct glint_stop *stop,
 
         sides[i] = radius2_q32(v) < within_q32 ? 0
                    : stop->n_blades == 0       ? 1
-                                               : sides_of(stop, v, least_q46);
+                                         : sides_of(stop, half, v, least_q46);
         barrels[i] = (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
                                2 * (v->barrel_q16[1] >= 1 << 16));
     }

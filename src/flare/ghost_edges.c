@@ -146,22 +146,25 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
     }
 }
 
-/* Sign of the turn at each corner, if it is the same at all four; else 0. */
+/* Twice the triangle at corner I. */
+static int64_t turn_q16(const struct glint_corners *c, int i)
+{
+    const struct glint_vertex *a = c->at[i], *b = c->at[i + 1];
+    const struct glint_vertex *d = c->at[(i + 2) & 3];
+
+    return glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8, d->y_q8);
+}
+
+/* Sign of the turn at each corner, if it is the same at all four; else 0.
+ * Triangles at opposite corners make up the cell. */
 static int convexity(const struct glint_corners *c)
 {
-    int64_t x[4], y[4], most = INT64_MIN, least = INT64_MAX;
+    const int64_t one = turn_q16(c, 0), other = c->area2_q16 - one;
+    const int64_t two = turn_q16(c, 1), another = c->area2_q16 - two;
 
-    for (int i = 0; i < 4; i++) { /* sides */
-        x[i] = (int64_t)c->at[(i + 1) & 3]->x_q8 - c->at[i]->x_q8;
-        y[i] = (int64_t)c->at[(i + 1) & 3]->y_q8 - c->at[i]->y_q8;
-    }
-    for (int i = 0; i < 4; i++) {
-        const int64_t turn = x[i] * y[(i + 1) & 3] - y[i] * x[(i + 1) & 3];
-
-        most = turn > most ? turn : most;
-        least = turn < least ? turn : least;
-    }
-    return least > 0 ? 1 : most < 0 ? -1 : 0;
+    if (one > 0 && other > 0 && two > 0 && another > 0)
+        return 1;
+    return one < 0 && other < 0 && two < 0 && another < 0 ? -1 : 0;
 }
 
 /* Steps of irradiance in each octave. Codes of a picture tell the less apart

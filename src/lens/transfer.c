@@ -150,35 +150,78 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
     }
 }
 
-static int32_t coefficient(const struct glint_lens *lens,
-                           const struct glint_model_output *o,
-                           const struct setting *set, int knots, uint32_t term)
+/* The sparse basis: between two knots. */
+static void set_terms(struct glint_transfer *t, const struct glint_lens *lens,
+                      const struct glint_model_output *o,
+                      const struct setting *set)
 {
-    const int32_t *coef = at(lens, o->coef_at);
     const uint16_t *power = at(lens, o->term_at);
-    const int c = power[term] >> 8 & 15, d = power[term] >> 12;
-    const uint32_t n_wide = o->n_terms - o->n_narrow;
-    const int16_t *narrow = (const int16_t *)(const void *)(coef + n_wide);
-    int32_t value =
-        term < n_wide ? coef[term]
-                      : narrow[term - n_wide] * (INT32_C(1) << o->narrow_shift);
+    const int32_t *low = at(lens, o->coef_at), *high;
 
-    if (knots) {
-        coef += set->knot * o->n_terms;
-        return between(coef[term], coef[o->n_terms + term], set->part_q30);
+    low += set->knot * o->n_terms;
+    high = low + o->n_terms;
+    t->of.sparse[o->kind].n_terms = (int32_t)o->n_terms;
+    for (uint32_t k = 0; k < o->n_terms; k++) {
+        t->of.sparse[o->kind].power[k] = power[k];
+        t->of.sparse[o->kind].coef[k] = between(low[k], high[k], set->part_q30);
     }
+}
+
+/* VALUE, of a term with the powers POWER, with angle and wavelength put in. */
+static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
+                                    uint16_t power)
+{
+    const int c = power >> 8 & 15, d = power >> 12;
+
     if (c)
         value = q_mul(value, set->s_q30[c], 30);
     return d ? q_mul(value, set->w_q30[d], 30) : value;
+}
+
+/* A polynomial of u and v while it is added up. */
+struct table {
+    int32_t (*row)[GLINT_TABLE_WIDTH];
+    int degree_u, degree_v;
+};
+
+static WHOLLY_INLINE void add_term(struct table *t, uint16_t power,
+                                   int32_t value)
+{
+    const int a = power & 15, b = power >> 4 & 15;
+
+    t->row[b][a] += value;
+    t->degree_u = a > t->degree_u ? a : t->degree_u;
+    t->degree_v = b > t->degree_v ? b : t->degree_v;
+}
+
+/* The auto basis. */
+static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
+                      const struct glint_model_output *o,
+                      const struct setting *set)
+{
+    const uint32_t n = o->n_terms, n_wide = n - o->n_narrow;
+    const int32_t *coef = at(lens, o->coef_at);
+    const int32_t by = INT32_C(1) << o->narrow_shift;
+    const int16_t *narrow = (const int16_t *)(const void *)(coef + n_wide);
+    const uint16_t *power = at(lens, o->term_at);
+    struct table table = {t->of.table[o->kind], 0, 0};
+
+    for (int b = 0; b <= GLINT_MAX_POWER; b++)
+        for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
+            table.row[b][a] = 0;
+    for (uint32_t k = 0; k < n_wide; k++)
+        add_term(&table, power[k], put_in(set, coef[k], power[k]));
+    for (uint32_t k = n_wide; k < n; k++)
+        add_term(&table, power[k],
+                 put_in(set, narrow[k - n_wide] * by, power[k]));
+    t->degree_u[o->kind] = (uint8_t)table.degree_u;
+    t->degree_v[o->kind] = (uint8_t)table.degree_v;
 }
 
 static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
                        const struct glint_model_output *o,
                        const struct setting *set)
 {
-    const uint16_t *power = at(lens, o->term_at);
-    const int knots = t->system->n_knots > 0;
-
     t->outputs |= UINT32_C(1) << o->kind;
     t->exponent[o->kind] = o->exponent;
     if (o->kind == GLINT_OUT_ENERGY) {
@@ -189,22 +232,9 @@ static void set_output(struct glint_transfer *t, const struct glint_lens *lens,
             t->exponent[o->kind] = 2 * t->exponent[o->kind] + 29;
     }
     if (t->basis == GLINT_BASIS_SPARSE)
-        t->of.sparse[o->kind].n_terms = (int32_t)o->n_terms;
-    for (uint32_t k = 0; k < o->n_terms; k++) {
-        const int32_t value = coefficient(lens, o, set, knots, k);
-        const int a = power[k] & 15, b = power[k] >> 4 & 15;
-
-        if (t->basis == GLINT_BASIS_SPARSE) {
-            t->of.sparse[o->kind].power[k] = power[k];
-            t->of.sparse[o->kind].coef[k] = value;
-            continue;
-        }
-        t->of.table[o->kind][b][a] += value;
-        if (a > t->degree_u[o->kind])
-            t->degree_u[o->kind] = (uint8_t)a;
-        if (b > t->degree_v[o->kind])
-            t->degree_v[o->kind] = (uint8_t)b;
-    }
+        set_terms(t, lens, o, set);
+    else
+        set_table(t, lens, o, set);
 }
 
 static void clear(struct glint_transfer *t)
@@ -216,9 +246,6 @@ static void clear(struct glint_transfer *t)
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
         t->degree_u[k] = t->degree_v[k] = t->shift[k] = 0;
-        for (int b = 0; b <= GLINT_MAX_POWER; b++)
-            for (int a = 0; a < GLINT_TABLE_WIDTH; a++)
-                t->of.table[k][b][a] = 0;
     }
 }
 
@@ -260,23 +287,28 @@ static int64_t magnitudes(table_row *table)
     return sum;
 }
 
+static void narrow_table(struct glint_transfer *t, int kind)
+{
+    table_row *table = t->of.table[kind];
+    const int64_t sum = magnitudes(table);
+    int shift = 0;
+
+    while (sum >> shift >= NARROW_LIMIT)
+        shift++;
+    t->shift[kind] = (uint8_t)shift;
+    for (int b = 0; b <= GLINT_MAX_POWER; b++)
+        for (int a = 0; a <= GLINT_MAX_POWER; a++)
+            table[b][a] = (int32_t)q_shift(table[b][a], shift);
+}
+
 void glint_transfer_narrow(struct glint_transfer *transfer)
 {
     if (transfer->basis == GLINT_BASIS_SPARSE)
         return;
     transfer->fraction = 15;
-    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
-        table_row *table = transfer->of.table[kind];
-        const int64_t sum = magnitudes(table);
-        int shift = 0;
-
-        while (sum >> shift >= NARROW_LIMIT)
-            shift++;
-        transfer->shift[kind] = (uint8_t)shift;
-        for (int b = 0; b <= GLINT_MAX_POWER; b++)
-            for (int a = 0; a <= GLINT_MAX_POWER; a++)
-                table[b][a] = (int32_t)q_shift(table[b][a], shift);
-    }
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (transfer->outputs >> kind & 1)
+            narrow_table(transfer, kind);
 }
 
 /* --------------------------------------------------------------------- rays */

@@ -107,9 +107,9 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
     return n;
 }
 
-void glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins)
+int glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins)
 {
-    each_tile(edge, bins, COUNT, 0);
+    return each_tile(edge, bins, COUNT, 0);
 }
 
 void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,

@@ -89,13 +89,14 @@ int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
  * does, as it is heights that do. */
 void glint_edge_make_whole(struct glint_edge *edge);
 
-/* Puts EDGE, number INDEX, into the tiles it crosses (or counts it): glint_bins
+/* Puts EDGE, number INDEX, into the tiles it crosses (or counts it, and returns
+ * how many entries that is): glint_bins
  * with a box for each row of tiles. What lies left of the picture belongs to
  * the first column. */
-void glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins);
+int glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins);
 void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
                     int32_t index);
-/* The entries that takes. */
+/* How many that is, nothing counted. */
 int glint_edge_span(const struct glint_edge *edge,
                     const struct glint_bins *bins);
 
