@@ -149,8 +149,7 @@ enum scene_option {
     "                      exact: finest, and --rays exact\n"                  \
     "  --error PX          instead: the least of these whose outlines are "    \
     "off by\n"                                                                 \
-    "                      so many pixels in the mean at most (0.1 by "        \
-    "default)\n"                                                               \
+    "                      about so many pixels at most (0.1 by default)\n"    \
     "  --budget MS         instead, of each frame: the most that takes so "    \
     "many\n"                                                                   \
     "                      milliseconds, as its plan tells\n"                  \
