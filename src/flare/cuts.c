@@ -30,6 +30,14 @@ static int half_sides(const struct glint_stop *stop)
     return stop->n_blades % 2 ? 0 : half;
 }
 
+/* 1 less (1 + r^2) / 2 of a round stop, held where it is far outside. */
+static int64_t disc_q16(const struct glint_vertex *v)
+{
+    const int64_t value_q16 = ((INT64_C(1) << 32) - radius2_q32(v)) >> 17;
+
+    return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
+}
+
 /* Sides that V lies on or beyond: as glint_side_q16() rounds, that is where
  * what it takes from the apothem, _q46, comes to LEAST. HALF of them with those
  * opposite, or 0. */
@@ -58,16 +66,14 @@ void glint_cuts_row(const struct glint_stop *stop,
     const int64_t apothem_q16 = stop->apothem_q16;
     const int64_t least_q46 =
         apothem_q16 * (INT64_C(1) << 30) - (INT64_C(1) << 29);
-    const int64_t within_q32 = stop->n_blades == 0
-                                   ? INT64_C(1) << 32
-                                   : (apothem_q16 - 1) * (apothem_q16 - 1);
+    const int64_t within_q32 = (apothem_q16 - 1) * (apothem_q16 - 1);
 
     for (int i = 0; i < n; i++) {
         const struct glint_vertex *v = &row[i];
 
-        sides[i] = radius2_q32(v) < within_q32 ? 0
-                   : stop->n_blades == 0       ? 1
-                                         : sides_of(stop, half, v, least_q46);
+        sides[i] = stop->n_blades == 0           ? disc_q16(v) <= 0
+                   : radius2_q32(v) < within_q32 ? 0
+                                                 : sides_of(stop, half, v, least_q46);
         barrels[i] = (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
                                2 * (v->barrel_q16[1] >= 1 << 16));
     }
@@ -89,8 +95,9 @@ int glint_cuts_count(struct glint_outside o)
 static int64_t cut_q16(const struct glint_stop *stop, int cut,
                        const struct glint_vertex *v)
 {
-    return cut < BARREL ? glint_side_q16(stop, cut, v)
-                        : glint_barrel_q16(cut - BARREL, v);
+    if (cut >= BARREL)
+        return glint_barrel_q16(cut - BARREL, v);
+    return stop->n_blades ? glint_side_q16(stop, cut, v) : disc_q16(v);
 }
 
 struct interval {

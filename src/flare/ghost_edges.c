@@ -73,13 +73,23 @@ static int vertex_valid(const struct glint_vertex *v)
            (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
-/* Lowers the barrels of a row by their sag. */
+/* Lowers the barrels of a row by their sag; brings the stop nearer where it is
+ * round, by its own. */
 static struct glint_vertex *lower(const struct glint_ghost_edges *g,
                                   struct glint_vertex *row)
 {
-    for (int i = 0; i <= g->bundle->n_cells; i++)
+    const int64_t nearer_q16 = g->sag_q16[2];
+    const int lowers = g->sag_q16[0] | g->sag_q16[1];
+
+    for (int i = 0; lowers && i <= g->bundle->n_cells; i++)
         for (int k = 0; k < 2; k++)
             row[i].barrel_q16[k] -= g->sag_q16[k];
+    for (int i = 0; nearer_q16 && i <= g->bundle->n_cells; i++) {
+        row[i].stop_x_q16 -=
+            q_narrow(q_shift(row[i].stop_x_q16 * nearer_q16, 16));
+        row[i].stop_y_q16 -=
+            q_narrow(q_shift(row[i].stop_y_q16 * nearer_q16, 16));
+    }
     return row;
 }
 
@@ -268,6 +278,7 @@ static void add_alone(struct glint_ghost_edges *g,
     if (cut < 0 ||
         glint_box_empty(glint_corners_reach(&c, g->width, g->height)))
         return;
+    cut |= cut && g->transfer ? GLINT_CUT_LOWERED : 0;
     thin = glint_corners_thin(&c);
     for (int k = 0; k < (cut ? n - 2 : 1); k++) {
         int64_t area2 = c.area2_q16, share_q28;
@@ -418,7 +429,8 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     set_corners(g, i, j, &corners);
     turn = convexity(&corners);
     cuts = any.sides || any.barrels ? glint_cuts_count(any) : 0;
-    odd = turn == 0 || cuts > 2 || (cuts && g->stop->n_blades == 0) ||
+    odd = turn == 0 || cuts > 2 ||
+          (cuts && g->stop->n_blades == 0 && !g->transfer) ||
           glint_corners_thin(&corners);
     if (odd || cuts)
         set_cell(g, i, j, &cell);

@@ -15,8 +15,10 @@
  * outlines close.
  *
  * Cells that are folded, have lost a corner, are thinner than a sixteenth of a
- * pixel, or are crossed by a round stop or more than two sides are drawn by
- * themselves, closed: outline.h.
+ * pixel, or are crossed by more than two sides are drawn by themselves, closed:
+ * outline.h. A round stop cuts like a barrel, lowered by its sag; where
+ * vertices are given, and nothing is known of that, its cells are drawn by
+ * themselves.
  */
 #ifndef GLINT_FLARE_GHOST_EDGES_H
 #define GLINT_FLARE_GHOST_EDGES_H

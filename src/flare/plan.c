@@ -194,20 +194,30 @@ static int64_t bend_of(const struct glint_plan_survey *s, int a, int b)
     return first ? second * sensor / first : 0; /* 2^30 * 2^31 */
 }
 
+/* What the stop position changes by over the box, and the stop's radius, both
+ * in units of the outputs over 2^FINE_LOG2. */
+static int64_t stop_change(const struct glint_plan_survey *s)
+{
+    return root_mean(s->change[GLINT_OUT_STOP_X].first +
+                         s->change[GLINT_OUT_STOP_Y].first,
+                     s->n_bends);
+}
+
+static int64_t one_radius(const struct glint_plan_survey *s)
+{
+    return (s->limit[GLINT_OUT_STOP_X] * 20 / 21) >> FINE_LOG2; /* of 1.05 */
+}
+
 /* The same of a round stop's outline, (1 + r^2) / 2 like a barrel's: where r is
  * 1, that changes as fast as the stop position S does, and bends by S'^2. */
 static int64_t round_bend(const struct glint_plan_survey *s)
 {
-    const int64_t stop = root_mean(s->change[GLINT_OUT_STOP_X].first +
-                                       s->change[GLINT_OUT_STOP_Y].first,
-                                   s->n_bends);
     const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
                                          s->change[GLINT_OUT_SENSOR_Y].first,
                                      s->n_bends);
 
     /* 2^30 * 2^31 */
-    return (stop >> 2) * sensor /
-           ((s->limit[GLINT_OUT_STOP_X] >> (FINE_LOG2 + 2)) + 1);
+    return (stop_change(s) >> 2) * sensor / ((one_radius(s) >> 2) + 1);
 }
 
 static struct glint_real pixels_per_mm(const struct glint_plan *p)
@@ -234,12 +244,14 @@ static int cells_for_codes(const struct glint_plan_survey *s,
     return n;
 }
 
-/* A vertex has two barrels, of which the second is the tightest of all others:
- * where three and more meet it has kinks, so that tips of outlines come and go
- * with the grid. */
-static int has_kinks(const struct glint_transfer *t)
+/* How much more outlines may bend than light does. A vertex has two barrels, of
+ * which the second is the tightest of all others: where three and more meet it
+ * has kinks, so that tips of outlines come and go with the grid. A round stop
+ * is round on all sides, of every ghost. */
+static int outline_over_light(const struct glint_plan *p,
+                              const struct glint_transfer *t)
 {
-    return t->outputs >> GLINT_OUT_BARREL_2 & 1;
+    return p->round || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
 /* As many cells as keep what is straight between rays within a hundredth of a
@@ -270,7 +282,7 @@ static int cells_of(const struct glint_plan *p,
 
         outline = cut > outline ? cut : outline;
     }
-    outline /= has_kinks(t) ? 5 : 10;
+    outline /= outline_over_light(p, t);
     bend = bend > outline ? bend : outline;
     bend_q8 = real_integer(
         real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] + FINE_LOG2),
@@ -306,13 +318,23 @@ static int64_t bowl_of(const struct glint_plan_survey *s, int k)
     return sum;
 }
 
+/* The same of a round stop, where r^2 / 2 bends by the square of what the stop
+ * position changes by. */
+static int64_t round_bowl_q16(const struct glint_plan_survey *s)
+{
+    const struct glint_real change =
+        real_over(real_of(stop_change(s), 0), real_of(one_radius(s), 0));
+
+    return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
+}
+
 /* A barrel's (1 + r^2) / 2 is a bowl, and what is drawn as straight between
  * rays lies above it: where a cell bends by D across and E down, by (D + E) /
  * 12 in the mean. With that taken off, outlines lie as often outside as inside.
  */
 static void set_sags(struct glint_source *source,
                      const struct glint_plan_survey *s,
-                     const struct glint_transfer *t, int n_cells)
+                     const struct glint_transfer *t, int n_cells, int round)
 {
     for (int k = GLINT_OUT_BARREL_0; k <= GLINT_OUT_BARREL_1; k++) {
         const int64_t bowl_q16 =
@@ -325,6 +347,11 @@ static void set_sags(struct glint_source *source,
         source->sag_q16[k - GLINT_OUT_BARREL_0] = (uint16_t)q_clamp_sat(
             bowl_q16 / (12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
     }
+    source->sag_q16[2] =
+        round ? (uint16_t)q_clamp_sat(round_bowl_q16(s) /
+                                          (12 * (int64_t)n_cells * n_cells),
+                                      0, 1 << 12)
+              : 0;
 }
 
 /* X of the sensor as pixels, q8. */
@@ -521,7 +548,7 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     bundle->n_cells = cells_of(plan, s, transfer, source->light);
     if (transfer->hollow) /* two rows of cells are the middle's */
         bundle->n_cells = hollow_cells(bundle->n_cells);
-    set_sags(source, s, transfer, bundle->n_cells);
+    set_sags(source, s, transfer, bundle->n_cells, plan->round);
     set_flux(bundle, transfer, source->flux);
     return GLINT_FATE_DRAWN;
 }

@@ -21,9 +21,9 @@
 struct glint_source {
     int32_t ghost, beam, wave;
     uint8_t energy_up; /* see struct glint_transfer */
-    uint16_t
-        sag_q16[2]; /* of barrels: how far, in the mean, the grid's straight
-                       lines lie above what is bent between its rays */
+    /* Of two barrels and a round stop: how far, in the mean, the grid's
+     * straight lines lie above (1 + r^2) / 2, which is bent between its rays */
+    uint16_t sag_q16[3];
     struct glint_real flux;  /* of the whole pupil, at the most energy seen;
                                 display white times pixels */
     struct glint_real light; /* the same over the pixels it falls on */

@@ -174,13 +174,13 @@ static int64_t disc_lift_q16(const struct glint_vertex *const *at)
 
 static void cut_stop(struct glint_outline *o,
                      const struct glint_vertex *const *at,
-                     const struct glint_stop *stop)
+                     const struct glint_stop *stop, int lowered)
 {
     int64_t value[3];
 
     if (stop->n_blades == 0) {
         for (int i = 0; i < 3; i++)
-            value[i] = disc_value(at[i]) + disc_lift_q16(at);
+            value[i] = disc_value(at[i]) + (lowered ? 0 : disc_lift_q16(at));
         cut_one(o, value);
     }
     for (int side = 0; side < stop->n_blades; side++) {
@@ -244,7 +244,7 @@ void glint_outline_cut(struct glint_outline *outline,
     if (cut & GLINT_CUT_BARREL)
         cut_barrels(outline, at);
     if (cut & GLINT_CUT_STOP)
-        cut_stop(outline, at, stop);
+        cut_stop(outline, at, stop, cut & GLINT_CUT_LOWERED);
     place(outline, at);
     weigh(outline, at);
 }

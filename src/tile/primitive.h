@@ -11,12 +11,13 @@
 #include "glint/flare.h"
 
 enum {
-    GLINT_CUT_STOP = 1,   /* the outline of the stop may cross it */
-    GLINT_CUT_BARREL = 2, /* a barrel may cross it */
-    GLINT_POINT = 4,      /* far smaller than a pixel: all its light goes to the
-                             pixel its middle lies in */
-    GLINT_SAMPLED = 8     /* of a ghost with cells of a few pixels: 4 x 4 places
-                             of each pixel are looked at */
+    GLINT_CUT_STOP = 1,     /* the outline of the stop may cross it */
+    GLINT_CUT_BARREL = 2,   /* a barrel may cross it */
+    GLINT_CUT_LOWERED = 16, /* what is round was lowered by its sag */
+    GLINT_POINT = 4,  /* far smaller than a pixel: all its light goes to the
+                         pixel its middle lies in */
+    GLINT_SAMPLED = 8 /* of a ghost with cells of a few pixels: 4 x 4 places
+                         of each pixel are looked at */
 };
 
 struct glint_primitive {
