@@ -10,7 +10,7 @@
  * whose totals these meet within an eighth. They say what is dear, and no more.
  */
 #define PER_RAY    730.0  /* that the plan looks at */
-#define PER_VERTEX 430.0  /* its polynomials, its place in stop and barrels */
+#define PER_VERTEX 320.0  /* its polynomials, its place in stop and barrels */
 #define PER_EDGE   2020.0 /* made of cells, put into tiles, added there */
 #define PER_ROW    18.0   /* that an edge crosses */
 #define PER_PIXEL  80.0
