@@ -28,8 +28,8 @@ static uint64_t size_of(int64_t x)
 }
 
 /* Takes as many times D from the rest as the upper 32 bits of both say, never
- * too many, until less is left than D: thirty bits of the quotient each time.
- */
+ * too many, thirty bits of the quotient each time; what is left then is less
+ * than four times D. */
 int64_t glint_divide(int64_t n, int64_t d)
 {
     const uint64_t by = size_of(d);
@@ -37,17 +37,18 @@ int64_t glint_divide(int64_t n, int64_t d)
     const uint32_t top = (uint32_t)(by << (64 - wide) >> 32);
     const uint32_t one_over = reciprocal(top < UINT32_MAX ? top + 1 : top);
     uint64_t rest = size_of(n), q = 0;
+    int more;
 
-    while (rest >= by) {
-        const int more = bit_length(rest) - wide; /* 0 .. 63 */
+    while ((more = bit_length(rest) - wide) >= 2) {
         const uint32_t of = (uint32_t)(rest << (64 - wide - more) >> 32);
         const uint64_t ratio = upper(of, one_over); /* 2^31: 1 */
-        const uint64_t times = more < 2    ? 1
-                               : more < 31 ? ratio >> (31 - more)
-                                           : ratio << (more - 31);
+        const uint64_t times =
+            more < 31 ? ratio >> (31 - more) : ratio << (more - 31);
 
         q += times;
         rest -= times * by;
     }
+    for (; rest >= by; rest -= by)
+        q++;
     return (n < 0) == (d < 0) ? (int64_t)q : -(int64_t)q;
 }

@@ -8,6 +8,7 @@
 #define GLINT_BASE_REAL_H
 
 #include "base/compiler.h"
+#include "base/divide.h"
 #include "glint/lens.h"
 
 /* X * 2^EXPONENT; X within +-2^62. */
@@ -33,8 +34,7 @@ static inline struct glint_real real_times(struct glint_real a,
 static inline struct glint_real real_over(struct glint_real a,
                                           struct glint_real b)
 {
-    /* NOLINTNEXTLINE: so it is for the caller to see to */
-    return real_of(((int64_t)a.mantissa * (INT64_C(1) << 31)) / b.mantissa,
+    return real_of(q_divide(a.mantissa * (INT64_C(1) << 31), b.mantissa),
                    a.exponent - b.exponent - 31);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "flare/plan.h"
 
+#include "base/divide.h"
 #include "base/q.h"
 #include "base/real.h"
 
@@ -176,7 +177,7 @@ static void run_survey(struct glint_plan_survey *s, struct glint_transfer *t,
 /* Root of SUM / N, of differences whose squares were taken over 2^10 more. */
 static int64_t root_mean(uint64_t sum, int n)
 {
-    return n ? (int64_t)q_root(sum / (uint64_t)n) << 5 : 0;
+    return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
 
 /* The second derivative of the kinds A and B, worth on the sensor, in units of
@@ -191,7 +192,7 @@ static int64_t bend_of(const struct glint_plan_survey *s, int a, int b)
                                          s->change[GLINT_OUT_SENSOR_Y].first,
                                      s->n_bends);
 
-    return first ? second * sensor / first : 0; /* 2^30 * 2^31 */
+    return first ? q_divide(second * sensor, first) : 0; /* 2^30 * 2^31 */
 }
 
 /* What the stop position changes by over the box, and the stop's radius, both

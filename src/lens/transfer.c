@@ -11,6 +11,7 @@
 #include "glint/lens.h"
 
 #include "base/compiler.h"
+#include "base/divide.h"
 #include "base/q.h"
 #include "glint/flare.h"
 #include "kernels/kernels.h"
@@ -46,7 +47,7 @@ static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
         return -ONE_Q30;
     if (x >= hi)
         return ONE_Q30;
-    return (int32_t)((2 * (int64_t)x - lo - hi) * ONE_Q30 / span);
+    return (int32_t)q_divide((2 * (int64_t)x - lo - hi) * ONE_Q30, span);
 }
 
 static void powers_q30(int32_t x_q30, int n, int32_t *power_q30)
@@ -620,8 +621,7 @@ static void put_block(const struct block *b, const struct glint_place *p,
 
 static int32_t node_q30(int k, int n_cells)
 {
-    /* NOLINTNEXTLINE: a grid has a cell */
-    return (int32_t)((int64_t)(2 * k - n_cells) * ONE_Q30 / n_cells);
+    return (int32_t)q_divide((int64_t)(2 * k - n_cells) * ONE_Q30, n_cells);
 }
 
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
