@@ -71,9 +71,10 @@ void glint_cuts_row(const struct glint_stop *stop,
     for (int i = 0; i < n; i++) {
         const struct glint_vertex *v = &row[i];
 
-        sides[i] = stop->n_blades == 0           ? disc_q16(v) <= 0
-                   : radius2_q32(v) < within_q32 ? 0
-                                                 : sides_of(stop, half, v, least_q46);
+        sides[i] = stop->n_blades == 0 ? disc_q16(v) <= 0
+                   : radius2_q32(v) < within_q32
+                       ? 0
+                       : sides_of(stop, half, v, least_q46);
         barrels[i] = (uint8_t)((v->barrel_q16[0] >= 1 << 16) +
                                2 * (v->barrel_q16[1] >= 1 << 16));
     }
