@@ -233,8 +233,8 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
         .energy = 1.2e-3 * t,
         .ease = 10,
         .axis = fmin(1, t),
-        .part_depth =
-            4 + (int)fmin(GLINT_MAX_PART_DEPTH - 4, fmax(0, ceil(-log2(t)))),
+        .axis_depth = (int)fmin(GLINT_MAX_AXIS_DEPTH,
+                                GLINT_PART_DEPTH + fmax(0, ceil(-log2(t)))),
         .brightness = &k->brightness};
     struct glint_hunt *hunt = malloc(sizeof *hunt);
     enum glint_status status = GLINT_E_MEMORY;

@@ -163,14 +163,19 @@ static double bearable(const struct fitter *f)
     return PART_LEFT * fmin(f->fit.hidden, MOST_HIDDEN);
 }
 
+/* Times that P's box may be halved. */
+static int most_depth(const struct fitter *f, const struct pending *p)
+{
+    return p->lo <= 0 ? f->fit.tolerance->axis_depth : GLINT_PART_DEPTH;
+}
+
 /* What is left of P that will be halved or parted, whatever comes of it. The
  * halves of wide zones are not yet at the end of halving, where what is left
  * has to be known. */
 static double hopeless(const struct fitter *f, const struct pending *p)
 {
     if (p->by_all_means)
-        return p->depth < f->fit.tolerance->part_depth ? HOPELESS * bearable(f)
-                                                       : 0;
+        return p->depth < most_depth(f, p) ? HOPELESS * bearable(f) : 0;
     return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
 }
 
@@ -241,7 +246,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
         p->w1 - p->w0 > LEAST_BAND)
         return BANDS;
     if (p->by_all_means)
-        return p->depth < f->fit.tolerance->part_depth ? PART : KEEP;
+        return p->depth < most_depth(f, p) ? PART : KEEP;
     if (left <= 1)
         return KEEP;
     return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
@@ -276,7 +281,7 @@ static int push_halves(struct pending *stack, int n, struct pending p,
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
     /* halvings of a sine down to half of LEAST_DEG, or a tenth of it: 20 */
-    enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_PART_DEPTH };
+    enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_AXIS_DEPTH };
     struct pending stack[DEEP] = {
         {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};
     enum glint_status status = GLINT_OK;

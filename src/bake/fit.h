@@ -21,7 +21,8 @@
 #include "bake/hunt.h"
 #include "glint/status.h"
 
-enum { GLINT_MAX_PART_DEPTH = 8 };
+/* Times that a zone's box may be halved. */
+enum { GLINT_PART_DEPTH = 4, GLINT_MAX_AXIS_DEPTH = 8 };
 
 /* The root mean square that is aimed at; single rays may be off by five times
  * as much. Stop and barrel positions draw the outline: EDGE_MM is what they may
@@ -39,8 +40,8 @@ struct glint_tolerance {
     double axis;    /* zones at the axis, where light folds into rings: how
                        narrow they may become, and how far off places may be,
                        over the same of others */
-    int part_depth; /* times that a zone's box may be halved, up to
-                       GLINT_MAX_PART_DEPTH */
+    int axis_depth; /* times that their boxes may be halved, GLINT_PART_DEPTH
+                       to GLINT_MAX_AXIS_DEPTH */
     const struct glint_brightness *brightness;
 };
 
