@@ -165,11 +165,12 @@ static double outline_bend_mm(const struct bend *bend, const int *weight,
 static void add_step(struct bend *bend, const struct probe *a,
                      const struct probe *b)
 {
-    const double x = b->stop_x - a->stop_x, y = b->stop_y - a->stop_y;
-    const double step = hypot(x, y);
+    double step;
 
-    if (!a->traced || !b->traced || step == 0 ||
-        sqrt(fmin(a->stop_r2, b->stop_r2)) > 1 + step)
+    if (!a->traced || !b->traced)
+        return;
+    step = hypot(b->stop_x - a->stop_x, b->stop_y - a->stop_y);
+    if (step == 0 || sqrt(fmin(a->stop_r2, b->stop_r2)) > 1 + step)
         return;
     bend->n_steps++;
     bend->thick += 1 / step;

@@ -34,6 +34,7 @@ int64_t glint_divide(int64_t n, int64_t d)
 {
     const uint64_t by = size_of(d);
     const int wide = bit_length(by);
+    /* NOLINTNEXTLINE: D is not 0 */
     const uint32_t top = (uint32_t)(by << (64 - wide) >> 32);
     const uint32_t one_over = reciprocal(top < UINT32_MAX ? top + 1 : top);
     uint64_t rest = size_of(n), q = 0;
