@@ -139,8 +139,8 @@ int glint_beams_merge(struct glint_beam *beams, int n_beams, int32_t near_q30,
 /* By edges: the exact area that each cell covers, one irradiance a cell; folds
  * and slivers keep their light; a primitive is an edge across which light
  * changes. By cells: interpolation at pixel centres, [Bodonyi23]; a primitive
- * is a cell; a stop with a mask takes this one. A program that does not name
- * the latter does not link it. */
+ * is a cell; a stop with a mask takes this one, and is refused by edges. A
+ * program that does not name it does not link it. */
 struct glint_raster;
 extern const struct glint_raster glint_raster_edges, glint_raster_cells;
 

@@ -206,7 +206,10 @@ static int64_t stop_change(const struct glint_plan_survey *s)
 
 static int64_t one_radius(const struct glint_plan_survey *s)
 {
-    return (s->limit[GLINT_OUT_STOP_X] * 20 / 21) >> FINE_LOG2; /* of 1.05 */
+    const int64_t radius =
+        (s->limit[GLINT_OUT_STOP_X] * 20 / 21) >> FINE_LOG2; /* of 1.05 */
+
+    return radius > 0 ? radius : 1; /* of coarser units than a radius */
 }
 
 /* The same of a round stop's outline, (1 + r^2) / 2 like a barrel's: where r is

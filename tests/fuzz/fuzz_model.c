@@ -55,7 +55,7 @@ static void check_grids(struct glint_transfer *t)
     static const int32_t exponent[] = {-200, -25, 0, 200};
     static const int32_t turn_q30[][2] = {
         {ONE, 0}, {0, -ONE}, {-759250125, 759250125}};
-    struct glint_vertex v[16];
+    struct glint_vertex v[25];
 
     for (int k = 0; k < 12; k++) {
         const struct glint_place place = {
@@ -64,7 +64,7 @@ static void check_grids(struct glint_transfer *t)
             {k < 6 ? INT32_MAX : 1 << 30, exponent[k % 4]},
             960 << 8,
             540 << 8};
-        const int n_cells = 1 + k % 3;
+        const int n_cells = t->hollow ? 4 : 1 + k % 3;
 
         memset(v, 0, sizeof v);
         glint_transfer_grid(t, &place, n_cells, v);

@@ -109,7 +109,11 @@ static int draw(const struct glint_lens *lens, const struct glint_image *image,
         return 1;
     }
     set_waves(lens->header, wave);
-    glint_flare_init(&flare, &config, mem, bytes);
+    if (glint_flare_init(&flare, &config, mem, bytes) != GLINT_OK) {
+        fprintf(stderr, "a picture of this size cannot be drawn\n");
+        free(mem);
+        return 1;
+    }
     glint_flare_plan(flare, &rays, beam, 1);
     glint_flare_bin(flare, &stats);
     glint_flare_draw(flare, image);
