@@ -34,9 +34,8 @@ static void begin(struct glint_plan_survey *s, const struct glint_transfer *t,
     s->down = down;
     s->n_bends = s->n_up = s->n_down = s->n_inside = 0;
     s->n_bent[0] = s->n_bent[1] = 0;
-    s->low = INT32_MAX;
-    s->high = -INT32_MAX;
-    s->wide = s->energy = 0;
+    s->seen = s->reach = (struct glint_plan_extent){INT32_MAX, -INT32_MAX, 0};
+    s->energy = 0;
     s->least_area = UINT64_MAX;
     s->n_kinds = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
@@ -133,17 +132,37 @@ static void add_cell(struct glint_plan_survey *s,
     s->least_area = area < s->least_area ? area : s->least_area;
 }
 
-static void add_extent(struct glint_plan_survey *s,
-                       const struct glint_plan_node *n)
+static void widen(struct glint_plan_extent *e, const struct glint_plan_node *n)
 {
     const int64_t x = n->at[GLINT_OUT_SENSOR_X], y = n->at[GLINT_OUT_SENSOR_Y];
 
+    e->low = x < e->low ? x : e->low;
+    e->high = x > e->high ? x : e->high;
+    e->wide = y > e->wide ? y : -y > e->wide ? -y : e->wide;
+}
+
+/* The cell between A and B, and C and D beside them. */
+static void add_reach(struct glint_plan_survey *s,
+                      const struct glint_plan_node *a,
+                      const struct glint_plan_node *b,
+                      const struct glint_plan_node *c,
+                      const struct glint_plan_node *d)
+{
+    if (!(a->inside || b->inside || c->inside || d->inside))
+        return;
+    widen(&s->reach, a);
+    widen(&s->reach, b);
+    widen(&s->reach, c);
+    widen(&s->reach, d);
+}
+
+static void add_seen(struct glint_plan_survey *s,
+                     const struct glint_plan_node *n)
+{
     if (!n->inside)
         return;
     s->n_inside++;
-    s->low = x < s->low ? x : s->low;
-    s->high = x > s->high ? x : s->high;
-    s->wide = y > s->wide ? y : -y > s->wide ? -y : s->wide;
+    widen(&s->seen, n);
     s->energy = n->at[GLINT_OUT_ENERGY] > s->energy ? n->at[GLINT_OUT_ENERGY]
                                                     : s->energy;
 }
@@ -160,13 +179,15 @@ static void run_survey(struct glint_plan_survey *s, struct glint_transfer *t,
 
         survey_row(s, t, j);
         for (int i = 0; i <= across; i++) {
-            add_extent(s, &here[i]);
+            add_seen(s, &here[i]);
             if (i > 0 && i < across)
                 add_bend(s, &here[i - 1], &here[i], &here[i + 1], across, 0);
             if (j > 1)
                 add_bend(s, &top[i], &above[i], &here[i], 2 * down, 1);
-            if (j > 0 && i < across)
+            if (j > 0 && i < across) {
                 add_cell(s, &above[i], &above[i + 1], &here[i]);
+                add_reach(s, &above[i], &above[i + 1], &here[i], &here[i + 1]);
+            }
         }
     }
 }
@@ -367,11 +388,15 @@ static int64_t pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* The ghost's box, a tenth larger than the survey saw it, turned by the beam's
- * azimuth, meets the picture. */
+/* What the survey's rays reach, and a tenth more, turned by the beam's azimuth,
+ * meets the picture. */
 static int is_in_view(const struct glint_plan *p, const struct glint_beam *b,
-                      int64_t middle_q8, int64_t wide_q8, int64_t high_q8)
+                      const struct glint_transfer *t,
+                      const struct glint_plan_extent *e)
 {
+    const int64_t middle_q8 = pixels_q8(p, t, (e->low + e->high) / 2);
+    const int64_t wide_q8 = pixels_q8(p, t, (e->high - e->low) * 11 / 20) + 256;
+    const int64_t high_q8 = pixels_q8(p, t, e->wide + e->wide / 10) + 256;
     const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
     const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
     const int64_t m = middle_q8 < 0 ? -middle_q8 : middle_q8;
@@ -536,11 +561,11 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
         run_survey(s, transfer, GLINT_PLAN_ACROSS, GLINT_PLAN_DOWN);
     if (s->n_inside == 0)
         return GLINT_FATE_BLOCKED;
-    wide_q8 = pixels_q8(plan, transfer, (s->high - s->low) * 3 / 5) + 256;
-    high_q8 = pixels_q8(plan, transfer, s->wide + s->wide / 10) + 256;
-    if (!is_in_view(plan, b, pixels_q8(plan, transfer, (s->low + s->high) / 2),
-                    wide_q8, high_q8))
+    if (!is_in_view(plan, b, transfer, &s->reach))
         return GLINT_FATE_OUTSIDE;
+    wide_q8 =
+        pixels_q8(plan, transfer, (s->seen.high - s->seen.low) * 3 / 5) + 256;
+    high_q8 = pixels_q8(plan, transfer, s->seen.wide + s->seen.wide / 10) + 256;
     source->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - source->energy_up;
     source->flux = flux_of(plan, source, transfer, colour, exponent);

@@ -40,6 +40,11 @@ struct glint_plan {
     int round; /* the stop is */
 };
 
+/* Where light lands: least and largest x on the sensor, and largest y. */
+struct glint_plan_extent {
+    int64_t low, high, wide;
+};
+
 /* What a few rays of a bundle say, in cells across the pupil and down half of
  * it: few, and more where these hardly find anything.
  */
@@ -63,9 +68,11 @@ struct glint_plan_survey {
     int across, down; /* cells */
     int n_rays;       /* of all surveys of the bundle */
     int n_bends, n_bent[2], n_inside, n_kinds;
-    uint8_t kind[GLINT_OUT_KINDS]; /* of outputs that there are, but energy */
-    int n_up, n_down;              /* cells by the way they are turned */
-    int64_t low, high, wide; /* sensor x, and largest y, of what is inside */
+    uint8_t kind[GLINT_OUT_KINDS];  /* of outputs that there are, but energy */
+    int n_up, n_down;               /* cells by the way they are turned */
+    struct glint_plan_extent seen;  /* of what is inside */
+    struct glint_plan_extent reach; /* of cells that any of is, and so of what
+                                       lies between rays, too */
     int64_t energy;
     uint64_t least_area;            /* of half a cell on the sensor */
     int64_t limit[GLINT_OUT_KINDS]; /* what counts as inside */
