@@ -23,7 +23,7 @@ static const struct rung {
     { 48, 2,      8,   FRAME_CULL_CODES, 1,    false}, /* 0.86, 54.6 dB */
     { 64, 1,      4,   FRAME_CULL_CODES, 1,    false}, /* 1.00, 56.8 dB */
     { 96, 0.5,    2,   FRAME_CULL_CODES, 0.25, false}, /* 1.35, 60.8 dB */
-    {160, 0.25,   1,   FRAME_CULL_CODES, 0.25, false}, /* 1.81, 62.2 dB */
+    {160, 0.25,   1,   FRAME_CULL_CODES, 0.25, false}, /* 128: 1.81, 62.2 */
     {192, 0.125,  0.5, FRAME_CULL_CODES, 0.25, false}, /* 2.97, 63.9 dB */
     {256, 0.0625, 0,   FRAME_CULL_CODES, 0.25, false}, /* 4.57, 64.0 dB */
 };
