@@ -353,10 +353,16 @@ static int64_t round_bowl_q16(const struct glint_plan_survey *s)
     return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
 }
 
-/* A barrel's (1 + r^2) / 2 is a bowl, and what is drawn as straight between
- * rays lies above it: where a cell bends by D across and E down, by (D + E) /
- * 12 in the mean. With that taken off, outlines lie as often outside as inside.
- */
+/* How far what is straight between the rays of N_CELLS lies off such a bowl in
+ * the mean: where a cell bends by D across and E down, (D + E) / 12. */
+static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
+{
+    return (uint16_t)q_clamp_sat(bowl_q16 / (12 * (int64_t)n_cells * n_cells),
+                                 0, 1 << 12);
+}
+
+/* A barrel's (1 + r^2) / 2 is a bowl. With the sag taken off, outlines lie as
+ * often outside as inside. */
 static void set_sags(struct glint_source *source,
                      const struct glint_plan_survey *s,
                      const struct glint_transfer *t, int n_cells, int round)
@@ -369,14 +375,9 @@ static void set_sags(struct glint_source *source,
                       INT64_C(1) << 40)
                 : 0;
 
-        source->sag_q16[k - GLINT_OUT_BARREL_0] = (uint16_t)q_clamp_sat(
-            bowl_q16 / (12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
+        source->sag_q16[k - GLINT_OUT_BARREL_0] = sag_q16(bowl_q16, n_cells);
     }
-    source->sag_q16[2] =
-        round ? (uint16_t)q_clamp_sat(round_bowl_q16(s) /
-                                          (12 * (int64_t)n_cells * n_cells),
-                                      0, 1 << 12)
-              : 0;
+    source->sag_q16[2] = round ? sag_q16(round_bowl_q16(s), n_cells) : 0;
 }
 
 /* X of the sensor as pixels, q8. */
