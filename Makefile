@@ -312,7 +312,7 @@ inputs:
 	@tools/inputs
 table: all
 	@tools/raster-table
-bake-table: all
+bake-table: all $(OUT)/ray_errors
 	@tools/bake-table
 accuracy-table: all
 	@tools/accuracy-table

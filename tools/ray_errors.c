@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * ray_errors [-n NM,...] [-s STEP] [-g GHOST] [-w] LENS MODEL: how far a model
- * is from exact rays, everywhere. A row of a Markdown table; with -w also the
- * ghosts that are off by more than they should, and at which angles.
+ * ray_errors [-n NM,...] [-s STEP] [-g GHOST] [-r | -w] LENS MODEL: how far a
+ * model is from exact rays, everywhere. A row of a Markdown table; with -w also
+ * the ghosts that are off by more than they should, and at which angles; with
+ * -r root mean squares instead, one output after the other.
  *
  *   every ghost at the angles of the accuracy table and every STEP degrees up
  *   to the model's largest, at every wavelength: a grid over the box of what
- *   gets through stop and barrels to the field, that part of it which does
+ *   gets through stop and barrels to the picture, that part of it which does
  *
- * Rays that the model has no polynomials for count as off by FAR pixels, and
- * have no stop position.
+ * Rays that the model has no polynomials for count as off by FAR pixels in
+ * percentiles, and not at all in root mean squares.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -37,7 +38,7 @@ struct tally {
     double rays, lost;
     double light, light_lost; /* energy times mm^2 of pupil */
     double sensor[BINS], energy[BINS];
-    double stop2; /* sum of squares */
+    double sum2[GLINT_OUT_ENERGY + 1]; /* of squares; energy's times light */
 };
 
 struct task {
@@ -51,7 +52,8 @@ struct task {
     int n_nm;
     double angle[MOST_ANGLES];
     int n_angles;
-    bool worst;
+    double picture_mm; /* half its diagonal, or the field if that is less */
+    bool worst, squares;
 };
 
 /* ------------------------------------------------------------------ tallies */
@@ -63,20 +65,26 @@ static int bin_of(double error)
     return bin < BINS ? bin : BINS - 1;
 }
 
-static void tally_add(struct tally *t, double sensor_px, double stop,
-                      double energy)
+static void tally_add(struct tally *t, const double error[], double light)
 {
     t->rays++;
-    t->sensor[bin_of(sensor_px)]++;
-    t->energy[bin_of(energy)]++;
-    t->stop2 += stop * stop;
+    t->light += light;
+    t->sensor[bin_of(
+        hypot(error[GLINT_OUT_SENSOR_X], error[GLINT_OUT_SENSOR_Y]))]++;
+    t->energy[bin_of(fabs(error[GLINT_OUT_ENERGY]))]++;
+    for (int kind = 0; kind <= GLINT_OUT_ENERGY; kind++)
+        t->sum2[kind] +=
+            error[kind] * error[kind] * (kind == GLINT_OUT_ENERGY ? light : 1);
 }
 
 static void tally_add_lost(struct tally *t, double light)
 {
-    tally_add(t, FAR, 0, 1);
+    t->rays++;
     t->lost++;
+    t->light += light;
     t->light_lost += light;
+    t->sensor[bin_of(FAR)]++;
+    t->energy[bin_of(1)]++;
 }
 
 /* Adds WEIGHT times FROM. */
@@ -90,7 +98,8 @@ static void tally_join(struct tally *t, const struct tally *from, double weight)
         t->sensor[k] += weight * from->sensor[k];
         t->energy[k] += weight * from->energy[k];
     }
-    t->stop2 += weight * from->stop2;
+    for (int kind = 0; kind <= GLINT_OUT_ENERGY; kind++)
+        t->sum2[kind] += weight * from->sum2[kind];
 }
 
 /* The upper end of the bin that a hundredth of the N errors in BIN is above. */
@@ -109,9 +118,17 @@ static double sensor_p99(const struct tally *t)
     return p99_of(t->sensor, t->rays);
 }
 
+static double rms_of(const struct tally *t, int kind)
+{
+    const double n =
+        kind == GLINT_OUT_ENERGY ? t->light - t->light_lost : t->rays - t->lost;
+
+    return n > 0 ? sqrt(t->sum2[kind] / n) : 0;
+}
+
 static double stop_rms(const struct tally *t)
 {
-    return t->rays > t->lost ? sqrt(t->stop2 / (t->rays - t->lost)) : 0;
+    return hypot(rms_of(t, GLINT_OUT_STOP_X), rms_of(t, GLINT_OUT_STOP_Y));
 }
 
 static bool misses(const struct tally *t)
@@ -170,8 +187,7 @@ static bool is_seen(const struct task *t, const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= t->optics.stop_radius_mm &&
-           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <=
-               model_real_of(t->header->field_mm);
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= t->picture_mm;
 }
 
 static void compare_ray(const struct task *t, const struct parts *parts,
@@ -182,16 +198,16 @@ static void compare_ray(const struct task *t, const struct parts *parts,
     const double stop = t->optics.stop_radius_mm;
     double at[GLINT_OUT_KINDS];
 
-    tally->light += light;
-    if (!model_ray(parts, x_mm, y_mm, at))
+    if (!model_ray(parts, x_mm, y_mm, at)) {
         tally_add_lost(tally, light);
-    else
-        tally_add(tally,
-                  px * hypot(at[GLINT_OUT_SENSOR_X] - ray->sensor_x_mm,
-                             at[GLINT_OUT_SENSOR_Y] - ray->sensor_y_mm),
-                  hypot(at[GLINT_OUT_STOP_X] - ray->stop_x_mm / stop,
-                        at[GLINT_OUT_STOP_Y] - ray->stop_y_mm / stop),
-                  fabs(at[GLINT_OUT_ENERGY] / ray->energy - 1));
+        return;
+    }
+    at[GLINT_OUT_SENSOR_X] = px * (at[GLINT_OUT_SENSOR_X] - ray->sensor_x_mm);
+    at[GLINT_OUT_SENSOR_Y] = px * (at[GLINT_OUT_SENSOR_Y] - ray->sensor_y_mm);
+    at[GLINT_OUT_STOP_X] -= ray->stop_x_mm / stop;
+    at[GLINT_OUT_STOP_Y] -= ray->stop_y_mm / stop;
+    at[GLINT_OUT_ENERGY] = at[GLINT_OUT_ENERGY] / ray->energy - 1;
+    tally_add(tally, at, light);
 }
 
 static void compare_bundle(const struct task *t, int ghost, double angle_deg,
@@ -237,6 +253,17 @@ static void print_angle(double angle_deg, const struct tally *t)
     if (t->lost > 0)
         printf(", not there %.2g (%.2g of its light)", t->lost / t->rays,
                t->light_lost / t->light);
+    printf("\n");
+}
+
+static void print_squares(const struct tally *t)
+{
+    static const int kind[] = {GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y,
+                               GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y,
+                               GLINT_OUT_ENERGY};
+
+    for (int k = 0; k < 5; k++)
+        printf("%s%.2g", k ? " | " : "", rms_of(t, kind[k]));
     printf("\n");
 }
 
@@ -293,6 +320,10 @@ static void compare_all(const struct task *t)
     }
     for (int k = 0; k < t->n_angles; k++)
         lost = fmax(lost, light[k].lost / fmax(1e-30, light[k].all));
+    if (t->squares) {
+        print_squares(&all);
+        return;
+    }
     printf("| %s | %.0f | %.2g, %.2g | %.2g, %.2g | %.2g, %.2g | %.1g, %.1g | "
            "%d of %d | %d of %d |\n",
            t->lens.name, all.rays, sensor_p99(&all), sensor_p99(&equally),
@@ -332,13 +363,12 @@ static void set_angles(struct task *t, double step_deg)
 
 int main(int argc, char **argv)
 {
-    static struct task t = {
-        .only = -1, .nm = {650, 532, 450}, .n_nm = 3, .worst = false};
+    static struct task t = {.only = -1, .nm = {650, 532, 450}, .n_nm = 3};
     const struct tool tool = {.name = "ray_errors"};
     double step_deg = 0.7;
     int c, code;
 
-    while ((c = getopt(argc, argv, "n:s:g:w")) >= 0) {
+    while ((c = getopt(argc, argv, "n:s:g:rw")) >= 0) {
         bool ok;
 
         if (c == 'n')
@@ -348,6 +378,8 @@ int main(int argc, char **argv)
             ok = tool_number(optarg, &step_deg) && step_deg > 0.01;
         else if (c == 'g')
             ok = tool_integer(optarg, 0, GLINT_MAX_GHOSTS, &t.only);
+        else if (c == 'r')
+            ok = t.squares = true;
         else
             ok = t.worst = c == 'w';
         if (!ok)
@@ -361,6 +393,9 @@ int main(int argc, char **argv)
     if (code != EXIT_OK)
         return code;
     t.header = t.model.lens.header;
+    t.picture_mm =
+        fmin(model_real_of(t.header->field_mm),
+             0.5 * hypot(t.lens.film_width_mm, t.lens.film_height_mm));
     t.n_ghosts = glint_ghost_list(&t.lens, t.ghost, GLINT_MAX_GHOSTS);
     glint_optics_of(&t.lens, &t.optics);
     set_angles(&t, step_deg);
