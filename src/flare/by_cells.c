@@ -255,7 +255,7 @@ static void resolve_codes(const struct draw *d,
                         0, 65535);
         if (d->image)
             glint_resolve_stretch(d->flare->resolve, d->image, tile.x0, y, n_x,
-                                  n_y, w->light, w->codes);
+                                  n_y, w->light, &w->codes->rows);
     }
 }
 

@@ -411,15 +411,9 @@ static void resolve_codes(const struct draw *d,
         if (!lit || !d->image)
             continue;
         glint_resolve_stretch(r, d->image, s->tile.x0, y,
-                              s->tile.x1 - s->tile.x0, n, w->light, w->codes);
+                              s->tile.x1 - s->tile.x0, n, w->light,
+                              &w->codes->rows);
     }
-}
-
-/* N pixels of FROM, each twice. */
-static void double_row(const uint16_t *from, int n, uint16_t *to)
-{
-    for (int i = 0; i < n; i++)
-        to[2 * i] = to[2 * i + 1] = from[i];
 }
 
 static int smaller(int a, int b)
@@ -428,24 +422,25 @@ static int smaller(int a, int b)
 }
 
 /* A row of pixels as two rows of twice as many, half a tile at once. */
-static void resolve_doubled(const struct draw *d,
-                            const struct glint_flare_worker *w,
-                            const struct glint_edge_sums *s, int y)
+enum { QUADS = GLINT_CODES_WIDTH / 2 };
+
+static void resolve_row_of_quads(const struct draw *d,
+                                 const struct glint_flare_worker *w,
+                                 const struct glint_edge_sums *s, int y)
 {
     const struct glint_flare *f = d->flare;
-    const int half = GLINT_CODES_WIDTH / 2, n = s->tile.x1 - s->tile.x0;
     const int n_y = smaller(2, f->cfg.height - 2 * y);
 
-    for (int first = 0; first < n; first += half) {
-        const int x = 2 * (s->tile.x0 + first), part = smaller(half, n - first);
+    for (int at = s->tile.x0; at < s->tile.x1; at += QUADS) {
+        const int first = at - s->tile.x0;
+        const int part = smaller(QUADS, s->tile.x1 - at);
+        const uint16_t *const light_q16[3] = {w->light->rgb_q16[0][0] + first,
+                                              w->light->rgb_q16[1][0] + first,
+                                              w->light->rgb_q16[2][0] + first};
 
-        for (int c = 0; c < 3; c++)
-            for (int row = 0; row < 2; row++)
-                double_row(w->light->rgb_q16[c][0] + first, part,
-                           w->wide_light->rgb_q16[c][row]);
-        glint_resolve_stretch(f->resolve, d->image, x, 2 * y,
-                              smaller(2 * part, f->cfg.width - x), n_y,
-                              w->wide_light, w->codes);
+        glint_resolve_quads(f->resolve, d->image, 2 * at, 2 * y,
+                            smaller(2 * part, f->cfg.width - 2 * at), n_y,
+                            light_q16, w->codes);
     }
 }
 
@@ -463,7 +458,7 @@ static void resolve_half(const struct draw *d,
                                     d->flare->resolve->kernels,
                                     w->light->rgb_q16[c][0]);
         if (lit && d->image)
-            resolve_doubled(d, w, s, y);
+            resolve_row_of_quads(d, w, s, y);
     }
 }
 

@@ -14,14 +14,13 @@
 #include "tile/bins.h"
 #include "tile/edges.h"
 #include "tile/raster.h"
-#include "tile/resolve.h"
+#include "tile/quads.h"
 
 /* What one worker needs while it draws. */
 struct glint_flare_worker {
-    struct glint_light_rows *light;      /* two rows of a tile */
-    struct glint_light_rows *wide_light; /* of half as many pixels, doubled */
-    int32_t *light_q20; /* [3][side]: one of a linear picture */
-    struct glint_resolve_rows *codes;
+    struct glint_light_rows *light; /* two rows of a tile */
+    int32_t *light_q20;             /* [3][side]: one of a linear picture */
+    struct glint_quads_rows *codes;
     int n_tiles; /* small tiles that it drew */
     int n_held;  /* samples of a linear picture at the end of their range */
     struct glint_plan_scratch *plan;

@@ -58,15 +58,14 @@ static int16_t change_of(const struct glint_tone16 *t, int16_t code,
 /* Of the changes of R', G', B', Y' of a pixel, those that chroma goes by. */
 static const int kept[3] = {0, 2, 3};
 
-/* Adds light to one pixel: returns its luma, and what R', G', B' and Y' (_q7)
- * change by. */
-static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
-                         int16_t change[4], const struct glint_mix *mix,
-                         int16_t round_q7)
+/* What R', G', B' and Y' (_q7) of one pixel change by. */
+static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
+                         const uint16_t light[3], int16_t change[4],
+                         const struct glint_mix *mix)
 {
     const int16_t *from = mix->from_ycc.one, *to = mix->to_ycc.one;
-    const int base = times(luma * 128, from[GLINT_MIX_BASE]) + mix->black[0];
-    const int b_q7 = cb * 128 - (1 << 14), r_q7 = cr * 128 - (1 << 14);
+    const int base = times(luma_q7, from[GLINT_MIX_BASE]) + mix->black[0];
+    const int b_q7 = cb_q7 - (1 << 14), r_q7 = cr_q7 - (1 << 14);
     const int tint[3] = {times(r_q7, from[GLINT_MIX_RED_CR]),
                          times(b_q7, from[GLINT_MIX_GREEN_CB]) +
                              times(r_q7, from[GLINT_MIX_GREEN_CR]),
@@ -81,7 +80,20 @@ static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
         change[3] =
             (int16_t)(change[3] + times(change[c], to[GLINT_MIX_LUMA + c]));
     }
-    return (uint8_t)(sum_sat(luma * 128 + round_q7, change[3]) >> 7);
+}
+
+static uint8_t add_luma(int code, int16_t change_q7, int16_t round_q7)
+{
+    return (uint8_t)(sum_sat(code * 128 + round_q7, change_q7) >> 7);
+}
+
+/* Adds light to one pixel: returns its luma, and what it changed by. */
+static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
+                         int16_t change[4], const struct glint_mix *mix,
+                         int16_t round_q7)
+{
+    change_pixel(luma * 128, cb * 128, cr * 128, light, change, mix);
+    return add_luma(luma, change[3], round_q7);
 }
 
 void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
@@ -170,6 +182,78 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
             at[0][2 * k] = luma[k];
             at[1][2 * k] = chroma[k];
         }
+    }
+}
+
+/* Adds light to 2 x 2 pixels. Both rows are read before either is written:
+ * they may be one. */
+static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
+                     const uint16_t light[3], const struct glint_mix *mix,
+                     const int16_t *const round[2],
+                     const int16_t *const round_chroma[2])
+{
+    const uint8_t y[2][2] = {{luma[0][0], luma[0][1]},
+                             {luma[1][0], luma[1][1]}};
+    const uint8_t c[2][2] = {{chroma[0][0], chroma[0][1]},
+                             {chroma[1][0], chroma[1][1]}};
+    int16_t change[4];
+
+    change_pixel((y[0][0] + y[0][1] + y[1][0] + y[1][1]) * 32,
+                 (c[0][0] + c[1][0]) * 64, (c[0][1] + c[1][1]) * 64, light,
+                 change, mix);
+    for (int row = 0; row < 2; row++) {
+        const int16_t *const r = round_chroma[row];
+
+        for (int k = 0; k < 2; k++)
+            luma[row][k] = add_luma(y[row][k], change[3], round[row][k]);
+        chroma[row][0] = add_chroma(c[row][0], change[2], change[3],
+                                    GLINT_MIX_CB_BLUE, mix, r[0]);
+        chroma[row][1] = add_chroma(c[row][1], change[0], change[3],
+                                    GLINT_MIX_CR_RED, mix, r[1]);
+    }
+}
+
+void glint_add_quads_c(uint8_t *const luma[2], uint8_t *const chroma[2],
+                       const uint16_t *const light[3], int n,
+                       const struct glint_mix *mix,
+                       const int16_t *const round[2],
+                       const int16_t *const round_chroma[2])
+{
+    for (int i = 0; i < n; i += 2) {
+        const uint16_t here[3] = {light[0][i / 2], light[1][i / 2],
+                                  light[2][i / 2]};
+        uint8_t *const y[2] = {luma[0] + i, luma[1] + i};
+        uint8_t *const c[2] = {chroma[0] + i, chroma[1] + i};
+        const int16_t *const r[2] = {round[0] + (i & 7), round[1] + (i & 7)};
+        const int16_t *const rc[2] = {round_chroma[0] + (i & 7),
+                                      round_chroma[1] + (i & 7)};
+
+        add_quad(y, c, here, mix, r, rc);
+    }
+}
+
+void glint_add_quads_packed_c(uint8_t *const pixels[2],
+                              const uint16_t *const light[3], int n,
+                              int luma_at, const struct glint_mix *mix,
+                              const int16_t *const round[2])
+{
+    for (int i = 0; i < n; i += 2) {
+        const uint16_t here[3] = {light[0][i / 2], light[1][i / 2],
+                                  light[2][i / 2]};
+        const int16_t *const r[2] = {round[0] + (i & 7), round[1] + (i & 7)};
+        uint8_t codes[2][4]; /* Y, Y, Cb, Cr */
+        uint8_t *const y[2] = {codes[0], codes[1]};
+        uint8_t *const c[2] = {codes[0] + 2, codes[1] + 2};
+
+        for (int row = 0; row < 2; row++)
+            for (int k = 0; k < 4; k++)
+                codes[row][k] =
+                    pixels[row][2 * i + 2 * (k & 1) + ((k >> 1) ^ luma_at)];
+        add_quad(y, c, here, mix, r, r);
+        for (int row = 0; row < 2; row++)
+            for (int k = 0; k < 4; k++)
+                pixels[row][2 * i + 2 * (k & 1) + ((k >> 1) ^ luma_at)] =
+                    codes[row][k];
     }
 }
 

@@ -251,6 +251,143 @@ void KERNEL(glint_add_packed)(uint8_t *pixels, const uint16_t *const light[3],
         add_packed(pixels, light, n, 0, mix, round, round_chroma);
 }
 
+/* --------------------------------------------------------------------- quads
+ *
+ * Two rows of as many pixels as have a vector of quads, V_QUADS blocks of
+ * sixteen.
+ */
+
+enum { V_QUADS = 2 * V_N / 16 };
+
+struct quads {
+    V luma[V_QUADS][V_PARTS], chroma[V_QUADS][2];
+};
+
+struct quad_rounding {
+    V luma[V_PARTS], chroma[2];
+};
+
+static WHOLLY_INLINE int quads_are_dark(const uint16_t *const light[3], int i)
+{
+    const V red = v_load((const int16_t *)light[0] + i);
+    const V green = v_load((const int16_t *)light[1] + i);
+
+    return v_is_zero(
+        v_or(v_or(red, green), v_load((const int16_t *)light[2] + i)));
+}
+
+static WHOLLY_INLINE void add_to_row(struct quads *q,
+                                     const struct quad_rounding *r, V luma,
+                                     V blue, V red)
+{
+    for (int b = 0; b < V_QUADS; b++) {
+        for (int k = 0; k < V_PARTS; k++)
+            q->luma[b][k] = v_add_sat(v_add(q->luma[b][k], r->luma[k]),
+                                      v_quads_of_block(luma, b));
+        q->chroma[b][0] = v_add_sat(v_add(q->chroma[b][0], r->chroma[0]),
+                                    v_quads_of_block(blue, b));
+        q->chroma[b][1] = v_add_sat(v_add(q->chroma[b][1], r->chroma[1]),
+                                    v_quads_of_block(red, b));
+    }
+}
+
+/* Light from I on. */
+static WHOLLY_INLINE void change_quads(const MIX *m, struct quads row[2],
+                                       const struct quad_rounding rounding[2],
+                                       const uint16_t *const light[3], int i)
+{
+    const V luma =
+        v_mean(v_pairs_joined(row[0].luma), v_pairs_joined(row[1].luma));
+    V tint[3], d[3][V_PARTS], blue, red;
+
+    tint_of(m,
+            v_mean(v_chroma_joined(row[0].chroma, 0),
+                   v_chroma_joined(row[1].chroma, 0)),
+            v_mean(v_chroma_joined(row[0].chroma, 1),
+                   v_chroma_joined(row[1].chroma, 1)),
+            tint);
+    change_pixels(m, 1, 0, &luma, tint, light, i, d);
+    blue = v_sub(TIMES(d[1][0], m->to_ycc, GLINT_MIX_CB_BLUE),
+                 TIMES(d[2][0], m->to_ycc, GLINT_MIX_CB_LUMA));
+    red = v_sub(TIMES(d[0][0], m->to_ycc, GLINT_MIX_CR_RED),
+                TIMES(d[2][0], m->to_ycc, GLINT_MIX_CR_LUMA));
+    for (int k = 0; k < 2; k++)
+        add_to_row(&row[k], &rounding[k], d[2][0], blue, red);
+}
+
+void KERNEL(glint_add_quads)(uint8_t *const luma[2], uint8_t *const chroma[2],
+                             const uint16_t *const light[3], int n,
+                             const struct glint_mix *mix,
+                             const int16_t *const round[2],
+                             const int16_t *const round_chroma[2])
+{
+    struct quad_rounding rounding[2];
+    LOAD_MIX(m, mix);
+
+    for (int k = 0; k < 2; k++) {
+        v_round_pairs(round[k], rounding[k].luma);
+        v_round_chroma(round_chroma[k], rounding[k].chroma);
+    }
+    for (int i = 0; i < n; i += 2 * V_N) {
+        struct quads row[2];
+
+        if (quads_are_dark(light, i / 2))
+            continue;
+        for (int k = 0; k < 2; k++)
+            for (int b = 0; b < V_QUADS; b++) {
+                v_load_code_pairs(luma[k] + i + 16 * b, row[k].luma[b]);
+                v_load_chroma(chroma[k] + i + 16 * b, row[k].chroma[b]);
+            }
+        change_quads(m, row, rounding, light, i / 2);
+        for (int k = 0; k < 2; k++)
+            for (int b = 0; b < V_QUADS; b++) {
+                v_store_code_pairs(luma[k] + i + 16 * b, row[k].luma[b]);
+                v_store_chroma(chroma[k] + i + 16 * b, row[k].chroma[b]);
+            }
+    }
+}
+
+static WHOLLY_INLINE void add_quads_packed(uint8_t *const pixels[2],
+                                           const uint16_t *const light[3],
+                                           int n, int luma_at,
+                                           const struct glint_mix *mix,
+                                           const int16_t *const round[2])
+{
+    struct quad_rounding rounding[2];
+    LOAD_MIX(m, mix);
+
+    for (int k = 0; k < 2; k++) {
+        v_round_pairs(round[k], rounding[k].luma);
+        v_round_chroma(round[k], rounding[k].chroma);
+    }
+    for (int i = 0; i < n; i += 2 * V_N) {
+        struct quads row[2];
+
+        if (quads_are_dark(light, i / 2))
+            continue;
+        for (int k = 0; k < 2; k++)
+            for (int b = 0; b < V_QUADS; b++)
+                v_load_packed(pixels[k] + 2 * i + 32 * b, luma_at,
+                              row[k].luma[b], row[k].chroma[b]);
+        change_quads(m, row, rounding, light, i / 2);
+        for (int k = 0; k < 2; k++)
+            for (int b = 0; b < V_QUADS; b++)
+                v_store_packed(pixels[k] + 2 * i + 32 * b, luma_at,
+                               row[k].luma[b], row[k].chroma[b]);
+    }
+}
+
+void KERNEL(glint_add_quads_packed)(uint8_t *const pixels[2],
+                                    const uint16_t *const light[3], int n,
+                                    int luma_at, const struct glint_mix *mix,
+                                    const int16_t *const round[2])
+{
+    if (luma_at)
+        add_quads_packed(pixels, light, n, 1, mix, round);
+    else
+        add_quads_packed(pixels, light, n, 0, mix, round);
+}
+
 void KERNEL(glint_add_code)(uint8_t *code, const uint16_t *light, int n,
                             const struct glint_tone16 *tone,
                             const int16_t *round)

@@ -68,6 +68,28 @@ typedef void glint_add_packed_fn(uint8_t *pixels,
                                  const int16_t *round,
                                  const int16_t *round_chroma);
 
+/* Adds light that 2 x 2 pixels have in common to two rows of N pixels, N a
+ * multiple of twice GLINT_LANES: what it changes is worked out once, for the
+ * mean of the four.
+ *   luma    codes of two rows; of a last one that is alone: it, twice
+ *   chroma  codes Cb, Cr of each pair of both; the same twice where the rows
+ *           share them
+ *   light   R, G, B: _q16, one for every two pixels of a row
+ *   round, round_chroma  as above, of both */
+typedef void glint_add_quads_fn(uint8_t *const luma[2],
+                                uint8_t *const chroma[2],
+                                const uint16_t *const light[3], int n,
+                                const struct glint_mix *mix,
+                                const int16_t *const round[2],
+                                const int16_t *const round_chroma[2]);
+
+/* The same for pixels of two bytes, which begin anywhere; ROUND serves chroma,
+ * too. */
+typedef void glint_add_quads_packed_fn(uint8_t *const pixels[2],
+                                       const uint16_t *const light[3], int n,
+                                       int luma_at, const struct glint_mix *mix,
+                                       const int16_t *const round[2]);
+
 /* Adds light to N codes of one channel of R'G'B'; LIGHT and ROUND as above. */
 typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
@@ -119,6 +141,12 @@ struct glint_kernels {
     glint_run_sum_fn *run_sum;
 };
 
+/* What pictures take of which four pixels share their light. */
+struct glint_quad_kernels {
+    glint_add_quads_fn *add;
+    glint_add_quads_packed_fn *add_packed;
+};
+
 /* What rays take: apart, so that a program that has only one of them links
  * nothing of the other. */
 struct glint_horner {
@@ -128,6 +156,7 @@ struct glint_horner {
 
 /* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C. */
 const struct glint_kernels *glint_kernels_of(unsigned sets);
+const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets);
 const struct glint_horner *glint_horner_of(unsigned sets);
 glint_turn_fn *glint_turn_of(unsigned sets);
 
@@ -142,6 +171,11 @@ glint_add_pairs_fn glint_add_pairs_c, glint_add_pairs_sse41,
     glint_add_pairs_avx2, glint_add_pairs_neon;
 glint_add_packed_fn glint_add_packed_c, glint_add_packed_sse41,
     glint_add_packed_avx2, glint_add_packed_neon;
+glint_add_quads_fn glint_add_quads_c, glint_add_quads_sse41,
+    glint_add_quads_avx2, glint_add_quads_neon;
+glint_add_quads_packed_fn glint_add_quads_packed_c,
+    glint_add_quads_packed_sse41, glint_add_quads_packed_avx2,
+    glint_add_quads_packed_neon;
 glint_add_code_fn glint_add_code_c, glint_add_code_sse41, glint_add_code_avx2,
     glint_add_code_neon;
 glint_run_sum_fn glint_run_sum_c, glint_run_sum_sse41, glint_run_sum_avx2,

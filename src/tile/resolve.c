@@ -21,6 +21,7 @@ void glint_resolve_init(struct glint_resolve *resolve,
 {
     glint_mix_init(&resolve->mix, image);
     resolve->kernels = glint_kernels_of(sets);
+    resolve->sets = sets;
     for (int y = 0; y < 8; y++)
         for (int x = 0; x < 8; x++)
             resolve->round_q7[y][x] =

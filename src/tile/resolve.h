@@ -32,6 +32,7 @@
 struct glint_resolve {
     struct glint_mix mix;
     const struct glint_kernels *kernels;
+    unsigned sets;
     /* Added before rounding down, in codes: 1/2, or an 8 x 8 pattern of that
      * mean below 1, which leaves whole codes whole. */
     int16_t round_q7[8][8];

@@ -282,6 +282,72 @@ static void check_packed(const struct glint_kernels *k, const char *name)
           add_packed(k, got, light, N, 0, &mix, round));
 }
 
+/* Two rows of luma and of chroma, or of packed pixels in their places. */
+struct quads {
+    uint8_t *luma[2], *chroma[2];
+};
+
+static void add_quads(const struct glint_quad_kernels *k,
+                      const struct quads *rows, uint16_t *const light[3], int n,
+                      int packed, const struct glint_mix *mix,
+                      int16_t (*round)[8])
+{
+    const uint16_t *const rgb[3] = {light[0], light[1], light[2]};
+    const int16_t *const r[2] = {round[0], round[1]};
+    const int16_t *const r_chroma[2] = {round[2], round[3]};
+
+    if (packed)
+        k->add_packed(rows->luma, rgb, n, packed - 1, mix, r);
+    else
+        k->add(rows->luma, rows->chroma, rgb, n, mix, r, r_chroma);
+}
+
+/* Rows that are one, or share their chroma, and dark stretches among them. */
+static void check_quads(const struct glint_quad_kernels *k, const char *name)
+{
+    const struct glint_quad_kernels *plain = glint_quad_kernels_of(0);
+    uint8_t *want[4], *got[4];
+    uint16_t *light[3] = {fenced(N), fenced(N), fenced(N)};
+    struct quads a, b;
+    struct glint_mix mix;
+    int16_t round[4][8];
+
+    for (int i = 0; i < 4; i++) {
+        want[i] = fenced(2 * N);
+        got[i] = fenced(2 * N);
+    }
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int n =
+            2 * GLINT_LANES * (1 + (int)(draw() % (N / (2 * GLINT_LANES))));
+        const int packed = (int)(draw() % 3), one_row = (int)(draw() % 2);
+        const int one_chroma = one_row || draw() % 2;
+        const int dark = (int)(draw() % (N / 2));
+
+        draw_mix(&mix);
+        for (int i = 0; i < 32; i++)
+            round[i / 8][i % 8] = (int16_t)(draw() & 127);
+        for (int i = 0; i < 8 && one_row; i++)
+            round[1][i] = round[0][i];
+        for (int i = 0; i < 8 && one_chroma; i++)
+            round[3][i] = round[2][i];
+        for (int i = 0; i < 4 * 2 * N; i++)
+            want[i % 4][i / 4] = got[i % 4][i / 4] = (uint8_t)draw();
+        for (int i = 0; i < 3 * N / 2; i++)
+            light[i / (N / 2)][i % (N / 2)] =
+                i % (N / 2) > dark ? draw_light() : 0;
+        a = (struct quads){{want[0], want[!one_row]},
+                           {want[2], want[2 + !one_chroma]}};
+        b = (struct quads){{got[0], got[!one_row]},
+                           {got[2], got[2 + !one_chroma]}};
+        add_quads(plain, &a, light, n, packed, &mix, round);
+        add_quads(k, &b, light, n, packed, &mix, round);
+        for (int i = 0; i < 4; i++)
+            EXPECT_SAME(got[i], want[i], 2 * N);
+    }
+    BENCH("add_quads", name, add_quads(plain, &a, light, N, 1, &mix, round),
+          add_quads(k, &b, light, N, 1, &mix, round));
+}
+
 /* Every code under every light. */
 static void check_code(const struct glint_kernels *k, const char *name)
 {
@@ -431,6 +497,7 @@ static void test_same_bits(void)
         check_luma(k, variants[v].name);
         check_pairs(k, variants[v].name);
         check_packed(k, variants[v].name);
+        check_quads(glint_quad_kernels_of(variants[v].set), variants[v].name);
         check_code(k, variants[v].name);
         check_sum(k, variants[v].name);
     }

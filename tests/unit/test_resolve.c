@@ -3,7 +3,7 @@
  * Light added to pictures of every coding, against the same in double: through
  * the standards' own curves and matrices, not the tables.
  */
-#include "tile/resolve.h"
+#include "tile/quads.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -656,6 +656,99 @@ static void test_long_stretches_are_short_ones(void **state)
         }
 }
 
+/* Of a picture that is even over 2 x 2 pixels, light of as many pixels does
+ * what it does to each. */
+static void make_even(void)
+{
+    const struct glint_image *image = &fixture.image;
+    const struct glint_layout *l = glint_layout_of(image->format);
+    const int n_channels = l->kind == GLINT_LAYOUT_GREY ? 1 : 3;
+
+    for (int i = 0; i < n_channels; i++)
+        for (int y = 0; y < image->height; y++)
+            for (int x = 0; x < image->width; x++)
+                *glint_layout_at(l, image, i, x, y) =
+                    *glint_layout_at(l, image, i, x & ~1, y & ~1);
+}
+
+static void add_quads(const struct glint_image *image, unsigned sets)
+{
+    static struct glint_quads_rows rows;
+    static struct glint_light_rows light;
+    const uint16_t *const rgb[3] = {light.rgb_q16[0][0], light.rgb_q16[1][0],
+                                    light.rgb_q16[2][0]};
+
+    glint_resolve_init(&resolve, image, 1, sets);
+    memset(&light, 0x55, sizeof light);
+    for (int y = 0; y < image->height; y += 2) {
+        for (int x = 0; x < image->width; x += 2)
+            for (int i = 0; i < 3; i++)
+                light.rgb_q16[i][0][x / 2] =
+                    light_q16(fixture.light_q20[i][y * image->width + x]);
+        glint_resolve_quads(&resolve, image, 0, y, image->width,
+                            y + 2 < image->height ? 2 : image->height - y, rgb,
+                            &rows);
+    }
+}
+
+static void test_quads_of_even_pictures(void **state)
+{
+    static const enum glint_pixel_format every[] = {
+        GLINT_YUYV, GLINT_UYVY,  GLINT_I420,     GLINT_NV12,
+        GLINT_I422, GLINT_RGB24, GLINT_XRGB8888, GLINT_GREY};
+    static uint8_t even[3][PLANE_BYTES], want[3][PLANE_BYTES];
+
+    (void)state;
+    for (size_t f = 0; f < sizeof every / sizeof *every; f++)
+        for (int size = 0; size < 40; size++) {
+            set_up(every[f], 1 + size, 1 + (size * 7) % 40, 0);
+            for (int i = 0; i < glint_image_planes(every[f]); i++)
+                fill(i, 0, 255);
+            make_even();
+            fill_light();
+            for (int i = 0; i < 3; i++)
+                for (int y = 0; y < fixture.image.height; y++)
+                    for (int x = 0; x < fixture.image.width; x++)
+                        fixture.light_q20[i][y * fixture.image.width + x] =
+                            fixture
+                                .light_q20[i][(y & ~1) * fixture.image.width +
+                                              (x & ~1)];
+            memcpy(even, fixture.plane, sizeof even);
+            add_light_to(&fixture.image, 1, 0);
+            memcpy(want, fixture.plane, sizeof want);
+            for (int k = 0; k < 2; k++) {
+                memcpy(fixture.plane, even, sizeof even);
+                add_quads(&fixture.image, k ? glint_system_sets() : 0u);
+                assert_memory_equal(fixture.plane, want, sizeof want);
+            }
+        }
+}
+
+/* Of others all four change alike, by what their mean does. */
+static void test_quads_change_alike(void **state)
+{
+    enum { BRIGHT = 200, DARK = 20 };
+
+    (void)state;
+    set_up(GLINT_YUYV, 8, 2, 0);
+    fixture.image.range = GLINT_RANGE_FULL;
+    for (int x = 0; x < 16; x++)
+        for (int y = 0; y < 2; y++)
+            *sample(0, x, y) = (uint8_t)(x % 2 ? 128 : x % 4 ? BRIGHT : DARK);
+    for (int i = 0; i < 3 * 8 * 2; i++)
+        fixture.light_q20[i / 16][i % 16] = 40000;
+    add_quads(&fixture.image, 0);
+    for (int x = 0; x < 16; x += 4)
+        for (int y = 0; y < 2; y++) {
+            const int changed = *sample(0, x, y) - DARK;
+
+            assert_in_range(changed, 4, 20);
+            assert_in_range(*sample(0, x + 2, y) - BRIGHT, changed - 1,
+                            changed + 1);
+            assert_int_equal(*sample(0, x + 1, y), 128);
+        }
+}
+
 /* All codes of 16 bits come back without light, and turn white with much. */
 static void test_565(void **state)
 {
@@ -723,6 +816,8 @@ int main(void)
         cmocka_unit_test(test_linear_adds_and_saturates),
         cmocka_unit_test(test_layouts_agree),
         cmocka_unit_test(test_long_stretches_are_short_ones),
+        cmocka_unit_test(test_quads_of_even_pictures),
+        cmocka_unit_test(test_quads_change_alike),
         cmocka_unit_test(test_565),
         cmocka_unit_test(test_same_on_every_machine),
     };
