@@ -102,7 +102,7 @@ endif
 
 # Sources in the order the data flows.
 CORE := base/status base/arena base/q base/divide base/sort base/image base/workers \
-        kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/quads kernels/turn kernels/turn_c \
+        kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/add_quads kernels/turn kernels/turn_c \
         kernels/composite_c \
         lens/model lens/transfer flare/bright flare/regions flare/lights \
         flare/match flare/follow flare/record flare/tracks tile/primitive \

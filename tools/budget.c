@@ -32,10 +32,18 @@ void budget_begin(struct budget *b)
     b->n_tries = 0;
 }
 
-/* Between the two rungs beside STEP. */
-static double octaves_at(const struct budget *b, int step)
+/* Where STEP is among the rungs. Nothing is between the first two, one of which
+ * draws four pixels at once: a step is either. */
+static double place_of(int step)
 {
     const double at = (double)step * BUDGET_RUNGS / BUDGET_STEPS;
+
+    return at >= 1 ? at : at < 0.5 ? 0 : 1;
+}
+
+static double octaves_at(const struct budget *b, int step)
+{
+    const double at = place_of(step);
     const int below = at < BUDGET_RUNGS ? (int)at : BUDGET_RUNGS - 1;
 
     return b->octaves[below] +
@@ -50,7 +58,7 @@ static double predict(const struct budget *b, const struct frame *frame,
     struct cost cost;
 
     ladder_frame(&then, (double)step / BUDGET_STEPS);
-    cost = cost_of(frame, then.max_cells, then.cfg.irradiance_steps);
+    cost = cost_of(frame, &then);
     return b->ms_per_minsn * exp2(octaves_at(b, step)) * cost_minsn(&cost);
 }
 
@@ -93,7 +101,7 @@ bool budget_choose(struct budget *b, struct frame *frame)
  * of that holds for all, as when the machine has become slower. */
 void budget_note(struct budget *b, double ms)
 {
-    const double at = (double)b->step * BUDGET_RUNGS / BUDGET_STEPS;
+    const double at = place_of(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
     /* a frame that waited for other programs says little */

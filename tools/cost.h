@@ -22,10 +22,10 @@ struct cost {
     double count[COST_KINDS];
 };
 
-/* Of the bundles that F's flare has planned, if grids had FINENESS and
- * irradiance so many STEPS an octave (0: not rounded). Of fineness within a
- * factor of 4 of the planned one, or grids at the limits are misjudged. */
-struct cost cost_of(const struct frame *f, int fineness, int steps);
+/* Of the bundles that F's flare has planned, if fineness, steps of irradiance
+ * and half were as in THEN (F itself: as they are). Of fineness within a factor
+ * of 4 of the planned one, or grids at the limits are misjudged. */
+struct cost cost_of(const struct frame *f, const struct frame *then);
 
 /* Instructions, in millions, of a processor with 8 lanes of 32 bits; times what
  * one takes on this machine it is time. Fitted to counts of callgrind. */

@@ -41,13 +41,23 @@ static const struct command commands[] = {
     {"sweep", cmd_sweep},
 };
 
+/* As getopt says ARGV[0] in what it complains of. */
+static int run_command(const struct command *command, int argc, char **argv)
+{
+    char name[32];
+
+    snprintf(name, sizeof name, "glint %s", command->name);
+    argv[0] = name;
+    return command->run(argc, argv);
+}
+
 static int run(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
 
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
         if (strcmp(name, commands[i].name) == 0)
-            return commands[i].run(argc - 1, argv + 1);
+            return run_command(&commands[i], argc - 1, argv + 1);
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
         fputs(help, stdout);
         return EXIT_OK;

@@ -137,6 +137,7 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_RASTER:
         word = tool_word(value, rasters);
         s->raster = word;
+        s->by_edges = word == 0;
         return word >= 0;
     case OPT_MASK:
         return tool_integer(value, 2, 4096, &s->mask_nodes);
@@ -288,10 +289,24 @@ static int set_up(const struct tool *tool, struct scene *s)
     return EXIT_OK;
 }
 
+/* What only cells have is not left out in silence. */
+static int check_raster(const struct tool *tool, const struct scene *s)
+{
+    if (s->mask_nodes && s->by_edges)
+        return tool_usage(tool, "--mask is drawn by cells, not --raster edges");
+    if (s->merge_steps && !s->raster && !s->mask_nodes)
+        return tool_usage(tool, "--merge is for --raster cells");
+    return EXIT_OK;
+}
+
 int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
 {
-    int code = tool_is_model(lens) ? open_model(tool, scene, lens)
-                                   : scene_open_table(tool, scene, lens);
+    int code = check_raster(tool, scene);
+
+    if (code != EXIT_OK)
+        return code;
+    code = tool_is_model(lens) ? open_model(tool, scene, lens)
+                               : scene_open_table(tool, scene, lens);
 
     if (code == EXIT_OK && scene->model.data)
         code = check_band(tool, scene);
@@ -377,7 +392,7 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
                 fmin(least_ms, report.plan_ms + report.bin_ms + report.draw_ms);
     }
     if (mem && code == EXIT_OK) {
-        cost = cost_of(&frame, frame.max_cells, frame.cfg.irradiance_steps);
+        cost = cost_of(&frame, &frame);
         budget->ms_per_minsn = least_ms / cost_minsn(&cost);
     }
     frame_finish(&frame);

@@ -39,6 +39,7 @@ struct scene {
     double budget_ms;   /* 0: none */
     int raster;         /* 0: by edges, 1: by cells */
     enum glint_weights weights;
+    bool by_edges; /* was asked for, not only what is done anyway */
     bool half, uniform, narrow, antialias, dither, has_exposure, balance;
 };
 

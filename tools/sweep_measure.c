@@ -190,8 +190,7 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
         r->point->floor_ms = yardstick_median(b->floor_ms, n);
         r->point->ratio = r->point->ms / r->point->floor_ms;
         r->point->arena_bytes = r->point->report.peak_bytes;
-        r->point->cost = cost_of(&r->frame, r->frame.max_cells,
-                                 r->frame.cfg.irradiance_steps);
+        r->point->cost = cost_of(&r->frame, &r->frame);
     }
     return status;
 }

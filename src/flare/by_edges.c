@@ -374,19 +374,40 @@ static int is_lit(const struct glint_edge_sums *s)
     return any != 0;
 }
 
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* Each of N values twice, in place. */
+static void double_row(int32_t *row, int n)
+{
+    for (int i = n - 1; i >= 0; i--)
+        row[2 * i] = row[2 * i + 1] = row[i];
+}
+
 static void resolve_linear(const struct draw *d, struct glint_flare_worker *w,
                            const struct glint_edge_sums *s)
 {
-    const int side = 1 << s->tile_log2;
-    int32_t *const row_q20[3] = {w->light_q20, w->light_q20 + side,
-                                 w->light_q20 + 2 * side};
+    const struct glint_flare *f = d->flare;
+    const int n = s->tile.x1 - s->tile.x0, twice = 2 << s->tile_log2;
+    const int x = s->tile.x0 << f->half;
+    const int n_x = smaller(n << f->half, f->cfg.width - x);
+    int32_t *const row_q20[3] = {w->light_q20, w->light_q20 + twice,
+                                 w->light_q20 + 2 * twice};
 
-    for (int y = s->tile.y0; y < s->tile.y1; y++) {
-        for (int c = 0; c < 3; c++)
-            glint_edge_linear(s, c, y - s->tile.y0, row_q20[c]);
-        w->n_held += glint_resolve_linear(d->image, s->tile.x0, y,
-                                          s->tile.x1 - s->tile.x0,
-                                          (const int32_t *const *)row_q20);
+    for (int row = s->tile.y0; row < s->tile.y1; row++) {
+        const int y = row << f->half;
+        const int end = smaller(y + 1 + f->half, f->cfg.height);
+
+        for (int c = 0; c < 3; c++) {
+            glint_edge_linear(s, c, row - s->tile.y0, row_q20[c]);
+            if (f->half)
+                double_row(row_q20[c], n);
+        }
+        for (int k = y; k < end; k++)
+            w->n_held += glint_resolve_linear(d->image, x, k, n_x,
+                                              (const int32_t *const *)row_q20);
     }
 }
 
@@ -414,11 +435,6 @@ static void resolve_codes(const struct draw *d,
                               s->tile.x1 - s->tile.x0, n, w->light,
                               &w->codes->rows);
     }
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
 }
 
 /* A row of pixels as two rows of twice as many, half a tile at once. */

@@ -23,7 +23,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     const size_t side = (size_t)1 << c->tile_log2;
 
     w->light = glint_arena_take(a, 1, sizeof *w->light);
-    w->light_q20 = glint_arena_take(a, 3 * side, sizeof *w->light_q20);
+    w->light_q20 = glint_arena_take(a, 3 * 2 * side, sizeof *w->light_q20);
     w->codes = glint_arena_take(a, 1, sizeof *w->codes);
     w->plan = glint_arena_take(a, 1, sizeof *w->plan);
     raster_of(c)->carve_worker(w, a, c);

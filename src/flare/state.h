@@ -19,7 +19,7 @@
 /* What one worker needs while it draws. */
 struct glint_flare_worker {
     struct glint_light_rows *light; /* two rows of a tile */
-    int32_t *light_q20;             /* [3][side]: one of a linear picture */
+    int32_t *light_q20;             /* [3][2 side]: one of a linear picture */
     struct glint_quads_rows *codes;
     int n_tiles; /* small tiles that it drew */
     int n_held;  /* samples of a linear picture at the end of their range */

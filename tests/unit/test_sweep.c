@@ -134,6 +134,7 @@ static void test_ladder(void **state)
         assert_true(scene.quantum <= last.quantum);
         assert_true(scene.cull <= last.cull);
         assert_true(scene.tolerance <= last.tolerance);
+        assert_true(scene.half <= last.half);
         last = scene;
     }
     assert_true(ladder_take(&scene, "0.25") && ladder_take(&last, "draft"));
