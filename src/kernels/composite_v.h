@@ -347,11 +347,10 @@ void KERNEL(glint_add_quads)(uint8_t *const luma[2], uint8_t *const chroma[2],
     }
 }
 
-static WHOLLY_INLINE void add_quads_packed(uint8_t *const pixels[2],
-                                           const uint16_t *const light[3],
-                                           int n, int luma_at,
-                                           const struct glint_mix *mix,
-                                           const int16_t *const round[2])
+void KERNEL(glint_add_quads_packed)(uint8_t *const pixels[2],
+                                    const uint16_t *const light[3], int n,
+                                    int luma_at, const struct glint_mix *mix,
+                                    const int16_t *const round[2])
 {
     struct quad_rounding rounding[2];
     LOAD_MIX(m, mix);
@@ -375,17 +374,6 @@ static WHOLLY_INLINE void add_quads_packed(uint8_t *const pixels[2],
                 v_store_packed(pixels[k] + 2 * i + 32 * b, luma_at,
                                row[k].luma[b], row[k].chroma[b]);
     }
-}
-
-void KERNEL(glint_add_quads_packed)(uint8_t *const pixels[2],
-                                    const uint16_t *const light[3], int n,
-                                    int luma_at, const struct glint_mix *mix,
-                                    const int16_t *const round[2])
-{
-    if (luma_at)
-        add_quads_packed(pixels, light, n, 1, mix, round);
-    else
-        add_quads_packed(pixels, light, n, 0, mix, round);
 }
 
 void KERNEL(glint_add_code)(uint8_t *code, const uint16_t *light, int n,
