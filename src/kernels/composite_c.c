@@ -185,6 +185,27 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
     }
 }
 
+/* PART / WHOLE, both 0 or more, _q15; PART is held to WHOLE. By Newton's
+ * method: what it is off is below 2^-12. */
+static int16_t share(int part, int whole)
+{
+    const int zeros = 16 - bit_length((uint32_t)whole);
+    const int n_q15 = (uint16_t)((uint32_t)whole << zeros) >> 1;
+    const int n = n_q15 > 1 << 14 ? n_q15 : 1 << 14;
+    const int d = (uint16_t)((uint32_t)(part < whole ? part : whole) << zeros);
+    int16_t r_q14 = (int16_t)(GLINT_SHARE_FROM - times(n, GLINT_SHARE_SLOPE));
+    int16_t q_q14;
+
+    for (int k = 0; k < 2; k++) {
+        const int16_t rest_q14 = (int16_t)((1 << 15) - times(n, r_q14));
+
+        r_q14 = times(r_q14, rest_q14);
+        r_q14 = sum_sat(r_q14, r_q14);
+    }
+    q_q14 = times(d >> 1, r_q14);
+    return sum_sat(q_q14, q_q14);
+}
+
 /* Adds light to 2 x 2 pixels. Both rows are read before either is written:
  * they may be one. */
 static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
@@ -196,21 +217,33 @@ static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
                              {luma[1][0], luma[1][1]}};
     const uint8_t c[2][2] = {{chroma[0][0], chroma[0][1]},
                              {chroma[1][0], chroma[1][1]}};
-    int16_t change[4];
+    const int y_q7 = (y[0][0] + y[0][1] + y[1][0] + y[1][1]) * 32;
+    const int c_q7[2] = {(c[0][0] + c[1][0]) * 64, (c[0][1] + c[1][1]) * 64};
+    const int headroom = mix->white[0] > y_q7 ? mix->white[0] - y_q7 : 0;
+    const int16_t *to = mix->to_ycc.one;
+    int16_t change[4], q;
+    int change_c[2];
 
-    change_pixel((y[0][0] + y[0][1] + y[1][0] + y[1][1]) * 32,
-                 (c[0][0] + c[1][0]) * 64, (c[0][1] + c[1][1]) * 64, light,
-                 change, mix);
-    for (int row = 0; row < 2; row++) {
-        const int16_t *const r = round_chroma[row];
+    change_pixel(y_q7, c_q7[0], c_q7[1], light, change, mix);
+    q = share(change[3], headroom);
+    change_c[0] = times(change[2], to[GLINT_MIX_CB_BLUE]) -
+                  times(change[3], to[GLINT_MIX_CB_LUMA]);
+    change_c[1] = times(change[0], to[GLINT_MIX_CR_RED]) -
+                  times(change[3], to[GLINT_MIX_CR_LUMA]);
+    for (int row = 0; row < 2; row++)
+        for (int k = 0; k < 2; k++) {
+            const int16_t more =
+                sum_sat(change[3], times(y_q7 - y[row][k] * 128, q));
+            const int16_t more_c =
+                sum_sat(change_c[k], times(c_q7[k] - c[row][k] * 128, q));
 
-        for (int k = 0; k < 2; k++)
-            luma[row][k] = add_luma(y[row][k], change[3], round[row][k]);
-        chroma[row][0] = add_chroma(c[row][0], change[2], change[3],
-                                    GLINT_MIX_CB_BLUE, mix, r[0]);
-        chroma[row][1] = add_chroma(c[row][1], change[0], change[3],
-                                    GLINT_MIX_CR_RED, mix, r[1]);
-    }
+            luma[row][k] =
+                add_luma(y[row][k], held(more, 0, INT16_MAX), round[row][k]);
+            chroma[row][k] =
+                (uint8_t)(held(c[row][k] * 128 + round_chroma[row][k] + more_c,
+                               0, INT16_MAX) >>
+                          7);
+        }
 }
 
 void glint_add_quads_c(uint8_t *const luma[2], uint8_t *const chroma[2],

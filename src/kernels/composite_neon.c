@@ -62,7 +62,7 @@ struct v_tone {
 
 struct v_mix {
     struct v_tone tone;
-    int16x8_t from_ycc, to_ycc, black;
+    int16x8_t from_ycc, to_ycc, black, white;
 };
 
 #define TONE        struct v_tone
@@ -97,7 +97,8 @@ struct v_mix {
     TABLES(m, &(mix)->tone);                                        \
     const struct v_mix m##_here = {                                 \
         TONE_HERE(m, &(mix)->tone), vld1q_s16((mix)->from_ycc.one), \
-        vld1q_s16((mix)->to_ycc.one), vld1q_s16((mix)->black)};     \
+        vld1q_s16((mix)->to_ycc.one), vld1q_s16((mix)->black),      \
+        vld1q_s16((mix)->white)};                                   \
     const struct v_mix *const m = &m##_here
 
 static inline uint8x16x2_t table_at(const int16_t *p)

@@ -276,18 +276,59 @@ static WHOLLY_INLINE int quads_are_dark(const uint16_t *const light[3], int i)
         v_or(v_or(red, green), v_load((const int16_t *)light[2] + i)));
 }
 
+/* As in composite_c.c. */
+static WHOLLY_INLINE V share_of(const TONE *t, V part, V whole)
+{
+    const V zeros = v_zeros(whole);
+    const PLACES at = v_places_of(t, zeros);
+    const V held = v_sub(part, v_sub_unsigned_sat(part, whole));
+    const V n = v_max(v_right(v_raise(t, whole, zeros, at), 1), v_set(1 << 14));
+    const V d = v_right(v_raise(t, held, zeros, at), 1);
+    V r = v_sub(v_set((int16_t)GLINT_SHARE_FROM),
+                v_times(n, v_set(GLINT_SHARE_SLOPE))),
+      q;
+
+    for (int k = 0; k < 2; k++) {
+        r = v_times(r, v_sub(v_set(INT16_MIN), v_times(n, r)));
+        r = v_add_sat(r, r);
+    }
+    q = v_times(d, r);
+    return v_add_sat(q, q);
+}
+
+/* Means of quads, what these change by, and what share of their room to white
+ * that is. */
+struct quad_change {
+    V luma_q7, luma, chroma_q7[2], chroma[2], share;
+};
+
+static WHOLLY_INLINE V changed(V code_q7, V rounding, V mean_q7, V change,
+                               V share)
+{
+    return v_add_sat(
+        v_add(code_q7, rounding),
+        v_add_sat(change, v_times(v_sub(mean_q7, code_q7), share)));
+}
+
 static WHOLLY_INLINE void add_to_row(struct quads *q,
-                                     const struct quad_rounding *r, V luma,
-                                     V blue, V red)
+                                     const struct quad_rounding *r,
+                                     const struct quad_change *d)
 {
     for (int b = 0; b < V_QUADS; b++) {
-        for (int k = 0; k < V_PARTS; k++)
+        const V share = v_quads_of_block(d->share, b);
+        const V mean = v_quads_of_block(d->luma_q7, b);
+        const V luma = v_quads_of_block(d->luma, b);
+
+        for (int k = 0; k < V_PARTS; k++) {
+            const V less = v_times(v_sub(mean, q->luma[b][k]), share);
+
             q->luma[b][k] = v_add_sat(v_add(q->luma[b][k], r->luma[k]),
-                                      v_quads_of_block(luma, b));
-        q->chroma[b][0] = v_add_sat(v_add(q->chroma[b][0], r->chroma[0]),
-                                    v_quads_of_block(blue, b));
-        q->chroma[b][1] = v_add_sat(v_add(q->chroma[b][1], r->chroma[1]),
-                                    v_quads_of_block(red, b));
+                                      v_max(v_add_sat(luma, less), v_set(0)));
+        }
+        for (int k = 0; k < 2; k++)
+            q->chroma[b][k] = changed(q->chroma[b][k], r->chroma[k],
+                                      v_quads_of_block(d->chroma_q7[k], b),
+                                      v_quads_of_block(d->chroma[k], b), share);
     }
 }
 
@@ -296,23 +337,25 @@ static WHOLLY_INLINE void change_quads(const MIX *m, struct quads row[2],
                                        const struct quad_rounding rounding[2],
                                        const uint16_t *const light[3], int i)
 {
-    const V luma =
-        v_mean(v_pairs_joined(row[0].luma), v_pairs_joined(row[1].luma));
-    V tint[3], d[3][V_PARTS], blue, red;
+    struct quad_change q;
+    V tint[3], d[3][V_PARTS];
 
-    tint_of(m,
-            v_mean(v_chroma_joined(row[0].chroma, 0),
-                   v_chroma_joined(row[1].chroma, 0)),
-            v_mean(v_chroma_joined(row[0].chroma, 1),
-                   v_chroma_joined(row[1].chroma, 1)),
-            tint);
-    change_pixels(m, 1, 0, &luma, tint, light, i, d);
-    blue = v_sub(TIMES(d[1][0], m->to_ycc, GLINT_MIX_CB_BLUE),
-                 TIMES(d[2][0], m->to_ycc, GLINT_MIX_CB_LUMA));
-    red = v_sub(TIMES(d[0][0], m->to_ycc, GLINT_MIX_CR_RED),
-                TIMES(d[2][0], m->to_ycc, GLINT_MIX_CR_LUMA));
+    q.luma_q7 =
+        v_mean(v_pairs_joined(row[0].luma), v_pairs_joined(row[1].luma));
     for (int k = 0; k < 2; k++)
-        add_to_row(&row[k], &rounding[k], d[2][0], blue, red);
+        q.chroma_q7[k] = v_mean(v_chroma_joined(row[0].chroma, k),
+                                v_chroma_joined(row[1].chroma, k));
+    tint_of(m, q.chroma_q7[0], q.chroma_q7[1], tint);
+    change_pixels(m, 1, 0, &q.luma_q7, tint, light, i, d);
+    q.luma = d[2][0];
+    q.share = share_of(&m->tone, q.luma,
+                       v_sub_unsigned_sat(CONSTANT(m->white), q.luma_q7));
+    q.chroma[0] = v_sub(TIMES(d[1][0], m->to_ycc, GLINT_MIX_CB_BLUE),
+                        TIMES(d[2][0], m->to_ycc, GLINT_MIX_CB_LUMA));
+    q.chroma[1] = v_sub(TIMES(d[0][0], m->to_ycc, GLINT_MIX_CR_RED),
+                        TIMES(d[2][0], m->to_ycc, GLINT_MIX_CR_LUMA));
+    for (int k = 0; k < 2; k++)
+        add_to_row(&row[k], &rounding[k], &q);
 }
 
 void KERNEL(glint_add_quads)(uint8_t *const luma[2], uint8_t *const chroma[2],

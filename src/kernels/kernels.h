@@ -69,8 +69,10 @@ typedef void glint_add_packed_fn(uint8_t *pixels,
                                  const int16_t *round_chroma);
 
 /* Adds light that 2 x 2 pixels have in common to two rows of N pixels, N a
- * multiple of twice GLINT_LANES: what it changes is worked out once, for the
- * mean of the four.
+ * multiple of twice GLINT_LANES. What it changes is worked out once, for the
+ * mean of the four: from there it falls to nothing at white, in proportion, so
+ * that light which makes the mean white does so to each of them. Chroma differs
+ * as much less from its mean. Y' never falls.
  *   luma    codes of two rows; of a last one that is alone: it, twice
  *   chroma  codes Cb, Cr of each pair of both; the same twice where the rows
  *           share them

@@ -76,10 +76,15 @@ enum { /* factors of from_ycc */
        GLINT_MIX_CR_LUMA
 };
 
+/* Where Newton's method begins for 1 / x, x = 0.5 .. 1: 48 / 17 - 32 / 17 x,
+ * 2.8 of _q14 and half of 1.9 of _q15. */
+enum { GLINT_SHARE_FROM = 46261, GLINT_SHARE_SLOPE = 30840 };
+
 struct glint_mix {
     struct glint_tone16 tone;
     struct glint_factors from_ycc, to_ycc;
     glint_lanes black;
+    glint_lanes white; /* Y', _q7 */
 };
 
 #endif

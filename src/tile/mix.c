@@ -99,6 +99,7 @@ static void to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
     const int32_t y_q15 = m_q15[0][0] + m_q15[0][1] + m_q15[0][2];
     struct glint_factors *f = &mix->to_ycc;
 
+    set(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
     for (int c = 0; c < 3; c++)
         set_factor(f, GLINT_MIX_LUMA + c, ratio(m_q15[0][c] * 256, 257));
     /* of B' - Y' and R' - Y': what of Cb and Cr is not of Y' */

@@ -671,14 +671,15 @@ static void make_even(void)
                     *glint_layout_at(l, image, i, x & ~1, y & ~1);
 }
 
-static void add_quads(const struct glint_image *image, unsigned sets)
+static void add_quads(const struct glint_image *image, int dither,
+                      unsigned sets)
 {
     static struct glint_quads_rows rows;
     static struct glint_light_rows light;
     const uint16_t *const rgb[3] = {light.rgb_q16[0][0], light.rgb_q16[1][0],
                                     light.rgb_q16[2][0]};
 
-    glint_resolve_init(&resolve, image, 1, sets);
+    glint_resolve_init(&resolve, image, dither, sets);
     memset(&light, 0x55, sizeof light);
     for (int y = 0; y < image->height; y += 2) {
         for (int x = 0; x < image->width; x += 2)
@@ -718,34 +719,119 @@ static void test_quads_of_even_pictures(void **state)
             memcpy(want, fixture.plane, sizeof want);
             for (int k = 0; k < 2; k++) {
                 memcpy(fixture.plane, even, sizeof even);
-                add_quads(&fixture.image, k ? glint_system_sets() : 0u);
+                add_quads(&fixture.image, 1, k ? glint_system_sets() : 0u);
                 assert_memory_equal(fixture.plane, want, sizeof want);
             }
         }
 }
 
-/* Of others all four change alike, by what their mean does. */
-static void test_quads_change_alike(void **state)
+/* Of others change falls towards white: light of any strength makes nothing
+ * darker or whiter than white, orders stay, and much of it leaves all four
+ * white. */
+static void test_quads_of_edges(void **state)
 {
-    enum { BRIGHT = 200, DARK = 20 };
+    static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
 
     (void)state;
-    set_up(GLINT_YUYV, 8, 2, 0);
-    fixture.image.range = GLINT_RANGE_FULL;
-    for (int x = 0; x < 16; x++)
-        for (int y = 0; y < 2; y++)
-            *sample(0, x, y) = (uint8_t)(x % 2 ? 128 : x % 4 ? BRIGHT : DARK);
-    for (int i = 0; i < 3 * 8 * 2; i++)
-        fixture.light_q20[i / 16][i % 16] = 40000;
-    add_quads(&fixture.image, 0);
-    for (int x = 0; x < 16; x += 4)
-        for (int y = 0; y < 2; y++) {
-            const int changed = *sample(0, x, y) - DARK;
+    for (int strength = 0; strength <= 24; strength++) {
+        set_up(GLINT_YUYV, 32, 2, 0);
+        fixture.image.range = GLINT_RANGE_LIMITED;
+        for (int x = 0; x < 64; x++)
+            for (int y = 0; y < 2; y++)
+                *sample(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
+        for (int i = 0; i < 3 * 64; i++)
+            fixture.light_q20[i / 64][i % 64] = 1 << strength >> 4;
+        add_quads(&fixture.image, 0, 0);
+        for (int x = 0; x < 64; x += 2)
+            for (int y = 0; y < 2; y++) {
+                assert_in_range(*sample(0, x, y), luma[y][x / 2 % 2], 235);
+                assert_int_equal(*sample(0, x + 1, y), 128);
+                if (strength == 24)
+                    assert_int_equal(*sample(0, x, y), 235);
+            }
+        assert_true(*sample(0, 0, 0) <= *sample(0, 0, 1));
+    }
+}
 
-            assert_in_range(changed, 4, 20);
-            assert_in_range(*sample(0, x + 2, y) - BRIGHT, changed - 1,
-                            changed + 1);
-            assert_int_equal(*sample(0, x + 1, y), 128);
+/* How far quads are from pixel by pixel, codes: the root mean square over
+ * pictures whose pixels differ by up to DIFFER codes. */
+static double quads_off(int differ)
+{
+    static uint8_t want[PLANE_BYTES];
+    double sum2 = 0;
+    int n = 0;
+
+    for (int turn = 0; turn < 50; turn++) {
+        set_up(GLINT_YUYV, 32, 2, 0);
+        fill(0, 0, differ);
+        for (int x = 0; x < 64; x++)
+            for (int y = 0; y < 2; y++)
+                *sample(0, x, y) =
+                    (uint8_t)(*sample(0, x, y) + (x % 2 ? 120 : 20 + 3 * turn));
+        for (int i = 0; i < 3 * 64; i++)
+            fixture.light_q20[i / 64][i % 64] = 3000 << turn % 8;
+        memcpy(fixture.before, fixture.plane, sizeof fixture.before);
+        add_light_to(&fixture.image, 0, 0);
+        memcpy(want, fixture.plane[0], sizeof want);
+        memcpy(fixture.plane, fixture.before, sizeof fixture.before);
+        add_quads(&fixture.image, 0, 0);
+        for (int x = 0; x < 64; x += 2)
+            for (int y = 0; y < 2; y++, n++) {
+                const int off =
+                    *sample(0, x, y) - want[sample(0, x, y) - fixture.plane[0]];
+
+                sum2 += off * off;
+            }
+    }
+    return sqrt(sum2 / n);
+}
+
+static void test_quads_are_near(void **state)
+{
+    (void)state;
+    assert_true(quads_off(0) < 1e-9);
+    assert_true(quads_off(8) < 0.8);
+    assert_true(quads_off(40) < 3);
+}
+
+/* One stretch is as many short ones, whatever is left of whole steps. */
+static void test_long_quads_are_short_ones(void **state)
+{
+    static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
+                                                   GLINT_I420};
+    static struct glint_light_rows light, part;
+    static struct glint_quads_rows rows;
+    static uint8_t want[PLANE_BYTES], got[PLANE_BYTES];
+
+    (void)state;
+    for (int n = 1; n <= 64; n++)
+        for (int k = 0; k < 6; k++) {
+            struct glint_image image = {
+                .format = some[k % 3], .width = n, .height = 2};
+            const size_t bytes = glint_image_bytes(image.format, n, 2);
+            const uint16_t *const whole[3] = {
+                light.rgb_q16[0][0], light.rgb_q16[1][0], light.rgb_q16[2][0]};
+
+            for (size_t i = 0; i < bytes; i++)
+                want[i] = got[i] = (uint8_t)draw_random(256);
+            for (int i = 0; i < 3 * 64; i++)
+                light.rgb_q16[i / 64][0][i % 64] = (uint16_t)draw_random(9000);
+            glint_resolve_init(&resolve, &image, 0,
+                               k > 2 ? glint_system_sets() : 0u);
+            glint_image_place(&image, got);
+            glint_resolve_quads(&resolve, &image, 0, 0, n, 2, whole, &rows);
+            glint_image_place(&image, want);
+            for (int x = 0; x < n; x += 8) {
+                const uint16_t *const rgb[3] = {
+                    part.rgb_q16[0][0], part.rgb_q16[1][0], part.rgb_q16[2][0]};
+
+                for (int i = 0; i < 3 * 4; i++)
+                    part.rgb_q16[i / 4][0][i % 4] =
+                        light.rgb_q16[i / 4][0][x / 2 + i % 4];
+                glint_resolve_quads(&resolve, &image, x, 0,
+                                    n - x < 8 ? n - x : 8, 2, rgb, &rows);
+            }
+            assert_memory_equal(got, want, bytes);
         }
 }
 
@@ -817,7 +903,9 @@ int main(void)
         cmocka_unit_test(test_layouts_agree),
         cmocka_unit_test(test_long_stretches_are_short_ones),
         cmocka_unit_test(test_quads_of_even_pictures),
-        cmocka_unit_test(test_quads_change_alike),
+        cmocka_unit_test(test_quads_of_edges),
+        cmocka_unit_test(test_quads_are_near),
+        cmocka_unit_test(test_long_quads_are_short_ones),
         cmocka_unit_test(test_565),
         cmocka_unit_test(test_same_on_every_machine),
     };
