@@ -11,6 +11,9 @@
 #define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
 #define MOST_WRONG 0.8  /* octaves that one frame can say */
 #define SPREAD     0.1  /* of that for other qualities, too, at least */
+#define FORGETTING                                            \
+    0.01 /* of what else was learned of those, frame by frame \
+          */
 
 /* Plans of one frame; of fineness far from the one that is chosen they tell
  * little, so one more may be needed. */
@@ -98,7 +101,9 @@ bool budget_choose(struct budget *b, struct frame *frame)
 
 /* What was learned of a quality holds for the rungs beside it, so that the same
  * prediction would be less wrong by LEARNING; the more it was wrong, the more
- * of that holds for all, as when the machine has become slower. */
+ * of that holds for all, as when the machine has become slower. What was
+ * learned of others long ago is forgotten, lest one slow frame keeps a rung
+ * from ever being tried again. */
 void budget_note(struct budget *b, double ms)
 {
     const double at = place_of(b->step);
@@ -108,10 +113,13 @@ void budget_note(struct budget *b, double ms)
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
+    const double here = octaves_at(b, b->step);
 
     for (int i = 0; i <= BUDGET_RUNGS && ms > 0; i++) {
         const double near = fmax(0, 1 - fabs(at - i)) / both;
 
+        if (near <= 0)
+            b->octaves[i] += FORGETTING * (here - b->octaves[i]);
         b->octaves[i] += LEARNING * wrong * fmax(spread, near);
     }
 }

@@ -45,10 +45,12 @@ static double steps_at(int steps, double octaves)
 
 struct cost cost_of(const struct frame *f, const struct frame *then)
 {
-    const double width = f->cfg.width / (then->half ? 2. : 1);
-    const double height = f->cfg.height / (then->half ? 2. : 1);
+    const bool half = then->half && f->can_half;
+    const double width = f->cfg.width / (half ? 2. : 1);
+    const double height = f->cfg.height / (half ? 2. : 1);
     const double finer = (double)then->max_cells / f->max_cells;
-    const double larger = pow(4, f->half - then->half); /* pixels planned for */
+    /* pixels that were planned for */
+    const double larger = pow(4, (f->half && f->can_half) - half);
     const int steps = then->cfg.irradiance_steps;
     struct cost cost = {
         {1, (double)f->n_beams * f->setup->n_ghosts * f->setup->n_wavelengths}};
@@ -71,6 +73,6 @@ struct cost cost_of(const struct frame *f, const struct frame *then)
         covered += fmin(1, area / (width * height));
     }
     cost.count[COST_LIT] =
-        width * height * (1 - exp(-covered)) * (then->half ? QUAD : 1);
+        width * height * (1 - exp(-covered)) * (half ? QUAD : 1);
     return cost;
 }

@@ -165,9 +165,14 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
     return GLINT_OK;
 }
 
+static bool is_in_codes(const struct frame *f, const struct glint_image *image)
+{
+    return image->format != GLINT_LINEAR_Q20 || f->for_codes;
+}
+
 static double faintest(const struct frame *f, const struct glint_image *image)
 {
-    return image->format == GLINT_LINEAR_Q20 && !f->for_codes
+    return !is_in_codes(f, image)
                ? 0
                : f->faintest_codes / 255 /
                      (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
@@ -186,7 +191,7 @@ static struct glint_rays rays_of(const struct frame *f, double faintest_light)
         .only_ghost = f->only_ghost,
         .faintest = glint_real_of(faintest_light),
         .whole_codes_q8 = (int)lrint(f->whole_codes * 256),
-        .half = f->half};
+        .half = f->half && f->can_half};
 }
 
 /* --------------------------------------------------------------------- memory
@@ -369,6 +374,7 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
 {
     enum glint_status status;
 
+    f->can_half = is_in_codes(f, image) && !f->cfg.raster;
     f->rays = rays_of(f, faintest(f, image));
     f->scale = scale;
     budget_begin(&f->budget);
@@ -435,7 +441,7 @@ draw_exact(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
 static struct frame_scale
 plan_scale(struct frame *frame, const struct glint_lamp *lamps, int n_lamps)
 {
-    const struct glint_rays rays = rays_of(frame, 0);
+    struct glint_rays rays;
     struct glint_real brightest, together;
 
     if (!frame->lens) {
@@ -444,6 +450,8 @@ plan_scale(struct frame *frame, const struct glint_lamp *lamps, int n_lamps)
                      : (struct frame_scale){0, 0};
     }
     set_waves(frame);
+    frame->can_half = false;
+    rays = rays_of(frame, 0);
     if (set_beams(frame, lamps, n_lamps, 1) != GLINT_OK ||
         plan(frame, &rays) != GLINT_OK)
         return (struct frame_scale){0, 0};

@@ -41,13 +41,16 @@ struct frame {
     double faintest_codes; /* codes near black that a ghost may stay below */
     double whole_codes;    /* edges of less lie on whole pixels */
     bool for_codes;        /* a linear picture is planned as if for codes */
-    bool half;             /* half as many pixels each way */
-    bool uniform;          /* the same grid for all ghosts */
-    bool narrow;           /* rays in 16-bit lanes */
-    int only_ghost;        /* -1: all */
-    int16_t *mask;         /* of the stop, unless NULL */
-    struct budget budget;  /* of models; turns dials of the above */
-    bool reserved;         /* memory is what it is */
+    bool half;            /* of pictures in codes, by edges: half as many pixels
+                             each way, */
+    bool always_half;     /* whatever the ladder says */
+    bool can_half;        /* the last picture was such a one */
+    bool uniform;         /* the same grid for all ghosts */
+    bool narrow;          /* rays in 16-bit lanes */
+    int only_ghost;       /* -1: all */
+    int16_t *mask;        /* of the stop, unless NULL */
+    struct budget budget; /* of models; turns dials of the above */
+    bool reserved;        /* memory is what it is */
 
     struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
     struct glint_beam *beam;

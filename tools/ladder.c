@@ -89,7 +89,7 @@ void ladder_frame(struct frame *frame, double quality)
     frame->whole_codes = r.whole;
     frame->faintest_codes = r.cull;
     frame->narrow = false;
-    frame->half = r.half;
+    frame->half = r.half || frame->always_half;
 }
 
 /* Outlines, a tenth of a pixel at fineness 64, and by the square of it. */

@@ -7,7 +7,8 @@
  *
  *   every ghost at the angles of the accuracy table and every STEP degrees up
  *   to the model's largest, at every wavelength: a grid over the box of what
- *   gets through stop and barrels to the picture, that part of it which does
+ *   gets through stop and barrels to the field, those rays of it that land in
+ *   the picture's circle
  *
  * Rays that the model has no polynomials for count as off by FAR pixels in
  * percentiles, and not at all in root mean squares.
@@ -343,6 +344,25 @@ static void add_angle(struct task *t, double angle_deg)
         t->angle[t->n_angles++] = angle_deg;
 }
 
+/* Whether the model is of the lens, and was baked for the wavelengths. */
+static int check_pair(const struct tool *tool, const struct task *t)
+{
+    const struct glint_model_header *h = t->header;
+
+    if (strcmp(h->name, t->lens.name) != 0 || (int)h->n_ghosts < t->n_ghosts)
+        return tool_fail(tool, GLINT_E_LENS, "the model is of another lens");
+    for (int i = 0; i < t->n_nm; i++) {
+        const double wave_q24 = ldexp(1e6 / (t->nm[i] * t->nm[i]), 24);
+
+        if (wave_q24 < h->wave_lo_q24 - 1 || wave_q24 > h->wave_hi_q24 + 1)
+            return tool_usage(tool, "%g nm is outside of the model's band",
+                              t->nm[i]);
+    }
+    return t->only < t->n_ghosts
+               ? EXIT_OK
+               : tool_usage(tool, "there are %d ghosts", t->n_ghosts);
+}
+
 static int by_size(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -383,10 +403,12 @@ int main(int argc, char **argv)
         else
             ok = t.worst = c == 'w';
         if (!ok)
-            return EXIT_USAGE;
+            return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-g GHOST] "
+                                     "[-r | -w] LENS MODEL");
     }
-    if (argc != optind + 2)
-        return EXIT_USAGE;
+    if (argc != optind + 2 || (t.squares && t.worst))
+        return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-g GHOST] "
+                                 "[-r | -w] LENS MODEL");
     code = tool_lens(&tool, argv[optind], &t.lens);
     if (code == EXIT_OK)
         code = tool_model(&tool, argv[optind + 1], &t.model);
@@ -398,8 +420,11 @@ int main(int argc, char **argv)
              0.5 * hypot(t.lens.film_width_mm, t.lens.film_height_mm));
     t.n_ghosts = glint_ghost_list(&t.lens, t.ghost, GLINT_MAX_GHOSTS);
     glint_optics_of(&t.lens, &t.optics);
-    set_angles(&t, step_deg);
-    compare_all(&t);
+    code = check_pair(&tool, &t);
+    if (code == EXIT_OK) {
+        set_angles(&t, step_deg);
+        compare_all(&t);
+    }
     model_file_close(&t.model);
-    return EXIT_OK;
+    return code;
 }

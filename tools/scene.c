@@ -153,7 +153,7 @@ static bool take(struct scene *s, int option, const char *value)
         return tool_number(value, &s->whole_codes) && s->whole_codes >= 0 &&
                s->whole_codes <= 100;
     case OPT_HALF:
-        return s->half = true;
+        return s->always_half = true;
     case OPT_QUALITY:
         return ladder_take(s, value);
     case OPT_ERROR:
@@ -296,6 +296,10 @@ static int check_raster(const struct tool *tool, const struct scene *s)
         return tool_usage(tool, "--mask is drawn by cells, not --raster edges");
     if (s->merge_steps && !s->raster && !s->mask_nodes)
         return tool_usage(tool, "--merge is for --raster cells");
+    if (s->always_half && (s->raster || s->mask_nodes))
+        return tool_usage(tool, "--half is drawn by edges, not by cells");
+    if (s->always_half && s->rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "--half is not for exact rays");
     return EXIT_OK;
 }
 
@@ -349,7 +353,8 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->cfg.weights = scene->weights;
     frame->cfg.irradiance_steps = scene_steps(scene->quantum);
     frame->whole_codes = scene->whole_codes;
-    frame->half = scene->half;
+    frame->half = scene->half || scene->always_half;
+    frame->always_half = scene->always_half;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
     frame->cfg.antialias = scene->antialias;

@@ -39,8 +39,9 @@ struct scene {
     double budget_ms;   /* 0: none */
     int raster;         /* 0: by edges, 1: by cells */
     enum glint_weights weights;
-    bool by_edges; /* was asked for, not only what is done anyway */
-    bool half, uniform, narrow, antialias, dither, has_exposure, balance;
+    bool by_edges;          /* was asked for, not only what is done anyway */
+    bool half, always_half; /* as the ladder has it, or as was asked */
+    bool uniform, narrow, antialias, dither, has_exposure, balance;
 };
 
 /* Long options of this file, for a command's array; all above 1000. */

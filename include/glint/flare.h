@@ -118,8 +118,9 @@ struct glint_rays {
      * codes, 0 .. 2^15, lie on whole pixels, which takes a fraction of the
      * time. 0: none. */
     int whole_codes_q8;
-    /* Of such a picture, by edges: drawn with half as many pixels each way,
-     * each of which stands for four of the picture. */
+    /* By edges: drawn with half as many pixels each way, each of which stands
+     * for four of the picture. Of Y'CbCr whose chroma is shared by pairs the
+     * four are lit at once, by what light does to their mean. */
     int half;
 };
 

@@ -259,8 +259,7 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
     const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
 
     glint_flare_begin(flare);
-    set_size(flare, rays->half && rays->faintest.mantissa != 0 &&
-                        flare->cfg.raster->halves);
+    set_size(flare, rays->half && flare->cfg.raster->halves);
     flare->plan = (struct glint_plan){.rays = rays,
                                       .beam = beams,
                                       .n_beams = n_beams,

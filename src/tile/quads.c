@@ -32,7 +32,7 @@ static void add_to_pixels(const struct glint_resolve *r,
 {
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < s->n_y; row++)
-            double_row(s->light_q16[c], (s->n_x + 1) / 2,
+            double_row(s->light_q16[c], padded(s->n_x) / 2,
                        rows->light.rgb_q16[c][row]);
     glint_resolve_stretch(r, s->image, s->x, s->y, s->n_x, s->n_y, &rows->light,
                           &rows->rows);

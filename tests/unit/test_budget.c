@@ -120,6 +120,34 @@ static void test_keeps_to_it(void **state)
     }
 }
 
+/* What a slow frame taught does not keep it for good from what fits: least
+ * leaves half of the time, the next rung does not. */
+static void test_tries_again(void **state)
+{
+    static uint8_t px[2 * WIDTH * HEIGHT];
+    struct glint_image image = {
+        .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
+    struct frame_report report;
+    struct frame frame;
+
+    (void)state;
+    machine = (struct machine){NULL, 4, 1, 1.3, 0.5, 0, 0};
+    make(&frame);
+    machine.frame = &frame;
+    glint_image_place(&image, px);
+    run(&frame, 2.2, SETTLED);
+    frame.budget.ms = 4.6;
+    for (int i = 1; i <= BUDGET_RUNGS; i++)
+        frame.budget.octaves[i] = frame.budget.octaves[0] + 1.5;
+    frame_draw(&frame, lamps, 3, 1, &image, &report);
+    assert_true(frame.half);
+    for (int i = 0; i < 300; i++)
+        frame_draw(&frame, lamps, 3, 1, &image, &report);
+    assert_false(frame.half);
+    machine.frame = NULL;
+    frame_finish(&frame);
+}
+
 static void test_ends(void **state)
 {
     struct frame frame;
@@ -197,6 +225,17 @@ static void test_counts(void **state)
         assert_true(fabs(told.count[k] / fine.count[k] - 1) < 0.25);
     }
     assert_true(cost_minsn(&fine) > cost_minsn(&coarse));
+    /* of half as many pixels each way: told, and planned */
+    then = frame;
+    then.half = true;
+    told = cost_of(&frame, &then);
+    frame.half = true;
+    frame_draw(&frame, lamps, 1, 1, &image, &report);
+    coarse = cost_of(&frame, &frame);
+    for (int k = 0; k < COST_KINDS; k++)
+        assert_true(fabs(told.count[k] / coarse.count[k] - 1) < 0.5);
+    assert_true(coarse.count[COST_LIT] < 0.6 * fine.count[COST_LIT]);
+    assert_true(fabs(told.count[COST_LIT] / coarse.count[COST_LIT] - 1) < 0.05);
     frame_finish(&frame);
 }
 
@@ -222,9 +261,8 @@ static int close_lens(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_keeps_to_it),
-        cmocka_unit_test(test_ends),
-        cmocka_unit_test(test_new_lights),
+        cmocka_unit_test(test_keeps_to_it), cmocka_unit_test(test_tries_again),
+        cmocka_unit_test(test_ends),        cmocka_unit_test(test_new_lights),
         cmocka_unit_test(test_counts),
     };
 

@@ -190,6 +190,7 @@ static void test_steps(void **state)
                 assert_int_equal(frame.max_lights, ask[i].lights);
                 assert_true(frame.faintest_codes == ask[i].codes);
             }
+            assert_true(frame.half == (s > 3)); /* of quality 0 */
             assert_true(frame.max_cells >= 1);
             assert_true(frame.max_lights >= 1);
             assert_true(frame.max_cells <= last.max_cells);

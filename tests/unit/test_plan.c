@@ -358,6 +358,84 @@ static void test_half(void **state)
     close_fixture(&f);
 }
 
+/* A frame of F, half or not. */
+static void draw_half(struct fixture *f, int half, struct glint_image *image,
+                      void *mem)
+{
+    struct glint_flare_stats s;
+
+    f->cfg.width = image->width;
+    f->cfg.height = image->height;
+    f->cfg.irradiance_steps = 70;
+    f->beam.power = real_of(1, 2);
+    f->rays.faintest = real_of(163, -22);
+    f->rays.half = half;
+    glint_image_place(image, mem);
+    start(f);
+    glint_flare_plan(f->flare, &f->rays, &f->beam, 1);
+    glint_flare_bin(f->flare, &s);
+    glint_flare_draw(f->flare, image);
+    free(f->mem);
+    f->mem = NULL;
+}
+
+/* All four pixels have the light of one, down to the last row and column. */
+static void test_half_of_linear(void **state)
+{
+    static int32_t light_q20[2][3 * WIDTH * HEIGHT];
+    const int width = WIDTH - 7, height = HEIGHT - 3;
+    double sum[2] = {0, 0};
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    for (int half = 0; half < 2; half++) {
+        struct glint_image image = {
+            .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+
+        draw_half(&f, half, &image, light_q20[half]);
+    }
+    for (int i = 0; i < 3 * width * height; i++) {
+        const int x = i / 3 % width, y = i / 3 / width;
+
+        sum[0] += light_q20[0][i];
+        sum[1] += light_q20[1][i];
+        assert_int_equal(
+            light_q20[1][i],
+            light_q20[1][3 * ((y & ~1) * width + (x & ~1)) + i % 3]);
+    }
+    assert_true(sum[0] > 0 && fabs(sum[1] / sum[0] - 1) < 0.02);
+    close_fixture(&f);
+}
+
+/* On a picture that is not even, by quads and pixel by pixel. */
+static void test_half_of_yuyv(void **state)
+{
+    static uint8_t px[2][2 * WIDTH * HEIGHT];
+    double sum = 0, changed = 0;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    for (int half = 0; half < 2; half++) {
+        struct glint_image image = {
+            .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
+
+        for (int i = 0; i < 2 * WIDTH * HEIGHT; i++)
+            px[half][i] = (uint8_t)(i % 2 ? 128 : 40 + i * 7 / 2 % 13);
+        draw_half(&f, half, &image, px[half]);
+    }
+    for (int i = 0; i < 2 * WIDTH * HEIGHT; i += 2) {
+        const double off = px[1][i] - px[0][i];
+
+        sum += off * off;
+        changed += px[0][i] != 40 + i * 7 / 2 % 13;
+    }
+    assert_true(changed > WIDTH * HEIGHT / 20.);
+    assert_true(sum < 30. * WIDTH * HEIGHT);
+    close_fixture(&f);
+}
+
 /* With every setting of the plan a picture has the same bits whatever the
  * tiles, the workers, the order of jobs and the kernels. */
 static void test_same_bits(void **state)
@@ -656,6 +734,8 @@ int main(void)
         cmocka_unit_test(test_steps_follow_codes),
         cmocka_unit_test(test_whole_edges),
         cmocka_unit_test(test_half),
+        cmocka_unit_test(test_half_of_linear),
+        cmocka_unit_test(test_half_of_yuyv),
         cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_many_faint_lights),
         cmocka_unit_test(test_room),
