@@ -203,6 +203,9 @@ endif
 ifneq ($(filter armv7%,$(ARCH)),) # 16 vectors for 40: the rest spills
 $(OUT)/src/kernels/composite_neon.o: CFLAGS += -Wframe-larger-than=1536
 endif
+ifneq ($(findstring clang,$(CC)),) # likewise, of 32 bytes each
+$(OUT)/src/kernels/composite_avx2.o: CFLAGS += -Wframe-larger-than=1536
+endif
 # the floor that everything is measured by is as fast as can be
 $(OUT)/tools/yardstick.o: CFLAGS += -O3
 # what every frame of a camera goes through on its way to a panel
