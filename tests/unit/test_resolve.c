@@ -790,8 +790,8 @@ static void test_quads_are_near(void **state)
 {
     (void)state;
     assert_true(quads_off(0) < 1e-9);
-    assert_true(quads_off(8) < 0.8);
-    assert_true(quads_off(40) < 3);
+    assert_true(quads_off(8) < 0.5);
+    assert_true(quads_off(40) < 1.5);
 }
 
 /* One stretch is as many short ones, whatever is left of whole steps. */
