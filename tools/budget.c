@@ -11,9 +11,7 @@
 #define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
 #define MOST_WRONG 0.8  /* octaves that one frame can say */
 #define SPREAD     0.1  /* of that for other qualities, too, at least */
-#define FORGETTING                                            \
-    0.01 /* of what else was learned of those, frame by frame \
-          */
+#define FORGETTING 0.01 /* of what those learned before, frame by frame */
 
 /* Plans of one frame; of fineness far from the one that is chosen they tell
  * little, so one more may be needed. */

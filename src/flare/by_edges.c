@@ -437,9 +437,9 @@ static void resolve_codes(const struct draw *d,
     }
 }
 
-/* A row of pixels as two rows of twice as many, half a tile at once. */
-enum { QUADS = GLINT_CODES_WIDTH / 2 };
+enum { QUADS = GLINT_CODES_WIDTH / 2 }; /* of a stretch */
 
+/* A row of pixels as two rows of twice as many. */
 static void resolve_row_of_quads(const struct draw *d,
                                  const struct glint_flare_worker *w,
                                  const struct glint_edge_sums *s, int y)

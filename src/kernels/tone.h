@@ -77,7 +77,8 @@ enum { /* factors of from_ycc */
 };
 
 /* Where Newton's method begins for 1 / x, x = 0.5 .. 1: 48 / 17 - 32 / 17 x,
- * 2.8 of _q14 and half of 1.9 of _q15. */
+ * off by a seventeenth at most. The first is _q14; the second half of it, _q15,
+ * as x is _q15 and the product _q14. */
 enum { GLINT_SHARE_FROM = 46261, GLINT_SHARE_SLOPE = 30840 };
 
 struct glint_mix {

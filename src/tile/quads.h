@@ -6,9 +6,10 @@
  *   out  the picture's own codes, changed in place
  *
  * Y'CbCr whose chroma is shared by pairs: what light changes is worked out
- * once, for the mean of four pixels, and all four change by it, which is a
- * quarter of the work. Where the picture is even over the four it makes no
- * difference. Other pictures: pixel by pixel.
+ * once, for the mean of four pixels, which is a quarter of the work; each of
+ * them changes by it, in proportion to what it lacks to white. Where the
+ * picture is even over the four it makes no difference. Other pictures: pixel
+ * by pixel.
  */
 #ifndef GLINT_TILE_QUADS_H
 #define GLINT_TILE_QUADS_H
