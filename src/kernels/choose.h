@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Which variants of a kernel this processor's kind has, and the best of them.
+ *
+ * KERNEL_SETS(X): X(c), and X(set) of each set that is built.
+ * BEST_OF(sets, NAME_): of NAME_c, NAME_sse41 and so on what the GLINT_SET_
+ * bits SETS allow; of no set the one in C.
+ */
+#ifndef GLINT_KERNELS_CHOOSE_H
+#define GLINT_KERNELS_CHOOSE_H
+
+#include "glint/kernels.h"
+#include "kernels/kernels.h"
+
+#if defined(__x86_64__)
+#define KERNEL_SETS(X) X(c) X(sse41) X(avx2)
+#define BEST_OF(sets, name)                 \
+    ((sets)&GLINT_SET_AVX2    ? name##avx2  \
+     : (sets)&GLINT_SET_SSE41 ? name##sse41 \
+                              : name##c)
+#elif defined(KERNELS_NEON)
+#define KERNEL_SETS(X)      X(c) X(neon)
+#define BEST_OF(sets, name) ((sets)&GLINT_SET_NEON ? name##neon : name##c)
+#else
+#define KERNEL_SETS(X)      X(c)
+#define BEST_OF(sets, name) ((void)(sets), name##c)
+#endif
+
+#endif
