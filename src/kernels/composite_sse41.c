@@ -83,24 +83,6 @@ static inline V v_pair_mean(const V x[2])
     return v_mean(x[0], x[1]);
 }
 
-/* Of a block of quads: the means of its pairs, its chroma, and the other way
- * round. */
-static inline V v_pairs_joined(V x[1][2])
-{
-    return v_mean(x[0][0], x[0][1]);
-}
-
-static inline V v_chroma_joined(V c[1][2], int k)
-{
-    return c[0][k];
-}
-
-static inline V v_quads_of_block(V x, int b)
-{
-    (void)b;
-    return x;
-}
-
 #include "kernels/composite_v.h"
 
 /* ---------------------------------------------------------------------- sums

@@ -259,6 +259,26 @@ void KERNEL(glint_add_packed)(uint8_t *pixels, const uint16_t *const light[3],
 
 enum { V_QUADS = 2 * V_N / 16 };
 
+#if V_PARTS == 2
+/* Of one block: the means of its pairs, its chroma, and the other way round;
+ * who has two blocks says how. */
+static WHOLLY_INLINE V v_pairs_joined(V x[1][2])
+{
+    return v_mean(x[0][0], x[0][1]);
+}
+
+static WHOLLY_INLINE V v_chroma_joined(V c[1][2], int k)
+{
+    return c[0][k];
+}
+
+static WHOLLY_INLINE V v_quads_of_block(V x, int b)
+{
+    (void)b;
+    return x;
+}
+#endif
+
 struct quads {
     V luma[V_QUADS][V_PARTS], chroma[V_QUADS][2];
 };
@@ -266,6 +286,16 @@ struct quads {
 struct quad_rounding {
     V luma[V_PARTS], chroma[2];
 };
+
+static WHOLLY_INLINE void load_rounding(const int16_t *const round[2],
+                                        const int16_t *const round_chroma[2],
+                                        struct quad_rounding rounding[2])
+{
+    for (int k = 0; k < 2; k++) {
+        v_round_pairs(round[k], rounding[k].luma);
+        v_round_chroma(round_chroma[k], rounding[k].chroma);
+    }
+}
 
 static WHOLLY_INLINE int quads_are_dark(const uint16_t *const light[3], int i)
 {
@@ -367,10 +397,7 @@ void KERNEL(glint_add_quads)(uint8_t *const luma[2], uint8_t *const chroma[2],
     struct quad_rounding rounding[2];
     LOAD_MIX(m, mix);
 
-    for (int k = 0; k < 2; k++) {
-        v_round_pairs(round[k], rounding[k].luma);
-        v_round_chroma(round_chroma[k], rounding[k].chroma);
-    }
+    load_rounding(round, round_chroma, rounding);
     for (int i = 0; i < n; i += 2 * V_N) {
         struct quads row[2];
 
@@ -398,10 +425,7 @@ void KERNEL(glint_add_quads_packed)(uint8_t *const pixels[2],
     struct quad_rounding rounding[2];
     LOAD_MIX(m, mix);
 
-    for (int k = 0; k < 2; k++) {
-        v_round_pairs(round[k], rounding[k].luma);
-        v_round_chroma(round[k], rounding[k].chroma);
-    }
+    load_rounding(round, round, rounding);
     for (int i = 0; i < n; i += 2 * V_N) {
         struct quads row[2];
 
