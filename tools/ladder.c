@@ -76,7 +76,6 @@ void ladder_set(struct scene *s, double quality)
     s->whole_codes = r.whole;
     s->cull = r.cull;
     s->tolerance = r.tolerance;
-    s->narrow = false;
     s->half = r.half;
 }
 
@@ -88,7 +87,6 @@ void ladder_frame(struct frame *frame, double quality)
     frame->cfg.irradiance_steps = scene_steps(r.quantum);
     frame->whole_codes = r.whole;
     frame->faintest_codes = r.cull;
-    frame->narrow = false;
     frame->half = r.half || frame->always_half;
 }
 
