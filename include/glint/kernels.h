@@ -2,7 +2,8 @@
  *
  * glint/kernels.h - which instruction sets the hot loops may use.
  *
- * Every set gives the same bits; they differ in speed alone.
+ * Every set gives the same bits; they differ in speed alone. Where all CPUs
+ * that the library is built for have NEON, as on aarch64, pixels have no other.
  */
 #ifndef GLINT_KERNELS_H
 #define GLINT_KERNELS_H

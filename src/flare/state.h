@@ -73,6 +73,7 @@ struct glint_flare {
 /* A way from bundles to pixels. */
 struct glint_raster {
     int max_bundles;
+    int least_tile_log2;
     int masks;      /* takes a stop with a mask */
     int two_levels; /* tiles of tiles, if asked for */
     int halves;     /* can draw half as many pixels each way */

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "kernels/choose.h"
 
-#define QUADS(set)                                      \
-    static const struct glint_quad_kernels of_##set = { \
-        glint_add_quads_##set, glint_add_quads_packed_##set};
+#define QUADS(set)                                           \
+    static const struct glint_quad_kernels of_##set = {      \
+        glint_add_quads_##set, glint_add_quads_packed_##set, \
+        glint_add_code_quads_##set, glint_fold_##set};
 
-KERNEL_SETS(QUADS)
+PIXEL_SETS(QUADS)
 
 const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets)
 {
-    return BEST_OF(sets, &of_);
+    return BEST_OF_PIXELS(sets, &of_);
 }

@@ -5,6 +5,8 @@
  * KERNEL_SETS(X): X(c), and X(set) of each set that is built.
  * BEST_OF(sets, NAME_): of NAME_c, NAME_sse41 and so on what the GLINT_SET_
  * bits SETS allow; of no set the one in C.
+ * PIXEL_SETS, BEST_OF_PIXELS: the same of what pixels take, which is large: not
+ * in C where every CPU that this is built for has NEON.
  */
 #ifndef GLINT_KERNELS_CHOOSE_H
 #define GLINT_KERNELS_CHOOSE_H
@@ -24,6 +26,14 @@
 #else
 #define KERNEL_SETS(X)      X(c)
 #define BEST_OF(sets, name) ((void)(sets), name##c)
+#endif
+
+#if defined(__ARM_NEON)
+#define PIXEL_SETS(X)              X(neon)
+#define BEST_OF_PIXELS(sets, name) ((void)(sets), name##neon)
+#else
+#define PIXEL_SETS     KERNEL_SETS
+#define BEST_OF_PIXELS BEST_OF
 #endif
 
 #endif

@@ -290,6 +290,80 @@ void glint_add_quads_packed_c(uint8_t *const pixels[2],
     }
 }
 
+/* The part of add_quad that is of one channel. */
+static void add_code_quad(uint8_t *const code[2], uint16_t light,
+                          const struct glint_tone16 *tone,
+                          const int16_t *const round[2])
+{
+    const uint8_t x[2][2] = {{code[0][0], code[0][1]},
+                             {code[1][0], code[1][1]}};
+    const int mean_q7 = (x[0][0] + x[0][1] + x[1][0] + x[1][1]) * 32;
+    const int16_t change_q7 = times(
+        light ? change_of(tone, (int16_t)(mean_q7 + (mean_q7 >> 8)), light) : 0,
+        tone->factor.one[GLINT_TONE_Q7]);
+    const int16_t q = share(change_q7, 255 * 128 - mean_q7);
+
+    for (int row = 0; row < 2; row++)
+        for (int k = 0; k < 2; k++) {
+            const int less = times(mean_q7 - x[row][k] * 128, q);
+
+            code[row][k] = add_luma(
+                x[row][k], held(sum_sat(change_q7, less), 0, INT16_MAX),
+                round[row][k]);
+        }
+}
+
+void glint_add_code_quads_c(uint8_t *const code[2], const uint16_t *light,
+                            int n, const struct glint_tone16 *tone,
+                            const int16_t *const round[2])
+{
+    for (int i = 0; i < n; i += 2) {
+        uint8_t *const here[2] = {code[0] + i, code[1] + i};
+        const int16_t *const r[2] = {round[0] + (i & 7), round[1] + (i & 7)};
+
+        add_code_quad(here, light[i / 2], tone, r);
+    }
+}
+
+/* Rounded up. */
+static int16_t mean_up(int a, int b)
+{
+    return (int16_t)((a + b + 1) >> 1);
+}
+
+/* Whether 2 x 2 pixels of one channel are even; *QUAD: their mean. */
+static int fold_quad(const uint16_t *above, const uint16_t *below,
+                     const struct glint_even *even, uint16_t *quad)
+{
+    const int16_t half[4] = {(int16_t)(above[0] >> 1), (int16_t)(above[1] >> 1),
+                             (int16_t)(below[0] >> 1),
+                             (int16_t)(below[1] >> 1)};
+    int16_t low = half[0], high = half[0];
+
+    for (int k = 1; k < 4; k++) {
+        low = half[k] < low ? half[k] : low;
+        high = half[k] > high ? half[k] : high;
+    }
+    *quad = (uint16_t)(2 * mean_up(mean_up(half[0], half[2]),
+                                   mean_up(half[1], half[3])));
+    return high - low <= sum_sat(even->base, times(high, even->slope_q15));
+}
+
+unsigned glint_fold_c(const uint16_t *const light[3][2],
+                      uint16_t *const quads[3], int n,
+                      const struct glint_even *even)
+{
+    enum { UNIT = 2 * GLINT_LANES };
+    unsigned odd = 0;
+
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < n; i += 2)
+            if (!fold_quad(light[c][0] + i, light[c][1] + i, even,
+                           &quads[c][i / 2]))
+                odd |= 1u << i / UNIT;
+    return odd ^ ((1u << n / UNIT) - 1);
+}
+
 void glint_add_code_c(uint8_t *code, const uint16_t *light, int n,
                       const struct glint_tone16 *tone, const int16_t *round)
 {

@@ -6,9 +6,9 @@
         glint_add_luma_##set, glint_add_pairs_##set, glint_add_packed_##set, \
         glint_add_code_##set, glint_run_sum_##set};
 
-KERNEL_SETS(KERNELS)
+PIXEL_SETS(KERNELS)
 
 const struct glint_kernels *glint_kernels_of(unsigned sets)
 {
-    return BEST_OF(sets, &of_);
+    return BEST_OF_PIXELS(sets, &of_);
 }

@@ -109,15 +109,15 @@ static void report_stages(void)
     char line[256];
 
     for (int i = 0; i < n_marks; i++) {
-        uint64_t sum = spent[i];
+        uint64_t sum = 0;
+        int first = n_marks;
 
-        for (int k = 0; k < i; k++)
-            if (strcmp(mark[k].name, mark[i].name) == 0)
-                sum = 0;
-        for (int k = i + 1; k < n_marks && sum; k++)
-            if (strcmp(mark[k].name, mark[i].name) == 0)
+        for (int k = n_marks - 1; k >= 0; k--)
+            if (strcmp(mark[k].name, mark[i].name) == 0) {
                 sum += spent[k];
-        if (sum) {
+                first = k;
+            }
+        if (sum && first == i) {
             snprintf(line, sizeof line, "%14llu %s\n",
                      (unsigned long long)(sum / (uint64_t)n), mark[i].name);
             qemu_plugin_outs(line);
