@@ -325,12 +325,6 @@ void glint_add_code_quads_c(uint8_t *const code[2], const uint16_t *light,
     }
 }
 
-/* Rounded up. */
-static int16_t mean_up(int a, int b)
-{
-    return (int16_t)((a + b + 1) >> 1);
-}
-
 /* Whether 2 x 2 pixels of one channel are even; *QUAD: their mean. */
 static int fold_quad(const uint16_t *above, const uint16_t *below,
                      const struct glint_even *even, uint16_t *quad)
@@ -344,8 +338,8 @@ static int fold_quad(const uint16_t *above, const uint16_t *below,
         low = half[k] < low ? half[k] : low;
         high = half[k] > high ? half[k] : high;
     }
-    *quad = (uint16_t)(2 * mean_up(mean_up(half[0], half[2]),
-                                   mean_up(half[1], half[3])));
+    *quad = (uint16_t)(2 * mean_of(mean_of(half[0], half[2]),
+                                   mean_of(half[1], half[3])));
     return high - low <= sum_sat(even->base, times(high, even->slope_q15));
 }
 

@@ -59,6 +59,7 @@ static void draw(enum glint_pixel_format format, int width, int height,
         .format = format, .width = width, .height = height};
 
     stage_view(&heliar, width, height, width / px_mm);
+    heliar.frame.even_codes = 0; /* its units lie where a frame begins */
     glint_image_place(&image, bytes);
     assert_int_equal(
         frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
