@@ -33,19 +33,17 @@ void budget_begin(struct budget *b)
     b->n_tries = 0;
 }
 
-/* Where STEP is among the rungs. Nothing is between the first two, one of which
- * draws four pixels at once: a step is either. */
+typedef char budget_has_rungs[(int)BUDGET_RUNGS == (int)LADDER_RUNGS ? 1 : -1];
+
 static double place_of(int step)
 {
-    const double at = (double)step * BUDGET_RUNGS / BUDGET_STEPS;
-
-    return at >= 1 ? at : at < 0.5 ? 0 : 1;
+    return ladder_place((double)step / BUDGET_STEPS);
 }
 
 static double octaves_at(const struct budget *b, int step)
 {
     const double at = place_of(step);
-    const int below = at < BUDGET_RUNGS ? (int)at : BUDGET_RUNGS - 1;
+    const int below = at < BUDGET_RUNGS - 1 ? (int)at : BUDGET_RUNGS - 2;
 
     return b->octaves[below] +
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
@@ -113,7 +111,7 @@ void budget_note(struct budget *b, double ms)
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
     const double here = octaves_at(b, b->step);
 
-    for (int i = 0; i <= BUDGET_RUNGS && ms > 0; i++) {
+    for (int i = 0; i < BUDGET_RUNGS && ms > 0; i++) {
         const double near = fmax(0, 1 - fabs(at - i)) / both;
 
         if (near <= 0)

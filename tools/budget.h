@@ -14,12 +14,12 @@
 
 struct frame;
 
-enum { BUDGET_STEPS = 64, BUDGET_RUNGS = 8 }; /* of quality */
+enum { BUDGET_STEPS = 64, BUDGET_RUNGS = 10 }; /* of quality; the ladder's */
 
 struct budget {
-    double ms;                        /* of a frame; 0: none is kept to */
-    double ms_per_minsn;              /* of this machine, this lens; */
-    double octaves[BUDGET_RUNGS + 1]; /* learned beyond that, by quality */
+    double ms;                    /* of a frame; 0: none is kept to */
+    double ms_per_minsn;          /* of this machine, this lens; */
+    double octaves[BUDGET_RUNGS]; /* learned beyond that, by quality */
     int step;            /* quality of the last frame, of BUDGET_STEPS */
     int n_tries;         /* of the frame being planned */
     double predicted_ms; /* of the last frame, by its last plan */

@@ -6,30 +6,32 @@
 
 /* Along the front that glint sweep measures over heliar-tronnier,
  * double-gauss-angenieux and nikon-zoom-mid at 640x360 (README, "The trade"),
- * the coarsest first, qualities evenly apart. What is not on it: coarser
- * models, which save nothing and cost 6 dB; 16-bit lanes, on processors with
- * AVX2; other steps of culling, which change little where steps follow the
- * faintness of ghosts anyway. Finer models cost next to nothing but their
- * baking. */
+ * the coarsest first. What is not on it: coarser models, which save nothing and
+ * cost 6 dB; 16-bit lanes, on processors with AVX2; other steps of culling,
+ * which change little where steps follow the faintness of ghosts anyway. Finer
+ * models cost next to nothing but their baking, and light of four even pixels
+ * at once costs nothing, so that all but the exact ones have it. */
 /* clang-format off */
 static const struct rung {
-    double grid, quantum, whole, cull, tolerance;
+    double quality, grid, quantum, whole, cull, tolerance;
     bool half;
 } rung[] = {
     /* instructions over the default's, mean PSNR */
-    { 16, 8,      16,  FRAME_CULL_CODES, 1,    true},  /* 0.60, 37.5 dB */
-    { 16, 8,      16,  FRAME_CULL_CODES, 1,    false}, /* 0.72, 46.7 dB */
-    { 40, 3,      8,   FRAME_CULL_CODES, 1,    false}, /* 0.81, 53.9 dB */
-    { 48, 2,      8,   FRAME_CULL_CODES, 1,    false},
-    { 64, 1,      4,   FRAME_CULL_CODES, 1,    false}, /* 1.00, 57.6 dB */
-    { 96, 0.5,    2,   FRAME_CULL_CODES, 0.25, false},
-    {160, 0.25,   1,   FRAME_CULL_CODES, 0.25, false}, /* 2.43, 62.4 dB */
-    {192, 0.125,  0.5, FRAME_CULL_CODES, 0.25, false},
-    {256, 0.0625, 0,   FRAME_CULL_CODES, 0.25, false}, /* 6.31, 64.1 dB */
+    {0,      16, 8,      16,  FRAME_CULL_CODES, 1,    true},  /* 0.60, 37.5 dB */
+    {0.0625, 64, 1.5,    4,   FRAME_CULL_CODES, 1,    true},
+    {0.125,  16, 8,      16,  FRAME_CULL_CODES, 1,    false}, /* 0.72, 46.7 dB */
+    {0.25,   40, 3,      8,   FRAME_CULL_CODES, 1,    false}, /* 0.81, 53.9 dB */
+    {0.375,  48, 2,      8,   FRAME_CULL_CODES, 1,    false},
+    {0.5,    64, 1,      4,   FRAME_CULL_CODES, 1,    false}, /* 1.00, 57.6 dB */
+    {0.625,  96, 0.5,    2,   FRAME_CULL_CODES, 0.25, false},
+    {0.75,  160, 0.25,   1,   FRAME_CULL_CODES, 0.25, false}, /* 2.43, 62.4 dB */
+    {0.875, 192, 0.125,  0.5, FRAME_CULL_CODES, 0.25, false},
+    {1,     256, 0.0625, 0,   FRAME_CULL_CODES, 0.25, false}, /* 6.31, 64.1 dB */
 };
 /* clang-format on */
 
-enum { STEPS = sizeof rung / sizeof *rung - 1 };
+typedef char
+    glint_rungs_fit[sizeof rung / sizeof *rung == LADDER_RUNGS ? 1 : -1];
 
 const char *const ladder_name[LADDER_NAMES + 1] = {"least", "draft",  "default",
                                                    "high",  "finest", NULL};
@@ -45,11 +47,24 @@ static double between(double a, double b, double part)
     return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
 }
 
+double ladder_place(double quality)
+{
+    int i = 0;
+    double part;
+
+    while (i < LADDER_RUNGS - 2 && rung[i + 1].quality <= quality)
+        i++;
+    part =
+        (quality - rung[i].quality) / (rung[i + 1].quality - rung[i].quality);
+    part = fmin(fmax(part, 0), 1);
+    return rung[i].half == rung[i + 1].half ? i + part : i + (part >= 0.5);
+}
+
 /* Between the rungs of QUALITY; what has no between is of the nearer one. */
 static struct rung rung_at(double quality)
 {
-    const double at = fmin(fmax(quality, 0), 1) * STEPS;
-    const int below = at < STEPS ? (int)at : STEPS - 1;
+    const double at = ladder_place(quality);
+    const int below = at < LADDER_RUNGS - 1 ? (int)at : LADDER_RUNGS - 2;
     const struct rung *a = &rung[below], *b = &rung[below + 1];
     struct rung r = at - below < 0.5 ? *a : *b;
 

@@ -13,6 +13,11 @@ enum { LADDER_NAMES = 5 };
 extern const char *const ladder_name[LADDER_NAMES + 1]; /* and NULL */
 double ladder_named(int name);
 
+/* Where QUALITY is among the rungs, 0 to LADDER_RUNGS - 1: between two of them,
+ * but on either where one draws four pixels at once and the other does not. */
+enum { LADDER_RUNGS = 10 };
+double ladder_place(double quality);
+
 /* Sets the dials of SCENE for QUALITY, 0 to 1; 0.5 is what it has by default.
  */
 void ladder_set(struct scene *scene, double quality);
