@@ -28,7 +28,6 @@ void frame_init(struct frame *frame, const struct glint_setup *setup,
                             .max_cells = 64,
                             .faintest_codes = FRAME_CULL_CODES,
                             .whole_codes = FRAME_WHOLE_CODES,
-                            .even_codes = FRAME_EVEN_CODES,
                             .only_ghost = -1};
     glint_setup_stop(setup, &frame->cfg.stop);
 }
@@ -192,9 +191,7 @@ static struct glint_rays rays_of(const struct frame *f, double faintest_light)
         .only_ghost = f->only_ghost,
         .faintest = glint_real_of(faintest_light),
         .whole_codes_q8 = (int)lrint(f->whole_codes * 256),
-        .quads = &glint_quads,
-        .even_codes_q8 = (int)lrint(f->even_codes * 256),
-        .half = f->half && f->can_half};
+        .half = f->half && f->can_half ? &glint_half : NULL};
 }
 
 /* --------------------------------------------------------------------- memory

@@ -25,7 +25,6 @@
  * together. */
 #define FRAME_CULL_CODES  0.125
 #define FRAME_WHOLE_CODES 4.0
-#define FRAME_EVEN_CODES  4.0
 
 struct frame {
     const struct glint_setup *setup;
@@ -38,8 +37,6 @@ struct frame {
     int max_cells;
     double faintest_codes; /* codes near black that a ghost may stay below */
     double whole_codes;    /* edges of less lie on whole pixels */
-    double even_codes;     /* light that differs by less within four pixels is
-                              added to them as one */
     bool for_codes;        /* a linear picture is planned as if for codes */
     bool half;            /* of pictures in codes, by edges: half as many pixels
                              each way, */

@@ -9,8 +9,7 @@
  * the coarsest first. What is not on it: coarser models, which save nothing and
  * cost 6 dB; 16-bit lanes, on processors with AVX2; other steps of culling,
  * which change little where steps follow the faintness of ghosts anyway. Finer
- * models cost next to nothing but their baking, and light of four even pixels
- * at once costs nothing, so that all but the exact ones have it. */
+ * models cost next to nothing but their baking. */
 /* clang-format off */
 static const struct rung {
     double quality, grid, quantum, whole, cull, tolerance;

@@ -23,7 +23,6 @@ void scene_defaults(struct scene *scene)
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
                             .whole_codes = FRAME_WHOLE_CODES,
-                            .even_codes = FRAME_EVEN_CODES,
                             .quality = 0.5,
                             .cull = FRAME_CULL_CODES,
                             .antialias = true};
@@ -153,9 +152,6 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_WHOLE:
         return tool_number(value, &s->whole_codes) && s->whole_codes >= 0 &&
                s->whole_codes <= 100;
-    case OPT_EVEN:
-        return tool_number(value, &s->even_codes) && s->even_codes >= 0 &&
-               s->even_codes <= 32;
     case OPT_HALF:
         return s->always_half = true;
     case OPT_QUALITY:
@@ -300,8 +296,6 @@ static int check_raster(const struct tool *tool, const struct scene *s)
         return tool_usage(tool, "--mask is drawn by cells, not --raster edges");
     if (s->merge_steps && !s->raster && !s->mask_nodes)
         return tool_usage(tool, "--merge is for --raster cells");
-    if (s->tile_log2 < 5 && !s->raster && !s->mask_nodes)
-        return tool_usage(tool, "tiles of 8 and 16 are for --raster cells");
     if (s->always_half && (s->raster || s->mask_nodes))
         return tool_usage(tool, "--half is drawn by edges, not by cells");
     if (s->always_half && s->rays == SCENE_RAYS_EXACT)
@@ -359,7 +353,6 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->cfg.weights = scene->weights;
     frame->cfg.irradiance_steps = scene_steps(scene->quantum);
     frame->whole_codes = scene->whole_codes;
-    frame->even_codes = scene->even_codes;
     frame->half = scene->half || scene->always_half;
     frame->always_half = scene->always_half;
     frame->cfg.merge_steps = scene->merge_steps;

@@ -35,7 +35,6 @@ struct scene {
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma, quantum, cull;
     double whole_codes; /* see struct frame */
-    double even_codes;  /* the same */
     double quality;     /* as asked for, 0.5 by default */
     double budget_ms;   /* 0: none */
     int raster;         /* 0: by edges, 1: by cells */
@@ -67,7 +66,6 @@ enum scene_option {
     OPT_QUANTUM,
     OPT_WHOLE,
     OPT_HALF,
-    OPT_EVEN,
     OPT_QUALITY,
     OPT_ERROR,
     OPT_BUDGET,
@@ -102,7 +100,6 @@ enum scene_option {
         {"quantum", required_argument, NULL, OPT_QUANTUM},         \
         {"whole", required_argument, NULL, OPT_WHOLE},             \
         {"half", no_argument, NULL, OPT_HALF},                     \
-        {"even", required_argument, NULL, OPT_EVEN},               \
         {"quality", required_argument, NULL, OPT_QUALITY},         \
         {"error", required_argument, NULL, OPT_ERROR},             \
         {"budget", required_argument, NULL, OPT_BUDGET},           \
@@ -185,18 +182,13 @@ enum scene_option {
     "  --whole CODES       of pictures in codes: edges across which light "    \
     "changes\n"                                                                \
     "                      by less lie on whole pixels (default 4)\n"          \
-    "  --even CODES        of pictures in codes: where light differs by less " \
-    "within\n"                                                                 \
-    "                      2 x 2 pixels, 32 x 2 are lit four at once, 0 to "   \
-    "32\n"                                                                     \
     "  --half              of pictures in codes: ghosts with half as many "    \
     "pixels\n"                                                                 \
     "                      each way; not with exact rays\n"                    \
     "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
     "                      where edges agree within GAMMA (default 0,0)\n"     \
-    "  --tile N            small tiles of 32 or 64 pixels, by cells of 8 and " \
-    "16,\n"                                                                    \
-    "                      too (default 64)\n"                                 \
+    "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \
+    "64)\n"                                                                    \
     "  --coarse N          large tiles of 64, 128 or 256 to sort into first, " \
     "or\n"                                                                     \
     "                      0 for none (default)\n"                             \

@@ -32,9 +32,9 @@ size_t glint_composite_bytes(void);
 
 /* Places tables in MEM[BYTES], aligned to 64, for pictures that are coded as
  * IMAGE is; its pixels are not looked at. SETS: glint_sets_here() or fewer; 0:
- * plain C. DITHER: an ordered pattern of less than a code before rounding.
- * GLINT_E_ARGUMENT: IMAGE is LINEAR_Q20, which needs no tables, or MEM is not
- * aligned. GLINT_E_MEMORY: BYTES is too small. */
+ * plain C (kernels.h). DITHER: an ordered pattern of less than a code before
+ * rounding. GLINT_E_ARGUMENT: IMAGE is LINEAR_Q20, which needs no tables, or
+ * MEM is not aligned. GLINT_E_MEMORY: BYTES is too small. */
 enum glint_status glint_composite_init(struct glint_composite **composite,
                                        const struct glint_image *image,
                                        unsigned sets, int dither, void *mem,

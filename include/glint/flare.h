@@ -97,9 +97,9 @@ struct glint_wave {
                                  by: the direct image's at angle 0, mm^2 */
 };
 
-/* Light that four pixels have in common. */
-struct glint_quads;
-extern const struct glint_quads glint_quads;
+/* Four pixels as one; see struct glint_rays. */
+struct glint_half;
+extern const struct glint_half glint_half;
 
 /* How a frame's rays come about. */
 struct glint_rays {
@@ -122,17 +122,11 @@ struct glint_rays {
      * codes, 0 .. 2^15, lie on whole pixels, which takes a fraction of the
      * time. 0: none. */
     int whole_codes_q8;
-    /* NULL, or glint_quads, which only a program that names it links: for the
-     * next two */
-    const struct glint_quads *quads;
-    /* Of such a picture, by edges: where light differs by less than so many
-     * codes, 0 .. 2^13, within each 2 x 2 pixels, 32 x 2 of them are lit as
-     * with half. 0: none. */
-    int even_codes_q8;
     /* By edges: drawn with half as many pixels each way, each of which stands
      * for four of the picture. Of Y'CbCr whose chroma is shared by pairs the
-     * four are lit at once, by what light does to their mean. */
-    int half;
+     * four are lit at once, by what light does to their mean. NULL, or
+     * glint_half, which only a program that names it links. */
+    const struct glint_half *half;
 };
 
 /* Merges beams in place, and returns how many are left, the brightest first;
@@ -160,10 +154,10 @@ enum glint_weights { GLINT_WEIGHTS_LOOP_DEROSE, GLINT_WEIGHTS_WACHSPRESS };
 
 struct glint_flare_config {
     struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
-    unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C.
-                      Changes no output */
+    unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
+                      (kernels.h). Changes no output */
     int width, height; /* of the picture, 1 .. GLINT_MAX_SIDE */
-    int tile_log2; /* small tiles of 2^n pixels square, 3 .. 6; by edges 5, 6 */
+    int tile_log2;     /* small tiles of 2^n pixels square, 3 .. 6 */
     const struct glint_raster *raster; /* NULL: by edges */
     int dither;             /* when encoding to 8 bits; deterministic */
     struct glint_stop stop; /* copied; its mask is kept */

@@ -34,11 +34,6 @@ static inline int glint_layout_is_packed(const struct glint_layout *layout)
     return layout->planes == 1 && layout->log2_x;
 }
 
-static inline int glint_layout_is_rgb(const struct glint_layout *layout)
-{
-    return layout->kind == GLINT_LAYOUT_RGB || layout->kind == GLINT_LAYOUT_565;
-}
-
 /* Sample I that pixel (X, Y) has a part in. */
 static inline uint8_t *glint_layout_at(const struct glint_layout *layout,
                                        const struct glint_image *image, int i,

@@ -347,7 +347,6 @@ static void draw(struct glint_flare *flare, const struct glint_image *image)
 }
 
 const struct glint_raster glint_raster_cells = {.max_bundles = 65535,
-                                                .least_tile_log2 = 3,
                                                 .masks = 1,
                                                 .two_levels = 1,
                                                 .carve = carve,

@@ -362,8 +362,6 @@ static void bin(struct glint_flare *flare)
 struct draw {
     struct glint_flare *flare;
     const struct glint_image *image; /* NULL: light is dropped */
-    const struct glint_quads *quads; /* NULL: pixel by pixel */
-    struct glint_even even;
 };
 
 /* Whether light runs into the next tile's rows. */
@@ -419,7 +417,6 @@ static void resolve_codes(const struct draw *d,
                           const struct glint_edge_sums *s)
 {
     const struct glint_resolve *r = d->flare->resolve;
-    const int n_x = s->tile.x1 - s->tile.x0;
 
     for (int y = s->tile.y0; y < s->tile.y1; y += 2) {
         const int n = y + 2 < s->tile.y1 ? 2 : s->tile.y1 - y;
@@ -434,12 +431,9 @@ static void resolve_codes(const struct draw *d,
                                         w->light->rgb_q16[c][row]);
         if (!lit || !d->image)
             continue;
-        if (d->quads && d->even.slope_q15)
-            d->quads->even(r, &d->even, d->image, s->tile.x0, y, n_x, n,
-                           w->light, w->codes);
-        else
-            glint_resolve_stretch(r, d->image, s->tile.x0, y, n_x, n, w->light,
-                                  &w->codes->rows);
+        glint_resolve_stretch(r, d->image, s->tile.x0, y,
+                              s->tile.x1 - s->tile.x0, n, w->light,
+                              &w->codes->rows);
     }
 }
 
@@ -460,9 +454,9 @@ static void resolve_row_of_quads(const struct draw *d,
                                               w->light->rgb_q16[1][0] + first,
                                               w->light->rgb_q16[2][0] + first};
 
-        d->quads->all(f->resolve, d->image, 2 * at, 2 * y,
-                      smaller(2 * part, f->cfg.width - 2 * at), n_y, light_q16,
-                      w->codes);
+        f->quads->resolve(f->resolve, d->image, 2 * at, 2 * y,
+                          smaller(2 * part, f->cfg.width - 2 * at), n_y,
+                          light_q16, w->codes);
     }
 }
 
@@ -529,16 +523,13 @@ static void row_job(void *ctx, int job, int worker)
 
 static void draw(struct glint_flare *flare, const struct glint_image *image)
 {
-    const struct glint_rays *r = flare->plan.rays;
-    struct draw d = {flare, image, r ? r->quads : NULL,
-                     glint_even_of(r ? r->even_codes_q8 : 0)};
+    struct draw d = {flare, image};
 
     set_order(flare, flare->bins.tiles_y, edges_in_row);
     glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }
 
 const struct glint_raster glint_raster_edges = {.max_bundles = 1 << 20,
-                                                .least_tile_log2 = 5,
                                                 .halves = 1,
                                                 .carve = carve,
                                                 .carve_worker = carve_worker,

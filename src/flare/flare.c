@@ -76,8 +76,8 @@ static int config_ok(const struct glint_flare_config *c)
     const int workers = glint_workers_count(c->workers);
 
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
-           c->height <= GLINT_MAX_SIDE &&
-           c->tile_log2 >= raster_of(c)->least_tile_log2 && c->tile_log2 <= 6 &&
+           c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
+           c->tile_log2 <= 6 &&
            (c->coarse_log2 == 0 ||
             (c->coarse_log2 > c->tile_log2 && c->coarse_log2 <= 8)) &&
            c->merge_steps >= 0 && c->merge_steps <= 4 &&
@@ -259,7 +259,8 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
     const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
 
     glint_flare_begin(flare);
-    set_size(flare, rays->half && rays->quads && flare->cfg.raster->halves);
+    flare->quads = rays->half;
+    set_size(flare, rays->half && flare->cfg.raster->halves);
     flare->plan = (struct glint_plan){.rays = rays,
                                       .beam = beams,
                                       .n_beams = n_beams,

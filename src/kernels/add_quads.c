@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "kernels/choose.h"
 
-#define QUADS(set)                                           \
-    static const struct glint_quad_kernels of_##set = {      \
-        glint_add_quads_##set, glint_add_quads_packed_##set, \
-        glint_add_code_quads_##set, glint_fold_##set};
+#define QUADS(set)                                      \
+    static const struct glint_quad_kernels of_##set = { \
+        glint_add_quads_##set, glint_add_quads_packed_##set};
 
 PIXEL_SETS(QUADS)
 

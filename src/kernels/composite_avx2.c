@@ -125,16 +125,12 @@ static inline V v_pair_mean(const V x[1])
     return v_mean(x[0], turned(x[0]));
 }
 
-/* Of two blocks of quads: even and odd ones of their pairs, their chroma, and
- * the other way round, in both halves. */
-static inline V v_evens(V x[2][1])
+/* Of two blocks of quads: the means of their pairs, their chroma, and the other
+ * way round, in both halves. */
+static inline V v_pairs_joined(V x[2][1])
 {
-    return _mm256_permute2x128_si256(x[0][0], x[1][0], 0x20);
-}
-
-static inline V v_odds(V x[2][1])
-{
-    return _mm256_permute2x128_si256(x[0][0], x[1][0], 0x31);
+    return v_mean(_mm256_permute2x128_si256(x[0][0], x[1][0], 0x20),
+                  _mm256_permute2x128_si256(x[0][0], x[1][0], 0x31));
 }
 
 static inline V v_chroma_joined(V c[2][2], int k)

@@ -22,7 +22,6 @@
 #define v_add_sat                vqaddq_s16
 #define v_times                  vqrdmulhq_s16
 #define v_max                    vmaxq_s16
-#define v_min                    vminq_s16
 #define v_or                     vorrq_s16
 #define v_right(x, n)            S(vshrq_n_u16(U(x), n))
 #define v_sub_unsigned_sat(a, b) S(vqsubq_u16(U(a), U(b)))

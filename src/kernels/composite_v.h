@@ -260,16 +260,11 @@ void KERNEL(glint_add_packed)(uint8_t *pixels, const uint16_t *const light[3],
 enum { V_QUADS = 2 * V_N / 16 };
 
 #if V_PARTS == 2
-/* Of one block: even and odd ones of its pairs, its chroma, and the other way
- * round; who has two blocks says how. */
-static WHOLLY_INLINE V v_evens(V x[1][2])
+/* Of one block: the means of its pairs, its chroma, and the other way round;
+ * who has two blocks says how. */
+static WHOLLY_INLINE V v_pairs_joined(V x[1][2])
 {
-    return x[0][0];
-}
-
-static WHOLLY_INLINE V v_odds(V x[1][2])
-{
-    return x[0][1];
+    return v_mean(x[0][0], x[0][1]);
 }
 
 static WHOLLY_INLINE V v_chroma_joined(V c[1][2], int k)
@@ -283,11 +278,6 @@ static WHOLLY_INLINE V v_quads_of_block(V x, int b)
     return x;
 }
 #endif
-
-static WHOLLY_INLINE V v_pairs_joined(V x[V_QUADS][V_PARTS])
-{
-    return v_mean(v_evens(x), v_odds(x));
-}
 
 struct quads {
     V luma[V_QUADS][V_PARTS], chroma[V_QUADS][2];
@@ -350,27 +340,21 @@ static WHOLLY_INLINE V changed(V code_q7, V rounding, V mean_q7, V change,
         v_add_sat(change, v_times(v_sub(mean_q7, code_q7), share)));
 }
 
-/* The pixels X of a block of quads of MEAN that change by CHANGE. */
-static WHOLLY_INLINE void add_to_block(V x[V_PARTS], const V rounding[V_PARTS],
-                                       V mean, V change, V share)
-{
-    for (int k = 0; k < V_PARTS; k++) {
-        const V less = v_times(v_sub(mean, x[k]), share);
-
-        x[k] = v_add_sat(v_add(x[k], rounding[k]),
-                         v_max(v_add_sat(change, less), v_set(0)));
-    }
-}
-
 static WHOLLY_INLINE void add_to_row(struct quads *q,
                                      const struct quad_rounding *r,
                                      const struct quad_change *d)
 {
     for (int b = 0; b < V_QUADS; b++) {
         const V share = v_quads_of_block(d->share, b);
+        const V mean = v_quads_of_block(d->luma_q7, b);
+        const V luma = v_quads_of_block(d->luma, b);
 
-        add_to_block(q->luma[b], r->luma, v_quads_of_block(d->luma_q7, b),
-                     v_quads_of_block(d->luma, b), share);
+        for (int k = 0; k < V_PARTS; k++) {
+            const V less = v_times(v_sub(mean, q->luma[b][k]), share);
+
+            q->luma[b][k] = v_add_sat(v_add(q->luma[b][k], r->luma[k]),
+                                      v_max(v_add_sat(luma, less), v_set(0)));
+        }
         for (int k = 0; k < 2; k++)
             q->chroma[b][k] = changed(q->chroma[b][k], r->chroma[k],
                                       v_quads_of_block(d->chroma_q7[k], b),
@@ -457,84 +441,6 @@ void KERNEL(glint_add_quads_packed)(uint8_t *const pixels[2],
                 v_store_packed(pixels[k] + 2 * i + 32 * b, luma_at,
                                row[k].luma[b], row[k].chroma[b]);
     }
-}
-
-void KERNEL(glint_add_code_quads)(uint8_t *const code[2], const uint16_t *light,
-                                  int n, const struct glint_tone16 *tone,
-                                  const int16_t *const round[2])
-{
-    V rounding[2][V_PARTS];
-    LOAD_TONE(t, tone);
-
-    for (int k = 0; k < 2; k++)
-        v_round_pairs(round[k], rounding[k]);
-    for (int i = 0; i < n; i += 2 * V_N) {
-        const V l = v_load((const int16_t *)light + i / 2);
-        V row[2][V_QUADS][V_PARTS], mean, change, share;
-
-        if (v_is_zero(l))
-            continue;
-        for (int k = 0; k < 2; k++)
-            for (int b = 0; b < V_QUADS; b++)
-                v_load_code_pairs(code[k] + i + 16 * b, row[k][b]);
-        mean = v_mean(v_pairs_joined(row[0]), v_pairs_joined(row[1]));
-        change = v_and_not(v_equal(l, v_set(0)),
-                           change_of(t, v_add(mean, v_right(mean, 8)), l));
-        change = TIMES(change, t->factor, GLINT_TONE_Q7);
-        share = share_of(t, change, v_sub(v_set(255 * 128), mean));
-        for (int k = 0; k < 2; k++)
-            for (int b = 0; b < V_QUADS; b++) {
-                add_to_block(row[k][b], rounding[k], v_quads_of_block(mean, b),
-                             v_quads_of_block(change, b),
-                             v_quads_of_block(share, b));
-                v_store_code_pairs(code[k] + i + 16 * b, row[k][b]);
-            }
-    }
-}
-
-/* Of as many quads as a vector has, one channel, from pixel I on: their means,
- * and what they differ by beyond what they may. */
-static WHOLLY_INLINE V fold_quads(const uint16_t *const light[2], int i, V base,
-                                  V slope_q15, uint16_t *quads)
-{
-    V row[2][V_QUADS][V_PARTS], even[2], odd[2], low, high, mean;
-
-    for (int k = 0; k < 2; k++) {
-        for (int b = 0; b < V_QUADS; b++)
-            v_load_pairs(light[k] + i + 16 * b, row[k][b]);
-        even[k] = v_right(v_evens(row[k]), 1);
-        odd[k] = v_right(v_odds(row[k]), 1);
-    }
-    high = v_max(v_max(even[0], even[1]), v_max(odd[0], odd[1]));
-    low = v_min(v_min(even[0], even[1]), v_min(odd[0], odd[1]));
-    mean = v_mean(v_mean(even[0], even[1]), v_mean(odd[0], odd[1]));
-    v_store((int16_t *)quads + i / 2, v_add(mean, mean));
-    return v_sub_unsigned_sat(v_sub(high, low),
-                              v_add_sat(base, v_times(high, slope_q15)));
-}
-
-unsigned KERNEL(glint_fold)(const uint16_t *const light[3][2],
-                            uint16_t *const quads[3], int n,
-                            const struct glint_even *even)
-{
-    enum { UNIT = 2 * GLINT_LANES };
-    const V base = v_set(even->base), slope_q15 = v_set(even->slope_q15);
-    unsigned units = 0;
-
-    for (int i = 0; i < n; i += UNIT) {
-        int is_even = 1;
-
-        for (int c = 0; c < 3 && is_even; c++) {
-            V over = v_set(0);
-
-            for (int k = i; k < i + UNIT; k += 2 * V_N)
-                over = v_or(over,
-                            fold_quads(light[c], k, base, slope_q15, quads[c]));
-            is_even = v_is_zero(over);
-        }
-        units |= (unsigned)is_even << i / UNIT;
-    }
-    return units;
 }
 
 void KERNEL(glint_add_code)(uint8_t *code, const uint16_t *light, int n,

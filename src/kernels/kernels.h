@@ -92,30 +92,6 @@ typedef void glint_add_quads_packed_fn(uint8_t *const pixels[2],
                                        int luma_at, const struct glint_mix *mix,
                                        const int16_t *const round[2]);
 
-/* The same for one channel of R'G'B': CODE and ROUND of two rows, LIGHT one for
- * every two pixels of a row. */
-typedef void glint_add_code_quads_fn(uint8_t *const code[2],
-                                     const uint16_t *light, int n,
-                                     const struct glint_tone16 *tone,
-                                     const int16_t *const round[2]);
-
-/* How much light may differ between 2 x 2 pixels that are lit as one: halves of
- * _q16, BASE and SLOPE_Q15 times the most that any of them has. */
-struct glint_even {
-    int16_t base, slope_q15;
-};
-
-/* From light of pixels to light of quads, for add_quads, where it is even:
- *   light   [channel][row]: of N pixels of two rows, N a multiple of twice
- *           GLINT_LANES
- *   quads   their means, without the last bit; of units that are not even any
- *           values
- *   returns a bit for each unit of twice GLINT_LANES pixels, the first one
- *           lowest: whether all its quads are even */
-typedef unsigned glint_fold_fn(const uint16_t *const light[3][2],
-                               uint16_t *const quads[3], int n,
-                               const struct glint_even *even);
-
 /* Adds light to N codes of one channel of R'G'B'; LIGHT and ROUND as above. */
 typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
@@ -171,8 +147,6 @@ struct glint_kernels {
 struct glint_quad_kernels {
     glint_add_quads_fn *add;
     glint_add_quads_packed_fn *add_packed;
-    glint_add_code_quads_fn *add_code;
-    glint_fold_fn *fold;
 };
 
 /* What rays take: apart, so that a program that has only one of them links
@@ -205,9 +179,6 @@ glint_add_quads_fn glint_add_quads_c, glint_add_quads_sse41,
 glint_add_quads_packed_fn glint_add_quads_packed_c,
     glint_add_quads_packed_sse41, glint_add_quads_packed_avx2,
     glint_add_quads_packed_neon;
-glint_add_code_quads_fn glint_add_code_quads_c, glint_add_code_quads_sse41,
-    glint_add_code_quads_avx2, glint_add_code_quads_neon;
-glint_fold_fn glint_fold_c, glint_fold_sse41, glint_fold_avx2, glint_fold_neon;
 glint_add_code_fn glint_add_code_c, glint_add_code_sse41, glint_add_code_avx2,
     glint_add_code_neon;
 glint_run_sum_fn glint_run_sum_c, glint_run_sum_sse41, glint_run_sum_avx2,

@@ -33,64 +33,25 @@ static int padded(int n)
     return (n + GLINT_LANES - 1) & -GLINT_LANES;
 }
 
-struct glint_stretch glint_stretch_of(const struct glint_resolve *resolve,
-                                      const struct glint_image *image, int x,
-                                      int y, int n_x, int n_y)
-{
-    const struct glint_layout *l = glint_layout_of(image->format);
-    const int in_place = glint_layout_is_packed(l) && n_x % 2 == 0;
-    const struct glint_stretch s = {resolve, image, l,   x,
-                                    y,       n_x,   n_y, in_place};
-
-    return s;
-}
-
-void glint_stretch_read(const struct glint_stretch *s,
+static void resolve_rgb(const struct glint_resolve *r, int y, int n_x, int n_y,
+                        const struct glint_light_rows *light,
                         struct glint_codes *codes)
 {
-    if (!s->in_place)
-        glint_codes_read(codes, s->image, s->x, s->y, s->n_x, s->n_y);
-}
-
-void glint_stretch_write(const struct glint_stretch *s,
-                         const struct glint_codes *codes)
-{
-    if (!s->in_place)
-        glint_codes_write(codes, s->image, s->x, s->y, s->n_x, s->n_y);
-}
-
-/* So many pixels of it, from AT on. */
-struct part {
-    const struct glint_stretch *of;
-    int at, n;
-    struct glint_light_rows *light; /* the stretch's */
-};
-
-static void light_of(const struct part *p, int row, const uint16_t *rgb[3])
-{
-    for (int c = 0; c < 3; c++)
-        rgb[c] = p->light->rgb_q16[c][row] + p->at;
-}
-
-static void resolve_rgb(const struct part *p, struct glint_codes *codes)
-{
-    const struct glint_resolve *r = p->of->resolve;
-
-    for (int row = 0; row < p->of->n_y; row++)
+    for (int row = 0; row < n_y; row++)
         for (int c = 0; c < 3; c++)
-            r->kernels->add_code(codes->sample[c][row] + p->at,
-                                 p->light->rgb_q16[c][row] + p->at,
-                                 padded(p->n), &r->mix.tone,
-                                 r->round_q7[(p->of->y + row) & 7]);
+            r->kernels->add_code(codes->sample[c][row], light->rgb_q16[c][row],
+                                 padded(n_x), &r->mix.tone,
+                                 r->round_q7[(y + row) & 7]);
 }
 
 /* BT.709: weights of sum 1. */
-static void luminance(const uint16_t *const rgb[3], int n, uint16_t *grey_q16)
+static void luminance(const struct glint_light_rows *light, int row, int n,
+                      uint16_t *grey_q16)
 {
     for (int i = 0; i < n; i++)
-        grey_q16[i] = (uint16_t)((rgb[0][i] * UINT32_C(13933) +
-                                  rgb[1][i] * UINT32_C(46871) +
-                                  rgb[2][i] * UINT32_C(4732)) >>
+        grey_q16[i] = (uint16_t)((light->rgb_q16[0][row][i] * UINT32_C(13933) +
+                                  light->rgb_q16[1][row][i] * UINT32_C(46871) +
+                                  light->rgb_q16[2][row][i] * UINT32_C(4732)) >>
                                  16);
 }
 
@@ -109,22 +70,22 @@ static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
 }
 
 /* Chroma of its own for every pixel, or none. */
-static void resolve_whole(const struct part *p, int row,
+static void resolve_whole(const struct glint_resolve *r,
+                          const struct glint_image *image, int y, int n,
+                          int row, const struct glint_light_rows *light,
                           struct glint_resolve_rows *rows)
 {
-    const struct glint_resolve *r = p->of->resolve;
-    const int grey = p->of->image->format == GLINT_GREY, n = p->n;
-    const int16_t *round = r->round_q7[(p->of->y + row) & 7];
+    const int grey = image->format == GLINT_GREY;
+    const uint16_t *rgb[3] = {light->rgb_q16[0][row], light->rgb_q16[1][row],
+                              light->rgb_q16[2][row]};
     int16_t *const change[3] = {rows->change[0], rows->change[1],
                                 rows->change[2]};
-    uint8_t *code[3];
-    const uint16_t *rgb[3];
+    const int16_t *round = r->round_q7[y & 7];
+    uint8_t *code[3] = {rows->codes.sample[0][row], rows->codes.sample[1][row],
+                        rows->codes.sample[2][row]};
 
-    light_of(p, row, rgb);
-    for (int c = 0; c < 3; c++)
-        code[c] = rows->codes.sample[c][row] + p->at;
     if (grey) {
-        luminance(rgb, padded(n), rows->grey_q16);
+        luminance(light, row, padded(n), rows->grey_q16);
         rgb[0] = rgb[1] = rgb[2] = rows->grey_q16;
     }
     r->kernels->add_luma(code[0], code[1], code[2], rgb, change, padded(n),
@@ -137,89 +98,69 @@ static void resolve_whole(const struct part *p, int row,
 }
 
 /* A stretch of odd width ends with half a pair: the other half is the same. */
-static void mirror_last(const struct part *p)
+static void mirror_last(struct glint_light_rows *light, int n_x, int n_y)
 {
-    const int end = p->at + p->n;
-
     for (int c = 0; c < 3; c++)
-        for (int row = 0; row < p->of->n_y; row++)
-            p->light->rgb_q16[c][row][end] = p->light->rgb_q16[c][row][end - 1];
+        for (int row = 0; row < n_y; row++)
+            light->rgb_q16[c][row][n_x] = light->rgb_q16[c][row][n_x - 1];
 }
 
-static void resolve_pairs(const struct part *p, struct glint_resolve_rows *rows)
+static void resolve_pairs(const struct glint_resolve *r,
+                          const struct glint_layout *l, int y, int n_x, int n_y,
+                          struct glint_light_rows *light,
+                          struct glint_resolve_rows *rows)
 {
-    const struct glint_resolve *r = p->of->resolve;
-    const int log2_y = p->of->layout->log2_y;
     int16_t *const mean[3] = {rows->change[0], rows->change[1],
                               rows->change[2]};
 
-    if (p->n & 1)
-        mirror_last(p);
-    for (int row = 0; row < p->of->n_y; row++) {
-        const enum glint_pair_step step = !log2_y || p->of->n_y == 1
+    if (n_x & 1)
+        mirror_last(light, n_x, n_y);
+    for (int row = 0; row < n_y; row++) {
+        const uint16_t *const rgb[3] = {light->rgb_q16[0][row],
+                                        light->rgb_q16[1][row],
+                                        light->rgb_q16[2][row]};
+        const enum glint_pair_step step = !l->log2_y || n_y == 1
                                               ? GLINT_PAIRS_ALONE
                                           : row == 0 ? GLINT_PAIRS_FIRST
                                                      : GLINT_PAIRS_SECOND;
-        const int y = p->of->y + row, cy = y >> log2_y;
-        const uint16_t *rgb[3];
+        const int cy = (y + row) >> l->log2_y;
 
-        light_of(p, row, rgb);
-        r->kernels->add_pairs(rows->codes.sample[0][row] + p->at,
-                              rows->codes.chroma[log2_y ? 0 : row] + p->at, rgb,
-                              mean, padded(p->n), step, &r->mix,
-                              r->round_q7[y & 7], r->round_q7[cy & 7]);
+        r->kernels->add_pairs(rows->codes.sample[0][row],
+                              rows->codes.chroma[l->log2_y ? 0 : row], rgb,
+                              mean, padded(n_x), step, &r->mix,
+                              r->round_q7[(y + row) & 7], r->round_q7[cy & 7]);
     }
 }
 
 /* YUYV and the like, in place; what is left of whole vectors on the side. */
-static void resolve_packed(const struct part *p, int row,
+static void resolve_packed(const struct glint_resolve *r,
+                           const struct glint_layout *l,
+                           const struct glint_image *image, int x, int y, int n,
+                           int row, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows)
 {
-    const struct glint_resolve *r = p->of->resolve;
-    const struct glint_image *image = p->of->image;
-    const int y = p->of->y + row, whole = p->n & -GLINT_LANES;
-    const int n_rest = 2 * (p->n - whole);
-    const int luma_at = p->of->layout->sample[0].offset;
-    uint8_t *px = image->plane[0] + y * image->stride_bytes[0] +
-                  2 * (ptrdiff_t)(p->of->x + p->at);
+    uint8_t *px =
+        image->plane[0] + y * image->stride_bytes[0] + 2 * (ptrdiff_t)x;
     uint8_t *rest = rows->codes.sample[0][0];
+    const int luma_at = l->sample[0].offset, whole = n & -GLINT_LANES;
     const int16_t *round = r->round_q7[y & 7];
-    const uint16_t *rgb[3];
+    const uint16_t *rgb[3] = {light->rgb_q16[0][row], light->rgb_q16[1][row],
+                              light->rgb_q16[2][row]};
 
-    light_of(p, row, rgb);
     r->kernels->add_packed(px, rgb, whole, luma_at, &r->mix, round, round);
-    if (n_rest == 0)
+    if (whole == n)
         return;
     for (int c = 0; c < 3; c++) {
         rgb[c] += whole;
-        for (int i = p->n; i < whole + GLINT_LANES; i++)
-            p->light->rgb_q16[c][row][p->at + i] = 0;
+        for (int i = n; i < whole + GLINT_LANES; i++)
+            light->rgb_q16[c][row][i] = 0;
     }
     for (int i = 0; i < 2 * GLINT_LANES; i++)
-        rest[i] = i < n_rest ? px[2 * whole + i] : 0;
+        rest[i] = i < 2 * (n - whole) ? px[2 * whole + i] : 0;
     r->kernels->add_packed(rest, rgb, GLINT_LANES, luma_at, &r->mix, round,
                            round);
-    for (int i = 0; i < n_rest; i++)
+    for (int i = 0; i < 2 * (n - whole); i++)
         px[2 * whole + i] = rest[i];
-}
-
-void glint_resolve_part(const struct glint_stretch *stretch, int at, int n,
-                        struct glint_light_rows *light,
-                        struct glint_resolve_rows *rows)
-{
-    const struct glint_layout *l = stretch->layout;
-    const struct part p = {stretch, at, n, light};
-
-    if (glint_layout_is_rgb(l))
-        resolve_rgb(&p, &rows->codes);
-    else if (l->log2_x && !stretch->in_place)
-        resolve_pairs(&p, rows);
-    else
-        for (int row = 0; row < stretch->n_y; row++)
-            if (stretch->in_place)
-                resolve_packed(&p, row, rows);
-            else
-                resolve_whole(&p, row, rows);
 }
 
 void glint_resolve_stretch(const struct glint_resolve *resolve,
@@ -227,12 +168,23 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
                            int n_x, int n_y, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows)
 {
-    const struct glint_stretch s =
-        glint_stretch_of(resolve, image, x, y, n_x, n_y);
+    const struct glint_layout *l = glint_layout_of(image->format);
 
-    glint_stretch_read(&s, &rows->codes);
-    glint_resolve_part(&s, 0, n_x, light, rows);
-    glint_stretch_write(&s, &rows->codes);
+    if (glint_layout_is_packed(l) && n_x % 2 == 0) {
+        for (int row = 0; row < n_y; row++)
+            resolve_packed(resolve, l, image, x, y + row, n_x, row, light,
+                           rows);
+        return;
+    }
+    glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
+    if (l->kind == GLINT_LAYOUT_RGB || l->kind == GLINT_LAYOUT_565)
+        resolve_rgb(resolve, y, n_x, n_y, light, &rows->codes);
+    else if (l->log2_x)
+        resolve_pairs(resolve, l, y, n_x, n_y, light, rows);
+    else
+        for (int row = 0; row < n_y; row++)
+            resolve_whole(resolve, image, y + row, n_x, row, light, rows);
+    glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
 }
 
 int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,

@@ -66,31 +66,6 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
                            int n_x, int n_y, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows);
 
-/* Such a stretch, for who lights it part by part. */
-struct glint_stretch {
-    const struct glint_resolve *resolve;
-    const struct glint_image *image;
-    const struct glint_layout *layout;
-    int x, y, n_x, n_y;
-    int in_place; /* its codes are changed where they are */
-};
-
-struct glint_stretch glint_stretch_of(const struct glint_resolve *resolve,
-                                      const struct glint_image *image, int x,
-                                      int y, int n_x, int n_y);
-
-/* Its codes, unless it is lit in place: then there is nothing to do. */
-void glint_stretch_read(const struct glint_stretch *s,
-                        struct glint_codes *codes);
-void glint_stretch_write(const struct glint_stretch *s,
-                         const struct glint_codes *codes);
-
-/* Adds LIGHT to N of its pixels from AT on, a multiple of twice GLINT_LANES;
- * LIGHT and the codes of ROWS are those of the whole stretch. */
-void glint_resolve_part(const struct glint_stretch *stretch, int at, int n,
-                        struct glint_light_rows *light,
-                        struct glint_resolve_rows *rows);
-
 /* Adds N values of LIGHT, R, G, B by themselves, to a row of a LINEAR_Q20
  * picture (4-byte aligned) from (X, Y) on, as they are, saturating at the int32
  * range; returns how many came to an end of it. */

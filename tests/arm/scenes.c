@@ -119,9 +119,9 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
 
     c.width = 1 + number(400);
     c.height = 1 + number(300);
+    c.tile_log2 = 3 + number(4);
     shuffle_init(shuffle, 1 + (int)(seed % 4), seed);
     c.raster = number(6) ? NULL : &glint_raster_cells;
-    c.tile_log2 = c.raster ? 3 + number(4) : 5 + number(2);
     if (c.raster)
         c.max_vertices = 200000;
     c.irradiance_steps = number(3) * 30;
@@ -194,9 +194,7 @@ static void draw_flare(const struct glint_flare_config *c,
     rays.n_waves = 1 + number(3);
     rays.fineness = 8 << number(4);
     rays.narrow = number(4) ? NULL : glint_transfer_narrow;
-    rays.quads = &glint_quads;
-    rays.half = number(3) == 0;
-    rays.even_codes_q8 = number(3) * 300;
+    rays.half = number(3) == 0 ? &glint_half : NULL;
     make_waves(wave);
     for (int i = 0; i < n_given; i++)
         make_beam(&beam[i]);

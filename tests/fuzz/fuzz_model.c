@@ -133,7 +133,7 @@ static void check_frame(const struct glint_lens *lens)
         .format = GLINT_YUYV, .width = SIDE, .height = SIDE};
     const struct glint_flare_config cfg = {.width = SIDE,
                                            .height = SIDE,
-                                           .tile_log2 = 5,
+                                           .tile_log2 = 4,
                                            .irradiance_steps = 70,
                                            .max_bundles = 64,
                                            .max_primitives = 20000,

@@ -69,7 +69,7 @@ static void open_fixture(struct fixture *f, int n_beams)
                                   .only_ghost = -1};
     f->cfg = (struct glint_flare_config){.width = WIDTH,
                                          .height = HEIGHT,
-                                         .tile_log2 = 5,
+                                         .tile_log2 = 4,
                                          .max_bundles = 64,
                                          .max_primitives = 60000,
                                          .max_refs = 120000};

@@ -18,7 +18,7 @@
 #include "scene.h"
 #include "tool.h"
 
-enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 32 };
+enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 16 };
 
 static struct scene scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
@@ -40,7 +40,7 @@ static void make(struct frame *frame)
     const struct glint_view view = scene_view(&scene, WIDTH, HEIGHT);
 
     assert_int_equal(scene_frame(&tool, &scene, view, frame), EXIT_OK);
-    frame->cfg.tile_log2 = 5;
+    frame->cfg.tile_log2 = 4;
 }
 
 static void draw(struct frame *frame, const struct glint_lamp *lamp, int n,

@@ -31,7 +31,7 @@ static struct glint_flare_config base_config(void)
 {
     struct glint_flare_config c = {.width = WIDTH,
                                    .height = HEIGHT,
-                                   .tile_log2 = 5,
+                                   .tile_log2 = 3,
                                    .coarse_log2 = 7,
                                    .weights = GLINT_WEIGHTS_WACHSPRESS,
                                    .antialias = 1,
@@ -343,7 +343,7 @@ static void test_outlines_close(void **state)
         c.stop.n_blades = k & 3 ? 8 : 0;
         c.stop.apothem_q16 -= draw_number(30000);
         c.irradiance_steps = draw_number(3) * 20;
-        c.tile_log2 = 5 + draw_number(2);
+        c.tile_log2 = 3 + draw_number(4);
         draw_list(c, &g, 1, pixels);
         for (int y = 0; y < HEIGHT; y++)
             for (int i = 0; i < 3; i++)
@@ -620,8 +620,6 @@ static void test_tiles_do_not_matter(void **state)
         draw_scene(c, want);
         assert_true(total(want, 0) > 1);
         for (size_t i = 0; i < sizeof levels / sizeof *levels; i++) {
-            if (!raster && levels[i][0] < 5)
-                continue;
             c.tile_log2 = levels[i][0];
             c.coarse_log2 = levels[i][1];
             same_as_want(c);
@@ -761,7 +759,7 @@ static void test_random_scenes(void **state)
         c.max_primitives = 400000;
         make_picture(&plain, format, seed);
         draw_picture(&c, list, n, 0, &plain);
-        c.tile_log2 = k % 4 ? 5 + draw_number(2) : 3 + draw_number(4);
+        c.tile_log2 = 3 + draw_number(4);
         c.coarse_log2 = draw_number(2) ? 7 : 0;
         c.sets = random_sets();
         shuffle_init(&shuffle, 1 + draw_number(8), seed);
@@ -935,13 +933,8 @@ static void test_config_is_checked(void **state)
 
     (void)state;
     assert_int_not_equal(glint_flare_bytes(&c), 0);
-    for (int log2 = 2; log2 < 8; log2++) {
-        c.tile_log2 = log2;
-        c.raster = &glint_raster_edges;
-        assert_true((glint_flare_bytes(&c) > 0) == (log2 == 5 || log2 == 6));
-        c.raster = &glint_raster_cells;
-        assert_true((glint_flare_bytes(&c) > 0) == (log2 >= 3 && log2 <= 6));
-    }
+    c.tile_log2 = 7;
+    assert_int_equal(glint_flare_bytes(&c), 0);
     c = base_config();
     c.stop.mask_q13 = mask_q13; /* by cells alone */
     c.stop.mask_nodes = 2;

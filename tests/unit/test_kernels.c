@@ -76,8 +76,7 @@ static const struct glint_kernels kernels_c = {
     glint_add_luma_c, glint_add_pairs_c, glint_add_packed_c, glint_add_code_c,
     glint_run_sum_c};
 static const struct glint_quad_kernels quad_kernels_c = {
-    glint_add_quads_c, glint_add_quads_packed_c, glint_add_code_quads_c,
-    glint_fold_c};
+    glint_add_quads_c, glint_add_quads_packed_c};
 
 enum { N_VARIANTS = sizeof variants / sizeof *variants };
 
@@ -356,108 +355,6 @@ static void check_quads(const struct glint_quad_kernels *k, const char *name)
           add_quads(k, &b, light, N, 1, &mix, round));
 }
 
-/* The same of one channel of R'G'B'. */
-static void check_code_quads(const struct glint_quad_kernels *k,
-                             const char *name)
-{
-    const struct glint_quad_kernels *plain = &quad_kernels_c;
-    uint8_t *want[2] = {fenced(N), fenced(N)}, *got[2] = {fenced(N), fenced(N)};
-    const int16_t *r[2];
-    uint16_t *light = fenced(N);
-    struct glint_mix mix;
-    int16_t round[2][8];
-
-    for (int turn = 0; turn < ROUNDS; turn++) {
-        const int n =
-            2 * GLINT_LANES * (1 + (int)(draw() % (N / (2 * GLINT_LANES))));
-        const int one_row = (int)(draw() % 2);
-        const int dark = (int)(draw() % (N / 2));
-
-        draw_mix(&mix);
-        for (int i = 0; i < 16; i++)
-            round[i / 8][i % 8] = (int16_t)(draw() & 127);
-        r[0] = round[0];
-        r[1] = round[!one_row];
-        for (int i = 0; i < 2 * N; i++)
-            want[i % 2][i / 2] = got[i % 2][i / 2] = (uint8_t)draw();
-        for (int i = 0; i < N / 2; i++)
-            light[i] = i > dark ? draw_light() : 0;
-        plain->add_code((uint8_t *[]){want[0], want[!one_row]}, light, n,
-                        &mix.tone, r);
-        k->add_code((uint8_t *[]){got[0], got[!one_row]}, light, n, &mix.tone,
-                    r);
-        for (int i = 0; i < 2; i++)
-            EXPECT_SAME(got[i], want[i], N);
-    }
-    BENCH("add_code_q", name, plain->add_code(want, light, N, &mix.tone, r),
-          k->add_code(got, light, N, &mix.tone, r));
-}
-
-/* Light near what may differ, and anything. */
-static void draw_even(uint16_t *const light[6], int n,
-                      const struct glint_even *even)
-{
-    for (int i = 0; i < n; i += 2) {
-        const uint16_t level = draw_light();
-        const int most =
-            2 * even->base + (int)((int64_t)level * even->slope_q15 >> 15) + 3;
-
-        for (int k = 0; k < 12; k++) {
-            const int x = level + (int)(draw() % (unsigned)(most + 1));
-
-            light[k / 2][i + k % 2] = (uint16_t)(x < 65535 ? x : 65535);
-        }
-        if (draw() % 64 == 0)
-            light[draw() % 6][i] = draw_light();
-    }
-}
-
-/* Even units, and their quads, of any light. */
-static void check_fold(const struct glint_quad_kernels *k, const char *name)
-{
-    enum { UNIT = 2 * GLINT_LANES };
-    const struct glint_quad_kernels *plain = &quad_kernels_c;
-    uint16_t *light[6], *want[3], *got[3];
-    int n_even = 0, n_odd = 0;
-
-    for (int i = 0; i < 6; i++)
-        light[i] = fenced(2 * N);
-    for (int i = 0; i < 3; i++) {
-        want[i] = fenced(N);
-        got[i] = fenced(N);
-    }
-    for (int turn = 0; turn < ROUNDS; turn++) {
-        const uint16_t *const rows[3][2] = {
-            {light[0], light[1]}, {light[2], light[3]}, {light[4], light[5]}};
-        const struct glint_even even = {(int16_t)(draw() % 1300),
-                                        (int16_t)(draw() % 32768)};
-        const int n = UNIT * (1 + (int)(draw() % (N / UNIT)));
-        unsigned units;
-
-        draw_even(light, n, &even);
-        units = plain->fold(rows, want, n, &even);
-        EXPECT(k->fold(rows, got, n, &even) == units);
-        for (int i = 0; i < n / UNIT; i++) {
-            const int is_even = (int)(units >> i & 1);
-
-            n_even += is_even;
-            n_odd += !is_even;
-            for (int c = 0; c < 3 && is_even; c++)
-                EXPECT_SAME(got[c] + i * GLINT_LANES, want[c] + i * GLINT_LANES,
-                            2 * GLINT_LANES);
-        }
-    }
-    EXPECT(n_even > ROUNDS / 8 && n_odd > ROUNDS / 8);
-    {
-        const uint16_t *const rows[3][2] = {
-            {light[0], light[1]}, {light[2], light[3]}, {light[4], light[5]}};
-        const struct glint_even all = {INT16_MAX, 0};
-
-        BENCH("fold", name, plain->fold(rows, want, N, &all),
-              k->fold(rows, got, N, &all));
-    }
-}
-
 /* Every code under every light. */
 static void check_code(const struct glint_kernels *k, const char *name)
 {
@@ -608,9 +505,6 @@ static void test_same_bits(void)
         check_pairs(k, variants[v].name);
         check_packed(k, variants[v].name);
         check_quads(glint_quad_kernels_of(variants[v].set), variants[v].name);
-        check_code_quads(glint_quad_kernels_of(variants[v].set),
-                         variants[v].name);
-        check_fold(glint_quad_kernels_of(variants[v].set), variants[v].name);
         check_code(k, variants[v].name);
         check_sum(k, variants[v].name);
     }

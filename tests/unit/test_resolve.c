@@ -835,109 +835,6 @@ static void test_long_quads_are_short_ones(void **state)
         }
 }
 
-/* Light of two rows: even within STEP of _q16 but for units that EDGE has a bit
- * of, through which a step runs. */
-static void draw_slopes(struct glint_light_rows *light, int step, unsigned edge)
-{
-    for (int c = 0; c < 3; c++) {
-        const int level =
-            draw_random(2) ? draw_random(300) : draw_random(30000);
-
-        for (int i = 0; i < 2 * 64; i++) {
-            const int x = i % 64, is_edge = edge >> x / 32 & 1;
-            const int jump = is_edge && x % 32 > 20 ? 20000 : 0;
-
-            light->rgb_q16[c][i / 64][x] =
-                (uint16_t)(level + jump + draw_random(step + 1));
-        }
-    }
-}
-
-/* Units of even light differ from pixel by pixel by no more than they may, most
- * of them a little; others, and what is left of units, not at all. */
-static void test_even_units(void **state)
-{
-    static const enum glint_pixel_format some[] = {
-        GLINT_YUYV, GLINT_UYVY, GLINT_I420, GLINT_NV12, GLINT_RGB24};
-    static struct glint_light_rows light, spare;
-    static struct glint_quads_rows rows;
-    static uint8_t want[PLANE_BYTES], got[PLANE_BYTES];
-    int most = 0, n_other = 0;
-
-    (void)state;
-    for (int turn = 0; turn < 2000; turn++) {
-        const int n = 1 + draw_random(64), n_y = 1 + draw_random(2);
-        const int codes = 1 + draw_random(4);
-        const struct glint_even even = glint_even_of(256 * codes);
-        const unsigned edge = (unsigned)draw_random(4);
-        struct glint_image image = {
-            .format = some[turn % 5], .width = 64, .height = 2};
-        const int bytes = (int)glint_image_bytes(image.format, 64, 2);
-
-        memset(want, 128, sizeof want);
-        glint_image_place(&image, want);
-        for (int i = 0; i < 64 * 2 && turn % 7; i++) /* on black most differs */
-            *glint_layout_at(glint_layout_of(image.format), &image, 0, i % 64,
-                             i / 64) = 16;
-        memcpy(got, want, sizeof got);
-        draw_slopes(&light, 20 * codes, edge);
-        spare = light;
-        glint_resolve_init(&resolve, &image, 0,
-                           turn % 2 ? glint_system_sets() : 0u);
-        glint_resolve_stretch(&resolve, &image, 0, 0, n, n_y, &spare,
-                              &rows.rows);
-        glint_image_place(&image, got);
-        glint_resolve_even(&resolve, &even, &image, 0, 0, n, n_y, &light,
-                           &rows);
-        for (int i = 0; i < bytes; i++) {
-            const int off = abs(got[i] - want[i]);
-
-            most = off > most ? off : most;
-            n_other += off > 0;
-            assert_true(off <= codes + 1);
-            if (n_y == 1 || n < 32 || (n < 64 ? edge & 1 : edge == 3))
-                assert_int_equal(off, 0);
-        }
-    }
-    assert_in_range(most, 2, 5);
-    assert_true(n_other > 2000);
-}
-
-/* A stretch of 64 pixels is two of 32. */
-static void test_even_stretches_are_short_ones(void **state)
-{
-    static struct glint_light_rows light, part;
-    static struct glint_quads_rows rows;
-    static uint8_t want[PLANE_BYTES], got[PLANE_BYTES];
-    const struct glint_even even = glint_even_of(512);
-
-    (void)state;
-    for (int turn = 0; turn < 400; turn++) {
-        struct glint_image image = {.format =
-                                        turn % 2 ? GLINT_YUYV : GLINT_I420,
-                                    .width = 64,
-                                    .height = 2};
-        const int n = 33 + draw_random(32);
-
-        for (int i = 0; i < 64 * 4; i++)
-            want[i] = got[i] = (uint8_t)draw_random(256);
-        draw_slopes(&light, 40, (unsigned)draw_random(4));
-        glint_resolve_init(&resolve, &image, 0,
-                           turn % 4 > 1 ? glint_system_sets() : 0u);
-        glint_image_place(&image, want);
-        for (int x = 0; x < n; x += 32) {
-            for (int i = 0; i < 6 * 32; i++)
-                part.rgb_q16[i / 64][i / 32 % 2][i % 32] =
-                    light.rgb_q16[i / 64][i / 32 % 2][x + i % 32];
-            glint_resolve_even(&resolve, &even, &image, x, 0,
-                               n - x < 32 ? n - x : 32, 2, &part, &rows);
-        }
-        glint_image_place(&image, got);
-        glint_resolve_even(&resolve, &even, &image, 0, 0, n, 2, &light, &rows);
-        assert_memory_equal(got, want, 64 * 4);
-    }
-}
-
 /* All codes of 16 bits come back without light, and turn white with much. */
 static void test_565(void **state)
 {
@@ -1009,8 +906,6 @@ int main(void)
         cmocka_unit_test(test_quads_of_edges),
         cmocka_unit_test(test_quads_are_near),
         cmocka_unit_test(test_long_quads_are_short_ones),
-        cmocka_unit_test(test_even_units),
-        cmocka_unit_test(test_even_stretches_are_short_ones),
         cmocka_unit_test(test_565),
         cmocka_unit_test(test_same_on_every_machine),
     };
