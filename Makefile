@@ -106,7 +106,7 @@ CORE := base/status base/arena base/q base/divide base/sort base/image base/work
         kernels/composite_c \
         lens/model lens/transfer flare/bright flare/regions flare/lights \
         flare/match flare/follow flare/record flare/tracks tile/primitive \
-        tile/clip tile/outline tile/bins tile/raster tile/edges tile/curve tile/mix tile/codes \
+        tile/clip tile/outline tile/bins tile/raster tile/edges tile/sums tile/curve tile/mix tile/codes \
         tile/resolve tile/quads tile/composite flare/beams flare/plan flare/ghost_grid flare/cuts \
         flare/ghost_edges flare/by_cells flare/by_edges flare/flare flare/account
 BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
@@ -194,7 +194,7 @@ $(OUT)/src/%_neon.o: CFLAGS += -mfpu=neon
 endif
 # Hot loops: unrolled, or where that buys nothing but bytes in vectors alone.
 $(OUT)/src/kernels/%.o $(patsubst %,$(OUT)/src/%.o,tile/edges flare/bright flare/ghost_edges): CFLAGS += -O3
-$(patsubst %,$(OUT)/src/%.o,tile/codes tile/quads flare/by_edges lens/transfer): CFLAGS += -ftree-vectorize
+$(patsubst %,$(OUT)/src/%.o,tile/codes tile/quads tile/sums flare/by_edges lens/transfer): CFLAGS += -ftree-vectorize
 $(OUT)/src/tile/edges.o: CFLAGS += -fno-tree-vectorize # short loops
 ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)
 # else constants that are hoisted push out tables: a tenth more instructions
