@@ -160,7 +160,7 @@ static int add_budgets(struct bench *b, const struct scene *scene)
         if (b->n_tests == n || code != EXIT_OK)
             break;
         budget_init(&t->frame.budget, b->budget_ms[i]);
-        code = scene_calibrate(b->tool, scene, &t->frame.budget);
+        code = scene_calibrate(b->tool, scene, t->frame.view, &t->frame.budget);
         for (int k = 0; k < SETTLING && code == EXIT_OK; k++)
             if (bench_run(t, 0) != GLINT_OK)
                 code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);

@@ -8,6 +8,7 @@
 
 #define ROOM       0.98 /* of the budget that is planned for */
 #define SPARE      0.93 /* less than so much of it: finer */
+#define TRY        1.15 /* what some frames may be told to take, to learn more */
 #define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
 #define MOST_WRONG 0.8  /* octaves that one frame can say */
 #define SPREAD     0.1  /* of that for other qualities, too, at least */
@@ -17,10 +18,12 @@
  * little, so one more may be needed. */
 enum { MAX_TRIES = 3 };
 
+enum { TRIALS = 4 }; /* frames of a quality that is told to take too long */
+
 void budget_init(struct budget *b, double ms)
 {
     *b = (struct budget){
-        .ms = ms, .ms_per_minsn = 0.1, .step = BUDGET_STEPS / 2};
+        .ms = ms, .ms_per_minsn = 0.1, .step = BUDGET_STEPS / 2, .tried = -1};
 }
 
 double budget_quality(const struct budget *b)
@@ -77,6 +80,22 @@ static int best_step(const struct budget *b, const struct frame *frame)
     return low;
 }
 
+/* Where nothing lies between STEP, which leaves much of the budget, and the
+ * next, which is told to miss it by little, the latter for a few frames: it may
+ * have been told too much. */
+static int try_next(struct budget *b, const struct frame *frame, int step)
+{
+    if (step == BUDGET_STEPS ||
+        (step + 1 == b->tried && b->n_trials == TRIALS) ||
+        predict(b, frame, step) >= SPARE * b->ms ||
+        predict(b, frame, step + 1) > TRY * b->ms)
+        return step;
+    b->n_trials = step + 1 == b->tried ? b->n_trials + 1 : 1;
+    b->tried = step + 1;
+    b->n_tries = MAX_TRIES; /* as it is told, it would not do */
+    return b->tried;
+}
+
 bool budget_choose(struct budget *b, struct frame *frame)
 {
     int step;
@@ -86,7 +105,7 @@ bool budget_choose(struct budget *b, struct frame *frame)
         (b->predicted_ms <= b->ms &&
          (b->predicted_ms >= SPARE * b->ms || b->step == BUDGET_STEPS)))
         return false;
-    step = best_step(b, frame);
+    step = try_next(b, frame, best_step(b, frame));
     if (step == b->step)
         return false;
     b->step = step;

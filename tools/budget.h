@@ -4,7 +4,7 @@
  * plan tells, will not take longer.
  *
  *     budget_init(&frame.budget, 5.0);
- *     scene_calibrate(tool, &scene, &frame.budget);      once, some 20 ms
+ *     scene_calibrate(tool, &scene, &frame.budget);      once, some frames
  *     frame_draw(&frame, ...);          chooses, and learns from what it took
  */
 #ifndef GLINT_TOOLS_BUDGET_H
@@ -22,6 +22,8 @@ struct budget {
     double octaves[BUDGET_RUNGS]; /* learned beyond that, by quality */
     int step;            /* quality of the last frame, of BUDGET_STEPS */
     int n_tries;         /* of the frame being planned */
+    int tried, n_trials; /* the last step thought too much that was drawn, how
+                            many times; or -1 */
     double predicted_ms; /* of the last frame, by its last plan */
 };
 

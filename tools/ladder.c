@@ -17,7 +17,7 @@ static const struct rung {
 } rung[] = {
     /* instructions over the default's, mean PSNR */
     {0,      16, 8,      16,  1,                1,    true},  /* 0.60, 37.5 dB */
-    {0.0625, 64, 1.5,    4,   1,                1,    true},
+    {0.0625, 64, 1,      4,   1,                1,    true},
     {0.125,  16, 8,      16,  FRAME_CULL_CODES, 1,    false}, /* 0.72, 46.7 dB */
     {0.25,   40, 3,      8,   FRAME_CULL_CODES, 1,    false}, /* 0.81, 53.9 dB */
     {0.375,  48, 2,      8,   FRAME_CULL_CODES, 1,    false},

@@ -365,28 +365,29 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     if (scene->budget_ms > 0 && frame->lens) {
         budget_init(&frame->budget, scene->budget_ms);
         ladder_frame(frame, budget_quality(&frame->budget));
-        return scene_calibrate(tool, scene, &frame->budget);
+        return scene_calibrate(tool, scene, view, &frame->budget);
     }
     return EXIT_OK;
 }
 
 int scene_calibrate(const struct tool *tool, const struct scene *scene,
-                    struct budget *budget)
+                    struct glint_view view, struct budget *budget)
 {
-    const struct glint_lamp lamp = {12, 33, 1e4, {1, 1, 1}};
+    const struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}};
     struct glint_image image = {
-        .format = GLINT_YUYV, .width = 640, .height = 360};
+        .format = GLINT_YUYV, .width = view.width, .height = view.height};
     struct scene plain = *scene;
     struct frame_report report;
     struct frame frame;
-    void *mem = calloc(1, glint_image_bytes(GLINT_YUYV, 640, 360));
+    void *mem =
+        calloc(1, glint_image_bytes(GLINT_YUYV, view.width, view.height));
     double least_ms = 1e9;
     struct cost cost;
     int code;
 
     plain.budget_ms = 0;
     plain.mask_nodes = 0;
-    code = scene_frame(tool, &plain, scene_view(scene, 640, 360), &frame);
+    code = scene_frame(tool, &plain, view, &frame);
     for (int i = 0; i < 4 && mem && code == EXIT_OK; i++) {
         glint_image_place(&image, mem);
         if (frame_draw(&frame, &lamp, 1, 1, &image, &report) != GLINT_OK)

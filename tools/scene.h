@@ -232,10 +232,10 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
 /* Steps of irradiance an octave for a quantum in percent. */
 int scene_steps(double quantum);
 
-/* Draws a lamp with SCENE's lens a few times to see what an instruction takes
- * here. */
+/* Draws a lamp with SCENE's lens a few times, as large as VIEW, to see what an
+ * instruction takes here. */
 int scene_calibrate(const struct tool *tool, const struct scene *scene,
-                    struct budget *budget);
+                    struct glint_view view, struct budget *budget);
 
 /* gain * 2^EV */
 double scene_scale(const struct scene *scene);
