@@ -7,7 +7,7 @@
 #include "ladder.h"
 
 #define ROOM       0.98 /* of the budget that is planned for */
-#define SPARE      0.93 /* less than so much of it: finer */
+#define SPARE      0.9  /* less than so much of it: finer */
 #define TRY        1.15 /* what some frames may be told to take, to learn more */
 #define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
 #define MOST_WRONG 0.8  /* octaves that one frame can say */
@@ -23,7 +23,7 @@ enum { TRIALS = 4 }; /* frames of a quality that is told to take too long */
 void budget_init(struct budget *b, double ms)
 {
     *b = (struct budget){
-        .ms = ms, .ms_per_minsn = 0.1, .step = BUDGET_STEPS / 2, .tried = -1};
+        .ms = ms, .ms_per_minsn = 0.1, .step = BUDGET_STEPS / 2};
 }
 
 double budget_quality(const struct budget *b)
@@ -80,20 +80,20 @@ static int best_step(const struct budget *b, const struct frame *frame)
     return low;
 }
 
-/* Where nothing lies between STEP, which leaves much of the budget, and the
+/* Where no rung lies between STEP, which leaves much of the budget, and the
  * next, which is told to miss it by little, the latter for a few frames: it may
  * have been told too much. */
 static int try_next(struct budget *b, const struct frame *frame, int step)
 {
-    if (step == BUDGET_STEPS ||
-        (step + 1 == b->tried && b->n_trials == TRIALS) ||
+    const int is_gap = place_of(step + 1) - place_of(step) >= 1;
+
+    if (step == BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
         predict(b, frame, step) >= SPARE * b->ms ||
         predict(b, frame, step + 1) > TRY * b->ms)
         return step;
-    b->n_trials = step + 1 == b->tried ? b->n_trials + 1 : 1;
-    b->tried = step + 1;
+    b->n_trials++;
     b->n_tries = MAX_TRIES; /* as it is told, it would not do */
-    return b->tried;
+    return step + 1;
 }
 
 bool budget_choose(struct budget *b, struct frame *frame)

@@ -20,10 +20,9 @@ struct budget {
     double ms;                    /* of a frame; 0: none is kept to */
     double ms_per_minsn;          /* of this machine, this lens; */
     double octaves[BUDGET_RUNGS]; /* learned beyond that, by quality */
-    int step;            /* quality of the last frame, of BUDGET_STEPS */
-    int n_tries;         /* of the frame being planned */
-    int tried, n_trials; /* the last step thought too much that was drawn, how
-                            many times; or -1 */
+    int step;     /* quality of the last frame, of BUDGET_STEPS */
+    int n_tries;  /* of the frame being planned */
+    int n_trials; /* frames drawn though they were told to take too long */
     double predicted_ms; /* of the last frame, by its last plan */
 };
 
