@@ -1,16 +1,18 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-rate.sh - 300 frames of a moving lamp at 640x360 and 30 fps, on a clock
-# that counts instructions. At 1 GIPS none is lost and none is late by two
+# test-rate.sh - frames of a moving lamp, on a clock that counts instructions.
+# Of 640x360 at 30 fps and 1 GIPS none of 300 is lost and none is late by two
 # frames; at 500 MIPS nothing queues, the quality is lowered as far as it goes,
-# and that is said. Emulated: every instruction takes the same time, and whoever
+# and that is said. Of 1280x720 at 25 fps and 1 GIPS, drawn as a draft, none
+# of 250 is lost. Emulated: every instruction takes the same time, and whoever
 # feeds the camera works on the same processor.
 # arch: aarch64
 . "$(dirname "$0")/lib.sh"
 
 model=$(model heliar-tronnier)
-build/x86_64/vm/scene -n 60 -m 3,1 YUYV 640x360 "$out/scene" 100,150,7
+size=640x360 rate=30 frames=300
+build/x86_64/vm/scene -n 60 -m 3,1 YUYV $size "$out/scene" 100,150,7
 
 run_at() { # NAME SHIFT OPTION...
     local at=$1 shift=$2
@@ -19,16 +21,16 @@ run_at() { # NAME SHIFT OPTION...
         -i model="$model" -i "$out/scene" <<END
 cp /in/scene /tmp/scene # what the host is asked for makes the clock jump
 loopback
-feed -r 30 /dev/video9 YUYV 640x360 /tmp/scene &
+feed -r $rate /dev/video9 YUYV $size /tmp/scene &
 wait_for 5 test -e /dev/video9
 sleep 1
-glint live -d 9 --lens /in/model -j 1 --count 300 --stats json $* \
+glint live -d 9 --lens /in/model -j 1 --count $frames --stats json $* \
     >/tmp/stats 2>/tmp/err
 echo "\$?" >/tmp/code
 shot last
 cp /tmp/stats /tmp/err /tmp/code .
 END
-    expect "$at: shows 300 frames" says "$at/code" '^0$'
+    expect "$at: shows $frames frames" says "$at/code" '^0$'
 }
 # Of the last line, all frames together, or of the one before the last second.
 value() { # NAME KEY
@@ -65,7 +67,14 @@ expect "500 MIPS: lights and ghosts are still drawn" \
 run_at plain 1
 expect "500 MIPS: faster than without" between "$(value plain fps)" \
     "$(value half fps)" 31
-for at in gips half plain; do
+size=1280x720 rate=25 frames=250
+build/x86_64/vm/scene -n 20 -m 6,2 YUYV $size "$out/scene" 200,300,14
+run_at hd 0 --quality draft
+expect "1 GIPS, 1280x720: 25 fps" between 24.5 "$(value hd fps)" 25.5
+expect "1 GIPS, 1280x720: no frame is lost" between 0 "$(value hd drops)" 0
+expect "1 GIPS, 1280x720: none is late" between 0 "$(value hd late)" 0
+
+for at in gips half plain hd; do
     stages $at
 done | tee "$out/stages"
 rm -f "$out/scene"
