@@ -6,6 +6,7 @@
 #include "cost.h"
 #include "ladder.h"
 
+#define FIRST      1    /* octaves that a first frame takes more, for memory */
 #define ROOM       0.98 /* of the budget that is planned for */
 #define SPARE      0.9  /* less than so much of it: finer */
 #define TRY        1.15 /* what some frames may be told to take, to learn more */
@@ -34,6 +35,7 @@ double budget_quality(const struct budget *b)
 void budget_begin(struct budget *b)
 {
     b->n_tries = 0;
+    b->n_frames += b->n_frames < 2;
 }
 
 typedef char budget_has_rungs[(int)BUDGET_RUNGS == (int)LADDER_RUNGS ? 1 : -1];
@@ -61,7 +63,8 @@ static double predict(const struct budget *b, const struct frame *frame,
 
     ladder_frame(&then, (double)step / BUDGET_STEPS);
     cost = cost_of(frame, &then);
-    return b->ms_per_minsn * exp2(octaves_at(b, step)) * cost_minsn(&cost);
+    return b->ms_per_minsn * cost_minsn(&cost) *
+           exp2(octaves_at(b, step) + (b->n_frames > 1 ? 0 : FIRST));
 }
 
 /* The best within the budget, or the coarsest. */
@@ -81,8 +84,8 @@ static int best_step(const struct budget *b, const struct frame *frame)
 }
 
 /* Where no rung lies between STEP, which leaves much of the budget, and the
- * next, which is told to miss it by little, the latter for a few frames: it may
- * have been told too much. */
+ * next, which is told to miss it by little, the latter for a few frames in all:
+ * it may have been told too much. */
 static int try_next(struct budget *b, const struct frame *frame, int step)
 {
     const int is_gap = place_of(step + 1) - place_of(step) >= 1;
@@ -130,7 +133,7 @@ void budget_note(struct budget *b, double ms)
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
     const double here = octaves_at(b, b->step);
 
-    for (int i = 0; i < BUDGET_RUNGS && ms > 0; i++) {
+    for (int i = 0; i < BUDGET_RUNGS && ms > 0 && b->n_frames > 1; i++) {
         const double near = fmax(0, 1 - fabs(at - i)) / both;
 
         if (near <= 0)

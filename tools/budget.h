@@ -22,6 +22,7 @@ struct budget {
     double octaves[BUDGET_RUNGS]; /* learned beyond that, by quality */
     int step;     /* quality of the last frame, of BUDGET_STEPS */
     int n_tries;  /* of the frame being planned */
+    int n_frames; /* begun, 2 at most */
     int n_trials; /* frames drawn though they were told to take too long */
     double predicted_ms; /* of the last frame, by its last plan */
 };

@@ -76,6 +76,8 @@ void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
     frame->max_cells = smaller(asked->max_cells, rung.max_cells);
     frame->cfg.irradiance_steps =
         smaller(asked->cfg.irradiance_steps, rung.cfg.irradiance_steps);
+    frame->whole_codes = fmax(asked->whole_codes, rung.whole_codes);
+    frame->faintest_codes = fmax(asked->faintest_codes, rung.faintest_codes);
     frame->half = asked->half || rung.half;
     frame->max_lights = smaller(asked->max_lights, step_of[a->step].max_lights);
     frame_retune(frame);

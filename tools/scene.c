@@ -373,7 +373,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
 int scene_calibrate(const struct tool *tool, const struct scene *scene,
                     struct glint_view view, struct budget *budget)
 {
-    const struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}};
+    struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}};
     struct glint_image image = {
         .format = GLINT_YUYV, .width = view.width, .height = view.height};
     struct scene plain = *scene;
@@ -387,7 +387,12 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
 
     plain.budget_ms = 0;
     plain.mask_nodes = 0;
+    plain.only_ghost = -1;
     code = scene_frame(tool, &plain, view, &frame);
+    if (frame.lens) /* whose model may end before */
+        lamp.theta_deg = fmin(
+            lamp.theta_deg,
+            22.5 / atan(1) * asin(frame.lens->header->sine_hi_q30 * 0x1p-30));
     for (int i = 0; i < 4 && mem && code == EXIT_OK; i++) {
         glint_image_place(&image, mem);
         if (frame_draw(&frame, &lamp, 1, 1, &image, &report) != GLINT_OK)
@@ -397,7 +402,7 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
             least_ms =
                 fmin(least_ms, report.plan_ms + report.bin_ms + report.draw_ms);
     }
-    if (mem && code == EXIT_OK) {
+    if (mem && code == EXIT_OK && report.stats.bundles > 0) {
         cost = cost_of(&frame, &frame);
         budget->ms_per_minsn = least_ms / cost_minsn(&cost);
     }
