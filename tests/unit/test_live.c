@@ -25,6 +25,7 @@
 
 static char config_path[] = "/tmp/glint-test-live-XXXXXX";
 static char said_path[] = "/tmp/glint-test-said-XXXXXX";
+static char shot_dir[] = "/tmp/glint-test-shot-XXXXXX";
 
 static int n_waits, n_unwaited;
 static void (*script)(int wait); /* what happens at wait number WAIT */
@@ -188,7 +189,7 @@ static const char *snapshot(int number)
     char *const into = mem[number % 2];
     FILE *f;
 
-    snprintf(path, sizeof path, "/tmp/glint-test-live-%02d.ppm", number);
+    snprintf(path, sizeof path, "%s/%02d.ppm", shot_dir, number);
     f = fopen(path, "rb");
     assert_non_null(f);
     memset(into, 0, sizeof mem[0]);
@@ -204,8 +205,11 @@ static void test_reloads(void **state)
     char line[200];
 
     (void)state;
-    write_config("lens = " LENS "\nlight = 5,60,1e4\nmemory = 4\n"
-                 "snapshot = /tmp/glint-test-live-%02d.ppm\n");
+    snprintf(line, sizeof line,
+             "lens = " LENS "\nlight = 5,60,1e4\nmemory = 4\n"
+             "snapshot = %s/%%02d.ppm\n",
+             shot_dir);
+    write_config(line);
     for (int exact = 0; exact < 2; exact++) {
         fake_camera_reset();
         script = reload_often;
@@ -275,16 +279,16 @@ static void test_black(void **state)
     (void)state;
     for (size_t i = 0; i < 2 * sizeof kind / sizeof *kind; i++) {
         const char *rgb;
+        char line[200];
 
         fake_camera_reset();
         camera.mode[0].fourcc = camera.now.fourcc = kind[i / 2];
         script = snapshot_at_2;
-        assert_int_equal(
-            live(i % 2 ? "--count 3 --layer flare --exposure -60 --range full "
-                         "--snapshot /tmp/glint-test-live-%02d.ppm"
-                       : "--count 3 --layer flare --exposure -60 --range "
-                         "limited --snapshot /tmp/glint-test-live-%02d.ppm"),
-            EXIT_OK);
+        snprintf(line, sizeof line,
+                 "--count 3 --layer flare --exposure -60 --range %s --snapshot "
+                 "%s/%%02d.ppm",
+                 i % 2 ? "full" : "limited", shot_dir);
+        assert_int_equal(live(line), EXIT_OK);
         must_leave_nothing();
         rgb = snapshot(1) + strlen("P6\n64 48\n255\n");
         for (int k = 0; k < 3 * 64 * 48; k++)
@@ -297,15 +301,19 @@ static void test_black(void **state)
 /* It waits for the next frame, and so does the program. */
 static void test_snapshot_waits(void **state)
 {
+    char line[100], path[60], said[80];
+
     (void)state;
-    unlink("/tmp/glint-test-live-01.ppm");
+    snprintf(path, sizeof path, "%s/01.ppm", shot_dir);
+    snprintf(said, sizeof said, "snapshot %s", path);
+    snprintf(line, sizeof line, "--count 20 --snapshot %s/%%02d.ppm", shot_dir);
+    unlink(path);
     fake_camera_reset();
     script = silence_and_snapshot;
-    assert_int_equal(
-        live("--count 20 --snapshot /tmp/glint-test-live-%02d.ppm"), EXIT_OK);
+    assert_int_equal(live(line), EXIT_OK);
     must_leave_nothing();
-    assert_int_equal(n_said("snapshot /tmp/glint-test-live-01.ppm"), 1);
-    assert_int_equal(unlink("/tmp/glint-test-live-01.ppm"), 0);
+    assert_int_equal(n_said(said), 1);
+    assert_int_equal(unlink(path), 0);
 }
 
 /* ----------------------------------------------------------------- lost again
@@ -393,6 +401,8 @@ static int enter(void **state)
 {
     (void)state;
     close(mkstemp(config_path));
+    if (!mkdtemp(shot_dir))
+        return -1;
     close(mkstemp(said_path));
     return 0;
 }
@@ -400,7 +410,7 @@ static int enter(void **state)
 static int leave(void **state)
 {
     (void)state;
-    return unlink(config_path) | unlink(said_path);
+    return unlink(config_path) | unlink(said_path) | rmdir(shot_dir);
 }
 
 int main(void)
