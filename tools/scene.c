@@ -377,7 +377,7 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
     struct glint_image image = {
         .format = GLINT_YUYV, .width = view.width, .height = view.height};
     struct scene plain = *scene;
-    struct frame_report report;
+    struct frame_report report = {0};
     struct frame frame;
     void *mem =
         calloc(1, glint_image_bytes(GLINT_YUYV, view.width, view.height));
