@@ -495,6 +495,7 @@ enum glint_status frame_draw(struct frame *frame,
     report->draw_ms = 1e3 * (times[4] - times[3]);
     if (frame->lens && frame->budget.ms > 0) {
         report->predicted_ms = frame->budget.predicted_ms;
+        report->calibrated_minsn = frame->budget.calibrated_minsn;
         report->quality = budget_quality(&frame->budget);
         if (frame->bytes == bytes) /* else it made room, once */
             budget_note(&frame->budget, 1e3 * (times[4] - times[0]));

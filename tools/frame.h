@@ -81,6 +81,7 @@ struct frame_report {
     size_t peak_bytes;  /* what its largest frame took of it */
     double plan_ms, trace_ms, bin_ms, draw_ms;
     double predicted_ms, quality; /* with a budget, else 0 and -1 */
+    double calibrated_minsn;      /* that predictions rest on, or 0 */
 };
 
 void frame_init(struct frame *frame, const struct glint_setup *setup,

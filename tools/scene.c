@@ -404,7 +404,8 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
     }
     if (mem && code == EXIT_OK && report.stats.bundles > 0) {
         cost = cost_of(&frame, &frame);
-        budget->ms_per_minsn = least_ms / cost_minsn(&cost);
+        budget->calibrated_minsn = cost_minsn(&cost);
+        budget->ms_per_minsn = least_ms / budget->calibrated_minsn;
     }
     frame_finish(&frame);
     free(mem);
@@ -441,8 +442,9 @@ void scene_json(const struct frame_report *r)
            r->stats.held_cells, r->held_samples, r->plan_ms, r->trace_ms,
            r->bin_ms, r->draw_ms);
     if (r->quality >= 0)
-        printf(", \"quality\": %.4f, \"predicted_ms\": %.3f", r->quality,
-               r->predicted_ms);
+        printf(", \"quality\": %.4f, \"predicted_ms\": %.3f, "
+               "\"calibrated_minsn\": %.4f",
+               r->quality, r->predicted_ms, r->calibrated_minsn);
 }
 
 void scene_lights_text(const struct frame_report *r, char text[64])
