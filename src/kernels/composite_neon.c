@@ -76,16 +76,25 @@ struct v_mix {
     vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
 #endif
 
+/* Where there are registers for tables they are loaded once, else whenever one
+ * is looked into. */
+#if defined(__aarch64__)
 #define TABLES(t, tone)                                     \
     const uint8x16x2_t t##_level = table_at((tone)->level), \
                        t##_slope = table_at((tone)->slope), \
                        t##_curve = table_at((tone)->curve)
+#define TABLE(t, tone, name) &t##_##name
+#else
+#define TABLES(t, tone)      (void)0
+#define TABLE(t, tone, name) (const void *)(tone)->name
+#endif
 
-#define TONE_HERE(t, tone)                                              \
-    {                                                                   \
-        vld1q_s16((tone)->factor.one), vld1q_s16((tone)->toe_end),      \
-            {vld1q_s16((tone)->rise[0]), vld1q_s16((tone)->rise[1])},   \
-            vld1q_s16((tone)->turn), &t##_level, &t##_slope, &t##_curve \
+#define TONE_HERE(t, tone)                                            \
+    {                                                                 \
+        vld1q_s16((tone)->factor.one), vld1q_s16((tone)->toe_end),    \
+            {vld1q_s16((tone)->rise[0]), vld1q_s16((tone)->rise[1])}, \
+            vld1q_s16((tone)->turn), TABLE(t, tone, level),           \
+            TABLE(t, tone, slope), TABLE(t, tone, curve)              \
     }
 
 #define LOAD_TONE(t, tone)                             \
@@ -101,17 +110,12 @@ struct v_mix {
         vld1q_s16((mix)->white)};                                   \
     const struct v_mix *const m = &m##_here
 
+#if defined(__aarch64__)
 static inline uint8x16x2_t table_at(const int16_t *p)
 {
-#if defined(__aarch64__)
     return vld1q_u8_x2((const uint8_t *)p);
-#else
-    const uint8x16x2_t t = {{vreinterpretq_u8_s16(vld1q_s16(p)),
-                             vreinterpretq_u8_s16(vld1q_s16(p + 8))}};
-
-    return t;
-#endif
 }
+#endif
 
 /* -------------------------------------------------------------------- tables
  */
@@ -137,7 +141,7 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
 {
 #if defined(__aarch64__)
     return vreinterpretq_s16_u8(vqtbl2q_u8(*table, at));
-#else
+#elif defined(__clang__)
     const uint8x8x4_t quarters = {
         {vget_low_u8(table->val[0]), vget_high_u8(table->val[0]),
          vget_low_u8(table->val[1]), vget_high_u8(table->val[1])}};
@@ -145,6 +149,17 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
     return vreinterpretq_s16_u8(
         vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
                     vtbl4_u8(quarters, vget_high_u8(at))));
+#else
+    /* as GCC loads no four registers for it but by way of the stack */
+    uint8x8x4_t quarters;
+    uint8x16_t entry;
+
+    __asm__("vld1.8 %h1, [%2]\n\t"
+            "vtbl.8 %e0, %h1, %e3\n\t"
+            "vtbl.8 %f0, %h1, %f3"
+            : "=&w"(entry), "=&w"(quarters)
+            : "r"(table), "w"(at), "m"(*table));
+    return vreinterpretq_s16_u8(entry);
 #endif
 }
 
