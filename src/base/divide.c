@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/divide.h"
 
-#include "base/compiler.h"
+#include "base/q.h"
 
 static uint32_t upper(uint32_t a, uint32_t b)
 {
@@ -22,9 +22,14 @@ static uint32_t reciprocal(uint32_t x)
     return r_q31;
 }
 
-static uint64_t size_of(int64_t x)
+uint32_t glint_reciprocal(uint32_t x)
 {
-    return (uint64_t)(x < 0 ? -x : x);
+    uint32_t r = reciprocal(x);
+    uint64_t rest = (UINT64_MAX >> 1) - (uint64_t)r * x;
+
+    for (; rest >= x; rest -= x)
+        r++;
+    return r;
 }
 
 /* Takes as many times D from the rest as the upper 32 bits of both say, never
@@ -32,12 +37,12 @@ static uint64_t size_of(int64_t x)
  * than four times D. */
 int64_t glint_divide(int64_t n, int64_t d)
 {
-    const uint64_t by = size_of(d);
+    const uint64_t by = q_magnitude(d);
     const int wide = bit_length(by);
     /* NOLINTNEXTLINE: D is not 0 */
     const uint32_t top = (uint32_t)(by << (64 - wide) >> 32);
     const uint32_t one_over = reciprocal(top < UINT32_MAX ? top + 1 : top);
-    uint64_t rest = size_of(n), q = 0;
+    uint64_t rest = q_magnitude(n), q = 0;
     int more;
 
     while ((more = bit_length(rest) - wide) >= 2) {

@@ -8,6 +8,8 @@
 
 #include <stdint.h>
 
+#include "base/q.h"
+
 /* N / D, cut towards 0, in 32-bit steps; D is not 0, both are within +-2^63 and
  * not INT64_MIN. */
 int64_t glint_divide(int64_t n, int64_t d);
@@ -20,6 +22,38 @@ static inline int64_t q_divide(int64_t n, int64_t d)
 #else
     return glint_divide(n, d);
 #endif
+}
+
+/* Floor of (2^63 - 1) / X, for X from 2^31 on. */
+uint32_t glint_reciprocal(uint32_t x);
+
+static inline uint32_t q_reciprocal(uint32_t x)
+{
+#if UINTPTR_MAX > UINT32_MAX
+    return (uint32_t)((UINT64_MAX >> 1) / x);
+#else
+    return glint_reciprocal(x);
+#endif
+}
+
+/* X times 2^UP or cut to it, so that bit 31 is its highest; X is not 0. */
+static inline uint32_t q_upper(uint64_t x, int *up)
+{
+    const int wide = bit_length(x);
+
+    *up = 32 - wide;
+    return (uint32_t)(wide > 32 ? x >> (wide - 32) : x << (32 - wide));
+}
+
+/* N / D, 0 <= N <= D, D not 0; at most 2^-30 more or 2^-29 less, and within 0
+ * .. 1. */
+static inline int32_t q_part_q30(uint64_t n, uint64_t d)
+{
+    int up;
+    const uint32_t by = q_upper(d, &up);
+    const uint32_t of = (uint32_t)(up < 0 ? n >> -up : n << up);
+
+    return (int32_t)((uint64_t)of * q_reciprocal(by) >> 33);
 }
 
 #endif

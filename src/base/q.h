@@ -14,6 +14,11 @@
 
 #include "base/compiler.h"
 
+static inline uint64_t q_magnitude(int64_t x)
+{
+    return (uint64_t)(x < 0 ? -x : x);
+}
+
 #ifdef GLINT_Q_CHECK
 void glint_q_overflow(const char *operation, int64_t exact);
 #define Q_FITS(op, r, lo, hi) \
@@ -56,8 +61,7 @@ static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
     if (s > 0 && s < 63)
         y = q_shift(x, s);
     else if (s <= 0)
-        fits = x == 0 ||
-               (s >= -31 && bit_length((uint64_t)(x < 0 ? -x : x)) - s <= 32);
+        fits = x == 0 || (s >= -31 && bit_length(q_magnitude(x)) - s <= 32);
     if (s <= 0 && s >= -31 && fits)
         y = x * (INT64_C(1) << -s);
     fits &= y < limit && y > -limit;

@@ -7,21 +7,19 @@
 #ifndef GLINT_BASE_REAL_H
 #define GLINT_BASE_REAL_H
 
-#include "base/compiler.h"
 #include "base/divide.h"
 #include "glint/lens.h"
 
 /* X * 2^EXPONENT; X within +-2^62. */
 static inline struct glint_real real_of(int64_t x, int exponent)
 {
-    const int wide = bit_length((uint64_t)(x < 0 ? -x : x));
-    const int up = 31 - wide;
+    const uint64_t size = q_magnitude(x);
+    const int up = 31 - bit_length(size);
+    const int32_t mantissa = (int32_t)(up >= 0 ? size << up : size >> -up);
 
     if (x == 0)
         return (struct glint_real){0, 0};
-    return (struct glint_real){
-        (int32_t)(up >= 0 ? x * (INT64_C(1) << up) : x / (INT64_C(1) << -up)),
-        exponent - up};
+    return (struct glint_real){x < 0 ? -mantissa : mantissa, exponent - up};
 }
 
 static inline struct glint_real real_times(struct glint_real a,

@@ -3,6 +3,7 @@
  * Drawing by edges: bundles to edges, edges to tiles, rows of tiles to pixels.
  */
 #include "base/compiler.h"
+#include "base/divide.h"
 #include "base/q.h"
 #include "flare/state.h"
 
@@ -127,7 +128,7 @@ static int32_t light_limit_q8(const struct glint_flare *f)
     }
     if (flux < most)
         return GLINT_LIMIT_Q8;
-    share_q8 = (most << 8) / (2 * cells);
+    share_q8 = q_divide(most << 8, 2 * cells);
     return (int32_t)(share_q8 < GLINT_LIMIT_Q8 ? share_q8 : GLINT_LIMIT_Q8);
 }
 

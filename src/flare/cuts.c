@@ -110,20 +110,19 @@ static void shorten(const struct glint_stop *stop, struct interval *in, int cut,
                     const struct glint_vertex *a, const struct glint_vertex *b)
 {
     const int64_t fa = cut_q16(stop, cut, a), fb = cut_q16(stop, cut, b);
-    int64_t t_q30;
+    const int end = fb <= 0; /* the one that is outside */
+    int32_t t_q30;
 
+    if (fa > 0 && fb > 0)
+        return;
     if (fa <= 0 && fb <= 0) {
         in->t_q30[1] = -1;
         return;
     }
-    t_q30 = q_divide(fa * (INT64_C(1) << 30), fa - fb); /* 2^31.5 times 2^30 */
-    if (fa <= 0 && t_q30 >= in->t_q30[0]) {
-        in->t_q30[0] = t_q30;
-        in->cut[0] = cut;
-    }
-    if (fb <= 0 && t_q30 <= in->t_q30[1]) {
-        in->t_q30[1] = t_q30;
-        in->cut[1] = cut;
+    t_q30 = q_part_q30(q_magnitude(fa), q_magnitude(fa) + q_magnitude(fb));
+    if (end ? t_q30 <= in->t_q30[1] : t_q30 >= in->t_q30[0]) {
+        in->t_q30[end] = t_q30;
+        in->cut[end] = cut;
     }
 }
 
@@ -182,15 +181,15 @@ static struct plane plane_of(const int64_t value[4])
 /* X / Y as q16, if it is within the cell or near. */
 static int near_q16(int64_t x, int64_t y, int64_t *q16)
 {
-    const int wide = bit_length((uint64_t)(x < 0 ? -x : x));
+    const int wide = bit_length(q_magnitude(x));
     const int down = wide > 45 ? wide - 45 : 0;
 
     x >>= down;
     y >>= down;
-    if (y == 0)
+    if (4 * q_magnitude(x) >= 3 * q_magnitude(y))
         return 0;
     *q16 = q_divide(x * 65536, y);
-    return *q16 > -3 * 16384 && *q16 < 3 * 16384;
+    return 1;
 }
 
 int glint_cuts_cross(const struct glint_stop *stop,

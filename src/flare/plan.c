@@ -227,8 +227,8 @@ static int64_t stop_change(const struct glint_plan_survey *s)
 
 static int64_t one_radius(const struct glint_plan_survey *s)
 {
-    const int64_t radius =
-        (s->limit[GLINT_OUT_STOP_X] * 20 / 21) >> FINE_LOG2; /* of 1.05 */
+    const int64_t radius = q_divide(s->limit[GLINT_OUT_STOP_X] * 20, 21) >>
+                           FINE_LOG2; /* of 1.05 */
 
     return radius > 0 ? radius : 1; /* of coarser units than a radius */
 }
@@ -242,7 +242,7 @@ static int64_t round_bend(const struct glint_plan_survey *s)
                                      s->n_bends);
 
     /* 2^30 * 2^31 */
-    return (stop_change(s) >> 2) * sensor / ((one_radius(s) >> 2) + 1);
+    return q_divide((stop_change(s) >> 2) * sensor, (one_radius(s) >> 2) + 1);
 }
 
 static struct glint_real pixels_per_mm(const struct glint_plan *p)
@@ -307,7 +307,7 @@ static int cells_of(const struct glint_plan *p,
 
         outline = cut > outline ? cut : outline;
     }
-    outline /= outline_over_light(p, t);
+    outline = q_divide(outline, outline_over_light(p, t));
     bend = bend > outline ? bend : outline;
     bend_q8 = real_integer(
         real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] + FINE_LOG2),
@@ -339,7 +339,8 @@ static int64_t bowl_of(const struct glint_plan_survey *s, int k)
     int64_t sum = 0;
 
     for (int way = 0; way < 2; way++)
-        sum += s->n_bent[way] ? s->change[k].bent[way] / s->n_bent[way] : 0;
+        sum += s->n_bent[way] ? q_divide(s->change[k].bent[way], s->n_bent[way])
+                              : 0;
     return sum;
 }
 
@@ -357,8 +358,8 @@ static int64_t round_bowl_q16(const struct glint_plan_survey *s)
  * the mean: where a cell bends by D across and E down, (D + E) / 12. */
 static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
 {
-    return (uint16_t)q_clamp_sat(bowl_q16 / (12 * (int64_t)n_cells * n_cells),
-                                 0, 1 << 12);
+    return (uint16_t)q_clamp_sat(
+        q_divide(bowl_q16, 12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
 }
 
 /* A barrel's (1 + r^2) / 2 is a bowl. With the sag taken off, outlines lie as
@@ -396,8 +397,10 @@ static int is_in_view(const struct glint_plan *p, const struct glint_beam *b,
                       const struct glint_plan_extent *e)
 {
     const int64_t middle_q8 = pixels_q8(p, t, (e->low + e->high) / 2);
-    const int64_t wide_q8 = pixels_q8(p, t, (e->high - e->low) * 11 / 20) + 256;
-    const int64_t high_q8 = pixels_q8(p, t, e->wide + e->wide / 10) + 256;
+    const int64_t wide_q8 =
+        pixels_q8(p, t, q_divide((e->high - e->low) * 11, 20)) + 256;
+    const int64_t high_q8 =
+        pixels_q8(p, t, e->wide + q_divide(e->wide, 10)) + 256;
     const int64_t c = b->cos_q30 < 0 ? -b->cos_q30 : b->cos_q30;
     const int64_t s = b->sin_q30 < 0 ? -b->sin_q30 : b->sin_q30;
     const int64_t m = middle_q8 < 0 ? -middle_q8 : middle_q8;
@@ -426,7 +429,8 @@ static struct glint_real colour_of(const struct glint_wave *w,
         most = x > most ? x : -x > most ? -x : most;
     }
     for (int c = 0; c < 3; c++)
-        rgb_q14[c] = most ? q_narrow(rgb_q28[c] * (1 << 14) / most) : 0;
+        rgb_q14[c] =
+            most ? q_narrow(q_divide(rgb_q28[c] * (1 << 14), most)) : 0;
     return real_of(most, -28);
 }
 
@@ -564,9 +568,12 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
         return GLINT_FATE_BLOCKED;
     if (!is_in_view(plan, b, transfer, &s->reach))
         return GLINT_FATE_OUTSIDE;
-    wide_q8 =
-        pixels_q8(plan, transfer, (s->seen.high - s->seen.low) * 3 / 5) + 256;
-    high_q8 = pixels_q8(plan, transfer, s->seen.wide + s->seen.wide / 10) + 256;
+    wide_q8 = pixels_q8(plan, transfer,
+                        q_divide((s->seen.high - s->seen.low) * 3, 5)) +
+              256;
+    high_q8 =
+        pixels_q8(plan, transfer, s->seen.wide + q_divide(s->seen.wide, 10)) +
+        256;
     source->energy_up = (uint8_t)energy_up(s->energy);
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - source->energy_up;
     source->flux = flux_of(plan, source, transfer, colour, exponent);

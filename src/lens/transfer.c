@@ -629,7 +629,7 @@ int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
     const int rim = transfer->hollow;
 
     /* NOLINTNEXTLINE: there is a step */
-    return (int32_t)(ONE_Q30 * ((int64_t)rim * n + j) / ((rim + 1) * n));
+    return (int32_t)q_divide(ONE_Q30 * ((int64_t)rim * n + j), (rim + 1) * n);
 }
 
 /* Whether row J lies between the two sides of a hollow box. */

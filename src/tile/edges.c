@@ -7,11 +7,26 @@
 #include "base/divide.h"
 #include "base/q.h"
 
-#define ONE_Q16 (INT64_C(1) << 16)
+#define ONE_Q16 (INT32_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
+
+/* Below 2^31, in whatever a CPU adds up at once. */
+typedef int_fast32_t fast;
 
 /* --------------------------------------------------------------------- edge
  */
+
+/* ACROSS / DOWN, rounded towards 0; DOWN > 0, both below 2^30. */
+static int64_t slope_of(int32_t across, int32_t down)
+{
+    int up;
+    const uint32_t by = q_upper((uint32_t)down, &up);
+    const uint64_t size_q40 =
+        (uint64_t)(across < 0 ? -across : across) * q_reciprocal(by) >>
+        (31 - up);
+
+    return across < 0 ? -(int64_t)size_q40 : (int64_t)size_q40;
+}
 
 int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
                    const int32_t b_q8[2], int32_t light, int32_t other)
@@ -25,9 +40,7 @@ int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
         .x_q8 = upper[0],
         .y_q8 = upper[1],
         .end_y_q8 = lower[1],
-        .slope_q40 =
-            q_divide(((int64_t)lower[0] - upper[0]) * (INT64_C(1) << 32),
-                     (int64_t)lower[1] - upper[1]),
+        .slope_q40 = slope_of(lower[0] - upper[0], lower[1] - upper[1]),
         .left = up ? other : light,
         .right = up ? light : other};
     return 1;
@@ -127,8 +140,9 @@ int glint_edge_span(const struct glint_edge *edge,
 /* --------------------------------------------------------------------- add
  */
 
-/* Sums of 64 bits, or of 32. */
+/* Sums of 64 bits, or of 32, of light _q16 below this. */
 enum mode { WIDE, NARROW };
+#define MOST_NARROW (INT64_C(1) << 23)
 
 /* One row of one channel of a tile, from where pixel 0 of the picture would be.
  */
@@ -144,8 +158,7 @@ struct run {
     int64_t rise_q32; /* see rise_of */
 };
 
-static inline void change(const struct run *r, enum mode mode, int x,
-                          int64_t area)
+static inline void change(const struct run *r, enum mode mode, int x, fast area)
 {
     if (mode == NARROW)
         r->row.narrow_q24[x] += (uint32_t)r->light * (uint32_t)area;
@@ -153,9 +166,8 @@ static inline void change(const struct run *r, enum mode mode, int x,
         r->row.wide[x] += (uint64_t)(r->light * area);
 }
 
-/* AREA in what sums count. */
-static inline int64_t units(const struct run *r, enum mode mode,
-                            int64_t area_q16)
+/* AREA, a pixel at most, in what sums count. */
+static inline fast units(const struct run *r, enum mode mode, fast area_q16)
 {
     const int less = mode == NARROW ? 8 : r->less;
 
@@ -166,7 +178,7 @@ static inline int64_t units(const struct run *r, enum mode mode,
  * several pixels. Covered areas rise from pixel to pixel, from 0 to HEIGHT; so
  * much of each as lies in the tile is what it changes by. */
 static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
-                     int64_t b_q40, int64_t height_q16)
+                     int64_t b_q40, fast height_q16)
 {
     const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
     const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
@@ -174,19 +186,20 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
     const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
     const int from = first > begin ? first : begin;
     const int to = last < r->x1 - 1 ? last : r->x1 - 1;
-    int64_t low = 0, before = 0;
+    fast low = 0, before = 0;
 
     if (from > first)
-        low = r->rise_q32 * (from * ONE_Q16 - a_q16) >> 32;
+        low = (fast)(r->rise_q32 * ((int64_t)from * ONE_Q16 - a_q16) >> 32);
     for (int i = from; i <= to; i++) {
-        const int64_t side_q16 = (i + 1) * ONE_Q16;
-        const int64_t high =
-            i < last ? r->rise_q32 * (side_q16 - a_q16) >> 32 : height_q16;
+        const int64_t side_q16 = (i + INT64_C(1)) * ONE_Q16;
+        const fast high = i < last
+                              ? (fast)(r->rise_q32 * (side_q16 - a_q16) >> 32)
+                              : height_q16;
         /* how far the piece's ends lie from the pixel's right side */
-        const int64_t far_q16 = (i > first ? ONE_Q16 : side_q16 - a_q16) +
-                                (i < last ? 0 : side_q16 - b_q16);
-        const int64_t area =
-            units(r, mode, low + ((high - low) * far_q16 >> 17));
+        const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
+                                    (i < last ? 0 : side_q16 - b_q16));
+        const fast area =
+            units(r, mode, low + (fast)((int64_t)(high - low) * far_q16 >> 17));
 
         if (i >= r->x0)
             change(r, mode, i, area - before);
@@ -204,29 +217,47 @@ static int64_t rise_of(int64_t slope_q40)
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
     const int64_t least = INT64_C(1) << 24;
 
+    int up;
+    const uint32_t by = q_upper((uint64_t)(size > least ? size : least), &up);
+    const int64_t r = q_reciprocal(by); /* 2^(63 - up) / size */
+
     /* 1/256 pixel of height is 2^8 of _q16 */
-    return q_divide(INT64_C(1) << 62, size > least ? size : least) * 4;
+    return up < 0 ? r >> (-1 - up) : r << (up + 1);
 }
 
-/* The same where it is two pixels, FIRST and the next, both in the tile. */
-static inline void add_two(const struct run *r, enum mode mode, int first,
-                           int64_t a_q40, int64_t b_q40, int64_t height_q16)
+/* The same where it is one pixel or two, both in the tile: what a register
+ * holds does. */
+static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
+                            fast b_q16, fast height_q16)
 {
-    const int64_t far_q16 = (first + 1) * ONE_Q16 - (a_q40 >> 24);
-    const int64_t left_q16 = (first + 2) * ONE_Q16 - (b_q40 >> 24);
-    const int64_t low = r->rise_q32 * far_q16 >> 32;
-    const int64_t one = units(r, mode, low * far_q16 >> 17);
-    const int64_t two =
-        units(r, mode, low + ((height_q16 - low) * (ONE_Q16 + left_q16) >> 17));
+    const int first = (int)(a_q16 >> 16);
+    const fast far_q16 = ONE_Q16 - (a_q16 & 0xffff);
+    const fast left_q16 = ONE_Q16 - (b_q16 & 0xffff);
+    const fast height = units(r, mode, height_q16);
 
-    change(r, mode, first, one);
-    change(r, mode, first + 1, two - one);
-    change(r, mode, first + 2, units(r, mode, height_q16) - two);
+    if (first == b_q16 >> 16) {
+        const int64_t area_q33 = (int64_t)height_q16 * (far_q16 + left_q16);
+        const fast area = units(r, mode, (fast)(area_q33 >> 17));
+
+        change(r, mode, first, area);
+        change(r, mode, first + 1, height - area);
+    } else {
+        const fast low_q16 = (fast)(r->rise_q32 * far_q16 >> 32);
+        const int64_t rest_q33 =
+            (int64_t)(height_q16 - low_q16) * (ONE_Q16 + left_q16);
+        const fast one =
+            units(r, mode, (fast)((int64_t)low_q16 * far_q16 >> 17));
+        const fast two = units(r, mode, low_q16 + (fast)(rest_q33 >> 17));
+
+        change(r, mode, first, one);
+        change(r, mode, first + 1, two - one);
+        change(r, mode, first + 2, height - two);
+    }
 }
 
 /* From A to B, in any order, over HEIGHT. */
 static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
-                             int64_t b_q40, int64_t height_q16)
+                             int64_t b_q40, fast height_q16)
 {
     const int64_t low_q40 = a_q40 < b_q40 ? a_q40 : b_q40;
     const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
@@ -237,16 +268,10 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
             change(r, mode, 0, units(r, mode, height_q16));
     } else if (first >= r->x1) {
         return;
-    } else if (first == last) {
-        const int64_t height = units(r, mode, height_q16);
-        const int64_t far_q16 = 2 * ONE_Q16 - ((low_q40 >> 24) & 0xffff) -
-                                ((high_q40 >> 24) & 0xffff);
-        const int64_t area = units(r, mode, (height_q16 * far_q16) >> 17);
-
-        change(r, mode, first, area);
-        change(r, mode, first + 1, height - area);
-    } else if (last == first + 1 && first >= r->x0 && last < r->x1) {
-        add_two(r, mode, first, low_q40, high_q40, height_q16);
+    } else if (first == last ||
+               (last == first + 1 && first >= r->x0 && last < r->x1)) {
+        add_near(r, mode, (fast)(low_q40 >> 24), (fast)(high_q40 >> 24),
+                 height_q16);
     } else {
         add_wide(r, mode, low_q40, high_q40, height_q16);
     }
@@ -282,26 +307,13 @@ static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
 static inline void add_rows_within(struct run r, enum mode mode, int n,
                                    int64_t x_q40, int64_t step_q40, int stride)
 {
-    const int64_t full = units(&r, mode, ONE_Q16);
-
     for (; n > 0; n--) {
-        const int64_t next = x_q40 + step_q40;
-        const int64_t low = x_q40 < next ? x_q40 : next;
-        const int64_t high = x_q40 < next ? next : x_q40;
-        const int first = (int)(low >> 40), last = (int)(high >> 40);
+        const fast a_q16 = (fast)(x_q40 >> 24);
+        const fast b_q16 = (fast)((x_q40 += step_q40) >> 24);
 
-        if (first == last) {
-            const int64_t far_q16 =
-                2 * ONE_Q16 - ((low >> 24) & 0xffff) - ((high >> 24) & 0xffff);
-            const int64_t area = units(&r, mode, far_q16 >> 1);
-
-            change(&r, mode, first, area);
-            change(&r, mode, first + 1, full - area);
-        } else {
-            add_two(&r, mode, first, low, high, ONE_Q16);
-        }
+        add_near(&r, mode, a_q16 < b_q16 ? a_q16 : b_q16,
+                 a_q16 < b_q16 ? b_q16 : a_q16, ONE_Q16);
         go_down(&r, mode, stride);
-        x_q40 = next;
     }
 }
 
@@ -356,7 +368,7 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
         const int32_t height_q8 = height_of(&p);
         const int64_t next_q40 = p.x_q40 + e->slope_q40 * height_q8;
 
-        add_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * INT64_C(256));
+        add_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * 256);
         go_down(&p.run, mode, s->stride);
         p.x_q40 = next_q40;
         p.y_q8 += height_q8;
@@ -376,15 +388,14 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
         p.y_q8 += n * 256;
     }
     if (p.y_q8 < p.end_q8)
-        add_piece(&p.run, mode, p.x_q40, end_q40,
-                  (p.end_q8 - p.y_q8) * INT64_C(256));
+        add_piece(&p.run, mode, p.x_q40, end_q40, (p.end_q8 - p.y_q8) * 256);
 }
 
 /* All of a row's light, AREA, from the pixel on that the edge is in there,
  * X_Q40 from the tile's first; that of one left of the picture from its side.
  */
 static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
-                             int64_t area)
+                             fast area)
 {
     const int x = (int)(x_q40 >> 40);
 
@@ -399,7 +410,7 @@ static inline void add_full_rows(struct run r, enum mode mode, int n,
                                  int64_t x_q40, int64_t step_q40, int stride)
 {
     const uint64_t end_q40 = (uint64_t)(r.x1 * ONE_Q40);
-    const int64_t full = units(&r, mode, ONE_Q16);
+    const fast full = units(&r, mode, ONE_Q16);
 
     x_q40 += step_q40 / 2;
     if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
@@ -433,7 +444,7 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
         const int64_t step_q40 = e->slope_q40 * height_q8;
 
         add_whole(&p.run, mode, p.x_q40 + step_q40 / 2,
-                  units(&p.run, mode, height_q8 * INT64_C(256)));
+                  units(&p.run, mode, height_q8 * 256));
         go_down(&p.run, mode, s->stride);
         p.x_q40 += step_q40;
         p.y_q8 += height_q8;
@@ -448,7 +459,7 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
     if (p.y_q8 < p.end_q8)
         add_whole(&p.run, mode,
                   p.x_q40 + e->slope_q40 * (p.end_q8 - p.y_q8) / 2,
-                  units(&p.run, mode, (p.end_q8 - p.y_q8) * INT64_C(256)));
+                  units(&p.run, mode, (p.end_q8 - p.y_q8) * 256));
 }
 
 static int64_t coloured_q20(int32_t light, int32_t colour_q14)
@@ -486,6 +497,8 @@ static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
             if (step == 0)
                 continue;
             far[c] += step < 0 ? -step : step;
+            if (mode == NARROW && far[c] >= MOST_NARROW)
+                return far[c]; /* for nothing: they have to be wide */
             if (e->whole)
                 add_whole_rows(s, mode, e, part_of(s, mode, e, step, c));
             else
@@ -512,7 +525,7 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
                     const struct glint_bundle *bundle, const int32_t *ref,
                     int n_refs)
 {
-    const int64_t most_q24 = INT64_C(1) << 31;
+    const int64_t most_q24 = MOST_NARROW * 256;
     int64_t far_q24 = 0;
 
     sums->narrow = 0;

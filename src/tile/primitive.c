@@ -107,21 +107,22 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
                              int64_t area, int frac, int32_t limit_q8,
                              int *n_held)
 {
-    /* flux and area are brought to 31 bits before they divide */
-    const int lift = 62 - bit_length((uint64_t)area);
-    const int64_t area_31 = (area << lift) >> 31; /* 2^30 .. 2^31 - 1 */
-    const int64_t ratio = q_divide((int64_t)bundle->flux_q31 << 31, area_31);
+    /* the area is brought to 32 bits before it divides */
+    int up;
+    const uint32_t area_32 = q_upper((uint64_t)area, &up);
+    const int64_t ratio =
+        (int64_t)((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) >> 31);
     /* light over less than a pixel: limit_q8 below 2^20, area at least 2^-33 */
     const int64_t limit_q22 =
         (area >> frac ? (int64_t)limit_q8
                       : q_divide((int64_t)limit_q8 << frac, area))
         << 14;
 
-    /* flux 2^(e - 31), area = area_31 2^(31 - lift - frac), result q22 */
-    return scaled_sat(ratio,
-                      bundle->flux_exponent - 31 + share_log2 + lift - 31 +
-                          frac - 31 + 22,
-                      limit_q22, n_held);
+    /* flux 2^(e - 31), area = area_32 2^(-up - frac), ratio of both times 2^32;
+     * result q22 */
+    return scaled_sat(
+        ratio, bundle->flux_exponent - 31 + share_log2 + up + frac - 32 + 22,
+        limit_q22, n_held);
 }
 
 struct glint_box glint_corners_pixel(const struct glint_corners *corners,

@@ -70,10 +70,43 @@ static void test_borders(void **state)
     expect(0, -7);
 }
 
+static void expect_reciprocal(uint32_t x)
+{
+    assert_int_equal(glint_reciprocal(x), (UINT64_MAX >> 1) / x);
+    assert_int_equal(q_reciprocal(x), (UINT64_MAX >> 1) / x);
+}
+
+static void test_reciprocal(void **state)
+{
+    (void)state;
+    for (uint32_t off = 0; off < 300000; off++) {
+        expect_reciprocal(UINT32_C(0x80000000) + off);
+        expect_reciprocal(UINT32_C(0xc0000000) - off);
+        expect_reciprocal(UINT32_MAX - off);
+        expect_reciprocal((uint32_t)draw() | UINT32_C(0x80000000));
+    }
+}
+
+/* Never more than the quotient, and less by no more than what it says. */
+static void test_part(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 300000; i++) {
+        const uint64_t d = 1 + (draw() >> (2 + draw() % 62));
+        const uint64_t n = i % 16 ? draw() % (d + 1) : i % 32 ? d : 0;
+        const double part = (double)n / (double)d;
+        const double got = q_part_q30(n, d) * 0x1p-30;
+
+        assert_true(got <= 1 && (n > 0 || got == 0));
+        assert_true(got <= part + 0x1p-30 && got >= part - 0x1p-29);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_any),
-                                       cmocka_unit_test(test_borders)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_any), cmocka_unit_test(test_borders),
+        cmocka_unit_test(test_reciprocal), cmocka_unit_test(test_part)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
