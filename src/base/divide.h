@@ -36,24 +36,30 @@ static inline uint32_t q_reciprocal(uint32_t x)
 #endif
 }
 
-/* X times 2^UP or cut to it, so that bit 31 is its highest; X is not 0. */
-static inline uint32_t q_upper(uint64_t x, int *up)
+/* X times 2^UP, cut; below 2^32, and UP at least -31. */
+static inline uint32_t q_upper(uint64_t x, int up)
 {
-    const int wide = bit_length(x);
+#if UINTPTR_MAX > UINT32_MAX
+    return (uint32_t)(x << (up + 32) >> 32);
+#else
+    return (uint32_t)(up < 0 ? x >> -up : x << up);
+#endif
+}
 
-    *up = 32 - wide;
-    return (uint32_t)(wide > 32 ? x >> (wide - 32) : x << (32 - wide));
+/* By how many bits X, not 0, is shorter than 32. */
+static inline int q_up(uint64_t x)
+{
+    return 32 - bit_length(x | 1);
 }
 
 /* N / D, 0 <= N <= D, D not 0; at most 2^-30 more or 2^-29 less, and within 0
  * .. 1. */
 static inline int32_t q_part_q30(uint64_t n, uint64_t d)
 {
-    int up;
-    const uint32_t by = q_upper(d, &up);
-    const uint32_t of = (uint32_t)(up < 0 ? n >> -up : n << up);
+    const int up = q_up(d);
 
-    return (int32_t)((uint64_t)of * q_reciprocal(by) >> 33);
+    return (int32_t)((uint64_t)q_upper(n, up) * q_reciprocal(q_upper(d, up)) >>
+                     33);
 }
 
 #endif

@@ -19,13 +19,11 @@ typedef int_fast32_t fast;
 /* ACROSS / DOWN, rounded towards 0; DOWN > 0, both below 2^30. */
 static int64_t slope_of(int32_t across, int32_t down)
 {
-    int up;
-    const uint32_t by = q_upper((uint32_t)down, &up);
-    const uint64_t size_q40 =
-        (uint64_t)(across < 0 ? -across : across) * q_reciprocal(by) >>
-        (31 - up);
+    const int up = q_up((uint32_t)down);
+    const int64_t r = q_reciprocal((uint32_t)down << up);
+    const int64_t size_q40 = (across < 0 ? -across : across) * r >> (31 - up);
 
-    return across < 0 ? -(int64_t)size_q40 : (int64_t)size_q40;
+    return across < 0 ? -size_q40 : size_q40;
 }
 
 int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
@@ -217,12 +215,12 @@ static int64_t rise_of(int64_t slope_q40)
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
     const int64_t least = INT64_C(1) << 24;
 
-    int up;
-    const uint32_t by = q_upper((uint64_t)(size > least ? size : least), &up);
-    const int64_t r = q_reciprocal(by); /* 2^(63 - up) / size */
+    const uint64_t by = (uint64_t)(size > least ? size : least);
+    const int up = q_up(by);                         /* 7 at most */
+    const int64_t r = q_reciprocal(q_upper(by, up)); /* 2^(63 - up) / size */
 
     /* 1/256 pixel of height is 2^8 of _q16 */
-    return up < 0 ? r >> (-1 - up) : r << (up + 1);
+    return (r << 8) >> (7 - up);
 }
 
 /* The same where it is one pixel or two, both in the tile: what a register
