@@ -116,6 +116,11 @@ struct sweep_mean {
  * marked: of flux errors above 2 percent none. */
 int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max);
 
+/* Decibels that MEAN[I] lies above what --quality reaches at its cost (or 2
+ * percent more, which is noise), by its means among these N, the cheapest
+ * first, and between two of them that draw as many pixels. */
+double sweep_above(const struct sweep_mean *mean, int n, int i);
+
 /* "grid 32, quantum 2": what differs from the standard. */
 void sweep_words(const struct sweep_setting *set, char *text, size_t bytes);
 
@@ -130,7 +135,8 @@ void sweep_svg_dials(const struct sweep *s, FILE *file);
 void sweep_svg_growth(const struct sweep *s, FILE *file);
 void sweep_page(const struct sweep *s, FILE *file);
 
-/* Rows of the table of named qualities, as Markdown. */
+/* Rows of the table of named qualities, as Markdown, and which dials by
+ * themselves lie above them. */
 void sweep_names(const struct sweep *s, FILE *file);
 
 /* RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
+#include <stdlib.h>
 
 #include "sweep.h"
 
@@ -111,6 +112,33 @@ static void names_row(const struct sweep *s, int c, FILE *file)
     fputc('\n', file);
 }
 
+/* Of the settings of one dial those that --quality does not reach. */
+static void beyond_ladder(const struct sweep *s, FILE *file)
+{
+    struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
+    const int n = mean ? sweep_means(s, mean, s->n_points) : 0;
+    int n_alone = 0, n_above = 0;
+
+    for (int i = 0; i < n; i++) {
+        const double above = sweep_above(mean, n, i);
+        char words[160];
+
+        if (mean[i].set->kind != SWEEP_ALONE ||
+            mean[i].flux_error > MAX_FLUX_ERROR)
+            continue;
+        n_alone++;
+        if (above < 0.1)
+            continue;
+        sweep_words(mean[i].set, words, sizeof words);
+        fprintf(file, "%s%s by %.1f dB",
+                n_above++ ? ", " : "\nAbove --quality: ", words, above);
+    }
+    if (n_alone > 0)
+        fprintf(file, "%s%d of %d settings of one dial lie above --quality.\n",
+                n_above ? "; " : "\n", n_above, n_alone);
+    free(mean);
+}
+
 void sweep_names(const struct sweep *s, FILE *file)
 {
     fprintf(file,
@@ -122,4 +150,5 @@ void sweep_names(const struct sweep *s, FILE *file)
     for (int c = 0; c < s->n_cases; c++)
         if (!s->scase[c].growth)
             names_row(s, c, file);
+    beyond_ladder(s, file);
 }

@@ -164,3 +164,42 @@ int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max)
     qsort(mean, (size_t)n, sizeof *mean, by_mean_cost);
     return n;
 }
+
+/* --------------------------------------------------------------------- ladder
+ */
+
+static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
+{
+    for (int d = 0; d < n_dials; d++)
+        if (strcmp(dials[d].name, "half") == 0)
+            return a->set->value[d] == b->set->value[d];
+    return true;
+}
+
+/* On the line from A to B, at COST between theirs. */
+static double between(const struct sweep_mean *a, const struct sweep_mean *b,
+                      double cost)
+{
+    return a->psnr_db + (b->psnr_db - a->psnr_db) * log(cost / a->cost) /
+                            log(b->cost / a->cost);
+}
+
+double sweep_above(const struct sweep_mean *mean, int n, int i)
+{
+    const double cost = 1.02 * mean[i].cost;
+    const struct sweep_mean *last = NULL;
+    double best = -INFINITY;
+
+    for (int k = 0; k < n; k++) {
+        const struct sweep_mean *m = &mean[k];
+
+        if (m->set->kind != SWEEP_LADDER)
+            continue;
+        if (m->cost <= cost)
+            best = fmax(best, m->psnr_db);
+        else if (last && last->cost <= cost && same_pixels(last, m))
+            best = fmax(best, between(last, m, cost));
+        last = m;
+    }
+    return mean[i].psnr_db - best;
+}

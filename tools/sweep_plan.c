@@ -6,6 +6,10 @@
 
 enum { LADDER_STEPS = 8 };
 
+/* Of --quality, between these: half as many pixels with finer grids, and the
+ * default with a finer model. */
+static const double between_steps[] = {0.0625, 0.505};
+
 static struct sweep_setting standard(enum sweep_kind kind)
 {
     struct sweep_setting set = {.kind = kind, .dial = -1, .quality = -1};
@@ -90,23 +94,29 @@ static enum glint_status add_together(struct sweep *s, int c)
 }
 
 /* What --quality sets, as values of the dials. */
+static enum glint_status add_quality(struct sweep *s, int c, double quality)
+{
+    struct sweep_setting set = standard(SWEEP_LADDER);
+    struct scene scene = s->base;
+
+    for (int d = 0; d < n_dials; d++)
+        dial_set(&scene, &dials[d], dials[d].standard);
+    set.quality = quality;
+    ladder_set(&scene, quality);
+    for (int d = 0; d < n_dials; d++)
+        if (!s->small || !dials[d].opens)
+            set.value[d] = dial_get(&scene, &dials[d]);
+    return add(s, c, &set);
+}
+
 static enum glint_status add_ladder(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;
 
-    for (int i = 0; i <= LADDER_STEPS && status == GLINT_OK; i++) {
-        struct sweep_setting set = standard(SWEEP_LADDER);
-        struct scene scene = s->base;
-
-        for (int d = 0; d < n_dials; d++)
-            dial_set(&scene, &dials[d], dials[d].standard);
-        set.quality = (double)i / LADDER_STEPS;
-        ladder_set(&scene, set.quality);
-        for (int d = 0; d < n_dials; d++)
-            if (!s->small || !dials[d].opens)
-                set.value[d] = dial_get(&scene, &dials[d]);
-        status = add(s, c, &set);
-    }
+    for (int i = 0; i <= LADDER_STEPS && status == GLINT_OK; i++)
+        status = add_quality(s, c, (double)i / LADDER_STEPS);
+    for (int i = 0; i < 2 && !s->small && status == GLINT_OK; i++)
+        status = add_quality(s, c, between_steps[i]);
     return status;
 }
 

@@ -36,6 +36,34 @@ static void test_front_by_hand(void **state)
     assert_int_equal(sweep_front(cost, quality, 0, front), 0);
 }
 
+/* A dial on the line between two rungs, above it, dearer than its like, cheaper
+ * than all, and between rungs of which one draws half of the pixels. */
+static void test_above_the_ladder(void **state)
+{
+    struct sweep_setting rung = {.kind = SWEEP_LADDER}, halves = rung;
+    const struct sweep_setting dial = {.kind = SWEEP_ALONE};
+    struct sweep_mean mean[] = {
+        {&dial, 0.2, 30, 30, 0, false}, {&halves, 0.5, 40, 40, 0, false},
+        {&dial, 0.7, 42, 42, 0, false}, {&rung, 1, 50, 50, 0, false},
+        {&dial, 1.9, 55, 55, 0, false}, {&dial, 2, 56.5, 57, 0, false},
+        {&rung, 4, 60, 60, 0, false},   {&dial, 4.05, 60.2, 60, 0, false},
+        {&dial, 9, 58, 58, 0, false},
+    };
+    const int n = sizeof mean / sizeof *mean;
+
+    (void)state;
+    for (int d = 0; d < n_dials; d++)
+        halves.value[d] = strcmp(dials[d].name, "half") == 0;
+    assert_true(isinf(sweep_above(mean, n, 0)));
+    assert_true(fabs(sweep_above(mean, n, 2) - 2) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 4) -
+                     (5 - 10 * log(1.02 * 1.9) / log(4))) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 5) -
+                     (6.5 - 10 * log(1.02 * 2) / log(4))) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 7) - 0.2) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 8) + 2) < 1e-9);
+}
+
 /* Nothing dominates what is on it, and something on it whatever is not. Few
  * values, so that many are equal. */
 static void test_front_of_many(void **state)
@@ -152,6 +180,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_front_by_hand),
+        cmocka_unit_test(test_above_the_ladder),
         cmocka_unit_test(test_front_of_many),
         cmocka_unit_test(test_png),
         cmocka_unit_test(test_dials),
