@@ -18,7 +18,7 @@ enum { BUDGET_STEPS = 64, BUDGET_RUNGS = 10 }; /* of quality; the ladder's */
 
 struct budget {
     double ms;                    /* of a frame; 0: none is kept to */
-    double calibrated_minsn;      /* of the frames that told: 0: none did */
+    double calibrated_minsn;      /* of a frame that told; 0: none did */
     double ms_per_minsn;          /* of this machine, this lens; */
     double octaves[BUDGET_RUNGS]; /* learned beyond that, by quality */
     int step;     /* quality of the last frame, of BUDGET_STEPS */

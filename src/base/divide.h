@@ -36,7 +36,7 @@ static inline uint32_t q_reciprocal(uint32_t x)
 #endif
 }
 
-/* X times 2^UP, cut; below 2^32, and UP at least -31. */
+/* X times 2^UP, cut; below 2^32, and UP from -31 to 31. */
 static inline uint32_t q_upper(uint64_t x, int up)
 {
 #if UINTPTR_MAX > UINT32_MAX

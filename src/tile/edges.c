@@ -16,7 +16,8 @@ typedef int_fast32_t fast;
 /* --------------------------------------------------------------------- edge
  */
 
-/* ACROSS / DOWN, rounded towards 0; DOWN > 0, both below 2^30. */
+/* ACROSS / DOWN, or nearer to 0 by no more than 2^-31 of it and a unit; DOWN >
+ * 0, both below 2^30. */
 static int64_t slope_of(int32_t across, int32_t down)
 {
     const int up = q_up((uint32_t)down);
@@ -52,7 +53,7 @@ void glint_edge_make_whole(struct glint_edge *edge)
 }
 
 /* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
- * slope is rounded towards 0, so it never lies beyond its ends. */
+ * slope is never too large, so it never lies beyond its ends. */
 static int64_t x_at_q40(const struct glint_edge *e, int32_t y_q8)
 {
     return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);

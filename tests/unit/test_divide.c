@@ -87,7 +87,7 @@ static void test_reciprocal(void **state)
     }
 }
 
-/* Never more than the quotient, and less by no more than what it says. */
+/* Off the quotient by no more than what it says. */
 static void test_part(void **state)
 {
     (void)state;

@@ -101,6 +101,63 @@ static void test_slanted(void **state)
     assert_int_equal(light_q16[4], 32768);
 }
 
+static int draw_below(int n)
+{
+    static uint32_t seed = 1;
+
+    seed = seed * 1664525U + 1013904223U;
+    return (int)((uint64_t)seed * (uint32_t)n >> 32);
+}
+
+/* Random edges, in a whole tile and in its halves, which go other ways through
+ * them: the same light to the last bit; none to their left, and all of their
+ * height to their right. */
+static void test_parts_of_tiles(void **state)
+{
+    enum { FROM = 4 };
+
+    (void)state;
+    for (int i = 0; i < 20000; i++) {
+        const int wide = i % 2 ? 256 * (SIDE + 4) : 600;
+        const int x0 = draw_below(wide) - 512, x1 = draw_below(wide) - 512;
+        const int y0 = draw_below(256 * SIDE - 1), up = i / 2 % 2;
+        const int high = 1 + draw_below(i % 3 ? 256 * SIDE - y0 - 1 : 4);
+        const int32_t left_q8 = x0 < x1 ? x0 : x1, right_q8 = x0 < x1 ? x1 : x0;
+        int32_t all_q20[SIDE][STRIDE], part_q20[STRIDE];
+        struct glint_edge_sums s = sums_of(1);
+
+        add(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+        for (int y = 0; y < SIDE; y++) {
+            const int from = y0 > 256 * y ? y0 : 256 * y;
+            const int end =
+                y0 + high < 256 * (y + 1) ? y0 + high : 256 * (y + 1);
+
+            glint_edge_linear(&s, 0, y, all_q20[y]);
+            for (int x = 0; x < SIDE; x++) {
+                const int most = end > from ? 1024 * (end - from) : 0;
+
+                assert_in_range(all_q20[y][x], 0, most);
+                if (256 * (x + 1) <= left_q8)
+                    assert_int_equal(all_q20[y][x], 0);
+                if (256 * x >= right_q8)
+                    assert_int_equal(all_q20[y][x], most);
+            }
+        }
+        s = sums_of(1);
+        for (int part = 0; part < 2;
+             part++) { /* the one carries to the other */
+            s.tile.x0 = part ? FROM : 0;
+            s.tile.x1 = part ? SIDE : FROM;
+            add(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+            for (int y = 0; y < SIDE; y++) {
+                glint_edge_linear(&s, 0, y, part_q20);
+                assert_memory_equal(part_q20, all_q20[y] + s.tile.x0,
+                                    FROM * sizeof *part_q20);
+            }
+        }
+    }
+}
+
 /* Light is held to 25 bits and no worse, up to 2^40. */
 static void test_packing(void **state)
 {
@@ -123,6 +180,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_upright),
         cmocka_unit_test(test_slanted),
+        cmocka_unit_test(test_parts_of_tiles),
         cmocka_unit_test(test_packing),
     };
 
