@@ -14,7 +14,7 @@ static const struct rung {
     double quality, grid, quantum, whole, cull, tolerance;
     bool half;
 } rung[] = {
-    {0,      16, 8,      16,  1,     1,    true},
+    {0,      16, 8,      32,  1,     1,    true},
     {0.0625, 64, 1,      4,   1,     1,    true},
     {0.125,  20, 3,      8,   0.5,   1,    false},
     {0.25,   32, 1,      4,   0.5,   1,    false},
