@@ -188,7 +188,7 @@ double sweep_above(const struct sweep_mean *mean, int n, int i)
 {
     const double cost = 1.02 * mean[i].cost;
     const struct sweep_mean *last = NULL;
-    double best = -INFINITY;
+    double best = -HUGE_VAL;
 
     for (int k = 0; k < n; k++) {
         const struct sweep_mean *m = &mean[k];
