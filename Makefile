@@ -129,7 +129,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 EXTREMES := angles powers lenses frames caustics outlines sums runs
-UNIT := arena divide kernels model prescription optics trace pupil published quantise bake \
+UNIT := arena divide cuts kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame show_lights sweep explain budget live \
@@ -420,7 +420,7 @@ $(OUT)/valgrind/%: $(OUT)/tests/% always
 # the same hashes, with models baked here (tests/arm/check).
 ARM_TARGETS := aarch64 armv7 armv7-neon armv6-soft
 ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
-ARM_UNIT := arena divide kernels model curve edges resolve composite lights flare plan account beams bright match \
+ARM_UNIT := arena divide cuts kernels model curve edges resolve composite lights flare plan account beams bright match \
         tracks quantise pnm y4m output workers measure lamps fourcc panel frame \
         show_lights live_stats live_adapt
 # Those that want a model bake it here first, for all.

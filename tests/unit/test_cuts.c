@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where the sides of a square stop cut edges and cells that lie on it as they
+ * do on the screen: 256 q8 to a stop radius.
+ */
+#include "flare/cuts.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { ONE_Q16 = 1 << 16 };
+
+static const struct glint_stop square = {.n_blades = 4,
+                                         .normal_q30 = {{1 << 30, 0},
+                                                        {0, 1 << 30},
+                                                        {-(1 << 30), 0},
+                                                        {0, -(1 << 30)}},
+                                         .apothem_q16 = ONE_Q16};
+
+static struct glint_vertex at(int x_q16, int y_q16)
+{
+    return (struct glint_vertex){.x_q8 = x_q16 / 256,
+                                 .y_q8 = y_q16 / 256,
+                                 .stop_x_q16 = x_q16,
+                                 .stop_y_q16 = y_q16};
+}
+
+/* The part of A to B that is seen. */
+static struct glint_part part_of(const struct glint_vertex *a,
+                                 const struct glint_vertex *b)
+{
+    const struct glint_vertex *const end[2] = {a, b};
+    struct glint_outside out[2];
+    struct glint_part part;
+
+    for (int k = 0; k < 2; k++)
+        glint_cuts_row(&square, end[k], 1, &out[k].sides, &out[k].barrels);
+    glint_cuts_part(&square, a, out[0], b, out[1], &part);
+    return part;
+}
+
+/* From inside to beyond the right side, and back: cut at x = 1. */
+static void test_part(void **state)
+{
+    (void)state;
+    for (int from = -ONE_Q16 + 64; from < ONE_Q16; from += 1777)
+        for (int to = ONE_Q16; to < 40 * ONE_Q16; to += to / 3) {
+            const struct glint_vertex in = at(from, 0), out = at(to, 5 * 256);
+            const struct glint_part there = part_of(&in, &out);
+            const struct glint_part back = part_of(&out, &in);
+
+            assert_true(there.visible && back.visible);
+            assert_int_equal(there.cut[0], GLINT_CUT_NOTHING);
+            assert_int_equal(there.cut[1], 0);
+            assert_int_equal(back.cut[0], 0);
+            assert_int_equal(back.cut[1], GLINT_CUT_NOTHING);
+            assert_int_equal(there.end_q8[0][0], in.x_q8);
+            assert_true(abs(there.end_q8[1][0] - 256) <= 1);
+            assert_true(abs(back.end_q8[0][0] - 256) <= 1);
+        }
+}
+
+/* Through the whole of it, over a corner of it, and past one. */
+static void test_part_of_two_cuts(void **state)
+{
+    const struct glint_vertex left = at(-2 * ONE_Q16, 0);
+    const struct glint_vertex right = at(3 * ONE_Q16 / 2, 0);
+    const struct glint_vertex high = at(0, 5 * ONE_Q16 / 4);
+    const struct glint_vertex past = at(ONE_Q16 / 2, 5 * ONE_Q16 / 2);
+    const struct glint_part through = part_of(&left, &right);
+    const struct glint_part over = part_of(&right, &high);
+
+    (void)state;
+    assert_true(through.visible && over.visible);
+    assert_int_equal(through.cut[0], 2);
+    assert_int_equal(through.cut[1], 0);
+    assert_true(abs(through.end_q8[0][0] + 256) <= 1);
+    assert_true(abs(through.end_q8[1][0] - 256) <= 1);
+    assert_int_equal(over.cut[0], 0);
+    assert_int_equal(over.cut[1], 1);
+    assert_true(abs(over.end_q8[0][0] - 256) <= 1);
+    assert_true(abs(over.end_q8[1][1] - 256) <= 1);
+    assert_false(part_of(&right, &past).visible);
+}
+
+/* Where the right side and the upper one cross: within three quarters of a cell
+ * of its middle, and nowhere else. */
+static void test_cross(void **state)
+{
+    const int wide = ONE_Q16 / 4;
+
+    (void)state;
+    for (int u = -100; u <= 100; u++)
+        for (int v = -100; v <= 100; v += 10) {
+            const int x = ONE_Q16 - wide * u / 100,
+                      y = ONE_Q16 - wide * v / 100;
+            const struct glint_vertex corner[4] = {
+                at(x - wide / 2, y - wide / 2), at(x + wide / 2, y - wide / 2),
+                at(x + wide / 2, y + wide / 2), at(x - wide / 2, y + wide / 2)};
+            const struct glint_vertex *const of[4] = {&corner[0], &corner[1],
+                                                      &corner[2], &corner[3]};
+            int32_t at_q8[2] = {0, 0};
+            const int crosses = glint_cuts_cross(&square, of, 0, 1, at_q8);
+
+            if (abs(u) < 74 && abs(v) < 74) {
+                assert_true(crosses);
+                assert_true(abs(at_q8[0] - 256) <= 1);
+                assert_true(abs(at_q8[1] - 256) <= 1);
+            } else if (abs(u) > 76 || abs(v) > 76) {
+                assert_false(crosses);
+            }
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_part),
+        cmocka_unit_test(test_part_of_two_cuts),
+        cmocka_unit_test(test_cross),
+    };
+
+    return cmocka_run_group_tests_name("cuts", tests, NULL, NULL);
+}
