@@ -110,8 +110,11 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
     /* the area is brought to 32 bits before it divides */
     const int up = q_up((uint64_t)area);
     const uint32_t area_32 = q_upper((uint64_t)area, up);
+    /* rounded, so that it is exact where the area is a power of two */
     const int64_t ratio =
-        (int64_t)bundle->flux_q31 * q_reciprocal(area_32) >> 31;
+        (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +
+                   (1 << 30)) >>
+                  31);
     /* light over less than a pixel: limit_q8 below 2^20, area at least 2^-33 */
     const int64_t limit_q22 =
         (area >> frac ? (int64_t)limit_q8
