@@ -314,33 +314,33 @@ demo:
 inputs:
 	@tools/inputs
 table: all
-	@tools/raster-table
+	@tools/raster-table | tools/write-figures raster
 bake-table: all $(OUT)/ray_errors
-	@tools/bake-table
+	@tools/bake-table | tools/write-figures bake
 accuracy-table: all
-	@tools/accuracy-table
+	@tools/accuracy-table | tools/write-figures accuracy
 ray-table: all $(OUT)/ray_errors
-	@tools/ray-table build/bake
+	@tools/ray-table build/bake | tools/write-figures rays
 $(OUT)/ray_errors: $(OUT)/tools/ray_errors.o $(libs)
 	$(link)
 bench: all
 	@build/glint bench
 growth: all
-	@tools/growth
+	@tools/growth | tools/write-figures growth
 size: $(OUT)/libglint.a $(example_bins)
 	@tools/size $(SIZE) $(OUT) $(EXAMPLES)
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
 memory-table: all
-	@tools/memory-table
+	@tools/memory-table | tools/write-figures memory
 budget: all
 	@tools/deps "instruction counts on ARM" gcc-aarch64-linux-gnu \
 	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf \
 	        libc6-dev-armhf-cross qemu-user valgrind >&2
 	@for t in aarch64 armv7; do $(MAKE) -s --no-print-directory TARGET=$$t \
 	        build/$$t/glint >&2 || exit 1; done
-	@tools/budget
+	@tools/budget | tools/write-figures arm
 bench-insn: all
 	@tools/deps "instruction counts" valgrind
 	@tools/bench-insn

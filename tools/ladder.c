@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Along the front that glint sweep measures over five lenses at 1280x720
- * (README, "The trade"), the coarsest first. What is not on it: coarser models,
+ * (tests/figures/trade.md), the coarsest first. What is not on it: coarser models,
  * which save nothing and cost 6 dB, and 16-bit lanes, on processors with AVX2.
  * Finer models cost next to nothing but bytes and their baking, which is why
  * the default has none and all above it do. */
