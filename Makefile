@@ -125,7 +125,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene look live_adapt \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
-        cmd_bake cmd_info cmd_trace cmd_render cmd_overlay cmd_explain cmd_live cmd_compare \
+        cmd_bake cmd_info cmd_trace cmd_render overlay_video overlay_sequence cmd_overlay cmd_explain cmd_live cmd_compare \
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 EXTREMES := angles powers lenses frames caustics outlines sums runs

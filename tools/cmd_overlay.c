@@ -2,15 +2,12 @@
  *
  * glint overlay: the flare of the lamps in a picture or video, on top of it.
  */
-#include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "look.h"
+#include "overlay.h"
 #include "plain/picture.h"
-#include "plain/y4m.h"
 #include "posix/error.h"
 
 static const char help[] =
@@ -31,20 +28,6 @@ static const char help[] =
     "found)\n";
 
 static const char help_end[] = SCENE_HELP COMMON_HELP;
-
-struct overlay {
-    struct look look;
-    const char *input, *output;
-    int start_number;
-    int32_t elapsed_us; /* from frame to frame; 0: pictures by themselves */
-    int range, matrix;  /* 0: auto */
-
-    struct frame_report worst; /* its lights: of the frame with most too many,
-                                  and most beyond the model */
-    int most_lights;
-    double find_ms, flare_ms, started;
-    size_t peak_bytes;
-};
 
 /* ------------------------------------------------------------------ options */
 
@@ -138,8 +121,8 @@ static void note_worst(struct frame_report *worst,
     worst->beyond_lights = beyond;
 }
 
-static int draw(struct tool *tool, struct overlay *o,
-                const struct glint_image *image)
+int overlay_draw(struct tool *tool, struct overlay *o,
+                 const struct glint_image *image)
 {
     struct look *look = &o->look;
     enum glint_status status;
@@ -164,9 +147,7 @@ static int draw(struct tool *tool, struct overlay *o,
     return EXIT_OK;
 }
 
-/* -------------------------------------------------------------------- video */
-
-static void show_frame(const struct tool *tool, const struct overlay *o)
+void overlay_progress(const struct tool *tool, const struct overlay *o)
 {
     const double spent = tool_seconds() - o->started;
 
@@ -177,81 +158,10 @@ static void show_frame(const struct tool *tool, const struct overlay *o)
     fflush(stderr);
 }
 
-static int video_frames(struct tool *tool, struct overlay *o,
-                        struct glint_y4m_reader *in,
-                        struct glint_y4m_writer *out)
-{
-    struct glint_error error = {""};
-    const struct glint_image *image;
-    int code = EXIT_OK;
-
-    while (code == EXIT_OK) {
-        enum glint_status status = glint_y4m_reader_next(in, &image, &error);
-
-        if (status == GLINT_OK && !image)
-            break;
-        if (status == GLINT_OK) {
-            code = draw(tool, o, image);
-            if (code != EXIT_OK)
-                break;
-            status = glint_y4m_writer_put(out, image, in->frame_tags, &error);
-            show_frame(tool, o);
-        }
-        if (status == GLINT_E_CLOSED)
-            break;
-        if (status != GLINT_OK)
-            code = tool_fail(tool, status, error.text);
-    }
-    return code;
-}
-
-/* The time from frame to frame; 25 a second where that is not known. */
-static int32_t frame_us(const struct glint_y4m_header *header)
-{
-    const double us = header->fps_num > 0
-                          ? 1e6 * header->fps_den / header->fps_num
-                          : 1e6 / 25;
-
-    return (int32_t)fmin(fmax(us + 0.5, 1), 1e9);
-}
-
-static int run_video(struct tool *tool, struct overlay *o)
-{
-    struct glint_error error = {""};
-    struct glint_y4m_reader in;
-    struct glint_y4m_writer out;
-    enum glint_status status = glint_y4m_reader_open(&in, o->input, &error);
-    int code;
-
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    if (o->range)
-        in.header.range =
-            o->range == 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
-    if (o->matrix)
-        in.header.matrix =
-            o->matrix == 1 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
-    status = glint_y4m_writer_open(&out, o->output, &in.header, &error);
-    if (status != GLINT_OK) {
-        glint_y4m_reader_close(&in);
-        return tool_fail(tool, status, error.text);
-    }
-    o->elapsed_us = frame_us(&in.header);
-    code = video_frames(tool, o, &in, &out);
-    if (code == EXIT_OK) {
-        status = glint_y4m_writer_commit(&out, &error);
-        if (status != GLINT_OK)
-            code = tool_fail(tool, status, error.text);
-    }
-    glint_y4m_writer_abort(&out);
-    glint_y4m_reader_close(&in);
-    return code;
-}
-
 /* ----------------------------------------------------------------- pictures */
 
-static int run_picture(struct tool *tool, struct overlay *o, const char *from,
-                       const char *to)
+int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
+                    const char *to)
 {
     struct glint_error error = {""};
     struct glint_image image;
@@ -268,7 +178,7 @@ static int run_picture(struct tool *tool, struct overlay *o, const char *from,
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
-        code = draw(tool, o, &image);
+        code = overlay_draw(tool, o, &image);
     if (code == EXIT_OK) {
         status = glint_picture_save(to, &image, &error);
         if (status != GLINT_OK)
@@ -276,58 +186,6 @@ static int run_picture(struct tool *tool, struct overlay *o, const char *from,
     }
     glint_picture_free(&image);
     return code;
-}
-
-/* Exactly one printf conversion of an int, "%d" or "%0Nd". */
-static bool is_pattern(const char *text)
-{
-    const char *at = strchr(text, '%');
-
-    if (!at)
-        return false;
-    for (at++; isdigit((unsigned char)*at); at++)
-        ;
-    return *at == 'd' && !strchr(at, '%');
-}
-
-static void name_of(char *name, size_t bytes, const char *pattern, int number)
-{
-    const char *at = strchr(pattern, '%');
-    const int digits = at[1] == 'd' ? 0 : (int)strtol(at + 1, NULL, 10);
-
-    snprintf(name, bytes, "%.*s%0*d%s", (int)(at - pattern), pattern,
-             digits < 20 ? digits : 20, number, strchr(at, 'd') + 1);
-}
-
-static int run_sequence(struct tool *tool, struct overlay *o)
-{
-    char from[1024], to[1024];
-    int number = o->start_number;
-
-    if (!is_pattern(o->input) || !is_pattern(o->output))
-        return tool_usage(tool, "a sequence needs one %%04d in both names");
-    if (number < 0) {
-        name_of(from, sizeof from, o->input, 0);
-        number = access(from, F_OK) == 0 ? 0 : 1;
-    }
-    o->elapsed_us = 1000000 / 25;
-    for (;; number++) {
-        int code;
-
-        name_of(from, sizeof from, o->input, number);
-        if (access(from, F_OK) != 0)
-            break;
-        name_of(to, sizeof to, o->output, number);
-        code = run_picture(tool, o, from, to);
-        if (code != EXIT_OK)
-            return code;
-        show_frame(tool, o);
-    }
-    if (o->look.n_frames == 0) {
-        fprintf(stderr, "glint overlay: %s: no such frame\n", from);
-        return EXIT_INPUT;
-    }
-    return EXIT_OK;
 }
 
 /* ------------------------------------------------------------------- result */
@@ -398,11 +256,11 @@ static int run(struct tool *tool, struct overlay *o)
         return code;
     o->started = tool_seconds();
     if (is_y4m(o->input))
-        code = run_video(tool, o);
+        code = overlay_video(tool, o);
     else if (strchr(o->input, '%') && access(o->input, F_OK) != 0)
-        code = run_sequence(tool, o);
+        code = overlay_sequence(tool, o);
     else
-        code = run_picture(tool, o, o->input, o->output);
+        code = overlay_picture(tool, o, o->input, o->output);
     if (code == EXIT_OK)
         print_result(tool, o);
     return code;

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The parts of glint overlay: its options and result (cmd_overlay.c), and how
+ * pictures, sequences of them and videos go through it.
+ */
+#ifndef GLINT_TOOLS_OVERLAY_H
+#define GLINT_TOOLS_OVERLAY_H
+
+#include "look.h"
+
+struct overlay {
+    struct look look;
+    const char *input, *output;
+    int start_number;
+    int32_t elapsed_us; /* from frame to frame; 0: pictures by themselves */
+    int range, matrix;  /* 0: auto */
+
+    struct frame_report worst; /* its lights: of the frame with most too many,
+                                  and most beyond the model */
+    int most_lights;
+    double find_ms, flare_ms, started;
+    size_t peak_bytes;
+};
+
+/* Puts the flare on IMAGE, which is the next frame, and counts what it took.
+ * Returns an exit code, as all of these do. */
+int overlay_draw(struct tool *tool, struct overlay *o,
+                 const struct glint_image *image);
+
+/* Tells a terminal how far it has come. */
+void overlay_progress(const struct tool *tool, const struct overlay *o);
+
+/* One picture from file FROM to file TO. */
+int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
+                    const char *to);
+
+/* Numbered pictures, as o->input and o->output have them. */
+int overlay_sequence(struct tool *tool, struct overlay *o);
+
+/* A y4m video from o->input to o->output. */
+int overlay_video(struct tool *tool, struct overlay *o);
+
+#endif
