@@ -2,6 +2,7 @@
  *
  * glint render: the flare alone, in linear light.
  */
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -153,10 +154,10 @@ static int render_exact(struct tool *tool, struct render *r)
         return tool_fail(tool, status, NULL);
     if (tool->json)
         printf("{\"engine\": \"exact\", \"grid\": %d, \"lights\": %d, "
-               "\"ghosts\": %d, \"bundles\": %d, \"primitives\": 0, "
+               "\"ghosts\": %d, \"bundles\": %" PRId64 ", \"primitives\": 0, "
                "\"tiles\": 0, \"arena_bytes\": 0, ",
                cfg.grid, r->n_lamps, n_ghosts,
-               r->n_lamps * n_ghosts * r->scene.n_wavelengths);
+               (int64_t)r->n_lamps * n_ghosts * r->scene.n_wavelengths);
     return EXIT_OK;
 }
 

@@ -436,29 +436,39 @@ draw_exact(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
                : GLINT_E_MEMORY;
 }
 
-/* As the plan tells without drawing anything; brightest 0: there is no light.
- */
-static struct frame_scale
-plan_scale(struct frame *frame, const struct glint_lamp *lamps, int n_lamps)
+static enum glint_status model_scale(struct frame *frame,
+                                     const struct glint_lamp *lamps,
+                                     int n_lamps, struct frame_scale *scale)
 {
-    struct glint_rays rays;
     struct glint_real brightest, together;
+    struct glint_rays rays;
+    enum glint_status status = set_beams(frame, lamps, n_lamps, 1);
 
-    if (!frame->lens) {
-        lamps = merged_lamps(frame, lamps, &n_lamps);
-        return lamps ? frame_feed_scale(frame, lamps, n_lamps)
-                     : (struct frame_scale){0, 0};
-    }
     set_waves(frame);
     frame->can_half = false;
     rays = rays_of(frame, 0);
-    if (set_beams(frame, lamps, n_lamps, 1) != GLINT_OK ||
-        plan(frame, &rays) != GLINT_OK)
-        return (struct frame_scale){0, 0};
+    if (status == GLINT_OK)
+        status = plan(frame, &rays);
+    if (status != GLINT_OK)
+        return status;
     glint_flare_light(frame->flare, &brightest, &together);
-    return brightest.mantissa
-               ? frame_scale_of(brightest.exponent + 31, together.exponent + 31)
-               : (struct frame_scale){0, 0};
+    if (brightest.mantissa)
+        *scale =
+            frame_scale_of(brightest.exponent + 31, together.exponent + 31);
+    return GLINT_OK;
+}
+
+/* As the plan tells without drawing anything; {0, 0}: there is no light. */
+static enum glint_status plan_scale(struct frame *frame,
+                                    const struct glint_lamp *lamps, int n_lamps,
+                                    struct frame_scale *scale)
+{
+    *scale = (struct frame_scale){0, 0};
+    if (frame->lens)
+        return model_scale(frame, lamps, n_lamps, scale);
+    lamps = merged_lamps(frame, lamps, &n_lamps);
+    return lamps ? frame_feed_scale(frame, lamps, n_lamps, scale)
+                 : GLINT_E_MEMORY;
 }
 
 /* Bundles whose ghosts are known. */
@@ -557,11 +567,12 @@ enum glint_status frame_draw_alone(struct frame *frame,
 {
     const int width = frame->view.width, height = frame->view.height;
     const size_t n = 3 * (size_t)width * (size_t)height;
-    struct frame_scale scale = plan_scale(frame, lamps, n_lamps);
+    struct frame_scale scale;
     struct glint_image layer = {
         .format = GLINT_LINEAR_Q20, .width = width, .height = height};
     int32_t *linear_q20 = malloc(n * sizeof *linear_q20);
-    enum glint_status status = linear_q20 ? GLINT_OK : GLINT_E_MEMORY;
+    enum glint_status status =
+        linear_q20 ? plan_scale(frame, lamps, n_lamps, &scale) : GLINT_E_MEMORY;
     int up = 1;
 
     glint_image_place(&layer, linear_q20);

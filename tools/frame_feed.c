@@ -13,6 +13,10 @@
 /* What one frame may take: 65535 bundles, 0.8 GB of vertices. */
 enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
 
+/* Bundles that are looked at before most of them turn out to miss the picture:
+ * 2.3 GB of them. */
+enum { MAX_FEEDS = 1 << 24 };
+
 /* --------------------------------------------------------------------- plan */
 
 struct job {
@@ -40,13 +44,16 @@ static void plan_job(void *ctx, int job, int worker)
             glint_feed_plan(&j->cfg, &feed[wave], &feed[middle]);
 }
 
-static enum glint_status reserve_feeds(struct frame *f, int n)
+/* N of them, of which MAX_FEEDS are as many as can be numbered and held. */
+static enum glint_status reserve_feeds(struct frame *f, uint64_t n)
 {
     struct glint_feed *feed;
     struct glint_vertex **vertices;
 
-    if (n <= f->max_feeds)
+    if (n <= (uint64_t)f->max_feeds)
         return GLINT_OK;
+    if (n > MAX_FEEDS)
+        return GLINT_E_MEMORY;
     feed = realloc(f->feed, (size_t)n * sizeof *feed);
     if (!feed)
         return GLINT_E_MEMORY;
@@ -55,7 +62,7 @@ static enum glint_status reserve_feeds(struct frame *f, int n)
     if (!vertices)
         return GLINT_E_MEMORY;
     f->vertices = vertices;
-    f->max_feeds = n;
+    f->max_feeds = (int)n;
     return GLINT_OK;
 }
 
@@ -73,7 +80,8 @@ static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
     const struct glint_setup *s = f->setup;
     struct job job = {f, feed_config(f, 1)};
     const enum glint_status status =
-        reserve_feeds(f, n_lamps * s->n_ghosts * s->n_wavelengths);
+        reserve_feeds(f, (uint64_t)n_lamps * (uint64_t)s->n_ghosts *
+                             (uint64_t)s->n_wavelengths);
     int n = 0, kept = 0;
 
     if (status != GLINT_OK)
@@ -112,22 +120,26 @@ static double pixels_of(const struct frame *f, const struct glint_feed *feed)
     return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
 }
 
-struct frame_scale frame_feed_scale(struct frame *frame,
-                                    const struct glint_lamp *lamps, int n_lamps)
+enum glint_status frame_feed_scale(struct frame *frame,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   struct frame_scale *scale)
 {
+    const enum glint_status status = plan(frame, lamps, n_lamps);
     double brightest = 0, together = 0;
 
-    if (plan(frame, lamps, n_lamps) != GLINT_OK)
-        return (struct frame_scale){0, 0};
+    *scale = (struct frame_scale){0, 0};
+    if (status != GLINT_OK)
+        return status;
     for (int i = 0; i < frame->n_feeds; i++) {
         const double flux = flux_of(frame, &frame->feed[i]);
 
         brightest = fmax(brightest, flux / pixels_of(frame, &frame->feed[i]));
         together += flux;
     }
-    return brightest > 0 ? frame_scale_of((int)ceil(log2(brightest)),
-                                          (int)ceil(log2(together)))
-                         : (struct frame_scale){0, 0};
+    if (brightest > 0)
+        *scale = frame_scale_of((int)ceil(log2(brightest)),
+                                (int)ceil(log2(together)));
+    return GLINT_OK;
 }
 
 /* ------------------------------------------------------------------- memory */

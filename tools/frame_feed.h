@@ -17,9 +17,11 @@ struct frame_scale {
 /* Of the brightest ghost's mean light and of all flux together. */
 struct frame_scale frame_scale_of(int brightest_log2, int together_log2);
 
-struct frame_scale frame_feed_scale(struct frame *frame,
-                                    const struct glint_lamp *lamps,
-                                    int n_lamps);
+/* SCALE becomes {0, 0} where there is no light. GLINT_E_MEMORY: it is not
+ * known, or LAMPS have more bundles than can be held. */
+enum glint_status frame_feed_scale(struct frame *frame,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   struct frame_scale *scale);
 
 /* TIMES: the moments between plan, transfer, bin and draw, and before and
  * after. What was drawn stays in the frame's feeds. */

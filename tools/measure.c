@@ -3,35 +3,62 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static size_t samples(const struct glint_float_image *image)
 {
     return 3 * (size_t)image->width * (size_t)image->height;
 }
 
-static int by_value(const void *a, const void *b)
+/* A pixel's luminance as a number that grows with it, below 0, too. */
+static uint32_t key_of(const float rgb[3])
 {
-    const float x = *(const float *)a, y = *(const float *)b;
+    const float y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+    uint32_t bits;
 
-    return (x > y) - (x < y);
+    memcpy(&bits, &y, sizeof bits);
+    return bits >> 31 ? ~bits : bits | UINT32_C(1) << 31;
+}
+
+static double value_of(uint32_t key)
+{
+    const uint32_t bits = key >> 31 ? key & INT32_MAX : ~key;
+    float y;
+
+    memcpy(&y, &bits, sizeof y);
+    return (double)y;
+}
+
+/* The luminance that RANK pixels stay below or at, of 0 .. pixels - 1: its bits
+ * are found a byte at a time, so that no memory is needed that might be short.
+ */
+static double luminance_at(const struct glint_float_image *image, size_t rank)
+{
+    const size_t n = samples(image) / 3;
+    uint32_t key = 0, known = 0;
+
+    for (int shift = 24; shift >= 0; shift -= 8) {
+        size_t count[256] = {0};
+        uint32_t byte = 0;
+
+        for (size_t i = 0; i < n; i++) {
+            const uint32_t k = key_of(image->rgb + 3 * i);
+
+            count[k >> shift & 255] += (k & known) == key;
+        }
+        for (; byte < 255 && rank >= count[byte]; byte++)
+            rank -= count[byte];
+        key |= byte << shift;
+        known |= UINT32_C(255) << shift;
+    }
+    return value_of(key);
 }
 
 double measure_exposure(const struct glint_float_image *image)
 {
     const size_t n = samples(image) / 3;
-    float *luminance = malloc(n * sizeof *luminance);
-    double at = 0;
+    const double at = luminance_at(image, (size_t)((double)(n - 1) * 0.999));
 
-    if (!luminance)
-        return 1;
-    for (size_t i = 0; i < n; i++) {
-        const float *p = image->rgb + 3 * i;
-
-        luminance[i] = 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
-    }
-    qsort(luminance, n, sizeof *luminance, by_value);
-    at = (double)luminance[(size_t)((double)(n - 1) * 0.999)];
-    free(luminance);
     return at > 0 ? 1 / at : 1;
 }
 

@@ -50,9 +50,11 @@ enum glint_status frame_feed_draw(struct frame *frame,
     return GLINT_E_LENS;
 }
 
-struct frame_scale frame_feed_scale(struct frame *frame,
-                                    const struct glint_lamp *lamps, int n_lamps)
+enum glint_status frame_feed_scale(struct frame *frame,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   struct frame_scale *scale)
 {
     (void)frame, (void)lamps, (void)n_lamps;
-    return (struct frame_scale){0, 0};
+    *scale = (struct frame_scale){0, 0};
+    return GLINT_E_LENS;
 }

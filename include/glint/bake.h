@@ -293,7 +293,8 @@ struct glint_exact_config {
  * stop and by every barrel's own circle, coverage by area, energy conserving.
  * RGB is [height][width][3], row 0 on top; values are what the lamps' POWER
  * says. GLINT_E_MEMORY: it needs about 100 bytes per cell of one ghost and 24
- * per pixel. Deterministic. */
+ * per pixel, or lamps times ghosts times wavelengths are more than 2^24.
+ * Deterministic. */
 enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
                                      double *rgb);
 

@@ -19,6 +19,8 @@
 #include "bake/cells.h"
 
 enum { BAND = 32 }; /* pixel rows a job; the last may be shorter */
+/* Ghosts times lamps times wavelengths: more would be years of work. */
+enum { MAX_BUNDLES = 1 << 24 };
 
 /* One ghost, lamp and wavelength. */
 struct bundle {
@@ -297,9 +299,11 @@ static enum glint_status list_bundles(struct picture *p)
 {
     const struct glint_exact_config *c = p->cfg;
     const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
-    const int all = c->n_lamps * ghosts * waves;
+    const uint64_t n = (uint64_t)c->n_lamps * (uint64_t)(ghosts * waves);
+    const int all = n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 
-    p->bundle = calloc((size_t)all + 1, sizeof *p->bundle);
+    p->bundle =
+        n > MAX_BUNDLES ? NULL : calloc((size_t)n + 1, sizeof *p->bundle);
     if (!p->bundle)
         return GLINT_E_MEMORY;
     for (int k = 0; k < all; k++) {

@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,9 +19,10 @@
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
-static struct scene scene;
+static struct scene scene, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static int n_asked; /* for memory, since it was set to 0 */
+static int fail_at; /* the one that is refused, from 1; 0: none */
 
 void *__real_malloc(size_t bytes);
 void *__wrap_malloc(size_t bytes);
@@ -31,27 +33,36 @@ void *__wrap_realloc(void *old, size_t bytes);
 int __real_posix_memalign(void **mem, size_t align, size_t bytes);
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes);
 
+static bool is_refused(void)
+{
+    return ++n_asked == fail_at;
+}
+
 void *__wrap_malloc(size_t bytes)
 {
-    n_asked++;
+    if (is_refused())
+        return NULL;
     return __real_malloc(bytes);
 }
 
 void *__wrap_calloc(size_t n, size_t bytes)
 {
-    n_asked++;
+    if (is_refused())
+        return NULL;
     return __real_calloc(n, bytes);
 }
 
 void *__wrap_realloc(void *old, size_t bytes)
 {
-    n_asked++;
+    if (is_refused())
+        return NULL;
     return __real_realloc(old, bytes);
 }
 
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 {
-    n_asked++;
+    if (is_refused())
+        return ENOMEM;
     return __real_posix_memalign(mem, align, bytes);
 }
 
@@ -63,12 +74,17 @@ static const struct glint_lamp lamps[] = {
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
+static void make_of(const struct scene *of, struct frame *frame)
+{
+    const struct glint_view view = scene_view(of, WIDTH, HEIGHT);
+
+    assert_int_equal(scene_frame(&tool, of, view, frame), EXIT_OK);
+    frame->max_cells = 16;
+}
+
 static void make(struct frame *frame)
 {
-    const struct glint_view view = scene_view(&scene, WIDTH, HEIGHT);
-
-    assert_int_equal(scene_frame(&tool, &scene, view, frame), EXIT_OK);
-    frame->max_cells = 16;
+    make_of(&scene, frame);
 }
 
 static void draw(struct frame *frame, int n, uint8_t rgb[BYTES],
@@ -242,12 +258,77 @@ static void test_retune(void **state)
     frame_finish(&frame);
 }
 
+/* Whichever allocation fails, a flare alone is whole or refused, never drawn as
+ * if there were no light: of a model and of exact rays. */
+static void test_no_memory(void **state)
+{
+    static float want[BYTES], got[BYTES];
+    (void)state;
+    for (int exact = 0; exact < 2; exact++) {
+        struct frame_report report;
+        struct frame frame;
+        int n_refused = 0;
+
+        for (int nth = 0; nth < 100; nth++) {
+            enum glint_status status;
+
+            make_of(exact ? &exact_scene : &scene, &frame);
+            frame.only_ghost = 0;
+            frame.max_lights = 2; /* so that some merge */
+            n_asked = 0;
+            fail_at = nth;
+            status = frame_draw_alone(&frame, lamps, 3, 1, nth ? got : want,
+                                      &report);
+            fail_at = 0;
+            frame_finish(&frame);
+            n_refused += status == GLINT_E_MEMORY;
+            assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
+            if (status == GLINT_OK)
+                assert_memory_equal(want, nth ? got : want, sizeof want);
+            if (n_asked < nth) /* there is no such one */
+                break;
+        }
+        assert_true(n_refused >= 5);
+    }
+}
+
+/* More lamps, ghosts and wavelengths than an int counts are refused before any
+ * of them is written down. */
+static void test_too_many_feeds(void **state)
+{
+    enum { N = 66577 };
+    struct glint_lamp *many = malloc(N * sizeof *many);
+    static float rgb[BYTES];
+    struct glint_setup crowd;
+    struct frame_report report;
+    struct frame frame;
+
+    (void)state;
+    assert_non_null(many);
+    for (int i = 0; i < N; i++)
+        many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1, {1, 1, 1}};
+    make_of(&exact_scene, &frame);
+    crowd = exact_scene.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
+    crowd.n_ghosts = 2016;
+    crowd.n_wavelengths = 32;
+    frame.setup = &crowd;
+    frame.max_lights = N;
+    frame.apart_px = 0;
+    assert_int_equal(frame_draw_alone(&frame, many, N, 1, rgb, &report),
+                     GLINT_E_MEMORY);
+    frame_finish(&frame);
+    free(many);
+}
+
 static int enter(void **state)
 {
     (void)state;
     scene_defaults(&scene);
     scene.max_deg = 15;
-    if (tool_start(&tool) != EXIT_OK)
+    scene_defaults(&exact_scene);
+    exact_scene.rays = SCENE_RAYS_EXACT;
+    if (tool_start(&tool) != EXIT_OK ||
+        scene_open(&tool, &exact_scene, "lenses/heliar-tronnier.lens"))
         return 1;
     return scene_open(&tool, &scene, "lenses/heliar-tronnier.lens");
 }
@@ -256,6 +337,7 @@ static int leave(void **state)
 {
     (void)state;
     scene_close(&scene);
+    scene_close(&exact_scene);
     tool_finish(&tool);
     return 0;
 }
@@ -267,6 +349,8 @@ int main(void)
         cmocka_unit_test(test_too_little),
         cmocka_unit_test(test_more_lamps),
         cmocka_unit_test(test_retune),
+        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_too_many_feeds),
     };
 
     return cmocka_run_group_tests_name("frame", tests, enter, leave);
