@@ -321,28 +321,29 @@ static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
 static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
 {
     const int n = glint_image_planes(f->pixels);
-    size_t offset = 0;
+    uint64_t offset = 0; /* of 64 bits: a driver may say what it likes */
 
     if (f->n_blocks != 1 && f->n_blocks != n)
         return false;
     for (int p = 0; p < n; p++) {
         const size_t row = glint_image_row_bytes(f->pixels, p, f->width);
-        const size_t rows =
-            (size_t)glint_image_plane_height(f->pixels, p, f->height);
+        const uint64_t rows =
+            (uint64_t)glint_image_plane_height(f->pixels, p, f->height);
         const int block = f->n_blocks == 1 ? 0 : p;
-        size_t stride = pix->stride_bytes[block];
+        uint64_t stride = pix->stride_bytes[block], bytes;
 
         if (f->n_blocks == 1 && p > 0 && n == 3)
             stride /= 2;
         if (stride < row) /* some drivers leave it 0 */
             stride = row;
-        f->plane[p].block = block;
-        f->plane[p].offset = f->n_blocks == 1 ? offset : 0;
-        f->plane[p].stride_bytes = (ptrdiff_t)stride;
-        f->plane[p].bytes = (rows - 1) * stride + row;
-        offset += rows * stride;
-        if (f->plane[p].offset + f->plane[p].bytes > f->block_bytes[block])
+        bytes = (rows - 1) * stride + row;
+        if (offset + bytes > f->block_bytes[block])
             return false;
+        f->plane[p].block = block;
+        f->plane[p].offset = (size_t)offset;
+        f->plane[p].stride_bytes = (ptrdiff_t)stride;
+        f->plane[p].bytes = (size_t)bytes;
+        offset += f->n_blocks == 1 ? rows * stride : 0;
     }
     return true;
 }

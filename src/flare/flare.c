@@ -211,14 +211,14 @@ static int stored(const struct glint_flare *f, const struct glint_bundle *b)
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const struct glint_rays *r = f->plan.rays;
-    const int stride = (int)r->lens->header->n_ghosts * r->n_waves;
+    const int64_t stride = (int64_t)r->lens->header->n_ghosts * r->n_waves;
 
     for (int first = 0; first < stride && first < n; first++) {
         int64_t sum_q20 = 0;
 
-        for (int i = first; i < n; i += stride)
+        for (int64_t i = first; i < n; i += stride)
             sum_q20 += f->bundle[i].n_cells ? f->source[i].peak_q20 : 0;
-        for (int i = first; i < n && sum_q20 < 1 << 20; i += stride)
+        for (int64_t i = first; i < n && sum_q20 < 1 << 20; i += stride)
             f->bundle[i].n_cells = 0;
     }
 }
@@ -253,9 +253,11 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                       const struct glint_beam *beams, int n_beams)
 {
     const int n_ghosts = (int)rays->lens->header->n_ghosts;
-    const int64_t all = (int64_t)n_within(rays->lens, beams, n_beams) *
-                        n_ghosts * rays->n_waves;
-    const int need = all < INT32_MAX ? (int)all : INT32_MAX;
+    const int64_t pairs =
+        (int64_t)n_within(rays->lens, beams, n_beams) * n_ghosts;
+    const int need = pairs < INT32_MAX / rays->n_waves
+                         ? (int)pairs * rays->n_waves
+                         : INT32_MAX;
     const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
 
     glint_flare_begin(flare);
@@ -315,10 +317,13 @@ static void total(struct glint_flare *f)
     s->dropped_bundles += f->n_bundles - f->n_drawn;
     s->primitives = 0;
     for (int i = 0; i < f->n_drawn; i++) {
-        s->primitives += f->slot[i].n;
-        s->dropped_cells += f->slot[i].n_dropped;
-        s->merged_cells += f->slot[i].n_merged;
-        s->held_cells += f->slot[i].n_held;
+        const struct glint_bundle_slot *slot = &f->slot[i];
+
+        s->primitives += slot->n;
+        s->dropped_cells =
+            glint_flare_add_need(s->dropped_cells, slot->n_dropped);
+        s->merged_cells = glint_flare_add_need(s->merged_cells, slot->n_merged);
+        s->held_cells = glint_flare_add_need(s->held_cells, slot->n_held);
     }
 }
 

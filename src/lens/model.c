@@ -141,6 +141,8 @@ static const char *check_name(const char *name, size_t size)
 
         if (c < 0x20 || c == 0x7f)
             return "the name has a control character";
+        if (c >= 0x80) /* 0x9b begins a command to a terminal */
+            return "the name has a byte beyond ASCII";
     }
     if (n == size)
         return "the name does not end";

@@ -501,12 +501,12 @@ struct block {
 static void scale_rays(const int32_t *x, int shift, int32_t limit,
                        int32_t *scaled, int32_t *lost)
 {
-    if (shift < 1 || shift > 31 || limit < LIMIT_Q16) {
+    if (shift < 1 || shift > 30 || limit < LIMIT_Q16) {
         for (int i = 0; i < RAYS; i++)
             scaled[i] = q_scaled(x[i], shift, limit, &lost[i]);
         return;
     }
-    for (int i = 0; i < RAYS; i++) /* below 2^30 each */
+    for (int i = 0; i < RAYS; i++) /* below 2^30 + 61 and 2^29: no overflow */
         scaled[i] = (x[i] + (INT32_C(1) << (shift - 1))) >> shift;
 }
 

@@ -15,6 +15,7 @@
 #include "glint/flare.h"
 #include "glint/kernels.h"
 #include "linux/sets.h"
+#include "flare/state.h"
 #include "posix/workers.h"
 #include "support/shuffle.h"
 
@@ -1019,6 +1020,37 @@ static void test_golden(void **state)
     fclose(file);
 }
 
+/* By way of bins that count a thousand million cells for each bundle. */
+static void count_many(struct glint_flare *f)
+{
+    f->n_drawn = f->n_bundles;
+    for (int i = 0; i < f->n_bundles; i++)
+        f->slot[i].n_dropped = f->slot[i].n_merged = f->slot[i].n_held =
+            1000000000;
+}
+
+/* Counts of a frame stop at the largest int, and do not turn over. */
+static void test_counts_are_held(void **state)
+{
+    struct glint_flare_config c = base_config();
+    struct glint_raster counting = glint_raster_cells;
+    struct glint_flare_stats stats;
+    struct glint_flare *f;
+    void *mem;
+
+    (void)state;
+    counting.bin = count_many;
+    c.raster = &counting;
+    f = open_flare(&c, &mem);
+    for (int i = 0; i < 3; i++)
+        add_ghost(f, &scene[i]);
+    glint_flare_bin(f, &stats);
+    assert_int_equal(stats.dropped_cells, INT32_MAX);
+    assert_int_equal(stats.merged_cells, INT32_MAX);
+    assert_int_equal(stats.held_cells, INT32_MAX);
+    free(mem);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -1046,6 +1078,7 @@ int main(void)
         cmocka_unit_test(test_into_nothing),
         cmocka_unit_test(test_exact_capacity),
         cmocka_unit_test(test_too_little_capacity),
+        cmocka_unit_test(test_counts_are_held),
         cmocka_unit_test(test_config_is_checked),
         cmocka_unit_test(test_golden),
     };

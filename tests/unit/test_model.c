@@ -201,6 +201,7 @@ static const struct rule auto_rules[] = {
     {HEADER_(name[0]), 0, "the name is empty"},
     {HEADER_(name[0]), 0x1b, "the name has a control character"},
     {HEADER_(name[0]), 0x7f, "the name has a control character"},
+    {HEADER_(name[0]), 0x9b, "the name has a byte beyond ASCII"},
     {HEADER_(focal_mm.mantissa), 0, "the focal length is 0"},
     {HEADER_(focal_mm.mantissa), (1 << 30) - 1, unnormal},
     {HEADER_(focal_mm.mantissa), 1 - (1 << 30), unnormal},
@@ -792,6 +793,42 @@ static void test_lost(void **state)
     free(m.data);
 }
 
+/* Sums of 2^30 - 1 at two knots are 2^30 halfway, where two coefficients are
+ * rounded up: half of that rounds to 1/65536 at a shift of 31. */
+static void test_strays_between_knots(void **state)
+{
+    static const int32_t sum[2][2] = {{1, ONE - 2}, {2, ONE - 3}};
+    struct model_image m = model_sparse();
+    struct glint_model_system *s =
+        (void *)(m.data + model_header(&m)->system_at);
+    struct glint_model_output *o = (void *)(m.data + s->output_at);
+    const uint16_t one_and_x[2] = {0, MODEL_POWER(1, 0, 0, 0)};
+    int32_t coef[MODEL_KNOTS][2];
+    static struct glint_transfer t;
+    struct glint_vertex v[4];
+    struct glint_lens lens;
+
+    (void)state;
+    for (int knot = 0; knot < MODEL_KNOTS; knot++)
+        memcpy(coef[knot], sum[knot % 2], sizeof sum[0]);
+    o[5].kind = GLINT_OUT_BARREL_0; /* was the radius */
+    o[5].n_terms = 2;
+    o[5].exponent = -47;
+    o[5].term_at = model_put(&m, one_and_x, sizeof one_and_x);
+    o[5].coef_at = model_put(&m, coef, sizeof coef);
+    model_seal(&m);
+    lens = open_image(&m);
+    assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 8, 1), 1);
+    assert_int_equal(ray(&t, ONE, 0).at[GLINT_OUT_BARREL_0], ONE);
+    glint_transfer_grid(&t, &(struct glint_place){ONE, 0, {ONE, -40}, 0, 0}, 1,
+                        v);
+    for (int k = 1; k < 4; k += 2) { /* those of x = 1 */
+        assert_true(v[k].energy_q16 >= 0);
+        assert_int_equal(v[k].barrel_q16[0], 1);
+    }
+    free(m.data);
+}
+
 /* ------------------------------------------------------------------- corpus */
 
 static void check_corpus(const char *path, struct model_image m)
@@ -840,6 +877,7 @@ int main(void)
         cmocka_unit_test(test_grid),
         cmocka_unit_test(test_hollow_grid),
         cmocka_unit_test(test_sparse_grid),
+        cmocka_unit_test(test_strays_between_knots),
         cmocka_unit_test(test_lost),
         cmocka_unit_test(test_corpus),
     };
