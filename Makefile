@@ -115,7 +115,7 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
-PLATFORM := posix/error posix/at_death posix/input posix/output posix/workers \
+PLATFORM := posix/utf8 posix/error posix/at_death posix/input posix/output posix/workers \
         plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request linux/instructions \
         linux/sets linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \
         linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
@@ -131,7 +131,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
-        measure lamps bright match tracks at_death fourcc v4l2 v4l2_faults panel \
+        measure lamps bright match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame show_lights sweep explain budget live \
         $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights

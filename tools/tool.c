@@ -15,6 +15,7 @@
 
 #include "linux/sets.h"
 #include "posix/input.h"
+#include "posix/utf8.h"
 #include "posix/workers.h"
 
 #ifndef GLINT_LENS_DIR
@@ -368,15 +369,17 @@ void tool_progress_end(struct tool_progress *p)
 void tool_json_string(FILE *file, const char *text)
 {
     fputc('"', file);
-    for (; *text; text++) {
+    while (*text) {
         const unsigned char c = (unsigned char)*text;
+        const size_t length = glint_utf8_length(text);
 
         if (c == '"' || c == '\\')
             fputc('\\', file);
-        if (c < 0x20)
-            fprintf(file, "\\u%04x", c);
+        if (length)
+            fwrite(text, 1, length, file);
         else
-            fputc(c, file);
+            fprintf(file, "\\u%04x", c < 0x80 ? c : 0xfffdu);
+        text += length ? length : 1;
     }
     fputc('"', file);
 }

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "posix/utf8.h"
+
 #define FILE_CHARS 120 /* of a name, so that the cause fits behind it */
 
 enum glint_status glint_error_report(struct glint_error *error,
@@ -21,8 +23,6 @@ enum glint_status glint_error_report(struct glint_error *error,
     vsnprintf(error->text + used, sizeof error->text - (size_t)used, format,
               args);
     va_end(args);
-    for (char *c = error->text; *c; c++)
-        if ((unsigned char)*c < 32 || *c == 127)
-            *c = '?';
+    glint_utf8_clean(error->text);
     return status;
 }
