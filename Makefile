@@ -115,7 +115,7 @@ BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
-PLATFORM := posix/utf8 posix/error posix/at_death posix/input posix/output posix/workers \
+PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posix/output posix/workers \
         plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request linux/instructions \
         linux/sets linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \
         linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
@@ -355,6 +355,7 @@ endif
 # Calls that tests answer themselves, or let fail.
 $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
+$(OUT)/tests/unit/test_workers: LDFLAGS += -Wl,--wrap=pthread_create
 $(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
 FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \
         realloc posix_memalign free strdup realpath clock_gettime nanosleep glint_mjpeg_available

@@ -100,7 +100,7 @@ static int run(struct bench *b, int n_names, const char *const *names)
     int code = EXIT_OK;
 
     if (glint_pool_create(&b->one, 1) != GLINT_OK ||
-        glint_pool_create(&b->two, 2) != GLINT_OK)
+        glint_pool_create(&b->two, 2) != GLINT_OK || b->two->n != 2)
         return tool_fail(b->tool, GLINT_E_MEMORY, "no threads to be had");
     for (int i = 0; i < n_names && code == EXIT_OK; i++)
         code = open_scene(b, names[i]);

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "posix/process.h"
+#include "posix/workers.h"
 #include "tool.h"
 
 static const char help[] =
@@ -73,8 +75,25 @@ static int run(int argc, char **argv)
     return EXIT_USAGE;
 }
 
+struct words {
+    int argc;
+    char **argv;
+};
+
+static int run_words(void *ctx)
+{
+    const struct words *words = ctx;
+
+    return run(words->argc, words->argv);
+}
+
+/* Baking takes more stack than some systems give. */
 int main(int argc, char **argv)
 {
+    struct words words = {argc, argv};
+
+    glint_process_hold_streams();
     tool_watch_reader();
-    return tool_end(run(argc, argv));
+    return tool_end(
+        glint_process_on_stack(GLINT_WORKER_STACK_BYTES, run_words, &words));
 }

@@ -153,8 +153,13 @@ int tool_start(struct tool *tool)
     const int n = tool->n_threads ? tool->n_threads : glint_cpu_count();
     const enum glint_status status = glint_pool_create(&tool->workers, n);
 
-    return status == GLINT_OK ? EXIT_OK
-                              : tool_fail(tool, status, "no threads to be had");
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (tool->n_threads > tool->workers->n && !tool->quiet)
+        fprintf(stderr,
+                "glint %s: %d of %d threads, as the system gives no more\n",
+                tool->name, tool->workers->n, n);
+    return EXIT_OK;
 }
 
 void tool_finish(struct tool *tool)

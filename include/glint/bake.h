@@ -9,7 +9,10 @@
  *     glint_trace(&path, px, py, direction, &ray, NULL);
  *
  * Everything here is double precision and may take its time. Lengths are in
- * millimetres, wavelengths in nanometres, angles in degrees.
+ * millimetres, wavelengths in nanometres, angles in degrees. A thread that
+ * calls what finds pupils, bakes or draws, and each of its workers, needs a
+ * stack of GLINT_BAKE_STACK_BYTES, more than what musl (128 KiB) and macOS
+ * (512 KiB) give to threads.
  *
  * Axes: z runs from the front vertex (0) to the sensor, x to the right and y
  * up as the picture is seen. A light at (THETA, PHI) sends parallel rays along
@@ -31,6 +34,8 @@
 #define GLINT_MAX_GHOSTS   (GLINT_MAX_SURFACES * (GLINT_MAX_SURFACES - 1) / 2)
 #define GLINT_MAX_EVENTS   (3 * GLINT_MAX_SURFACES) /* of one path */
 #define GLINT_NAME_BYTES   64
+
+#define GLINT_BAKE_STACK_BYTES (1 << 20)
 
 /* ------------------------------------------------------------ lens tables */
 

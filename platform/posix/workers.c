@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _XOPEN_SOURCE 700 /* SIGSYS */
 #include "posix/workers.h"
 
 #include <pthread.h>
@@ -97,23 +98,41 @@ static void run(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
     pthread_mutex_unlock(&p->lock);
 }
 
-static bool start_helpers(struct pool *p, int n)
+/* All signals but those of a thread's own faults: blocked, these kill at once,
+ * and nothing is put right. */
+static void hold_signals(sigset_t *old)
 {
-    sigset_t all, old;
+    static const int faults[] = {SIGSEGV, SIGBUS,  SIGILL, SIGFPE,
+                                 SIGABRT, SIGTRAP, SIGSYS};
+    sigset_t held;
 
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &old);
+    sigfillset(&held);
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+        sigdelset(&held, faults[i]);
+    pthread_sigmask(SIG_SETMASK, &held, old);
+}
+
+/* Up to N, as many as the system gives. */
+static void start_helpers(struct pool *p, int n)
+{
+    pthread_attr_t attr;
+    sigset_t old;
+
+    if (pthread_attr_init(&attr))
+        return;
+    hold_signals(&old);
+    pthread_attr_setstacksize(&attr, GLINT_WORKER_STACK_BYTES);
     while (p->n_helpers < n) {
         struct helper *const h = &p->helper[p->n_helpers];
 
         h->pool = p;
         h->worker = p->n_helpers + 1;
-        if (pthread_create(&h->thread, NULL, help, h))
+        if (pthread_create(&h->thread, &attr, help, h))
             break;
         p->n_helpers++;
     }
     pthread_sigmask(SIG_SETMASK, &old, NULL);
-    return p->n_helpers == n;
+    pthread_attr_destroy(&attr);
 }
 
 enum glint_status glint_pool_create(struct glint_workers **workers,
@@ -126,15 +145,12 @@ enum glint_status glint_pool_create(struct glint_workers **workers,
     p = calloc(1, sizeof *p);
     if (!p)
         return GLINT_E_MEMORY;
-    p->base.n = n_threads;
     p->base.run = run;
     pthread_mutex_init(&p->lock, NULL);
     pthread_cond_init(&p->wake, NULL);
     pthread_cond_init(&p->idle, NULL);
-    if (!start_helpers(p, n_threads - 1)) {
-        glint_pool_destroy(&p->base);
-        return GLINT_E_MEMORY;
-    }
+    start_helpers(p, n_threads - 1);
+    p->base.n = p->n_helpers + 1;
     *workers = &p->base;
     return GLINT_OK;
 }

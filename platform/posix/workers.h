@@ -11,7 +11,8 @@
  * threads and a pool of one makes none. Jobs are handed out by one counter;
  * nothing else is shared while they run. Threads that sleep too deeply to join
  * in before the jobs are gone are not waited for. All signals are blocked in
- * the threads of the pool and go to those of the application.
+ * the threads of the pool and go to those of the application, except for those
+ * of a thread's own faults.
  */
 #ifndef GLINT_POSIX_WORKERS_H
 #define GLINT_POSIX_WORKERS_H
@@ -21,8 +22,17 @@
 
 #define GLINT_MAX_WORKERS 64
 
-/* Makes a pool of N_THREADS, 1 .. GLINT_MAX_WORKERS, else GLINT_E_ARGUMENT.
- * GLINT_E_MEMORY: no memory, or the system gives no more threads. */
+/* The stack of each, whatever the system's default: what baking takes
+ * (GLINT_BAKE_STACK_BYTES), and with a sanitizer several times that. */
+#ifdef GLINT_SANITIZED
+#define GLINT_WORKER_STACK_BYTES (16 << 20)
+#else
+#define GLINT_WORKER_STACK_BYTES (2 << 20)
+#endif
+
+/* Makes a pool of N_THREADS, 1 .. GLINT_MAX_WORKERS, else GLINT_E_ARGUMENT; of
+ * fewer, of the caller alone at worst, where the system gives no more threads:
+ * workers->n says how many. GLINT_E_MEMORY. */
 enum glint_status glint_pool_create(struct glint_workers **workers,
                                     int n_threads);
 

@@ -8,8 +8,20 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include "glint/bake.h"
+#include "posix/at_death.h"
+#include "posix/process.h"
 #include "posix/workers.h"
 
 #define MAX_JOBS 1000
@@ -116,6 +128,169 @@ static void test_cpu_count(void **state)
     assert_in_range(glint_cpu_count(), 1, GLINT_MAX_WORKERS);
 }
 
+/* ------------------------------------------------------------------ threads */
+
+static int threads_left = -1; /* to be had; -1: as many as the system gives */
+
+int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
+                          void *(*start)(void *), void *arg);
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
+                          void *(*start)(void *), void *arg);
+
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
+                          void *(*start)(void *), void *arg)
+{
+    if (threads_left == 0)
+        return EAGAIN;
+    threads_left -= threads_left > 0;
+    return __real_pthread_create(thread, attr, start, arg);
+}
+
+/* Where there are no more threads, those that there are do all the work. */
+static void test_fewer_threads(void **state)
+{
+    (void)state;
+    for (int left = 0; left < 4; left++) {
+        struct glint_workers *workers;
+        uint64_t sums[8] = {0}, sum = 0;
+
+        threads_left = left;
+        assert_int_equal(glint_pool_create(&workers, 8), GLINT_OK);
+        threads_left = -1;
+        assert_int_equal(workers->n, left + 1);
+        workers->run(workers, 100, add, sums);
+        for (int i = 0; i < 8; i++) {
+            assert_true(i <= left || sums[i] == 0);
+            sum += sums[i];
+        }
+        assert_int_equal(sum, 4950);
+        glint_pool_destroy(workers);
+    }
+}
+
+/* ------------------------------------------------------------------- stacks */
+
+/* Fills as much of the stack as baking may need. */
+static int dig(void *ctx)
+{
+    volatile char hole[GLINT_BAKE_STACK_BYTES];
+
+    for (size_t i = 0; i < sizeof hole; i += 512)
+        hole[i] = 1;
+    return *(int *)ctx + hole[512];
+}
+
+/* The helper digs; the caller waits for it, so that it is the helper. */
+static void dig_job(void *ctx, int job, int worker)
+{
+    int *const dug = ctx;
+
+    (void)job;
+    if (worker > 0)
+        __atomic_store_n(dug, dig(&worker), __ATOMIC_SEQ_CST);
+    while (!__atomic_load_n(dug, __ATOMIC_SEQ_CST))
+        sched_yield();
+}
+
+/* In a child, whose threads get 256 KiB by default. */
+static void with_little(int (*work)(void))
+{
+    const struct rlimit little = {256 << 10, 256 << 10};
+    const pid_t child = fork();
+    int how;
+
+    if (child == 0) {
+        setrlimit(RLIMIT_STACK, &little);
+        _exit(work());
+    }
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_true(WIFEXITED(how));
+    assert_int_equal(WEXITSTATUS(how), 0);
+}
+
+static int dig_in_pool(void)
+{
+    struct glint_workers *workers;
+    int dug = 0;
+
+    if (glint_pool_create(&workers, 2) != GLINT_OK)
+        return 1;
+    workers->run(workers, 2, dig_job, &dug);
+    return dug != 2;
+}
+
+static int dig_on_stack(void)
+{
+    int two = 2;
+
+    return glint_process_on_stack(GLINT_WORKER_STACK_BYTES, dig, &two) != 3;
+}
+
+static void test_stacks(void **state)
+{
+    (void)state;
+    with_little(dig_in_pool);
+    with_little(dig_on_stack);
+    threads_left = 0; /* then it is called directly */
+    assert_int_equal(glint_process_on_stack((size_t)1 << 50, dig, &(int){4}),
+                     5);
+    threads_left = -1;
+}
+
+/* ------------------------------------------------------------------- faults */
+
+static int told[2]; /* a pipe */
+
+static void tell(void)
+{
+    if (write(told[1], "x", 1) != 1)
+        _exit(98);
+}
+
+/* Only a helper does it; the caller waits. */
+static void fault_job(void *ctx, int job, int worker)
+{
+    volatile char *const nowhere = ctx;
+
+    (void)job;
+    while (worker == 0)
+        pause();
+    *nowhere = 1;
+}
+
+/* What a helper's own fault ends puts right what there is to be put right. */
+static void test_fault_in_helper(void **state)
+{
+    const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
+    void *const nowhere =
+        mmap(NULL, bytes, PROT_NONE, MAP_SHARED, open("/dev/zero", O_RDWR), 0);
+    const struct rlimit no_core = {0, 0};
+    struct glint_workers *workers;
+    char text[4];
+    pid_t child;
+    int how;
+
+    (void)state;
+    assert_int_equal(pipe(told), 0);
+    child = fork();
+    if (child == 0) {
+        signal(SIGSEGV, SIG_DFL); /* cmocka takes it */
+        signal(SIGBUS, SIG_DFL);
+        setrlimit(RLIMIT_CORE, &no_core);
+        if (!glint_at_death(tell) || glint_pool_create(&workers, 2))
+            _exit(97);
+        workers->run(workers, 2, fault_job, nowhere);
+        _exit(96);
+    }
+    close(told[1]);
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_true(WIFSIGNALED(how));
+    assert_int_equal(WTERMSIG(how), SIGSEGV);
+    assert_int_equal(read(told[0], text, sizeof text), 1);
+    close(told[0]);
+    munmap(nowhere, bytes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -124,6 +299,9 @@ int main(void)
         cmocka_unit_test(test_idle_pools),
         cmocka_unit_test(test_refuses),
         cmocka_unit_test(test_cpu_count),
+        cmocka_unit_test(test_fewer_threads),
+        cmocka_unit_test(test_stacks),
+        cmocka_unit_test(test_fault_in_helper),
     };
 
     return cmocka_run_group_tests_name("workers", tests, NULL, NULL);

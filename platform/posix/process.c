@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+#include "posix/process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+void glint_process_hold_streams(void)
+{
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
+            open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
+            _exit(1); /* nowhere to say why */
+}
+
+struct call {
+    int (*fn)(void *ctx);
+    void *ctx;
+    int result;
+    sigset_t signals; /* blocked before */
+};
+
+static void *do_call(void *arg)
+{
+    struct call *const c = arg;
+
+    pthread_sigmask(SIG_SETMASK, &c->signals, NULL);
+    c->result = c->fn(c->ctx);
+    return NULL;
+}
+
+/* In a thread with a stack of BYTES, while this one takes no signals. */
+static bool call_apart(size_t bytes, struct call *c)
+{
+    pthread_attr_t attr;
+    pthread_t thread;
+    sigset_t all;
+    bool started;
+
+    if (pthread_attr_init(&attr))
+        return false;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &c->signals);
+    started = !pthread_attr_setstacksize(&attr, bytes) &&
+              !pthread_create(&thread, &attr, do_call, c);
+    if (started)
+        pthread_join(thread, NULL);
+    pthread_sigmask(SIG_SETMASK, &c->signals, NULL);
+    pthread_attr_destroy(&attr);
+    return started;
+}
+
+int glint_process_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx)
+{
+    struct call c = {.fn = fn, .ctx = ctx};
+    struct rlimit stack;
+
+    if (getrlimit(RLIMIT_STACK, &stack) < 0 ||
+        stack.rlim_cur == RLIM_INFINITY || stack.rlim_cur >= bytes ||
+        !call_apart(bytes, &c))
+        return fn(ctx);
+    return c.result;
+}
