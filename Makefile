@@ -109,7 +109,7 @@ CORE := base/status base/arena base/q base/divide base/sort base/image base/work
         tile/clip tile/outline tile/bins tile/raster tile/edges tile/sums tile/curve tile/mix tile/codes \
         tile/resolve tile/quads tile/composite flare/beams flare/plan flare/ghost_grid flare/cuts \
         flare/ghost_edges flare/by_cells flare/by_edges flare/flare flare/account
-BAKE := bake/text bake/prescription bake/check bake/glass bake/coating \
+BAKE := bake/text bake/films bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
         bake/setup bake/exact bake/feed bake/hunt bake/regress \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
@@ -121,7 +121,7 @@ PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posi
         linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
-TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache \
+TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache coating \
         model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene look live_adapt \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
@@ -129,7 +129,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 EXTREMES := angles powers lenses frames caustics outlines sums runs
-UNIT := arena divide cuts kernels model prescription optics trace pupil published quantise bake \
+UNIT := arena divide cuts kernels model prescription films optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame show_lights sweep explain budget live \

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "coating.h"
 #include "model_report.h"
 #include "posix/output.h"
 #include "tool.h"
@@ -21,7 +22,7 @@ static const char help[] =
     "\n"
     "  -o, --output MODEL\n"
     "                    - is standard output; no report then\n"
-    "  --f-number N      stop the lens to f/N first\n"
+    "  --f-number N      stop the lens to f/N first\n" COATING_HELP
     "  --basis B         auto: place in the ghost's own box, zones of angles "
     "as\n"
     "                    needed (default)\n"
@@ -36,6 +37,7 @@ static const char help[] =
 
 struct bake {
     const char *output;
+    struct coating coating;
     double f_number;
     struct glint_bake_options options;
 };
@@ -50,6 +52,8 @@ static int take(struct tool *tool, struct bake *b, int c, const char *name)
     case 'o':
         b->output = optarg;
         break;
+    case 'c':
+        return coating_take(tool, &b->coating, optarg);
     case 'f':
         ok = tool_number(optarg, &b->f_number) && b->f_number > 0;
         break;
@@ -81,6 +85,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
 {
     static const struct option options[] = {
         {"output", required_argument, NULL, 'o'},
+        {"coating", required_argument, NULL, 'c'},
         {"f-number", required_argument, NULL, 'f'},
         {"basis", required_argument, NULL, 'b'},
         {"band", required_argument, NULL, 'w'},
@@ -156,6 +161,8 @@ static int run(struct tool *tool, struct bake *b, const char *name)
     if (!lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     code = tool_lens(tool, name, lens);
+    if (code == EXIT_OK)
+        coating_apply(&b->coating, lens);
     if (code == EXIT_OK && b->f_number > 0)
         status = glint_prescription_set_f_number(lens, b->f_number, &error);
     if (code == EXIT_OK && status == GLINT_OK)

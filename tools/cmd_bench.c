@@ -41,7 +41,8 @@ static const char help[] =
     "                  minutes\n"
     "  --format F      yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 | "
     "rgb565\n";
-static const char help_end[] = SCENE_HELP COMMON_HELP;
+static const char help_end[] = SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 static const char *const default_lenses[] = {
     "heliar-tronnier", "double-gauss-angenieux", "itoh-zoom-short",
@@ -218,7 +219,10 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
 
 int cmd_bench(int argc, char **argv)
 {
-    struct tool tool = {.name = "bench", .help = help, .help_end = help_end};
+    struct tool tool = {.name = "bench",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
     struct bench *b = calloc(1, sizeof *b);
     int code;
 

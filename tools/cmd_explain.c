@@ -41,7 +41,8 @@ static const char help[] =
     "default:\n"
     "                      as much as it takes\n" LOOK_HELP;
 
-static const char help_end[] = SCENE_HELP COMMON_HELP;
+static const char help_end[] = SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 enum { OPT_PICTURE = OPT_LOOK_LAST, OPT_SORT, OPT_TOP, OPT_MEMORY, OPT_SIZE };
 
@@ -257,7 +258,10 @@ static int run(struct tool *tool, struct explain_command *c)
 
 int cmd_explain(int argc, char **argv)
 {
-    struct tool tool = {.name = "explain", .help = help, .help_end = help_end};
+    struct tool tool = {.name = "explain",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
     struct explain_command *c = calloc(1, sizeof *c);
     int code;
 

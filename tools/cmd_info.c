@@ -4,12 +4,13 @@
  */
 #include <stdlib.h>
 
+#include "coating.h"
 #include "model_file.h"
 #include "model_report.h"
 #include "tool.h"
 
 static const char help[] =
-    "glint info LENS|MODEL [--json] [-v] [--f-number N]\n"
+    "glint info LENS|MODEL [--json] [-v] [--f-number N] [--coating C]\n"
     "\n"
     "Prints focal length, back focal length, entrance pupil, stop radius at\n"
     "the f-number, surfaces and ghosts with their pairs of surfaces (counted\n"
@@ -21,9 +22,12 @@ static const char help[] =
     "means over the zones (rms of squares), p99, max, bound and rounding\n"
     "the worst zone's. Sensor in pixels of a film 1920 wide.\n"
     "\n"
-    "  --f-number N   stop the lens to f/N first; not of a model\n"
-    "  -v             of a model: each zone\n"
-    "  --json         one JSON object\n";
+    "  --f-number N        stop the lens to f/N first; not of a "
+    "model\n" COATING_HELP
+    "  -v                  of a table: what is on each surface; of a model: "
+    "each\n"
+    "                      zone\n"
+    "  --json              one JSON object\n";
 
 struct info {
     struct glint_prescription lens;
@@ -82,6 +86,27 @@ static void print_text(const struct info *info)
     printf("\n");
 }
 
+static void print_coatings(const struct glint_prescription *l)
+{
+    printf("\nsurface  reflects of 450, 550, 650 nm    film\n");
+    for (int k = 0; k < l->n_surfaces; k++) {
+        static const double nm[3] = {450, 550, 650};
+        const struct glint_surface *s = &l->surface[k], *before = s - 1;
+
+        printf("%7d ", k);
+        for (int i = 0; i < 3; i++)
+            printf(" %6.2f %%",
+                   100 * glint_reflectance(
+                             k ? glint_index(before->nd, before->vd, nm[i]) : 1,
+                             glint_index(s->nd, s->vd, nm[i]), 1, s->coating_n,
+                             3.14159265358979323846 * s->coating_nm / nm[i]));
+        if (s->coating_nm > 0)
+            printf("    %g nm, index %g\n", s->coating_nm, s->coating_n);
+        else
+            printf("    none\n");
+    }
+}
+
 static int info_of_model(const struct tool *tool, const char *path)
 {
     struct model_file model;
@@ -94,10 +119,13 @@ static int info_of_model(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-static int parse(struct tool *tool, int argc, char **argv, double *f_number)
+static int parse(struct tool *tool, int argc, char **argv, double *f_number,
+                 struct coating *coating)
 {
     static const struct option options[] = {
-        {"f-number", required_argument, NULL, 'f'}, TOOL_COMMON_OPTIONS};
+        {"f-number", required_argument, NULL, 'f'},
+        {"coating", required_argument, NULL, 'c'},
+        TOOL_COMMON_OPTIONS};
     int c, code;
 
     while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
@@ -108,7 +136,8 @@ static int parse(struct tool *tool, int argc, char **argv, double *f_number)
                                   optarg);
             continue;
         }
-        code = tool_option(tool, c, optarg);
+        code = c == 'c' ? coating_take(tool, coating, optarg)
+                        : tool_option(tool, c, optarg);
         if (code >= 0)
             return code;
     }
@@ -122,11 +151,15 @@ int cmd_info(int argc, char **argv)
     struct tool tool = {.name = "info", .help = help};
     struct glint_error error;
     struct info *info;
+    struct coating coating = {.kind = COATING_TABLE};
     double f_number = 0;
-    int code = parse(&tool, argc, argv, &f_number);
+    int code = parse(&tool, argc, argv, &f_number, &coating);
 
     if (code >= 0)
         return code;
+    if (tool_is_model(argv[optind]) &&
+        coating_of_model(&tool, &coating, argv[optind]) != EXIT_OK)
+        return EXIT_USAGE;
     if (tool_is_model(argv[optind]))
         return f_number != 0 ? tool_usage(&tool, "the f-number of a model was "
                                                  "chosen when it was baked")
@@ -135,6 +168,8 @@ int cmd_info(int argc, char **argv)
     if (!info)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     code = tool_lens(&tool, argv[optind], &info->lens);
+    if (code == EXIT_OK)
+        coating_apply(&coating, &info->lens);
     if (code == EXIT_OK && f_number != 0) {
         const enum glint_status status =
             glint_prescription_set_f_number(&info->lens, f_number, &error);
@@ -147,6 +182,8 @@ int cmd_info(int argc, char **argv)
         info->n_ghosts =
             glint_ghost_list(&info->lens, info->ghost, GLINT_MAX_GHOSTS);
         (tool.json ? print_json : print_text)(info);
+        if (!tool.json && tool.verbose)
+            print_coatings(&info->lens);
     }
     free(info);
     return code;

@@ -55,7 +55,8 @@ static const char help[] =
     "SIGUSR2 saves a snapshot.\n"
     "Lens and lights\n" LOOK_HELP;
 
-static const char help_end[] = SCENE_HELP COMMON_HELP;
+static const char help_end[] = SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 enum {
     OPT_CONFIG = OPT_LOOK_LAST,
@@ -335,7 +336,10 @@ static int list(struct tool *tool, const struct live_options *o)
 
 int cmd_live(int argc, char **argv)
 {
-    struct tool tool = {.name = "live", .help = help, .help_end = help_end};
+    struct tool tool = {.name = "live",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
     struct live_options *o = calloc(1, sizeof *o);
     struct line line = {.tool = &tool,
                         .argc = argc,

@@ -27,7 +27,8 @@ static const char help[] =
     "  --start-number N    first of a sequence (default: 0 or 1, as "
     "found)\n";
 
-static const char help_end[] = SCENE_HELP COMMON_HELP;
+static const char help_end[] = SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 /* ------------------------------------------------------------------ options */
 
@@ -268,7 +269,10 @@ static int run(struct tool *tool, struct overlay *o)
 
 int cmd_overlay(int argc, char **argv)
 {
-    struct tool tool = {.name = "overlay", .help = help, .help_end = help_end};
+    struct tool tool = {.name = "overlay",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
     struct overlay *o = calloc(1, sizeof *o);
     int code;
 

@@ -37,7 +37,8 @@ static const char help[] =
     "                      exact: the reference, every ray in "
     "double\n";
 
-static const char help_end[] = SCENE_HELP COMMON_HELP;
+static const char help_end[] = SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 struct render {
     struct scene scene;
@@ -294,7 +295,10 @@ static int run(struct tool *tool, struct render *r, const char *lens)
 
 int cmd_render(int argc, char **argv)
 {
-    struct tool tool = {.name = "render", .help = help, .help_end = help_end};
+    struct tool tool = {.name = "render",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
     struct render *r = calloc(1, sizeof *r);
     int code;
 

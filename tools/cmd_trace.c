@@ -6,12 +6,13 @@
 #include <string.h>
 #include <math.h>
 
+#include "coating.h"
 #include "model_file.h"
 #include "tool.h"
 
 static const char help[] =
     "glint trace LENS --ghost K --angle DEG --wavelength NM --grid N [--csv]\n"
-    "            [--model MODEL]\n"
+    "            [--model MODEL] [--coating C]\n"
     "\n"
     "Prints one line a ray, over an N x N grid that spans the clear square of\n"
     "the front element, x fastest:\n"
@@ -29,13 +30,14 @@ static const char help[] =
     "                   integers as render and overlay use them. Status 1\n"
     "                   outside of the box and of the angles of the ghost;\n"
     "                   rel_radius is that of the barrels that limit it, 0\n"
-    "                   where none does\n"
+    "                   where none does\n" COATING_HELP
     "  --csv            the format above; there is no other\n";
 
 #define PI 3.14159265358979323846
 
 struct options {
     const char *model;
+    struct coating coating;
     int ghost, grid;
     double angle_deg, wavelength_nm;
 };
@@ -49,6 +51,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         {"grid", required_argument, NULL, 'n'},
         {"model", required_argument, NULL, 'm'},
         {"csv", no_argument, NULL, 'c'},
+        {"coating", required_argument, NULL, 'C'},
         TOOL_COMMON_OPTIONS};
     int c, code;
 
@@ -67,7 +70,11 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
             ok = tool_integer(optarg, 1, 4096, &o->grid);
         else if (c == 'm')
             o->model = optarg;
-        else if (c != 'c' && (code = tool_option(tool, c, optarg)) >= 0)
+        else if (c == 'C' &&
+                 (code = coating_take(tool, &o->coating, optarg)) >= 0)
+            return code;
+        else if (c != 'c' && c != 'C' &&
+                 (code = tool_option(tool, c, optarg)) >= 0)
             return code;
         if (!ok)
             return tool_usage(tool, "'%s' is out of range", optarg);
@@ -280,11 +287,16 @@ int cmd_trace(int argc, char **argv)
 {
     static struct glint_prescription lens;
     struct tool tool = {.name = "trace", .help = help};
-    struct options o = {NULL, 0, 17, 0, 532};
+    struct options o = {.grid = 17, .wavelength_nm = 532};
     int code = parse(&tool, argc, argv, &o);
 
     if (code >= 0)
         return code;
-    code = tool_lens(&tool, argv[optind], &lens);
-    return code == EXIT_OK ? trace(&tool, &o, &lens) : code;
+    code = o.model ? coating_of_model(&tool, &o.coating, o.model) : EXIT_OK;
+    if (code == EXIT_OK)
+        code = tool_lens(&tool, argv[optind], &lens);
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&o.coating, &lens);
+    return trace(&tool, &o, &lens);
 }

@@ -13,6 +13,7 @@ void look_defaults(struct look *look)
 {
     *look = (struct look){.lens = "heliar-tronnier", .headroom_ev = 12};
     scene_defaults(&look->scene);
+    look->scene.coating.kind = COATING_MIXED;
 }
 
 static bool take_threshold(const char *text, int threshold[2])

@@ -190,6 +190,8 @@ int scene_option(const struct tool *tool, struct scene *scene, int option,
 
     if (option < OPT_F_NUMBER || option >= OPT_LAST)
         return -2;
+    if (option == OPT_COATING)
+        return coating_take(tool, &scene->coating, value);
     if (take(scene, option, value))
         return -1;
     if (option == OPT_ONLY && strcmp(value, "starburst") == 0)
@@ -257,7 +259,9 @@ static int open_model(const struct tool *tool, struct scene *scene,
                           "%s is a model, baked for one f-number: "
                           "--f-number needs the lens table",
                           path);
-    code = tool_model(tool, path, &scene->model);
+    code = coating_of_model(tool, &scene->coating, path);
+    if (code == EXIT_OK)
+        code = tool_model(tool, path, &scene->model);
     if (code != EXIT_OK)
         return code;
     h = scene->model.lens.header;

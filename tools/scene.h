@@ -5,6 +5,7 @@
 #ifndef GLINT_TOOLS_SCENE_H
 #define GLINT_TOOLS_SCENE_H
 
+#include "coating.h"
 #include "frame.h"
 #include "model_file.h"
 #include "tool.h"
@@ -21,6 +22,7 @@ struct scene {
     double max_deg;   /* of the lamps that a model is baked for */
     double tolerance; /* it is baked with */
     struct glint_setup setup;
+    struct coating coating;
     double f_number; /* 0: as the table says */
     int n_blades;
     double blade_rotation_deg;
@@ -47,6 +49,7 @@ struct scene {
 /* Long options of this file, for a command's array; all above 1000. */
 enum scene_option {
     OPT_F_NUMBER = 1000,
+    OPT_COATING,
     OPT_STOP,
     OPT_WAVELENGTHS,
     OPT_SENSOR,
@@ -81,6 +84,7 @@ enum scene_option {
 
 #define SCENE_OPTIONS                                              \
     {"f-number", required_argument, NULL, OPT_F_NUMBER},           \
+        {"coating", required_argument, NULL, OPT_COATING},         \
         {"stop", required_argument, NULL, OPT_STOP},               \
         {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS}, \
         {"sensor", required_argument, NULL, OPT_SENSOR},           \
@@ -116,7 +120,8 @@ enum scene_option {
 /* What they do, for a command's help. */
 #define SCENE_HELP                                                             \
     "The lens\n"                                                               \
-    "  --f-number N        stop it to f/N (default: the table's)\n"            \
+    "  --f-number N        stop it to f/N (default: the "                      \
+    "table's)\n" COATING_HELP                                                  \
     "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the "      \
     "first\n"                                                                  \
     "                      corner at ROT degrees (default polygon:8)\n"        \
@@ -133,7 +138,10 @@ enum scene_option {
     "  --gain G            and times G (default 1)\n"                          \
     "  --balance           measure each wavelength by its own direct image, "  \
     "as\n"                                                                     \
-    "                      a camera balanced to white behind this lens\n"      \
+    "                      a camera balanced to white behind this lens\n"
+
+/* And what they give up accuracy for. */
+#define SPEED_HELP                                                             \
     "Speed and accuracy of the integer engine\n"                               \
     "  --max-lights N      lights that are drawn (default 128): more merge, "  \
     "the\n"                                                                    \

@@ -39,6 +39,7 @@ int scene_open_table(const struct tool *tool, struct scene *scene,
 
     if (code != EXIT_OK)
         return code;
+    coating_apply(&scene->coating, &scene->lens);
     if (scene->f_number > 0)
         status = glint_prescription_set_f_number(&scene->lens, scene->f_number,
                                                  &error);

@@ -98,6 +98,8 @@ int tool_option(struct tool *tool, int option, const char *value)
         fputs(tool->help, stdout);
         if (tool->help_end)
             fputs(tool->help_end, stdout);
+        if (tool->help_last)
+            fputs(tool->help_last, stdout);
         return EXIT_OK;
     case 'V':
         return show_version();

@@ -23,9 +23,10 @@ enum exit_code {
 };
 
 struct tool {
-    const char *name;     /* of the command */
-    const char *help;     /* its text, */
-    const char *help_end; /* and more of it, or NULL */
+    const char *name;      /* of the command */
+    const char *help;      /* its text, */
+    const char *help_end;  /* more of it, or NULL, */
+    const char *help_last; /* and more: strings of C99 end at 4095 bytes */
     bool json, quiet;
     int verbose;
     int n_threads;

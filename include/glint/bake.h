@@ -51,6 +51,14 @@ struct glint_surface {
     double coating_n;    /* index of the film */
 };
 
+/* A film on a surface, a quarter wave thick. */
+struct glint_film {
+    double nm;    /* design wavelength, 100 .. 5000; 0: no film */
+    double index; /* 1.01 .. 4 */
+};
+
+#define GLINT_MAX_FILMS GLINT_MAX_SURFACES
+
 /* A lens table, all of it checked. The stop lies between two surfaces: its gap
  * before is the thickness of the surface in front of it. */
 struct glint_prescription {
@@ -66,6 +74,10 @@ struct glint_prescription {
     double stop_semi_mm;      /* largest opening of the stop */
     double check_focal_mm;    /* stated values; 0: not stated */
     double check_back_mm;
+    /* What the table would have on its surfaces to be looked at, rather than
+     * measured; on them only after glint_prescription_coat(). */
+    struct glint_film mixed[GLINT_MAX_FILMS];
+    int n_mixed; /* 0: the table does not say */
 };
 
 /* Reads a lens table; lenses/README.md describes the format. TEXT need not be
@@ -81,6 +93,22 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
 enum glint_status
 glint_prescription_set_f_number(struct glint_prescription *lens,
                                 double f_number, struct glint_error *error);
+
+/* Takes what is on LENS's surfaces between air and glass off, and deals FILMS
+ * out over them, the first one to the front and from the first again behind the
+ * last; N 1 .. GLINT_MAX_FILMS. Cemented surfaces stay bare. */
+void glint_prescription_coat(struct glint_prescription *lens,
+                             const struct glint_film *films, int n);
+
+/* The films that a table without any of its own is mixed of; returns how many
+ * there are. */
+int glint_films_mixed(struct glint_film films[GLINT_MAX_FILMS]);
+
+/* Reads films as the tables have them, "none", "NM" or "NM/INDEX", but divided
+ * by commas. GLINT_E_ARGUMENT: ERROR says what is wrong; nothing is written. */
+enum glint_status glint_films_parse(struct glint_film films[GLINT_MAX_FILMS],
+                                    int *n, const char *text,
+                                    struct glint_error *error);
 
 /* First-order quantities at the d line (587.56 nm). */
 struct glint_optics {

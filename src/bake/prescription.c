@@ -12,23 +12,18 @@
 #include <string.h>
 
 #include "bake/check.h"
+#include "bake/films.h"
 #include "bake/text.h"
 #include "base/compiler.h"
 
 #define MAX_GLASSES      64
 #define GLASS_NAME_BYTES 24
-#define MGF2_NM          550.0
-#define MGF2_INDEX       1.38
 
 STATIC_ASSERT(sizeof(((struct glint_prescription *)0)->source) >
               GLINT_LINE_BYTES);
 
 struct medium {
     double nd, vd;
-};
-
-struct coating {
-    double nm, index;
 };
 
 static const struct glint_range f_number_range = {
@@ -42,9 +37,6 @@ static const struct glint_range thickness_range = {"thickness", 0, 1e5};
 static const struct glint_range semi_range = {"semi-diameter", 0.01, 1e4};
 static const struct glint_range nd_range = {"index", 1.01, 4};
 static const struct glint_range vd_range = {"Abbe number", 10, 150};
-static const struct glint_range coating_nm_range = {"coating wavelength", 100,
-                                                    5000};
-static const struct glint_range coating_n_range = {"coating index", 1.01, 4};
 
 enum field {
     NAME,
@@ -54,6 +46,7 @@ enum field {
     FOCAL,
     BACK_FOCAL,
     COATING,
+    MIXED,
     GLASS,
     SURFACE,
     STOP,
@@ -65,7 +58,7 @@ struct parser {
     struct glint_prescription lens;
     struct glint_text_place word[N_FIELDS]; /* latest of each, line 0: none */
     struct glint_places places;
-    struct coating coating; /* of surfaces without their own */
+    struct glint_film coating; /* of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
     int n_glasses;
@@ -150,25 +143,26 @@ static bool read_back_focal(struct parser *p)
 }
 
 /* "none" or NM [INDEX]. */
-static bool read_coating_value(struct parser *p, struct coating *coating)
+static bool read_coating_value(struct parser *p, struct glint_film *coating)
 {
     struct glint_word word = glint_text_next_word(&p->text);
 
-    *coating = (struct coating){0, 0};
-    if (glint_word_is(&word, "none"))
-        return true;
-    coating->index = MGF2_INDEX;
-    if (!glint_text_value_of(&p->text, &word, &coating_nm_range, &coating->nm))
-        return false;
+    if (!glint_film_of(&p->text, &word, coating) || coating->nm <= 0.0)
+        return glint_word_is(&word, "none");
     word = glint_text_next_word(&p->text);
     return !word.length ||
-           glint_text_value_of(&p->text, &word, &coating_n_range,
+           glint_text_value_of(&p->text, &word, &glint_film_index_range,
                                &coating->index);
 }
 
 static bool read_coating(struct parser *p)
 {
     return read_coating_value(p, &p->coating);
+}
+
+static bool read_mixed(struct parser *p)
+{
+    return glint_films_read(&p->text, p->lens.mixed, &p->lens.n_mixed);
 }
 
 /* ------------------------------------------------------------------- glass */
@@ -280,7 +274,7 @@ static bool read_surface_coating(struct parser *p, int k, bool cemented)
     struct glint_surface *s = &p->lens.surface[k];
     const struct glint_word word = glint_text_next_word(&p->text);
     char quote[GLINT_QUOTE_BYTES];
-    struct coating coating;
+    struct glint_film coating;
 
     p->has_coating[k] = cemented || word.length;
     if (!word.length)
@@ -351,6 +345,7 @@ static const struct {
     [FOCAL] = {"focal-length", read_focal, false, false},
     [BACK_FOCAL] = {"back-focal-length", read_back_focal, false, false},
     [COATING] = {"coating", read_coating, false, false},
+    [MIXED] = {"mixed-coating", read_mixed, false, false},
     [GLASS] = {"glass", read_glass, false, true},
     [SURFACE] = {"surface", read_surface, true, true},
     [STOP] = {"stop", read_stop, true, false},
@@ -413,7 +408,7 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     struct parser p;
 
     memset(&p, 0, sizeof(p));
-    p.coating = (struct coating){MGF2_NM, MGF2_INDEX};
+    p.coating = (struct glint_film){550, GLINT_MGF2_INDEX};
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
         !read_lines(&p) ||
         !glint_prescription_check(&p.lens, &p.text, &p.places))

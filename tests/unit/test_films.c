@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Films of a lens table and of --coating: what ends up on which surface, what
+ * it reflects, what models are known by, and what is refused.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/bake.h"
+
+/* A cemented doublet and a single lens: surfaces 0, 2, 3 and 4 meet air. */
+static const char table[] = "name films\n"
+                            "f-number 10\n"
+                            "film 36 24\n"
+                            "surface 61.47 6 12 1.5168 64.17\n"
+                            "surface -44.64 2.5 12 1.6727 32.2\n"
+                            "surface -129.94 5 12 air\n"
+                            "stop 5 8\n"
+                            "surface 80 3 12 1.5168 64.17\n"
+                            "surface -400 60 12 air\n";
+
+static enum glint_status read(struct glint_prescription *lens, const char *line,
+                              struct glint_error *error)
+{
+    char text[1024] = "";
+
+    strcat(text, table);
+    strcat(text, line);
+    return glint_prescription_parse(lens, text, strlen(text), "x.lens", error);
+}
+
+static void good(struct glint_prescription *lens, const char *line)
+{
+    struct glint_error error;
+
+    if (read(lens, line, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+}
+
+static void coat(struct glint_prescription *lens, const char *films)
+{
+    struct glint_film film[GLINT_MAX_FILMS];
+    struct glint_error error;
+    int n = 0;
+
+    if (glint_films_parse(film, &n, films, &error) != GLINT_OK)
+        fail_msg("%s", error.text);
+    glint_prescription_coat(lens, film, n);
+}
+
+static void expect(const struct glint_prescription *lens, const double nm[5],
+                   const double index[5])
+{
+    for (int k = 0; k < 5; k++) {
+        assert_true(lens->surface[k].coating_nm == nm[k]);
+        assert_true(lens->surface[k].coating_n == index[k]);
+    }
+}
+
+/* ------------------------------------------------------------------- tables */
+
+static void test_mixed_line(void **state)
+{
+    static struct glint_prescription lens;
+    const double all[5] = {550, 0, 550, 550, 550};
+    const double mgf2[5] = {1.38, 0, 1.38, 1.38, 1.38};
+
+    (void)state;
+    good(&lens, "");
+    assert_int_equal(lens.n_mixed, 0);
+    good(&lens, "mixed-coating 450 none 620/1.46\n");
+    assert_int_equal(lens.n_mixed, 3);
+    assert_true(lens.mixed[0].nm == 450 && lens.mixed[0].index == 1.38);
+    assert_true(lens.mixed[1].nm == 0 && lens.mixed[1].index == 0);
+    assert_true(lens.mixed[2].nm == 620 && lens.mixed[2].index == 1.46);
+    expect(&lens, all, mgf2); /* to be asked for */
+}
+
+static void test_mistakes(void **state)
+{
+    static const char *const bad[][2] = {
+        {"mixed-coating\n", "x.lens:10:14: coating wavelength is missing"},
+        {"mixed-coating 450 99\n",
+         "x.lens:10:19: coating wavelength must be 100 .. 5000, not 99"},
+        {"mixed-coating 450/5\n",
+         "x.lens:10:19: coating index must be 1.01 .. 4, not 5"},
+        {"mixed-coating 450/\n", "x.lens:10:19: coating index is missing"},
+        {"mixed-coating blue\n",
+         "x.lens:10:15: coating wavelength 'blue' is not a number"},
+        {"mixed-coating 450\nmixed-coating 500\n",
+         "x.lens:11:1: a second mixed-coating; the first is on line 10"}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        static struct glint_prescription lens;
+        struct glint_error error = {""};
+
+        assert_int_equal(read(&lens, bad[i][0], &error), GLINT_E_LENS);
+        assert_string_equal(error.text, bad[i][1]);
+    }
+}
+
+/* ------------------------------------------------------------------ --coating
+ */
+
+static void test_dealt_out(void **state)
+{
+    static struct glint_prescription lens;
+    const double zero[5] = {0};
+
+    (void)state;
+    good(&lens, "coating 600 1.5\n");
+    coat(&lens, "450,500/1.6,none");
+    expect(&lens, (const double[]){450, 0, 500, 0, 450},
+           (const double[]){1.38, 0, 1.6, 0, 1.38});
+    coat(&lens, "none");
+    expect(&lens, zero, zero);
+    coat(&lens, "480");
+    expect(&lens, (const double[]){480, 0, 480, 480, 480},
+           (const double[]){1.38, 0, 1.38, 1.38, 1.38});
+}
+
+static void test_refused(void **state)
+{
+    static const char *const bad[][2] = {
+        {"", "there is no film"},
+        {"blue", "coating wavelength 'blue' is not a number"},
+        {"450,99", "coating wavelength must be 100 .. 5000, not 99"},
+        {"5001", "coating wavelength must be 100 .. 5000, not 5001"},
+        {"450/1", "coating index must be 1.01 .. 4, not 1"},
+        {"nan", "coating wavelength 'nan' is not a number"}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct glint_film film[GLINT_MAX_FILMS] = {{1, 2}};
+        struct glint_error error = {""};
+        int n = 7;
+
+        assert_int_equal(glint_films_parse(film, &n, bad[i][0], &error),
+                         GLINT_E_ARGUMENT);
+        assert_string_equal(error.text, bad[i][1]);
+        assert_true(n == 7 && film[0].nm == 1);
+    }
+}
+
+static void test_too_many(void **state)
+{
+    struct glint_film film[GLINT_MAX_FILMS];
+    struct glint_error error = {""};
+    char text[600] = "";
+    int n;
+
+    (void)state;
+    for (int i = 0; i < 65; i++)
+        strcat(text, i ? ",500" : "500");
+    assert_int_equal(glint_films_parse(film, &n, text, &error),
+                     GLINT_E_ARGUMENT);
+    assert_string_equal(error.text, "films take at most 200 characters");
+}
+
+/* -------------------------------------------------------------------- optics
+ */
+
+static double reflectance(const struct glint_prescription *lens, int k,
+                          double nm)
+{
+    const struct glint_surface *s = &lens->surface[k];
+    const double before = k ? glint_index(s[-1].nd, s[-1].vd, nm) : 1;
+
+    return glint_reflectance(before, glint_index(s->nd, s->vd, nm), 1,
+                             s->coating_n,
+                             3.14159265358979323846 * s->coating_nm / nm);
+}
+
+/* A quarter wave reflects least where it is one, so that one for the blue is
+ * amber and one for the red is blue; a half wave reflects there as if there
+ * were no film, and less on either side. */
+static void test_reflects(void **state)
+{
+    static struct glint_prescription lens, bare;
+
+    (void)state;
+    good(&lens, "");
+    bare = lens;
+    coat(&bare, "none");
+    coat(&lens, "450,650,1100,550"); /* of surfaces 0, 2, 3, 4 */
+    assert_true(reflectance(&lens, 0, 650) > 1.2 * reflectance(&lens, 0, 450));
+    assert_true(reflectance(&lens, 2, 450) > 1.2 * reflectance(&lens, 2, 650));
+    assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 450));
+    assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 650));
+    assert_true(reflectance(&lens, 1, 500) == reflectance(&bare, 1, 500));
+    assert_true(fabs(reflectance(&lens, 3, 550) - reflectance(&bare, 3, 550)) <
+                1e-9);
+    assert_true(reflectance(&lens, 3, 420) < 0.7 * reflectance(&bare, 3, 420));
+    assert_true(reflectance(&lens, 3, 680) < 0.9 * reflectance(&bare, 3, 680));
+}
+
+static void test_key(void **state)
+{
+    static struct glint_prescription lens, other;
+    struct glint_bake_options options;
+    uint64_t key;
+
+    (void)state;
+    glint_bake_defaults(&options);
+    good(&lens, "");
+    key = glint_bake_key(&lens, &options);
+    good(&other, "mixed-coating 450 620\n");
+    assert_true(glint_bake_key(&other, &options) == key); /* not on it */
+    glint_prescription_coat(&other, other.mixed, other.n_mixed);
+    assert_true(glint_bake_key(&other, &options) != key);
+    other = lens;
+    coat(&other, "550");
+    assert_true(glint_bake_key(&other, &options) == key);
+    coat(&other, "550/1.39");
+    assert_true(glint_bake_key(&other, &options) != key);
+    coat(&other, "550,550,550,551");
+    assert_true(glint_bake_key(&other, &options) != key);
+}
+
+static void test_standard(void **state)
+{
+    struct glint_film film[GLINT_MAX_FILMS];
+    const int n = glint_films_mixed(film);
+
+    (void)state;
+    assert_true(n >= 2 && n <= GLINT_MAX_FILMS);
+    for (int i = 0; i < n; i++)
+        assert_true(film[i].nm >= 100 && film[i].nm <= 5000 &&
+                    film[i].index == 1.38 &&
+                    (i == 0 || film[i].nm != film[i - 1].nm));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_mixed_line), cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_dealt_out),  cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_too_many),   cmocka_unit_test(test_reflects),
+        cmocka_unit_test(test_key),        cmocka_unit_test(test_standard)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
