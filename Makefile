@@ -52,6 +52,11 @@ CROSS_aarch64 := aarch64-linux-gnu-
 CROSS_armv7   := arm-linux-gnueabihf-
 CROSS_armv7-neon := $(CROSS_armv7)
 CROSS_armv6-soft := arm-linux-gnueabi-
+PACKAGES_x86_64  := gcc-x86-64-linux-gnu libc6-dev-amd64-cross
+PACKAGES_aarch64 := gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+PACKAGES_armv7   := gcc-arm-linux-gnueabihf libc6-dev-armhf-cross
+PACKAGES_armv7-neon := $(PACKAGES_armv7)
+PACKAGES_armv6-soft := gcc-arm-linux-gnueabi libc6-dev-armel-cross
 MACHINE_armv7 := -march=armv7-a -mfpu=vfpv3-d16 -mfloat-abi=hard
 MACHINE_armv7-neon := -march=armv7-a -mfpu=neon-vfpv4 -mfloat-abi=hard
 MACHINE_armv6-soft := -march=armv6 -mfloat-abi=soft
@@ -63,6 +68,9 @@ ifneq ($(CONFIG),release)
 $(error TARGET=$(TARGET) is for CONFIG=release)
 endif
 CROSS   := $(CROSS_$(TARGET))
+ifeq ($(shell command -v $(CROSS)gcc),)
+$(error $(CROSS)gcc is not there: apt-get install $(PACKAGES_$(TARGET)))
+endif
 CC      := $(CROSS)gcc
 AR      := $(CROSS)ar
 NM      := $(CROSS)nm
@@ -128,6 +136,8 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         cmd_bake cmd_info cmd_trace cmd_render overlay_video overlay_sequence cmd_overlay cmd_explain cmd_live cmd_compare \
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
+# what one asks before one knows
+TOOLS += suggest takes lens_files cmd_lenses
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
@@ -175,7 +185,7 @@ $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
 $(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
-        -DGLINT_LENS_DIR='"$(PREFIX)/share/glint/lenses"' \
+        -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
 # Run-time half: no library, small stack frames; --gc-sections takes out what is
 # not called.
@@ -274,6 +284,9 @@ define link
 	        $(LDLIBS) -o $@
 endef
 
+# What stands at the top of this file.
+help:
+	@sed -n '2,/^$$/s/^# \{0,1\}//p' $(firstword $(MAKEFILE_LIST))
 all: $(if $(CROSS),$(OUT)/glint,build/glint)
 build/glint: $(OUT)/glint always
 	$(Q)cmp -s $< $@ || { cp -f $< $@.tmp && mv -f $@.tmp $@; }
@@ -526,7 +539,9 @@ lint: $(OUT)/libglint.a $(OUT)/libglint-bake.a
 	        $(MAKE) -s --no-print-directory purity
 	@clang-format --dry-run -Werror $(sources)
 	@for h in include/glint/*.h; do \
-	        $(CC) -Iinclude -std=c99 -fsyntax-only -x c $$h || exit 1; done
+	        $(CC) -Iinclude -std=c99 -fsyntax-only -x c $$h || exit 1; \
+	        ! command -v $(CXX) >/dev/null || \
+	        $(CXX) -Iinclude -fsyntax-only -x c++ $$h || exit 1; done
 
 # Of the objects alone, so for machines that cannot be run here, too.
 purity: $(OUT)/libglint.a
@@ -552,7 +567,7 @@ install: all glint-live
 	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all help glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -10,6 +10,7 @@
 #include "model_report.h"
 #include "posix/output.h"
 #include "tool.h"
+#include "takes.h"
 
 static const char help[] =
     "glint bake LENS -o MODEL [options]\n"
@@ -76,9 +77,7 @@ static int take(struct tool *tool, struct bake *b, int c, const char *name)
     default:
         return tool_option(tool, c, optarg);
     }
-    return ok ? -1
-              : tool_usage(tool, "--%s: '%s' is not something it takes", name,
-                           optarg);
+    return ok ? -1 : tool_refuse(tool, name, optarg);
 }
 
 static int parse(struct tool *tool, int argc, char **argv, struct bake *b)

@@ -7,6 +7,7 @@
 
 #include "bench.h"
 #include "posix/workers.h"
+#include "takes.h"
 
 static const char help[] =
     "glint bench [LENS|MODEL]... [options]\n"
@@ -181,7 +182,7 @@ static int take(struct tool *tool, struct bench *b, int c)
     case 'F':
         word = tool_word(optarg, format_words);
         if (word < 0)
-            return tool_usage(tool, "no format '%s'", optarg);
+            return tool_refuse(tool, "format", optarg);
         b->format = formats[word];
         b->format_word = format_words[word];
         return -1;

@@ -10,6 +10,7 @@
 #include "explain.h"
 #include "look.h"
 #include "measure.h"
+#include "takes.h"
 #include "plain/picture.h"
 #include "posix/error.h"
 
@@ -121,8 +122,7 @@ static int parse(struct tool *tool, int argc, char **argv,
         if (code == -2 && (option == 'o' || option >= OPT_LOOK_LAST)) {
             code = -1;
             if (!take(c, option, optarg))
-                return tool_usage(tool, "--%s: '%s' is not something it takes",
-                                  options[index].name, optarg);
+                return tool_refuse(tool, options[index].name, optarg);
         } else if (code == -2)
             code = tool_option(tool, option, optarg);
         if (code >= 0)

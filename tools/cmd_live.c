@@ -9,6 +9,7 @@
 #include "config.h"
 #include "linux/fourcc.h"
 #include "live.h"
+#include "takes.h"
 
 static const char help[] =
     "glint live [-d CAMERA] [-o OUTPUT] [options]\n"
@@ -272,8 +273,7 @@ static int take_any(struct line *line, int option, const char *value)
     if (code == -2)
         code = take(line->into, option, value);
     if (code == -3)
-        return tool_usage(line->tool, "--%s: '%s' is not something it takes",
-                          name_of(option), value);
+        return tool_refuse(line->tool, name_of(option), value);
     return code == -2 ? tool_option(line->tool, option, value) : code;
 }
 

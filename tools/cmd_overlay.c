@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "overlay.h"
+#include "takes.h"
 #include "plain/picture.h"
 #include "posix/error.h"
 
@@ -76,8 +77,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (strchr("rxn", c)) {
             if (!take(o, c, optarg))
-                return tool_usage(tool, "--%s: '%s' is not something it takes",
-                                  options[index].name, optarg);
+                return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
             return code;
     }

@@ -12,6 +12,7 @@
 #include "plain/picture.h"
 #include "posix/error.h"
 #include "scene.h"
+#include "takes.h"
 
 static const char help[] =
     "glint render LENS|MODEL -o OUT --light THETA,PHI[,POWER[,R,G,B]]... "
@@ -87,9 +88,7 @@ static int take(struct tool *tool, struct render *r, int c)
         r->exact = word == 1;
         if (r->exact)
             r->scene.rays = SCENE_RAYS_EXACT;
-        return word >= 0
-                   ? -1
-                   : tool_usage(tool, "no engine '%s': model or exact", optarg);
+        return word >= 0 ? -1 : tool_refuse(tool, "engine", optarg);
     default:
         return tool_option(tool, c, optarg);
     }

@@ -12,6 +12,7 @@
 #include "posix/output.h"
 #include "posix/workers.h"
 #include "sweep.h"
+#include "takes.h"
 
 static const char help[] =
     "glint sweep [LENS]... -o FOLDER [options]\n"
@@ -170,6 +171,16 @@ static int save(const struct sweep *s, const char *folder, const char *name,
                               : tool_fail(s->tool, status, error.text);
 }
 
+/* One of an earlier sweep would be taken for this one's. */
+static void leave_out(const char *folder, const char *name)
+{
+    char path[1024];
+
+    if ((size_t)snprintf(path, sizeof path, "%s/%s", folder, name) <
+        sizeof path)
+        remove(path);
+}
+
 static int save_all(const struct sweep *s, const char *folder)
 {
     static const struct {
@@ -183,7 +194,10 @@ static int save_all(const struct sweep *s, const char *folder)
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
-        code = save(s, folder, files[i].name, files[i].write);
+        if (files[i].write == sweep_svg_growth && !sweep_has_growth(s))
+            leave_out(folder, files[i].name);
+        else
+            code = save(s, folder, files[i].name, files[i].write);
     if (code == EXIT_OK && s->tool->json)
         sweep_json(s, stdout);
     else if (code == EXIT_OK && !s->tool->quiet)
@@ -392,8 +406,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
         const int taken = take(s, a, c);
 
         if (taken == 0)
-            return tool_usage(tool, "--%s: '%s' is not something it takes",
-                              options[at].name, optarg);
+            return tool_refuse(tool, options[at].name, optarg);
         if (taken == -2 && (code = tool_option(tool, c, optarg)) >= 0)
             return code;
     }

@@ -8,6 +8,7 @@
 
 #include "coating.h"
 #include "model_file.h"
+#include "takes.h"
 #include "tool.h"
 
 static const char help[] =
@@ -53,9 +54,9 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         {"csv", no_argument, NULL, 'c'},
         {"coating", required_argument, NULL, 'C'},
         TOOL_COMMON_OPTIONS};
-    int c, code;
+    int c, code, index = 0;
 
-    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
            0) {
         bool ok = true;
 
@@ -77,7 +78,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
                  (code = tool_option(tool, c, optarg)) >= 0)
             return code;
         if (!ok)
-            return tool_usage(tool, "'%s' is out of range", optarg);
+            return tool_refuse(tool, options[index].name, optarg);
     }
     if (optind + 1 != argc)
         return tool_usage(tool, "takes one lens");

@@ -7,11 +7,13 @@
 
 #include "posix/process.h"
 #include "posix/workers.h"
+#include "suggest.h"
 #include "tool.h"
 
 static const char help[] =
     "glint: lens flare of real lenses, on pictures and video, without a GPU\n"
     "\n"
+    "  glint lenses                    the lenses that come with glint\n"
     "  glint info LENS|MODEL           what a lens is: focal length, ghosts\n"
     "  glint bake LENS -o MODEL        polynomials of its ghosts, in integers\n"
     "  glint trace LENS --ghost K ...  rays as a table\n"
@@ -24,7 +26,8 @@ static const char help[] =
     "  glint bench                     what a frame costs\n"
     "  glint sweep -o FOLDER           what accuracy costs: plots, pictures\n"
     "\n"
-    "  glint COMMAND --help            all options of a command\n"
+    "  glint help COMMAND              all options of a command, as does\n"
+    "                                  glint COMMAND --help\n"
     "  glint --version\n"
     "\n"
     "LENS is a .lens file or the name of one that comes with glint, such as\n"
@@ -40,8 +43,10 @@ static const struct command commands[] = {
     {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
     {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
-    {"sweep", cmd_sweep},
+    {"sweep", cmd_sweep},     {"lenses", cmd_lenses},
 };
+
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 /* As getopt says ARGV[0] in what it complains of. */
 static int run_command(const struct command *command, int argc, char **argv)
@@ -50,28 +55,62 @@ static int run_command(const struct command *command, int argc, char **argv)
 
     snprintf(name, sizeof name, "glint %s", command->name);
     argv[0] = name;
+    suggest_line(argv);
     return command->run(argc, argv);
+}
+
+static const struct command *find(const char *name)
+{
+    for (int i = 0; i < N_COMMANDS; i++)
+        if (strcmp(name, commands[i].name) == 0)
+            return &commands[i];
+    return NULL;
+}
+
+static int no_command(const char *name)
+{
+    struct suggest s;
+
+    suggest_begin(&s, name);
+    for (int i = 0; i < N_COMMANDS; i++)
+        suggest_try(&s, commands[i].name, strlen(commands[i].name));
+    fprintf(stderr, "glint: no command '%s'\n", name);
+    if (suggest_best(&s))
+        fprintf(stderr, "Did you mean 'glint %s'? ", s.best);
+    fputs("Try 'glint --help'.\n", stderr);
+    return EXIT_USAGE;
+}
+
+/* glint help [COMMAND] */
+static int help_of(const char *name)
+{
+    char argument[] = "--help", *argv[] = {NULL, argument, NULL};
+
+    if (!name) {
+        fputs(help, stdout);
+        return EXIT_OK;
+    }
+    return find(name) ? run_command(find(name), 2, argv) : no_command(name);
 }
 
 static int run(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
 
-    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
-        if (strcmp(name, commands[i].name) == 0)
-            return run_command(&commands[i], argc - 1, argv + 1);
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
-        fputs(help, stdout);
-        return EXIT_OK;
-    }
+    if (find(name))
+        return run_command(find(name), argc - 1, argv + 1);
+    if (strcmp(name, "help") == 0)
+        return help_of(argc > 2 ? argv[2] : NULL);
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
+        return help_of(NULL);
     if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
         struct tool tool = {.name = "version", .help = help};
 
         return tool_option(&tool, 'V', NULL);
     }
     if (*name)
-        fprintf(stderr, "glint: no command '%s'\n", name);
-    fputs(*name ? "Try 'glint --help'.\n" : help, stderr);
+        return no_command(name);
+    fputs(help, stderr);
     return EXIT_USAGE;
 }
 

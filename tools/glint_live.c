@@ -4,11 +4,13 @@
  * size, as it takes baked models only (models_only.c).
  */
 #include "posix/process.h"
+#include "suggest.h"
 #include "tool.h"
 
 int main(int argc, char **argv)
 {
     glint_process_hold_streams();
+    suggest_line(argv);
     tool_watch_reader();
     return tool_end(cmd_live(argc, argv));
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "show_lights.h"
+#include "takes.h"
 
 /* ------------------------------------------------------------------ options */
 
@@ -81,8 +82,7 @@ int look_option(const struct tool *tool, struct look *look, int option,
         return code;
     if (take(look, option, value))
         return -1;
-    return tool_usage(tool, "--%s: '%s' is not something it takes",
-                      names[option - OPT_LENS].name, value);
+    return tool_refuse(tool, names[option - OPT_LENS].name, value);
 }
 
 /* ------------------------------------------------------------------- making */

@@ -62,13 +62,12 @@ double measure_exposure(const struct glint_float_image *image)
     return at > 0 ? 1 / at : 1;
 }
 
-static uint8_t encode(double x)
+/* The sRGB code of X, 0 .. 255, not rounded. */
+static double encode(double x)
 {
     const double v = fmin(1, fmax(0, x));
-    const double s =
-        v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
 
-    return (uint8_t)lrint(255 * s);
+    return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055);
 }
 
 uint8_t *measure_encode(const struct glint_float_image *image, double exposure)
@@ -77,7 +76,7 @@ uint8_t *measure_encode(const struct glint_float_image *image, double exposure)
     uint8_t *codes = calloc(n, 1);
 
     for (size_t i = 0; codes && i < n; i++)
-        codes[i] = encode((double)image->rgb[i] * exposure);
+        codes[i] = (uint8_t)lrint(encode((double)image->rgb[i] * exposure));
     return codes;
 }
 
@@ -170,21 +169,49 @@ void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
     result->ssim = ssim(reference, test, width, height);
 }
 
-bool measure_compare(const struct glint_float_image *reference,
-                     const struct glint_float_image *test, bool fit,
-                     struct measure *result)
+/* What rounding to codes hides. */
+static double fine_db(const struct glint_float_image *reference,
+                      const struct glint_float_image *test,
+                      const struct measure *m)
+{
+    const size_t n = samples(reference);
+    double squares = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        const double e = encode((double)reference->rgb[i] * m->exposure) -
+                         encode((double)test->rgb[i] * m->exposure * m->factor);
+
+        squares += e * e;
+    }
+    return squares > 0 ? 10 * log10(255.0 * 255.0 * (double)n / squares) : 999;
+}
+
+bool measure_at(const struct glint_float_image *reference,
+                const struct glint_float_image *test, bool fit, double exposure,
+                struct measure *result)
 {
     const double total = sum(reference);
     uint8_t *a, *b;
 
-    result->exposure = measure_exposure(reference);
+    result->exposure = exposure;
     result->factor = fit ? best_factor(reference, test) : 1;
     result->flux = total > 0 ? result->factor * sum(test) / total : 1;
     a = measure_encode(reference, result->exposure);
     b = measure_encode(test, result->exposure * result->factor);
     if (a && b)
         measure_codes(a, b, reference->width, reference->height, result);
+    result->same_codes = a && b && result->psnr_db == 999;
+    if (result->same_codes)
+        result->psnr_db = fine_db(reference, test, result);
     free(a);
     free(b);
     return a && b;
+}
+
+bool measure_compare(const struct glint_float_image *reference,
+                     const struct glint_float_image *test, bool fit,
+                     struct measure *result)
+{
+    return measure_at(reference, test, fit, measure_exposure(reference),
+                      result);
 }

@@ -3,8 +3,9 @@
  * How far two pictures in linear light are apart.
  *
  * Both are exposed by the reference (its 99.9th percentile of luminance over
- * all pixels becomes 1), clipped, sRGB-encoded and rounded to 8 bits; metrics
- * are taken on the codes. Flux is compared before clipping.
+ * all pixels becomes 1) or as is said, clipped, sRGB-encoded and rounded to 8
+ * bits; metrics are taken on the codes, PSNR of equal codes on what they were
+ * before rounding. Flux is compared before clipping.
  */
 #ifndef GLINT_TOOLS_MEASURE_H
 #define GLINT_TOOLS_MEASURE_H
@@ -14,12 +15,14 @@
 #include "plain/pfm.h"
 
 struct measure {
-    double psnr_db;  /* over the three channels; 999 where equal */
+    double psnr_db;  /* over the three channels; 999 where nothing that can be
+                        seen differs */
     double ssim;     /* of luma, 8 x 8 blocks every 4 pixels */
     double p99;      /* 99th percentile of |difference|, codes */
     double flux;     /* sum of the test's light over the reference's */
     double factor;   /* what the test was multiplied by */
     double exposure; /* what the reference was multiplied by */
+    bool same_codes; /* of measure_at: all codes are equal */
 };
 
 /* What makes the 99.9th percentile of luminance 1; 1 for a black picture. */
@@ -37,5 +40,10 @@ void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
 bool measure_compare(const struct glint_float_image *reference,
                      const struct glint_float_image *test, bool fit,
                      struct measure *result);
+
+/* The same at EXPOSURE. */
+bool measure_at(const struct glint_float_image *reference,
+                const struct glint_float_image *test, bool fit, double exposure,
+                struct measure *result);
 
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "lens_files.h"
 #include "posix/input.h"
 #include "posix/output.h"
 
@@ -25,21 +26,24 @@ static bool cache_folder(char *path, size_t bytes)
     return n > 0 && (size_t)n < bytes;
 }
 
-static bool model_path(char *path, size_t bytes, const char *lens, uint64_t key)
+bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key)
 {
-    size_t used;
+    const size_t used = strlen(path);
     char safe[GLINT_NAME_BYTES];
 
-    if (!cache_folder(path, bytes))
-        return false;
     snprintf(safe, sizeof safe, "%s", lens);
     for (char *c = safe; *c; c++)
         if (!isalnum((unsigned char)*c) && !strchr("-_.", *c))
             *c = '_';
-    used = strlen(path);
     return (size_t)snprintf(path + used, bytes - used, "/%s-%08lx%08lx.glint",
                             safe, (unsigned long)(key >> 32),
                             (unsigned long)(key & 0xffffffff)) < bytes - used;
+}
+
+static bool model_path(char *path, size_t bytes, const char *lens, uint64_t key)
+{
+    return cache_folder(path, bytes) &&
+           model_cache_name(path, bytes, lens, key);
 }
 
 static uint64_t key_of(const struct glint_lens *lens)
@@ -65,6 +69,33 @@ static bool load(const char *path, uint64_t key, struct model_file *model)
         return true;
     model_file_close(model);
     return false;
+}
+
+/* One that was installed with the lenses. */
+static bool load_installed(const char *lens, uint64_t key,
+                           struct model_file *model)
+{
+    char path[PATH_BYTES];
+
+    for (int i = 0; lens_folder(i, "models", path, sizeof path); i++)
+        if (model_cache_name(path, sizeof path, lens, key) &&
+            load(path, key, model))
+            return true;
+    return false;
+}
+
+bool model_is_cached(const struct glint_prescription *lens,
+                     const struct glint_bake_options *options)
+{
+    const uint64_t key = glint_bake_key(lens, options);
+    struct model_file model = {.data = NULL};
+    char path[PATH_BYTES];
+    const bool is = load_installed(lens->name, key, &model) ||
+                    (model_path(path, sizeof path, lens->name, key) &&
+                     load(path, key, &model));
+
+    model_file_close(&model);
+    return is;
 }
 
 /* Makes the folders above PATH. */
@@ -121,7 +152,8 @@ int model_cached(const struct tool *tool, const struct glint_prescription *lens,
     enum glint_status status;
     const char *reason = "";
 
-    if (kept && load(path, key, model))
+    if (load_installed(lens->name, key, model) ||
+        (kept && load(path, key, model)))
         return EXIT_OK;
     if (!tool->quiet)
         fprintf(stderr, "glint %s: baking %s, once%s%s\n", tool->name,

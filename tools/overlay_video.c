@@ -34,6 +34,10 @@ static int video_frames(struct tool *tool, struct overlay *o,
         if (status != GLINT_OK)
             code = tool_fail(tool, status, error.text);
     }
+    if (code == EXIT_OK && o->look.n_frames == 0) {
+        fprintf(stderr, "glint overlay: %s: no frames\n", in->in.name);
+        code = EXIT_INPUT;
+    }
     return code;
 }
 

@@ -9,6 +9,7 @@
 #include "cost.h"
 #include "ladder.h"
 #include "scene_table.h"
+#include "takes.h"
 
 void scene_defaults(struct scene *scene)
 {
@@ -81,6 +82,17 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
+static bool take_wavelengths(const char *text, struct scene *s)
+{
+    const int n = tool_numbers(text, s->wavelength_nm, GLINT_MAX_WAVELENGTHS);
+
+    s->n_wavelengths = n;
+    for (int i = 0; i < n; i++)
+        if (s->wavelength_nm[i] < 300 || s->wavelength_nm[i] > 1100)
+            return false;
+    return n > 0;
+}
+
 static bool take_error(const char *text, struct scene *s)
 {
     double px;
@@ -106,9 +118,7 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_STOP:
         return parse_stop(value, s);
     case OPT_WAVELENGTHS:
-        s->n_wavelengths =
-            tool_numbers(value, s->wavelength_nm, GLINT_MAX_WAVELENGTHS);
-        return s->n_wavelengths > 0;
+        return take_wavelengths(value, s);
     case OPT_SENSOR:
         return parse_sensor(value, s->sensor_mm);
     case OPT_EXPOSURE:
@@ -197,8 +207,7 @@ int scene_option(const struct tool *tool, struct scene *scene, int option,
     if (option == OPT_ONLY && strcmp(value, "starburst") == 0)
         return tool_usage(tool, "there is no starburst yet; ghosts are all "
                                 "that is drawn");
-    return tool_usage(tool, "--%s: '%s' is not something it takes",
-                      names[option - OPT_F_NUMBER].name, value);
+    return tool_refuse(tool, names[option - OPT_F_NUMBER].name, value);
 }
 
 bool scene_lamp(const char *text, struct glint_lamp *lamp)

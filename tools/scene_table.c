@@ -7,8 +7,7 @@
 #include "model_cache.h"
 #include "scene_table.h"
 
-/* The options under which a model serves this scene. */
-static struct glint_bake_options bake_options(const struct scene *scene)
+struct glint_bake_options scene_bake_options(const struct scene *scene)
 {
     const struct glint_prescription *l = &scene->lens;
     const double film = hypot(l->film_width_mm, l->film_height_mm);
@@ -47,7 +46,7 @@ int scene_open_table(const struct tool *tool, struct scene *scene,
         return tool_fail(tool, status, error.text);
     return scene->rays == SCENE_RAYS_EXACT
                ? EXIT_OK
-               : model_cached(tool, &scene->lens, bake_options(scene),
+               : model_cached(tool, &scene->lens, scene_bake_options(scene),
                               &scene->model);
 }
 

@@ -13,6 +13,9 @@
 int scene_open_table(const struct tool *tool, struct scene *scene,
                      const char *name);
 
+/* What a model for SCENE, whose lens has been read, is baked with. */
+struct glint_bake_options scene_bake_options(const struct scene *scene);
+
 /* Its setup where there is no model. */
 enum glint_status scene_table_setup(struct scene *scene,
                                     struct glint_error *error);

@@ -132,6 +132,8 @@ void sweep_svg_front(const struct sweep *s, FILE *file);
 /* The means alone, with each dial's: small. */
 void sweep_svg_trade(const struct sweep *s, FILE *file);
 void sweep_svg_dials(const struct sweep *s, FILE *file);
+/* Whether there is anything of pixels, lights and ghosts to plot. */
+bool sweep_has_growth(const struct sweep *s);
 void sweep_svg_growth(const struct sweep *s, FILE *file);
 void sweep_page(const struct sweep *s, FILE *file);
 

@@ -145,7 +145,7 @@ void sweep_page(const struct sweep *s, FILE *file)
     table_of_front(s, file);
     fputs("<h2>Each dial by itself</h2>\n", file);
     sweep_svg_dials(s, file);
-    if (s->point[s->n_points - 1].set.kind == SWEEP_GROWTH) {
+    if (sweep_has_growth(s)) {
         fputs("<h2>Growth</h2>\n", file);
         sweep_svg_growth(s, file);
     }

@@ -371,6 +371,12 @@ static void growth_panel(const struct sweep *s, FILE *file, enum against what)
     }
 }
 
+bool sweep_has_growth(const struct sweep *s)
+{
+    return s->n_points > 0 &&
+           s->point[s->n_points - 1].set.kind == SWEEP_GROWTH;
+}
+
 void sweep_svg_growth(const struct sweep *s, FILE *file)
 {
     plot_open(file, N_AGAINST);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "tool.h"
 
+#include "lens_files.h"
 #include "model_file.h"
+#include "suggest.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -17,10 +19,6 @@
 #include "posix/input.h"
 #include "posix/utf8.h"
 #include "posix/workers.h"
-
-#ifndef GLINT_LENS_DIR
-#define GLINT_LENS_DIR "/usr/local/share/glint/lenses"
-#endif
 
 int tool_usage(const struct tool *tool, const char *format, ...)
 {
@@ -129,7 +127,7 @@ int tool_option(struct tool *tool, int option, const char *value)
             return -1;
         return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
     default: /* getopt_long has said what is wrong */
-        fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
+        suggest_option(tool);
         return EXIT_USAGE;
     }
 }
@@ -272,33 +270,25 @@ double tool_seconds(void)
 
 /* -------------------------------------------------------------------- lens */
 
-/* lenses/ above the executable in a source tree, share/glint/lenses above it
- * when installed anywhere, or where it was to be installed. */
-static bool find_table(const char *name, char *path, size_t bytes)
+static bool offer(void *suggest, const char *name)
 {
-    char self[512];
-    const ptrdiff_t n = readlink("/proc/self/exe", self, sizeof self - 1);
-    const char *given = getenv("GLINT_LENSES");
+    suggest_try(suggest, name, strlen(name));
+    return true;
+}
 
-    if (given) {
-        snprintf(path, bytes, "%s/%s.lens", given, name);
-        if (access(path, R_OK) == 0)
-            return true;
-    }
-    if (n > 0) {
-        self[n] = '\0';
-        for (int up = 0; up < 3 && strrchr(self, '/'); up++) {
-            *strrchr(self, '/') = '\0';
-            snprintf(path, bytes, "%s/lenses/%s.lens", self, name);
-            if (access(path, R_OK) == 0)
-                return true;
-            snprintf(path, bytes, "%s/share/glint/lenses/%s.lens", self, name);
-            if (access(path, R_OK) == 0)
-                return true;
-        }
-    }
-    snprintf(path, bytes, "%s/%s.lens", GLINT_LENS_DIR, name);
-    return access(path, R_OK) == 0;
+static int no_lens(const struct tool *tool, const char *name)
+{
+    struct suggest s;
+
+    suggest_begin(&s, name);
+    lens_files_each(offer, &s);
+    fprintf(stderr,
+            "glint %s: %s: neither a file nor a lens that comes with glint "
+            "(%s%s)\n",
+            tool->name, name,
+            suggest_best(&s) ? "did you mean " : "glint lenses lists them",
+            suggest_best(&s) ? s.best : "");
+    return EXIT_LENS;
 }
 
 int tool_lens(const struct tool *tool, const char *argument,
@@ -312,13 +302,8 @@ int tool_lens(const struct tool *tool, const char *argument,
     size_t bytes = 0;
 
     if (!strchr(argument, '/') && access(argument, F_OK) != 0) {
-        if (!find_table(argument, path, sizeof path)) {
-            fprintf(stderr,
-                    "glint %s: %s: neither a file nor a lens that comes with "
-                    "glint (try heliar-tronnier)\n",
-                    tool->name, argument);
-            return EXIT_LENS;
-        }
+        if (!lens_file_find(argument, path, sizeof path))
+            return no_lens(tool, argument);
         file = path;
     }
     if (tool_is_model(file)) {

@@ -132,5 +132,6 @@ int cmd_live(int argc, char **argv);
 int cmd_bake(int argc, char **argv);
 int cmd_bench(int argc, char **argv);
 int cmd_sweep(int argc, char **argv);
+int cmd_lenses(int argc, char **argv);
 
 #endif

@@ -30,6 +30,10 @@
 #include "glint/status.h"
 #include "glint/workers.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define GLINT_MAX_SURFACES 64 /* refracting surfaces of a lens */
 #define GLINT_MAX_GHOSTS   (GLINT_MAX_SURFACES * (GLINT_MAX_SURFACES - 1) / 2)
 #define GLINT_MAX_EVENTS   (3 * GLINT_MAX_SURFACES) /* of one path */
@@ -449,5 +453,9 @@ void glint_feed_bundle(const struct glint_feed_config *cfg,
 void glint_feed_trace(const struct glint_feed_config *cfg,
                       const struct glint_feed *feed,
                       struct glint_vertex *vertex);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -18,6 +18,10 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct glint_composite; /* opaque, in the caller's memory */
 
 /* Light to add, of a picture's size, by channel; linear BT.709, 65535 = display
@@ -44,5 +48,9 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
 void glint_composite_add(struct glint_composite *composite,
                          const struct glint_image *image,
                          const struct glint_layer *layer);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -29,6 +29,10 @@
 #include "glint/status.h"
 #include "glint/workers.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define GLINT_MAX_BLADES 64
 
 /* ------------------------------------------------------------ aperture stop */
@@ -311,5 +315,9 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave);
 /* Edges in the list of small tile TILE, row by row; light that runs in from the
  * left is in none. */
 int glint_flare_listed(const struct glint_flare *flare, int tile);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -8,6 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define GLINT_MAX_SIDE 8192 /* pixels, of either side of a picture */
 
 enum glint_pixel_format {
@@ -57,5 +61,9 @@ size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);
 /* Points the planes of IMAGE into MEM, which has glint_image_bytes() bytes, one
  * after the other without padding; format, width and height are set already. */
 void glint_image_place(struct glint_image *image, void *mem);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

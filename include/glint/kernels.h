@@ -8,6 +8,10 @@
 #ifndef GLINT_KERNELS_H
 #define GLINT_KERNELS_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { GLINT_SET_SSE41 = 1, GLINT_SET_AVX2 = 2, GLINT_SET_NEON = 4 };
 
 /* The GLINT_SET_ bits that this library has kernels for. */
@@ -18,5 +22,9 @@ unsigned glint_sets_built(void);
  * given, on 32-bit ARM, a program may take NEON from glint_sets_built() when
  * its system says so; platform/linux/sets.h does. */
 unsigned glint_sets_here(void);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -30,6 +30,10 @@
 
 #include "glint/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct glint_vertex;
 
 /* ------------------------------------------------------------- model file
@@ -285,5 +289,9 @@ void glint_transfer_rows(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,
                          struct glint_vertex *mirrored);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -22,6 +22,10 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A light as the picture shows it. */
 struct glint_spot {
     int32_t x_q8, y_q8; /* flux-weighted centroid; pixels from the top left
@@ -71,5 +75,9 @@ int glint_lights_find(struct glint_lights *finder,
 
 /* Lights of the last find that were dropped because MAX was too small. */
 int glint_lights_dropped(const struct glint_lights *finder);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

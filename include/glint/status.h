@@ -9,6 +9,10 @@
 #ifndef GLINT_STATUS_H
 #define GLINT_STATUS_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum glint_status {
     GLINT_OK = 0,
     GLINT_E_ARGUMENT,    /* a parameter is outside its documented range */
@@ -30,5 +34,9 @@ struct glint_error {
 
 /* A few words for STATUS, never NULL. */
 const char *glint_status_text(enum glint_status status);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -28,6 +28,10 @@
 #include "glint/lights.h"
 #include "glint/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum glint_track_state {
     GLINT_TRACK_RISING,
     GLINT_TRACK_STEADY, /* seen, at full level */
@@ -96,5 +100,9 @@ void glint_tracks_restart(struct glint_tracks *tracks);
 /* Whether the last step was the first, or took its picture for one after a cut.
  */
 int glint_tracks_was_cut(const struct glint_tracks *tracks);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

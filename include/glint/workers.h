@@ -9,6 +9,10 @@
 #ifndef GLINT_WORKERS_H
 #define GLINT_WORKERS_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Does job JOB as worker WORKER (0 .. n - 1; no two threads are the same
  * worker at the same time). */
 typedef void glint_job_fn(void *ctx, int job, int worker);
@@ -28,5 +32,9 @@ void glint_workers_run(struct glint_workers *workers, int n_jobs,
 
 /* How many workers there are: 1 where WORKERS is NULL. */
 int glint_workers_count(const struct glint_workers *workers);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -31,6 +31,14 @@ static enum glint_matrix matrix_of(int height)
     return height < 720 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
 }
 
+/* Codes of JPEG are BT.601 whatever the size [JFIF]: of full range, with chroma
+ * where JPEG has it. */
+static bool is_jpeg(const struct glint_y4m_header *h)
+{
+    return h->range == GLINT_RANGE_FULL &&
+           (!*h->colour || !strcmp(h->colour, "420jpeg"));
+}
+
 static const char *colour_of(enum glint_pixel_format format)
 {
     size_t i = 0;
@@ -207,7 +215,7 @@ enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
     status = check_header(&h, name, error);
     if (status)
         return status;
-    h.matrix = matrix_of(h.height);
+    h.matrix = is_jpeg(&h) ? GLINT_MATRIX_BT601 : matrix_of(h.height);
     *header = h;
     return GLINT_OK;
 }

@@ -21,7 +21,9 @@
  * What the codes mean, unless the caller overrules it in the header after open:
  *   range     limited; full only by the tag XCOLORRANGE=FULL. C420jpeg by
  *             itself speaks of chroma siting and is limited too
- *   matrix    BT.601 below 720 lines, BT.709 from there on; there is no tag
+ *   matrix    BT.601 below 720 lines, BT.709 from there on; there is no tag.
+ *             C420jpeg of full range is what JPEG pictures become, and BT.601
+ *             of any size
  *   transfer  BT.709
  *
  * Tags that mean nothing to glint are carried over as they are, those of the

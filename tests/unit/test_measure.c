@@ -53,6 +53,25 @@ static void test_known_difference(void **state)
     assert_true(m.psnr_db == 999 && fabs(m.factor - 2) < 1e-6);
 }
 
+/* What rounding to codes hides is not nothing. */
+static void test_less_than_a_code(void **state)
+{
+    struct measure m;
+
+    (void)state;
+    fill(0.5f);
+    b[0] = 0.50001f;
+    assert_true(measure_at(&image_a, &image_b, false, 1, &m));
+    assert_true(m.same_codes && m.psnr_db > 100 && m.psnr_db < 999);
+    b[0] = 0.6f;
+    assert_true(measure_at(&image_a, &image_b, false, 1, &m));
+    assert_true(!m.same_codes && m.psnr_db < 100);
+    fill(1.5f); /* beyond white nothing is seen */
+    b[0] = 2;
+    assert_true(measure_at(&image_a, &image_b, false, 1, &m));
+    assert_true(m.same_codes && m.psnr_db == 999);
+}
+
 /* The brightest thousandth does not set the exposure. */
 static void test_exposure_is_a_percentile(void **state)
 {
@@ -70,6 +89,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_equal),
         cmocka_unit_test(test_known_difference),
+        cmocka_unit_test(test_less_than_a_code),
         cmocka_unit_test(test_exposure_is_a_percentile),
     };
 

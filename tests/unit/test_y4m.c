@@ -126,7 +126,7 @@ static void test_range_and_matrix(void **state)
     assert_int_equal(
         parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
     assert_int_equal(h.range, GLINT_RANGE_FULL);
-    assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
     assert_int_equal(h.fps_num, 0);
     assert_int_equal(h.fps_den, 0);
     assert_int_equal(parse(&h, "YUV4MPEG2 W1280 H719 XCOLORRANGE=OTHER"),
@@ -134,6 +134,15 @@ static void test_range_and_matrix(void **state)
     assert_int_equal(h.range, GLINT_RANGE_LIMITED);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
     assert_string_equal(h.extra, " XCOLORRANGE=OTHER");
+    /* what JPEG pictures become is BT.601 of any size */
+    assert_int_equal(
+        parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
+    assert_int_equal(
+        parse(&h, "YUV4MPEG2 W1280 H720 C420mpeg2 XCOLORRANGE=FULL"), GLINT_OK);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
+    assert_int_equal(parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg"), GLINT_OK);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
 }
 
 static void refuse(enum glint_status status, const char *line)

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+#
+# For scripts that test the command (tests/cli-*): sourced from the root of the
+# repository. Sets glint, dir (removed at the end) and status.
+glint=${GLINT:-build/glint}
+pan=${PAN:-}
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+status=0
+
+pass() { echo "ok $1"; }
+miss() {
+    echo "not ok $1"
+    sed 's/^/  /' "$dir/err" 2>/dev/null | head -n 5
+    status=1
+}
+# check NAME COMMAND...: succeeds
+check() {
+    local name=$1
+    shift
+    if "$@" >/dev/null 2>&1; then pass "$name"; else miss "$name"; fi
+}
+# expect NAME CODE WORDS COMMAND...: leaves with CODE, says WORDS, of failure in
+# two lines at most
+expect() {
+    local name=$1 code=$2 words=$3 got
+    shift 3
+    "$@" >"$dir/out" 2>"$dir/err"
+    got=$?
+    if [ $got = "$code" ] && grep -qiE -e "$words" "$dir/err" "$dir/out" &&
+        { [ "$code" = 0 ] || [ "$(wc -l <"$dir/err")" -le 2 ]; }; then
+        pass "$name"
+    else
+        echo "  exit $got, wanted $code and /$words/"
+        miss "$name"
+    fi
+}
+same() { # NAME A B
+    if cmp -s "$2" "$3"; then pass "$1"; else miss "$1"; fi
+}
+differ() { # NAME A B: both are there and not the same
+    if [ -s "$2" ] && [ -s "$3" ] && ! cmp -s "$2" "$3"; then pass "$1"
+    else miss "$1"; fi
+}
+gone() { # NAME PATTERN: no such file is left
+    if [ -z "$(find "$dir" -name "$2")" ]; then pass "$1"; else miss "$1"; fi
+}
