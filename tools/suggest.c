@@ -111,6 +111,7 @@ void suggest_option(const struct tool *tool)
         suggest_begin(&s, name);
         try_options(&s, tool->help);
         try_options(&s, tool->help_end);
+        try_options(&s, tool->help_last);
         if (suggest_best(&s) && s.distance > 0)
             fprintf(stderr, "Did you mean --%s? ", s.best);
     }
