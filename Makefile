@@ -6,6 +6,8 @@
 #                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
 #   make glint-live   build/.../glint-live: the live command alone, for
 #                 baked models; with TARGET= for a board
+#   make corpus   photographs to try it on;  corpus-evaluate, HALF=tune|held:
+#                 how well lamps are found in them
 #   make demo     ghosts on a real photograph and a video  (DEPS=no: no apt)
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-arm  the run-time half's on ARM, in an emulator
@@ -336,6 +338,17 @@ ray-table: all $(OUT)/ray_errors
 	@tools/ray-table build/bake | tools/write-figures rays
 $(OUT)/ray_errors: $(OUT)/tools/ray_errors.o $(libs)
 	$(link)
+# Photographs of Debian packages with their lamps marked: tests/corpus/README.md.
+corpus:
+	@tools/deps "photographs from Debian packages" python3-pil python3-numpy \
+	        ffmpeg openimageio-tools
+	@tests/corpus/fetch
+HALF ?= tune
+corpus-evaluate: corpus $(OUT)/corpus-found
+	@tests/corpus/evaluate --half $(HALF) --sheet build/corpus/found-$(HALF).jpg
+$(OUT)/tests/corpus/%.o: CPPFLAGS += -Itools/examples
+$(OUT)/corpus-found: $(OUT)/tests/corpus/found.o $(libs)
+	$(link)
 bench: all
 	@build/glint bench
 growth: all
@@ -567,7 +580,7 @@ install: all glint-live
 	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all help glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all help corpus corpus-evaluate glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
