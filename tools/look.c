@@ -12,21 +12,26 @@
 
 void look_defaults(struct look *look)
 {
-    *look = (struct look){.lens = "heliar-tronnier", .headroom_ev = 12};
+    *look = (struct look){.lens = "heliar-tronnier",
+                          .headroom_ev = 12,
+                          .threshold_ev = {-0.1, -0.6}};
     scene_defaults(&look->scene);
     look->scene.coating.kind = COATING_MIXED;
 }
 
-static bool take_threshold(const char *text, int threshold[2])
+/* Stops by which a region extends below what makes it a lamp, if not told. */
+#define EXTENDS_EV 0.5
+
+static bool take_threshold(const char *text, double threshold_ev[2])
 {
     double v[2];
     const int n = tool_numbers(text, v, 2);
 
-    if (n == 0 || v[0] < 1 || v[0] > 255 ||
-        (n == 2 && (v[1] < 1 || v[1] > v[0])))
+    if (n == 1)
+        v[1] = fmax(v[0] - EXTENDS_EV, -20);
+    if (n == 0 || !(v[0] <= 0) || !(v[1] >= -20 && v[1] <= v[0]))
         return false;
-    threshold[0] = (int)v[0];
-    threshold[1] = n == 2 ? (int)v[1] : (int)ceil(v[0] * 0.8);
+    memcpy(threshold_ev, v, sizeof v);
     return true;
 }
 
@@ -43,8 +48,7 @@ static bool take_light(struct look *look, const char *text)
 
 static bool take(struct look *look, int option, const char *value)
 {
-    static const char *const layers[] = {"composite", "flare", "flare-alpha",
-                                         NULL};
+    static const char *const layers[] = {"composite", "flare", NULL};
     static const char *const shows[] = {"lights", NULL};
     int layer;
 
@@ -58,7 +62,7 @@ static bool take(struct look *look, int option, const char *value)
     case OPT_LIGHT:
         return take_light(look, value);
     case OPT_THRESHOLD:
-        return take_threshold(value, look->threshold);
+        return take_threshold(value, look->threshold_ev);
     case OPT_HEADROOM:
         return tool_number(value, &look->headroom_ev) &&
                look->headroom_ev >= 0 && look->headroom_ev <= 40;
@@ -68,8 +72,7 @@ static bool take(struct look *look, int option, const char *value)
         return look->show_lights = tool_word(value, shows) == 0;
     default:
         layer = tool_word(value, layers);
-        look->flare_only = layer >= 1;
-        look->flare_alpha = layer == 2;
+        look->flare_only = layer == 1;
         return layer >= 0;
     }
 }
@@ -130,10 +133,8 @@ static enum glint_status open_finder(struct look *look, int width, int height)
     struct glint_lights_config cfg;
 
     glint_lights_defaults(&cfg, width, height);
-    if (look->threshold[0]) {
-        cfg.threshold_high = look->threshold[0];
-        cfg.threshold_low = look->threshold[1];
-    }
+    cfg.threshold_high_q8 = (int32_t)floor(256 * look->threshold_ev[0] + 0.5);
+    cfg.threshold_low_q8 = (int32_t)floor(256 * look->threshold_ev[1] + 0.5);
     look->finder.headroom_ev = look->headroom_ev;
     look->finder.max = finder_max(look);
     return lamp_finder_open(&look->finder, &cfg);
@@ -161,6 +162,9 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
         return code;
     look->sized = true;
     status = open_finder(look, width, height);
+    if (tool->verbose && !tool->quiet && !look->is_listed && look->n_hand == 0)
+        fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
+                tool->name, look->threshold_ev[0], look->threshold_ev[1]);
     if (status == GLINT_OK && look->reserve_bytes)
         status = reserve(look);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
@@ -245,7 +249,8 @@ static void blacken(const struct glint_image *image)
 }
 
 /* Draws the lights over IMAGE: as found, else where they are, by number. */
-void look_mark(const struct look *look, const struct glint_image *image)
+static void show_lights(const struct look *look,
+                        const struct glint_image *image)
 {
     const bool found = !look->is_listed && look->n_hand == 0;
     const double focal = look->scene.setup.optics.focal_mm;
@@ -268,35 +273,23 @@ void look_mark(const struct look *look, const struct glint_image *image)
     }
 }
 
-double look_scale(const struct look *look)
-{
-    return scene_scale(&look->scene);
-}
-
-void look_find(struct look *look, const struct glint_image *image,
-               int32_t elapsed_us)
-{
-    const double start = tool_seconds();
-
-    look->n_lamps = look_lamps(look, image, elapsed_us);
-    look->find_ms = 1e3 * (tool_seconds() - start);
-}
-
 enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us)
 {
+    const double start = tool_seconds();
     enum glint_status status;
     double found;
 
-    look_find(look, image, elapsed_us);
+    look->n_lamps = look_lamps(look, image, elapsed_us);
     found = tool_seconds();
     if (look->flare_only)
         blacken(image);
     status = frame_draw(&look->frame, look->lamp, look->n_lamps,
-                        look_scale(look), image, &look->report);
+                        scene_scale(&look->scene), image, &look->report);
+    look->find_ms = 1e3 * (found - start);
     look->flare_ms = 1e3 * (tool_seconds() - found);
     if (look->show_lights)
-        look_mark(look, image);
+        show_lights(look, image);
     look->n_frames++;
     return status;
 }

@@ -18,10 +18,9 @@
 struct look {
     struct scene scene;
     const char *lens, *lights_file; /* NULL: lamps are found */
-    int threshold[2];               /* 0: the defaults */
+    double threshold_ev[2];         /* that seeds a lamp, that it extends to */
     double headroom_ev;
     bool flare_only, no_tracking, show_lights;
-    bool flare_alpha;     /* with flare_only, of files */
     size_t reserve_bytes; /* unless 0: all the memory that frames will take */
     int n_hand;
     struct glint_lamp hand[SCENE_MAX_LAMPS];
@@ -75,9 +74,10 @@ enum look_option_code {
     "                      is read and not used yet\n"                         \
     "  --light LIST        one by hand, as of glint render, for all frames;\n" \
     "                      repeatable; replaces auto, adds to a FILE\n"        \
-    "  --threshold H[,L]   luma code that makes a light, and the one down "    \
-    "to\n"                                                                     \
-    "                      which it extends\n"                                 \
+    "  --threshold EV[,EV] how bright a lamp must be, and down to what it "    \
+    "extends,\n"                                                               \
+    "                      in stops from the picture's white (default "        \
+    "-0.1,-0.6)\n"                                                             \
     "  --no-tracking       --lights auto takes each frame of a video by "      \
     "itself,\n"                                                                \
     "                      rather than following lamps from frame to frame\n"  \
@@ -85,9 +85,7 @@ enum look_option_code {
     "  --headroom EV       stops by which clipped pixels really exceed "       \
     "white\n"                                                                  \
     "                      (default 12); what --lights auto takes for power\n" \
-    "  --layer WHAT        composite | flare: the flare alone on black |\n"    \
-    "                      flare-alpha: a picture of it with alpha, to be\n"   \
-    "                      laid over others in linear light\n"
+    "  --layer WHAT        composite | flare: the flare alone on black\n"
 
 void look_defaults(struct look *look);
 
@@ -111,14 +109,6 @@ int look_lamps(struct look *look, const struct glint_image *image,
  * a picture by itself. GLINT_E_MEMORY. */
 enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us);
-
-/* The parts of look_draw, for tools/look_layer.h: sets the lamps of IMAGE and
- * how long that took; what their light is multiplied by; draws boxes and
- * numbers of lights. */
-void look_find(struct look *look, const struct glint_image *image,
-               int32_t elapsed_us);
-double look_scale(const struct look *look);
-void look_mark(const struct look *look, const struct glint_image *image);
 
 /* Closes LOOK and moves FRESH there, which is open and not yet sized. */
 void look_replace(struct look *look, const struct look *fresh);

@@ -39,15 +39,21 @@ struct glint_spot {
 };
 
 struct glint_lights_config {
-    int width, height;     /* of the pictures, 1 .. GLINT_MAX_SIDE */
-    int threshold_high;    /* 8-bit full-range luma code, 1 .. 255 */
-    int threshold_low;     /* 1 .. threshold_high */
-    int min_area;          /* pixels; smaller regions are noise, >= 1 */
-    int32_t max_share_q15; /* of the picture; larger regions are sky or wall */
-    int32_t merge_q15;     /* of the width: closer lights become one */
-    int32_t keep_faint;    /* 1: after the lights come regions that have too few
-                              pixels at the upper threshold or half of min_area,
-                              marked faint; for glint/tracks.h */
+    int width, height;         /* of the pictures, 1 .. GLINT_MAX_SIDE */
+    int32_t threshold_high_q8; /* stops from white, -20 .. 0: a region needs
+                                  pixels there */
+    int32_t threshold_low_q8; /* -20 .. threshold_high_q8: it extends to here */
+    int white_code;           /* 8-bit full-range code of white, 1 .. 255; 0:
+                                 the picture's own, see above */
+    int min_area;             /* pixels; smaller regions are noise, >= 1 */
+    int32_t max_share_q15;    /* of the picture; larger ones are sky or wall */
+    int32_t merge_q15;        /* of the width: closer lights become one */
+    int32_t judge;            /* 1: by what is around them; 0: all bright
+                                 regions are lights */
+    int32_t keep_faint;       /* 1: after the lights come regions that have too
+                                 few pixels at the upper threshold, half of
+                                 min_area or half a doubt against them, marked
+                                 faint; for glint/tracks.h */
 };
 
 struct glint_lights; /* opaque, in the caller's memory */

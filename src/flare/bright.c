@@ -9,6 +9,9 @@
 #define LOW_BITS  (0x7f * EACH_BYTE)
 #define HIGH_BITS (0x80 * EACH_BYTE)
 
+/* Chroma is within bound I while |C - 128| is below it: 8, 16, 32. */
+#define CHROMA_BOUND(i) (8 << (i))
+
 static size_t blocks_of(int width)
 {
     return ((size_t)width + BRIGHT_BLOCK - 1) / BRIGHT_BLOCK;
@@ -18,7 +21,9 @@ void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
                         int width)
 {
     b->curve = glint_arena_take(arena, 1, sizeof *b->curve);
-    b->luma = glint_arena_take(arena, (size_t)width, sizeof *b->luma);
+    b->full_luma = glint_arena_take(arena, 256, 1);
+    b->beyond = glint_arena_take(arena, 256, 1);
+    b->value = glint_arena_take(arena, (size_t)width, sizeof *b->value);
     b->block = glint_arena_take(arena, blocks_of(width), sizeof *b->block);
 }
 
@@ -33,12 +38,21 @@ static int is_rgb(const struct glint_layout *layout)
     return layout->kind == GLINT_LAYOUT_RGB || layout->kind == GLINT_LAYOUT_565;
 }
 
-void glint_bright_begin(struct glint_bright *b, const struct glint_image *image,
-                        int low)
+/* Luma 180 or less of a clipped pixel, and 240 or more, end the scale. */
+static void set_beyond(uint8_t beyond[256])
+{
+    for (int luma = 0; luma < 256; luma++)
+        beyond[luma] =
+            (uint8_t)(BRIGHT_CLIPPED + (luma > 180 ? (luma - 180) / 15 : 0));
+}
+
+void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)
 {
     b->image = image;
     b->layout = glint_layout_of(image->format);
-    b->low = b->low_code = low;
+    b->n_codes = b->layout->kind == GLINT_LAYOUT_GREY  ? 1
+                 : b->layout->kind == GLINT_LAYOUT_565 ? 2
+                                                       : 3;
     if (b->curve_tone != (int)image->transfer)
         glint_curve_init(b->curve, image->transfer);
     b->curve_tone = (int)image->transfer;
@@ -48,10 +62,46 @@ void glint_bright_begin(struct glint_bright *b, const struct glint_image *image,
             q_shift((int64_t)(code - b->ycc.black) * b->ycc.to_rgb_q16[0][0],
                     16),
             0, 255);
-    if (!is_rgb(b->layout))
-        for (b->low_code = 1;
-             b->low_code < 256 && b->full_luma[b->low_code] < low;)
-            b->low_code++;
+    set_beyond(b->beyond);
+}
+
+/* Full-range codes that chroma within +-BOUND can add to luma at most. */
+static int chroma_adds(const struct glint_bright *b, int bound)
+{
+    int64_t most_q16 = 0;
+
+    for (int i = 0; i < 3; i++) {
+        const int64_t sum_q16 =
+            bound * (int64_t)(q_magnitude(b->ycc.to_rgb_q16[i][1]) +
+                              q_magnitude(b->ycc.to_rgb_q16[i][2]));
+
+        most_q16 = sum_q16 > most_q16 ? sum_q16 : most_q16;
+    }
+    return (int)((most_q16 + 65535) >> 16);
+}
+
+/* The least Y code whose luma is LUMA or more; 256: there is none. */
+static int least_of_luma(const struct glint_bright *b, int luma)
+{
+    int code = luma > 0 ? 1 : 0;
+
+    while (code < 256 && b->full_luma[code] < luma)
+        code++;
+    return code;
+}
+
+void glint_bright_set_low(struct glint_bright *b, int low)
+{
+    const int channel = low < BRIGHT_CLIPPED ? low : BRIGHT_CLIPPED;
+
+    b->low = low;
+    for (int i = 0; i < BRIGHT_BOUNDS; i++)
+        b->low_code[i] =
+            is_rgb(b->layout) ? channel
+            : b->layout->kind == GLINT_LAYOUT_GREY
+                ? least_of_luma(b, channel)
+                : least_of_luma(b,
+                                channel - chroma_adds(b, CHROMA_BOUND(i)) - 1);
 }
 
 /* ----------------------------------------------------------------- scanning */
@@ -112,8 +162,25 @@ static uint64_t high_565(const uint8_t *p, int n, int code)
     return found;
 }
 
-/* Which bytes of a word are luma, or a sample that luma is made of. */
-static uint64_t bytes_of_luma(const struct glint_layout *layout)
+/* Bits for the bytes of N words at P, those of BYTES, that are not within
+ * +-BOUND of 128: a power of two, 64 at most. No byte carries. */
+static WHOLLY_INLINE uint64_t far_from_128(const uint8_t *p, int n, int bound,
+                                           uint64_t bytes)
+{
+    const uint64_t add = (uint64_t)bound * EACH_BYTE;
+    const uint64_t far = (uint64_t)(256 - 2 * bound) * EACH_BYTE;
+    uint64_t found = 0;
+
+    for (int i = 0; i < n; i++) {
+        const uint64_t v = load(p + 8 * i);
+
+        found |= ((v & LOW_BITS) + add) ^ (~v & HIGH_BITS);
+    }
+    return found & far & bytes;
+}
+
+/* Which bytes of a word are luma, or a sample of a colour. */
+static uint64_t bytes_of_light(const struct glint_layout *layout)
 {
     const struct glint_layout_sample *s = &layout->sample[0];
 
@@ -124,19 +191,24 @@ static uint64_t bytes_of_luma(const struct glint_layout *layout)
     return UINT64_MAX;
 }
 
-/* Marks the whole blocks of a row at PX. STEP: bytes of a pixel. */
-static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
-                                     int step, int is_above_128)
+static WHOLLY_INLINE uint64_t high_of(const uint8_t *p, int n, int code)
 {
-    const uint64_t luma_bytes = bytes_of_luma(b->layout);
-    const int n = b->width / BRIGHT_BLOCK, code = b->low_code;
+    return code > 128 ? high_codes(p, n, code, 1) : high_codes(p, n, code, 0);
+}
+
+/* Marks the whole blocks of a row at PX without chroma. STEP: bytes of a pixel.
+ */
+static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
+                                     int step)
+{
+    const uint64_t bytes = bytes_of_light(b->layout);
+    const int n = b->width / BRIGHT_BLOCK, code = b->low_code[0];
     int any = 0;
 
     for (int i = 0; i < n; i++) {
-        const uint64_t found =
-            high_codes(px, BRIGHT_BLOCK / 8 * step, code, is_above_128);
+        const uint64_t found = high_of(px, BRIGHT_BLOCK / 8 * step, code);
 
-        b->block[i] = (found & luma_bytes) != 0;
+        b->block[i] = (found & bytes) != 0;
         any |= b->block[i];
         px += BRIGHT_BLOCK * step;
     }
@@ -144,18 +216,15 @@ static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
 }
 
 /* The same for each step apart, so that the loops inside have constant ends. */
-static WHOLLY_INLINE int mark_row(struct glint_bright *b, const uint8_t *px,
-                                  int is_above_128)
+static int mark_row(struct glint_bright *b, const uint8_t *px)
 {
     switch (b->layout->sample[0].step) {
     case 1:
-        return mark_blocks(b, px, 1, is_above_128);
-    case 2:
-        return mark_blocks(b, px, 2, is_above_128);
+        return mark_blocks(b, px, 1);
     case 3:
-        return mark_blocks(b, px, 3, is_above_128);
+        return mark_blocks(b, px, 3);
     default:
-        return mark_blocks(b, px, 4, is_above_128);
+        return mark_blocks(b, px, 4);
     }
 }
 
@@ -164,14 +233,96 @@ static int mark_row_565(struct glint_bright *b, const uint8_t *px)
     int any = 0;
 
     for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
-        b->block[i] =
-            high_565(px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 4, b->low) != 0;
+        b->block[i] = high_565(px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 4,
+                               b->low_code[0]) != 0;
         any |= b->block[i];
     }
     return any;
 }
 
-/* --------------------------------------------------------------------- luma */
+/* Whether the block at PX of a packed row may have a bright pixel. */
+static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b,
+                                       const uint8_t *px, uint64_t luma)
+{
+    for (int i = 0; i < BRIGHT_BOUNDS; i++) {
+        if (high_of(px, BRIGHT_BLOCK / 4, b->low_code[i]) & luma)
+            return 1;
+        if (!far_from_128(px, BRIGHT_BLOCK / 4, CHROMA_BOUND(i), ~luma))
+            return 0;
+    }
+    return 1;
+}
+
+static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
+{
+    const uint64_t luma = bytes_of_light(b->layout);
+    int any = 0;
+
+    for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
+        b->block[i] =
+            (uint8_t)may_be_bright(b, px + i * 2 * BRIGHT_BLOCK, luma);
+        any |= b->block[i];
+    }
+    return any;
+}
+
+/* The same of a block whose luma is at PX and whose chroma is WORDS words at
+ * each of C. */
+static WHOLLY_INLINE int may_be_bright_in_planes(const struct glint_bright *b,
+                                                 const uint8_t *px,
+                                                 const uint8_t *const c[2],
+                                                 int words)
+{
+    for (int i = 0; i < BRIGHT_BOUNDS; i++) {
+        if (high_of(px, BRIGHT_BLOCK / 8, b->low_code[i]))
+            return 1;
+        if (!far_from_128(c[0], words, CHROMA_BOUND(i), UINT64_MAX) &&
+            !far_from_128(c[1], words, CHROMA_BOUND(i), UINT64_MAX))
+            return 0;
+    }
+    return 1;
+}
+
+/* Of NV12 both samples are in one plane, and it is looked at in two halves. */
+static int mark_row_planes(struct glint_bright *b)
+{
+    const struct glint_bright_code *code = b->code;
+    const int is_shared = b->layout->planes == 2;
+    const int bytes = BRIGHT_BLOCK * code[1].step >> code[1].shift;
+    const int words = (is_shared ? bytes / 2 : bytes) / 8;
+    const uint8_t *low = is_shared && code[2].first < code[1].first
+                             ? code[2].first
+                             : code[1].first;
+    int any = 0;
+
+    for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
+        const uint8_t *const c[2] = {low + i * bytes,
+                                     is_shared ? low + i * bytes + bytes / 2
+                                               : code[2].first + i * bytes};
+        const uint8_t *px = code[0].first + i * BRIGHT_BLOCK;
+
+        b->block[i] =
+            (uint8_t)(words == 2 ? may_be_bright_in_planes(b, px, c, 2)
+                                 : may_be_bright_in_planes(b, px, c, 4));
+        any |= b->block[i];
+    }
+    return any;
+}
+
+static int mark(struct glint_bright *b)
+{
+    const uint8_t *first = b->code[0].first;
+
+    if (b->layout->kind == GLINT_LAYOUT_565)
+        return mark_row_565(b, first);
+    if (b->layout->kind != GLINT_LAYOUT_YCC)
+        return mark_row(b, first - b->layout->sample[0].offset);
+    if (glint_layout_is_packed(b->layout))
+        return mark_row_packed(b, first - b->layout->sample[0].offset);
+    return mark_row_planes(b);
+}
+
+/* -------------------------------------------------------------------- value */
 
 static WHOLLY_INLINE int code_at(const struct glint_bright *b, int i, int x)
 {
@@ -180,13 +331,10 @@ static WHOLLY_INLINE int code_at(const struct glint_bright *b, int i, int x)
     return c->first[(x >> c->shift) * c->step];
 }
 
-static void find_codes(struct glint_bright *b, int y)
+void glint_bright_go(struct glint_bright *b, int y)
 {
     const struct glint_layout *layout = b->layout;
 
-    b->n_codes = layout->kind == GLINT_LAYOUT_GREY  ? 1
-                 : layout->kind == GLINT_LAYOUT_565 ? 2
-                                                    : 3;
     for (int i = 0; i < b->n_codes; i++)
         b->code[i] = (struct glint_bright_code){
             glint_layout_at(layout, b->image, i, 0, y), layout->sample[i].step,
@@ -212,54 +360,120 @@ static WHOLLY_INLINE void read_rgb(const struct glint_bright *b, int x,
     }
 }
 
-/* Full-range luma of pixels X .. END - 1. That of RGB has the weights of
- * BT.709, in 256ths, whose sum is 256: no more than the largest of the three.
- */
-static void read_luma(struct glint_bright *b, int x, int end)
+static WHOLLY_INLINE int larger(int a, int b)
 {
-    if (!is_rgb(b->layout)) {
-        const uint8_t *px = b->code[0].first;
-        const int step = b->code[0].step;
-
-        for (; x < end; x++)
-            b->luma[x] = b->full_luma[px[x * step]];
-        return;
-    }
-    for (; x < end; x++) {
-        int rgb[3];
-
-        read_rgb(b, x, rgb);
-        b->luma[x] =
-            (uint8_t)((54 * rgb[0] + 183 * rgb[1] + 19 * rgb[2] + 128) >> 8);
-    }
+    return a > b ? a : b;
 }
 
-static int mark(struct glint_bright *b, const uint8_t *row)
+/* Luma of RGB has the weights of BT.709, in 256ths, whose sum is 256. */
+static WHOLLY_INLINE int value_of_rgb(const struct glint_bright *b, int x)
 {
-    if (b->layout->kind == GLINT_LAYOUT_565)
-        return mark_row_565(b, row);
-    if (b->low_code <= 255)
-        return b->low_code > 128 ? mark_row(b, row, 1) : mark_row(b, row, 0);
-    for (int i = 0; i < b->width / BRIGHT_BLOCK; i++)
-        b->block[i] = 0; /* no code makes such luma */
-    return 0;
+    int rgb[3], largest;
+
+    read_rgb(b, x, rgb);
+    largest = larger(rgb[0], larger(rgb[1], rgb[2]));
+    if (largest < BRIGHT_CLIPPED)
+        return largest;
+    return b->beyond[(54 * rgb[0] + 183 * rgb[1] + 19 * rgb[2] + 128) >> 8];
+}
+
+/* What the chroma of pixel X adds to the largest channel, of full-range codes.
+ */
+static WHOLLY_INLINE int32_t chroma_q16(const struct glint_bright *b, int x)
+{
+    const int cb = code_at(b, 1, x) - 128, cr = code_at(b, 2, x) - 128;
+    const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
+    const int32_t red_q16 = cb * m_q16[0][1] + cr * m_q16[0][2];
+    const int32_t green_q16 = cb * m_q16[1][1] + cr * m_q16[1][2];
+    const int32_t blue_q16 = cb * m_q16[2][1] + cr * m_q16[2][2];
+
+    return larger(red_q16, larger(green_q16, blue_q16));
+}
+
+static WHOLLY_INLINE int value_of_luma(const struct glint_bright *b, int code,
+                                       int32_t added_q16)
+{
+    const int32_t sum_q16 =
+        (code - b->ycc.black) * b->ycc.to_rgb_q16[0][0] + added_q16;
+    const int largest = (sum_q16 + (1 << 15)) >> 16;
+
+    if (largest < BRIGHT_CLIPPED)
+        return larger(largest, 0);
+    return b->beyond[b->full_luma[code]];
+}
+
+int glint_bright_value_at(const struct glint_bright *b, int x)
+{
+    if (is_rgb(b->layout))
+        return value_of_rgb(b, x);
+    return value_of_luma(b, code_at(b, 0, x),
+                         b->layout->kind == GLINT_LAYOUT_YCC ? chroma_q16(b, x)
+                                                             : 0);
+}
+
+/* Value of pixels X .. END - 1; returns the greatest. */
+static int read_values_rgb(struct glint_bright *b, int x, int end)
+{
+    int greatest = 0;
+
+    for (; x < end; x++) {
+        const int value = value_of_rgb(b, x);
+
+        b->value[x] = (uint8_t)value;
+        greatest = larger(greatest, value);
+    }
+    return greatest;
+}
+
+/* The same of luma and chroma, where X is even, or grey. */
+static int read_values_ycc(struct glint_bright *b, int x, int end)
+{
+    const struct glint_bright_code luma = b->code[0];
+    const int is_grey = b->layout->kind == GLINT_LAYOUT_GREY;
+    const int pixels = is_grey ? BRIGHT_BLOCK : 1 << b->code[1].shift;
+    int greatest = 0;
+
+    while (x < end) {
+        const int32_t added_q16 = is_grey ? 0 : chroma_q16(b, x);
+        const int stop = x + pixels < end ? x + pixels : end;
+
+        for (; x < stop; x++) {
+            const int value =
+                value_of_luma(b, luma.first[x * luma.step], added_q16);
+
+            b->value[x] = (uint8_t)value;
+            greatest = larger(greatest, value);
+        }
+    }
+    return greatest;
+}
+
+/* Reads block I, which may have pixels of low or above. */
+static int read_block(struct glint_bright *b, int i)
+{
+    const int x = i * BRIGHT_BLOCK;
+    const int end = x + BRIGHT_BLOCK < b->width ? x + BRIGHT_BLOCK : b->width;
+    const int greatest = is_rgb(b->layout) ? read_values_rgb(b, x, end)
+                                           : read_values_ycc(b, x, end);
+
+    return greatest < b->low ? 0 : greatest;
 }
 
 int glint_bright_scan(struct glint_bright *b, int y)
 {
     const int n_blocks = (int)blocks_of(b->width);
-    int any = mark(b, b->image->plane[0] + y * b->image->stride_bytes[0]);
+    int any, greatest = 0;
 
+    glint_bright_go(b, y);
+    any = mark(b);
     if (n_blocks * BRIGHT_BLOCK > b->width) /* the rest is looked at as it is */
         any = b->block[n_blocks - 1] = 1;
-    find_codes(b, y);
-    for (int i = 0; any && i < n_blocks; i++) {
-        const int end = (i + 1) * BRIGHT_BLOCK;
-
-        if (b->block[i])
-            read_luma(b, i * BRIGHT_BLOCK, end < b->width ? end : b->width);
-    }
-    return any;
+    for (int i = 0; any && i < n_blocks; i++)
+        if (b->block[i]) {
+            b->block[i] = (uint8_t)read_block(b, i);
+            greatest = larger(greatest, b->block[i]);
+        }
+    return greatest;
 }
 
 /* -------------------------------------------------------------------- light */

@@ -2,16 +2,24 @@
  *
  * What is bright in a picture, row by row, and the light there.
  *
- *   in   a picture of 8 bits in any format; a luma code
- *   out  luma of the rows where it may reach that code; linear light of pixels
+ *   in   a picture of 8 bits in any format; a brightness
+ *   out  brightness of the pixels of rows where it may reach that; linear light
  *
- *     glint_bright_begin(b, image, low);
+ *     glint_bright_begin(b, image);
+ *     glint_bright_set_low(b, low);
  *     for each row y: if (glint_bright_scan(b, y))
- *             ... b->luma where b->block says so, glint_bright_read(b, x) ...
+ *             ... b->value where b->block says so, glint_bright_read(b, x) ...
  *
- * Most of a picture by night is dark, and that is seen without luma: eight
- * bytes at a time are compared with the least code that luma can come from, and
- * blocks of BRIGHT_BLOCK pixels without one are left out.
+ * Brightness is the largest channel, so that a lamp of any colour counts: its
+ * full-range code below BRIGHT_CLIPPED, where it says how bright a pixel is.
+ * Above, the five values that are left say how much of the other channels is
+ * clipped, too, by luma: a sun is more than the red sky around it.
+ *
+ * Most of a picture by night is dark, and that is seen without colour: eight
+ * bytes at a time are compared with codes that a bright pixel must exceed, and
+ * blocks of BRIGHT_BLOCK pixels without one are left out. Of Y, Cb, Cr one code
+ * of luma will not do for strong colours. A block is dark where both Y and
+ * |C - 128| stay below one of three pairs of bounds.
  */
 #ifndef GLINT_FLARE_BRIGHT_H
 #define GLINT_FLARE_BRIGHT_H
@@ -21,7 +29,12 @@
 
 struct glint_arena;
 
-enum { BRIGHT_BLOCK = 32 }; /* pixels */
+enum {
+    BRIGHT_BLOCK = 32,    /* pixels */
+    BRIGHT_CLIPPED = 250, /* a channel here or above says nothing of colour */
+    BRIGHT_WHITE = 254,   /* brightness where all channels are clipped */
+    BRIGHT_BOUNDS = 3
+};
 
 /* Where a code of a row's pixels lies. */
 struct glint_bright_code {
@@ -31,8 +44,9 @@ struct glint_bright_code {
 
 struct glint_bright {
     int width;
-    uint8_t *luma;  /* full-range codes of a row, where its block is marked */
-    uint8_t *block; /* [width / BRIGHT_BLOCK, rounded up]: 0: all dark */
+    uint8_t *value; /* brightness of a row, where its block is marked */
+    uint8_t *block; /* [width / BRIGHT_BLOCK, rounded up]: the greatest
+                       brightness in it, or 0: all is below low */
 
     /* Private. */
     const struct glint_image *image;
@@ -40,12 +54,15 @@ struct glint_bright {
     struct glint_bright_code code[3]; /* of the row; Y Cb Cr, R G B, or two
                                          bytes */
     int n_codes;
-    int low;      /* luma code */
-    int low_code; /* the least byte of a bright pixel's brightest sample */
+    int low;                     /* 1 .. 255 */
+    int low_code[BRIGHT_BOUNDS]; /* the least byte, of Y or of R, G or B, of a
+                                    bright pixel; 256: no code is enough. Of
+                                    Y: while chroma is within that bound */
     struct glint_curve *curve;
     int curve_tone; /* that curve is of; -1: none yet */
     struct glint_ycc ycc;
-    uint8_t full_luma[256]; /* of Y codes */
+    uint8_t *full_luma; /* of Y codes */
+    uint8_t *beyond;    /* brightness of a clipped pixel, by luma */
 };
 
 /* Takes what rows of WIDTH pixels need from ARENA, which may only measure. */
@@ -53,11 +70,14 @@ void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
                         int width);
 void glint_bright_init(struct glint_bright *b, int width);
 
-/* Prepares for IMAGE, which is kept until the next one. LOW is 1 .. 255. */
-void glint_bright_begin(struct glint_bright *b, const struct glint_image *image,
-                        int low);
+/* Prepares for IMAGE, which is kept until the next one. */
+void glint_bright_begin(struct glint_bright *b,
+                        const struct glint_image *image);
 
-/* Sets block and luma for row Y. Returns 0 if all of it is dark. */
+/* LOW is 1 .. 255; before the first scan. */
+void glint_bright_set_low(struct glint_bright *b, int low);
+
+/* Sets block and value for row Y. Returns 0 if all of it is below low. */
 int glint_bright_scan(struct glint_bright *b, int y);
 
 /* The linear light of pixel X of the row scanned last, 0 .. white. */
@@ -66,5 +86,11 @@ void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 /* The first of pixels X + 1 .. END - 1 that is not as X is, or END: lamps and
  * skies are white in many pixels on end. */
 int glint_bright_same(const struct glint_bright *b, int x, int end);
+
+/* Makes row Y the one that read and value_at are of, without a scan. */
+void glint_bright_go(struct glint_bright *b, int y);
+
+/* Brightness of pixel X of that row. */
+int glint_bright_value_at(const struct glint_bright *b, int x);
 
 #endif

@@ -7,6 +7,16 @@
 
 /* --------------------------------------------------------------------- sums */
 
+static int32_t smaller(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
+static int32_t larger(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+
 static int64_t luminance(int64_t r, int64_t g, int64_t b)
 {
     return q_shift(r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
@@ -48,6 +58,15 @@ void glint_region_add_pixels(struct glint_region *sum,
         sum->rgb_q14[i] += light->rgb_q14[i] * n;
 }
 
+void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y)
+{
+    sum->area += x1 - x0;
+    sum->x0 = smaller(sum->x0, x0);
+    sum->x1 = larger(sum->x1, x1);
+    sum->y0 = smaller(sum->y0, y);
+    sum->y1 = larger(sum->y1, y + 1);
+}
+
 void glint_region_add_rim(struct glint_region *sum,
                           const struct glint_region_light *light, int n)
 {
@@ -61,7 +80,12 @@ void glint_region_absorb(struct glint_region *sum,
     if (other->first < sum->first)
         sum->first = other->first;
     sum->area += other->area;
+    sum->n_seeds += other->n_seeds;
     sum->n_clipped += other->n_clipped;
+    sum->x0 = smaller(sum->x0, other->x0);
+    sum->x1 = larger(sum->x1, other->x1);
+    sum->y0 = smaller(sum->y0, other->y0);
+    sum->y1 = larger(sum->y1, other->y1);
     sum->w_q14 += other->w_q14;
     sum->wx_q14 += other->wx_q14;
     sum->wy_q14 += other->wy_q14;
@@ -174,19 +198,20 @@ static int32_t new_label(struct glint_regions *r, int32_t first)
 {
     const int32_t label = r->idle[--r->n_idle];
 
-    r->component[label] =
-        (struct glint_component){.sum = {.first = first}, .parent = label};
+    r->component[label] = (struct glint_component){
+        .sum = {.first = first, .x0 = INT32_MAX, .y0 = INT32_MAX},
+        .parent = label};
     r->active[r->n_active++] = label;
     return label;
 }
 
 /* Goes on with the runs of pixels X .. END - 1: *BEGIN is where the one begins
  * that X may continue, or -1. */
-static void find_runs(struct glint_run_row *row, const uint8_t *luma, int low,
+static void find_runs(struct glint_run_row *row, const uint8_t *value, int low,
                       int x, int end, int *begin)
 {
     for (; x < end; x++) {
-        const int is_in = luma[x] >= low;
+        const int is_in = value[x] >= low;
 
         if (is_in == (*begin >= 0))
             continue;
@@ -200,7 +225,7 @@ static void find_runs(struct glint_run_row *row, const uint8_t *luma, int low,
 }
 
 static void find_all_runs(struct glint_run_row *row,
-                          const struct glint_bright *b)
+                          const struct glint_bright *b, int low)
 {
     int begin = -1;
 
@@ -208,8 +233,8 @@ static void find_all_runs(struct glint_run_row *row,
     for (int i = 0; i * BRIGHT_BLOCK < b->width; i++) {
         const int x = i * BRIGHT_BLOCK, end = x + BRIGHT_BLOCK;
 
-        if (b->block[i]) {
-            find_runs(row, b->luma, b->low, x, end < b->width ? end : b->width,
+        if (b->block[i] >= low) {
+            find_runs(row, b->value, low, x, end < b->width ? end : b->width,
                       &begin);
         } else if (begin >= 0) {
             row->run[row->n_runs++] = (struct glint_run){begin, x, -1};
@@ -244,9 +269,9 @@ static void link_runs(struct glint_regions *r, int y)
 }
 
 void glint_regions_link_row(struct glint_regions *r,
-                            const struct glint_bright *bright, int y)
+                            const struct glint_bright *bright, int low, int y)
 {
-    find_all_runs(&r->here, bright);
+    find_all_runs(&r->here, bright, low);
     link_runs(r, y);
 }
 

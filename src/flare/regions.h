@@ -34,7 +34,8 @@ struct glint_bright;
 /* What is summed over the pixels of a region. */
 struct glint_region {
     int32_t first; /* y * width + x of its first pixel: no two have the same */
-    int32_t area, n_clipped; /* the caller counts both */
+    int32_t area, n_seeds, n_clipped; /* the caller counts these */
+    int32_t x0, y0, x1, y1; /* pixels of it are in x0 .. x1 - 1, y0 .. y1 - 1 */
     int64_t w_q14, wx_q14, wy_q14;
     uint64_t wr2_q14;
     int64_t rgb_q14[3];     /* of all pixels */
@@ -56,6 +57,9 @@ struct glint_region_light glint_region_light_of(const int32_t rgb_q20[3]);
 void glint_region_add_pixels(struct glint_region *sum,
                              const struct glint_region_light *light, int x0,
                              int x1, int y);
+
+/* Adds the pixels of a run of row Y to the area and the box. */
+void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y);
 
 /* Adds N pixels that show the colour. */
 void glint_region_add_rim(struct glint_region *sum,
@@ -104,10 +108,10 @@ void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
 
 void glint_regions_begin(struct glint_regions *r);
 
-/* Fills r->here with the runs of row Y whose luma is BRIGHT's low or above, and
- * labels them by what they touch. */
+/* Fills r->here with the runs of row Y whose value is LOW or above, which is
+ * BRIGHT's low or more, and labels them by what they touch. */
 void glint_regions_link_row(struct glint_regions *r,
-                            const struct glint_bright *bright, int y);
+                            const struct glint_bright *bright, int low, int y);
 
 /* The region that run I of r->here belongs to, so far. */
 struct glint_region *glint_regions_of_run(struct glint_regions *r, int i);

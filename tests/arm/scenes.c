@@ -154,7 +154,10 @@ static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
     int n;
 
     glint_lights_defaults(&c, image->width, image->height);
-    c.threshold_high = 100 + number(100);
+    c.threshold_high_q8 = -number(512);
+    c.threshold_low_q8 = c.threshold_high_q8 - number(512);
+    c.judge = number(2);
+    c.keep_faint = number(2);
     if (image->format == GLINT_LINEAR_Q20 ||
         glint_lights_init(&finder, &c, finder_memory, FINDER_BYTES) != GLINT_OK)
         return h;

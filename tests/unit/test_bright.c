@@ -80,35 +80,110 @@ static int widen(int v, int bits)
     return v << (8 - bits) | v >> (2 * bits - 8);
 }
 
-/* Luma by the definition of each format. */
-static int luma_at(const struct glint_image *image, int x, int y)
+/* Largest channel, and luma, by the definition of YCbCr. */
+static void judge_ycc(const struct glint_image *image, const int code[3],
+                      double *largest, int *luma)
 {
-    const uint8_t *row = image->plane[0] + y * image->stride_bytes[0];
-    int code, bits;
+    const int limited = image->range == GLINT_RANGE_LIMITED;
+    const int is_709 = image->matrix == GLINT_MATRIX_BT709;
+    const double kr = is_709 ? 0.2126 : 0.299, kb = is_709 ? 0.0722 : 0.114;
+    const double y = limited ? (code[0] - 16) * 255 / 219.0 : code[0];
+    const double scale = limited ? 255 / 224.0 : 1;
+    const double cb = (code[1] - 128) * scale, cr = (code[2] - 128) * scale;
+    const double red = y + 2 * (1 - kr) * cr, blue = y + 2 * (1 - kb) * cb;
+    const double green = (y - kr * red - kb * blue) / (1 - kr - kb);
+
+    *largest = fmax(red, fmax(green, blue));
+    *luma = (int)fmax(0, fmin(255, floor(y + 0.5)));
+}
+
+static const uint8_t *at(const struct glint_image *image, int plane, int x,
+                         int y)
+{
+    return image->plane[plane] + y * image->stride_bytes[plane] + x;
+}
+
+/* Y, Cb, Cr of a pixel. */
+static void codes_at(const struct glint_image *image, int x, int y, int code[3])
+{
+    const int cx = x / 2, cy = y / 2;
+    const uint8_t *row = at(image, 0, 0, y);
+
+    code[0] = row[x];
+    code[1] = code[2] = 128;
+    if (image->format == GLINT_YUYV)
+        code[0] = row[2 * x], code[1] = row[4 * cx + 1],
+        code[2] = row[4 * cx + 3];
+    if (image->format == GLINT_UYVY)
+        code[0] = row[2 * x + 1], code[1] = row[4 * cx],
+        code[2] = row[4 * cx + 2];
+    for (int i = 1; i < 3; i++) {
+        if (image->format == GLINT_I420)
+            code[i] = *at(image, i, cx, cy);
+        if (image->format == GLINT_I422)
+            code[i] = *at(image, i, cx, y);
+        if (image->format == GLINT_I444)
+            code[i] = *at(image, i, x, y);
+        if (image->format == GLINT_NV12)
+            code[i] = *at(image, 1, 2 * cx + i - 1, cy);
+        if (image->format == GLINT_NV21)
+            code[i] = *at(image, 1, 2 * cx + 2 - i, cy);
+    }
+}
+
+static int clipped_value(int luma)
+{
+    return 250 + (luma > 180 ? (luma - 180) / 15 : 0);
+}
+
+static int value_of_rgb(int r, int g, int b)
+{
+    const int largest = r > g ? r > b ? r : b : g > b ? g : b;
+
+    return largest < 250 ? largest : clipped_value(weigh(r, g, b));
+}
+
+/* Brightness by the definition of each format. It is between LEAST and MOST
+ * where chroma makes a code so nearly a half that rounding may fall either way.
+ */
+static void value_at(const struct glint_image *image, int x, int y, int *least,
+                     int *most)
+{
+    const uint8_t *row = at(image, 0, 0, y);
+    int code[3], bits, luma, rounded[2];
+    double largest;
 
     switch (image->format) {
     case GLINT_RGB24:
-        return weigh(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
+        *least = *most =
+            value_of_rgb(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
+        return;
     case GLINT_BGR24:
-        return weigh(row[3 * x + 2], row[3 * x + 1], row[3 * x]);
+        *least = *most =
+            value_of_rgb(row[3 * x + 2], row[3 * x + 1], row[3 * x]);
+        return;
     case GLINT_XRGB8888:
-        return weigh(row[4 * x + 2], row[4 * x + 1], row[4 * x]);
+        *least = *most =
+            value_of_rgb(row[4 * x + 2], row[4 * x + 1], row[4 * x]);
+        return;
     case GLINT_RGB565:
         bits = row[2 * x] | row[2 * x + 1] << 8;
-        return weigh(widen(bits >> 11, 5), widen(bits >> 5 & 63, 6),
-                     widen(bits & 31, 5));
-    case GLINT_YUYV:
-        code = row[2 * x];
-        break;
-    case GLINT_UYVY:
-        code = row[2 * x + 1];
-        break;
+        *least = *most =
+            value_of_rgb(widen(bits >> 11, 5), widen(bits >> 5 & 63, 6),
+                         widen(bits & 31, 5));
+        return;
     default:
-        code = row[x];
+        codes_at(image, x, y, code);
+        judge_ycc(image, code, &largest, &luma);
     }
-    if (image->range == GLINT_RANGE_FULL)
-        return code;
-    return (int)fmax(0, fmin(255, floor((code - 16) * 255 / 219.0 + 0.5)));
+    for (int i = 0; i < 2; i++) {
+        rounded[i] = (int)floor(largest + 0.49 + 0.02 * i);
+        rounded[i] = rounded[i] < 0      ? 0
+                     : rounded[i] >= 250 ? clipped_value(luma)
+                                         : rounded[i];
+    }
+    *least = rounded[0];
+    *most = rounded[1];
 }
 
 static void check_scan(struct glint_bright *b, const struct glint_image *image,
@@ -116,24 +191,28 @@ static void check_scan(struct glint_bright *b, const struct glint_image *image,
 {
     int n_bright = 0, n_marked = 0;
 
-    glint_bright_begin(b, image, low);
+    glint_bright_begin(b, image);
+    glint_bright_set_low(b, low);
     for (int y = 0; y < HEIGHT; y++) {
         const int any = glint_bright_scan(b, y);
 
         for (int x = 0; x < image->width; x++) {
-            const int luma = luma_at(image, x, y);
             const int is_marked = any && b->block[x / BRIGHT_BLOCK];
+            int least, most;
 
-            n_bright += luma >= low;
+            value_at(image, x, y, &least, &most);
+            n_bright += most >= low;
             n_marked += is_marked;
             if (is_marked)
-                assert_int_equal(b->luma[x], luma);
+                assert_in_range(b->value[x], least, most);
             else
-                assert_true(luma < low);
+                assert_true(least < low);
+            if (is_marked)
+                assert_in_range(b->block[x / BRIGHT_BLOCK], b->value[x], 255);
+            assert_in_range(glint_bright_value_at(b, x), least, most);
         }
     }
-    if (low > 250 && n_bright == 0 && image->width % BRIGHT_BLOCK == 0 &&
-        image->format == GLINT_GREY)
+    if (n_bright == 0)
         assert_int_equal(n_marked, 0);
 }
 
@@ -152,6 +231,7 @@ static void test_scan_against_every_pixel(void **state)
         b = new_bright(image.width, &mem);
         image.range =
             round / (N_FORMATS * 24) ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
+        image.matrix = (enum glint_matrix)(round % 2);
         fill(&image, rares[round / (N_FORMATS * 8) % 3]);
         for (int low = 1; low <= 255; low++)
             check_scan(b, &image, low);
@@ -170,14 +250,18 @@ static void test_no_pixel_is_missed(void **state)
 
     (void)state;
     b = new_bright(image.width, &mem);
-    for (int low = 1; low <= 255; low++)
+    for (int low = 1; low <= 250; low++)
         for (int x = 0; x < 96; x++) {
-            glint_bright_begin(b, &image, low);
+            const int value = low < 250 ? low : 254;
+
+            glint_bright_begin(b, &image);
+            glint_bright_set_low(b, low);
             memset(image.plane[0], 0, 96);
             image.plane[0][x] = (uint8_t)low;
-            assert_int_equal(glint_bright_scan(b, 0), 1);
+            assert_int_equal(glint_bright_scan(b, 0), value);
             for (int i = 0; i < 3; i++)
-                assert_int_equal(b->block[i], i == x / BRIGHT_BLOCK);
+                assert_int_equal(b->block[i],
+                                 i == x / BRIGHT_BLOCK ? value : 0);
             image.plane[0][x] = (uint8_t)(low - 1);
             assert_int_equal(glint_bright_scan(b, 0), 0);
         }
@@ -203,7 +287,8 @@ static void test_same_pixels(void **state)
         for (int i = 0; i < 8; i++)
             image.plane[0][draw_random((int)glint_image_bytes(
                 image.format, image.width, HEIGHT))] = 77;
-        glint_bright_begin(b, &image, 1);
+        glint_bright_begin(b, &image);
+        glint_bright_set_low(b, 1);
         for (int y = 0; y < HEIGHT; y++) {
             glint_bright_scan(b, y);
             for (int x = 0, end; x < 70; x = end) {

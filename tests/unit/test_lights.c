@@ -84,6 +84,13 @@ static int srgb_code(double light)
     return (int)(255 * v + 0.5);
 }
 
+static double linear_of(int code)
+{
+    const double v = code / 255.0;
+
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
 /* Share of pixel (X, Y) that the disc covers, by 16 x 16 points. */
 static double disc_cover(int x, int y, double cx, double cy, double radius)
 {
@@ -136,14 +143,23 @@ static int find(const struct glint_lights_config *cfg,
     return find_at_most(cfg, image, MAX_SPOTS, NULL);
 }
 
-/* Every region counts: no smallest, no largest, nothing merges. */
+/* Stops from white between sRGB codes CODE - 1 and CODE. */
+static int32_t stops_q8_of(int code)
+{
+    return (int32_t)floor(
+        256 * log2((linear_of(code - 1) + linear_of(code)) / 2) + 0.5);
+}
+
+/* Every region counts: no smallest, no largest, nothing merges. LOW and HIGH
+ * are codes, HIGH 250 at most. */
 static struct glint_lights_config plain_config(const struct glint_image *image,
                                                int low, int high)
 {
     return (struct glint_lights_config){.width = image->width,
                                         .height = image->height,
-                                        .threshold_low = low,
-                                        .threshold_high = high,
+                                        .threshold_low_q8 = stops_q8_of(low),
+                                        .threshold_high_q8 = stops_q8_of(high),
+                                        .white_code = 255,
                                         .min_area = 1,
                                         .max_share_q15 = 1 << 15};
 }
@@ -210,10 +226,13 @@ static void test_bad_configurations_are_refused(void **state)
     bad = good, bad.width = 0, assert_refused(bad);
     bad = good, bad.width = GLINT_MAX_SIDE + 1, assert_refused(bad);
     bad = good, bad.height = 0, assert_refused(bad);
-    bad = good, bad.threshold_low = 0, assert_refused(bad);
-    bad = good, bad.threshold_high = 256, assert_refused(bad);
-    bad = good, bad.threshold_low = good.threshold_high + 1,
+    bad = good, bad.threshold_low_q8 = -20 * 256 - 1, assert_refused(bad);
+    bad = good, bad.threshold_high_q8 = 1, assert_refused(bad);
+    bad = good, bad.threshold_low_q8 = good.threshold_high_q8 + 1,
     assert_refused(bad);
+    bad = good, bad.white_code = 256, assert_refused(bad);
+    bad = good, bad.white_code = -1, assert_refused(bad);
+    bad = good, bad.judge = 2, assert_refused(bad);
     bad = good, bad.min_area = 0, assert_refused(bad);
     bad = good, bad.max_share_q15 = -1, assert_refused(bad);
     bad = good, bad.max_share_q15 = 32769, assert_refused(bad);
@@ -261,7 +280,7 @@ static void test_one_pixel(void **state)
 static void test_moments_by_hand(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 16, 8);
-    struct glint_lights_config cfg = plain_config(&image, 180, 255);
+    struct glint_lights_config cfg = plain_config(&image, 180, 250);
 
     (void)state;
     set_grey(&image, 10, 5, 188);
@@ -415,6 +434,7 @@ static void test_black_and_white(void **state)
     assert_int_equal(find(&cfg, &image), 0);
     fill_grey(&image, 0, 0, 100, 50, 255);
     assert_int_equal(find(&cfg, &image), 0);
+    cfg.judge = 0;
     cfg.max_share_q15 = 1 << 15;
     assert_int_equal(find(&cfg, &image), 1);
     assert_int_equal(spot[0].x_q8, 50 * 256);
@@ -827,7 +847,7 @@ static int flood(const struct glint_image *image, int x, int y)
 static void check_against_flood(int width, int height, int percent)
 {
     struct glint_image image = new_image(GLINT_GREY, width, height);
-    struct glint_lights_config cfg = plain_config(&image, 255, 255);
+    struct glint_lights_config cfg = plain_config(&image, 250, 250);
     int of_area[64 * 64 + 1] = {0};
     int n, regions = 0;
 
@@ -933,6 +953,9 @@ static void test_ycc_formats(void **state)
 
         image.range = GLINT_RANGE_LIMITED;
         image.transfer = GLINT_TONE_BT709;
+        /* of codes 199.5 and 249.5: ((c / 255 + 0.099) / 1.099)^(1 / 0.45) */
+        cfg.threshold_low_q8 = (int32_t)floor(256 * log2(0.6124) + 0.5);
+        cfg.threshold_high_q8 = (int32_t)floor(256 * log2(0.9569) + 0.5);
         fill_grey(&image, 0, 0, 41, 31, 16);
         for (int i = 1; i < 3; i++)
             memset(image.plane[i], 128,

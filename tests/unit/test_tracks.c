@@ -182,8 +182,10 @@ static double sparkle_moves(int every, uint32_t seed)
 
     night_init(&night, 320, 200);
     night.seed = seed;
-    night.lights.threshold_low = 40;
-    night.lights.threshold_high = 43;
+    night.lights.judge = 0;
+    night.lights.white_code = 43;
+    night.lights.threshold_low_q8 = -20;
+    night.lights.threshold_high_q8 = 0;
     assert_true(night_open(&night));
     for (int frame = 0; frame < 300; frame++) {
         uint8_t *const corner = night.image.plane[0] + 100 * 320 + 150;
@@ -229,7 +231,7 @@ static void test_hysteresis(void **state)
     (void)state;
     open_night(320, 200, 0);
     for (int frame = 0; frame < 100; frame++) {
-        const int code = frame == 0 ? 255 : 251 + night_random(&night, 4);
+        const int code = frame == 0 ? 255 : 246 + night_random(&night, 4);
 
         memset(night.image.plane[0], 5, 320 * 200);
         for (int y = 0; y < 6; y++)
