@@ -8,7 +8,7 @@
 
 #include "overlay.h"
 #include "takes.h"
-#include "plain/picture.h"
+#include "plain/kept.h"
 #include "posix/error.h"
 
 static const char help[] =
@@ -26,7 +26,10 @@ static const char help[] =
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
-    "found)\n";
+    "found)\n"
+    "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
+    "input's,\n"
+    "                      else 95)\n";
 
 static const char help_end[] = SCENE_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
@@ -49,6 +52,8 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_word(value, ranges, &o->range);
     case 'x':
         return take_word(value, matrices, &o->matrix);
+    case 'Q':
+        return tool_integer(value, 1, 100, &o->quality);
     default: /* 'n' */
         return tool_integer(value, 0, 1000000000, &o->start_number);
     }
@@ -59,6 +64,7 @@ static const struct option options[] = {
     {"range", required_argument, NULL, 'r'},
     {"matrix", required_argument, NULL, 'x'},
     {"start-number", required_argument, NULL, 'n'},
+    {"jpeg-quality", required_argument, NULL, 'Q'},
     LOOK_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
@@ -75,7 +81,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             continue;
         if (c == 'o')
             o->output = optarg;
-        else if (strchr("rxn", c)) {
+        else if (strchr("rxnQ", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
@@ -122,8 +128,23 @@ static void note_worst(struct frame_report *worst,
     worst->beyond_lights = beyond;
 }
 
+static enum glint_status draw_in_place(void *ctx, struct look *look,
+                                       const struct glint_image *image,
+                                       int32_t elapsed_us)
+{
+    (void)ctx;
+    return look_draw(look, image, elapsed_us);
+}
+
 int overlay_draw(struct tool *tool, struct overlay *o,
                  const struct glint_image *image)
+{
+    return overlay_draw_by(tool, o, image, draw_in_place, NULL);
+}
+
+int overlay_draw_by(struct tool *tool, struct overlay *o,
+                    const struct glint_image *image, overlay_draw_fn *draw,
+                    void *ctx)
 {
     struct look *look = &o->look;
     enum glint_status status;
@@ -133,7 +154,7 @@ int overlay_draw(struct tool *tool, struct overlay *o,
         code = look_size(tool, look, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    status = look_draw(look, image, o->elapsed_us);
+    status = draw(ctx, look, image, o->elapsed_us);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     o->find_ms += look->find_ms;
@@ -157,36 +178,6 @@ void overlay_progress(const struct tool *tool, const struct overlay *o)
     fprintf(stderr, "\rframe %d  %.1f fps  %d lights \033[K", o->look.n_frames,
             o->look.n_frames / spent, o->look.report.lights);
     fflush(stderr);
-}
-
-/* ----------------------------------------------------------------- pictures */
-
-int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
-                    const char *to)
-{
-    struct glint_error error = {""};
-    struct glint_image image;
-    enum glint_status status = glint_picture_load(from, &image, &error);
-    int code = EXIT_OK;
-
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    if (o->look.sized && (image.width != o->look.view.width ||
-                          image.height != o->look.view.height)) {
-        fprintf(stderr, "glint overlay: %s: is %dx%d, those before it %dx%d\n",
-                from, image.width, image.height, o->look.view.width,
-                o->look.view.height);
-        code = EXIT_INPUT;
-    }
-    if (code == EXIT_OK)
-        code = overlay_draw(tool, o, &image);
-    if (code == EXIT_OK) {
-        status = glint_picture_save(to, &image, &error);
-        if (status != GLINT_OK)
-            code = tool_fail(tool, status, error.text);
-    }
-    glint_picture_free(&image);
-    return code;
 }
 
 /* ------------------------------------------------------------------- result */
@@ -240,8 +231,7 @@ static int check_output(struct tool *tool, struct overlay *o)
     if (is_y4m(o->input) != is_y4m(o->output))
         return tool_usage(tool, "a video becomes a video (.y4m or -), a "
                                 "picture a picture");
-    if (is_y4m(o->output) ||
-        glint_picture_check(o->output, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
+    if (is_y4m(o->output) || glint_kept_check(o->output, &error) == GLINT_OK)
         return EXIT_OK;
     tool_fail(tool, GLINT_E_OUTPUT, error.text);
     return EXIT_OUTPUT;

@@ -48,7 +48,8 @@ static bool take_light(struct look *look, const char *text)
 
 static bool take(struct look *look, int option, const char *value)
 {
-    static const char *const layers[] = {"composite", "flare", NULL};
+    static const char *const layers[] = {"composite", "flare", "flare-alpha",
+                                         NULL};
     static const char *const shows[] = {"lights", NULL};
     int layer;
 
@@ -72,7 +73,8 @@ static bool take(struct look *look, int option, const char *value)
         return look->show_lights = tool_word(value, shows) == 0;
     default:
         layer = tool_word(value, layers);
-        look->flare_only = layer == 1;
+        look->flare_only = layer >= 1;
+        look->flare_alpha = layer == 2;
         return layer >= 0;
     }
 }
@@ -249,8 +251,7 @@ static void blacken(const struct glint_image *image)
 }
 
 /* Draws the lights over IMAGE: as found, else where they are, by number. */
-static void show_lights(const struct look *look,
-                        const struct glint_image *image)
+void look_mark(const struct look *look, const struct glint_image *image)
 {
     const bool found = !look->is_listed && look->n_hand == 0;
     const double focal = look->scene.setup.optics.focal_mm;
@@ -273,23 +274,35 @@ static void show_lights(const struct look *look,
     }
 }
 
+double look_scale(const struct look *look)
+{
+    return scene_scale(&look->scene);
+}
+
+void look_find(struct look *look, const struct glint_image *image,
+               int32_t elapsed_us)
+{
+    const double start = tool_seconds();
+
+    look->n_lamps = look_lamps(look, image, elapsed_us);
+    look->find_ms = 1e3 * (tool_seconds() - start);
+}
+
 enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us)
 {
-    const double start = tool_seconds();
     enum glint_status status;
     double found;
 
-    look->n_lamps = look_lamps(look, image, elapsed_us);
+    look_find(look, image, elapsed_us);
     found = tool_seconds();
     if (look->flare_only)
         blacken(image);
     status = frame_draw(&look->frame, look->lamp, look->n_lamps,
-                        scene_scale(&look->scene), image, &look->report);
-    look->find_ms = 1e3 * (found - start);
+                        look_scale(look), image, &look->report);
     look->flare_ms = 1e3 * (tool_seconds() - found);
     if (look->show_lights)
-        show_lights(look, image);
+        look_mark(look, image);
     look->n_frames++;
     return status;
 }

@@ -21,6 +21,7 @@ struct look {
     double threshold_ev[2];         /* that seeds a lamp, that it extends to */
     double headroom_ev;
     bool flare_only, no_tracking, show_lights;
+    bool flare_alpha;     /* with flare_only, of files */
     size_t reserve_bytes; /* unless 0: all the memory that frames will take */
     int n_hand;
     struct glint_lamp hand[SCENE_MAX_LAMPS];
@@ -85,7 +86,9 @@ enum look_option_code {
     "  --headroom EV       stops by which clipped pixels really exceed "       \
     "white\n"                                                                  \
     "                      (default 12); what --lights auto takes for power\n" \
-    "  --layer WHAT        composite | flare: the flare alone on black\n"
+    "  --layer WHAT        composite | flare: the flare alone on black |\n"    \
+    "                      flare-alpha: a picture of it with alpha, to be\n"   \
+    "                      laid over others in linear light\n"
 
 void look_defaults(struct look *look);
 
@@ -109,6 +112,14 @@ int look_lamps(struct look *look, const struct glint_image *image,
  * a picture by itself. GLINT_E_MEMORY. */
 enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us);
+
+/* The parts of look_draw, for tools/look_layer.h: sets the lamps of IMAGE and
+ * how long that took; what their light is multiplied by; draws boxes and
+ * numbers of lights. */
+void look_find(struct look *look, const struct glint_image *image,
+               int32_t elapsed_us);
+double look_scale(const struct look *look);
+void look_mark(const struct look *look, const struct glint_image *image);
 
 /* Closes LOOK and moves FRESH there, which is open and not yet sized. */
 void look_replace(struct look *look, const struct look *fresh);

@@ -14,6 +14,7 @@ struct overlay {
     int start_number;
     int32_t elapsed_us; /* from frame to frame; 0: pictures by themselves */
     int range, matrix;  /* 0: auto */
+    int quality;        /* of JPEG and WebP; 0: the input's */
 
     struct frame_report worst; /* its lights: of the frame with most too many,
                                   and most beyond the model */
@@ -26,6 +27,14 @@ struct overlay {
  * Returns an exit code, as all of these do. */
 int overlay_draw(struct tool *tool, struct overlay *o,
                  const struct glint_image *image);
+
+/* The same where frames are not drawn in place: DRAW does it with CTX. */
+typedef enum glint_status overlay_draw_fn(void *ctx, struct look *look,
+                                          const struct glint_image *image,
+                                          int32_t elapsed_us);
+int overlay_draw_by(struct tool *tool, struct overlay *o,
+                    const struct glint_image *image, overlay_draw_fn *draw,
+                    void *ctx);
 
 /* Tells a terminal how far it has come. */
 void overlay_progress(const struct tool *tool, const struct overlay *o);

@@ -52,7 +52,8 @@ static const struct {
     {NULL, "io", "auto, mmap, userptr or read"},
     {NULL, "kernels", "c, sse41, avx2, neon or auto, as this processor has it"},
     {NULL, "lanes", "16 or 32"},
-    {NULL, "layer", "composite or flare"},
+    {NULL, "jpeg-quality", "a whole number, 1 to 100"},
+    {NULL, "layer", "composite, flare or flare-alpha"},
     {NULL, "light", "THETA,PHI[,POWER[,R,G,B]] with THETA 0 to 89.9 degrees"},
     {NULL, "light-at",
      "X,Y[,EV]: pixels from the top left corner, within a million, and stops "

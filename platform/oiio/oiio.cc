@@ -19,61 +19,15 @@
 #include <OpenImageIO/imageio.h>
 
 #include "glint/image.h"
+#include "oiio/guard.h"
+#include "oiio/keep.h"
 
 namespace
 {
 
-struct failure {
-    enum glint_status status;
-    std::string cause;
-};
-
-/* Runs BODY, which returns or throws; NAME is for errors. */
-template <class Body>
-enum glint_status guarded(const char *name, struct glint_error *error,
-                          Body body)
-{
-    failure what = {GLINT_OK, ""};
-
-    try {
-        body();
-    } catch (const failure &f) {
-        what = f;
-    } catch (const std::bad_alloc &) {
-        what = {GLINT_E_MEMORY, "not enough memory"};
-    } catch (const std::exception &e) {
-        what = {GLINT_E_FORMAT, e.what()};
-    } catch (...) {
-        what = {GLINT_E_FORMAT, "OpenImageIO failed"};
-    }
-    if (what.status) {
-        const size_t len = std::strlen(name), most = 120;
-        const bool cut = len > most;
-
-        for (char &c : what.cause)
-            if (static_cast<unsigned char>(c) < ' ')
-                c = ' ';
-        std::snprintf(error->text, sizeof error->text, "%s%s: %s",
-                      cut ? "..." : "", name + (cut ? len - most : 0),
-                      what.cause.c_str());
-    }
-    return what.status;
-}
-
-/* Before any memory is taken. */
-void check_spec(const OIIO::ImageSpec &spec)
-{
-    if (spec.deep || spec.nchannels < 1 || spec.depth > 1)
-        throw failure{GLINT_E_UNSUPPORTED, "is not a flat picture"};
-    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 ||
-        spec.full_height < 1)
-        throw failure{GLINT_E_FORMAT, "has no pixels"};
-    if (spec.width > GLINT_MAX_SIDE || spec.height > GLINT_MAX_SIDE ||
-        spec.full_width > GLINT_MAX_SIDE || spec.full_height > GLINT_MAX_SIDE)
-        throw failure{GLINT_E_UNSUPPORTED, "larger than " +
-                                               std::to_string(GLINT_MAX_SIDE) +
-                                               " pixels a side"};
-}
+using glint::check_spec;
+using glint::failure;
+using glint::guarded;
 
 /* Colour from the first three channels, or grey from the first. */
 std::vector<int> channel_order(int n_channels)
@@ -188,5 +142,7 @@ enum glint_status face_encode(void **data, size_t *bytes, const char *path,
 
 extern "C" __attribute__((visibility("default")))
 const struct glint_oiio glint_oiio_face;
-const struct glint_oiio glint_oiio_face = {GLINT_OIIO_VERSION, face_read,
-                                           face_encode};
+const struct glint_oiio glint_oiio_face = {
+    GLINT_OIIO_VERSION, face_read,         face_encode,
+    glint::open_file,   glint::close_file, glint::is_same_type,
+    glint::encode_file};

@@ -16,9 +16,10 @@
 #include <stddef.h>
 
 #include "glint/status.h"
+#include "plain/samples.h"
 
 /* Changes with struct glint_oiio; a plug-in of another number is refused. */
-#define GLINT_OIIO_VERSION 1
+#define GLINT_OIIO_VERSION 2
 
 /* A picture as R G B, rows without padding, the top row first, turned upright
  * where the file says how it was held. Alpha is left out, colours weighted by
@@ -27,6 +28,29 @@ struct glint_oiio_pixels {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
     int is_float;      /* linear light in float, else sRGB in unsigned char */
     void *rgb;         /* malloc'ed; the caller frees it */
+};
+
+/* A picture file with all that it holds: every channel in its own type, parts,
+ * windows, metadata. */
+struct glint_oiio_file;
+
+/* What a file says beside its pixels. Pointers and what they point to live as
+ * long as the file does. */
+struct glint_oiio_facts {
+    const unsigned char *icc; /* its profile; NULL: none */
+    size_t icc_bytes;
+    char colour_space[32]; /* as OpenImageIO calls it, or "" */
+    double gamma;          /* stated apart from that, or 0 */
+    double primaries[4][2];
+    int has_primaries;
+    int cicp[2];    /* primaries and transfer of ITU-T H.273, or 0, 0 */
+    int quality;    /* of a JPEG, as its tables look; 0: not known */
+    char note[160]; /* what of it cannot be kept, or "" */
+};
+
+struct glint_oiio_options {
+    int quality;  /* of JPEG and WebP, 1 .. 100; 0: the file's own, or 95 */
+    int drop_icc; /* the profile does not go with the pixels any more */
 };
 
 struct glint_oiio {
@@ -45,6 +69,31 @@ struct glint_oiio {
                                 const struct glint_oiio_pixels *pixels,
                                 ptrdiff_t stride_bytes,
                                 struct glint_error *error);
+
+    /* Reads PATH as it is. SAMPLES are the colours of it and belong to FILE;
+     * their meaning (samples->colours) is left to the caller, who sets it by
+     * FACTS. Errors as of read. */
+    enum glint_status (*open)(struct glint_oiio_file **file,
+                              struct glint_samples *samples,
+                              struct glint_oiio_facts *facts, const char *path,
+                              struct glint_error *error);
+    void (*close)(struct glint_oiio_file *file); /* NULL: nothing */
+
+    /* Whether a file of PATH's extension is of FILE's type. */
+    int (*is_same_type)(const struct glint_oiio_file *file, const char *path);
+
+    /* Encodes FILE, whose samples may have been changed in place, in its own
+     * type and with all that it holds; or, unless PIXELS is NULL, these
+     * (upright, without a window, channels R G B A one after the other, all of
+     * one kind of sample) in the type of PATH's extension, with FILE's metadata
+     * as far as that type takes it; FILE may then be NULL. Errors as of
+     * encode. */
+    enum glint_status (*encode_file)(void **data, size_t *bytes,
+                                     const char *path,
+                                     struct glint_oiio_file *file,
+                                     const struct glint_samples *pixels,
+                                     const struct glint_oiio_options *options,
+                                     struct glint_error *error);
 };
 
 /* Finds the plug-in, at the first call, and returns its functions. Looks at

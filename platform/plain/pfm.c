@@ -12,13 +12,6 @@
 #define TOKEN_CHARS 32  /* of a number in the header, with its end */
 #define CHUNK       256 /* floats encoded at a time */
 
-struct header {
-    int width, height;
-    int channels; /* 3 or 1 */
-    bool little;  /* end first */
-    size_t bytes; /* of the header itself */
-};
-
 static bool is_space(int c)
 {
     return c == ' ' || (c >= '\t' && c <= '\r');
@@ -59,7 +52,8 @@ static int side_of(const char *token)
     return *token ? 0 : value;
 }
 
-static bool read_header(struct header *h, const uint8_t *data, size_t bytes)
+static bool read_header(struct glint_pfm_header *h, const uint8_t *data,
+                        size_t bytes)
 {
     char token[TOKEN_CHARS], *end;
     double scale;
@@ -93,7 +87,8 @@ static float decode_float(const uint8_t *b, bool little)
     return value;
 }
 
-static void decode_rows(float *rgb, const struct header *h, const uint8_t *data)
+static void decode_rows(float *rgb, const struct glint_pfm_header *h,
+                        const uint8_t *data)
 {
     const size_t n = (size_t)h->width;
 
@@ -109,13 +104,13 @@ static void decode_rows(float *rgb, const struct header *h, const uint8_t *data)
     }
 }
 
-enum glint_status glint_pfm_read(struct glint_float_image *floats,
-                                 const void *data, size_t bytes,
-                                 const char *name, struct glint_error *error)
+enum glint_status glint_pfm_header_read(struct glint_pfm_header *header,
+                                        const void *data, size_t bytes,
+                                        const char *name,
+                                        struct glint_error *error)
 {
-    struct header h;
-    size_t n_pixels, need;
-    float *rgb;
+    struct glint_pfm_header h;
+    size_t need;
 
     if (!glint_pfm_matches(data, bytes))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
@@ -127,13 +122,29 @@ enum glint_status glint_pfm_read(struct glint_float_image *floats,
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "larger than %d pixels a side",
                                   GLINT_MAX_SIDE);
-    n_pixels = (size_t)h.width * (size_t)h.height;
-    need = 4 * n_pixels * (size_t)h.channels;
+    need = 4 * (size_t)h.width * (size_t)h.height * (size_t)h.channels;
     if (bytes - h.bytes < need)
         return glint_error_report(
             error, GLINT_E_FORMAT, name,
             "ends after %zu of %zu bytes of a %d x %d picture", bytes - h.bytes,
             need, h.width, h.height);
+    *header = h;
+    return GLINT_OK;
+}
+
+enum glint_status glint_pfm_read(struct glint_float_image *floats,
+                                 const void *data, size_t bytes,
+                                 const char *name, struct glint_error *error)
+{
+    struct glint_pfm_header h;
+    enum glint_status status =
+        glint_pfm_header_read(&h, data, bytes, name, error);
+    size_t n_pixels;
+    float *rgb;
+
+    if (status)
+        return status;
+    n_pixels = (size_t)h.width * (size_t)h.height;
     rgb = malloc(n_pixels * 3 * sizeof *rgb);
     if (!rgb)
         return glint_error_report(error, GLINT_E_MEMORY, name,

@@ -30,6 +30,20 @@ struct glint_float_image {
 /* Whether DATA begins like a PFM. */
 bool glint_pfm_matches(const void *data, size_t bytes);
 
+/* What stands before the samples, the bottom row of which comes first. */
+struct glint_pfm_header {
+    int width, height; /* 1 .. GLINT_MAX_SIDE */
+    int channels;      /* 3 or 1 */
+    bool little;       /* end first */
+    size_t bytes;      /* of the header itself */
+};
+
+/* Reads the header of DATA[BYTES], which has all samples. Errors as below. */
+enum glint_status glint_pfm_header_read(struct glint_pfm_header *header,
+                                        const void *data, size_t bytes,
+                                        const char *name,
+                                        struct glint_error *error);
+
 /* Reads DATA[BYTES]; floats->rgb is malloc'ed and the caller frees it. NAME is
  * for errors. GLINT_E_FORMAT: malformed or cut short. GLINT_E_UNSUPPORTED: no
  * PFM, or a side above GLINT_MAX_SIDE. GLINT_E_MEMORY. */

@@ -42,7 +42,7 @@ static const struct magic {
     {"RIFF", 4, "WebP"},
 };
 
-static const char *type_of(const uint8_t *head, size_t bytes)
+const char *glint_picture_type(const uint8_t *head, size_t bytes)
 {
     for (size_t i = 0; i < sizeof magics / sizeof *magics; i++)
         if (bytes >= magics[i].n && !memcmp(head, magics[i].bytes, magics[i].n))
@@ -50,9 +50,8 @@ static const char *type_of(const uint8_t *head, size_t bytes)
     return "any file but PPM, PGM and PFM";
 }
 
-static enum glint_status refuse_without_plugin(const char *path,
-                                               const char *type,
-                                               struct glint_error *error)
+enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
+                                             struct glint_error *error)
 {
     const struct glint_error cause = *error;
 
@@ -70,7 +69,7 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
     enum glint_status status = glint_oiio_load(&oiio, error);
 
     if (status)
-        return refuse_without_plugin(path, type, error);
+        return glint_picture_needs_plugin(path, type, error);
     status = oiio->read(&pixels, path, error);
     if (status)
         return status;
@@ -139,7 +138,8 @@ static enum glint_status load_opened(struct loaded *loaded,
     if (!strcmp(in->name, "standard input"))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, in->name,
                                   "only PPM, PGM and PFM come through a pipe");
-    return load_by_plugin(loaded, in->name, type_of(*data, bytes), error);
+    return load_by_plugin(loaded, in->name, glint_picture_type(*data, bytes),
+                          error);
 }
 
 static enum glint_status load(struct loaded *loaded, const char *path,
@@ -344,7 +344,7 @@ enum glint_status glint_picture_check(const char *path,
                                   "linear light in floats",
                                   type->extension);
     if (!type->is_native && glint_oiio_load(&oiio, error))
-        return refuse_without_plugin(path, type->extension, error);
+        return glint_picture_needs_plugin(path, type->extension, error);
     return GLINT_OK;
 }
 

@@ -21,6 +21,8 @@
 #define GLINT_PLAIN_PICTURE_H
 
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "glint/image.h"
 #include "glint/status.h"
@@ -49,6 +51,12 @@ void glint_picture_free(struct glint_image *image);
 enum glint_status glint_picture_load_float(const char *path,
                                            struct glint_float_image *floats,
                                            struct glint_error *error);
+
+/* For plain/kept.h: the type that the first bytes of a file tell, and the
+ * refusal of one that needs the plug-in, ERROR saying why it is not there. */
+const char *glint_picture_type(const uint8_t *head, size_t bytes);
+enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
+                                             struct glint_error *error);
 
 /* Whether a picture of KIND can be saved to PATH, as far as can be told before
  * there is one; for asking before long work. GLINT_E_UNSUPPORTED: the extension

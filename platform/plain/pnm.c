@@ -66,21 +66,22 @@ bool glint_pnm_matches(const void *data, size_t bytes)
 }
 
 static enum glint_status read_header(struct cursor *c,
-                                     struct glint_image *image, int *maximum,
+                                     struct glint_pnm_header *h,
                                      const char *name,
                                      struct glint_error *error)
 {
+    h->channels = c->at[1] == '6' ? 3 : 1;
     c->at += 2;
-    image->width = take_number(c);
-    image->height = take_number(c);
-    *maximum = take_number(c);
-    if (image->width < 1 || image->height < 1 || !take_header_end(c))
+    h->width = take_number(c);
+    h->height = take_number(c);
+    h->maximum = take_number(c);
+    if (h->width < 1 || h->height < 1 || !take_header_end(c))
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "malformed PNM header");
-    if (*maximum < 1 || *maximum > 65535)
+    if (h->maximum < 1 || h->maximum > 65535)
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "the maximum value is not 1 .. 65535");
-    if (image->width > GLINT_MAX_SIDE || image->height > GLINT_MAX_SIDE)
+    if (h->width > GLINT_MAX_SIDE || h->height > GLINT_MAX_SIDE)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "larger than %d pixels a side",
                                   GLINT_MAX_SIDE);
@@ -104,40 +105,60 @@ static void scale_samples(uint8_t *dst, const uint8_t *src, size_t n,
     }
 }
 
-enum glint_status glint_pnm_read(struct glint_image *image, const void *data,
-                                 size_t bytes, const char *name,
-                                 struct glint_error *error)
+enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
+                                        const void *data, size_t bytes,
+                                        const char *name,
+                                        struct glint_error *error)
 {
     struct cursor c = {.at = data};
-    struct glint_image made = {.range = GLINT_RANGE_FULL,
-                               .matrix = GLINT_MATRIX_BT601,
-                               .transfer = GLINT_TONE_SRGB};
-    int maximum;
-    size_t n_samples, need;
+    struct glint_pnm_header h;
+    size_t need;
     enum glint_status status;
-    void *mem;
 
     if (!glint_pnm_matches(data, bytes))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "not a binary PPM or PGM (P6, P5)");
     c.end = c.at + bytes;
-    made.format = c.at[1] == '6' ? GLINT_RGB24 : GLINT_GREY;
-    status = read_header(&c, &made, &maximum, name, error);
+    status = read_header(&c, &h, name, error);
     if (status)
         return status;
-    n_samples = glint_image_bytes(made.format, made.width, made.height);
-    need = n_samples * (maximum > 255 ? 2 : 1);
-    if ((size_t)(c.end - c.at) < need)
+    h.bytes = (size_t)(c.at - (const uint8_t *)data);
+    need = (size_t)h.width * (size_t)h.height * (size_t)h.channels *
+           (h.maximum > 255 ? 2 : 1);
+    if (bytes - h.bytes < need)
         return glint_error_report(
             error, GLINT_E_FORMAT, name,
-            "ends after %zu of %zu bytes of a %d x %d picture",
-            (size_t)(c.end - c.at), need, made.width, made.height);
+            "ends after %zu of %zu bytes of a %d x %d picture", bytes - h.bytes,
+            need, h.width, h.height);
+    *header = h;
+    return GLINT_OK;
+}
+
+enum glint_status glint_pnm_read(struct glint_image *image, const void *data,
+                                 size_t bytes, const char *name,
+                                 struct glint_error *error)
+{
+    struct glint_image made = {.range = GLINT_RANGE_FULL,
+                               .matrix = GLINT_MATRIX_BT601,
+                               .transfer = GLINT_TONE_SRGB};
+    struct glint_pnm_header h;
+    size_t n_samples;
+    enum glint_status status =
+        glint_pnm_header_read(&h, data, bytes, name, error);
+    void *mem;
+
+    if (status)
+        return status;
+    made.format = h.channels == 3 ? GLINT_RGB24 : GLINT_GREY;
+    made.width = h.width;
+    made.height = h.height;
+    n_samples = glint_image_bytes(made.format, made.width, made.height);
     mem = malloc(n_samples);
     if (!mem)
         return glint_error_report(error, GLINT_E_MEMORY, name,
                                   "no memory for a %d x %d picture", made.width,
                                   made.height);
-    scale_samples(mem, c.at, n_samples, maximum);
+    scale_samples(mem, (const uint8_t *)data + h.bytes, n_samples, h.maximum);
     glint_image_place(&made, mem);
     *image = made;
     return GLINT_OK;

@@ -24,6 +24,20 @@
 /* Whether DATA begins like a P5 or P6. */
 bool glint_pnm_matches(const void *data, size_t bytes);
 
+/* What stands before the samples. */
+struct glint_pnm_header {
+    int width, height; /* 1 .. GLINT_MAX_SIDE */
+    int channels;      /* 3 or 1 */
+    int maximum;       /* 1 .. 65535; above 255 in two bytes, the high first */
+    size_t bytes;      /* of the header itself */
+};
+
+/* Reads the header of DATA[BYTES], which has all samples. Errors as below. */
+enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
+                                        const void *data, size_t bytes,
+                                        const char *name,
+                                        struct glint_error *error);
+
 /* Reads DATA[BYTES] into IMAGE: GLINT_RGB24 for P6, GLINT_GREY for P5, full
  * range, sRGB transfer. plane[0] is one malloc'ed block without padding, which
  * the caller frees. NAME is for errors.

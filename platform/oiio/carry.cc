@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: MIT */
+#include "oiio/carry.h"
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+namespace glint
+{
+
+namespace
+{
+
+uint32_t big32(const unsigned char *at)
+{
+    return uint32_t(at[0]) << 24 | uint32_t(at[1]) << 16 |
+           uint32_t(at[2]) << 8 | at[3];
+}
+
+uint32_t little32(const unsigned char *at)
+{
+    return uint32_t(at[3]) << 24 | uint32_t(at[2]) << 16 |
+           uint32_t(at[1]) << 8 | at[0];
+}
+
+void append(bytes &to, const unsigned char *at, size_t n)
+{
+    to.insert(to.end(), at, at + n);
+}
+
+/* A chunk of PNG or WebP, a segment of JPEG: where it lies with all of its
+ * frame, and its data. */
+struct piece {
+    std::string name;
+    const unsigned char *whole;
+    size_t whole_bytes;
+    const unsigned char *data;
+    size_t data_bytes;
+};
+
+/* ------------------------------------------------------------------- PNG */
+
+/* Empty: malformed. */
+std::vector<piece> chunks_of_png(const bytes &file)
+{
+    std::vector<piece> chunks;
+    size_t at = 8;
+
+    while (file.size() - at >= 12 && at < file.size()) {
+        const unsigned char *const p = file.data() + at;
+        const size_t n = big32(p);
+
+        if (n > file.size() - at - 12)
+            return {};
+        chunks.push_back({std::string(reinterpret_cast<const char *>(p) + 4, 4),
+                          p, n + 12, p + 8, n});
+        if (chunks.back().name == "IEND")
+            return chunks[0].name == "IHDR" ? chunks : std::vector<piece>();
+        at += n + 12;
+    }
+    return {};
+}
+
+bool is_one_of(const std::string &name, std::initializer_list<const char *> of)
+{
+    for (const char *one : of)
+        if (name == one)
+            return true;
+    return false;
+}
+
+/* Chunks that speak of the pixels' own coding go with the same coding alone. */
+bool goes_along(const piece &chunk, bool same_coding, bool drop_icc)
+{
+    if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST"}))
+        return false;
+    if (is_one_of(chunk.name, {"sBIT", "bKGD"}))
+        return same_coding;
+    return !drop_icc || !is_one_of(chunk.name, {"iCCP", "gAMA", "cHRM", "sRGB",
+                                                "cICP", "mDCv", "cLLi"});
+}
+
+/* -------------------------------------------------------------------- JPEG */
+
+/* Segments up to the first scan, and all from there on as the last, "". Empty:
+ * malformed. */
+std::vector<piece> segments_of_jpeg(const bytes &file)
+{
+    std::vector<piece> segments;
+    size_t at = 2;
+
+    while (at + 4 <= file.size() && file[at] == 0xff) {
+        const unsigned char *const p = file.data() + at;
+        const size_t n = size_t(p[2]) << 8 | p[3];
+
+        if (p[1] == 0xff) { /* fill */
+            at++;
+            continue;
+        }
+        if (p[1] == 0xda) {
+            segments.push_back({"", p, file.size() - at, p, file.size() - at});
+            return segments;
+        }
+        if (n < 2 || n + 2 > file.size() - at)
+            return {};
+        segments.push_back(
+            {std::string(1, char(p[1])), p, n + 2, p + 4, n - 2});
+        at += n + 2;
+    }
+    return {};
+}
+
+bool is_marker(const piece &segment, int marker)
+{
+    return segment.name.size() == 1 &&
+           static_cast<unsigned char>(segment.name[0]) == marker;
+}
+
+bool is_metadata(const piece &segment)
+{
+    const int marker =
+        segment.name.empty() ? 0 : static_cast<unsigned char>(segment.name[0]);
+
+    return (marker >= 0xe0 && marker <= 0xef && marker != 0xee) ||
+           marker == 0xfe;
+}
+
+bool begins(const piece &segment, const char *text, size_t n)
+{
+    return segment.data_bytes >= n && !std::memcmp(segment.data, text, n);
+}
+
+bool is_index(const piece &segment) /* of more pictures, by places */
+{
+    return is_marker(segment, 0xe2) && begins(segment, "MPF", 4);
+}
+
+bool is_icc(const piece &segment)
+{
+    return is_marker(segment, 0xe2) && begins(segment, "ICC_PROFILE", 12);
+}
+
+/* -------------------------------------------------------------------- WebP */
+
+std::vector<piece> chunks_of_webp(const bytes &file)
+{
+    std::vector<piece> chunks;
+    size_t at = 12;
+
+    if (file.size() < 12 || std::memcmp(file.data(), "RIFF", 4) ||
+        std::memcmp(file.data() + 8, "WEBP", 4))
+        return {};
+    while (at + 8 <= file.size()) {
+        const unsigned char *const p = file.data() + at;
+        const size_t n = little32(p + 4);
+        const size_t whole = 8 + n + (n & 1);
+
+        if (n > file.size() - at - 8)
+            return {};
+        chunks.push_back({std::string(reinterpret_cast<const char *>(p), 4), p,
+                          whole, p + 8, n});
+        at += whole;
+    }
+    return chunks;
+}
+
+void append_chunk(bytes &to, const piece &chunk)
+{
+    append(to, chunk.whole, 8 + chunk.data_bytes);
+    if (chunk.data_bytes & 1)
+        to.push_back(0);
+}
+
+void append_named(bytes &to, const std::vector<piece> &chunks,
+                  std::initializer_list<const char *> names)
+{
+    for (const piece &chunk : chunks)
+        if (is_one_of(chunk.name, names))
+            append_chunk(to, chunk);
+}
+
+/* Width and height less 1 and whether there is alpha, as VP8X has them, from
+ * the one chunk of a simple file. False: not understood. */
+bool canvas_of(const piece &chunk, uint32_t side[2], bool &alpha)
+{
+    const unsigned char *const d = chunk.data;
+
+    if (chunk.name == "VP8 " && chunk.data_bytes >= 10) {
+        side[0] = ((d[6] | d[7] << 8) & 0x3fff) - 1u;
+        side[1] = ((d[8] | d[9] << 8) & 0x3fff) - 1u;
+        alpha = false;
+        return true;
+    }
+    if (chunk.name == "VP8L" && chunk.data_bytes >= 5) {
+        const uint32_t bits = little32(d + 1);
+
+        side[0] = bits & 0x3fff;
+        side[1] = bits >> 14 & 0x3fff;
+        alpha = bits >> 28 & 1;
+        return true;
+    }
+    return false;
+}
+
+bytes vp8x_of(const std::vector<piece> &made)
+{
+    uint32_t side[2] = {0, 0};
+    bool alpha = false;
+    bytes x;
+
+    if (!made.empty() && made[0].name == "VP8X") {
+        append(x, made[0].whole, 18);
+        return x;
+    }
+    if (made.empty() || !canvas_of(made[0], side, alpha))
+        return x;
+    x = {'V', 'P', '8', 'X', 10, 0, 0, 0, 0, 0, 0, 0};
+    x[8] = alpha ? 0x10 : 0;
+    for (uint32_t s : side)
+        for (int i = 0; i < 3; i++)
+            x.push_back(static_cast<unsigned char>(s >> (8 * i)));
+    return x;
+}
+
+} // namespace
+
+bytes carry_png(const bytes &made, const bytes &from, bool drop_icc)
+{
+    const std::vector<piece> ours = chunks_of_png(made);
+    const std::vector<piece> theirs = chunks_of_png(from);
+    bytes file;
+
+    if (ours.empty() || theirs.empty() || ours[0].data_bytes != 13 ||
+        theirs[0].data_bytes != 13)
+        return made;
+    const bool same = !std::memcmp(ours[0].data + 8, theirs[0].data + 8, 2);
+    append(file, made.data(), 8);
+    append(file, ours[0].whole, ours[0].whole_bytes);
+    bool behind = false;
+    for (const piece &chunk : theirs) {
+        if (chunk.name == "IDAT" && !behind) {
+            behind = true;
+            for (const piece &data : ours)
+                if (data.name == "IDAT")
+                    append(file, data.whole, data.whole_bytes);
+        } else if (goes_along(chunk, same, drop_icc)) {
+            append(file, chunk.whole, chunk.whole_bytes);
+        }
+    }
+    append(file, ours.back().whole, ours.back().whole_bytes);
+    return behind ? file : made;
+}
+
+bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc)
+{
+    const std::vector<piece> ours = segments_of_jpeg(made);
+    const std::vector<piece> theirs = segments_of_jpeg(from);
+    bytes file = {0xff, 0xd8};
+
+    if (ours.empty() || theirs.empty())
+        return made;
+    for (const piece &segment : theirs)
+        if (is_metadata(segment) && !is_index(segment) &&
+            !(drop_icc && is_icc(segment)))
+            append(file, segment.whole, segment.whole_bytes);
+    for (const piece &segment : ours)
+        if (!is_metadata(segment))
+            append(file, segment.whole, segment.whole_bytes);
+    return file;
+}
+
+bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc)
+{
+    const std::vector<piece> ours = chunks_of_webp(made);
+    const std::vector<piece> theirs = chunks_of_webp(from);
+    bytes file = {'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'};
+    const bytes x = vp8x_of(ours);
+    unsigned flags = 0;
+
+    for (const piece &chunk : theirs)
+        flags |= chunk.name == "ICCP" && !drop_icc ? 0x20u
+                 : chunk.name == "EXIF"            ? 0x08u
+                 : chunk.name == "XMP "            ? 0x04u
+                                                   : 0u;
+    if (x.empty() || !flags)
+        return made;
+    append(file, x.data(), x.size());
+    file[20] = static_cast<unsigned char>((file[20] & ~0x2cu) | flags);
+    if (!drop_icc)
+        append_named(file, theirs, {"ICCP"});
+    append_named(file, ours, {"ALPH", "VP8 ", "VP8L"});
+    append_named(file, theirs, {"EXIF"});
+    append_named(file, theirs, {"XMP "});
+    for (int i = 0; i < 4; i++)
+        file[4 + i] = static_cast<unsigned char>((file.size() - 8) >> (8 * i));
+    return file;
+}
+
+bool is_lossless(const bytes &webp)
+{
+    for (const piece &chunk : chunks_of_webp(webp))
+        if (chunk.name == "VP8L")
+            return true;
+    return false;
+}
+
+bytes chunk_of_png(const bytes &file, const char *name)
+{
+    for (const piece &chunk : chunks_of_png(file))
+        if (chunk.name == name)
+            return bytes(chunk.data, chunk.data + chunk.data_bytes);
+    return {};
+}
+
+/* ---------------------------------------------------------------- complete */
+
+/* A scan holds 0xff only before 0 and restart markers, so what ends it is a
+ * marker, and the last of these is the end of the image. */
+std::string missing_of_jpeg(const bytes &file)
+{
+    const std::vector<piece> segments = segments_of_jpeg(file);
+
+    if (segments.empty())
+        return "is cut off before its first scan";
+    const piece &scans = segments.back();
+    const unsigned char *at = scans.data;
+    const unsigned char *const end = at + scans.data_bytes;
+
+    while (at + 1 < end) {
+        if (at[0] != 0xff || at[1] == 0 || (at[1] >= 0xd0 && at[1] <= 0xd7)) {
+            at++;
+        } else if (at[1] == 0xd9) {
+            return "";
+        } else if (at[1] == 0xff) {
+            at++;
+        } else { /* a table or the next scan */
+            if (end - at < 4)
+                break;
+            at += 2 + (at[2] << 8 | at[3]);
+        }
+    }
+    return "is cut off: its end marker is missing";
+}
+
+bool has_more_pictures(const bytes &jpeg)
+{
+    for (const piece &segment : segments_of_jpeg(jpeg))
+        if (is_index(segment))
+            return true;
+    return false;
+}
+
+int quality_of_jpeg(const bytes &file)
+{
+    /* ITU-T T.81 table K.1; its sum is all that is needed */
+    static const int luminance[64] = {
+        16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,
+        14, 13, 16, 24, 40,  57,  69,  56,  14, 17, 22, 29, 51,  87,  80,  62,
+        18, 22, 37, 56, 68,  109, 103, 77,  24, 35, 55, 64, 81,  104, 113, 92,
+        49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112, 100, 103, 99};
+    long stated = 0, nearest = 1L << 30;
+    int best = 0;
+
+    for (const piece &segment : segments_of_jpeg(file)) {
+        if (!is_marker(segment, 0xdb) || segment.data_bytes < 65)
+            continue;
+        const bool wide = segment.data[0] >> 4;
+        if ((segment.data[0] & 15) != 0 || (wide && segment.data_bytes < 129))
+            continue;
+        for (int i = 0; i < 64; i++)
+            stated +=
+                wide ? segment.data[1 + 2 * i] << 8 | segment.data[2 + 2 * i]
+                     : segment.data[1 + i];
+        break;
+    }
+    for (int quality = 1; stated && quality <= 100; quality++) {
+        const int scale = quality < 50 ? 5000 / quality : 200 - 2 * quality;
+        long sum = 0;
+
+        for (int step : luminance) {
+            const int scaled = (step * scale + 50) / 100;
+
+            sum += scaled < 1 ? 1 : scaled > 255 ? 255 : scaled;
+        }
+        if (std::labs(sum - stated) < nearest) {
+            nearest = std::labs(sum - stated);
+            best = quality;
+        }
+    }
+    return best;
+}
+
+/* -------------------------------------------------------------------- TIFF */
+
+namespace
+{
+
+struct tiff {
+    const bytes &file;
+    bool little, big; /* byte order; BigTIFF */
+
+    uint64_t number(uint64_t at, int n) const
+    {
+        uint64_t value = 0;
+
+        if (at > file.size() || file.size() - at < size_t(n))
+            return 0;
+        for (int i = 0; i < n; i++)
+            value = value << 8 | file[at + (little ? n - 1 - i : i)];
+        return value;
+    }
+
+    /* Value I of the entry at AT, which has COUNT of them. */
+    uint64_t value(uint64_t at, uint64_t i) const
+    {
+        const int type = int(number(at + 2, 2));
+        const int size = type == 3 ? 2 : type == 16 ? 8 : 4;
+        const uint64_t count = number(at + 4, big ? 8 : 4);
+        const uint64_t place = at + (big ? 12 : 8);
+        const bool inside = count * size <= (big ? 8u : 4u);
+
+        return number((inside ? place : number(place, big ? 8 : 4)) + i * size,
+                      size);
+    }
+};
+
+} // namespace
+
+/* Whether all strips or tiles of the first picture lie in the file. */
+std::string missing_of_tiff(const bytes &file)
+{
+    if (file.size() < 8)
+        return "is cut off";
+    const tiff t = {file, file[0] == 'I', file[file[0] == 'I' ? 2 : 3] == 43};
+    const uint64_t first = t.big ? t.number(8, 8) : t.number(4, 4);
+    const uint64_t n = t.number(first, t.big ? 8 : 2);
+    const unsigned step = t.big ? 20 : 12;
+    uint64_t bits = 1, packing = 1, total = 0; /* of the pixels; as tag 259 */
+    uint64_t offsets = 0, counts = 0, entries = 0, missing = 0, present = 0;
+
+    for (uint64_t i = 0; i < n && i < 65536; i++) {
+        const uint64_t at = first + (t.big ? 8 : 2) + i * step;
+        const uint64_t tag = t.number(at, 2);
+
+        if (tag == 273 || tag == 324) {
+            offsets = at;
+            entries = t.number(at + 4, t.big ? 8 : 4);
+        } else if (tag == 279 || tag == 325) {
+            counts = at;
+        } else if (tag == 256 || tag == 257 || tag == 258 || tag == 277) {
+            bits *= t.value(at, 0);
+        } else if (tag == 259) {
+            packing = t.value(at, 0);
+        }
+    }
+    if (!offsets || !counts || !entries)
+        return "has no pixels";
+    if (entries > file.size())
+        return "is cut off";
+    for (uint64_t i = 0; i < entries; i++) {
+        const uint64_t at = t.value(offsets, i), size = t.value(counts, i);
+
+        total += size;
+        present += size > 0; /* some writers leave out what is black */
+        missing += at > file.size() || size > file.size() - at;
+    }
+    if (!present)
+        return "has no pixels";
+    /* nothing but fax packs 4096 to 1 */
+    if (missing == 0 && (packing >= 2 && packing <= 4 ? true
+                         : packing == 1 ? total * 8 >= bits || present < entries
+                                        : total * 8 * 4096 >= bits))
+        return "";
+    if (missing == 0)
+        return "is cut off: its strips or tiles are too short";
+    return "is cut off: " + std::to_string(missing) + " of its " +
+           std::to_string(entries) + " strips or tiles are not all there";
+}
+
+} // namespace glint

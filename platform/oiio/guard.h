@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * oiio/guard.h - between exceptions and statuses, for the plug-in's files.
+ */
+#ifndef GLINT_OIIO_GUARD_H
+#define GLINT_OIIO_GUARD_H
+
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+
+#include <OpenImageIO/imageio.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+
+namespace glint
+{
+
+/* How many bytes at AT are one character of UTF-8 that a terminal shows: none
+ * of the control characters, U+0080 to U+009F among them. 0: none. */
+inline size_t shown_bytes(const unsigned char *at, size_t left)
+{
+    const size_t n = at[0] < 0x80    ? 1
+                     : at[0] >= 0xf0 ? 4
+                     : at[0] >= 0xe0 ? 3
+                                     : 2;
+
+    if (n == 1)
+        return at[0] >= ' ' && at[0] != 127;
+    if (at[0] < 0xc2 || at[0] > 0xf4 || n > left ||
+        (at[0] == 0xc2 && at[1] < 0xa0))
+        return 0;
+    for (size_t i = 1; i < n; i++)
+        if ((at[i] & 0xc0) != 0x80)
+            return 0;
+    return n;
+}
+
+/* TEXT as one line that says nothing to a terminal but letters. */
+inline std::string printable(const std::string &text)
+{
+    std::string line;
+
+    for (size_t i = 0; i < text.size();) {
+        const size_t n = shown_bytes(
+            reinterpret_cast<const unsigned char *>(text.data()) + i,
+            text.size() - i);
+
+        line += n ? text.substr(i, n) : text[i] == '\n' ? " " : "?";
+        i += n ? n : 1;
+    }
+    return line;
+}
+
+struct failure {
+    enum glint_status status;
+    std::string cause;
+};
+
+/* Runs BODY, which returns or throws; NAME is for errors. */
+template <class Body>
+enum glint_status guarded(const char *name, struct glint_error *error,
+                          Body body)
+{
+    failure what = {GLINT_OK, ""};
+
+    try {
+        body();
+    } catch (const failure &f) {
+        what = f;
+    } catch (const std::bad_alloc &) {
+        what = {GLINT_E_MEMORY, "not enough memory"};
+    } catch (const std::exception &e) {
+        what = {GLINT_E_FORMAT, e.what()};
+    } catch (...) {
+        what = {GLINT_E_FORMAT, "OpenImageIO failed"};
+    }
+    if (what.status) {
+        const size_t len = std::strlen(name), most = 120;
+        const bool cut = len > most;
+        const std::string shown = printable(name + (cut ? len - most : 0));
+
+        std::snprintf(error->text, sizeof error->text, "%s%s: %s",
+                      cut ? "..." : "", shown.c_str(),
+                      printable(what.cause).c_str());
+    }
+    return what.status;
+}
+
+/* Before any memory is taken. */
+inline void check_spec(const OIIO::ImageSpec &spec)
+{
+    if (spec.deep || spec.nchannels < 1 || spec.depth > 1)
+        throw failure{GLINT_E_UNSUPPORTED, "is not a flat picture"};
+    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 ||
+        spec.full_height < 1)
+        throw failure{GLINT_E_FORMAT, "has no pixels"};
+    if (spec.width > GLINT_MAX_SIDE || spec.height > GLINT_MAX_SIDE ||
+        spec.full_width > GLINT_MAX_SIDE || spec.full_height > GLINT_MAX_SIDE)
+        throw failure{GLINT_E_UNSUPPORTED, "larger than " +
+                                               std::to_string(GLINT_MAX_SIDE) +
+                                               " pixels a side"};
+}
+
+} // namespace glint
+
+#endif

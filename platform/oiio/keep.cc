@@ -1,0 +1,623 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Whole files: each part's pixels in the types they are stored in, and what
+ * belongs to them. */
+#include "oiio/keep.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "oiio/carry.h"
+#include "oiio/guard.h"
+
+using glint::bytes;
+using glint::check_spec;
+using glint::failure;
+using OIIO::ImageInput;
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+struct part {
+    ImageSpec spec; /* as it is stored */
+    std::vector<unsigned char> pixels;
+};
+
+struct glint_oiio_file {
+    std::string type; /* OpenImageIO's name of the file type */
+    bytes whole;      /* the file, of the types that are carried over */
+    std::vector<part> parts;
+    std::vector<unsigned char> icc;
+};
+
+namespace
+{
+
+/* Memory that is written and, by TIFF, read again. */
+class memory : public OIIO::Filesystem::IOProxy
+{
+  public:
+    explicit memory(bytes &to) : IOProxy("", Write), data(to)
+    {
+    }
+    const char *proxytype() const override
+    {
+        return "glint";
+    }
+    size_t write(const void *buf, size_t size) override
+    {
+        size = pwrite(buf, size, m_pos);
+        m_pos += static_cast<int64_t>(size);
+        return size;
+    }
+    size_t pwrite(const void *buf, size_t size, int64_t offset) override
+    {
+        const size_t end = static_cast<size_t>(offset) + size;
+
+        if (data.size() < end)
+            data.resize(end);
+        std::memcpy(data.data() + offset, buf, size);
+        return size;
+    }
+    size_t read(void *buf, size_t size) override
+    {
+        size = pread(buf, size, m_pos);
+        m_pos += static_cast<int64_t>(size);
+        return size;
+    }
+    size_t pread(void *buf, size_t size, int64_t offset) override
+    {
+        const size_t at = static_cast<size_t>(offset);
+
+        size = at < data.size() ? std::min(size, data.size() - at) : 0;
+        std::memcpy(buf, data.data() + (size ? at : 0), size);
+        return size;
+    }
+    size_t size() const override
+    {
+        return data.size();
+    }
+
+  private:
+    bytes &data;
+};
+
+/* ----------------------------------------------------------------- reading */
+
+bool is_carried(const std::string &type)
+{
+    return type == "png" || type == "jpeg" || type == "webp";
+}
+
+bytes read_whole(const char *path)
+{
+    FILE *const f = std::fopen(path, "rb");
+    unsigned char block[65536];
+    bytes all;
+
+    if (!f)
+        throw failure{GLINT_E_IO, "cannot be opened"};
+    for (size_t n; (n = std::fread(block, 1, sizeof block, f)) > 0;)
+        all.insert(all.end(), block, block + n);
+    std::fclose(f);
+    return all;
+}
+
+bool to_sample(TypeDesc type, enum glint_sample &sample)
+{
+    switch (type.basetype) {
+    case TypeDesc::UINT8:
+        sample = GLINT_SAMPLE_U8;
+        return true;
+    case TypeDesc::UINT16:
+        sample = GLINT_SAMPLE_U16;
+        return true;
+    case TypeDesc::UINT32:
+        sample = GLINT_SAMPLE_U32;
+        return true;
+    case TypeDesc::HALF:
+        sample = GLINT_SAMPLE_HALF;
+        return true;
+    case TypeDesc::FLOAT:
+        sample = GLINT_SAMPLE_FLOAT;
+        return true;
+    case TypeDesc::DOUBLE:
+        sample = GLINT_SAMPLE_DOUBLE;
+        return true;
+    default:
+        return false;
+    }
+}
+
+TypeDesc to_type(enum glint_sample sample)
+{
+    static const TypeDesc::BASETYPE types[] = {
+        TypeDesc::UINT8, TypeDesc::UINT16, TypeDesc::UINT32,
+        TypeDesc::HALF,  TypeDesc::FLOAT,  TypeDesc::DOUBLE};
+
+    return types[sample];
+}
+
+/* A part whose pixels glint has no arithmetic for is read as floats. */
+void choose_types(ImageSpec &spec)
+{
+    enum glint_sample sample;
+    bool all = to_sample(spec.format, sample);
+
+    for (const TypeDesc &type : spec.channelformats)
+        all = all && to_sample(type, sample);
+    if (!all)
+        spec.set_format(TypeDesc::FLOAT);
+}
+
+bool is_mixed(const ImageSpec &spec)
+{
+    return !spec.channelformats.empty();
+}
+
+void read_part(ImageInput &in, int index, struct part &part)
+{
+    part.spec = in.spec(index);
+    if (part.spec.width < 1 || part.spec.nchannels < 1)
+        throw failure{GLINT_E_FORMAT, in.geterror()};
+    check_spec(part.spec);
+    choose_types(part.spec);
+    part.pixels.resize(part.spec.image_bytes(true));
+    if (!in.read_image(index, 0, 0, part.spec.nchannels,
+                       is_mixed(part.spec) ? TypeDesc::UNKNOWN
+                                           : part.spec.format,
+                       part.pixels.data()))
+        throw failure{GLINT_E_FORMAT, in.geterror()};
+}
+
+void check_whole(const struct glint_oiio_file &file, const char *path)
+{
+    std::string missing;
+
+    if (file.type == "jpeg")
+        missing = glint::missing_of_jpeg(file.whole);
+    else if (file.type == "tiff")
+        missing = glint::missing_of_tiff(read_whole(path));
+    if (!missing.empty())
+        throw failure{GLINT_E_FORMAT, missing};
+}
+
+void read_file(struct glint_oiio_file &file, const char *path)
+{
+    ImageSpec as_stored;
+
+    as_stored.attribute("oiio:UnassociatedAlpha", 1);
+    const std::unique_ptr<ImageInput> in = ImageInput::open(path, &as_stored);
+    if (!in)
+        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
+    check_spec(in->spec());
+    file.type = in->format_name();
+    if (is_carried(file.type))
+        file.whole = read_whole(path);
+    check_whole(file, path);
+    for (int i = 0; i < 64 && in->seek_subimage(i, 0); i++) {
+        file.parts.emplace_back();
+        read_part(*in, i, file.parts.back());
+        if (in->format_name() != std::string("openexr") &&
+            in->format_name() != std::string("tiff"))
+            break;
+    }
+}
+
+/* ----------------------------------------------------------------- channels */
+
+int find_channel(const ImageSpec &spec, const std::string &name)
+{
+    for (int i = 0; i < spec.nchannels; i++)
+        if (OIIO::Strutil::iequals(spec.channelnames[i], name))
+            return i;
+    return -1;
+}
+
+/* The colour channels and alpha of a part, by name. */
+struct choice {
+    int index[4]; /* -1: none */
+    int rank;     /* the more the better; 0: there is no colour */
+};
+
+int rank_of(const std::string &prefix)
+{
+    if (prefix.empty())
+        return 4;
+    for (const char *word : {"combined", "beauty", "rgba"})
+        if (OIIO::Strutil::icontains(prefix, word))
+            return 3;
+    return 2;
+}
+
+choice choose_channels(const ImageSpec &spec)
+{
+    choice best = {{0, 0, 0, -1}, 1};
+
+    for (int i = 0; i < spec.nchannels; i++) {
+        const std::string &name = spec.channelnames[i];
+        const size_t n = name.size();
+
+        if (n < 1 || std::tolower(name[n - 1]) != 'r' ||
+            (n > 1 && name[n - 2] != '.'))
+            continue;
+        const std::string prefix = name.substr(0, n - 1);
+        const int g = find_channel(spec, prefix + "G");
+        const int b = find_channel(spec, prefix + "B");
+        if (g >= 0 && b >= 0 && rank_of(prefix) > best.rank)
+            best = {{i, g, b, find_channel(spec, prefix + "A")},
+                    rank_of(prefix)};
+    }
+    if (best.rank > 1)
+        return best;
+    best.index[3] = spec.alpha_channel;
+    const int n_colours = spec.nchannels - (spec.alpha_channel >= 0);
+    if (n_colours >= 3)
+        return {{0, 1, 2, spec.alpha_channel}, 2};
+    const int y = find_channel(spec, "Y");
+    if (y >= 0)
+        best.index[0] = best.index[1] = best.index[2] = y;
+    return best;
+}
+
+struct glint_sample_place channel_of(const ImageSpec &spec, int index)
+{
+    struct glint_sample_place channel = {GLINT_SAMPLE_FLOAT, 0};
+
+    to_sample(spec.channelformat(index), channel.sample);
+    channel.offset = 0;
+    for (int i = 0; i < index; i++)
+        channel.offset += spec.channelformat(i).size();
+    return channel;
+}
+
+void fill_samples(struct glint_samples &s, struct part &part,
+                  const choice &choice)
+{
+    const ImageSpec &spec = part.spec;
+
+    s = {};
+    s.width = spec.width;
+    s.height = spec.height;
+    s.x = spec.x - spec.full_x;
+    s.y = spec.y - spec.full_y;
+    s.window_width = spec.full_width;
+    s.window_height = spec.full_height;
+    s.orientation = spec.get_int_attribute("Orientation", 1);
+    if (s.orientation < 1 || s.orientation > 8)
+        s.orientation = 1;
+    s.pixel_bytes = spec.pixel_bytes(true);
+    s.n_colours = choice.index[1] == choice.index[0] ? 1 : 3;
+    for (int c = 0; c < 3; c++)
+        s.colour[c] = channel_of(spec, choice.index[c]);
+    s.has_alpha = choice.index[3] >= 0;
+    s.is_premultiplied = !spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
+    if (s.has_alpha)
+        s.alpha = channel_of(spec, choice.index[3]);
+    s.maximum = s.colour[0].sample == GLINT_SAMPLE_U8    ? 0xffu
+                : s.colour[0].sample == GLINT_SAMPLE_U16 ? 0xffffu
+                                                         : 0xffffffffu;
+    s.mem = part.pixels.data();
+}
+
+/* ------------------------------------------------------------------- facts */
+
+void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
+{
+    const bytes cicp = glint::chunk_of_png(whole, "cICP");
+    const bytes gamma = glint::chunk_of_png(whole, "gAMA");
+    const bytes srgb = glint::chunk_of_png(whole, "sRGB");
+    const bytes primaries = glint::chunk_of_png(whole, "cHRM");
+    const auto big32 = [](const bytes &b, size_t at) {
+        return (unsigned(b[at]) << 24 | unsigned(b[at + 1]) << 16 |
+                unsigned(b[at + 2]) << 8 | b[at + 3]) *
+               1e-5;
+    };
+
+    if (cicp.size() == 4) {
+        facts.cicp[0] = cicp[0];
+        facts.cicp[1] = cicp[1];
+    }
+    facts.colour_space[0] = 0;
+    if (!srgb.empty())
+        return;
+    if (gamma.size() == 4 && big32(gamma, 0) > 0)
+        facts.gamma = 1 / big32(gamma, 0);
+    if (primaries.size() != 32)
+        return;
+    facts.has_primaries = 1;
+    for (size_t i = 0; i < 8; i++) /* white comes first there */
+        facts.primaries[(i / 2 + 3) % 4][i % 2] = big32(primaries, 4 * i);
+}
+
+void say(struct glint_oiio_facts &facts, const char *text)
+{
+    const size_t used = std::strlen(facts.note);
+
+    std::snprintf(facts.note + used, sizeof facts.note - used, "%s%s",
+                  used ? "; " : "", text);
+}
+
+void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
+                const ImageSpec &spec)
+{
+    const OIIO::ParamValue *const icc = spec.find_attribute("ICCProfile");
+    const OIIO::ParamValue *const xy = spec.find_attribute("chromaticities");
+
+    facts = {};
+    if (icc && icc->type().basetype == TypeDesc::UINT8) {
+        const auto *const at = static_cast<const unsigned char *>(icc->data());
+
+        file.icc.assign(at, at + icc->type().size());
+        facts.icc = file.icc.data();
+        facts.icc_bytes = file.icc.size();
+    }
+    if (xy && xy->type().size() == 8 * sizeof(float)) {
+        facts.has_primaries = 1;
+        for (int i = 0; i < 8; i++)
+            facts.primaries[i / 2][i % 2] =
+                static_cast<double>(static_cast<const float *>(xy->data())[i]);
+    }
+    std::snprintf(facts.colour_space, sizeof facts.colour_space, "%s",
+                  spec.get_string_attribute("oiio:ColorSpace").c_str());
+    if (file.type == "png")
+        fill_png_facts(facts, file.whole);
+    if (file.type == "jpeg") {
+        facts.quality = glint::quality_of_jpeg(file.whole);
+        if (glint::has_more_pictures(file.whole))
+            say(facts, "only the first of its pictures is kept");
+    }
+    if (spec.get_int_attribute("oiio:Movie", 0) ||
+        spec.get_int_attribute("gif:FrameCount", 0) > 1)
+        say(facts, "only the first of its frames is kept");
+}
+
+} // namespace
+
+enum glint_status glint::open_file(struct glint_oiio_file **file,
+                                   struct glint_samples *samples,
+                                   struct glint_oiio_facts *facts,
+                                   const char *path, struct glint_error *error)
+{
+    return guarded(path, error, [&] {
+        auto made = std::make_unique<struct glint_oiio_file>();
+        choice best = {{0, 0, 0, -1}, 0};
+        size_t at = 0;
+
+        read_file(*made, path);
+        for (size_t i = 0; i < made->parts.size(); i++) {
+            const choice here = choose_channels(made->parts[i].spec);
+
+            if (here.rank > best.rank) {
+                best = here;
+                at = i;
+            }
+        }
+        fill_samples(*samples, made->parts.at(at), best);
+        fill_facts(*facts, *made, made->parts[at].spec);
+        *file = made.release();
+    });
+}
+
+void glint::close_file(struct glint_oiio_file *file)
+{
+    delete file;
+}
+
+int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
+{
+    try {
+        const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
+
+        return out && file->type == out->format_name();
+    } catch (...) {
+        return 0;
+    }
+}
+
+/* ----------------------------------------------------------------- writing */
+
+namespace
+{
+
+/* Attributes that describe how the input was coded and not what it shows. */
+void clear_coding(ImageSpec &spec)
+{
+    for (const char *name : {"compression",
+                             "oiio:BitsPerSample",
+                             "tiff:Compression",
+                             "tiff:PhotometricInterpretation",
+                             "tiff:PlanarConfiguration",
+                             "planarconfig",
+                             "tiff:RowsPerStrip",
+                             "tiff:Predictor",
+                             "tiff:PageNumber",
+                             "openexr:lineOrder",
+                             "png:compressionLevel",
+                             "oiio:ColorSpace",
+                             "oiio:Gamma",
+                             "Exif:PixelXDimension",
+                             "Exif:PixelYDimension",
+                             "oiio:subimages",
+                             "thumbnail_width",
+                             "thumbnail_height",
+                             "thumbnail_nchannels",
+                             "thumbnail_image",
+                             "jpeg:subsampling"})
+        spec.erase_attribute(name);
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
+}
+
+ImageSpec bare(const ImageSpec &spec)
+{
+    ImageSpec to(spec.width, spec.height, spec.nchannels, spec.format);
+
+    to.channelnames = spec.channelnames;
+    to.alpha_channel = spec.alpha_channel;
+    for (const char *name : {"oiio:UnassociatedAlpha", "jpeg:subsampling"})
+        if (const OIIO::ParamValue *const p = spec.find_attribute(name))
+            to.extra_attribs.push_back(*p);
+    return to;
+}
+
+/* What makes OpenImageIO 2.4 write a TIFF's Exif directory, which it spoils in
+ * memory. */
+void clear_exif(ImageSpec &spec)
+{
+    const auto is_exif = [](const OIIO::ParamValue &p) {
+        return OIIO::Strutil::starts_with(p.name(), "Exif:") ||
+               OIIO::Strutil::starts_with(p.name(), "GPS:") ||
+               p.name() == "ExposureTime" || p.name() == "FNumber" ||
+               p.name() == "oiio:ColorSpace";
+    };
+
+    spec.extra_attribs.erase(std::remove_if(spec.extra_attribs.begin(),
+                                            spec.extra_attribs.end(), is_exif),
+                             spec.extra_attribs.end());
+}
+
+void set_compression(ImageSpec &spec, const std::string &type,
+                     const struct glint_oiio_file *file,
+                     const struct glint_oiio_options &options)
+{
+    int quality = options.quality;
+
+    if (type == "jpeg") {
+        if (!quality && file && file->type == "jpeg")
+            quality = glint::quality_of_jpeg(file->whole);
+        spec.attribute("Compression",
+                       "jpeg:" + std::to_string(quality ? quality : 95));
+    } else if (type == "webp") {
+        const bool lossless = !options.quality && file &&
+                              file->type == "webp" &&
+                              glint::is_lossless(file->whole);
+
+        spec.attribute("Compression",
+                       lossless
+                           ? "lossless"
+                           : "webp:" + std::to_string(quality ? quality : 95));
+    }
+}
+
+/* SAMPLES as a part, with the metadata of FILE if there is one. */
+struct part part_of(const struct glint_samples &samples,
+                    const struct glint_oiio_file *file)
+{
+    const int n = samples.n_colours + (samples.has_alpha ? 1 : 0);
+    struct part part;
+
+    part.spec = ImageSpec(samples.width, samples.height, n,
+                          to_type(samples.colour[0].sample));
+    if (file) {
+        ImageSpec own = file->parts[0].spec;
+
+        clear_coding(own);
+        part.spec.extra_attribs = own.extra_attribs;
+        part.spec.attribute("Orientation", 1);
+    }
+    part.spec.erase_attribute("oiio:UnassociatedAlpha");
+    if (samples.n_colours == 1)
+        part.spec.channelnames[0] = "Y";
+    part.spec.alpha_channel = samples.has_alpha ? n - 1 : -1;
+    if (samples.has_alpha) {
+        part.spec.channelnames[n - 1] = "A";
+        if (!samples.is_premultiplied)
+            part.spec.attribute("oiio:UnassociatedAlpha", 1);
+    }
+    part.pixels.assign(samples.mem, samples.mem + part.spec.image_bytes(true));
+    return part;
+}
+
+void write_parts(ImageOutput &out, const char *path,
+                 const std::vector<part> &parts)
+{
+    std::vector<ImageSpec> specs;
+    bool done = true;
+
+    for (const part &p : parts)
+        specs.push_back(p.spec);
+    for (size_t i = 0; i < parts.size() && done; i++) {
+        const bool first = i == 0;
+
+        if (first && parts.size() > 1 && out.supports("multiimage") &&
+            out.format_name() == std::string("openexr"))
+            done = out.open(path, static_cast<int>(parts.size()), specs.data());
+        else
+            done = out.open(path, specs[i],
+                            first ? ImageOutput::Create
+                                  : ImageOutput::AppendSubimage);
+        done = done && out.write_image(is_mixed(specs[i]) ? TypeDesc::UNKNOWN
+                                                          : specs[i].format,
+                                       parts[i].pixels.data());
+    }
+    if (!done || !out.close())
+        throw failure{GLINT_E_OUTPUT, out.geterror()};
+}
+
+bytes encode_parts(const char *path, std::vector<part> parts,
+                   const struct glint_oiio_file *file, bool same,
+                   const struct glint_oiio_options &options)
+{
+    const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
+    bytes encoded;
+    memory to(encoded);
+
+    if (!out)
+        throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
+    const std::string type = out->format_name();
+    for (part &p : parts) {
+        if (same && is_carried(type))
+            p.spec = bare(p.spec);
+        if (type == "tiff")
+            clear_exif(p.spec);
+        if (options.drop_icc)
+            p.spec.erase_attribute("ICCProfile");
+        set_compression(p.spec, type, file, options);
+    }
+    if (!out->supports("ioproxy") || !out->set_ioproxy(&to))
+        throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
+                                           "type into memory"};
+    write_parts(*out, path, parts);
+    if (!same || !file)
+        return encoded;
+    const bool drop = options.drop_icc;
+    return type == "png"    ? glint::carry_png(encoded, file->whole, drop)
+           : type == "jpeg" ? glint::carry_jpeg(encoded, file->whole, drop)
+           : type == "webp" ? glint::carry_webp(encoded, file->whole, drop)
+                            : encoded;
+}
+
+} // namespace
+
+enum glint_status glint::encode_file(void **data, size_t *n_bytes,
+                                     const char *path,
+                                     struct glint_oiio_file *file,
+                                     const struct glint_samples *pixels,
+                                     const struct glint_oiio_options *options,
+                                     struct glint_error *error)
+{
+    return guarded(path, error, [&] {
+        const bool same = file && is_same_type(file, path);
+        std::vector<part> made;
+
+        if (pixels)
+            made.push_back(part_of(*pixels, file));
+        const bytes encoded = encode_parts(path, pixels ? made : file->parts,
+                                           file, same, *options);
+        void *const block = std::malloc(encoded.size() + 1);
+
+        if (!block)
+            throw std::bad_alloc();
+        std::memcpy(block, encoded.data(), encoded.size());
+        *data = block;
+        *n_bytes = encoded.size();
+    });
+}
