@@ -5,7 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include "posix/process.h"
 
 #ifndef GLINT_SHARE_DIR
 #define GLINT_SHARE_DIR "/usr/local/share/glint"
@@ -13,10 +16,12 @@
 
 enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 
-/* The folder UP levels above the executable, 1 being its own. */
+/* The folder UP levels above the executable, 1 being its own, unless everybody
+ * may put things there. */
 static bool folder_above(int up, char *path, size_t bytes)
 {
     const ssize_t n = readlink("/proc/self/exe", path, bytes - 1);
+    struct stat st;
 
     if (n <= 0 || (size_t)n >= bytes - 1)
         return false;
@@ -28,14 +33,15 @@ static bool folder_above(int up, char *path, size_t bytes)
             return false;
         *slash = '\0';
     }
-    return true;
+    return stat(path, &st) == 0 && !(st.st_mode & S_IWOTH);
 }
 
 /* "" where there is no such folder: nothing lies there. */
 bool lens_folder(int i, const char *kind, char *path, size_t bytes)
 {
-    const char *given =
-        strcmp(kind, "lenses") == 0 ? getenv("GLINT_LENSES") : NULL;
+    const char *given = strcmp(kind, "lenses") == 0
+                            ? glint_process_setting("GLINT_LENSES")
+                            : NULL;
     size_t used;
     int n = 0;
 

@@ -3,11 +3,20 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 #include "posix/input.h"
 
 #define MAX_MODEL_BYTES ((size_t)256 << 20)
+
+bool tool_is_file_name(const char *argument)
+{
+    const char *const dot = strrchr(argument, '.');
+
+    return strchr(argument, '/') ||
+           (dot && (!strcmp(dot, ".lens") || !strcmp(dot, ".glint")));
+}
 
 bool tool_is_model(const char *path)
 {
@@ -15,6 +24,8 @@ bool tool_is_model(const char *path)
     struct stat st;
     FILE *file;
 
+    if (!tool_is_file_name(path))
+        return false;
     if (stat(path, &st) < 0 || !S_ISREG(st.st_mode)) /* a pipe reads once */
         return false;
     file = fopen(path, "rb");

@@ -16,7 +16,12 @@ int scene_open_table(const struct tool *tool, struct scene *scene,
     struct glint_error error;
 
     (void)scene;
-    if (access(name, R_OK) == 0)
+    if (!tool_is_file_name(name))
+        snprintf(error.text, sizeof error.text,
+                 "%.120s names no file: that of a model has a slash or ends in "
+                 ".glint",
+                 name);
+    else if (access(name, R_OK) == 0)
         snprintf(error.text, sizeof error.text,
                  "%.120s is no model; this program takes baked ones only "
                  "(glint bake, on any machine)",

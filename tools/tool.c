@@ -280,6 +280,13 @@ static int no_lens(const struct tool *tool, const char *name)
 {
     struct suggest s;
 
+    if (access(name, F_OK) == 0) {
+        fprintf(stderr,
+                "glint %s: %s: no lens that comes with glint has this name; "
+                "the file is ./%s\n",
+                tool->name, name, name);
+        return EXIT_LENS;
+    }
     suggest_begin(&s, name);
     lens_files_each(offer, &s);
     fprintf(stderr,
@@ -301,7 +308,7 @@ int tool_lens(const struct tool *tool, const char *argument,
     uint8_t *text = NULL;
     size_t bytes = 0;
 
-    if (!strchr(argument, '/') && access(argument, F_OK) != 0) {
+    if (!tool_is_file_name(argument)) {
         if (!lens_file_find(argument, path, sizeof path))
             return no_lens(tool, argument);
         file = path;

@@ -7,9 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "posix/error.h"
+#include "posix/process.h"
 
 #define PLUGIN     "glint-oiio.so"
 #define PATH_BYTES 4096
@@ -52,18 +54,22 @@ static const struct glint_oiio *load_from(const char *path,
     return NULL;
 }
 
+/* From DIR, unless everybody may put things there. */
 static const struct glint_oiio *load_from_directory(const char *dir,
                                                     struct glint_error *error)
 {
     char path[PATH_BYTES + sizeof PLUGIN];
+    struct stat st;
 
     snprintf(path, sizeof path, "%s%s", dir, PLUGIN);
+    if (stat(dir, &st) < 0 || st.st_mode & S_IWOTH) /* whose is it? */
+        return NULL;
     return access(path, F_OK) == 0 ? load_from(path, error) : NULL;
 }
 
 static const struct glint_oiio *search(struct glint_error *error)
 {
-    const char *const stated = getenv("GLINT_OIIO");
+    const char *const stated = glint_process_setting("GLINT_OIIO");
     const struct glint_oiio *face = NULL;
     char own[PATH_BYTES];
 

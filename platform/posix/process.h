@@ -12,6 +12,10 @@
  */
 void glint_process_hold_streams(void);
 
+/* What the environment says of NAME, or NULL; to a program with rights that its
+ * user has not, it says nothing. */
+const char *glint_process_setting(const char *name);
+
 /* FN(CTX), where the calling thread's stack may grow to less than BYTES in a
  * thread of its own that has as many, to which all signals go meanwhile. Where
  * there is no such thread to be had, it is called directly. For main(). */
