@@ -125,7 +125,7 @@ BAKE := bake/text bake/films bake/prescription bake/check bake/glass bake/coatin
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
-PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posix/output posix/workers \
+PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posix/target posix/output posix/workers \
         plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request linux/instructions \
         plain/half plain/tones plain/samples plain/kept_types plain/kept \
         linux/sets linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \

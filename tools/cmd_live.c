@@ -2,6 +2,7 @@
  *
  * glint live: the options.
  */
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -213,7 +214,8 @@ static bool take_run(struct live_options *o, int option, const char *value)
         return true;
     case OPT_SNAPSHOT:
         o->snapshot = value;
-        return is_pattern(value);
+        return is_pattern(value) &&
+               snprintf(NULL, 0, value, INT_MAX) < LIVE_NAME_BYTES;
     case 'n':
         return tool_integer(value, 2, GLINT_V4L2_MAX_BUFFERS, &o->n_buffers);
     default: /* 'o' */

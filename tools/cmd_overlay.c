@@ -10,6 +10,7 @@
 #include "takes.h"
 #include "plain/kept.h"
 #include "posix/error.h"
+#include "posix/target.h"
 
 static const char help[] =
     "glint overlay IN -o OUT [options]\n"
@@ -223,6 +224,16 @@ static bool is_y4m(const char *name)
     return strcmp(name, "-") == 0 || (dot && strcmp(dot, ".y4m") == 0);
 }
 
+int overlay_check_apart(const struct tool *tool, const char *from,
+                        const char *to)
+{
+    if (!glint_target_is_input(from, to))
+        return EXIT_OK;
+    return tool_usage(tool,
+                      "%s is the input, which would be lost; name another file",
+                      strcmp(to, "-") ? to : "standard output");
+}
+
 /* Refuses an output that does not go with the input before there is work. */
 static int check_output(struct tool *tool, struct overlay *o)
 {
@@ -241,6 +252,8 @@ static int run(struct tool *tool, struct overlay *o)
 {
     int code = check_output(tool, o);
 
+    if (code == EXIT_OK)
+        code = overlay_check_apart(tool, o->input, o->output);
     if (code == EXIT_OK)
         code = look_open(tool, &o->look);
     if (code != EXIT_OK)

@@ -23,6 +23,8 @@ enum live_report {
     LIVE_REPORT_NONE
 };
 
+enum { LIVE_NAME_BYTES = 1024 }; /* of a snapshot */
+
 struct live_options {
     struct look look; /* options only, until opened */
     struct glint_v4l2_config camera;

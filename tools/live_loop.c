@@ -152,7 +152,7 @@ static struct glint_image expected(const struct live *l)
 static void snapshot(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
-    char name[200], text[512];
+    char name[LIVE_NAME_BYTES], text[LIVE_NAME_BYTES + 320];
     enum glint_status status;
 
     snprintf(name, sizeof name, l->o->snapshot, ++l->n_snapshots);

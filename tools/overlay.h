@@ -39,6 +39,11 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
 /* Tells a terminal how far it has come. */
 void overlay_progress(const struct tool *tool, const struct overlay *o);
 
+/* Refuses an output TO that is the file FROM: what was photographed would be
+ * gone. */
+int overlay_check_apart(const struct tool *tool, const char *from,
+                        const char *to);
+
 /* One picture from file FROM to file TO. */
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
                     const char *to);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _XOPEN_SOURCE 700 /* realpath */
+#define _DEFAULT_SOURCE /* flock */
 #include "posix/output.h"
 
 #include <errno.h>
@@ -11,16 +11,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "posix/at_death.h"
 #include "posix/error.h"
+#include "posix/target.h"
 
 #define BUFFER_BYTES 65536
 #define MAX_TMP      16   /* temporary files at a time */
 #define MAX_TRIES    1000 /* names that somebody else has taken */
-#define EXT_CHARS    16   /* of a file name extension worth keeping */
 
 /* ---------------------------------------------- files to remove when dying */
 
@@ -78,23 +79,6 @@ static enum glint_status refuse(const struct glint_output *out,
                               strerror(number));
 }
 
-/* DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT; malloc'ed, or NULL. */
-static char *tmp_name(const char *target, unsigned n)
-{
-    const char *const slash = strrchr(target, '/');
-    const char *const base = slash ? slash + 1 : target;
-    const char *ext = strrchr(base, '.');
-    const size_t size = strlen(target) + 64;
-    char *const name = malloc(size);
-
-    if (!ext || ext == base || strlen(ext) > EXT_CHARS)
-        ext = "";
-    if (name)
-        snprintf(name, size, "%.*s.glint-%ld-%u%s", (int)(base - target),
-                 target, (long)getpid(), n, ext);
-    return name;
-}
-
 /* Creates the file NAME and puts it on the list, undisturbed by signals, which
  * would otherwise find it created and not yet listed. */
 static int create_doomed(char *name, mode_t mode)
@@ -127,8 +111,8 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
     int number = 0;
 
     for (int i = 0; i < MAX_TRIES; i++) {
-        out->tmp = tmp_name(out->target,
-                            __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED));
+        out->tmp = glint_target_beside(
+            out->target, __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED));
         if (!out->tmp)
             return glint_error_report(error, GLINT_E_MEMORY, out->name,
                                       "no memory for a file name");
@@ -145,6 +129,7 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
         return glint_error_report(error, GLINT_E_OUTPUT, out->name,
                                   "cannot create a file beside it: %s",
                                   strerror(number));
+    flock(out->fd, LOCK_EX | LOCK_NB); /* we live; see glint_target_clean() */
     if (keep && fchmod(out->fd, mode) < 0)
         return refuse(out, error, errno);
     return GLINT_OK;
@@ -157,9 +142,10 @@ static enum glint_status open_replacing(struct glint_output *out,
 {
     if (st && access(out->name, W_OK) < 0)
         return refuse(out, error, errno);
-    out->target = st ? realpath(out->name, NULL) : strdup(out->name);
+    out->target = glint_target_of(out->name, st);
     if (!out->target)
         return refuse(out, error, errno);
+    glint_target_clean(out->target);
     return open_beside(out, st ? st->st_mode & 0777 : (mode_t)-1, error);
 }
 

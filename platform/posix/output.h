@@ -10,9 +10,11 @@
  * Bytes go to a temporary file in the directory of the target, named
  * .glint-PID-N.EXT, which commit renames over the target. Until then an older
  * target is untouched; after an error, an abort, exit(), or death by a signal
- * other than SIGKILL nothing is left. Symbolic links are followed, and a file
- * that is replaced hands its permission bits on. There is no fsync: what is
- * promised holds when the process dies, not when the power goes.
+ * other than SIGKILL nothing is left, and what a killed run has left is removed
+ * by the next that writes into the same folder. Symbolic links are followed,
+ * dangling ones, too, and a file that is replaced hands its permission bits on.
+ * There is no fsync: what is promised holds when the process dies, not when the
+ * power goes.
  *
  * "-" is standard output. It and any target that exists and is no regular file
  * (a FIFO, /dev/null) are written straight into; what went there stays.

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+#define _XOPEN_SOURCE   700 /* realpath */
+#define _DEFAULT_SOURCE     /* flock */
+#include "posix/target.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#define EXT_CHARS  16 /* of a file name extension worth keeping */
+#define MAX_LINKS  40 /* as many as Linux follows */
+#define PATH_BYTES 4096
+
+/* -------------------------------------------------------------------- links */
+
+/* The length of PATH's folder with its slash; 0: it has none. */
+static size_t folder_length(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+
+    return slash ? (size_t)(slash + 1 - path) : 0;
+}
+
+/* The folder of PATH, "." where it states none; FOLDER holds PATH_BYTES. */
+static void set_folder(char *folder, const char *path)
+{
+    const size_t n = folder_length(path);
+
+    if (n == 0)
+        snprintf(folder, PATH_BYTES, ".");
+    else
+        snprintf(folder, PATH_BYTES, "%.*s", (int)n, path);
+}
+
+/* The kernel would not follow it in a folder that all may write into, and says
+ * so only where it finds a file. */
+static bool may_follow(const char *path, const struct stat *link)
+{
+    char folder[PATH_BYTES];
+    struct stat st;
+
+    set_folder(folder, path);
+    return link->st_uid == geteuid() ||
+           (stat(folder, &st) == 0 &&
+            (!(st.st_mode & S_IWOTH) || st.st_uid == link->st_uid));
+}
+
+/* PATH, PATH_BYTES long, becomes what the link there says. */
+static bool follow(char *path)
+{
+    char text[PATH_BYTES];
+    const ssize_t n = readlink(path, text, sizeof text - 1);
+    const size_t kept = n > 0 && text[0] == '/' ? 0 : folder_length(path);
+
+    if (n < 0)
+        return false;
+    if (kept + (size_t)n >= PATH_BYTES) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    memcpy(path + kept, text, (size_t)n);
+    path[kept + (size_t)n] = 0;
+    return true;
+}
+
+/* Where nothing is yet; links may lead there. */
+static char *new_target(const char *path)
+{
+    char at[PATH_BYTES];
+    struct stat st;
+
+    if (strlen(path) >= sizeof at) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    strcpy(at, path);
+    for (int i = 0; i < MAX_LINKS; i++) {
+        if (lstat(at, &st) < 0)
+            return errno == ENOENT ? strdup(at) : NULL;
+        if (!S_ISLNK(st.st_mode) || !may_follow(at, &st)) {
+            errno = S_ISLNK(st.st_mode) ? EACCES : ESTALE;
+            return NULL;
+        }
+        if (!follow(at))
+            return NULL;
+    }
+    errno = ELOOP;
+    return NULL;
+}
+
+char *glint_target_of(const char *path, const struct stat *st)
+{
+    struct stat now;
+    char *target;
+
+    if (!st)
+        return new_target(path);
+    target = realpath(path, NULL);
+    if (!target)
+        return NULL;
+    /* else somebody has turned a link in between, which the kernel, asked
+     * again, might not have followed */
+    if (lstat(target, &now) == 0 && now.st_dev == st->st_dev &&
+        now.st_ino == st->st_ino)
+        return target;
+    free(target);
+    errno = ESTALE;
+    return NULL;
+}
+
+bool glint_target_is_input(const char *input, const char *output)
+{
+    struct stat in, out;
+    const int in_fails =
+        strcmp(input, "-") ? stat(input, &in) : fstat(STDIN_FILENO, &in);
+    const int out_fails =
+        strcmp(output, "-") ? stat(output, &out) : fstat(STDOUT_FILENO, &out);
+
+    return !in_fails && !out_fails && S_ISREG(in.st_mode) &&
+           in.st_dev == out.st_dev && in.st_ino == out.st_ino;
+}
+
+/* ---------------------------------------------------------- temporary names */
+
+char *glint_target_beside(const char *target, unsigned n)
+{
+    const char *const base = target + folder_length(target);
+    const char *ext = strrchr(base, '.');
+    const size_t size = strlen(target) + 64;
+    char *const name = malloc(size);
+
+    if (!ext || ext == base || strlen(ext) > EXT_CHARS)
+        ext = "";
+    if (name)
+        snprintf(name, size, "%.*s.glint-%ld-%u%s", (int)(base - target),
+                 target, (long)getpid(), n, ext);
+    return name;
+}
+
+/* The process that made the file NAME, or 0: it has no such name. */
+static pid_t maker_of(const char *name)
+{
+    static const char begin[] = ".glint-";
+    char *end;
+    long pid;
+
+    if (strncmp(name, begin, sizeof begin - 1) != 0)
+        return 0;
+    name += sizeof begin - 1;
+    pid = strtol(name, &end, 10);
+    if (*name < '1' || *name > '9' || *end != '-' || pid > 1 << 30)
+        return 0;
+    name = end + 1;
+    end += 1 + strspn(name, "0123456789");
+    return end > name && (*end == '.' || !*end) ? (pid_t)pid : 0;
+}
+
+/* Whether a regular file of ours is open at FD that nobody holds. */
+static bool is_abandoned(int fd)
+{
+    struct stat st;
+
+    return fstat(fd, &st) == 0 && S_ISREG(st.st_mode) &&
+           st.st_uid == geteuid() && flock(fd, LOCK_EX | LOCK_NB) == 0;
+}
+
+static void clean(int folder, const char *name)
+{
+    const pid_t pid = maker_of(name);
+    int fd;
+
+    if (pid == 0 || kill(pid, 0) == 0 || errno != ESRCH)
+        return;
+    fd = openat(folder, name,
+                O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    if (fd < 0)
+        return;
+    if (is_abandoned(fd))
+        unlinkat(folder, name, 0);
+    close(fd);
+}
+
+void glint_target_clean(const char *target)
+{
+    static dev_t cleaned_dev; /* atomic enough: at worst it looks again */
+    static ino_t cleaned_ino;
+    char folder[PATH_BYTES];
+    const struct dirent *entry;
+    struct stat st;
+    DIR *dir;
+
+    set_folder(folder, target);
+    if (stat(folder, &st) < 0 ||
+        (st.st_dev == __atomic_load_n(&cleaned_dev, __ATOMIC_RELAXED) &&
+         st.st_ino == __atomic_load_n(&cleaned_ino, __ATOMIC_RELAXED)))
+        return;
+    dir = opendir(folder);
+    while (dir && (entry = readdir(dir)))
+        clean(dirfd(dir), entry->d_name);
+    if (dir)
+        closedir(dir);
+    __atomic_store_n(&cleaned_dev, st.st_dev, __ATOMIC_RELAXED);
+    __atomic_store_n(&cleaned_ino, st.st_ino, __ATOMIC_RELAXED);
+}
