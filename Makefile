@@ -115,6 +115,7 @@ CORE := base/status base/arena base/q base/divide base/sort base/image base/work
         kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/add_quads kernels/turn kernels/turn_c \
         kernels/composite_c \
         lens/model lens/transfer flare/bright flare/white flare/regions flare/score flare/lights \
+        flare/profile flare/unclip \
         flare/match flare/follow flare/record flare/tracks tile/primitive \
         tile/clip tile/outline tile/bins tile/raster tile/edges tile/sums tile/curve tile/mix tile/codes \
         tile/resolve tile/quads tile/composite flare/beams flare/plan flare/ghost_grid flare/cuts \
@@ -404,6 +405,9 @@ $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
         $(OUT)/tests/fuzz/replay.o $(libs)
 	$(link)
 $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
+	$(link)
+$(OUT)/power_table: $(OUT)/tests/support/power_table.o \
+        $(OUT)/tests/support/power_scene.o $(libs)
 	$(link)
 $(OUT)/motion: $(OUT)/tests/support/motion.o $(OUT)/tests/support/stage.o $(libs)
 	$(link)

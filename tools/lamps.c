@@ -267,6 +267,7 @@ static enum glint_status place(struct lamp_finder *f,
 {
     const size_t lights_bytes = padded(glint_lights_bytes(lights));
     const size_t tracks_bytes = padded(glint_tracks_bytes(tracks));
+    const size_t profile_bytes = padded(glint_profile_bytes());
     const size_t spot_bytes = padded(LAMP_FINDER_MAX * sizeof *f->spot);
     enum glint_status status;
     uint8_t *at;
@@ -274,7 +275,8 @@ static enum glint_status place(struct lamp_finder *f,
     if (lights_bytes == 0 || tracks_bytes == 0)
         return GLINT_E_ARGUMENT;
     if (posix_memalign(&f->mem, 64,
-                       lights_bytes + tracks_bytes + spot_bytes +
+                       lights_bytes + tracks_bytes + profile_bytes +
+                           spot_bytes +
                            (size_t)f->max_tracks * sizeof *f->track) != 0)
         return GLINT_E_MEMORY;
     at = f->mem;
@@ -283,6 +285,9 @@ static enum glint_status place(struct lamp_finder *f,
         status = glint_tracks_init(&f->tracks, tracks, at + lights_bytes,
                                    tracks_bytes);
     at += lights_bytes + tracks_bytes;
+    if (status == GLINT_OK)
+        status = glint_profile_init(&f->profile, at, profile_bytes);
+    at += profile_bytes;
     f->spot = (struct glint_spot *)(void *)at;
     f->track = (struct glint_track *)(void *)(at + spot_bytes);
     return status;
@@ -329,14 +334,40 @@ static struct glint_track still(const struct glint_spot *spot, uint32_t id)
         .size_q8 = spot->size_q8,
         .level_q15 = 1 << 15,
         .flux_q16 = spot->flux_q16,
-        .clipped_q16 = (int64_t)spot->n_clipped << 16,
+        .power_q16 = spot->power_q16,
+        .axis_q8 = {spot->axis_q8[0], spot->axis_q8[1]},
+        .cos_q15 = spot->cos_q15,
+        .sin_q15 = spot->sin_q15,
         .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
+}
+
+/* Clipped pixels count 2^headroom: in units of 2^8 below that, for tracks hold
+ * no more than 2^42. */
+static void set_power(struct lamp_finder *f, struct glint_spot *spot)
+{
+    const double each = 65536 * (exp2(f->headroom_ev) - 1);
+
+    f->scale = exp2(fmax(f->headroom_ev - 8, 0));
+    spot->power_q16 = (int64_t)fmin(
+        ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
+}
+
+/* Finds spots, and what is behind them. */
+static int find(struct lamp_finder *f, const struct glint_image *image, int max)
+{
+    const int n = glint_lights_find(f->lights, image, f->spot, max);
+
+    glint_profile_measure(f->profile, image, f->spot, n);
+    f->scale = 1;
+    for (int i = 0; i < n && f->headroom_ev >= 0; i++)
+        set_power(f, &f->spot[i]);
+    return n;
 }
 
 /* The lights of IMAGE by itself. */
 static int find_still(struct lamp_finder *f, const struct glint_image *image)
 {
-    const int n = glint_lights_find(f->lights, image, f->spot, f->max);
+    const int n = find(f, image, f->max);
     int n_lights = 0;
 
     for (; n_lights < n && !f->spot[n_lights].faint; n_lights++)
@@ -344,13 +375,11 @@ static int find_still(struct lamp_finder *f, const struct glint_image *image)
     return n_lights;
 }
 
-/* Clipped pixels count for what they would be without clipping. */
 static double power_of(const struct lamp_finder *f,
                        const struct glint_track *track)
 {
-    return track->level_q15 / 32768.0 *
-           ((double)track->flux_q16 / 65536 +
-            (double)track->clipped_q16 / 65536 * (exp2(f->headroom_ev) - 1));
+    return track->level_q15 / 32768.0 * (double)track->power_q16 / 65536 *
+           f->scale;
 }
 
 int lamp_finder_frame(struct lamp_finder *finder,
@@ -361,8 +390,7 @@ int lamp_finder_frame(struct lamp_finder *finder,
     struct lamp_finder *f = finder;
 
     if (elapsed_us > 0) {
-        const int n =
-            glint_lights_find(f->lights, image, f->spot, LAMP_FINDER_MAX);
+        const int n = find(f, image, LAMP_FINDER_MAX);
 
         f->n_tracks = glint_tracks_step(f->tracks, f->spot, n, elapsed_us,
                                         f->track, f->max_tracks);

@@ -49,7 +49,8 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
 /* Finds lamps in pictures of one size, and follows them where these are a
  * video. What it needs is taken by open. */
 struct lamp_finder {
-    double headroom_ev; /* how far over white clipped pixels really are */
+    double headroom_ev; /* how far over white clipped pixels really are; below
+                           0: as the profile of each lamp has it */
     int max;            /* lamps a picture, 1 .. LAMP_FINDER_MAX */
 
     /* Of the last frame, as found, the strongest first; untracked ones are
@@ -60,6 +61,8 @@ struct lamp_finder {
     /* Private. */
     struct glint_lights *lights;
     struct glint_tracks *tracks;
+    struct glint_profile *profile;
+    double scale;            /* of the power of tracks */
     struct glint_spot *spot; /* [LAMP_FINDER_MAX] */
     int max_tracks;
     void *mem;

@@ -13,7 +13,7 @@
 void look_defaults(struct look *look)
 {
     *look = (struct look){.lens = "heliar-tronnier",
-                          .headroom_ev = 12,
+                          .headroom_ev = -1,
                           .threshold_ev = {-0.1, -0.6}};
     scene_defaults(&look->scene);
     look->scene.coating.kind = COATING_MIXED;

@@ -84,8 +84,8 @@ enum look_option_code {
     "                      rather than following lamps from frame to frame\n"  \
     "  --show lights       draws a box and the number of each light on top\n"  \
     "  --headroom EV       stops by which clipped pixels really exceed "       \
-    "white\n"                                                                  \
-    "                      (default 12); what --lights auto takes for power\n" \
+    "white, 0 to\n"                                                            \
+    "                      40 (default: told for each lamp from its halo)\n"   \
     "  --layer WHAT        composite | flare: the flare alone on black |\n"    \
     "                      flare-alpha: a picture of it with alpha, to be\n"   \
     "                      laid over others in linear light\n"

@@ -29,6 +29,7 @@
 #include "glint/kernels.h"
 #include "glint/lens.h"
 #include "glint/lights.h"
+#include "glint/profile.h"
 #include "glint/status.h"
 #include "glint/tracks.h"
 #include "glint/workers.h"

@@ -36,6 +36,14 @@ struct glint_spot {
     int64_t flux_q16;   /* sum of linear luminance over its pixels, 1 = white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
     int32_t faint;      /* 1: no light yet; see keep_faint */
+
+    /* glint_profile_measure (glint/profile.h) sets these, and refines rgb;
+     * until then they are the flux and the radius. */
+    int64_t power_q16;  /* flux over the background as it would be without
+                           clipping, white pixels */
+    int32_t axis_q8[2]; /* RMS semi-axes of its core, pixels, the major one
+                           first */
+    int32_t cos_q15, sin_q15; /* of the major one, y down; cos >= 0 */
 };
 
 struct glint_lights_config {

@@ -40,17 +40,18 @@ enum glint_track_state {
     GLINT_TRACK_LEAVING /* its lamp went out of the picture, and it moves on */
 };
 
-/* What is to be drawn is LEVEL times flux + clipped * (2^headroom - 1): the
- * level is in neither of them. */
+/* What is to be drawn is LEVEL times power: the level is not in it. */
 struct glint_track {
     uint32_t id; /* counts from 1; no two lamps have the same */
     enum glint_track_state state;
-    int32_t x_q8, y_q8;  /* as of a spot; may be outside of the picture */
-    int32_t size_q8;     /* RMS radius, pixels */
-    int32_t level_q15;   /* 1 .. 32768: how far it has risen or faded */
-    int64_t flux_q16;    /* linear luminance, 1 = white pixel */
-    int64_t clipped_q16; /* pixels at the upper threshold or above */
-    int32_t rgb_q15[3];  /* mean linear colour, luminance 1 */
+    int32_t x_q8, y_q8;       /* as of a spot; may be outside of the picture */
+    int32_t size_q8;          /* RMS radius, pixels */
+    int32_t level_q15;        /* 1 .. 32768: how far it has risen or faded */
+    int64_t flux_q16;         /* linear luminance, 1 = white pixel */
+    int64_t power_q16;        /* the same without clipping: a spot's power */
+    int32_t axis_q8[2];       /* RMS semi-axes of the core, pixels */
+    int32_t cos_q15, sin_q15; /* of the major one, to 1/4 degree; cos >= 0 */
+    int32_t rgb_q15[3];       /* mean linear colour, luminance 1 */
 };
 
 struct glint_tracks_config {

@@ -503,12 +503,15 @@ static struct glint_spot spot_of(const struct glint_candidate *candidate)
                            .area = sum->area,
                            .n_clipped = sum->n_clipped,
                            .flux_q16 = sum->w_q14 * 4,
-                           .faint = candidate->faint};
+                           .faint = candidate->faint,
+                           .power_q16 = sum->w_q14 * 4,
+                           .cos_q15 = 1 << 15};
 
     glint_region_centroid(sum, &s.x_q8, &s.y_q8);
     s.x_q8 += 128;
     s.y_q8 += 128;
     glint_region_colour(sum, s.rgb_q15);
+    s.axis_q8[0] = s.axis_q8[1] = q_mul(s.size_q8, Q_CONST(0.70711, 15), 15);
     return s;
 }
 

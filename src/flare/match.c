@@ -30,7 +30,7 @@ void glint_match_carve(struct glint_match *m, struct glint_arena *arena,
 
 /* ------------------------------------------------------------------- orders */
 
-enum { SPOT_NUMBERS = 10 };
+enum { SPOT_NUMBERS = 15 };
 
 static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
 {
@@ -43,6 +43,11 @@ static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
     for (int i = 0; i < 3; i++)
         v[6 + i] = s->rgb_q15[i];
     v[9] = s->faint;
+    v[10] = s->power_q16;
+    for (int i = 0; i < 2; i++)
+        v[11 + i] = s->axis_q8[i];
+    v[13] = s->cos_q15;
+    v[14] = s->sin_q15;
 }
 
 /* By all that a spot is: two that are equal in it may change places. */

@@ -36,6 +36,23 @@ int64_t glint_record_flux_q16(const struct glint_spot *spot)
     return clamp(spot->flux_q16, 0, MAX_FLUX_Q16);
 }
 
+int64_t glint_record_power_q16(const struct glint_spot *spot)
+{
+    return clamp(spot->power_q16, 0, MAX_FLUX_Q16);
+}
+
+/* Of twice the angle whose cosine and sine are C and S: the same for both
+ * directions of an axis. */
+static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
+                         int64_t *sin2_q15)
+{
+    const int64_t c = clamp(s->cos_q15, -ONE_Q15, ONE_Q15);
+    const int64_t d = clamp(s->sin_q15, -ONE_Q15, ONE_Q15);
+
+    *cos2_q15 = (c * c - d * d) >> 15;
+    *sin2_q15 = (2 * c * d) >> 15;
+}
+
 /* What a spot says of each channel, held to what a picture can show. */
 static void list_targets(const struct glint_spot *s,
                          int64_t target[GLINT_CHANNELS])
@@ -43,14 +60,17 @@ static void list_targets(const struct glint_spot *s,
     target[X] = clamp(s->x_q8, 0, GLINT_MAX_SIDE << 8) * 256;
     target[X + 1] = clamp(s->y_q8, 0, GLINT_MAX_SIDE << 8) * 256;
     target[FLUX] = glint_record_flux_q16(s);
-    target[GLINT_CHANNEL_CLIPPED] = clamp(s->n_clipped, 0, 1 << 26) * 65536;
+    target[GLINT_CHANNEL_POWER] = glint_record_power_q16(s);
     target[SIZE] = clamp(s->size_q8, 0, GLINT_MAX_SIDE << 8);
+    for (int i = 0; i < 2; i++)
+        target[GLINT_CHANNEL_MAJOR + i] =
+            clamp(s->axis_q8[i], 0, GLINT_MAX_SIDE << 8);
+    double_angle(s, &target[GLINT_CHANNEL_COS2], &target[GLINT_CHANNEL_SIN2]);
     for (int i = 0; i < 3; i++)
         target[GLINT_CHANNEL_RED + i] = clamp(s->rgb_q15[i], 0, 1 << 20);
 }
 
-/* An error of VALUE that does no harm: 1/32 pixel, 1/64 of light; half a
- * clipped pixel. */
+/* An error of VALUE that does no harm: 1/32 pixel, 1/64 of light. */
 static int64_t floor_of(int channel, int64_t value)
 {
     switch (channel) {
@@ -59,9 +79,11 @@ static int64_t floor_of(int channel, int64_t value)
         return 65536 / 32;
     case GLINT_CHANNEL_FLUX:
         return value / 64 + 1;
-    case GLINT_CHANNEL_CLIPPED:
-        return value / 64 + 65536 / 2;
+    case GLINT_CHANNEL_POWER:
+        return value / 64 + 1;
     case GLINT_CHANNEL_SIZE:
+    case GLINT_CHANNEL_MAJOR:
+    case GLINT_CHANNEL_MINOR:
         return value / 64 + 256 / 16;
     default:
         return 32768 / 64;
@@ -73,6 +95,8 @@ static int is_same(const struct glint_spot *a, const struct glint_spot *b)
     return a->x_q8 == b->x_q8 && a->y_q8 == b->y_q8 &&
            a->size_q8 == b->size_q8 && a->area == b->area &&
            a->n_clipped == b->n_clipped && a->flux_q16 == b->flux_q16 &&
+           a->power_q16 == b->power_q16 && a->axis_q8[0] == b->axis_q8[0] &&
+           a->axis_q8[1] == b->axis_q8[1] && a->sin_q15 == b->sin_q15 &&
            a->rgb_q15[0] == b->rgb_q15[0] && a->rgb_q15[1] == b->rgb_q15[1] &&
            a->rgb_q15[2] == b->rgb_q15[2];
 }
@@ -393,6 +417,23 @@ void glint_record_set_level(struct glint_record *r,
         fade(r, step);
 }
 
+/* The axis that lies at half the angle; across where none is known. */
+static void set_axis(struct glint_track *track, int64_t cos2_q15,
+                     int64_t sin2_q15)
+{
+    const int64_t size_q15 =
+        q_root((uint64_t)(cos2_q15 * cos2_q15 + sin2_q15 * sin2_q15));
+    const int64_t cos_q15 =
+        size_q15 > 0 ? cos2_q15 * ONE_Q15 / size_q15 : ONE_Q15;
+
+    track->cos_q15 = (int32_t)q_root(
+        (uint64_t)clamp(ONE_Q15 + cos_q15, 0, 2 * ONE_Q15) << 14);
+    track->sin_q15 = (int32_t)q_root(
+        (uint64_t)clamp(ONE_Q15 - cos_q15, 0, 2 * ONE_Q15) << 14);
+    if (sin2_q15 < 0)
+        track->sin_q15 = -track->sin_q15;
+}
+
 struct glint_track glint_record_track(const struct glint_record *r)
 {
     const struct glint_follow *of = r->of;
@@ -404,8 +445,13 @@ struct glint_track glint_record_track(const struct glint_record *r)
         .size_q8 = q_narrow(glint_follow_shown(&of[SIZE])),
         .level_q15 = q_narrow(q_shift(r->level_q30, 30 - 15)),
         .flux_q16 = glint_follow_shown(&of[FLUX]),
-        .clipped_q16 = glint_follow_shown(&of[GLINT_CHANNEL_CLIPPED])};
+        .power_q16 = glint_follow_shown(&of[GLINT_CHANNEL_POWER])};
 
+    for (int i = 0; i < 2; i++)
+        track.axis_q8[i] =
+            q_narrow(glint_follow_shown(&of[GLINT_CHANNEL_MAJOR + i]));
+    set_axis(&track, glint_follow_shown(&of[GLINT_CHANNEL_COS2]),
+             glint_follow_shown(&of[GLINT_CHANNEL_SIN2]));
     for (int i = 0; i < 3; i++)
         track.rgb_q15[i] =
             q_narrow(glint_follow_shown(&of[GLINT_CHANNEL_RED + i]));

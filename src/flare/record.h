@@ -19,8 +19,12 @@ enum glint_channel {
     GLINT_CHANNEL_X,
     GLINT_CHANNEL_Y,
     GLINT_CHANNEL_FLUX,
-    GLINT_CHANNEL_CLIPPED,
+    GLINT_CHANNEL_POWER,
     GLINT_CHANNEL_SIZE,
+    GLINT_CHANNEL_MAJOR,
+    GLINT_CHANNEL_MINOR,
+    GLINT_CHANNEL_COS2, /* of twice the orientation */
+    GLINT_CHANNEL_SIN2,
     GLINT_CHANNEL_RED,
     GLINT_CHANNEL_GREEN,
     GLINT_CHANNEL_BLUE,
@@ -49,6 +53,9 @@ struct glint_record_step {
 
 /* The flux of a spot, held to 0 .. 2^42: the largest picture, all white. */
 int64_t glint_record_flux_q16(const struct glint_spot *spot);
+
+/* Its power, held to the same. */
+int64_t glint_record_power_q16(const struct glint_spot *spot);
 
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot);

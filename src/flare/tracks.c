@@ -256,17 +256,17 @@ static void match(struct glint_tracks *t, const struct glint_spot *spots, int n)
 static int yields_first(const struct glint_record *p,
                         const struct glint_record *q)
 {
-    const int64_t p_q16 = p->of[GLINT_CHANNEL_FLUX].value;
-    const int64_t q_q16 = q->of[GLINT_CHANNEL_FLUX].value;
+    const int64_t p_q16 = p->of[GLINT_CHANNEL_POWER].value;
+    const int64_t q_q16 = q->of[GLINT_CHANNEL_POWER].value;
 
     if ((p->lost_us > 0) != (q->lost_us > 0))
         return p->lost_us > 0;
     return p_q16 != q_q16 ? p_q16 < q_q16 : p->id > q->id;
 }
 
-/* The place for a new light of FLUX: a free one, else that of one which is not
+/* The place for a new light of POWER: a free one, else that of one which is not
  * shown and either lost or fainter. NULL: none. */
-static struct glint_record *place_for(struct glint_tracks *t, int64_t flux_q16)
+static struct glint_record *place_for(struct glint_tracks *t, int64_t power_q16)
 {
     struct glint_record *best = NULL;
 
@@ -276,7 +276,7 @@ static struct glint_record *place_for(struct glint_tracks *t, int64_t flux_q16)
         if (!r->id)
             return r;
         if (r->level_q30 > 0 || r->is_shown ||
-            (r->lost_us == 0 && r->of[GLINT_CHANNEL_FLUX].value >= flux_q16))
+            (r->lost_us == 0 && r->of[GLINT_CHANNEL_POWER].value >= power_q16))
             continue;
         if (!best || yields_first(r, best))
             best = r;
@@ -292,8 +292,8 @@ struct ranked_spots {
 static int is_brighter(const void *ctx, int32_t a, int32_t b)
 {
     const struct ranked_spots *r = ctx;
-    const int64_t p_q16 = glint_record_flux_q16(&r->spots[r->by_x[a]]);
-    const int64_t q_q16 = glint_record_flux_q16(&r->spots[r->by_x[b]]);
+    const int64_t p_q16 = glint_record_power_q16(&r->spots[r->by_x[a]]);
+    const int64_t q_q16 = glint_record_power_q16(&r->spots[r->by_x[b]]);
 
     return p_q16 != q_q16 ? p_q16 > q_q16 : a < b;
 }
@@ -314,7 +314,7 @@ static void begin_tracks(struct glint_tracks *t, const struct glint_spot *spots,
     glint_sort(t->order, n_new, is_brighter, &ranked);
     for (int i = 0; i < n_new; i++) {
         const struct glint_spot *s = &spots[t->match.by_x[t->order[i]]];
-        struct glint_record *r = place_for(t, glint_record_flux_q16(s));
+        struct glint_record *r = place_for(t, glint_record_power_q16(s));
 
         if (!r)
             return;
@@ -325,12 +325,12 @@ static void begin_tracks(struct glint_tracks *t, const struct glint_spot *spots,
 /* -------------------------------------------------------------------- shown */
 
 /* Those that are shown stay so until another is brighter by a quarter: two of
- * the same flux do not take turns. */
+ * the same power do not take turns. */
 static int64_t score_of(const struct glint_record *r)
 {
-    const int64_t flux_q16 = r->of[GLINT_CHANNEL_FLUX].value;
+    const int64_t power_q16 = r->of[GLINT_CHANNEL_POWER].value;
 
-    return flux_q16 + (r->is_shown ? flux_q16 / 4 : 0);
+    return power_q16 + (r->is_shown ? power_q16 / 4 : 0);
 }
 
 static int is_stronger(const void *ctx, int32_t a, int32_t b)

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "glint/lights.h"
+#include "glint/profile.h"
 #include "glint/tracks.h"
 
 enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
@@ -28,7 +29,8 @@ struct night {
     struct glint_lights_config lights;
     struct glint_tracks *tracks;
     struct glint_tracks_config cfg;
-    void *mem[2];
+    struct glint_profile *profile;
+    void *mem[3];
     struct glint_spot spot[NIGHT_MAX];
     struct glint_track track[NIGHT_MAX];
     int n_spots, n_tracks;
@@ -72,6 +74,9 @@ static inline int night_open(struct night *n)
 
     return posix_memalign(&n->mem[0], 64, bytes[0]) == 0 &&
            posix_memalign(&n->mem[1], 64, bytes[1]) == 0 &&
+           posix_memalign(&n->mem[2], 64, glint_profile_bytes()) == 0 &&
+           glint_profile_init(&n->profile, n->mem[2], glint_profile_bytes()) ==
+               GLINT_OK &&
            glint_lights_init(&n->finder, &n->lights, n->mem[0], bytes[0]) ==
                GLINT_OK &&
            glint_tracks_init(&n->tracks, &n->cfg, n->mem[1], bytes[1]) ==
@@ -83,6 +88,7 @@ static inline void night_close(struct night *night)
     free(night->image.plane[0]);
     free(night->mem[0]);
     free(night->mem[1]);
+    free(night->mem[2]);
 }
 
 static inline int night_code(double light)
@@ -151,6 +157,7 @@ static inline void night_draw(struct night *night,
 static inline void night_track(struct night *n, int32_t elapsed_us)
 {
     n->n_spots = glint_lights_find(n->finder, &n->image, n->spot, NIGHT_MAX);
+    glint_profile_measure(n->profile, &n->image, n->spot, n->n_spots);
     n->n_tracks = glint_tracks_step(n->tracks, n->spot, n->n_spots, elapsed_us,
                                     n->track, NIGHT_MAX);
 }
@@ -162,11 +169,9 @@ static inline void night_step(struct night *n, const struct night_lamp *lamp,
     night_track(n, elapsed_us);
 }
 
-/* The power of a lamp that is 2^12 over white where it clips. */
 static inline double night_power(const struct glint_track *t)
 {
-    return t->level_q15 / 32768.0 *
-           ((double)t->flux_q16 + 4095 * (double)t->clipped_q16) / 65536;
+    return t->level_q15 / 32768.0 * (double)t->power_q16 / 65536;
 }
 
 static inline double night_energy(const struct night *n)
@@ -180,7 +185,7 @@ static inline double night_energy(const struct night *n)
 
 static inline double night_spot_power(const struct glint_spot *s)
 {
-    return (double)s->flux_q16 / 65536 + 4095.0 * s->n_clipped;
+    return (double)s->power_q16 / 65536;
 }
 
 /* The track or spot nearest to X, Y; -1: there is none. */

@@ -283,7 +283,8 @@ static bool is_spot(const struct glint_track *t, const struct glint_spot *s)
     return t->state == GLINT_TRACK_STEADY && t->level_q15 == FULL &&
            t->x_q8 == s->x_q8 && t->y_q8 == s->y_q8 &&
            t->size_q8 == s->size_q8 && t->flux_q16 == s->flux_q16 &&
-           t->clipped_q16 == (int64_t)s->n_clipped * 65536 &&
+           t->power_q16 == s->power_q16 && t->axis_q8[0] == s->axis_q8[0] &&
+           t->axis_q8[1] == s->axis_q8[1] &&
            memcmp(t->rgb_q15, s->rgb_q15, sizeof t->rgb_q15) == 0;
 }
 
@@ -509,10 +510,11 @@ static double level_after(int32_t us, int32_t elapsed_us, int32_t attack_ms)
     night_step(&night, lamp, 1, elapsed_us);
     for (int32_t t = elapsed_us; t <= us + 10; t += elapsed_us) {
         night_step(&night, lamp, 2, elapsed_us);
-        assert_int_equal(night.track[0].level_q15, FULL);
+        assert_int_equal(night.track[night_track_at(&night, 60, 60)].level_q15,
+                         FULL);
     }
     assert_int_equal(night.n_tracks, 2);
-    level = night.track[1].level_q15 / 32768.0;
+    level = night.track[night_track_at(&night, 200, 120)].level_q15 / 32768.0;
     night_close(&night);
     return level;
 }
@@ -766,7 +768,8 @@ static void test_more_lights_than_tracks(void **state)
         spot[i] = (struct glint_spot){.x_q8 = i % 10 * 60 << 8,
                                       .y_q8 = i / 10 * 45 << 8,
                                       .area = 10,
-                                      .flux_q16 = (1 + i * 37 % 101) << 16};
+                                      .flux_q16 = (1 + i * 37 % 101) << 16,
+                                      .power_q16 = (1 + i * 37 % 101) << 16};
     for (int step = 0; step < 3; step++) {
         assert_int_equal(
             glint_tracks_step(night.tracks, spot, 100, FPS30, night.track, 5),
@@ -788,12 +791,22 @@ static struct glint_spot any_spot(void)
                            .area = night_random(&night, 4000),
                            .n_clipped = night_random(&night, 2000),
                            .flux_q16 = night_random(&night, 1 << 24) * 64,
+                           .power_q16 = night_random(&night, 1 << 24) * 64,
+                           .axis_q8 = {night_random(&night, 40 << 8),
+                                       night_random(&night, 40 << 8)},
+                           .cos_q15 = night_random(&night, 32769),
+                           .sin_q15 = night_random(&night, 65537) - 32768,
                            .faint = night_random(&night, 3) == 0};
 
     for (int i = 0; i < 3; i++)
         s.rgb_q15[i] = night_random(&night, 1 << 17);
     if (night_random(&night, 10) == 0)
         s.flux_q16 = night_random(&night, 2) ? INT64_MAX : INT64_MIN;
+    if (night_random(&night, 10) == 0)
+        s.power_q16 = night_random(&night, 2) ? INT64_MAX : INT64_MIN;
+    if (night_random(&night, 10) == 0)
+        s.axis_q8[0] = s.axis_q8[1] = s.cos_q15 = s.sin_q15 =
+            extremes[night_random(&night, 5)];
     if (night_random(&night, 10) == 0)
         s.x_q8 = extremes[night_random(&night, 5)];
     if (night_random(&night, 10) == 0)
@@ -819,8 +832,9 @@ static void assert_sound(int n)
 
         assert_in_range(t->level_q15, 1, FULL);
         assert_true(t->flux_q16 >= 0 && t->flux_q16 <= INT64_C(1) << 42);
-        assert_true(t->clipped_q16 >= 0 && t->clipped_q16 <= INT64_C(1) << 42);
-        assert_true(t->size_q8 >= 0);
+        assert_true(t->power_q16 >= 0 && t->power_q16 <= INT64_C(1) << 42);
+        assert_true(t->size_q8 >= 0 && t->axis_q8[0] >= 0 &&
+                    t->axis_q8[1] >= 0);
         for (int c = 0; c < 3; c++)
             assert_true(t->rgb_q15[c] >= 0);
         for (int j = 0; j < i; j++)

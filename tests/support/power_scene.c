@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/power_scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FINE = 5, SOURCES = 200, KERNEL = 1 << 18 };
+
+double power_random(uint32_t *seed)
+{
+    *seed = *seed * 1664525 + 1013904223;
+    return (*seed >> 8) * 0x1p-24;
+}
+
+static double bell(uint32_t *seed)
+{
+    double sum = -6;
+
+    for (int i = 0; i < 12; i++)
+        sum += power_random(seed);
+    return sum;
+}
+
+static int is_in(const struct power_lamp *l, double x, double y)
+{
+    const double c = cos(l->angle), s = sin(l->angle);
+    const double u = fabs(c * (x - l->x) + s * (y - l->y));
+    const double v = fabs(c * (y - l->y) - s * (x - l->x));
+
+    switch (l->shape) {
+    case POWER_DISC:
+        return u * u + v * v <= l->radius * l->radius;
+    case POWER_SQUARE:
+        return fmax(u, v) <= l->radius;
+    default:
+        return u <= l->radius && v <= fmax(0.3, l->radius / 8);
+    }
+}
+
+/* What part of each pixel the shape covers; sums to 1. */
+static void cover(double *light, int width, int height,
+                  const struct power_lamp *l)
+{
+    double sum = 0;
+    const int reach = (int)(l->radius * 1.5) + 2;
+
+    memset(light, 0, sizeof *light * (size_t)(width * height));
+    for (int y = (int)l->y - reach; y <= (int)l->y + reach; y++)
+        for (int x = (int)l->x - reach; x <= (int)l->x + reach; x++) {
+            const int fine = l->radius < 2 ? 8 * FINE : FINE;
+            int n = 0;
+
+            if (x < 0 || y < 0 || x >= width || y >= height)
+                continue;
+            for (int i = 0; i < fine * fine; i++)
+                n += is_in(l, x + (i % fine + 0.5) / fine,
+                           y + (i / fine + 0.5) / fine);
+            light[y * width + x] = n / (fine * fine);
+            sum += light[y * width + x];
+        }
+    for (int i = 0; i < width * height; i++)
+        light[i] = (light[i] / sum);
+}
+
+static void blur_line(double *at, int n, int step, const double *kernel,
+                      int reach, double *tmp)
+{
+    for (int i = 0; i < n; i++) {
+        double sum = 0;
+
+        for (int k = -reach; k <= reach; k++)
+            if (i + k >= 0 && i + k < n)
+                sum += at[(i + k) * step] * kernel[abs(k)];
+        tmp[i] = sum;
+    }
+    for (int i = 0; i < n; i++)
+        at[i * step] = tmp[i];
+}
+
+static void blur(double *light, int width, int height, double sigma)
+{
+    double kernel[64], sum = 0;
+    const int reach = (int)ceil(4.5 * sigma + 1);
+    double *tmp = malloc(sizeof *tmp * (size_t)(width + height));
+
+    for (int k = 0; k <= reach; k++) {
+        kernel[k] =
+            erf((k + 0.5) / sigma / sqrt(2)) - erf((k - 0.5) / sigma / sqrt(2));
+        sum += k ? 2 * kernel[k] : kernel[k];
+    }
+    for (int k = 0; k <= reach; k++)
+        kernel[k] /= sum;
+    for (int y = 0; y < height; y++)
+        blur_line(light + y * width, width, 1, kernel, reach, tmp);
+    for (int x = 0; x < width; x++)
+        blur_line(light + x, height, width, kernel, reach, tmp);
+    free(tmp);
+}
+
+/* Adds the glare of up to SOURCES pixels that stand for the shape. */
+static void add_glare(double *light, int width, int height,
+                      const struct power_lamp *l)
+{
+    static double kernel[KERNEL];
+    const int n = width * height;
+    double *shape = malloc(sizeof *shape * (size_t)n);
+    int n_lit = 0, skip, at = 0;
+    double total = 0, seen = 0;
+
+    for (int r2 = 0; r2 < KERNEL; r2++)
+        kernel[r2] = pow(1 + r2 / (l->reach * l->reach), -l->fall / 2);
+    /* all of it, as far as a few thousand pixels */
+    for (double r = 0.25; r < 2000; r += 0.5)
+        total +=
+            3.14159265 * r * pow(1 + r * r / l->reach / l->reach, -l->fall / 2);
+    memcpy(shape, light, sizeof *shape * (size_t)n);
+    for (int i = 0; i < n; i++) {
+        n_lit += shape[i] > 1e-6;
+        light[i] *= (1 - l->glare);
+    }
+    skip = n_lit / SOURCES + 1;
+    for (int i = 0; i < n; i++)
+        if (shape[i] > 1e-6 && at++ % skip == 0)
+            seen += shape[i];
+    at = 0;
+    for (int i = 0; i < n; i++) {
+        const double part = shape[i] / seen * l->glare / total;
+
+        if (shape[i] <= 1e-6 || at++ % skip)
+            continue;
+        for (int y = 0; y < height; y++)
+            for (int x = 0; x < width; x++) {
+                const int dx = x - i % width, dy = y - i / width;
+                const int r2 = dx * dx + dy * dy;
+
+                light[y * width + x] +=
+                    (part * kernel[r2 < KERNEL ? r2 : KERNEL - 1]);
+            }
+    }
+    free(shape);
+}
+
+void power_draw(double *light, int width, int height,
+                const struct power_lamp *lamp)
+{
+    cover(light, width, height, lamp);
+    blur(light, width, height, lamp->sigma);
+    if (lamp->glare > 0)
+        add_glare(light, width, height, lamp);
+}
+
+static double code_of(double light)
+{
+    return 255 * (light <= 0.0031308 ? 12.92 * fmax(light, 0)
+                                     : 1.055 * pow(light, 1 / 2.4) - 0.055);
+}
+
+void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
+                  double sigma, uint32_t *seed)
+{
+    for (int i = 0; i < 3 * scene->width * scene->height; i++) {
+        const double code = code_of(fmin(1, gain * scene->rgb[i])) +
+                            (sigma > 0 ? sigma * bell(seed) : 0);
+
+        rgb[i] = (uint8_t)fmax(0, fmin(255, floor(code + 0.5)));
+    }
+}

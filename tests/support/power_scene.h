@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lamps as a camera takes them, of known power: a shape, blurred by a bell
+ * curve and by the glare of a lens, over a background, with noise.
+ */
+#ifndef GLINT_TESTS_POWER_SCENE_H
+#define GLINT_TESTS_POWER_SCENE_H
+
+#include <stdint.h>
+
+#include "glint/image.h"
+
+enum power_shape { POWER_DISC, POWER_SQUARE, POWER_TUBE, POWER_SHAPES };
+
+struct power_lamp {
+    enum power_shape shape;
+    double x, y;   /* pixels */
+    double radius; /* of a disc, half a side; of a tube half of its length */
+    double angle;  /* radians */
+    double sigma;  /* of the bell curve */
+    double glare;  /* part of the light that goes into it */
+    double reach;  /* pixels: it falls by (1 + (r / reach)^2)^(-fall / 2) */
+    double fall;
+    double rgb[3]; /* of luminance 1 */
+};
+
+/* A picture of linear light, three numbers a pixel. */
+struct power_scene {
+    int width, height;
+    double *rgb;
+};
+
+/* The light of LAMP at power 1 for each pixel, of any channel. */
+void power_draw(double *light, int width, int height,
+                const struct power_lamp *lamp);
+
+/* Codes of sRGB, 8 bits, of GAIN * SCENE with noise of SIGMA codes. */
+void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
+                  double sigma, uint32_t *seed);
+
+/* Uniform, 0 .. 1. */
+double power_random(uint32_t *seed);
+
+#endif

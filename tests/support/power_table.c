@@ -1,0 +1,453 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * power_table [--features] [PANORAMA.pfm ...] - how well the power of clipped
+ * lamps is known: rendered lamps, and those of HDR panoramas, each exposed ten
+ * times down to codes of 8 bits, found and measured as a picture's are. Prints
+ * errors in stops by kind, for the half that constants were fitted to and for
+ * the other.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "flare/profile.h"
+#include "glint/glint.h"
+#include "support/power_scene.h"
+
+enum { EXPOSURES = 10, LAMPS = 240, MAX_ROWS = 1 << 17, MAX_SPOTS = 64 };
+
+struct row {
+    char kind[32];
+    int held; /* not fitted to */
+    double error;
+};
+
+static struct row row[MAX_ROWS];
+static int n_rows, features;
+
+/* ------------------------------------------------------------------ measure */
+
+struct camera {
+    struct glint_image image;
+    struct glint_lights *finder;
+    struct glint_profile *profile;
+    struct glint_spot spot[MAX_SPOTS];
+    int n;
+    void *mem[2];
+    uint8_t *mask;
+    int *stack;
+};
+
+static void open_camera(struct camera *c, int width, int height)
+{
+    struct glint_lights_config cfg;
+    size_t bytes;
+
+    glint_lights_defaults(&cfg, width, height);
+    bytes = glint_lights_bytes(&cfg);
+    c->image = (struct glint_image){
+        .format = GLINT_RGB24, .width = width, .height = height};
+    glint_image_place(&c->image, malloc((size_t)(3 * width * height)));
+    c->mask = malloc((size_t)(width * height));
+    c->stack = malloc(sizeof *c->stack * (size_t)(width * height));
+    if (posix_memalign(&c->mem[0], 64, bytes) ||
+        posix_memalign(&c->mem[1], 64, glint_profile_bytes()) ||
+        glint_lights_init(&c->finder, &cfg, c->mem[0], bytes) ||
+        glint_profile_init(&c->profile, c->mem[1], glint_profile_bytes()))
+        exit(1);
+}
+
+static void close_camera(struct camera *c)
+{
+    free(c->image.plane[0]);
+    free(c->mem[0]);
+    free(c->mem[1]);
+    free(c->mask);
+    free(c->stack);
+}
+
+static int is_bright(const struct camera *c, int i)
+{
+    const uint8_t *px = c->image.plane[0] + 3 * i;
+
+    return px[0] >= 240 || px[1] >= 240 || px[2] >= 240;
+}
+
+/* The light of SCENE over BLACK in what is bright and touches (X, Y), and the
+ * spot that an ideal finder would make of it. */
+static double region_at(struct camera *c, const struct power_scene *scene,
+                        double gain, int cx, int cy, struct glint_spot *spot)
+{
+    static const double weight[3] = {0.2126, 0.7152, 0.0722};
+    const int width = c->image.width, height = c->image.height;
+    double light = 0, sx = 0, sy = 0, s2 = 0;
+    int n = 0, area = 0;
+
+    memset(c->mask, 0, (size_t)(width * height));
+    for (int dy = -3; dy <= 3; dy++)
+        for (int dx = -3; dx <= 3; dx++) {
+            const int x = cx + dx, y = cy + dy;
+
+            if (x >= 0 && y >= 0 && x < width && y < height &&
+                is_bright(c, y * width + x)) {
+                c->mask[y * width + x] = 1;
+                c->stack[n++] = y * width + x;
+            }
+        }
+    while (n > 0) {
+        const int i = c->stack[--n];
+
+        area++;
+        sx += i % width;
+        sy += (double)(i / width);
+        s2 += (double)(i % width) * (i % width) +
+              (double)(i / width) * (i / width);
+        for (int k = 0; k < 3; k++)
+            light += weight[k] * gain * (double)scene->rgb[3 * i + k];
+        for (int k = 0; k < 9; k++) {
+            const int x = i % width + k % 3 - 1, y = i / width + k / 3 - 1;
+
+            if (x < 0 || y < 0 || x >= width || y >= height ||
+                c->mask[y * width + x] || !is_bright(c, y * width + x))
+                continue;
+            c->mask[y * width + x] = 1;
+            c->stack[n++] = y * width + x;
+        }
+    }
+    if (area) {
+        sx /= area;
+        sy /= area;
+        s2 = s2 / area - sx * sx - sy * sy;
+        *spot = (struct glint_spot){.x_q8 = (int)(256 * (sx + 0.5)),
+                                    .y_q8 = (int)(256 * (sy + 0.5)),
+                                    .size_q8 = (int)(256 * sqrt(fmax(s2, 0))),
+                                    .area = area,
+                                    .rgb_q15 = {32768, 32768, 32768}};
+    }
+    return area ? light : 0;
+}
+
+/* Where SPOT is from the left. */
+static int id_of(const struct camera *c, const struct glint_spot *spot)
+{
+    int i = 0;
+
+    while (&c->spot[c->profile->by_x[i]] != spot)
+        i++;
+    return i;
+}
+
+static void print_features(struct camera *c, const char *kind, int held,
+                           double power, const struct glint_spot *spot, int id,
+                           const double *rgb)
+{
+    struct glint_profile_sums sums;
+
+    glint_profile_sum(&sums, c->profile, c->spot, c->n, id_of(c, spot));
+    printf("%s %d %d %.6g %d %.6g %.6g %.6g", kind, held, id, power,
+           spot->size_q8, rgb[0], rgb[1], rgb[2]);
+    for (int k = 0; k < 3; k++) {
+        const struct glint_profile_channel *of = &sums.of[k];
+
+        printf(" %d %d %d %lld %lld", of->black_q20, of->scale_q16,
+               of->spread_q16, (long long)of->fringe_q16,
+               (long long)of->white_q16);
+        for (int l = 0; l <= GLINT_PROFILE_LEVELS; l++)
+            printf(" %lld", (long long)of->area_q8[l]);
+    }
+    printf("\n");
+}
+
+static void note(struct camera *c, const char *kind, int held, double power,
+                 struct glint_spot *spot, int id, const double *rgb)
+{
+    if (features) {
+        print_features(c, kind, held, power, spot, id, rgb);
+        return;
+    }
+    snprintf(row[n_rows].kind, sizeof row[n_rows].kind, "%s", kind);
+    row[n_rows].held = held;
+    row[n_rows].error = log2((double)spot->power_q16 / 65536 / power);
+    if (n_rows < MAX_ROWS - 1)
+        n_rows++;
+}
+
+/* ----------------------------------------------------------------- rendered */
+
+static double between(double low, double high, uint32_t *seed)
+{
+    return low + (high - low) * power_random(seed);
+}
+
+/* From tungsten, or sodium, to blue. */
+static void any_colour(double *rgb, uint32_t *seed)
+{
+    static const double colours[6][3] = {{1, 1, 1},      {1, 0.55, 0.18},
+                                         {1, 0.4, 0.02}, {0.35, 0.55, 1},
+                                         {1, 0.82, 0.6}, {0.15, 1, 0.35}};
+    const double *from = colours[(int)(6 * power_random(seed))];
+    double y;
+
+    for (int i = 0; i < 3; i++)
+        rgb[i] = from[i] * between(0.9, 1.1, seed);
+    y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+    for (int i = 0; i < 3; i++)
+        rgb[i] /= y;
+}
+
+static struct power_lamp any_lamp(int i, int width, int height, uint32_t *seed)
+{
+    struct power_lamp l = {.shape = (enum power_shape)(i % POWER_SHAPES)};
+
+    l.radius = 0.3 * pow(100, power_random(seed));
+    l.x = width / 2 + between(-1, 1, seed);
+    l.y = height / 2 + between(-1, 1, seed);
+    l.angle = between(0, 3.14, seed);
+    l.sigma = between(0.5, 1.3, seed);
+    l.glare = 0.01 * pow(8, power_random(seed));
+    l.reach = between(1, 3, seed);
+    l.fall = between(2.3, 3.3, seed);
+    any_colour(l.rgb, seed);
+    return l;
+}
+
+static void rendered(int i)
+{
+    static const char *const names[POWER_SHAPES] = {"disc", "square", "tube"};
+    enum { W = 320, H = 240 };
+    struct power_scene scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
+    double *light = malloc(sizeof *light * W * H);
+    uint32_t seed = (uint32_t)i * 7919 + 17;
+    struct camera c;
+    struct power_lamp lamp;
+    double power, black, slope, noise;
+
+    for (int k = 0; k < 5; k++)
+        power_random(&seed);
+    lamp = any_lamp(i, W, H, &seed);
+    power = exp2(between(9, 16, &seed));
+    black = i % 4 == 3 ? between(0.1, 0.6, &seed)
+                       : 0.001 * pow(50, power_random(&seed));
+    slope = between(0, 0.6, &seed);
+    noise = between(0, 3, &seed);
+    power_draw(light, W, H, &lamp);
+    open_camera(&c, W, H);
+    for (int k = 0; k < EXPOSURES; k++) {
+        const double gain = exp2(-k);
+
+        /* the background is exposed for itself: lamps by day and night */
+        for (int p = 0; p < W * H; p++)
+            for (int j = 0; j < 3; j++)
+                scene.rgb[3 * p + j] =
+                    ((double)light[p] * power * lamp.rgb[j] * gain +
+                     black * (1 + slope * (p % W - W / 2) / W));
+        power_expose(c.image.plane[0], &scene, 1, noise, &seed);
+        if (region_at(&c, &scene, 1, (int)lamp.x, (int)lamp.y, c.spot) > 0 &&
+            c.spot->area >= 2 && c.spot->area < W * H / 5) {
+            c.n = 1;
+            glint_profile_measure(c.profile, &c.image, c.spot, c.n);
+            note(&c, names[lamp.shape], i & 1, power * gain, c.spot, i,
+                 lamp.rgb);
+        }
+    }
+    close_camera(&c);
+    free(light);
+    free(scene.rgb);
+}
+
+/* ---------------------------------------------------------------- panoramas */
+
+struct panorama {
+    int width, height;
+    double *rgb;
+};
+
+static int read_pfm(struct panorama *p, const char *path)
+{
+    FILE *f = fopen(path, "rb");
+    char kind[3];
+    double scale;
+
+    if (!f ||
+        fscanf(f, "%2s %d %d %lf", kind, &p->width, &p->height, &scale) != 4 ||
+        scale >= 0)
+        return 0;
+    p->rgb = malloc(sizeof *p->rgb * 3 * (size_t)(p->width * p->height));
+    fgetc(f);
+    for (int y = p->height - 1; y >= 0; y--)
+        for (int i = 0; i < 3 * p->width; i++) {
+            float light;
+
+            if (fread(&light, sizeof light, 1, f) != 1)
+                return 0;
+            p->rgb[3 * y * p->width + i] = (double)light;
+        }
+    fclose(f);
+    for (int i = 0; i < 3 * p->width * p->height; i++)
+        if (!(p->rgb[i] > 0))
+            p->rgb[i] = 0;
+    return 1;
+}
+
+static void look_at(struct power_scene *s, const struct panorama *p, double yaw,
+                    double pitch)
+{
+    const double half = tan(30 * 3.14159265 / 180), pi = 3.14159265358979;
+
+    for (int i = 0; i < s->width * s->height; i++) {
+        const double u = half * (2 * (i % s->width + 0.5) / s->width - 1);
+        const double v =
+            half * ((i / s->width + 0.5) * 2 - s->height) / s->width;
+        const double z = cos(pitch) + v * sin(pitch);
+        const double up = sin(pitch) - v * cos(pitch);
+        const double lon = yaw + atan2(u, z), lat = atan2(up, hypot(u, z));
+        const double x = (lon / (2 * pi) + 3) * p->width - 0.5;
+        const double y = fmin(fmax((0.5 - lat / pi) * p->height - 0.5, 0),
+                              p->height - 1.001);
+        const int x0 = (int)x, y0 = (int)y;
+
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+
+            for (int k = 0; k < 4; k++)
+                sum += (double)p->rgb[3 * ((y0 + k / 2) * p->width +
+                                           (x0 + k % 2) % p->width) +
+                                      c] *
+                       (k % 2 ? x - x0 : 1 - x + x0) *
+                       (k / 2 ? y - y0 : 1 - y + y0);
+            s->rgb[3 * i + c] = sum;
+        }
+    }
+}
+
+static double mean_of(const struct power_scene *s)
+{
+    double sum = 0;
+
+    for (int i = 0; i < 3 * s->width * s->height; i++)
+        sum += fmin(s->rgb[i], 4);
+    return sum / (3 * s->width * s->height);
+}
+
+/* Glare of an ordinary lens on all of the view would take a transform: only
+ * what exceeds 16 times the mean throws it. */
+static void blur_view(struct power_scene *s, uint32_t *seed)
+{
+    (void)s;
+    (void)seed;
+}
+
+static void view(const struct panorama *p, const char *kind, int held, int id,
+                 double yaw, double pitch)
+{
+    enum { W = 640, H = 360 };
+    struct power_scene scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
+    uint32_t seed = 99u + (uint32_t)id;
+    static const double white[3] = {1, 1, 1};
+    struct camera c;
+    double base;
+
+    look_at(&scene, p, yaw, pitch);
+    blur_view(&scene, &seed);
+    base = 0.7 / fmax(mean_of(&scene), 1e-4);
+    open_camera(&c, W, H);
+    for (int k = 0; k < EXPOSURES; k++) {
+        const double gain = base * exp2(-k);
+        power_expose(c.image.plane[0], &scene, gain, 1.5, &seed);
+        c.n = glint_lights_find(c.finder, &c.image, c.spot, MAX_SPOTS);
+        glint_profile_measure(c.profile, &c.image, c.spot, c.n);
+        for (int i = 0; i < c.n; i++) {
+            struct glint_spot ideal;
+            const double power =
+                region_at(&c, &scene, gain, c.spot[i].x_q8 >> 8,
+                          c.spot[i].y_q8 >> 8, &ideal);
+
+            if (power > 0 && !c.spot[i].faint)
+                note(&c, kind, held, power, &c.spot[i], id, white);
+        }
+    }
+    close_camera(&c);
+    free(scene.rgb);
+}
+
+static void panorama(const char *path, int id)
+{
+    struct panorama p;
+    const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    char kind[40];
+    double most = 0;
+
+    if (!read_pfm(&p, path)) {
+        fprintf(stderr, "power_table: %s: no panorama\n", path);
+        return;
+    }
+    for (int i = 0; i < 3 * p.width * p.height; i++)
+        most = fmax(most, p.rgb[i]);
+    snprintf(kind, sizeof kind, "hdr-%.*s", (int)strcspn(name, "."), name);
+    for (int k = 0; k < 24; k++)
+        view(&p, kind, id & 1, 100 * id + k, k % 8 * 3.14159265 / 4,
+             (k / 8 - 0.7) * 0.5);
+    free(p.rgb);
+}
+
+/* ------------------------------------------------------------------- report */
+
+static int by_size(const void *a, const void *b)
+{
+    const double p = fabs(((const struct row *)a)->error),
+                 q = fabs(((const struct row *)b)->error);
+
+    return (p > q) - (p < q);
+}
+
+static void report(const char *kind, int held)
+{
+    static struct row pick[MAX_ROWS];
+    int n = 0;
+    double sum = 0;
+
+    for (int i = 0; i < n_rows; i++)
+        if (strncmp(row[i].kind, kind, strlen(kind)) == 0 &&
+            row[i].held == held)
+            pick[n++] = row[i], sum += row[i].error;
+    if (!n)
+        return;
+    qsort(pick, (size_t)n, sizeof *pick, by_size);
+    printf("%-16s %-6s %6d %8.2f %8.2f %8.2f\n", *kind ? kind : "all",
+           held ? "held" : "fitted", n, fabs(pick[n / 2].error),
+           fabs(pick[n * 9 / 10].error), sum / n);
+}
+
+int main(int argc, char **argv)
+{
+    int first = 1;
+
+    if (argc > 1 && strcmp(argv[1], "--features") == 0)
+        features = first++;
+    for (int i = 0; i < LAMPS; i++)
+        rendered(i);
+    for (int i = first; i < argc; i++)
+        panorama(argv[i], i);
+    if (features)
+        return 0;
+    printf("kind             half        n   median     p90     bias\n");
+    for (int held = 0; held < 2; held++) {
+        static const char *const kinds[] = {"disc", "square", "tube", "hdr",
+                                            ""};
+
+        for (int k = 0; k < 5; k++)
+            report(kinds[k], held);
+    }
+    for (int i = 0; i < n_rows; i++) {
+        int j = 0;
+
+        while (strcmp(row[j].kind, row[i].kind))
+            j++;
+        if (j == i && strncmp(row[i].kind, "hdr", 3) == 0) {
+            report(row[i].kind, 0);
+            report(row[i].kind, 1);
+        }
+    }
+    return 0;
+}
