@@ -19,13 +19,18 @@ static const char help[] =
     "  a picture         .ppm; with the image plug-in .png .jpg and more\n"
     "  a sequence        frames/%04d.ppm -> out/%04d.ppm, from the first that\n"
     "                    is there to the first that is missing\n"
-    "  a y4m video       .y4m, or - for standard input and output:\n"
-    "                    ffmpeg -i in.mp4 -f yuv4mpegpipe - |\n"
-    "                      glint overlay - -o - | ffmpeg -i - out.mp4\n"
+    "  a video           .y4m, or - for standard input and output, by itself;\n"
+    "                    .mp4 .mkv .mov .webm .avi .mpg, animated .gif and "
+    "more\n"
+    "                    through the ffmpeg that is installed: sound is "
+    "copied,\n"
+    "                    rate and colours are kept\n"
     "\n"
     "  -o, --output OUT\n" LOOK_HELP
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
+    "  --encode OPTIONS    of ffmpeg for the pictures it writes, in place of\n"
+    "                      glint's (H.264: -crf 18): '-c:v libx265 -crf 20'\n"
     "  --start-number N    first of a sequence (default: 0 or 1, as "
     "found)\n"
     "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
@@ -66,6 +71,7 @@ static const struct option options[] = {
     {"matrix", required_argument, NULL, 'x'},
     {"start-number", required_argument, NULL, 'n'},
     {"jpeg-quality", required_argument, NULL, 'Q'},
+    {"encode", required_argument, NULL, 'e'},
     LOOK_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
@@ -82,6 +88,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             continue;
         if (c == 'o')
             o->output = optarg;
+        else if (c == 'e')
+            o->encode = optarg;
         else if (strchr("rxnQ", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
@@ -217,13 +225,6 @@ static void print_result(const struct tool *tool, const struct overlay *o)
     }
 }
 
-static bool is_y4m(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-
-    return strcmp(name, "-") == 0 || (dot && strcmp(dot, ".y4m") == 0);
-}
-
 int overlay_check_apart(const struct tool *tool, const char *from,
                         const char *to)
 {
@@ -238,11 +239,16 @@ int overlay_check_apart(const struct tool *tool, const char *from,
 static int check_output(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
+    bool frames;
+    const int code = overlay_check_gif(tool, o, &frames);
 
-    if (is_y4m(o->input) != is_y4m(o->output))
-        return tool_usage(tool, "a video becomes a video (.y4m or -), a "
-                                "picture a picture");
-    if (is_y4m(o->output) || glint_kept_check(o->output, &error) == GLINT_OK)
+    o->is_video = frames || overlay_is_video(o->input);
+    if (code != EXIT_OK)
+        return code;
+    if (!frames && o->is_video != overlay_is_video(o->output))
+        return tool_usage(tool, "a video becomes a video (.y4m, - or one of "
+                                "ffmpeg's), a picture a picture");
+    if (o->is_video || glint_kept_check(o->output, &error) == GLINT_OK)
         return EXIT_OK;
     tool_fail(tool, GLINT_E_OUTPUT, error.text);
     return EXIT_OUTPUT;
@@ -259,7 +265,7 @@ static int run(struct tool *tool, struct overlay *o)
     if (code != EXIT_OK)
         return code;
     o->started = tool_seconds();
-    if (is_y4m(o->input))
+    if (o->is_video)
         code = overlay_video(tool, o);
     else if (strchr(o->input, '%') && access(o->input, F_OK) != 0)
         code = overlay_sequence(tool, o);

@@ -15,6 +15,8 @@ struct overlay {
     int32_t elapsed_us; /* from frame to frame; 0: pictures by themselves */
     int range, matrix;  /* 0: auto */
     int quality;        /* of JPEG and WebP; 0: the input's */
+    bool is_video;
+    const char *encode; /* options for ffmpeg, or NULL */
 
     struct frame_report worst; /* its lights: of the frame with most too many,
                                   and most beyond the model */
@@ -51,7 +53,14 @@ int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
 /* Numbered pictures, as o->input and o->output have them. */
 int overlay_sequence(struct tool *tool, struct overlay *o);
 
-/* A y4m video from o->input to o->output. */
+/* Whether NAME is a video, by its extension. */
+bool overlay_is_video(const char *name);
+
+/* What to do with animated GIF: sets VIDEO where that goes in or out as frames,
+ * and says where one frame of many is taken. */
+int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video);
+
+/* A video from o->input to o->output. */
 int overlay_video(struct tool *tool, struct overlay *o);
 
 #endif
