@@ -128,14 +128,14 @@ BAKE := bake/text bake/films bake/prescription bake/check bake/glass bake/coatin
         bake/measure_model bake/write_model bake/bake
 PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posix/target posix/output posix/workers \
         plain/pnm plain/pfm plain/y4m oiio/loader plain/picture linux/request linux/instructions \
-        plain/half plain/tones plain/samples plain/kept_types plain/kept \
+        plain/half plain/tones plain/samples plain/kept_types plain/kept plain/y4m_layout plain/y4m_light \
         linux/sets linux/fourcc $(if $(filter yes,$(WITH_JPEG)),jpeg/mjpeg,jpeg/absent) \
         linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache coating \
         model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene look live_adapt \
-        look_layer overlay_file overlay_picture \
+        look_layer overlay_file overlay_picture overlay_y4m \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
         cmd_bake cmd_info cmd_trace cmd_render overlay_video overlay_sequence cmd_overlay cmd_explain cmd_live cmd_compare \

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "overlay.h"
+#include "overlay_y4m.h"
 #include "takes.h"
 #include "plain/kept.h"
 #include "posix/error.h"
@@ -296,6 +297,7 @@ int cmd_overlay(int argc, char **argv)
             code = run(&tool, o);
         tool_finish(&tool);
     }
+    overlay_y4m_close(o);
     look_close(&o->look);
     free(o);
     return code;

@@ -8,8 +8,11 @@
 
 #include "look.h"
 
+struct overlay_y4m;
+
 struct overlay {
     struct look look;
+    struct overlay_y4m *y4m; /* of a video that is not of 8 bits */
     const char *input, *output;
     int start_number;
     int32_t elapsed_us; /* from frame to frame; 0: pictures by themselves */

@@ -4,6 +4,7 @@
  * ourselves, all others through ffmpeg (ffmpeg.h).
  */
 #include "overlay.h"
+#include "overlay_y4m.h"
 
 #include <errno.h>
 #include <math.h>
@@ -187,11 +188,12 @@ static int frames(struct video *v)
         if (status == GLINT_OK && !image)
             break;
         if (status == GLINT_OK) {
-            code = overlay_draw(v->tool, v->o, image);
+            code = overlay_y4m_draw(v->tool, v->o, &v->in, image);
             if (code != EXIT_OK)
                 break;
-            status = glint_y4m_writer_put(&v->out, image, v->in.frame_tags,
-                                          &v->error);
+            status = glint_y4m_writer_put_planes(&v->out, v->in.planes,
+                                                 overlay_y4m_bytes(&v->in),
+                                                 v->in.frame_tags, &v->error);
             overlay_progress(v->tool, v->o);
         }
         if (status == GLINT_E_CLOSED)

@@ -8,21 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "plain/y4m_light.h"
 #include "posix/error.h"
 
 #define MAGIC "YUV4MPEG2"
-
-static const struct colour {
-    const char *tag;
-    enum glint_pixel_format format;
-} colours[] = {
-    /* The first of a format is what a header of our own says. */
-    {"420jpeg", GLINT_I420}, {"420mpeg2", GLINT_I420}, {"420paldv", GLINT_I420},
-    {"420", GLINT_I420},     {"422", GLINT_I422},      {"444", GLINT_I444},
-    {"mono", GLINT_GREY},
-};
-
-#define N_COLOURS (sizeof colours / sizeof *colours)
 
 /* ------------------------------------------------------------------ header */
 
@@ -37,15 +26,6 @@ static bool is_jpeg(const struct glint_y4m_header *h)
 {
     return h->range == GLINT_RANGE_FULL &&
            (!*h->colour || !strcmp(h->colour, "420jpeg"));
-}
-
-static const char *colour_of(enum glint_pixel_format format)
-{
-    size_t i = 0;
-
-    while (colours[i].format != format)
-        i++;
-    return colours[i].tag;
 }
 
 void glint_y4m_header_init(struct glint_y4m_header *header, int width,
@@ -63,7 +43,8 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
         .interlace = 'p',
         .aspect = "1:1",
     };
-    strcpy(header->colour, colour_of(format));
+    strcpy(header->colour, glint_y4m_layout_tag(format));
+    (void)glint_y4m_layout_parse(&header->layout, header->colour);
 }
 
 /* The number at *AT, which moves behind it; -1 if there is none. */
@@ -146,22 +127,10 @@ static bool take_tag(struct glint_y4m_header *h, const char *tag)
     return true;
 }
 
-/* More than 8 bits: 420p10, 444p16, mono12 and their like. */
-static bool is_deep(const char *colour)
-{
-    const char *const p = strchr(colour, 'p');
-
-    return (p && p[1] >= '0' && p[1] <= '9') ||
-           (!strncmp(colour, "mono", 4) && colour[4]);
-}
-
 static enum glint_status check_header(struct glint_y4m_header *h,
                                       const char *name,
                                       struct glint_error *error)
 {
-    const char *const colour = *h->colour ? h->colour : colours[0].tag;
-    size_t i = 0;
-
     if (h->width < 1 || h->height < 1)
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "no width or height in the Y4M header");
@@ -169,19 +138,13 @@ static enum glint_status check_header(struct glint_y4m_header *h,
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "larger than %d pixels a side",
                                   GLINT_MAX_SIDE);
-    while (i < N_COLOURS && strcmp(colours[i].tag, colour) != 0)
-        i++;
-    if (i < N_COLOURS) {
-        h->format = colours[i].format;
-        return GLINT_OK;
-    }
-    if (is_deep(colour))
+    if (!glint_y4m_layout_parse(&h->layout, h->colour))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
-                                  "C%s has more than 8 bits a sample; convert "
-                                  "it with: ffmpeg -pix_fmt yuv420p",
-                                  colour);
-    return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
-                              "C%s is none of 420, 422, 444 and mono", colour);
+                                  "C%s is none of 420, 422, 444 (to p16), 411, "
+                                  "444alpha and mono (to mono16)",
+                                  h->colour);
+    h->format = h->layout.format;
+    return GLINT_OK;
 }
 
 static bool is_plain_text(const char *line)
@@ -216,6 +179,8 @@ enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
     if (status)
         return status;
     h.matrix = is_jpeg(&h) ? GLINT_MATRIX_BT601 : matrix_of(h.height);
+    strcpy(h.line, line); /* it fitted above */
+    h.line_range = h.range;
     *header = h;
     return GLINT_OK;
 }
@@ -225,15 +190,18 @@ size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
 {
     const bool full = header->range == GLINT_RANGE_FULL;
     const char interlace[] = {header->interlace, 0};
-    const int n = snprintf(
-        line, GLINT_Y4M_PRINTED, MAGIC " W%d H%d F%d:%d%s%s%s%s%s%s%s%s\n",
-        header->width, header->height, header->fps_num, header->fps_den,
-        *interlace ? " I" : "", interlace, *header->aspect ? " A" : "",
-        header->aspect, *header->colour ? " C" : "", header->colour,
-        header->extra,
-        full                   ? " XCOLORRANGE=FULL"
-        : header->range_stated ? " XCOLORRANGE=LIMITED"
-                               : "");
+    const int n = *header->line && header->range == header->line_range
+                      ? snprintf(line, GLINT_Y4M_PRINTED, "%s\n", header->line)
+                      : snprintf(line, GLINT_Y4M_PRINTED,
+                                 MAGIC " W%d H%d F%d:%d%s%s%s%s%s%s%s%s\n",
+                                 header->width, header->height, header->fps_num,
+                                 header->fps_den, *interlace ? " I" : "",
+                                 interlace, *header->aspect ? " A" : "",
+                                 header->aspect, *header->colour ? " C" : "",
+                                 header->colour, header->extra,
+                                 full                   ? " XCOLORRANGE=FULL"
+                                 : header->range_stated ? " XCOLORRANGE=LIMITED"
+                                                        : "");
 
     return (size_t)n;
 }
@@ -358,8 +326,14 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
 {
     const struct glint_y4m_header *const h = &r->header;
 
+    const bool is_plain = glint_y4m_layout_is_plain(&h->layout);
+    const size_t bytes =
+        glint_y4m_layout_bytes(&h->layout, h->width, h->height);
+
     if (!r->mem) {
-        r->mem = malloc(glint_image_bytes(h->format, h->width, h->height));
+        r->mem = malloc(
+            bytes +
+            (is_plain ? 0 : glint_image_bytes(h->format, h->width, h->height)));
         if (!r->mem)
             return glint_error_report(error, GLINT_E_MEMORY, r->name,
                                       "no memory for a %d x %d frame", h->width,
@@ -373,7 +347,8 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
         .matrix = h->matrix,
         .transfer = GLINT_TONE_BT709,
     };
-    glint_image_place(&r->frame, r->mem);
+    r->planes = r->mem;
+    glint_image_place(&r->frame, is_plain ? r->mem : r->mem + bytes);
     return GLINT_OK;
 }
 
@@ -404,8 +379,9 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
                                         const struct glint_image **frame,
                                         struct glint_error *error)
 {
-    const size_t bytes = glint_image_bytes(
-        reader->header.format, reader->header.width, reader->header.height);
+    const struct glint_y4m_header *const h = &reader->header;
+    const size_t bytes =
+        glint_y4m_layout_bytes(&h->layout, h->width, h->height);
     bool more;
     ptrdiff_t got;
     enum glint_status status = read_frame_line(reader, &more, error);
@@ -418,13 +394,15 @@ enum glint_status glint_y4m_reader_next(struct glint_y4m_reader *reader,
         *frame = NULL;
         return GLINT_OK;
     }
-    got = read_block(reader, reader->mem, bytes);
+    got = read_block(reader, reader->planes, bytes);
     if (got < 0)
         return report_io(reader, error);
     if ((size_t)got < bytes)
         return glint_error_report(error, GLINT_E_FORMAT, reader->name,
                                   "frame %ld: ends after %zu of %zu bytes",
                                   reader->n_frames, (size_t)got, bytes);
+    if (!glint_y4m_layout_is_plain(&h->layout))
+        glint_y4m_light_proxy(&h->layout, &reader->frame, reader->planes);
     reader->n_frames++;
     *frame = &reader->frame;
     return GLINT_OK;
@@ -496,6 +474,24 @@ enum glint_status glint_y4m_writer_put(struct glint_y4m_writer *writer,
         status = glint_output_flush(&writer->out, error);
     if (!status)
         writer->n_frames++;
+    return status;
+}
+
+enum glint_status glint_y4m_writer_put_planes(struct glint_y4m_writer *writer,
+                                              const uint8_t *planes,
+                                              size_t bytes, const char *tags,
+                                              struct glint_error *error)
+{
+    char line[sizeof "FRAME\n" + GLINT_Y4M_FRAME_TAGS];
+    const int len = snprintf(line, sizeof line, "FRAME%s\n", tags);
+    enum glint_status status =
+        glint_output_write(&writer->out, line, (size_t)len, error);
+
+    if (!status)
+        status = glint_output_write(&writer->out, planes, bytes, error);
+    if (!status)
+        status = glint_output_flush(&writer->out, error);
+    writer->n_frames += !status;
     return status;
 }
 

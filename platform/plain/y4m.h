@@ -14,9 +14,12 @@
  * This is what ffmpeg -f yuv4mpegpipe speaks. A stream is one header line and
  * then, for each frame, a line FRAME and the planes Y, Cb, Cr without padding;
  * chroma of subsampled formats has (side + 1) / 2 samples, as everywhere in
- * glint. Handled are 4:2:0 (C420, C420jpeg, C420mpeg2, C420paldv: where the
- * chroma samples lie makes no difference here), C422, C444 and Cmono, at 8 bits
- * a sample. Interlaced frames are taken as they come, both fields in one.
+ * glint. Handled is what plain/y4m_layout.h lists (where the chroma samples of
+ * 4:2:0 lie makes no difference here). Frames of more than 8 bits, and 4:1:1,
+ * are looked at through a copy of 8 bits; they themselves are planes that
+ * plain/y4m_light.h adds light to and glint_y4m_writer_put_planes writes, and
+ * an alpha plane goes with them. Interlaced frames are taken as they come, both
+ * fields in one.
  *
  * What the codes mean, unless the caller overrules it in the header after open:
  *   range     limited; full only by the tag XCOLORRANGE=FULL. C420jpeg by
@@ -38,6 +41,7 @@
 
 #include "glint/image.h"
 #include "glint/status.h"
+#include "plain/y4m_layout.h"
 #include "posix/input.h"
 #include "posix/output.h"
 
@@ -49,6 +53,7 @@
 struct glint_y4m_header {
     int width, height;              /* 1 .. GLINT_MAX_SIDE */
     enum glint_pixel_format format; /* GLINT_GREY, _I420, _I422 or _I444 */
+    struct glint_y4m_layout layout; /* of a frame as it is stored */
     enum glint_range range;
     enum glint_matrix matrix;
     int fps_num, fps_den;       /* frames a second; 0, 0: not known */
@@ -57,6 +62,9 @@ struct glint_y4m_header {
     char colour[16];            /* as stated, "420mpeg2"; "": not stated */
     bool range_stated;          /* by XCOLORRANGE */
     char extra[GLINT_Y4M_LINE]; /* the other tags, each after a space */
+    char line[GLINT_Y4M_LINE];  /* as it was read, "" if it was not; it is
+                                   printed again while range is line_range */
+    enum glint_range line_range;
 };
 
 /* A header of one's own: progressive, square pixels, limited range. FORMAT is
@@ -66,15 +74,15 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
                            int fps_num, int fps_den);
 
 /* Reads LINE, without the line feed and shorter than GLINT_Y4M_LINE. NAME is
- * for errors. GLINT_E_FORMAT: malformed. GLINT_E_UNSUPPORTED: more than 8 bits,
- * another subsampling, or a side above GLINT_MAX_SIDE. */
+ * for errors. GLINT_E_FORMAT: malformed. GLINT_E_UNSUPPORTED: another
+ * layout, or a side above GLINT_MAX_SIDE. */
 enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
                                          const char *line, const char *name,
                                          struct glint_error *error);
 
-/* Writes HEADER as a line with its line feed, in the order W H F I A C, extra
- * tags, XCOLORRANGE, which is stated where it was or where it is FULL. Returns
- * the bytes. */
+/* Writes HEADER as a line with its line feed, as it was read or in the order W
+ * H F I A C, extra tags, XCOLORRANGE, which is stated where it was or where it
+ * is FULL. Returns the bytes. */
 size_t glint_y4m_header_print(char line[GLINT_Y4M_PRINTED],
                               const struct glint_y4m_header *header);
 
@@ -96,7 +104,8 @@ struct glint_y4m_reader {
     glint_y4m_source_fn *source;
     void *ctx;
     struct glint_image frame;
-    uint8_t *mem; /* of the frame */
+    uint8_t *planes; /* of the last frame, as stored */
+    uint8_t *mem;    /* of the frame and, before it, of its planes */
     uint8_t ahead[4096];
     size_t ahead_at, ahead_end; /* bytes read and not used yet */
 };
@@ -145,6 +154,13 @@ enum glint_status glint_y4m_writer_put(struct glint_y4m_writer *writer,
                                        const struct glint_image *frame,
                                        const char *tags,
                                        struct glint_error *error);
+
+/* Writes a frame as it is stored: all planes, glint_y4m_layout_bytes() of them.
+ */
+enum glint_status glint_y4m_writer_put_planes(struct glint_y4m_writer *writer,
+                                              const uint8_t *planes,
+                                              size_t bytes, const char *tags,
+                                              struct glint_error *error);
 
 /* Ends the stream and puts the file in place. On failure it is aborted. */
 enum glint_status glint_y4m_writer_commit(struct glint_y4m_writer *writer,

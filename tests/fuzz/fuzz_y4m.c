@@ -38,7 +38,7 @@ static ptrdiff_t pull(void *ctx, void *dst, size_t bytes)
     return (ptrdiff_t)n;
 }
 
-static void check_header(const struct glint_y4m_header *header)
+static void check_printed(const struct glint_y4m_header *header)
 {
     struct glint_y4m_header again;
     struct glint_error error;
@@ -56,6 +56,16 @@ static void check_header(const struct glint_y4m_header *header)
     require(glint_y4m_header_print(twice, &again) == len);
     require(!memcmp(line, twice, len));
     require(again.format == header->format && again.range == header->range);
+}
+
+/* As it was read, and as its fields say. */
+static void check_header(const struct glint_y4m_header *header)
+{
+    struct glint_y4m_header own = *header;
+
+    check_printed(header);
+    own.line[0] = '\0';
+    check_printed(&own);
 }
 
 /* Sums all samples up; the memory checker looks at each. */

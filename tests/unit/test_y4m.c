@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "plain/y4m.h"
+#include "plain/y4m_light.h"
 
 #define BYTES(text) text, sizeof text - 1
 
@@ -116,6 +117,12 @@ static void test_formats(void **state)
     expect_format(" I? A0:0 C444", GLINT_I444);
     expect_format(" Im A10:11 Cmono", GLINT_GREY);
     expect_format(" Ib C420 Zwhat XANY=thing", GLINT_I420);
+    expect_format(" C420p10 XANY=thing Ip", GLINT_I420);
+    expect_format(" C422p12", GLINT_I422);
+    expect_format(" C444p16", GLINT_I444);
+    expect_format(" Cmono9", GLINT_GREY);
+    expect_format(" C411", GLINT_I422);
+    expect_format(" C444alpha", GLINT_I444);
 }
 
 static void test_range_and_matrix(void **state)
@@ -191,13 +198,15 @@ static void test_hostile_headers(void **state)
     refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W8193 H3");
     refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H8193");
     refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W4294967299 H3");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C411");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C444alpha");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 Cmono16");
-    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p10");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C440");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C444alphap10");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420jpegp10");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 Cmono8");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p11");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p100");
     assert_string_equal(error.text,
-                        "x.y4m: C420p10 has more than 8 bits a sample; convert "
-                        "it with: ffmpeg -pix_fmt yuv420p");
+                        "x.y4m: C420p100 is none of 420, 422, 444 (to p16), "
+                        "411, 444alpha and mono (to mono16)");
 }
 
 static void test_own_header(void **state)
@@ -417,6 +426,117 @@ static void test_copies(void **state)
     check_copy(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n")); /* no frames at all */
 }
 
+/* --------------------------------------------------------- depth and layout */
+
+/* Frames as they are stored, and what is seen of them. */
+static void check_planes(const char *data, size_t bytes, const char *seen,
+                         size_t n_seen)
+{
+    const struct glint_image *frame;
+    struct memory m = {data, bytes, 0, 7, false};
+    struct glint_y4m_reader reader;
+
+    assert_int_equal(glint_y4m_reader_start(&reader, pull, &m, "x.y4m", &error),
+                     GLINT_OK);
+    assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error), GLINT_OK);
+    assert_non_null(frame);
+    assert_memory_equal(frame->plane[0], seen, n_seen);
+    glint_y4m_reader_close(&reader);
+}
+
+static void test_deep_frames(void **state)
+{
+    (void)state;
+    /* 3 x 3 of 10 bits: luma 9, chroma 4 and 4 samples of two bytes */
+    check_planes(BYTES("YUV4MPEG2 W3 H1 C420p10\nFRAME\n"
+                       "\x40\x00\xac\x03\xff\x03"
+                       "\x00\x02\x04\x02"
+                       "\xff\x01\x00\x00"),
+                 BYTES("\x10\xeb\xff"
+                       "\x80\x81"
+                       "\x7f\x00"));
+    check_planes(BYTES("YUV4MPEG2 W2 H1 Cmono16\nFRAME\n\xff\x12\x00\xab"),
+                 BYTES("\x12\xab"));
+    check_planes(BYTES("YUV4MPEG2 W6 H1 C411\nFRAME\nabcdefuvUV"),
+                 BYTES("abcdefuuvUUV"));
+    check_planes(BYTES("YUV4MPEG2 W1 H1 C444alpha\nFRAME\nabcd"), BYTES("abc"));
+}
+
+/* Light on one frame of 3 x 3 of TAG, all samples CODE but chroma. */
+static void light_up(const char *tag, int code, int middle, const float *layer,
+                     uint8_t planes[72])
+{
+    static struct glint_y4m_light light;
+    struct glint_y4m_header h;
+    char line[80];
+    bool wide;
+    size_t n;
+
+    snprintf(line, sizeof line, "YUV4MPEG2 W3 H3 %s", tag);
+    assert_int_equal(parse(&h, line), GLINT_OK);
+    wide = h.layout.bits > 8;
+    n = glint_y4m_layout_bytes(&h.layout, 3, 3) / (wide ? 2 : 1);
+    for (size_t i = 0; i < n; i++) {
+        const int value = i < 9 ? code : middle;
+
+        planes[wide ? 2 * i : i] = (uint8_t)value;
+        if (wide)
+            planes[2 * i + 1] = (uint8_t)(value >> 8);
+    }
+    glint_y4m_light_init(&light, &h);
+    glint_y4m_light_add(&light, planes, layer);
+}
+
+static int wide_at(const uint8_t *planes, int i)
+{
+    return planes[2 * i] | planes[2 * i + 1] << 8;
+}
+
+/* White light of 0.18: BT.709 makes 0.409 of it (by hand: 1.099 * 0.18^0.45 -
+ * 0.099 = 0.4090), 64 + 876 * 0.4090 = 422.3 of 10 bits. */
+static void test_light(void **state)
+{
+    float layer[27] = {0};
+    uint8_t planes[72];
+
+    (void)state;
+    light_up("C420p10", 500, 512, layer, planes);
+    for (int i = 0; i < 9; i++)
+        assert_int_equal(wide_at(planes, i), 500);
+    layer[3 * 4] = layer[3 * 4 + 1] = layer[3 * 4 + 2] = 0.18F;
+    light_up("C420p10", 64, 512, layer, planes);
+    for (int i = 0; i < 17; i++)
+        assert_int_equal(wide_at(planes, i), i == 4 ? 422 : i < 9 ? 64 : 512);
+    light_up("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
+    assert_int_equal(wide_at(planes, 4), 1675); /* 4095 * 0.40901 */
+    layer[3 * 8] = 9; /* red alone, beyond white, at the odd corner */
+    light_up("C420p10", 64, 512, layer, planes);
+    assert_int_equal(wide_at(planes, 8), 326);  /* 64 + 876 * 0.299 */
+    assert_int_equal(wide_at(planes, 12), 361); /* 512 - 896 * 0.1687 */
+    assert_int_equal(wide_at(planes, 16), 960); /* 512 + 896 * 0.5 */
+    assert_int_equal(wide_at(planes, 9), 512);
+}
+
+/* A code that is white stays; one that is beyond does, too; alpha is not
+ * touched. */
+static void test_light_stays(void **state)
+{
+    float layer[27];
+    uint8_t planes[72];
+
+    (void)state;
+    for (int i = 0; i < 27; i++)
+        layer[i] = 0.5F;
+    light_up("C444p12 XCOLORRANGE=LIMITED", 3760, 2048, layer, planes);
+    for (int i = 0; i < 27; i++)
+        assert_int_equal(wide_at(planes, i), i < 9 ? 3760 : 2048);
+    light_up("C444p12", 4000, 2048, layer, planes);
+    assert_int_equal(wide_at(planes, 0), 4000);
+    light_up("C444alpha", 16, 128, layer, planes);
+    assert_int_equal(planes[35], 128);
+    assert_in_range(planes[0], 170, 176);
+}
+
 /* 720 x 405 as ffmpeg writes it: chroma has 203 rows. */
 static void test_odd_video(void **state)
 {
@@ -508,6 +628,9 @@ int main(void)
         cmocka_unit_test(test_long_lines),
         cmocka_unit_test(test_hostile_frames),
         cmocka_unit_test(test_copies),
+        cmocka_unit_test(test_deep_frames),
+        cmocka_unit_test(test_light),
+        cmocka_unit_test(test_light_stays),
         cmocka_unit_test(test_odd_video),
         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_full_device),
