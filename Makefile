@@ -134,11 +134,11 @@ PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posi
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache coating \
-        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene look live_adapt \
+        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene response strength look live_adapt \
         look_layer overlay_file overlay_picture overlay_y4m \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
-        cmd_bake cmd_info cmd_trace cmd_render overlay_video overlay_sequence cmd_overlay cmd_explain cmd_live cmd_compare \
+        cmd_bake cmd_info cmd_trace cmd_render overlay_video overlay_sequence overlay_line cmd_overlay cmd_explain cmd_live cmd_compare \
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 # what one asks before one knows
@@ -147,7 +147,7 @@ EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
-        fbdev sinks live_stats live_adapt frame show_lights sweep explain budget live \
+        fbdev sinks live_stats live_adapt frame strength show_lights sweep explain budget live \
         $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights
 ifeq ($(WITH_JPEG),yes)

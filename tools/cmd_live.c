@@ -312,6 +312,7 @@ static int parse(struct line *line, struct config *config,
 
         if (code != EXIT_OK)
             return code;
+        look_options_end(&into->look);
     }
     return parse_line(line);
 }

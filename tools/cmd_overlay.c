@@ -2,11 +2,12 @@
  *
  * glint overlay: the flare of the lamps in a picture or video, on top of it.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "overlay.h"
+#include "overlay_line.h"
 #include "overlay_y4m.h"
 #include "takes.h"
 #include "plain/kept.h"
@@ -169,6 +170,8 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
         return tool_fail(tool, status, NULL);
     o->find_ms += look->find_ms;
     o->flare_ms += look->flare_ms;
+    o->peak = fmax(o->peak, strength_largest(look->strength.light.peak));
+    o->mean_sum += strength_largest(look->strength.light.mean);
     if (look->n_lamps > o->most_lights)
         o->most_lights = look->n_lamps;
     if (look->report.peak_bytes > o->peak_bytes)
@@ -192,38 +195,50 @@ void overlay_progress(const struct tool *tool, const struct overlay *o)
 
 /* ------------------------------------------------------------------- result */
 
-static void print_result(const struct tool *tool, const struct overlay *o)
+static void print_figures(const struct overlay *o)
+{
+    const int n = o->look.n_frames ? o->look.n_frames : 1;
+
+    fprintf(stderr,
+            "%dx%d (find %.1f ms, flare %.1f ms), %d ghosts; flare memory %zu "
+            "bytes, peak %zu\n",
+            o->look.view.width, o->look.view.height, o->find_ms / n,
+            o->flare_ms / n, o->look.report.ghosts, o->look.report.arena_bytes,
+            o->peak_bytes);
+}
+
+static void print_json(const struct overlay *o,
+                       const struct overlay_light *light)
 {
     const double seconds = tool_seconds() - o->started;
     const int n = o->look.n_frames ? o->look.n_frames : 1;
-    const bool piped = strcmp(o->output, "-") == 0;
+
+    printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
+           "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
+           o->look.n_frames, 1e3 * seconds, o->look.n_frames / seconds,
+           o->find_ms / n, o->flare_ms / n, o->most_lights);
+    overlay_json(o, light, stdout);
+    scene_json(&o->look.report);
+    printf("}\n");
+}
+
+static void print_result(const struct tool *tool, const struct overlay *o)
+{
+    const bool json = tool->json && strcmp(o->output, "-") != 0;
+    struct overlay_light light;
 
     if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
         fputs("\r\033[K", stderr);
     scene_warn_lights(tool, &o->worst);
-    if (tool->json && !piped) {
-        printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
-               "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
-               o->look.n_frames, 1e3 * seconds, o->look.n_frames / seconds,
-               o->find_ms / n, o->flare_ms / n, o->most_lights);
-        scene_json(&o->look.report);
-        printf("}\n");
-    } else if (!tool->quiet) {
-        fprintf(stderr,
-                "%s: %d frame%s of %dx%d, %.1f fps (find %.1f ms, flare %.1f "
-                "ms), at most %d lights, %d ghosts; flare memory %zu bytes, "
-                "peak %zu\n",
-                o->output, o->look.n_frames, o->look.n_frames == 1 ? "" : "s",
-                o->look.view.width, o->look.view.height,
-                o->look.n_frames / seconds, o->find_ms / n, o->flare_ms / n,
-                o->most_lights, o->look.report.ghosts,
-                o->look.report.arena_bytes, o->peak_bytes);
-        if (o->most_lights == 0)
-            fprintf(stderr,
-                    "%s: no light was found, so nothing was drawn; "
-                    "see --threshold, or give one with --light\n",
-                    o->output);
-    }
+    if (tool->quiet && !json)
+        return;
+    light = overlay_light(tool, o);
+    if (json)
+        print_json(o, &light);
+    else
+        overlay_say(o, &light, stderr);
+    if (tool->verbose && !tool->quiet)
+        print_figures(o);
 }
 
 int overlay_check_apart(const struct tool *tool, const char *from,

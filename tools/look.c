@@ -14,9 +14,11 @@ void look_defaults(struct look *look)
 {
     *look = (struct look){.lens = "heliar-tronnier",
                           .headroom_ev = -1,
-                          .threshold_ev = {-0.1, -0.6}};
+                          .threshold_ev = {-0.1, -0.6},
+                          .white = 1};
     scene_defaults(&look->scene);
     look->scene.coating.kind = COATING_MIXED;
+    strength_defaults(&look->strength);
 }
 
 /* Stops by which a region extends below what makes it a lamp, if not told. */
@@ -71,6 +73,10 @@ static bool take(struct look *look, int option, const char *value)
         return look->no_tracking = true;
     case OPT_SHOW:
         return look->show_lights = tool_word(value, shows) == 0;
+    case OPT_STRENGTH:
+        look->scene.has_exposure = false;
+        return tool_number(value, &look->strength.asked) &&
+               look->strength.asked >= 0 && look->strength.asked <= 100;
     default:
         layer = tool_word(value, layers);
         look->flare_only = layer >= 1;
@@ -79,11 +85,30 @@ static bool take(struct look *look, int option, const char *value)
     }
 }
 
+/* False: OPTION is the other dial for the same. */
+static bool take_dial(struct look *look, int option)
+{
+    if (option != OPT_STRENGTH && option != OPT_EXPOSURE)
+        return true;
+    if (look->dial && look->dial != option)
+        return false;
+    look->dial = option;
+    return true;
+}
+
+void look_options_end(struct look *look)
+{
+    look->dial = 0;
+}
+
 int look_option(const struct tool *tool, struct look *look, int option,
                 const char *value)
 {
     static const struct option names[] = {LOOK_OPTIONS};
-    const int code = scene_option(tool, &look->scene, option, value);
+    const int code = take_dial(look, option)
+                         ? scene_option(tool, &look->scene, option, value)
+                         : tool_usage(tool, "--strength chooses the exposure; "
+                                            "give one of it and --exposure");
 
     if (code != -2 || option < OPT_LENS || option >= OPT_LOOK_LAST)
         return code;
@@ -99,6 +124,7 @@ int look_open(const struct tool *tool, struct look *look)
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
     const int code = scene_open(tool, &look->scene, look->lens);
+    size_t n;
 
     if (code != EXIT_OK)
         return code;
@@ -107,10 +133,11 @@ int look_open(const struct tool *tool, struct look *look)
     look->is_listed = look->lights_file != NULL;
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    look->lamp =
-        malloc(((size_t)look->n_hand + (size_t)look->list.n + LAMP_FINDER_MAX) *
-               sizeof *look->lamp);
-    return look->lamp ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    n = (size_t)look->n_hand + (size_t)look->list.n + LAMP_FINDER_MAX;
+    look->lamp = malloc(n * sizeof *look->lamp);
+    look->level = malloc(n * sizeof *look->level);
+    return look->lamp && look->level ? EXIT_OK
+                                     : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }
 
 /* Lamps to look for: a picture has many that hardly show. */
@@ -159,7 +186,11 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
 
     unsize(look);
     look->view = scene_view(&look->scene, width, height);
-    code = scene_frame(tool, &look->scene, look->view, &look->frame);
+    look->strength.follows = false;
+    code = response_measure(tool, &look->scene, look->view, look->reserve_bytes,
+                            &look->response);
+    if (code == EXIT_OK)
+        code = scene_frame(tool, &look->scene, look->view, &look->frame);
     if (code != EXIT_OK)
         return code;
     look->sized = true;
@@ -187,6 +218,8 @@ void look_close(struct look *look)
     lamp_list_free(&look->list);
     free(look->lamp);
     look->lamp = NULL;
+    free(look->level);
+    look->level = NULL;
     scene_close(&look->scene);
 }
 
@@ -202,10 +235,15 @@ int look_lamps(struct look *look, const struct glint_image *image,
     if (look->is_listed)
         n += lamp_list_frame(&look->list, look->n_frames, &look->view, focal,
                              look->lamp + n, look->list.n);
-    else if (n == 0)
-        n = lamp_finder_frame(&look->finder, image,
-                              look->no_tracking ? 0 : elapsed_us, &look->view,
-                              focal, look->lamp);
+    for (int i = 0; i < n; i++)
+        look->level[i] = 1;
+    if (look->is_listed || n > 0)
+        return n;
+    n = lamp_finder_frame(&look->finder, image,
+                          look->no_tracking ? 0 : elapsed_us, &look->view,
+                          focal, look->lamp);
+    for (int i = 0; i < n; i++)
+        look->level[i] = look->finder.track[i].level_q15 / 32768.0;
     return n;
 }
 
@@ -276,7 +314,22 @@ void look_mark(const struct look *look, const struct glint_image *image)
 
 double look_scale(const struct look *look)
 {
-    return scene_scale(&look->scene);
+    return look->strength.scale;
+}
+
+void look_expose(struct look *look, int32_t elapsed_us)
+{
+    const bool is_new =
+        look->no_tracking || glint_tracks_was_cut(look->finder.tracks);
+    const struct strength_lamps lamps = {look->lamp, look->level, look->n_lamps,
+                                         (double)look->view.width *
+                                             look->view.height * look->white};
+
+    look->strength.is_physical = look->scene.has_exposure;
+    look->strength.exposure_ev = look->scene.exposure_ev;
+    look->strength.gain = look->scene.gain;
+    strength_expose(&look->strength, &look->response, &lamps,
+                    is_new ? 0 : elapsed_us);
 }
 
 void look_find(struct look *look, const struct glint_image *image,
@@ -295,11 +348,14 @@ enum glint_status look_draw(struct look *look, const struct glint_image *image,
     double found;
 
     look_find(look, image, elapsed_us);
+    look_expose(look, elapsed_us);
     found = tool_seconds();
     if (look->flare_only)
         blacken(image);
-    status = frame_draw(&look->frame, look->lamp, look->n_lamps,
+    status = frame_draw(&look->frame, look->lamp,
+                        look_scale(look) > 0 ? look->n_lamps : 0,
                         look_scale(look), image, &look->report);
+    look->report.lights = look->n_lamps;
     look->flare_ms = 1e3 * (tool_seconds() - found);
     if (look->show_lights)
         look_mark(look, image);

@@ -14,6 +14,7 @@
 
 #include "lamps.h"
 #include "scene.h"
+#include "strength.h"
 
 struct look {
     struct scene scene;
@@ -25,12 +26,18 @@ struct look {
     size_t reserve_bytes; /* unless 0: all the memory that frames will take */
     int n_hand;
     struct glint_lamp hand[SCENE_MAX_LAMPS];
+    struct strength strength; /* how bright, and the scale of each frame */
+    int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
 
     /* Made by open and size. */
     bool is_listed; /* lights come from a file; its name is not needed more */
     struct lamp_list list;
     struct lamp_finder finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
+    double *level;           /* of each, its share in its power: struct
+                                strength_lamps */
+    struct response response;
+    double white; /* light of the picture's white, 1 by default */
     struct glint_view view;
     struct frame frame;
     bool sized;
@@ -50,6 +57,7 @@ enum look_option_code {
     OPT_LAYER,
     OPT_NO_TRACKING,
     OPT_SHOW,
+    OPT_STRENGTH,
     OPT_LOOK_LAST
 };
 
@@ -61,7 +69,8 @@ enum look_option_code {
         {"headroom", required_argument, NULL, OPT_HEADROOM},   \
         {"layer", required_argument, NULL, OPT_LAYER},         \
         {"no-tracking", no_argument, NULL, OPT_NO_TRACKING},   \
-        {"show", required_argument, NULL, OPT_SHOW}, SCENE_OPTIONS
+        {"show", required_argument, NULL, OPT_SHOW},           \
+        {"strength", required_argument, NULL, OPT_STRENGTH}, SCENE_OPTIONS
 
 #define LOOK_HELP                                                              \
     "  --lens LENS         table or baked model (default heliar-tronnier)\n"   \
@@ -88,7 +97,14 @@ enum look_option_code {
     "                      40 (default: told for each lamp from its halo)\n"   \
     "  --layer WHAT        composite | flare: the flare alone on black |\n"    \
     "                      flare-alpha: a picture of it with alpha, to be\n"   \
-    "                      laid over others in linear light\n"
+    "                      laid over others in linear light\n"                 \
+    "  --strength S        how bright the flare comes out, whatever the "      \
+    "lamps\n"                                                                  \
+    "                      and the lens: 0 none, 0.5 (default) a quarter of\n" \
+    "                      white at its brightest, 1 white; twice S is two\n"  \
+    "                      stops. Follows the lamps of a video. --exposure "   \
+    "EV\n"                                                                     \
+    "                      instead sets it by hand\n"
 
 void look_defaults(struct look *look);
 
@@ -104,6 +120,9 @@ int look_open(const struct tool *tool, struct look *look);
 int look_size(const struct tool *tool, struct look *look, int width,
               int height);
 
+/* The options so far came from a file: those to come may say otherwise. */
+void look_options_end(struct look *look);
+
 /* Sets the lamps of IMAGE, as look_draw does; returns how many there are. */
 int look_lamps(struct look *look, const struct glint_image *image,
                int32_t elapsed_us);
@@ -114,10 +133,11 @@ enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us);
 
 /* The parts of look_draw, for tools/look_layer.h: sets the lamps of IMAGE and
- * how long that took; what their light is multiplied by; draws boxes and
- * numbers of lights. */
+ * their number, then what their light is multiplied by, and draws over IMAGE
+ * where they are. */
 void look_find(struct look *look, const struct glint_image *image,
                int32_t elapsed_us);
+void look_expose(struct look *look, int32_t elapsed_us);
 double look_scale(const struct look *look);
 void look_mark(const struct look *look, const struct glint_image *image);
 

@@ -25,6 +25,8 @@ struct overlay {
                                   and most beyond the model */
     int most_lights;
     double find_ms, flare_ms, started;
+    double peak, mean_sum; /* of the flare, 1 = white: the brightest of all
+                              frames; the sum of their means */
     size_t peak_bytes;
 };
 

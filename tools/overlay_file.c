@@ -133,6 +133,8 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     look_find(look, &file->image, elapsed_us);
     if (file->kept.is_float)
         look_measure(look, &file->kept.samples, file->white);
+    look->white = file->white;
+    look_expose(look, elapsed_us);
     file->layer = calloc(n, sizeof *file->layer);
     if (!file->layer)
         return GLINT_E_MEMORY;

@@ -82,6 +82,7 @@ static const struct {
     {NULL, "stats", "auto, line, json or none"},
     {NULL, "stop", "circle, or polygon:N[,DEGREES] with N 3 to 64"},
     {NULL, "threads", "a whole number, from 1"},
+    {NULL, "strength", "0 to 100"},
     {NULL, "threshold", "H[,L], luma codes of 1 to 255, L no higher than H"},
     {NULL, "tile", "8, 16, 32 or 64 pixels"},
     {NULL, "tolerance", "a factor, 0.1 to 100"},
