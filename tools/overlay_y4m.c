@@ -36,6 +36,7 @@ static enum glint_status draw(void *ctx, struct look *look,
     enum glint_status status;
 
     look_find(look, image, elapsed_us);
+    look_expose(look, elapsed_us);
     look->n_frames++;
     if (look->flare_only)
         glint_y4m_light_blacken(&y->light, y->planes);
