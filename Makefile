@@ -192,6 +192,23 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
         -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
+# What reads files of others is guarded against what no test has found; the
+# run-time half, which has no copies and no arrays of a length from outside, is
+# as it was. A sanitizer sees more by itself, and -O0 takes no _FORTIFY_SOURCE.
+LINKED := -Wl,-z,relro,-z,now
+ifeq ($(filter -static,$(LDFLAGS)),)
+CFLAGS += -fPIE
+LINKED += -pie
+endif
+ifneq ($(filter release qcheck,$(CONFIG)),)
+$(bake_o) $(platform_o) $(tools_o) $(OUT)/tools/glint.o $(OUT)/tools/glint_live.o \
+$(OUT)/tools/models_only.o: CFLAGS += -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2
+endif
+# On boards what is around the frames is small rather than fast; rows of pixels
+# and what is measured by are set below.
+ifdef CROSS
+$(platform_o) $(tools_o) $(OUT)/tools/glint_live.o $(OUT)/tools/models_only.o: CFLAGS += -Os -fno-asynchronous-unwind-tables -fno-unwind-tables
+endif
 # Run-time half: no library, small stack frames; --gc-sections takes out what is
 # not called.
 $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 -fno-asynchronous-unwind-tables
@@ -285,7 +302,7 @@ libs := $(OUT)/libglint-tools.a $(OUT)/libglint-platform.a \
 define link
 	@mkdir -p $(@D)
 	$(say) LD $@
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) $(filter %.o,$^) $(libs) $(EXTRA) \
+	$(Q)$(CC) $(CFLAGS) $(LINKED) $(LDFLAGS) $(filter %.o,$^) $(libs) $(EXTRA) \
 	        $(LDLIBS) -o $@
 endef
 

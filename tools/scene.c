@@ -383,6 +383,15 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     return EXIT_OK;
 }
 
+/* The angle that a model ends at, without asin(): that is 25 KB of glint-live.
+ */
+static double widest_deg(const struct glint_model_header *h)
+{
+    const double sine = h->sine_hi_q30 * 0x1p-30;
+
+    return 22.5 / atan(1) * atan2(sine, sqrt(1 - sine * sine));
+}
+
 int scene_calibrate(const struct tool *tool, const struct scene *scene,
                     struct glint_view view, struct budget *budget)
 {
@@ -403,9 +412,7 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
     plain.only_ghost = -1;
     code = scene_frame(tool, &plain, view, &frame);
     if (frame.lens) /* whose model may end before */
-        lamp.theta_deg = fmin(
-            lamp.theta_deg,
-            22.5 / atan(1) * asin(frame.lens->header->sine_hi_q30 * 0x1p-30));
+        lamp.theta_deg = fmin(lamp.theta_deg, widest_deg(frame.lens->header));
     for (int i = 0; i < 4 && mem && code == EXIT_OK; i++) {
         glint_image_place(&image, mem);
         if (frame_draw(&frame, &lamp, 1, 1, &image, &report) != GLINT_OK)
