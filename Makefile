@@ -333,12 +333,13 @@ $(OUT)/glint-live: $(OUT)/tools/glint_live.o $(OUT)/tools/models_only.o $(libs)
 
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.
 oiio: build/glint-oiio.so
-OIIO := $(addprefix platform/oiio/,oiio.cc keep.cc carry.cc)
+OIIO := $(addprefix platform/oiio/,oiio.cc keep.cc carry.cc carry_tiff.cc webp.cc)
 build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) platform/plain/samples.h platform/plain/tones.h
 	@mkdir -p $(@D)
 	$(say) CXX '$(OIIO)'
 	$(Q)$(CXX) -std=c++17 -O2 -Wall -Wextra -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
-	        $(OIIO) -o $@ $$(pkg-config --cflags --libs OpenImageIO)
+	        $(OIIO) -o $@ $$(pkg-config --cflags --libs OpenImageIO) \
+	        $$(pkg-config --exists libwebp && pkg-config --cflags --libs libwebp)
 
 # ------------------------------------------------------------------- to see
 demo:

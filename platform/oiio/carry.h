@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * oiio/carry.h - what OpenImageIO does not carry from file to file: chunks of
- * PNG and WebP and segments of JPEG, taken over byte for byte; and what it does
- * not check: whether a JPEG or TIFF is all there.
+ * PNG and WebP, segments of JPEG and tags of TIFF, taken over byte for byte;
+ * and what it does not check: whether a JPEG or TIFF is all there.
  */
 #ifndef GLINT_OIIO_CARRY_H
 #define GLINT_OIIO_CARRY_H
@@ -22,6 +22,8 @@ using bytes = std::vector<unsigned char>;
 bytes carry_png(const bytes &made, const bytes &from, bool drop_icc);
 bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc);
 bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc);
+bool is_classic_tiff(const bytes &file); /* not BigTIFF */
+bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc);
 
 /* What is missing of FILE, for a person; empty: nothing. */
 std::string missing_of_jpeg(const bytes &file);

@@ -17,6 +17,7 @@
 
 #include "oiio/carry.h"
 #include "oiio/guard.h"
+#include "oiio/webp.h"
 
 using glint::bytes;
 using glint::check_spec;
@@ -94,7 +95,7 @@ class memory : public OIIO::Filesystem::IOProxy
 
 bool is_carried(const std::string &type)
 {
-    return type == "png" || type == "jpeg" || type == "webp";
+    return type == "png" || type == "jpeg" || type == "webp" || type == "tiff";
 }
 
 bytes read_whole(const char *path)
@@ -163,13 +164,18 @@ bool is_mixed(const ImageSpec &spec)
     return !spec.channelformats.empty();
 }
 
-void read_part(ImageInput &in, int index, struct part &part)
+void read_part(ImageInput &in, int index, const bytes &whole, struct part &part)
 {
     part.spec = in.spec(index);
     if (part.spec.width < 1 || part.spec.nchannels < 1)
         throw failure{GLINT_E_FORMAT, in.geterror()};
     check_spec(part.spec);
     choose_types(part.spec);
+    if (in.format_name() == std::string("webp") && glint::webp_takes(whole)) {
+        part.pixels = glint::webp_decode(whole, part.spec.nchannels);
+        part.spec.attribute("oiio:UnassociatedAlpha", 1);
+        return;
+    }
     part.pixels.resize(part.spec.image_bytes(true));
     if (!in.read_image(index, 0, 0, part.spec.nchannels,
                        is_mixed(part.spec) ? TypeDesc::UNKNOWN
@@ -178,14 +184,14 @@ void read_part(ImageInput &in, int index, struct part &part)
         throw failure{GLINT_E_FORMAT, in.geterror()};
 }
 
-void check_whole(const struct glint_oiio_file &file, const char *path)
+void check_whole(const struct glint_oiio_file &file)
 {
     std::string missing;
 
     if (file.type == "jpeg")
         missing = glint::missing_of_jpeg(file.whole);
     else if (file.type == "tiff")
-        missing = glint::missing_of_tiff(read_whole(path));
+        missing = glint::missing_of_tiff(file.whole);
     if (!missing.empty())
         throw failure{GLINT_E_FORMAT, missing};
 }
@@ -202,10 +208,10 @@ void read_file(struct glint_oiio_file &file, const char *path)
     file.type = in->format_name();
     if (is_carried(file.type))
         file.whole = read_whole(path);
-    check_whole(file, path);
+    check_whole(file);
     for (int i = 0; i < 64 && in->seek_subimage(i, 0); i++) {
         file.parts.emplace_back();
-        read_part(*in, i, file.parts.back());
+        read_part(*in, i, file.whole, file.parts.back());
         if (in->format_name() != std::string("openexr") &&
             in->format_name() != std::string("tiff"))
             break;
@@ -462,7 +468,14 @@ ImageSpec bare(const ImageSpec &spec)
 
     to.channelnames = spec.channelnames;
     to.alpha_channel = spec.alpha_channel;
-    for (const char *name : {"oiio:UnassociatedAlpha", "jpeg:subsampling"})
+    to.tile_width = spec.tile_width;
+    to.tile_height = spec.tile_height;
+    for (const char *name :
+         {"oiio:UnassociatedAlpha", "jpeg:subsampling", "compression",
+          "oiio:BitsPerSample", "planarconfig", "tiff:PlanarConfiguration",
+          "tiff:Compression", "tiff:PhotometricInterpretation",
+          "tiff:RowsPerStrip", "tiff:Predictor", "tiff:ColorSpace",
+          "tiff:zipquality"})
         if (const OIIO::ParamValue *const p = spec.find_attribute(name))
             to.extra_attribs.push_back(*p);
     return to;
@@ -484,27 +497,19 @@ void clear_exif(ImageSpec &spec)
                              spec.extra_attribs.end());
 }
 
-void set_compression(ImageSpec &spec, const std::string &type,
-                     const struct glint_oiio_file *file,
-                     const struct glint_oiio_options &options)
+/* 1 .. 100; 0: without loss. */
+int quality_of(const std::string &type, const struct glint_oiio_file *file,
+               const struct glint_oiio_options &options)
 {
-    int quality = options.quality;
+    const bool same = file && file->type == type;
 
-    if (type == "jpeg") {
-        if (!quality && file && file->type == "jpeg")
-            quality = glint::quality_of_jpeg(file->whole);
-        spec.attribute("Compression",
-                       "jpeg:" + std::to_string(quality ? quality : 95));
-    } else if (type == "webp") {
-        const bool lossless = !options.quality && file &&
-                              file->type == "webp" &&
-                              glint::is_lossless(file->whole);
-
-        spec.attribute("Compression",
-                       lossless
-                           ? "lossless"
-                           : "webp:" + std::to_string(quality ? quality : 95));
-    }
+    if (options.quality)
+        return options.quality;
+    if (same && type == "webp" && glint::is_lossless(file->whole))
+        return 0;
+    const int own =
+        same && type == "jpeg" ? glint::quality_of_jpeg(file->whole) : 0;
+    return own ? own : 95;
 }
 
 /* SAMPLES as a part, with the metadata of FILE if there is one. */
@@ -537,23 +542,19 @@ struct part part_of(const struct glint_samples &samples,
 }
 
 void write_parts(ImageOutput &out, const char *path,
-                 const std::vector<part> &parts)
+                 std::vector<ImageSpec> &specs, const std::vector<part> &parts)
 {
-    std::vector<ImageSpec> specs;
+    const bool announced =
+        parts.size() > 1 && out.format_name() == std::string("openexr");
     bool done = true;
 
-    for (const part &p : parts)
-        specs.push_back(p.spec);
     for (size_t i = 0; i < parts.size() && done; i++) {
-        const bool first = i == 0;
-
-        if (first && parts.size() > 1 && out.supports("multiimage") &&
-            out.format_name() == std::string("openexr"))
+        if (announced && i == 0)
             done = out.open(path, static_cast<int>(parts.size()), specs.data());
         else
             done = out.open(path, specs[i],
-                            first ? ImageOutput::Create
-                                  : ImageOutput::AppendSubimage);
+                            i == 0 ? ImageOutput::Create
+                                   : ImageOutput::AppendSubimage);
         done = done && out.write_image(is_mixed(specs[i]) ? TypeDesc::UNKNOWN
                                                           : specs[i].format,
                                        parts[i].pixels.data());
@@ -562,36 +563,62 @@ void write_parts(ImageOutput &out, const char *path,
         throw failure{GLINT_E_OUTPUT, out.geterror()};
 }
 
-bytes encode_parts(const char *path, std::vector<part> parts,
+/* Of BigTIFF OpenImageIO passes on what it knows. */
+bool is_carried_from(const struct glint_oiio_file &file)
+{
+    return is_carried(file.type) &&
+           (file.type != "tiff" || glint::is_classic_tiff(file.whole));
+}
+
+bytes encode_by_oiio(ImageOutput &out, const char *path,
+                     std::vector<ImageSpec> specs,
+                     const std::vector<part> &parts)
+{
+    bytes encoded;
+    memory to(encoded);
+
+    if (!out.supports("ioproxy") || !out.set_ioproxy(&to))
+        throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
+                                           "type into memory"};
+    write_parts(out, path, specs, parts);
+    return encoded;
+}
+
+bytes encode_parts(const char *path, const std::vector<part> &parts,
                    const struct glint_oiio_file *file, bool same,
                    const struct glint_oiio_options &options)
 {
     const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
+    const bool drop = options.drop_icc;
+    std::vector<ImageSpec> specs;
     bytes encoded;
-    memory to(encoded);
 
     if (!out)
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
     const std::string type = out->format_name();
-    for (part &p : parts) {
-        if (same && is_carried(type))
-            p.spec = bare(p.spec);
+    const int quality = quality_of(type, file, options);
+    for (const part &p : parts) {
+        specs.push_back(same && is_carried_from(*file) ? bare(p.spec) : p.spec);
         if (type == "tiff")
-            clear_exif(p.spec);
-        if (options.drop_icc)
-            p.spec.erase_attribute("ICCProfile");
-        set_compression(p.spec, type, file, options);
+            clear_exif(specs.back());
+        if (drop)
+            specs.back().erase_attribute("ICCProfile");
+        if (type == "jpeg")
+            specs.back().attribute("Compression",
+                                   "jpeg:" + std::to_string(quality));
     }
-    if (!out->supports("ioproxy") || !out->set_ioproxy(&to))
-        throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
-                                           "type into memory"};
-    write_parts(*out, path, parts);
-    if (!same || !file)
+    if (type == "webp" && specs[0].nchannels >= 3)
+        encoded =
+            glint::webp_encode(parts[0].pixels.data(), specs[0].width,
+                               specs[0].height, specs[0].nchannels, quality);
+    else
+        encoded = encode_by_oiio(*out, path, specs, parts);
+    if (!same)
         return encoded;
-    const bool drop = options.drop_icc;
     return type == "png"    ? glint::carry_png(encoded, file->whole, drop)
            : type == "jpeg" ? glint::carry_jpeg(encoded, file->whole, drop)
            : type == "webp" ? glint::carry_webp(encoded, file->whole, drop)
+           : type == "tiff" ? glint::carry_tiff(encoded, file->whole, drop)
                             : encoded;
 }
 

@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Tags of TIFF: what OpenImageIO has written keeps those that say how its
+ * pixels lie in the file; all others, directories of Exif and GPS with them,
+ * come from the file that was read, in its order of bytes or the other. */
+#include "oiio/carry.h"
+
+#include <cstdint>
+#include <cstring>
+#include <map>
+
+namespace glint
+{
+
+namespace
+{
+
+struct reader {
+    const bytes &file;
+    bool little;
+
+    bool holds(uint64_t at, uint64_t n) const
+    {
+        return at <= file.size() && n <= file.size() - at;
+    }
+    uint32_t number(uint64_t at, int n) const
+    {
+        uint32_t value = 0;
+
+        for (int i = 0; i < n && holds(at, static_cast<uint64_t>(n)); i++)
+            value = value << 8 |
+                    file[at + static_cast<uint64_t>(little ? n - 1 - i : i)];
+        return value;
+    }
+};
+
+/* An entry of a directory, its values as little-endian bytes. */
+struct entry {
+    unsigned type;
+    uint32_t count;
+    bytes values;
+};
+
+using directory = std::map<unsigned, entry>;
+
+/* Of types 1 .. 13; 0: unknown. */
+unsigned size_of(unsigned type)
+{
+    static const unsigned char sizes[] = {0, 1, 1, 2, 4, 8, 1,
+                                          1, 2, 4, 8, 4, 8, 4};
+
+    return type < sizeof sizes ? sizes[type] : 0;
+}
+
+/* Bytes that change places together: rationals are two numbers. */
+unsigned unit_of(unsigned type)
+{
+    return type == 5 || type == 10 ? 4 : size_of(type);
+}
+
+void read_entry(const reader &r, uint64_t at, directory &to)
+{
+    const unsigned type = r.number(at + 2, 2), unit = unit_of(type);
+    const uint32_t count = r.number(at + 4, 4);
+    const uint64_t n = uint64_t(count) * size_of(type);
+    const uint64_t from = n <= 4 ? at + 8 : r.number(at + 8, 4);
+
+    if (n == 0 || !r.holds(from, n))
+        return;
+    struct entry e = {type, count, bytes(n)};
+    for (uint64_t i = 0; i < n; i++)
+        e.values[i] =
+            r.file[from +
+                   (r.little ? i : i / unit * unit + unit - 1 - i % unit)];
+    to[r.number(at, 2)] = e;
+}
+
+/* The directory at AT; NEXT is where the one behind it is. */
+directory read_directory(const reader &r, uint64_t at, uint32_t &next)
+{
+    const unsigned n = r.number(at, 2);
+    directory read;
+
+    next = 0;
+    if (at == 0 || !r.holds(at, 2 + 12 * uint64_t(n) + 4))
+        return read;
+    for (unsigned i = 0; i < n; i++)
+        read_entry(r, at + 2 + 12 * uint64_t(i), read);
+    next = r.number(at + 2 + 12 * uint64_t(n), 4);
+    return read;
+}
+
+bool is_structure(unsigned tag)
+{
+    static const unsigned tags[] = {
+        256, 257, 258, 259, 262, 263, 264, 265, 266, 273, 277, 278,
+        279, 280, 281, 284, 288, 289, 292, 293, 317, 320, 322, 323,
+        324, 325, 330, 332, 334, 338, 339, 340, 341, 347, 512, 513,
+        514, 515, 517, 518, 519, 520, 521, 529, 530, 531, 532, 559};
+
+    for (const unsigned structure : tags)
+        if (tag == structure)
+            return true;
+    return false;
+}
+
+enum { EXIF = 34665, GPS = 34853, INTEROPERABILITY = 40965, PROFILE = 34675 };
+
+void put(bytes &to, uint32_t value, int n)
+{
+    for (int i = 0; i < n; i++)
+        to.push_back(static_cast<unsigned char>(value >> (8 * i)));
+}
+
+/* Appends D and what it points to; returns where it is. */
+uint32_t write_directory(bytes &to, const directory &d, uint32_t next)
+{
+    bytes list;
+
+    put(list, static_cast<uint32_t>(d.size()), 2);
+    for (const auto &pair : d) {
+        const struct entry &e = pair.second;
+
+        put(list, pair.first, 2);
+        put(list, e.type, 2);
+        put(list, e.count, 4);
+        if (e.values.size() > 4) {
+            to.resize((to.size() + 1) & ~size_t(1));
+            put(list, static_cast<uint32_t>(to.size()), 4);
+            to.insert(to.end(), e.values.begin(), e.values.end());
+        } else {
+            list.insert(list.end(), e.values.begin(), e.values.end());
+            list.resize(list.size() + 4 - e.values.size());
+        }
+    }
+    put(list, next, 4);
+    to.resize((to.size() + 1) & ~size_t(1));
+    const uint32_t at = static_cast<uint32_t>(to.size());
+    to.insert(to.end(), list.begin(), list.end());
+    return at;
+}
+
+uint32_t pointer_of(const struct entry &e)
+{
+    return e.values.size() != 4
+               ? 0
+               : uint32_t(e.values[3]) << 24 | uint32_t(e.values[2]) << 16 |
+                     uint32_t(e.values[1]) << 8 | e.values[0];
+}
+
+/* Copies the directories that D points to and sets where they are now. */
+void move_pointers(bytes &to, const reader &from, directory &d, int depth)
+{
+    for (const unsigned tag : {EXIF, GPS, INTEROPERABILITY}) {
+        const auto found = d.find(tag);
+        uint32_t next;
+
+        if (found == d.end())
+            continue;
+        directory sub = read_directory(from, pointer_of(found->second), next);
+        if (sub.empty() || depth > 2) {
+            d.erase(found);
+            continue;
+        }
+        move_pointers(to, from, sub, depth + 1);
+        const uint32_t at = write_directory(to, sub, 0);
+        found->second = {4, 1, {}};
+        put(found->second.values, at, 4);
+    }
+}
+
+} // namespace
+
+bool is_classic_tiff(const bytes &file)
+{
+    return file.size() >= 8 && (!std::memcmp(file.data(), "II*\0", 4) ||
+                                !std::memcmp(file.data(), "MM\0*", 4));
+}
+
+bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc)
+{
+    if (!is_classic_tiff(made) || !is_classic_tiff(from) || made[0] != 'I')
+        return made;
+    const reader ours = {made, true}, theirs = {from, from[0] == 'I'};
+    bytes file = made;
+    uint32_t our_next = ours.number(4, 4), their_next = theirs.number(4, 4);
+    uint64_t link = 4; /* where the place of the next directory is written */
+
+    for (int i = 0; i < 64 && our_next && their_next; i++) {
+        const uint32_t at = our_next;
+        directory d = read_directory(ours, at, our_next);
+        directory other = read_directory(theirs, their_next, their_next);
+
+        for (auto e = d.begin(); e != d.end();)
+            e = is_structure(e->first) ? std::next(e) : d.erase(e);
+        for (const auto &e : other)
+            if (!is_structure(e.first) && !(drop_icc && e.first == PROFILE))
+                d[e.first] = e.second;
+        move_pointers(file, theirs, d, 0);
+        const uint32_t now = write_directory(file, d, our_next);
+        for (int k = 0; k < 4; k++)
+            file[link + static_cast<uint64_t>(k)] =
+                static_cast<unsigned char>(now >> (8 * k));
+        link = now + 2 + 12 * d.size();
+    }
+    return file.size() < UINT32_MAX ? file : made;
+}
+
+} // namespace glint
