@@ -368,6 +368,11 @@ corpus:
 HALF ?= tune
 corpus-evaluate: corpus $(OUT)/corpus-found
 	@tests/corpus/evaluate --half $(HALF) --sheet build/corpus/found-$(HALF).jpg
+# All pictures beside what glint makes of them; how bright it is, lens by lens.
+corpus-sheet: corpus all
+	@tests/corpus/overlays build/corpus/sheet
+corpus-report: corpus all
+	@tests/corpus/report build/corpus/report.csv
 $(OUT)/tests/corpus/%.o: CPPFLAGS += -Itools/examples
 $(OUT)/corpus-found: $(OUT)/tests/corpus/found.o $(libs)
 	$(link)
@@ -605,7 +610,7 @@ install: all glint-live
 	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all help corpus corpus-evaluate glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all help corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
