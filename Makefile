@@ -25,7 +25,7 @@
 #   make budget   what a frame costs on ARM, in instructions and bytes
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
-#   also: oiio table bake-table accuracy-table ray-table inputs format
+#   also: oiio table bake-table accuracy-table colour-table ray-table inputs format
 #         golden-update fuzz-keep clean
 
 MAKEFLAGS += -r
@@ -118,11 +118,11 @@ CORE := base/status base/arena base/q base/divide base/sort base/image base/work
         flare/profile flare/unclip \
         flare/match flare/follow flare/record flare/tracks tile/primitive \
         tile/clip tile/outline tile/bins tile/raster tile/edges tile/sums tile/curve tile/mix tile/codes \
-        tile/resolve tile/quads tile/composite flare/beams flare/plan flare/ghost_grid flare/cuts \
+        tile/resolve tile/quads tile/composite flare/beams flare/plan flare/wave_sets flare/ghost_grid flare/cuts \
         flare/ghost_edges flare/by_cells flare/by_edges flare/flare flare/account
 BAKE := bake/text bake/films bake/prescription bake/check bake/glass bake/coating \
         bake/paraxial bake/ghosts bake/trace bake/pupil bake/survey bake/cells \
-        bake/setup bake/exact bake/feed bake/hunt bake/regress \
+        bake/spectrum bake/setup bake/exact bake/feed bake/hunt bake/regress \
         bake/zone bake/brightness bake/fitted bake/zone_fit bake/fit \
         bake/shared_zone bake/shared_basis bake/published bake/quantise \
         bake/measure_model bake/write_model bake/bake
@@ -134,7 +134,7 @@ PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posi
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache coating \
-        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene response strength look live_adapt \
+        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene_waves scene response strength look live_adapt \
         look_layer overlay_file overlay_picture overlay_y4m \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
@@ -144,7 +144,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
 # what one asks before one knows
 TOOLS += suggest takes lens_files cmd_lenses child ffmpeg
 EXTREMES := angles powers lenses frames caustics outlines sums runs
-UNIT := arena divide cuts kernels model prescription films optics trace pupil published quantise bake \
+UNIT := arena divide cuts kernels model prescription films spectrum waves optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
         measure lamps bright match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame strength show_lights sweep explain budget live \
@@ -215,7 +215,7 @@ $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024
 # What runs once, or once for a lamp, bundle or row, is small rather than fast, and
 # so is what takes cells to tiles.
 $(patsubst %,$(OUT)/src/%.o,base/status base/arena base/image base/workers lens/model flare/lights flare/match \
-        flare/follow flare/record flare/tracks flare/beams flare/plan flare/flare flare/account \
+        flare/follow flare/record flare/tracks flare/beams flare/plan flare/wave_sets flare/flare flare/account \
         flare/ghost_grid flare/by_cells tile/bins tile/clip tile/resolve tile/curve \
         tile/mix): CFLAGS += -Os
 # An instruction set is a file-name suffix; nothing else may use its flags.
@@ -356,6 +356,9 @@ bake-table: all $(OUT)/ray_errors
 	@tools/bake-table | tools/write-figures bake
 accuracy-table: all
 	@tools/accuracy-table | tools/write-figures accuracy
+colour-table: all $(OUT)/hue_steps
+	@tools/deps "instruction counts" valgrind >&2
+	@HUE_STEPS=$(OUT)/hue_steps tools/colour-table | tools/write-figures colour
 ray-table: all $(OUT)/ray_errors
 	@tools/ray-table build/bake | tools/write-figures rays
 $(OUT)/ray_errors: $(OUT)/tools/ray_errors.o $(libs)
@@ -426,6 +429,8 @@ $(test_bins): $(OUT)/tests/unit/test_%: $(OUT)/tests/unit/test_%.o $(libs)
 replay_bins := $(FUZZERS:%=$(OUT)/tests/fuzz/replay_%)
 $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
         $(OUT)/tests/fuzz/replay.o $(libs)
+	$(link)
+$(OUT)/hue_steps: $(OUT)/tests/support/hue_steps.o $(libs)
 	$(link)
 $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
 	$(link)
@@ -610,7 +615,7 @@ install: all glint-live
 	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all help corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all help corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -48,8 +48,10 @@ int explain_bundles(const struct explain_part *p)
 
 static void add(struct explain_part *p, const struct glint_account *a)
 {
-    p->of[a->fate]++;
     p->surveyed += a->surveyed;
+    if (a->fate == GLINT_FATE_OTHER_SET) /* drawn all the same */
+        return;
+    p->of[a->fate]++;
     if (a->fate != GLINT_FATE_DRAWN && a->fate != GLINT_FATE_EMPTY)
         return;
     p->cells = a->cells > p->cells ? a->cells : p->cells;
@@ -62,13 +64,26 @@ static void add(struct explain_part *p, const struct glint_account *a)
     p->refs += a->refs;
 }
 
+/* Which part wave WAVE is of. */
+static int part_of(const struct explain *e, int wave)
+{
+    const struct glint_wave_sets *sets = e->frame->rays.sets;
+    int part = wave;
+
+    if (sets)
+        for (part = 0; wave >= sets->size[part]; part++)
+            wave -= sets->size[part];
+    return part;
+}
+
 static void take_accounts(struct explain *e)
 {
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
+    const int n_waves = e->frame->rays.n_waves;
 
     for (int beam = 0; beam < e->n_beams; beam++)
         for (int ghost = 0; ghost < n_ghosts; ghost++)
-            for (int wave = 0; wave < e->n_waves; wave++) {
+            for (int wave = 0; wave < n_waves; wave++) {
                 struct glint_account a;
 
                 glint_flare_account(e->frame->flare, ghost, beam, wave, &a);
@@ -76,7 +91,7 @@ static void take_accounts(struct explain *e)
                 /* NOLINTNEXTLINE: set_pairs() has set all of them */
                 add(&e->ghost[e->ghost_of[ghost]], &a);
                 add(&e->beam[beam], &a);
-                add(&e->wave[wave], &a);
+                add(&e->wave[part_of(e, wave)], &a);
                 if (a.fate == GLINT_FATE_DRAWN || a.fate == GLINT_FATE_EMPTY)
                     e->barrels[a.barrels]++;
             }
@@ -194,7 +209,8 @@ enum glint_status explain_open(struct explain *e, struct frame *frame,
 
     *e = (struct explain){.frame = frame,
                           .n_beams = frame->n_beams,
-                          .n_waves = frame->setup->n_wavelengths,
+                          .n_waves = frame->rays.sets ? frame->rays.sets->n_sets
+                                                      : frame->rays.n_waves,
                           .unit = unit,
                           .n_tiles = tiles_of(frame)};
     e->ghost_of = malloc(n_all * sizeof *e->ghost_of);

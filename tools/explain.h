@@ -45,7 +45,8 @@ enum explain_stage {
 struct explain {
     struct frame *frame;
     int n_ghosts; /* pairs of surfaces */
-    int n_beams, n_waves;
+    int n_beams;
+    int n_waves;   /* wavelengths, or where ghosts choose sets of them, these */
     int *ghost_of; /* of each ghost and part of the lens: which pair it is */
     struct explain_part all, *ghost, *beam, *wave;
     int barrels[EXPLAIN_BARRELS]; /* bundles that so many cut */

@@ -23,6 +23,7 @@ static const struct {
     [GLINT_FATE_OUTSIDE] = {"outside", "outside the picture"},
     [GLINT_FATE_FAINT] = {"faint", "too faint for any code"},
     [GLINT_FATE_NO_ROOM] = {"no_room", "no room left in the arena"},
+    [GLINT_FATE_OTHER_SET] = {"other_set", "another set of wavelengths"},
 };
 
 const char *explain_reason(enum glint_fate fate)
@@ -128,8 +129,12 @@ static void print_waves(const struct explain *e)
 {
     print_head("wavelength             bundles");
     for (int i = 0; i < e->n_waves; i++) {
-        printf("%7.1f nm %19d", e->frame->setup->wavelength_nm[i],
-               explain_drawn(&e->wave[i]));
+        if (e->frame->rays.sets)
+            printf("%-3d for a ghost %14d", e->frame->rays.sets->size[i],
+                   explain_drawn(&e->wave[i]));
+        else
+            printf("%7.1f nm %19d", e->frame->setup->wavelength_nm[i],
+                   explain_drawn(&e->wave[i]));
         print_costs(&e->wave[i]);
     }
 }
@@ -309,8 +314,12 @@ void explain_json(const struct explain *e, const struct explain_title *t)
     json_lights(e, t);
     printf(", \"wavelengths\": [");
     for (int i = 0; i < e->n_waves; i++) {
-        printf("%s{\"nm\": %g, ", i ? ", " : "",
-               e->frame->setup->wavelength_nm[i]);
+        if (e->frame->rays.sets)
+            printf("%s{\"of\": %d, ", i ? ", " : "",
+                   e->frame->rays.sets->size[i]);
+        else
+            printf("%s{\"nm\": %g, ", i ? ", " : "",
+                   e->frame->setup->wavelength_nm[i]);
         json_part(&e->wave[i]);
         printf("}");
     }

@@ -70,18 +70,49 @@ static struct glint_real largest_of(const double rgb[3], int32_t rgb_q14[3])
     return glint_real_of(most);
 }
 
+static struct glint_wave wave_of(double nm, const double rgb[3],
+                                 double unit_flux)
+{
+    struct glint_wave w;
+    const double size = glint_real_value(largest_of(rgb, w.rgb_q14));
+
+    w.wave_q24 = (int32_t)lrint(1e6 / (nm * nm) * 0x1p24);
+    w.weight = glint_real_of(size / unit_flux);
+    return w;
+}
+
+/* Of all sets together. */
+static int all_waves(const struct glint_setup *s)
+{
+    int n = 0;
+
+    for (int i = 0; i < s->n_sets; i++)
+        n += s->set_size[i];
+    return n;
+}
+
+static bool has_sets(const struct frame *f)
+{
+    return f->lens && f->setup->n_sets && f->dispersion_px > 0;
+}
+
 static void set_waves(struct frame *f)
 {
     const struct glint_setup *s = f->setup;
+    const struct glint_set_wave *w = s->set_wave;
 
-    for (int i = 0; i < s->n_wavelengths; i++) {
-        struct glint_wave *w = &f->wave[i];
-        const double nm = s->wavelength_nm[i];
-        const double size = glint_real_value(largest_of(s->rgb[i], w->rgb_q14));
-
-        w->wave_q24 = (int32_t)lrint(1e6 / (nm * nm) * 0x1p24);
-        w->weight = glint_real_of(size / s->unit_flux[i]);
-    }
+    f->sets = (struct glint_wave_sets){
+        .n_sets = s->n_sets,
+        .apart_q8 = (int32_t)lrint(f->dispersion_px * 256)};
+    for (int i = 0; i < s->n_sets; i++)
+        f->sets.size[i] = s->set_size[i];
+    if (has_sets(f))
+        for (int i = 0; i < all_waves(s); i++)
+            f->wave[i] = wave_of(w[i].nm, w[i].rgb, w[i].unit_flux);
+    else
+        for (int i = 0; i < s->n_wavelengths; i++)
+            f->wave[i] =
+                wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
 }
 
 static struct glint_beam beam_of(const struct glint_lamp *l, double scale)
@@ -170,26 +201,33 @@ static bool is_in_codes(const struct frame *f, const struct glint_image *image)
     return image->format != GLINT_LINEAR_Q20 || f->for_codes;
 }
 
-static double faintest(const struct frame *f, const struct glint_image *image)
+/* The light of CODES near black; 0: the picture is linear. */
+static double light_of(const struct frame *f, const struct glint_image *image,
+                       double codes)
 {
-    return !is_in_codes(f, image)
+    return !image || !is_in_codes(f, image)
                ? 0
-               : f->faintest_codes / 255 /
+               : codes / 255 /
                      (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
 }
 
-static struct glint_rays rays_of(const struct frame *f, double faintest_light)
+/* IMAGE: NULL for a linear one. */
+static struct glint_rays rays_of(struct frame *f,
+                                 const struct glint_image *image)
 {
+    set_waves(f);
+    f->sets.step = glint_real_of(light_of(f, image, FRAME_STEP_CODES));
     return (struct glint_rays){
         .lens = f->lens,
         .wave = f->wave,
-        .n_waves = f->setup->n_wavelengths,
+        .n_waves = has_sets(f) ? all_waves(f->setup) : f->setup->n_wavelengths,
+        .sets = has_sets(f) ? &f->sets : NULL,
         .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
         .fineness = f->max_cells,
         .uniform = f->uniform,
         .narrow = f->narrow ? glint_transfer_narrow : NULL,
         .only_ghost = f->only_ghost,
-        .faintest = glint_real_of(faintest_light),
+        .faintest = glint_real_of(light_of(f, image, f->faintest_codes)),
         .whole_codes_q8 = (int)lrint(f->whole_codes * 256),
         .half = f->half && f->can_half ? &glint_half : NULL};
 }
@@ -223,15 +261,23 @@ static enum glint_status regrow(struct frame *f)
     return glint_flare_init(&f->flare, &f->cfg, mem, bytes);
 }
 
-/* Bundles that N_BEAMS may need, as many as a frame may take. */
-static int bundles_of(const struct frame *f, int n_beams)
+/* What a frame may take of N bundles. */
+static int bundles_within(const struct frame *f, double n)
 {
     const int most =
         f->cfg.raster == &glint_raster_cells ? MAX_BUNDLES_CELLS : MAX_BUNDLES;
-    const double need =
-        (double)n_beams * f->setup->n_ghosts * f->setup->n_wavelengths;
 
-    return need < most ? (int)need : most;
+    return n < most ? (int)n : most;
+}
+
+/* Bundles that N_BEAMS need; with sets, to choose from these. */
+static int bundles_of(const struct frame *f, int n_beams)
+{
+    const struct glint_setup *s = f->setup;
+
+    return bundles_within(
+        f, (double)n_beams * s->n_ghosts *
+               (has_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
 
 void frame_retune(struct frame *f)
@@ -262,12 +308,15 @@ static bool is_served(struct frame *f, const struct glint_flare_stats *s)
 {
     struct glint_flare_config *c = &f->cfg;
 
+    const int bundles = bundles_within(f, s->need_bundles);
+
     if (f->reserved)
         return true;
-    if (s->need_vertices <= c->max_vertices &&
+    if (bundles <= c->max_bundles && s->need_vertices <= c->max_vertices &&
         s->need_primitives <= c->max_primitives &&
         s->need_refs <= c->max_refs && s->need_tile_refs <= c->max_tile_refs)
         return true;
+    c->max_bundles = larger(c->max_bundles, bundles);
     c->max_vertices = larger(c->max_vertices, s->need_vertices);
     /* workers' shares are never quite even */
     c->max_primitives = larger(
@@ -298,7 +347,9 @@ enum glint_status frame_reserve(struct frame *f, size_t bytes, int n_lamps,
     int most = 0;
 
     f->max_lights = smaller(f->max_lights, smaller(n_drawn, n_lamps));
-    f->cfg.max_bundles = bundles_of(f, f->max_lights);
+    /* not all ghosts are seen, and few take the largest set */
+    f->cfg.max_bundles = bundles_within(f, (has_sets(f) ? 2. : 1) *
+                                               bundles_of(f, f->max_lights));
     for (int step = 1 << 24; step > 0; step /= 2) {
         const size_t need = bytes_for(f, most + step);
 
@@ -375,19 +426,17 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
     enum glint_status status;
 
     f->can_half = is_in_codes(f, image) && !f->cfg.raster;
-    f->rays = rays_of(f, faintest(f, image));
+    f->rays = rays_of(f, image);
     f->scale = scale;
     budget_begin(&f->budget);
     times[0] = tool_seconds();
     status = set_beams(f, lamps, n_lamps, scale);
-
-    set_waves(f);
     while (status == GLINT_OK) {
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
             return status;
         if (f->budget.ms > 0 && budget_choose(&f->budget, f)) {
-            f->rays = rays_of(f, faintest(f, image));
+            f->rays = rays_of(f, image);
             continue;
         }
         times[1] = times[2] = tool_seconds();
@@ -444,9 +493,8 @@ static enum glint_status model_scale(struct frame *frame,
     struct glint_rays rays;
     enum glint_status status = set_beams(frame, lamps, n_lamps, 1);
 
-    set_waves(frame);
     frame->can_half = false;
-    rays = rays_of(frame, 0);
+    rays = rays_of(frame, NULL);
     if (status == GLINT_OK)
         status = plan(frame, &rays);
     if (status != GLINT_OK)

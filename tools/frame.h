@@ -21,6 +21,9 @@
  * exact than lights so near. */
 #define FRAME_MAX_LIGHTS 128
 #define FRAME_APART_PX   0.125
+/* Pixels and codes: steps between wavelengths that do not show. */
+#define FRAME_DISPERSION_PX 1.0
+#define FRAME_STEP_CODES    2.0
 /* Codes. Hundreds of ghosts that each stay below half of one can be seen
  * together. */
 #define FRAME_CULL_CODES  0.125
@@ -37,6 +40,9 @@ struct frame {
     int max_cells;
     double faintest_codes; /* codes near black that a ghost may stay below */
     double whole_codes;    /* edges of less lie on whole pixels */
+    double dispersion_px;  /* of a setup with sets of wavelengths: outlines of
+                              neighbouring ones may be so far apart; 0: all
+                              ghosts have the setup's wavelengths */
     bool for_codes;        /* a linear picture is planned as if for codes */
     bool half;            /* of pictures in codes, by edges: half as many pixels
                              each way, */
@@ -49,7 +55,8 @@ struct frame {
     struct budget budget; /* of models; turns dials of the above */
     bool reserved;        /* memory is what it is */
 
-    struct glint_wave wave[GLINT_MAX_WAVELENGTHS];
+    struct glint_wave wave[GLINT_SET_WAVES];
+    struct glint_wave_sets sets;
     struct glint_beam *beam;
     int n_beams, max_beams;
     int n_apart;            /* lights that can be told apart */

@@ -78,6 +78,9 @@ void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
         smaller(asked->cfg.irradiance_steps, rung.cfg.irradiance_steps);
     frame->whole_codes = fmax(asked->whole_codes, rung.whole_codes);
     frame->faintest_codes = fmax(asked->faintest_codes, rung.faintest_codes);
+    frame->dispersion_px = asked->dispersion_px > 0 && rung.dispersion_px > 0
+                               ? fmax(asked->dispersion_px, rung.dispersion_px)
+                               : 0;
     frame->half = asked->half || rung.half;
     frame->max_lights = smaller(asked->max_lights, step_of[a->step].max_lights);
     frame_retune(frame);

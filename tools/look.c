@@ -18,6 +18,7 @@ void look_defaults(struct look *look)
                           .white = 1};
     scene_defaults(&look->scene);
     look->scene.coating.kind = COATING_MIXED;
+    look->scene.waves = SCENE_WAVES_AUTO;
     strength_defaults(&look->strength);
 }
 

@@ -9,6 +9,7 @@
 #include "cost.h"
 #include "ladder.h"
 #include "scene_table.h"
+#include "scene_waves.h"
 #include "takes.h"
 
 void scene_defaults(struct scene *scene)
@@ -25,6 +26,7 @@ void scene_defaults(struct scene *scene)
                             .quantum = 1,
                             .whole_codes = FRAME_WHOLE_CODES,
                             .quality = 0.5,
+                            .dispersion_px = FRAME_DISPERSION_PX,
                             .cull = FRAME_CULL_CODES,
                             .antialias = true};
 }
@@ -82,17 +84,6 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
-static bool take_wavelengths(const char *text, struct scene *s)
-{
-    const int n = tool_numbers(text, s->wavelength_nm, GLINT_MAX_WAVELENGTHS);
-
-    s->n_wavelengths = n;
-    for (int i = 0; i < n; i++)
-        if (s->wavelength_nm[i] < 300 || s->wavelength_nm[i] > 1100)
-            return false;
-    return n > 0;
-}
-
 static bool take_error(const char *text, struct scene *s)
 {
     double px;
@@ -118,7 +109,11 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_STOP:
         return parse_stop(value, s);
     case OPT_WAVELENGTHS:
-        return take_wavelengths(value, s);
+        return scene_take_waves(s, value);
+    case OPT_DISPERSION:
+        return tool_number(value, &s->dispersion_px) &&
+               (s->dispersion_px == 0 ||
+                (s->dispersion_px >= 0.1 && s->dispersion_px <= 100));
     case OPT_SENSOR:
         return parse_sensor(value, s->sensor_mm);
     case OPT_EXPOSURE:
@@ -293,6 +288,7 @@ static int set_up(const struct tool *tool, struct scene *s)
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
+    scene_weigh(s);
     if (s->balance)
         glint_setup_balance(&s->setup);
     if (s->only_ghost >= s->setup.n_ghosts - s->setup.n_parts)
@@ -322,10 +318,12 @@ int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
 
     if (code != EXIT_OK)
         return code;
+    scene_choose_waves(scene);
     code = tool_is_model(lens) ? open_model(tool, scene, lens)
                                : scene_open_table(tool, scene, lens);
 
-    if (code == EXIT_OK && scene->model.data)
+    if (code == EXIT_OK && scene->model.data &&
+        scene->waves == SCENE_WAVES_LIST)
         code = check_band(tool, scene);
     return code == EXIT_OK ? set_up(tool, scene) : code;
 }
@@ -366,6 +364,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->cfg.weights = scene->weights;
     frame->cfg.irradiance_steps = scene_steps(scene->quantum);
     frame->whole_codes = scene->whole_codes;
+    frame->dispersion_px = scene->dispersion_px;
     frame->half = scene->half || scene->always_half;
     frame->always_half = scene->always_half;
     frame->cfg.merge_steps = scene->merge_steps;
@@ -407,7 +406,7 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
     struct cost cost;
     int code;
 
-    plain.budget_ms = 0;
+    plain.budget_ms = plain.dispersion_px = 0;
     plain.mask_nodes = 0;
     plain.only_ghost = -1;
     code = scene_frame(tool, &plain, view, &frame);

@@ -15,6 +15,13 @@ enum { SCENE_MAX_LAMPS = 1024 }; /* by hand; a file may have more */
 /* What the integer engine's rays come from. */
 enum scene_rays { SCENE_RAYS_MODEL, SCENE_RAYS_EXACT };
 
+/* What is drawn for light of all wavelengths. */
+enum scene_waves {
+    SCENE_WAVES_LIST,  /* wavelength_nm */
+    SCENE_WAVES_COUNT, /* n_wavelengths of glint_spectrum() */
+    SCENE_WAVES_AUTO   /* for each ghost as many as it needs */
+};
+
 struct scene {
     struct glint_prescription lens; /* of a model: name and film only */
     struct model_file model;        /* closed for exact rays */
@@ -28,7 +35,9 @@ struct scene {
     double blade_rotation_deg;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     int n_wavelengths;
-    double sensor_mm[2]; /* 0: the table's film */
+    enum scene_waves waves;
+    double dispersion_px; /* of each ghost its own number: see struct frame */
+    double sensor_mm[2];  /* 0: the table's film */
     double exposure_ev, gain;
     int only_ghost;
     int max_lights;  /* 0: not said */
@@ -52,6 +61,7 @@ enum scene_option {
     OPT_COATING,
     OPT_STOP,
     OPT_WAVELENGTHS,
+    OPT_DISPERSION,
     OPT_SENSOR,
     OPT_EXPOSURE,
     OPT_GAIN,
@@ -87,6 +97,7 @@ enum scene_option {
         {"coating", required_argument, NULL, OPT_COATING},         \
         {"stop", required_argument, NULL, OPT_STOP},               \
         {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS}, \
+        {"dispersion", required_argument, NULL, OPT_DISPERSION},   \
         {"sensor", required_argument, NULL, OPT_SENSOR},           \
         {"exposure", required_argument, NULL, OPT_EXPOSURE},       \
         {"gain", required_argument, NULL, OPT_GAIN},               \
@@ -125,10 +136,17 @@ enum scene_option {
     "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the "      \
     "first\n"                                                                  \
     "                      corner at ROT degrees (default polygon:8)\n"        \
-    "  --wavelengths LIST  nm; three become R,G,B as they stand (default\n"    \
-    "                      650,532,450), any other number is weighted by "     \
-    "the\n"                                                                    \
-    "                      CIE 1931 observer\n"                                \
+    "  --wavelengths W     auto: of each ghost as many as it needs, 4 to 28 "  \
+    "(default\n"                                                               \
+    "                      of overlay, live and explain); N: so many, 1 to "   \
+    "32,\n"                                                                    \
+    "                      weighed to give the colours of all; or a list of "  \
+    "nm,\n"                                                                    \
+    "                      300 to 1100: three become R,G,B as they stand "     \
+    "(else the\n"                                                              \
+    "                      default: 650,532,450), any other number is "        \
+    "weighted by\n"                                                            \
+    "                      the CIE 1931 observer\n"                            \
     "  --sensor WxH        mm (default: the film of the table); the picture\n" \
     "                      is the largest of its shape that fits\n"            \
     "  --ghost K           this ghost alone\n"                                 \
@@ -163,6 +181,15 @@ enum scene_option {
     "  --budget MS         instead, of each frame: the most that takes so "    \
     "many\n"                                                                   \
     "                      milliseconds, as its plan tells\n"                  \
+    "  --dispersion PX     with --wavelengths auto: outlines of "              \
+    "neighbouring\n"                                                           \
+    "                      wavelengths may be so far apart, 0.1 to 100 "       \
+    "pixels,\n"                                                                \
+    "                      unless their light is less than a code (default "   \
+    "1); 0:\n"                                                                 \
+    "                      650,532,450 for all, as of --quality draft and "    \
+    "with\n"                                                                   \
+    "                      --budget\n"                                         \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
     "  --lanes 16|32       bits a model's rays are computed with (default "    \

@@ -37,6 +37,7 @@ static const struct {
     {NULL, "coarse", "0, 64, 128 or 256 pixels"},
     {NULL, "cost", "time or instructions"},
     {NULL, "cull", "codes, 0 to 16"},
+    {NULL, "dispersion", "0, or 0.1 to 100 pixels"},
     {NULL, "engine", "model or exact"},
     {NULL, "error", "pixels, above 0"},
     {NULL, "exact-grid", "an even number, 4 to 1024"},
@@ -88,7 +89,8 @@ static const struct {
     {NULL, "tolerance", "a factor, 0.1 to 100"},
     {NULL, "wavelength", "nm, 300 to 1100; 0.55 micrometres are 550"},
     {NULL, "wavelengths",
-     "nm, 300 to 1100, with commas; 0.55 micrometres are 550"},
+     "auto, a number of 1 to 32, or wavelengths of 300 to 1100 nm; 0.55 "
+     "micrometres are 550"},
     {NULL, "weights", "wachspress or loop-derose"},
     {NULL, "whole", "codes, 0 to 100"},
 };

@@ -229,6 +229,25 @@ double glint_reflectance(double n_from, double n_to, double cos_from,
 /* ------------------------------------------------- lens, stop and colours */
 
 #define GLINT_MAX_WAVELENGTHS 32
+#define GLINT_SET_WAVES       65 /* of all sets together, see below */
+
+/* N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that stand for light of all
+ * wavelengths: WAVELENGTH_NM rises, and RGB[i] times what is at wavelength i,
+ * summed, is nearly what all of 400 .. 700 nm give to linear BT.709 by the CIE
+ * 1931 observer [Wyman13], exactly if that is a polynomial of a degree below
+ * 4 and N. Each channel sums to 1, so that a flat spectrum is white; single
+ * colours lie outside of BT.709 and are negative in part. SHARE[i] is that of
+ * the mean over the wavelengths and sums to 1. Wavelengths lie where steps
+ * between them, as a ghost's outline moves in proportion to 1 / wavelength^2,
+ * are smallest in the mean of squares over the channels. */
+void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
+                    double *share);
+
+/* One of a set. */
+struct glint_set_wave {
+    double nm, rgb[3];
+    double direct_flux, unit_flux; /* as in struct glint_setup */
+};
 
 /* A lens made ready for drawing: everything that no light and no frame
  * changes. */
@@ -250,6 +269,10 @@ struct glint_setup {
     double unit_flux[GLINT_MAX_WAVELENGTHS]; /* what light is measured by, mm^2:
                                                 the mean of direct_flux, or
                                                 itself after _balance */
+    /* After _spread: sets of wavelengths, one after the other, the smallest
+     * first, of which each ghost takes its own. */
+    int n_sets, set_size[GLINT_MAX_WAVE_SETS];
+    struct glint_set_wave set_wave[GLINT_SET_WAVES];
 };
 
 /* Prepares LENS with a stop of N_BLADES (0 or 3 .. 64; corners on the circle of
@@ -272,6 +295,13 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          double blade_rotation_deg,
                                          const double *wavelength_nm, int n,
                                          struct glint_error *error);
+
+/* Of a setup for the N wavelengths of glint_spectrum(): takes its colours. */
+void glint_setup_weigh(struct glint_setup *setup);
+
+/* Gives SETUP, made from LENS, the sets for each ghost to choose from. */
+void glint_setup_spread(struct glint_setup *setup,
+                        const struct glint_lens *lens);
 
 /* Measures each wavelength by its own direct image, as a camera does that is
  * balanced to white behind this lens. Otherwise the lens's own tint shows in

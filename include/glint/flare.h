@@ -101,6 +101,18 @@ struct glint_wave {
                                  by: the direct image's at angle 0, mm^2 */
 };
 
+/* Sets of waves that each stand for the same light, so that a ghost takes the
+ * smallest one whose steps cannot be seen: where the outlines of neighbouring
+ * waves lie near each other, or are faint. */
+struct glint_wave_sets {
+    int n_sets;                    /* 1 .. GLINT_MAX_WAVE_SETS */
+    int size[GLINT_MAX_WAVE_SETS]; /* waves of each, 2 or more, rising: one set
+                                      after the other in glint_rays.wave */
+    int32_t apart_q8;       /* pixels that neighbouring outlines may be apart */
+    struct glint_real step; /* display white: what no step of light may pass
+                               for outlines farther apart; 0: any is seen */
+};
+
 /* Four pixels as one; see struct glint_rays. */
 struct glint_half;
 extern const struct glint_half glint_half;
@@ -109,7 +121,8 @@ extern const struct glint_half glint_half;
 struct glint_rays {
     const struct glint_lens *lens;
     const struct glint_wave *wave;
-    int n_waves; /* 1 or more */
+    int n_waves;                        /* 1 or more; of all sets together */
+    const struct glint_wave_sets *sets; /* NULL: all waves for every ghost */
     struct glint_real pixels_per_mm;
     int fineness; /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
                      between rays is off by 0.01 px, outlines by 0.1 */
@@ -224,7 +237,9 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 /* Forgets all bundles and takes those in that the ghosts of a lens make of
  * BEAMS, as far as they can be seen; no vertices are to be filled in. All that
  * RAYS points to, and BEAMS, are kept until bin has returned. Needs room for
- * n_beams * ghosts * n_waves bundles, or the last ones are left out. */
+ * n_beams * ghosts * n_waves bundles, or the last ones are left out; with sets
+ * for as many of the first set, and for those of the sets that are chosen, or
+ * the last ghosts take the first set. */
 void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                       const struct glint_beam *beams, int n_beams);
 
@@ -277,11 +292,12 @@ enum glint_fate {
     GLINT_FATE_OTHER,  /* only_ghost asks for another one */
     GLINT_FATE_BEYOND, /* the beam comes from farther out than the model goes */
     GLINT_FATE_CLOSED, /* of this angle the model says: no ray gets through */
-    GLINT_FATE_BLOCKED, /* the stop and the barrels take all rays looked at */
-    GLINT_FATE_DARK,    /* the beam has no light in this wave */
-    GLINT_FATE_OUTSIDE, /* it lies beside the picture */
-    GLINT_FATE_FAINT,   /* no pixel can show it, of all beams together */
-    GLINT_FATE_NO_ROOM, /* a capacity is full */
+    GLINT_FATE_BLOCKED,   /* the stop and the barrels take all rays looked at */
+    GLINT_FATE_DARK,      /* the beam has no light in this wave */
+    GLINT_FATE_OUTSIDE,   /* it lies beside the picture */
+    GLINT_FATE_FAINT,     /* no pixel can show it, of all beams together */
+    GLINT_FATE_NO_ROOM,   /* a capacity is full */
+    GLINT_FATE_OTHER_SET, /* the ghost takes another set of waves */
     GLINT_FATES
 };
 
@@ -308,8 +324,9 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
                          int wave, struct glint_account *account);
 
 /* Of the bundles planned and binned last, by edges, keeps in the tiles those of
- * GHOST with all its parts, BEAM and WAVE, each -1 for all: draw draws these
- * alone, until the next time that this or bin is called. */
+ * GHOST with all its parts, BEAM and WAVE (with sets: all waves of set WAVE),
+ * each -1 for all: draw draws these alone, until the next time that this or bin
+ * is called. */
 void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave);
 
 /* Edges in the list of small tile TILE, row by row; light that runs in from the

@@ -34,6 +34,8 @@
 extern "C" {
 #endif
 
+#define GLINT_MAX_WAVE_SETS 5 /* see struct glint_wave_sets, flare.h */
+
 struct glint_vertex;
 
 /* ------------------------------------------------------------- model file

@@ -12,38 +12,8 @@
 #include "bake/cells.h"
 #include "bake/degrees.h"
 #include "bake/quantise.h"
+#include "bake/spectrum.h"
 #include "glint/flare.h"
-
-/* A Gaussian with one width on either side. */
-static double lobe(double nm, double centre, double below, double above)
-{
-    const double t = (nm - centre) / (nm < centre ? below : above);
-
-    return exp(-0.5 * t * t);
-}
-
-/* CIE 1931 2 degree observer, multi-lobe fit [Wyman13] table 1; within 1 % of
- * the peak of the tabulated functions. */
-static void observer(double nm, double xyz[3])
-{
-    xyz[0] = 1.056 * lobe(nm, 599.8, 37.9, 31.0) +
-             0.362 * lobe(nm, 442.0, 16.0, 26.7) -
-             0.065 * lobe(nm, 501.1, 20.4, 26.2);
-    xyz[1] = 0.821 * lobe(nm, 568.8, 46.9, 40.5) +
-             0.286 * lobe(nm, 530.9, 16.3, 31.1);
-    xyz[2] = 1.217 * lobe(nm, 437.0, 11.8, 36.0) +
-             0.681 * lobe(nm, 459.0, 26.0, 13.8);
-}
-
-static void to_bt709(const double xyz[3], double rgb[3])
-{
-    static const double m[3][3] = {{3.2404542, -1.5371385, -0.4985314},
-                                   {-0.9692660, 1.8760108, 0.0415560},
-                                   {0.0556434, -0.2040259, 1.0572252}};
-
-    for (int c = 0; c < 3; c++)
-        rgb[c] = m[c][0] * xyz[0] + m[c][1] * xyz[1] + m[c][2] * xyz[2];
-}
 
 /* Scales each channel to the sum 1, so that a flat spectrum is white. A channel
  * that the wavelengths hardly excite, or excite negatively, takes them all
@@ -68,10 +38,7 @@ static void normalise(struct glint_setup *s)
 static void set_colours(struct glint_setup *s)
 {
     for (int i = 0; i < s->n_wavelengths; i++) {
-        double xyz[3];
-
-        observer(s->wavelength_nm[i], xyz);
-        to_bt709(xyz, s->rgb[i]);
+        glint_observer_rgb(s->wavelength_nm[i], s->rgb[i]);
         for (int c = 0; s->n_wavelengths == 3 && c < 3; c++)
             s->rgb[i][c] = c == i;
     }
@@ -113,6 +80,7 @@ static void set_common(struct glint_setup *s, int n_blades, double rotation_deg,
 {
     s->n_blades = n_blades;
     s->blade_rotation_deg = rotation_deg;
+    s->n_sets = 0;
     s->n_wavelengths = n;
     memcpy(s->wavelength_nm, wavelength_nm, (size_t)n * sizeof *wavelength_nm);
     set_colours(s);
@@ -223,10 +191,54 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     return set_units(setup, h->name, error);
 }
 
+void glint_setup_weigh(struct glint_setup *setup)
+{
+    const int n = setup->n_wavelengths;
+    double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS], mean = 0;
+
+    glint_spectrum(n, nm, setup->rgb, share);
+    for (int i = 0; i < n; i++)
+        mean += share[i] * setup->direct_flux[i];
+    for (int i = 0; i < n; i++)
+        setup->unit_flux[i] = mean;
+}
+
+void glint_setup_spread(struct glint_setup *setup,
+                        const struct glint_lens *lens)
+{
+    static const int sizes[] = {4, 6, 10, 17, 28};
+    enum { N_SETS = sizeof sizes / sizeof *sizes };
+    struct glint_set_wave *wave = setup->set_wave;
+
+    setup->n_sets = N_SETS;
+    for (int s = 0; s < N_SETS; wave += sizes[s++]) {
+        double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS];
+        double rgb[GLINT_MAX_WAVELENGTHS][3], mean = 0;
+
+        setup->set_size[s] = sizes[s];
+        glint_spectrum(sizes[s], nm, rgb, share);
+        for (int i = 0; i < sizes[s]; i++) {
+            wave[i].nm = nm[i];
+            memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
+            wave[i].direct_flux =
+                opening(setup->n_blades) * model_flux(lens->header, nm[i]);
+            mean += share[i] * wave[i].direct_flux;
+        }
+        for (int i = 0; i < sizes[s]; i++)
+            wave[i].unit_flux = mean;
+    }
+}
+
 void glint_setup_balance(struct glint_setup *setup)
 {
+    int n = 0;
+
     for (int i = 0; i < setup->n_wavelengths; i++)
         setup->unit_flux[i] = setup->direct_flux[i];
+    for (int s = 0; s < setup->n_sets; s++)
+        n += setup->set_size[s];
+    for (int i = 0; i < n; i++)
+        setup->set_wave[i].unit_flux = setup->set_wave[i].direct_flux;
 }
 
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,

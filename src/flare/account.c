@@ -5,6 +5,7 @@
  */
 #include "base/q.h"
 #include "flare/state.h"
+#include "flare/wave_sets.h"
 
 /* Where a bundle is among all there could be. */
 static int64_t number_of(const struct glint_flare *f, int ghost, int beam,
@@ -17,8 +18,9 @@ static int64_t number_of(const struct glint_flare *f, int ghost, int beam,
            wave;
 }
 
-/* Where it is among those planned, which are in that order; -1: nowhere. */
-static int find(const struct glint_flare *f, int64_t number)
+/* The first of those planned, which are in that order, that is not before
+ * NUMBER; n_bundles: none. */
+static int first_from(const struct glint_flare *f, int64_t number)
 {
     int low = 0, high = f->n_bundles;
 
@@ -31,12 +33,41 @@ static int find(const struct glint_flare *f, int64_t number)
         else
             high = middle;
     }
-    if (low == f->n_bundles)
+    return low;
+}
+
+/* Where it is among those planned; -1: nowhere. */
+static int find(const struct glint_flare *f, int64_t number)
+{
+    const int at = first_from(f, number);
+
+    if (at == f->n_bundles)
         return -1;
-    return number_of(f, f->source[low].ghost, f->source[low].beam,
-                     f->source[low].wave) == number
-               ? low
+    return number_of(f, f->source[at].ghost, f->source[at].beam,
+                     f->source[at].wave) == number
+               ? at
                : -1;
+}
+
+/* The set that GHOST took of BEAM; the first one if nothing is seen of it. */
+static int set_of(const struct glint_flare *f, int ghost, int beam)
+{
+    const int at = first_from(f, number_of(f, ghost, beam, 0));
+    const struct glint_source *s = &f->source[at];
+
+    return at < f->n_bundles && s->ghost == ghost && s->beam == beam
+               ? glint_wave_sets_of(f->plan.rays->sets, s->wave)
+               : 0;
+}
+
+/* The last place that the plan needed to look at the bundle. */
+static int64_t place_of(const struct glint_flare *f, int ghost, int beam,
+                        int wave)
+{
+    const struct glint_rays *r = f->plan.rays;
+    const int64_t number = number_of(f, ghost, beam, wave);
+
+    return r->sets ? (number / r->n_waves + 1) * r->sets->size[0] - 1 : number;
 }
 
 static int terms_of(const struct glint_transfer *t, int kind)
@@ -88,6 +119,8 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
 {
     struct glint_plan_scratch *scratch = flare->worker[0].plan;
     const int64_t number = number_of(flare, ghost, beam, wave);
+    const int64_t place = place_of(flare, ghost, beam, wave);
+    const struct glint_wave_sets *sets = flare->plan.rays->sets;
     const int at = find(flare, number);
     struct glint_source source = {.ghost = ghost, .beam = beam, .wave = wave};
     struct glint_bundle bundle;
@@ -95,8 +128,12 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
     *account = (struct glint_account){.fate = GLINT_FATE_DRAWN};
     account->fate = glint_plan_bundle(&flare->plan, &source, &bundle, scratch);
     account->surveyed = scratch->survey.n_rays;
-    if (number >= flare->cfg.max_bundles &&
-        number < flare->stats.need_bundles) {
+    if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, beam)) {
+        account->fate = GLINT_FATE_OTHER_SET;
+        account->surveyed *= wave < sets->size[0];
+        return;
+    }
+    if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
         account->surveyed = 0; /* by the account alone, not by the plan */
         account->fate = GLINT_FATE_NO_ROOM;
     } else if (at >= flare->n_drawn)
@@ -121,10 +158,13 @@ static int is_of(const struct glint_flare *f, const struct glint_source *s,
                  int ghost, int beam, int wave)
 {
     const struct glint_model_ghost *of = f->plan.rays->lens->ghost;
+    const struct glint_wave_sets *sets = f->plan.rays->sets;
     const struct glint_model_ghost *here = &of[s->ghost];
 
     return (ghost < 0 || (here->i == of[ghost].i && here->j == of[ghost].j)) &&
-           (beam < 0 || s->beam == beam) && (wave < 0 || s->wave == wave);
+           (beam < 0 || s->beam == beam) &&
+           (wave < 0 ||
+            (sets ? glint_wave_sets_of(sets, s->wave) : s->wave) == wave);
 }
 
 void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)

@@ -3,6 +3,7 @@
 
 #include "base/real.h"
 #include "flare/state.h"
+#include "flare/wave_sets.h"
 
 /* ------------------------------------------------------------------- memory */
 
@@ -249,16 +250,31 @@ static void keep_seen(struct glint_flare *f, int n)
     }
 }
 
+/* N_JOBS pairs of a ghost and a beam, all waves of each; returns how many
+ * bundles there are. */
+static int plan_all(struct glint_flare *f, int n_jobs)
+{
+    const int n_waves = f->plan.rays->n_waves;
+    const int need =
+        n_jobs < INT32_MAX / n_waves ? n_jobs * n_waves : INT32_MAX;
+    const int n = need < f->cfg.max_bundles ? need : f->cfg.max_bundles;
+
+    f->stats.need_bundles = need;
+    f->stats.dropped_bundles = need - n;
+    if (n > 0)
+        glint_workers_run(f->cfg.workers, (n + n_waves - 1) / n_waves, plan_job,
+                          f);
+    leave_out_faint(f, n);
+    return n;
+}
+
 void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                       const struct glint_beam *beams, int n_beams)
 {
     const int n_ghosts = (int)rays->lens->header->n_ghosts;
     const int64_t pairs =
         (int64_t)n_within(rays->lens, beams, n_beams) * n_ghosts;
-    const int need = pairs < INT32_MAX / rays->n_waves
-                         ? (int)pairs * rays->n_waves
-                         : INT32_MAX;
-    const int n = need < flare->cfg.max_bundles ? need : flare->cfg.max_bundles;
+    const int n_jobs = pairs < INT32_MAX ? (int)pairs : INT32_MAX;
 
     glint_flare_begin(flare);
     flare->quads = rays->half;
@@ -271,15 +287,9 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                                       .sets = flare->cfg.sets,
                                       .half = flare->half,
                                       .round = flare->cfg.stop.n_blades == 0};
-    flare->stats.need_bundles = need;
-    flare->stats.dropped_bundles = need - n;
-    if (n > 0)
-        glint_workers_run(flare->cfg.workers,
-                          (n + rays->n_waves - 1) / rays->n_waves, plan_job,
-                          flare);
     flare->flux = flare->brightest = (struct glint_real){0, 0};
-    leave_out_faint(flare, n);
-    keep_seen(flare, n);
+    keep_seen(flare, rays->sets ? glint_wave_sets_plan(flare, n_jobs)
+                                : plan_all(flare, n_jobs));
     if (flare->cfg.raster->fill)
         flare->cfg.raster->fill(flare);
 }

@@ -578,7 +578,7 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - source->energy_up;
     source->flux = flux_of(plan, source, transfer, colour, exponent);
     source->peak_q20 = peak_q20(plan, s, transfer, source->flux);
-    if (plan->n_beams == 1 && source->peak_q20 < 1 << 20)
+    if (plan->n_beams == 1 && !r->sets && source->peak_q20 < 1 << 20)
         return GLINT_FATE_FAINT;
     source->light = real_over(
         source->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));

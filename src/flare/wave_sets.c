@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/wave_sets.h"
+
+#include "base/q.h"
+#include "base/real.h"
+
+enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
+
+/* A ghost and a beam. Lies where bundles find their places only later. */
+struct job {
+    int ghost, beam;
+    int set;      /* or UNSEEN */
+    int peak_q20; /* of all its waves, 2^20 at most: see struct glint_source */
+    int first;    /* of its bundles */
+};
+
+typedef char
+    glint_job_fits[sizeof(struct job) <= sizeof(struct glint_bundle_slot) ? 1
+                                                                          : -1];
+
+static struct job *jobs_of(struct glint_flare *f)
+{
+    return (struct job *)(void *)f->slot;
+}
+
+int glint_wave_sets_first(const struct glint_wave_sets *sets, int set)
+{
+    int first = 0;
+
+    for (int s = 0; s < set; s++)
+        first += sets->size[s];
+    return first;
+}
+
+int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
+{
+    int set = 0;
+
+    for (; set < sets->n_sets - 1 && wave >= sets->size[set]; set++)
+        wave -= sets->size[set];
+    return set;
+}
+
+/* ----------------------------------------------------------------- the choice
+ */
+
+/* Where rays of wave WAVE land, evenly over half of the box: pixels, q8. */
+static void trace(const struct glint_plan *plan, const struct job *job,
+                  int wave, struct glint_transfer *t,
+                  int32_t at_q8[ROWS][2][GLINT_RAYS])
+{
+    const int32_t one_q30 = INT32_C(1) << 30;
+    const struct glint_real scale =
+        glint_plan_place(plan, job->beam).pixels_per_mm;
+    const struct glint_source source = {
+        .ghost = job->ghost, .beam = job->beam, .wave = wave};
+
+    glint_plan_transfer(plan, &source, t);
+    for (int row = 0; row < ROWS; row++) {
+        const int32_t v_q30 = glint_transfer_v(t, 2 * row + 1, 2 * ROWS);
+        int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
+
+        for (int i = 0; i < GLINT_RAYS; i++)
+            u_q30[i] = (2 * i + 1) * (one_q30 / GLINT_RAYS) - one_q30;
+        glint_transfer_rays(t, v_q30, u_q30, 1, out);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < GLINT_RAYS; i++)
+                at_q8[row][k][i] = q_narrow(real_integer(
+                    real_times(real_of(out[GLINT_OUT_SENSOR_X + k][i],
+                                       t->exponent[GLINT_OUT_SENSOR_X + k]),
+                               scale),
+                    8, FARTHEST_Q8));
+    }
+}
+
+/* How far apart the outlines of the first set's outermost waves are, pixels. */
+static int64_t apart_q8(const struct glint_plan *plan, const struct job *job,
+                        struct glint_transfer *t)
+{
+    int32_t a_q8[ROWS][2][GLINT_RAYS], b_q8[ROWS][2][GLINT_RAYS];
+    uint64_t squares = 0; /* 48 of at most 2^52 */
+
+    trace(plan, job, 0, t, a_q8);
+    trace(plan, job, plan->rays->sets->size[0] - 1, t, b_q8);
+    for (int row = 0; row < ROWS; row++)
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < GLINT_RAYS; i++) {
+                const int64_t d = (int64_t)a_q8[row][k][i] - b_q8[row][k][i];
+
+                squares += (uint64_t)(d * d);
+            }
+    return q_root(squares / (ROWS * GLINT_RAYS));
+}
+
+/* How far set SET reaches, 1 / wavelength^2. */
+static int64_t span_of(const struct glint_rays *r, int set)
+{
+    const struct glint_wave *w = r->wave + glint_wave_sets_first(r->sets, set);
+    const int32_t span = w[r->sets->size[set] - 1].wave_q24 - w[0].wave_q24;
+
+    return span < 0 ? -span : span;
+}
+
+/* Whether no step of set SET shows of a ghost of LIGHT, whose first set is
+ * APART.
+ */
+static int serves(const struct glint_rays *r, int set, int64_t apart,
+                  struct glint_real light)
+{
+    const struct glint_wave_sets *s = r->sets;
+    const int64_t gaps = s->size[set] - 1;
+    const struct glint_real step =
+        real_over(light, real_of(s->size[set], 1)); /* 2 / n: see above */
+
+    return real_less(step, s->step) ||
+           apart * span_of(r, set) <= s->apart_q8 * gaps * span_of(r, 0);
+}
+
+/* The smallest set that serves the ghost of N waves planned at SOURCE. */
+static int choose(const struct glint_plan *plan, const struct job *job,
+                  const struct glint_source *source,
+                  const struct glint_bundle *bundle, struct glint_transfer *t)
+{
+    const struct glint_rays *r = plan->rays;
+    const int n = r->sets->size[0];
+    const int both = bundle[0].n_cells && bundle[n - 1].n_cells;
+    struct glint_real light = {0, 0};
+    int set = 0;
+
+    for (int i = 0; i < n; i++)
+        if (bundle[i].n_cells)
+            light = real_plus(light, source[i].light);
+    if (r->sets->n_sets > 1 && !serves(r, 0, FARTHEST_Q8, light)) {
+        const int64_t apart = both ? apart_q8(plan, job, t) : FARTHEST_Q8;
+
+        while (set < r->sets->n_sets - 1 && !serves(r, set, apart, light))
+            set++;
+    }
+    return set;
+}
+
+/* ------------------------------------------------------------------------ jobs
+ */
+
+static void plan_waves(struct glint_flare *f, const struct job *job, int at,
+                       int set, struct glint_plan_scratch *scratch)
+{
+    const struct glint_wave_sets *sets = f->plan.rays->sets;
+    const int first = glint_wave_sets_first(sets, set);
+
+    for (int i = 0; i < sets->size[set]; i++) {
+        f->source[at + i] = (struct glint_source){
+            .ghost = job->ghost, .beam = job->beam, .wave = first + i};
+        glint_plan_bundle(&f->plan, &f->source[at + i], &f->bundle[at + i],
+                          scratch);
+    }
+}
+
+/* A ghost and a beam with the first set, and what it takes. */
+static void look_job(void *ctx, int number, int worker)
+{
+    struct glint_flare *f = ctx;
+    struct job *job = &jobs_of(f)[number];
+    const struct glint_rays *r = f->plan.rays;
+    const int n_ghosts = (int)r->lens->header->n_ghosts;
+    const int n = r->sets->size[0], at = number * n;
+    int64_t peak_q20 = 0;
+
+    *job = (struct job){
+        .ghost = number % n_ghosts, .beam = number / n_ghosts, .set = UNSEEN};
+    plan_waves(f, job, at, 0, f->worker[worker].plan);
+    for (int i = 0; i < n; i++)
+        if (f->bundle[at + i].n_cells) {
+            job->set = 0;
+            peak_q20 += f->source[at + i].peak_q20;
+        }
+    job->peak_q20 = (int)q_clamp_sat(peak_q20, 0, 1 << 20);
+    if (job->set == 0)
+        job->set = choose(&f->plan, job, &f->source[at], &f->bundle[at],
+                          &f->worker[worker].plan->transfer);
+}
+
+static void more_job(void *ctx, int number, int worker)
+{
+    struct glint_flare *f = ctx;
+    const struct job *job = &jobs_of(f)[number];
+
+    if (job->set > 0)
+        plan_waves(f, job, job->first, job->set, f->worker[worker].plan);
+}
+
+/* A ghost that no pixel can show of all beams together. */
+static void leave_out_faint(struct glint_flare *f, int n)
+{
+    const int n_ghosts = (int)f->plan.rays->lens->header->n_ghosts;
+    struct job *job = jobs_of(f);
+
+    for (int ghost = 0; ghost < n_ghosts && ghost < n; ghost++) {
+        int64_t sum_q20 = 0;
+
+        for (int i = ghost; i < n; i += n_ghosts)
+            sum_q20 += job[i].set == UNSEEN ? 0 : job[i].peak_q20;
+        for (int i = ghost; i < n && sum_q20 < 1 << 20; i += n_ghosts)
+            job[i].set = UNSEEN;
+    }
+}
+
+/* N bundles, from the far end where they go up: places may overlap. */
+static void move(struct glint_flare *f, int from, int to, int n)
+{
+    for (int i = 0; i < n && from != to; i++) {
+        const int k = to > from ? n - 1 - i : i;
+
+        f->source[to + k] = f->source[from + k];
+        f->bundle[to + k] = f->bundle[from + k];
+    }
+}
+
+/* Of N jobs those that are seen, without gaps; returns how many. */
+static int keep_seen(struct glint_flare *f, int n)
+{
+    const int size = f->plan.rays->sets->size[0];
+    struct job *job = jobs_of(f);
+    int kept = 0;
+
+    for (int i = 0; i < n; i++)
+        if (job[i].set != UNSEEN) {
+            job[kept] = job[i];
+            move(f, i * size, kept++ * size, size);
+        }
+    return kept;
+}
+
+/* Gives N jobs their places; who finds none takes the first set. Returns how
+ * many bundles there are; *NEED is how many there should be. */
+static int place(struct glint_flare *f, int n, int64_t *need)
+{
+    const int *size = f->plan.rays->sets->size;
+    struct job *job = jobs_of(f);
+    int total = 0;
+
+    *need = 0;
+    for (int i = 0; i < n; i++) {
+        const int rest = (n - i - 1) * size[0];
+
+        *need += size[job[i].set];
+        if (size[job[i].set] > f->cfg.max_bundles - rest - total)
+            job[i].set = 0;
+        job[i].first = total;
+        total += size[job[i].set];
+    }
+    for (int i = n - 1; i >= 0; i--)
+        if (job[i].set == 0)
+            move(f, i * size[0], job[i].first, size[0]);
+    return total;
+}
+
+int glint_wave_sets_plan(struct glint_flare *flare, int n_jobs)
+{
+    struct glint_flare_stats *s = &flare->stats;
+    const int size = flare->plan.rays->sets->size[0];
+    const int most = flare->cfg.max_bundles / size;
+    int n = n_jobs < most ? n_jobs : most, total = 0;
+    int64_t need = 0, least = (int64_t)n_jobs * size;
+
+    s->dropped_bundles =
+        q_narrow(q_clamp_sat((int64_t)(n_jobs - n) * size, 0, INT32_MAX));
+    if (n > 0) {
+        glint_workers_run(flare->cfg.workers, n, look_job, flare);
+        leave_out_faint(flare, n);
+        n = keep_seen(flare, n);
+        total = place(flare, n, &need);
+    }
+    if (n > 0)
+        glint_workers_run(flare->cfg.workers, n, more_job, flare);
+    least = least > need ? least : need;
+    s->need_bundles = q_narrow(q_clamp_sat(least, 0, INT32_MAX));
+    return total;
+}
