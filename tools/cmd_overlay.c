@@ -37,7 +37,7 @@ static const char help[] =
     "found)\n"
     "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
     "input's,\n"
-    "                      else 95)\n";
+    "                      else 95)\n" SCENE_MEMORY_HELP;
 
 static const char help_end[] = SCENE_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
@@ -62,6 +62,8 @@ static bool take(struct overlay *o, int option, const char *value)
         return take_word(value, matrices, &o->matrix);
     case 'Q':
         return tool_integer(value, 1, 100, &o->quality);
+    case 'm':
+        return scene_memory(value, &o->look.reserve_bytes);
     default: /* 'n' */
         return tool_integer(value, 0, 1000000000, &o->start_number);
     }
@@ -74,6 +76,7 @@ static const struct option options[] = {
     {"start-number", required_argument, NULL, 'n'},
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"encode", required_argument, NULL, 'e'},
+    {"memory", required_argument, NULL, 'm'},
     LOOK_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
@@ -92,7 +95,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
             o->output = optarg;
         else if (c == 'e')
             o->encode = optarg;
-        else if (strchr("rxnQ", c)) {
+        else if (strchr("rxnQm", c)) {
             if (!take(o, c, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
@@ -103,6 +106,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
     if (!o->output)
         return tool_usage(tool, "needs -o OUT");
     o->input = argv[optind];
+    if (o->look.reserve_bytes && o->look.scene.rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
 
@@ -125,6 +130,9 @@ static void note_worst(struct frame_report *worst,
         worst->stats.dropped_bundles > report->stats.dropped_bundles
             ? worst->stats.dropped_bundles
             : report->stats.dropped_bundles;
+    const int cells = worst->stats.dropped_cells > report->stats.dropped_cells
+                          ? worst->stats.dropped_cells
+                          : report->stats.dropped_cells;
     const int beyond = worst->beyond_lights > report->beyond_lights
                            ? worst->beyond_lights
                            : report->beyond_lights;
@@ -135,6 +143,7 @@ static void note_worst(struct frame_report *worst,
         worst->apart_lights - worst->drawn_lights)
         *worst = *report;
     worst->stats.dropped_bundles = dropped;
+    worst->stats.dropped_cells = cells;
     worst->lights = lights;
     worst->beyond_lights = beyond;
 }

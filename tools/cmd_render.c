@@ -38,7 +38,7 @@ static const char help[] =
     "                      exact: the reference, every ray in "
     "double\n";
 
-static const char help_end[] = SCENE_HELP;
+static const char help_end[] = SCENE_MEMORY_HELP SCENE_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 struct render {
@@ -47,6 +47,7 @@ struct render {
     bool linear; /* the output takes floats */
     int width, height;
     bool exact;
+    size_t reserve_bytes; /* unless 0: all the memory that the flare takes */
     const char *lights_file;
     int n_lamps;
     struct glint_lamp *lamp; /* room for SCENE_MAX_LAMPS by hand */
@@ -83,6 +84,10 @@ static int take(struct tool *tool, struct render *r, int c)
     case 'f':
         r->lights_file = optarg;
         return -1;
+    case 'm':
+        return scene_memory(optarg, &r->reserve_bytes)
+                   ? -1
+                   : tool_refuse(tool, "memory", optarg);
     case 'e':
         word = tool_word(optarg, engines);
         r->exact = word == 1;
@@ -102,6 +107,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         {"light", required_argument, NULL, 'l'},
         {"lights", required_argument, NULL, 'f'},
         {"engine", required_argument, NULL, 'e'},
+        {"memory", required_argument, NULL, 'm'},
         SCENE_OPTIONS,
         TOOL_COMMON_OPTIONS};
     int c, code;
@@ -120,6 +126,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         return tool_usage(tool, "needs -o OUT");
     if (r->n_lamps == 0 && !r->lights_file)
         return tool_usage(tool, "needs a --light or --lights");
+    if (r->reserve_bytes && r->scene.rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
 
@@ -184,9 +192,14 @@ static int render_model(struct tool *tool, struct render *r)
                            scene_view(&r->scene, r->width, r->height), &frame);
 
     if (code == EXIT_OK) {
-        status =
-            frame_draw_alone(&frame, r->lamp, r->n_lamps,
-                             scene_scale(&r->scene), r->image.rgb, &report);
+        status = r->reserve_bytes && r->n_lamps > 0
+                     ? frame_reserve(&frame, r->reserve_bytes, r->n_lamps,
+                                     frame.max_lights)
+                     : GLINT_OK;
+        if (status == GLINT_OK)
+            status =
+                frame_draw_alone(&frame, r->lamp, r->n_lamps,
+                                 scene_scale(&r->scene), r->image.rgb, &report);
         if (status != GLINT_OK)
             code = tool_fail(tool, status, NULL);
     }

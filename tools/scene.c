@@ -475,6 +475,16 @@ void scene_lights_text(const struct frame_report *r, char text[64])
         snprintf(text, 64, "%d lights", r->lights);
 }
 
+bool scene_memory(const char *text, size_t *bytes)
+{
+    int mib;
+
+    if (!tool_integer(text, 1, 1024, &mib))
+        return false;
+    *bytes = (size_t)mib << 20;
+    return true;
+}
+
 void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
 {
     if (!tool->quiet && r->beyond_lights > 0)
@@ -492,4 +502,9 @@ void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
                 "glint %s: there was no room for %d bundles of rays, which are "
                 "missing: fewer lights or a smaller --grid would fit\n",
                 tool->name, r->stats.dropped_bundles);
+    if (r->stats.dropped_cells > 0)
+        fprintf(stderr,
+                "glint %s: there was no room for %d cells of rays, whose light "
+                "is missing (--memory)\n",
+                tool->name, r->stats.dropped_cells);
 }

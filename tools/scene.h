@@ -267,6 +267,15 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
 /* Steps of irradiance an octave for a quantum in percent. */
 int scene_steps(double quantum);
 
+/* TEXT of --memory, MiB, in bytes. */
+bool scene_memory(const char *text, size_t *bytes);
+
+#define SCENE_MEMORY_HELP                                                    \
+    "  --memory MIB        all that drawing the flare may take, 1 to 1024\n" \
+    "                      (default: what it needs); what does not fit is "  \
+    "left\n"                                                                 \
+    "                      out, with a word\n"
+
 /* Draws a lamp with SCENE's lens a few times, as large as VIEW, to see what an
  * instruction takes here. */
 int scene_calibrate(const struct tool *tool, const struct scene *scene,

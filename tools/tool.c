@@ -338,7 +338,20 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->what = what;
     p->started = tool_seconds();
     p->last = 0;
-    p->shown = !tool->quiet && isatty(STDERR_FILENO);
+    p->shown = !tool->quiet;
+    p->is_terminal = isatty(STDERR_FILENO);
+}
+
+/* A line now and then, where there is no terminal to draw a bar on. */
+static void show_line(struct tool_progress *p, double now, double done)
+{
+    const double spent = now - p->started;
+
+    if (spent < 10 || now - p->last < 10 || done <= 0 || done >= 1)
+        return;
+    p->last = now;
+    fprintf(stderr, "%s: %.0f %% in %.0f s, about %.0f s left\n", p->what,
+            100 * done, spent, spent * (1 - done) / done);
 }
 
 void tool_progress_show(void *progress, double done)
@@ -348,7 +361,9 @@ void tool_progress_show(void *progress, double done)
     const int width = 30, filled = (int)(done * width);
     char bar[32];
 
-    if (!p->shown || (now - p->last < 0.1 && done < 1))
+    if (p->shown && !p->is_terminal)
+        show_line(p, now, done);
+    if (!p->shown || !p->is_terminal || (now - p->last < 0.1 && done < 1))
         return;
     p->last = now;
     for (int i = 0; i < width; i++)
@@ -361,7 +376,7 @@ void tool_progress_show(void *progress, double done)
 
 void tool_progress_end(struct tool_progress *p)
 {
-    if (p->shown && p->last > 0)
+    if (p->shown && p->is_terminal && p->last > 0)
         fputs("\r\033[K", stderr);
 }
 

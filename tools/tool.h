@@ -105,11 +105,11 @@ int tool_lens(const struct tool *tool, const char *argument,
 
 /* ----------------------------------------------------------------- progress */
 
-/* A bar on a terminal's standard error, nothing elsewhere. CTX is a struct
- * tool_progress. */
+/* A bar on a terminal's standard error, elsewhere a line every ten seconds. CTX
+ * is a struct tool_progress. */
 struct tool_progress {
     const char *what;
-    bool shown;
+    bool shown, is_terminal;
     double started, last;
 };
 

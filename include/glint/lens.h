@@ -11,7 +11,9 @@
  * stop, the sensor, the barrels and the energy. It is one block of 32-bit words
  * that is used where it lies, in ROM or a mapped file: nothing is copied,
  * nothing is allocated. After glint_lens_open() has accepted it nothing can go
- * wrong.
+ * wrong; but what a frame costs is not bounded by the size of the file: ghosts
+ * that fold, in their thousands, take minutes. Where models are not trusted,
+ * hold memory by the capacities of glint/flare.h and time from outside.
  *
  * Variables of a polynomial, each -1 .. 1:
  *   u, v   place in the ghost's box on the vertex plane of the first surface,
