@@ -7,11 +7,25 @@
  *     n = glint_lights_find(finder, &image, lights, 64);    each picture
  *
  * Bright regions become lights: pixels above the upper threshold seed a region,
- * pixels above the lower one belong to it. Everything is weighted by flux in
- * linear light, never by the single brightest pixel, so that noise does not
- * move a light. A region needs seeds on a 32nd of its pixels, so that pale
- * walls and skies with a glint in them are no lights. Integers only; nothing is
- * kept from picture to picture.
+ * pixels above the lower one belong to it. Pixels are judged by their largest
+ * channel, so that a red lamp is as bright as a white one, in stops from white:
+ * that is where codes clip (250 and above count as clipped). In a picture that
+ * does not reach it regions are also sought from its own white, the code that
+ * one of 2048 of its pixels reaches, though no darker than code 64, or noise
+ * would be lamps.
+ *
+ * Skies, clouds, snow, paper and flowers are as bright as lamps. A region is a
+ * light by what a score says of it and of what is around it: contrast, light
+ * that falls off around it and in all directions alike, a compact shape, how
+ * much else is as bright, colour; see flare/score.h. A region that is none is
+ * looked at again where it clips in one channel, in nearly all, and in all: a
+ * sun in a bright sky is a light by itself. At least an eighth of a region must
+ * be at the upper threshold.
+ *
+ * Everything is weighted by flux in linear light, never by the single brightest
+ * pixel, so that noise does not move a light. Sizes follow the picture's, so
+ * that it has the same lights at any resolution. Integers only; nothing is kept
+ * from picture to picture.
  */
 #ifndef GLINT_LIGHTS_H
 #define GLINT_LIGHTS_H
@@ -32,7 +46,8 @@ struct glint_spot {
                            corner of the picture, pixel centres at n + 1/2 */
     int32_t size_q8;    /* RMS radius, pixels */
     int32_t area;       /* pixels that belong to it */
-    int32_t n_clipped;  /* of these, pixels at the upper threshold or above */
+    int32_t n_clipped;  /* of these, pixels whose largest channel is clipped, or
+                           at the picture's own white */
     int64_t flux_q16;   /* sum of linear luminance over its pixels, 1 = white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
     int32_t faint;      /* 1: no light yet; see keep_faint */
@@ -60,7 +75,7 @@ struct glint_lights_config {
                                  regions are lights */
     int32_t keep_faint;       /* 1: after the lights come regions that have too
                                  few pixels at the upper threshold, half of
-                                 min_area or half a doubt against them, marked
+                                 min_area, or a score a little too low, marked
                                  faint; for glint/tracks.h */
 };
 

@@ -38,12 +38,12 @@ static int is_rgb(const struct glint_layout *layout)
     return layout->kind == GLINT_LAYOUT_RGB || layout->kind == GLINT_LAYOUT_565;
 }
 
-/* Luma 180 or less of a clipped pixel, and 240 or more, end the scale. */
+/* Steps of 15: the least of them below luma 192, the last from 252 on. */
 static void set_beyond(uint8_t beyond[256])
 {
     for (int luma = 0; luma < 256; luma++)
         beyond[luma] =
-            (uint8_t)(BRIGHT_CLIPPED + (luma > 180 ? (luma - 180) / 15 : 0));
+            (uint8_t)(BRIGHT_CLIPPED + (luma > 177 ? (luma - 177) / 15 : 0));
 }
 
 void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)

@@ -32,7 +32,8 @@ struct glint_arena;
 enum {
     BRIGHT_BLOCK = 32,    /* pixels */
     BRIGHT_CLIPPED = 250, /* a channel here or above says nothing of colour */
-    BRIGHT_WHITE = 254,   /* brightness where all channels are clipped */
+    BRIGHT_WHITE = 254,   /* brightness where luma is 237 or more, too, */
+    BRIGHT_HOT = 255,     /* and 252 */
     BRIGHT_BOUNDS = 3
 };
 

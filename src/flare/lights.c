@@ -21,17 +21,18 @@
 
 /* Regions of which less than 1 / 2^SEED_LOG2 reaches the upper threshold are
  * lit surfaces, not lights. */
-#define SEED_LOG2 5
+#define SEED_LOG2 3
 
-#define LEVELS    4
+#define LEVELS    6
 #define EV_MIN_Q8 (-20 * 256)
 
 /* A lamp is meant as wide as it is at the thresholds, unless its core by itself
  * is clearly more of a lamp; in the dark of a picture it is one if nothing in
  * it is. */
-#define COST_CLIPPED_Q8 96
-#define COST_WHITE_Q8   192
+#define COST_CLIPPED_Q8 64
+#define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
+#define DARK_SHARE_Q15  Q_CONST(0.125, 15)
 
 struct glint_lights {
     struct glint_lights_config cfg;
@@ -298,6 +299,22 @@ static void add_level(struct glint_lights *f, int32_t light_q20)
     level->cost_q8 = 0;
 }
 
+/* The same of a picture that is darker than white, unless much of it is as
+ * bright. */
+static void add_dark_level(struct glint_lights *f)
+{
+    if (!f->cfg.judge || f->white->light_q20 >= LINEAR_WHITE_Q20)
+        return;
+    add_level(f, f->white->light_q20);
+    f->level[0].cost_q8 = COST_DARK_Q8;
+    f->level[1] = f->level[0];
+    f->level[1].low = f->level[1].seed;
+    f->level[1].cost_q8 += COST_CLIPPED_Q8;
+    f->n_levels = 2;
+    if (glint_white_share_q15(f->white, f->level[0].low) > DARK_SHARE_Q15)
+        f->n_levels = 0;
+}
+
 /* Regions of what is clipped, in one channel or in all, LOW and above. */
 static void add_core(struct glint_lights *f, int low, int32_t cost_q8)
 {
@@ -317,15 +334,13 @@ static void set_levels(struct glint_lights *f)
     if (white_code) {
         add_level(f, b->curve->decode_q20[white_code]);
     } else {
-        add_level(f, f->white->light_q20);
-        if (f->white->light_q20 < LINEAR_WHITE_Q20) {
-            f->level[0].cost_q8 = COST_DARK_Q8;
-            add_level(f, LINEAR_WHITE_Q20);
-        }
+        add_dark_level(f);
+        add_level(f, LINEAR_WHITE_Q20);
     }
     if (f->cfg.judge) {
         add_core(f, BRIGHT_CLIPPED, COST_CLIPPED_Q8);
         add_core(f, BRIGHT_WHITE, COST_WHITE_Q8);
+        add_core(f, BRIGHT_HOT, 0);
     }
     glint_bright_set_low(b, f->level[0].low);
 }

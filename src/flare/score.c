@@ -6,8 +6,12 @@
 
 enum {
     FLOOR_Q20 = 1 << 12, /* added to light: noise of the dark is no contrast */
-    MOST_Q8 = 6 * 256,   /* of a contrast */
-    MOST_CROWD = 127
+    LEAST_Q8 = -256,     /* of a contrast */
+    MOST_Q8 = 6 * 256,
+    SMALL_Q8 = -2424, /* log2 of a share of the picture: 1/700; a colour counts
+                         for a lamp here, */
+    LARGE_Q8 = -1400, /* and against it from here on */
+    SURE_Q8 = 384     /* scores beyond are all the same */
 };
 
 /* Adds WEIGHT of MEASURE, held to LEAST .. MOST, over LEAST. */
@@ -16,21 +20,17 @@ struct term {
     int16_t least_q8, most_q8, weight_q8;
 };
 
-enum { BIAS_Q8 = -2000 };
+/* By logistic regression, weights held to the sign that their reason gives
+ * them; 64 are a natural logarithm of odds. */
+enum { BIAS_Q8 = -1358 };
 
-/* Scores beyond are all the same: a lamp without doubt. */
-#define SURE_Q8 384
-
-static const struct term terms[] = {{EVIDENCE_AROUND, 0, 4 * 256, 192},
-                                    {EVIDENCE_FAR, 0, 5 * 256, 128},
-                                    {EVIDENCE_HALO, -256, 3 * 256, 128},
-                                    {EVIDENCE_FILL, 0, 256, 512},
-                                    {EVIDENCE_SIZE, -18 * 256, -10 * 256, 85},
-                                    {EVIDENCE_SIZE, -6 * 256, 0, -128},
-                                    {EVIDENCE_REST, -9 * 256, 0, -128},
-                                    {EVIDENCE_CLIPPED, 0, 256, 256},
-                                    {EVIDENCE_CROWD, 512, 6 * 256, -128},
-                                    {EVIDENCE_SCENE, -5 * 256, 0, -85}};
+static const struct term terms[] = {
+    {EVIDENCE_AROUND, 0, 448, 178},     {EVIDENCE_HALO, -256, 512, 101},
+    {EVIDENCE_SPREAD, 0, 512, -121},    {EVIDENCE_FILL, 64, 160, 255},
+    {EVIDENCE_FILL, 160, 224, 654},     {EVIDENCE_BOX, 96, 200, 91},
+    {EVIDENCE_SIZE, -4400, -3400, 163}, {EVIDENCE_SIZE, -3400, -2000, 65},
+    {EVIDENCE_REST, -1800, -500, -65},  {EVIDENCE_COLOUR, 0, 256, 96},
+    {EVIDENCE_TINT, 0, 256, -196},      {EVIDENCE_DIM, 0, 1280, -51}};
 
 /* ----------------------------------------------------------------- contrast */
 
@@ -65,24 +65,24 @@ static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
     stops_of(wide_q20, out_q8);
     for (int i = 0; i < 2; i++)
         out_q8[i] = in_q8[i] - out_q8[i];
-    return q_clamp_sat(out_q8[0] > out_q8[1] ? out_q8[0] : out_q8[1], -256,
+    return q_clamp_sat(out_q8[0] > out_q8[1] ? out_q8[0] : out_q8[1], LEAST_Q8,
                        MOST_Q8);
 }
 
-/* Point I of the outline of SUM's box that is D pixels larger on each side. */
+/* Point I of the ellipse in SUM's box that is D pixels larger on each side. */
 static void point_of(const struct glint_region *sum, int32_t d, int i,
                      int32_t *x, int32_t *y)
 {
-    const int32_t x0 = sum->x0 - d, x1 = sum->x1 - 1 + d;
-    const int32_t y0 = sum->y0 - d, y1 = sum->y1 - 1 + d;
-    const int side = i >> 2, k = 2 * (i & 3) + 1;
+    static const int16_t sine_q14[SCORE_POINTS + SCORE_POINTS / 4] = {
+        0,      6270,  11585, 15137,  16384,  15137,  11585,
+        6270,   0,     -6270, -11585, -15137, -16384, -15137,
+        -11585, -6270, 0,     6270,   11585,  15137};
+    const int64_t w = sum->x1 - sum->x0 - 1 + 2 * (int64_t)d;
+    const int64_t h = sum->y1 - sum->y0 - 1 + 2 * (int64_t)d;
 
-    *x = side == 0   ? x0
-         : side == 1 ? x1
-                     : x0 + (int32_t)((int64_t)(x1 - x0) * k / 8);
-    *y = side == 2   ? y0
-         : side == 3 ? y1
-                     : y0 + (int32_t)((int64_t)(y1 - y0) * k / 8);
+    *x = q_narrow(sum->x0 - d +
+                  q_shift(w * (16384 + sine_q14[i + SCORE_POINTS / 4]), 15));
+    *y = q_narrow(sum->y0 - d + q_shift(h * (16384 + sine_q14[i]), 15));
 }
 
 /* Contrasts at the points that are in the picture; returns how many. */
@@ -113,7 +113,7 @@ static int32_t mean_of(const int32_t *v, int n)
     return n ? sum / n : 0;
 }
 
-static int32_t quartile_of(int32_t *v, int n)
+static void sort(int32_t *v, int n)
 {
     for (int i = 1; i < n; i++)
         for (int j = i; j > 0 && v[j] < v[j - 1]; j--) {
@@ -122,7 +122,6 @@ static int32_t quartile_of(int32_t *v, int n)
             v[j] = v[j - 1];
             v[j - 1] = old;
         }
-    return n ? v[n / 4] : 0;
 }
 
 /* Distance of ring I from the box of SUM: in 1/800 of the picture's side, and
@@ -140,28 +139,45 @@ static int32_t distance_of(const struct glint_score *s,
                      (in_q8[i][0] * side / 800 + in_q8[i][1] * box / 2) / 256);
 }
 
+/* Contrast around a region at one distance. */
+struct ring {
+    int32_t mean_q8, lower_q8, upper_q8; /* quartiles */
+};
+
+/* RING stays where no point is in the picture. */
+static void look_at_ring(struct ring *ring, const struct glint_score *s,
+                         const struct glint_region *sum, int32_t d,
+                         const int32_t in_q8[2])
+{
+    int32_t found_q8[SCORE_POINTS];
+    const int n = look_around(s, sum, d, in_q8, found_q8);
+
+    if (n == 0)
+        return;
+    sort(found_q8, n);
+    ring->mean_q8 = mean_of(found_q8, n);
+    ring->lower_q8 = found_q8[n / 4];
+    ring->upper_q8 = found_q8[n - 1 - n / 4];
+}
+
 static void look_at_rings(struct glint_candidate *c,
                           const struct glint_score *s)
 {
-    int32_t around_q8[SCORE_RINGS], in_q8[2], quartile_q8 = 0;
+    struct ring ring[SCORE_RINGS] = {{0, 0, 0}};
     int64_t mean_q20[3];
+    int32_t in_q8[2];
 
     for (int i = 0; i < 3; i++)
         mean_q20[i] = c->sum.rgb_q14[i] * 64 / c->sum.area;
     stops_of(mean_q20, in_q8);
     for (int i = 0; i < SCORE_RINGS; i++) {
-        int32_t found_q8[SCORE_POINTS];
-        const int n = look_around(s, &c->sum, distance_of(s, &c->sum, i), in_q8,
-                                  found_q8);
-
-        around_q8[i] = n || i == 0 ? mean_of(found_q8, n) : around_q8[i - 1];
-        if (i == 1)
-            quartile_q8 = quartile_of(found_q8, n);
+        if (i > 0)
+            ring[i] = ring[i - 1];
+        look_at_ring(&ring[i], s, &c->sum, distance_of(s, &c->sum, i), in_q8);
     }
-    c->evidence_q8[EVIDENCE_NEAR] = around_q8[0];
-    c->evidence_q8[EVIDENCE_AROUND] = quartile_q8;
-    c->evidence_q8[EVIDENCE_FAR] = around_q8[2];
-    c->evidence_q8[EVIDENCE_HALO] = around_q8[2] - around_q8[0];
+    c->evidence_q8[EVIDENCE_AROUND] = ring[1].lower_q8;
+    c->evidence_q8[EVIDENCE_HALO] = ring[2].mean_q8 - ring[0].mean_q8;
+    c->evidence_q8[EVIDENCE_SPREAD] = ring[0].upper_q8 - ring[0].lower_q8;
 }
 
 /* -------------------------------------------------------------------- shape */
@@ -187,82 +203,48 @@ static int32_t colour_q8(const struct glint_region *sum)
     return 256 - (int32_t)(least / (largest(rim) / 256 + 1));
 }
 
+/* Of the picture: 2^20 is all of it. */
+static int64_t share_q20(const struct glint_score *s, int64_t pixels)
+{
+    return (pixels << 20) / ((int64_t)s->width * s->height);
+}
+
+/* A picture by night that is underexposed has lamps that do not clip; a grey
+ * one has grey things. */
+static int32_t dim_q8(const struct glint_score *s,
+                      const struct glint_level *level)
+{
+    const int32_t *light_q20 = s->bright->curve->decode_q20;
+    const int half = glint_white_reached_by(s->white, 1);
+
+    if (level->clipped >= BRIGHT_CLIPPED)
+        return 0;
+    return q_clamp_sat(glint_stops_q8(light_q20[half] + FLOOR_Q20) -
+                           glint_stops_q8(light_q20[level->clipped]) + 5 * 256,
+                       0, 5 * 256);
+}
+
 static void look_at_shape(struct glint_candidate *c,
                           const struct glint_score *s)
 {
-    const int64_t pixels = (int64_t)s->width * s->height;
-    const int64_t share_q20 = ((int64_t)c->sum.area << 20) / pixels;
+    const struct glint_region *sum = &c->sum;
+    const int64_t box = (int64_t)(sum->x1 - sum->x0) * (sum->y1 - sum->y0);
+    const int32_t size_q8 = glint_stops_q8(share_q20(s, sum->area));
+    const int32_t large_q8 =
+        q_clamp_sat((int64_t)size_q8 - SMALL_Q8, 0, LARGE_Q8 - SMALL_Q8);
+    const int32_t tint_q8 = colour_q8(sum) * large_q8 / (LARGE_Q8 - SMALL_Q8);
     const int64_t rest_q20 =
         (int64_t)glint_white_share_q15(s->white, s->level[c->level].low) * 32 -
-        share_q20;
+        3 * share_q20(s, sum->area);
     int32_t *e_q8 = c->evidence_q8;
 
-    e_q8[EVIDENCE_FILL] = fill_q8(&c->sum);
-    e_q8[EVIDENCE_SIZE] = glint_stops_q8(share_q20);
-    e_q8[EVIDENCE_REST] = glint_stops_q8((rest_q20 > 0 ? rest_q20 : 0) + 256);
-    e_q8[EVIDENCE_CLIPPED] =
-        s->level[c->level].low >= BRIGHT_CLIPPED
-            ? 128
-            : (int32_t)(((int64_t)c->sum.n_clipped << 8) / c->sum.area);
-    e_q8[EVIDENCE_COLOUR] = colour_q8(&c->sum);
-    e_q8[EVIDENCE_SCENE] = glint_stops_q8(
-        s->bright->curve->decode_q20[glint_white_reached_by(s->white, 1)] +
-        FLOOR_Q20);
-}
-
-/* -------------------------------------------------------------------- crowd */
-
-static int by_place(const void *ctx, int32_t a, int32_t b)
-{
-    const struct glint_candidate *p = (const struct glint_candidate *)ctx + a;
-    const struct glint_candidate *q = (const struct glint_candidate *)ctx + b;
-
-    if (p->level != q->level)
-        return p->level < q->level;
-    if (p->sum.y0 != q->sum.y0)
-        return p->sum.y0 < q->sum.y0;
-    return p->sum.first < q->sum.first;
-}
-
-/* Whether B, which is DY rows away, is as large as A, within a factor of 4,
- * and within 12 of its sides. */
-static int is_alike(const struct glint_candidate *a,
-                    const struct glint_candidate *b, int64_t reach2)
-{
-    const int64_t dx = (a->sum.x0 + a->sum.x1 - b->sum.x0 - b->sum.x1) / 2;
-    const int64_t dy = (a->sum.y0 + a->sum.y1 - b->sum.y0 - b->sum.y1) / 2;
-
-    return b->sum.area < 4 * (int64_t)a->sum.area &&
-           a->sum.area < 4 * (int64_t)b->sum.area && dx * dx + dy * dy < reach2;
-}
-
-/* Regions like that of order[AT], going by STEP, at most MOST. */
-static int count_alike(const struct glint_candidate *candidate,
-                       const int32_t *order, int n, int at, int step, int most)
-{
-    const struct glint_candidate *c = &candidate[order[at]];
-    const int64_t reach2 = 144 * (int64_t)c->sum.area + 256;
-    int found = 0;
-
-    for (int i = at + step; i >= 0 && i < n && found < most; i += step) {
-        const struct glint_candidate *other = &candidate[order[i]];
-        const int64_t dy = other->sum.y0 - c->sum.y0;
-
-        if (other->level != c->level || dy * dy > reach2)
-            break;
-        found += is_alike(c, other, reach2);
-    }
-    return found;
-}
-
-static int32_t crowd_q8(const struct glint_candidate *candidate,
-                        const int32_t *order, int n, int at)
-{
-    const int before = count_alike(candidate, order, n, at, -1, MOST_CROWD);
-    const int all =
-        before + count_alike(candidate, order, n, at, 1, MOST_CROWD - before);
-
-    return glint_stops_q8((int64_t)(all + 1) << 20);
+    e_q8[EVIDENCE_DIM] = dim_q8(s, &s->level[c->level]);
+    e_q8[EVIDENCE_FILL] = fill_q8(sum);
+    e_q8[EVIDENCE_BOX] = (int32_t)(((int64_t)sum->area << 8) / box);
+    e_q8[EVIDENCE_SIZE] = size_q8;
+    e_q8[EVIDENCE_REST] = glint_stops_q8(rest_q20);
+    e_q8[EVIDENCE_COLOUR] = colour_q8(sum) - tint_q8;
+    e_q8[EVIDENCE_TINT] = tint_q8;
 }
 
 /* -------------------------------------------------------------------- score */
@@ -282,15 +264,14 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
 }
 
 void glint_score_all(const struct glint_score *score,
-                     struct glint_candidate *candidate, int32_t *order, int n)
+                     struct glint_candidate *candidate, const int32_t *order,
+                     int n)
 {
-    glint_sort(order, n, by_place, candidate);
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &candidate[order[i]];
 
         look_at_rings(c, score);
         look_at_shape(c, score);
-        c->evidence_q8[EVIDENCE_CROWD] = crowd_q8(candidate, order, n, i);
         c->score_q8 = score_of(c->evidence_q8);
     }
 }

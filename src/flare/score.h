@@ -4,16 +4,20 @@
  *
  *   in   the bright regions of a picture, at each of the levels of brightness
  *        that they were sought at, and the picture around them
- *   out  a score of each, in doubts: 256 is one; 0 and more speak for a lamp
+ *   out  a score of each: 0 and more speak for a lamp, 64 are a factor e of
+ *        its odds; below -SCORE_DOUBT it is none even if it was one before
  *
  * The score is a sum of terms, each a measure held to a range and weighed; so
  * it moves little where the picture does. Regions of the levels lie within each
  * other, a lamp in its glow in the sky, and of those the one with the highest
  * score is meant.
  *
- * Around a region SCORE_POINTS pixels are read on each of SCORE_RINGS outlines
- * of its box: distances grow with the region and with the picture, so that the
- * same scene in more pixels has the same score.
+ * Around a region SCORE_POINTS pixels are read on each of SCORE_RINGS ellipses:
+ * distances grow with the region and with the picture, so that the same scene
+ * in more pixels has the same score.
+ *
+ * Limits: each term is below 2^13 * 2^10, so that the sum of a dozen fits 32
+ * bits with ease; what areas and boxes need is in 64.
  */
 #ifndef GLINT_FLARE_SCORE_H
 #define GLINT_FLARE_SCORE_H
@@ -26,18 +30,19 @@ enum { SCORE_RINGS = 3, SCORE_POINTS = 16, SCORE_DOUBT = 256 };
 
 /* Measures, _q8. */
 enum glint_evidence {
-    EVIDENCE_NEAR,   /* stops over what is close around */
-    EVIDENCE_AROUND, /* further out: the lower quartile of the points */
-    EVIDENCE_FAR,    /* and further yet */
-    EVIDENCE_HALO,   /* by how much far exceeds near: light falls off */
+    EVIDENCE_AROUND, /* stops over what is around: the lower quartile */
+    EVIDENCE_HALO,   /* by how much that is more further out: light falls off */
+    EVIDENCE_SPREAD, /* between the quartiles close around: it does not do so
+                        alike in all directions */
     EVIDENCE_FILL,   /* area over that of a disc that is as wide: 256 for one */
+    EVIDENCE_BOX,    /* area over that of its box */
     EVIDENCE_SIZE,   /* log2 of its share of the picture: 0 and less */
-    EVIDENCE_REST,   /* log2 of the share of the picture that is as bright and
-                        not it */
-    EVIDENCE_CLIPPED, /* share of its pixels; 128 where all are by choice */
-    EVIDENCE_COLOUR,  /* saturation, 256: one channel alone */
-    EVIDENCE_CROWD,   /* log2 of 1 + regions alike around it */
-    EVIDENCE_SCENE,   /* stops of half of the picture over white: 0 and less */
+    EVIDENCE_REST,   /* log2 of the share of the picture that is as bright, but
+                        for three times itself: lamps come in pairs */
+    EVIDENCE_COLOUR, /* saturation, 256: one channel alone; of a small region */
+    EVIDENCE_TINT,   /* the same of a large one: a lamp would be white there */
+    EVIDENCE_DIM,    /* stops by which half of the picture is less than five
+                        below a white that is none */
     EVIDENCES
 };
 
@@ -68,10 +73,10 @@ struct glint_score {
     const struct glint_level *level;
 };
 
-/* Sets the score of the N candidates of ORDER, which it puts into another
- * order. */
+/* Sets the score of the N candidates of ORDER. */
 void glint_score_all(const struct glint_score *score,
-                     struct glint_candidate *candidate, int32_t *order, int n);
+                     struct glint_candidate *candidate, const int32_t *order,
+                     int n);
 
 /* Marks those gone that lie within or around one with a higher score. ORDER
  * comes out by falling score. */

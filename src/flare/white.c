@@ -53,10 +53,12 @@ void glint_white_measure(struct glint_white *white, struct glint_bright *bright,
     count(white, bright, height);
     for (int value = 255; value >= 0; value--)
         white->at_least[value] += white->at_least[value + 1];
-    code = glint_white_reached_by(white, 7);
-    white->light_q20 =
-        q_clamp_sat((int64_t)bright->curve->decode_q20[code] * 8,
-                    bright->curve->decode_q20[WHITE_LEAST], LINEAR_WHITE_Q20);
+    code = glint_white_reached_by(white, WHITE_PART_LOG2);
+    if (code >= BRIGHT_CLIPPED)
+        white->light_q20 = LINEAR_WHITE_Q20;
+    else
+        white->light_q20 =
+            bright->curve->decode_q20[code > WHITE_LEAST ? code : WHITE_LEAST];
 }
 
 int glint_white_code(const struct glint_bright *bright, int32_t light_q20,

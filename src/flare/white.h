@@ -5,11 +5,9 @@
  *   in   a picture, of which bright has the codes
  *   out  how many of a grid of its pixels reach each brightness; codes
  *
- * A lamp may be far darker than white where a picture is underexposed, so white
- * is where the picture clips or three stops over what one pixel in 128 reaches,
- * whichever is darker; yet no darker than code WHITE_LEAST, or noise would be
- * lamps. It rests upon many pixels and none of them are lamps', so that it is
- * steady while lamps come and go.
+ * A lamp may be far darker than white where a picture is underexposed. So white
+ * is where codes clip if one pixel in 2^WHITE_PART_LOG2 does, else the code
+ * that as many reach, yet no darker than WHITE_LEAST, or noise would be lamps.
  */
 #ifndef GLINT_FLARE_WHITE_H
 #define GLINT_FLARE_WHITE_H
@@ -19,6 +17,7 @@
 enum {
     WHITE_GRID_X = 160, /* pixels of the grid, at most */
     WHITE_GRID_Y = 96,
+    WHITE_PART_LOG2 = 11,
     WHITE_LEAST = 64
 };
 

@@ -133,7 +133,7 @@ static void codes_at(const struct glint_image *image, int x, int y, int code[3])
 
 static int clipped_value(int luma)
 {
-    return 250 + (luma > 180 ? (luma - 180) / 15 : 0);
+    return 250 + (luma > 177 ? (luma - 177) / 15 : 0);
 }
 
 static int value_of_rgb(int r, int g, int b)
