@@ -24,6 +24,7 @@
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
 #   make growth   how that grows, as plots;  memory-table: what it takes
+#   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
 #   also: oiio table bake-table accuracy-table colour-table ray-table inputs format
 #         golden-update fuzz-keep clean
@@ -342,6 +343,8 @@ build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) platform/plain/sample
 	        $$(pkg-config --exists libwebp && pkg-config --cflags --libs libwebp)
 
 # ------------------------------------------------------------------- to see
+video-report: $(OUT)/steady
+	$(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS)
 demo:
 	@tools/deps "PNG and JPEG pictures, and video to look at" g++ pkg-config \
 	        libopenimageio-dev ffmpeg
@@ -436,6 +439,8 @@ $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
 	$(link)
 $(OUT)/power_table: $(OUT)/tests/support/power_table.o \
         $(OUT)/tests/support/power_scene.o $(libs)
+	$(link)
+$(OUT)/steady: $(OUT)/tests/support/steady.o $(libs)
 	$(link)
 $(OUT)/motion: $(OUT)/tests/support/motion.o $(OUT)/tests/support/stage.o $(libs)
 	$(link)
@@ -615,7 +620,7 @@ install: all glint-live
 	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all help corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: all help video-report corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -12,7 +12,7 @@
 
 void look_defaults(struct look *look)
 {
-    *look = (struct look){.lens = "heliar-tronnier",
+    *look = (struct look){.lens = "nikon-zoom-short",
                           .headroom_ev = -1,
                           .threshold_ev = {-0.1, -0.6},
                           .white = 1};

@@ -73,7 +73,7 @@ enum look_option_code {
         {"strength", required_argument, NULL, OPT_STRENGTH}, SCENE_OPTIONS
 
 #define LOOK_HELP                                                              \
-    "  --lens LENS         table or baked model (default heliar-tronnier)\n"   \
+    "  --lens LENS         table or baked model (default nikon-zoom-short)\n"  \
     "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"   \
     "                      frame,x,y,power[,r,g,b[,size]] or JSON lines "      \
     "with\n"                                                                   \

@@ -11,8 +11,8 @@ static const double norm = 4;
 static const double mean_most = 0.32;
 
 /* Display light at --exposure 0 that is neither much nor little. */
-static const double common_log2 = -2;
-static const double compression = 0.1; /* stops a stop */
+static const double common_log2 = -5;
+static const double compression = 0.15; /* stops a stop */
 
 /* Following. */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;

@@ -19,12 +19,13 @@
  *     b = (p^4 + (m / 0.32)^4)^(1/4)
  * and the factor is
  *     strength^2 * ((p / t)^4 + (m / 0.32)^4)^(-1/4),
- *     t = 2^tanh(log2(b / b0) / 10),    b0 = 1/4
+ *     t = 2^tanh(0.15 log2(b / b0)),    b0 = 1/32
  * so the brightest comes to strength^2, and the mean, where the lens veils the
  * picture or lamps are many, to a third of that at most; each doubling of the
  * strength is two stops, 0.5 a quarter of white. Lamps of ten stops more light
- * give 3/4 of a stop more flare: a sun shows more than a candle, within a stop
- * either way. All lamps get the same factor, so the ratios between them stay.
+ * give one and a quarter more flare: a sun shows more than a candle, within a
+ * stop either way. All lamps get the same factor, so the ratios between them
+ * stay.
  *
  * In a video the factor follows, by stops in proportion to the time: it falls
  * by up to 3 stops a second and rises by up to 2, no more than an eighth of

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * steady [--lens LENS] [--most SHARE] [VIDEO.y4m...] - how steady the flare of
+ * a video is: drawn scenes, and videos.
+ *
+ * From frame to frame the total light of the flare, as it is drawn, changes
+ * for what the lamps do (they move, rise, fade, are hidden: the total light at
+ * an exposure that stays) and for what the exposure does. A step that lies
+ * between none and the lamps' own is theirs; what goes beyond is ours. Frames
+ * after a cut begin anew and are not counted. Exit code 1: a step of ours is
+ * larger than SHARE (default 0.1).
+ */
+#include <getopt.h>
+#include <stdio.h>
+
+#include "look.h"
+#include "plain/y4m.h"
+#include "posix/error.h"
+#include "support/night.h"
+
+enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000 };
+
+struct steady {
+    struct tool tool;
+    struct look look;
+    double total, own;         /* of the frame before */
+    double worst, largest;     /* step of ours; of any */
+    int worst_frame, cuts, frames, most_lights;
+};
+
+/* ------------------------------------------------------------------- steps */
+
+static double light_of(struct steady *s, const struct glint_lamp *lamps,
+                       double scale)
+{
+    struct response_light light;
+
+    if (response_draw(&s->tool, &s->look.scene, s->look.view, lamps,
+                      s->look.n_lamps, &light) != GLINT_OK)
+        exit(EXIT_RUNTIME);
+    return scale * strength_largest(light.mean);
+}
+
+/* By how much STEP exceeds what lies between none and OWN, both logarithms. */
+static double beyond(double step, double own)
+{
+    const double low = fmin(own, 0), high = fmax(own, 0);
+
+    return step > high ? step - high : step < low ? low - step : 0;
+}
+
+static void note(struct steady *s, double total, double own)
+{
+    const bool is_cut = glint_tracks_was_cut(s->look.finder.tracks);
+    /* what could not be seen before is no step */
+    const double least = 1e-6;
+
+    s->cuts += is_cut && s->frames > 0;
+    if (!is_cut && s->total > least && total > least) {
+        const double step = log(total / s->total);
+        const double ours = exp(beyond(step, log(own / s->own))) - 1;
+
+        s->largest = fmax(s->largest, exp(fabs(step)) - 1);
+        if (ours > s->worst) {
+            s->worst = ours;
+            s->worst_frame = s->frames;
+        }
+    }
+    s->total = total;
+    s->own = own;
+}
+
+static void frame(struct steady *s, const struct glint_image *image,
+                  int32_t elapsed_us)
+{
+    struct look *look = &s->look;
+    double own;
+
+    look_find(look, image, elapsed_us);
+    own = light_of(s, look->lamp, 1);
+    look_expose(look, elapsed_us);
+    note(s, light_of(s, look->lamp, look_scale(look)), own);
+    if (look->n_lamps > s->most_lights)
+        s->most_lights = look->n_lamps;
+    s->frames++;
+}
+
+static void begin(struct steady *s, int width, int height)
+{
+    s->total = s->own = s->worst = s->largest = 0;
+    s->worst_frame = s->cuts = s->frames = s->most_lights = 0;
+    if (look_size(&s->tool, &s->look, width, height) != EXIT_OK)
+        exit(EXIT_RUNTIME);
+}
+
+static bool end(const struct steady *s, const char *name, double most)
+{
+    printf("| %s | %d | %d | %d | %.1f | %.1f | %d |\n", name, s->frames,
+           s->most_lights, s->cuts, 100 * s->largest, 100 * s->worst,
+           s->worst_frame);
+    return s->worst <= most;
+}
+
+/* ------------------------------------------------------------------- scenes
+ */
+
+typedef int scene_fn(struct night *night, int i, struct night_lamp *lamp);
+
+/* Lamps of a street, all seen. */
+static int street(struct night_lamp *lamp)
+{
+    for (int i = 0; i < 5; i++)
+        lamp[i] =
+            (struct night_lamp){90 + 120 * i, 120 + 40 * (i % 3), 2 + i % 2, 6};
+    return 5;
+}
+
+static int noise(struct night *night, int i, struct night_lamp *lamp)
+{
+    (void)i;
+    night->sigma = 4;
+    return street(lamp);
+}
+
+static int sun_alone(struct night *night, int i, struct night_lamp *lamp)
+{
+    (void)night;
+    lamp[0] = (struct night_lamp){-30 + 3 * i, 90 + 0.5 * i, 14, 2000};
+    return 1;
+}
+
+static int sun_enters(struct night *night, int i, struct night_lamp *lamp)
+{
+    const int n = street(lamp);
+
+    (void)night;
+    lamp[n] = (struct night_lamp){-30 + 3 * i, 250 - 0.5 * i, 14, 2000};
+    return n + 1;
+}
+
+static int sun_leaves(struct night *night, int i, struct night_lamp *lamp)
+{
+    return sun_enters(night, FRAMES - i, lamp);
+}
+
+static int poles(struct night *night, int i, struct night_lamp *lamp)
+{
+    const double at = (4 * i) % 200;
+
+    night->pole_x0 = 60 + at;
+    night->pole_x1 = 95 + at;
+    for (int k = 0; k < 3; k++)
+        lamp[k] = (struct night_lamp){120 + 90 * k, 150 + 30 * k, 4, 40};
+    return 3;
+}
+
+static int train(struct night *night, int i, struct night_lamp *lamp)
+{
+    const int n = street(lamp);
+
+    (void)night;
+    for (int k = 0; k < n; k++)
+        lamp[k].x = fmod(lamp[k].x + 5 * i, WIDTH + 60) - 30;
+    return n;
+}
+
+static int cuts(struct night *night, int i, struct night_lamp *lamp)
+{
+    if (i / 40 % 2 == 0)
+        return street(lamp);
+    (void)night;
+    lamp[0] = (struct night_lamp){400, 90, 20, 3000};
+    lamp[1] = (struct night_lamp){100, 300, 3, 8};
+    return 2;
+}
+
+static const struct {
+    const char *name;
+    scene_fn *scene;
+} scenes[] = {
+    {"noise", noise},
+    {"a sun enters", sun_alone},
+    {"a sun enters among lamps", sun_enters},
+    {"a sun leaves lamps", sun_leaves},
+    {"lamps behind poles", poles},
+    {"lamps from a train", train},
+    {"hard cuts", cuts},
+};
+
+static bool run_scene(struct steady *s, int k, double most)
+{
+    struct night night;
+    struct night_lamp lamp[16];
+
+    night_init(&night, WIDTH, HEIGHT);
+    night.sigma = 1;
+    begin(s, WIDTH, HEIGHT);
+    for (int i = 0; i < FRAMES; i++) {
+        const int n = scenes[k].scene(&night, i, lamp);
+
+        night_draw(&night, lamp, n);
+        frame(s, &night.image, FRAME_US);
+    }
+    night_close(&night);
+    return end(s, scenes[k].name, most);
+}
+
+static bool run_video(struct steady *s, const char *path, double most)
+{
+    struct glint_error error = {""};
+    struct glint_y4m_reader in;
+    const struct glint_image *image;
+
+    if (glint_y4m_reader_open(&in, path, &error) != GLINT_OK) {
+        fprintf(stderr, "steady: %s\n", error.text);
+        exit(EXIT_INPUT);
+    }
+    begin(s, in.header.width, in.header.height);
+    while (glint_y4m_reader_next(&in, &image, &error) == GLINT_OK && image)
+        frame(s, image, FRAME_US);
+    glint_y4m_reader_close(&in);
+    return end(s, path, most);
+}
+
+int main(int argc, char **argv)
+{
+    static const struct option options[] = {
+        {"lens", required_argument, NULL, 'l'},
+        {"most", required_argument, NULL, 'm'},
+        {NULL, 0, NULL, 0}};
+    static struct steady s = {.tool = {.name = "steady", .quiet = true}};
+    bool good = true;
+    double most = 0.1;
+    int c;
+
+    look_defaults(&s.look);
+    while ((c = getopt_long(argc, argv, "", options, NULL)) >= 0) {
+        if (c == 'l')
+            s.look.lens = optarg;
+        else if (c != 'm' || !tool_number(optarg, &most))
+            return EXIT_USAGE;
+    }
+    if (tool_start(&s.tool) != EXIT_OK ||
+        look_open(&s.tool, &s.look) != EXIT_OK)
+        return EXIT_RUNTIME;
+    puts("| scene | frames | lights | cuts | largest step, % | beside the "
+         "lamps' own, % | at frame |\n|---|---|---|---|---|---|---|");
+    for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
+        good = run_scene(&s, k, most) && good;
+    for (int i = optind; i < argc; i++)
+        good = run_video(&s, argv[i], most) && good;
+    look_close(&s.look);
+    tool_finish(&s.tool);
+    return good ? 0 : 1;
+}
