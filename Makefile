@@ -147,7 +147,7 @@ TOOLS += suggest takes lens_files cmd_lenses child ffmpeg
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films spectrum waves optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
-        measure lamps bright match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
+        measure lamps bright profile match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame strength show_lights sweep explain budget live \
         $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights
@@ -404,6 +404,9 @@ bench-insn: all
 	@tools/deps "instruction counts" valgrind
 	@tools/bench-insn
 
+power-table: $(OUT)/power_table
+	@tools/deps "HDR panoramas" openimageio-tools python3 npm
+	@tests/power-table $<
 # ------------------------------------------------------------------- to test
 test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
 $(test_bins): EXTRA := $(SYSROOT:%=-L%/lib) -lcmocka
@@ -437,6 +440,7 @@ $(OUT)/hue_steps: $(OUT)/tests/support/hue_steps.o $(libs)
 	$(link)
 $(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
 	$(link)
+$(OUT)/tests/unit/test_profile: $(OUT)/tests/support/power_scene.o
 $(OUT)/power_table: $(OUT)/tests/support/power_table.o \
         $(OUT)/tests/support/power_scene.o $(libs)
 	$(link)

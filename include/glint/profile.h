@@ -13,7 +13,7 @@
  * Where nothing is, the power is the flux over the background.
  *
  * Integers only; nothing is kept from picture to picture. All results are
- * continuous in the pixels. A spot costs at most some 3000 looked-at pixels,
+ * continuous in the pixels. A spot costs at most some 10000 looked-at pixels,
  * whatever its size, a small one some 300.
  */
 #ifndef GLINT_PROFILE_H

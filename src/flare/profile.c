@@ -2,22 +2,24 @@
 #include "flare/profile.h"
 
 #include "base/arena.h"
+#include "base/divide.h"
 #include "base/q.h"
 #include "base/sort.h"
 #include "flare/unclip.h"
 
 #define WHITE_Q20     LINEAR_WHITE_Q20
 #define ONE_Q16       (1 << 16)
-#define CLIP_FIRST    Q_CONST(0.90, 20) /* about code 243 */
+#define CLIP_FIRST    Q_CONST(0.80, 20) /* about code 231 */
 #define CLIP_LAST     Q_CONST(0.98, 20) /* 253 */
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
 
 enum {
     SECTORS = 8,
     BORDERS = 4,
-    SAMPLES = 16, /* of the core's radius, where it is not smaller */
+    SAMPLES = 32, /* of the core's radius, where it is not smaller */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
+    NEAR = GLINT_PROFILE_NEAR,
     MAX_SPOTS = GLINT_PROFILE_SPOTS
 };
 
@@ -213,47 +215,67 @@ static void see_background(void *ctx, const struct sample *s)
     sectors->n[i]++;
 }
 
-static void sort(int32_t *v, int n)
+/* A sector's light of a channel, and how much of the ring it is. */
+struct part {
+    int32_t mean_q20;
+    int64_t n;
+};
+
+static void sort(struct part *part, int n)
 {
     for (int i = 1; i < n; i++)
-        for (int j = i; j > 0 && v[j - 1] > v[j]; j--) {
-            const int32_t old = v[j];
+        for (int j = i; j > 0 && part[j - 1].mean_q20 > part[j].mean_q20; j--) {
+            const struct part old = part[j];
 
-            v[j] = v[j - 1];
-            v[j - 1] = old;
+            part[j] = part[j - 1];
+            part[j - 1] = old;
         }
 }
 
-/* The mean of the middle half of V[N], sorted. */
-static int32_t middle(const int32_t *v, int n)
+/* The mean of what lies between FROM and TO eighths of the ring when its PARTs
+ * are in order. */
+static int32_t mean_between(const struct part *part, int n, int64_t all,
+                            int from, int to)
 {
-    const int first = n / 4, end = n - n / 4;
-    int64_t sum = 0;
+    int64_t sum = 0, at = 0;
 
-    for (int i = first; i < end; i++)
-        sum += v[i];
-    return n ? (int32_t)(sum / (end - first)) : 0;
+    for (int i = 0; i < n; i++) {
+        const int64_t end = at + 8 * part[i].n;
+        const int64_t low = at > from * all ? at : from * all;
+        const int64_t high = end < to * all ? end : to * all;
+
+        if (high > low)
+            sum += part[i].mean_q20 * (high - low);
+        at = end;
+    }
+    return all ? (int32_t)q_divide(sum, (to - from) * all) : 0;
 }
 
+/* The middle half is the background, and what the middle quarter differs by is
+ * its spread. */
 static void set_background(struct glint_profile_channel *of,
                            const struct sectors *sectors, int c)
 {
-    int32_t mean_q20[SECTORS];
+    struct part part[SECTORS];
+    int64_t all = 0, apart_q20;
     int n = 0;
 
     for (int i = 0; i < SECTORS; i++)
-        if (sectors->n[i])
-            mean_q20[n++] = (int32_t)(sectors->rgb_q20[i][c] / sectors->n[i]);
-    sort(mean_q20, n);
-    of->black_q20 = middle(mean_q20, n);
+        if (sectors->n[i]) {
+            part[n].mean_q20 =
+                (int32_t)q_divide(sectors->rgb_q20[i][c], sectors->n[i]);
+            part[n++].n = sectors->n[i];
+            all += sectors->n[i];
+        }
+    sort(part, n);
+    of->black_q20 = mean_between(part, n, all, 2, 6);
     if (of->black_q20 > MAX_BLACK_Q20)
         of->black_q20 = MAX_BLACK_Q20;
-    of->scale_q16 = (int32_t)((INT64_C(1) << 36) / (WHITE_Q20 - of->black_q20));
-    of->spread_q16 =
-        n < 2 ? 0
-              : (int32_t)((int64_t)(mean_q20[n - 1 - n / 4] - mean_q20[n / 4]) *
-                              of->scale_q16 >>
-                          20);
+    of->scale_q16 =
+        (int32_t)q_divide(INT64_C(1) << 36, WHITE_Q20 - of->black_q20);
+    apart_q20 =
+        mean_between(part, n, all, 5, 6) - mean_between(part, n, all, 2, 3);
+    of->spread_q16 = (int32_t)(apart_q20 * of->scale_q16 >> 20);
 }
 
 /* --------------------------------------------------------------------- sums */
@@ -269,11 +291,11 @@ static int32_t clipped_q8(int32_t light_q20)
 
 /* Counts U to its own level by its part, and to those below wholly. */
 static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
-                       int share)
+                       int share, int ring)
 {
     const int level = u_q16 >= ONE_Q16 ? 0 : 17 - bit_length((uint64_t)u_q16);
 
-    if (level > LEVELS)
+    if (level > LEVELS || (ring > 1 && level <= NEAR))
         return;
     of->n[level] += share;
     if (level > 0)
@@ -307,9 +329,10 @@ static void see_light(void *ctx, const struct sample *s)
         const int32_t clipped = clipped_q8(s->rgb_q20[c]);
 
         u_q16[c] = (int32_t)((int64_t)over_q20 * of->scale_q16 >> 20);
-        of->area_q8[0] += (int64_t)clipped * s->share;
+        if (s->ring == 0)
+            of->area_q8[0] += (int64_t)clipped * s->share;
         if (u_q16[c] > 0)
-            add_levels(of, u_q16[c], s->share);
+            add_levels(of, u_q16[c], s->share, s->ring);
         clip_q8 = clipped > clip_q8 ? clipped : clip_q8;
         most_q16 = u_q16[c] > most_q16 ? u_q16[c] : most_q16;
     }

@@ -30,6 +30,7 @@
 enum {
     GLINT_PROFILE_RINGS = 3,
     GLINT_PROFILE_LEVELS = 8,
+    GLINT_PROFILE_NEAR = 3, /* levels that the outer rings do not have */
     GLINT_PROFILE_SPOTS = 1024
 };
 

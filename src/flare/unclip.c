@@ -7,7 +7,10 @@
 #define ONE_Q16       (1 << 16)
 #define MAX_POWER_Q16 (INT64_C(1) << 42)
 
-enum { LEVELS = GLINT_PROFILE_LEVELS };
+enum {
+    LEVELS = GLINT_PROFILE_LEVELS,
+    SHOWN = 5 /* the last level whose light counts to what is seen */
+};
 
 /* ------------------------------------------------------------------- colour */
 
@@ -55,25 +58,76 @@ static int32_t log_of_q8(int64_t area_q8)
            8 * ONE_Q16;
 }
 
-static int64_t flux_q16(const struct glint_profile_channel *of)
+/* How much of level K counts: all of it where the background is more even than
+ * that, none where it has as much itself. */
+static int32_t weight_q16(const struct glint_profile_channel *of, int k)
 {
-    int64_t sum_q16 = of->area_q8[LEVELS];
+    const int32_t spread_q16 =
+        q_log2_q16((uint64_t)of->spread_q16 + 66) - 16 * ONE_Q16;
 
-    for (int k = 1; k <= LEVELS; k++)
-        sum_q16 += of->area_q8[k] << (8 - k);
-    return sum_q16;
+    return k <= 2 ? ONE_Q16
+                  : q_clamp_sat(-k * ONE_Q16 - spread_q16, 0, ONE_Q16);
 }
 
-/* How many stops over white the clipped core is. */
+/* A step of level k goes from 2^-k to twice that, so that what is above 2^-5 is
+ * the sum of the areas times the steps. */
+static int64_t flux_q16(const struct glint_profile_channel *of)
+{
+    int64_t sum_q16 = 0;
+
+    for (int k = 1; k <= SHOWN; k++)
+        sum_q16 +=
+            q_shift((of->area_q8[k] << (8 - k)) * (weight_q16(of, k) >> 8), 8);
+    return sum_q16 + q_shift((of->area_q8[SHOWN] << (8 - SHOWN)) *
+                                 (weight_q16(of, SHOWN) >> 8),
+                             8);
+}
+
+static int32_t radius_q8(int64_t area_q8)
+{
+    return (int32_t)q_root((uint64_t)(area_q8 + 128) << 8);
+}
+
+/* log2 of how many pixels further out than the clipped core the light reaches
+ * to LEVEL, -2 .. 6. */
+static int32_t width_q16(const struct glint_profile_channel *of, int level)
+{
+    const int32_t width_q8 =
+        radius_q8(of->area_q8[level]) - radius_q8(of->area_q8[0]);
+    const int32_t w_q16 =
+        q_log2_q16((uint64_t)(width_q8 > 0 ? width_q8 : 0) + 64) - 8 * ONE_Q16;
+
+    return q_clamp_sat(w_q16, -2 * ONE_Q16, 6 * ONE_Q16);
+}
+
+/* How many octaves more area than the core there is at LEVEL. */
+static int32_t growth_q16(const struct glint_profile_channel *of, int level)
+{
+    return q_clamp_sat(log_of_q8(of->area_q8[level]) -
+                           log_of_q8(of->area_q8[0]),
+                       0, 6 * ONE_Q16);
+}
+
+/* How many stops over white the clipped core is: the more the steeper the light
+ * falls right beside it; the further the halo goes, above a background as even
+ * as it is; and the wider the rim, for so large a core. Fitted to what
+ * power_table makes (tests/support), by least absolute error. */
 static int32_t stops_q16(const struct glint_profile_channel *of)
 {
     const int32_t core_q16 = log_of_q8(of->area_q8[0]);
-    const int32_t rim_q16 = log_of_q8(of->area_q8[2]) - core_q16;
-    const int32_t s_q16 =
-        Q_CONST(3.52, 16) - q_mul(core_q16, Q_CONST(0.096, 16), 16) -
-        q_mul(q_clamp_sat(rim_q16, 0, 3 * ONE_Q16), Q_CONST(0.565, 16), 16);
+    const int32_t steep_q16 = growth_q16(of, 2), wide_q16 = width_q16(of, 3);
+    const int32_t even_q16 =
+        q_log2_q16((uint64_t)of->spread_q16 + 983) - 16 * ONE_Q16;
+    const int64_t s_q16 =
+        (int64_t)Q_CONST(2.846, 16) - q_mul(steep_q16, Q_CONST(3.511, 16), 16) +
+        q_mul(q_mul(steep_q16, growth_q16(of, 3), 16), Q_CONST(0.307, 16), 16) -
+        q_mul(q_mul(width_q16(of, LEVELS), even_q16, 16), Q_CONST(0.075, 16),
+              16) -
+        q_mul(core_q16, Q_CONST(0.075, 16), 16) -
+        q_mul(q_mul(core_q16, width_q16(of, 2), 16), Q_CONST(0.223, 16), 16) +
+        q_mul(q_mul(wide_q16, wide_q16, 16), Q_CONST(0.500, 16), 16);
 
-    return q_clamp_sat(s_q16, 0, 16 * ONE_Q16);
+    return q_clamp_sat(s_q16, 0, 14 * ONE_Q16);
 }
 
 /* What AREA hides if it is STOPS over white: held to MAX_POWER. */
@@ -103,8 +157,8 @@ static struct guess guess_of(const struct glint_profile_channel *of,
     g.seen_q16 = q_log2_q16((uint64_t)seen_q16 + 1) - base_q16;
     g.whole_q16 = q_log2_q16((uint64_t)(seen_q16 + hidden_q16) + 1) - base_q16;
     far_q16 = g.whole_q16 - g.seen_q16 + ONE_Q16 / 8;
-    g.trust_q16 = q_clamp_sat(
-        q_divide((int64_t)rgb_q15 << 29, (far_q16 * far_q16) >> 4), 1, 1 << 26);
+    g.trust_q16 =
+        q_clamp_sat(q_divide((int64_t)rgb_q15 << 18, far_q16), 1, 1 << 26);
     return g;
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FINE = 5, SOURCES = 200, KERNEL = 1 << 18 };
+enum { FINE = 5, SOURCES = 40, KERNEL = 1 << 18 };
 
 double power_random(uint32_t *seed)
 {
@@ -56,7 +56,7 @@ static void cover(double *light, int width, int height,
             for (int i = 0; i < fine * fine; i++)
                 n += is_in(l, x + (i % fine + 0.5) / fine,
                            y + (i / fine + 0.5) / fine);
-            light[y * width + x] = n / (fine * fine);
+            light[y * width + x] = (double)n / (fine * fine);
             sum += light[y * width + x];
         }
     for (int i = 0; i < width * height; i++)
@@ -98,71 +98,105 @@ static void blur(double *light, int width, int height, double sigma)
     free(tmp);
 }
 
-/* Adds the glare of up to SOURCES pixels that stand for the shape. */
-static void add_glare(double *light, int width, int height,
+/* Adds the glare of what SHAPE covers: of all its pixels, or so many that up to
+ * SOURCES stand for it. */
+static void add_glare(double *light, const double *shape, int width, int height,
                       const struct power_lamp *l)
 {
     static double kernel[KERNEL];
     const int n = width * height;
-    double *shape = malloc(sizeof *shape * (size_t)n);
+    double total = 0, seen = 0, all = 0;
     int n_lit = 0, skip, at = 0;
-    double total = 0, seen = 0;
 
-    for (int r2 = 0; r2 < KERNEL; r2++)
+    for (int r2 = 0; r2 < width * width + height * height && r2 < KERNEL; r2++)
         kernel[r2] = pow(1 + r2 / (l->reach * l->reach), -l->fall / 2);
     /* all of it, as far as a few thousand pixels */
     for (double r = 0.25; r < 2000; r += 0.5)
         total +=
             3.14159265 * r * pow(1 + r * r / l->reach / l->reach, -l->fall / 2);
-    memcpy(shape, light, sizeof *shape * (size_t)n);
     for (int i = 0; i < n; i++) {
-        n_lit += shape[i] > 1e-6;
-        light[i] *= (1 - l->glare);
+        n_lit += shape[i] > 0;
+        all += shape[i];
     }
     skip = n_lit / SOURCES + 1;
     for (int i = 0; i < n; i++)
-        if (shape[i] > 1e-6 && at++ % skip == 0)
+        if (shape[i] > 0 && at++ % skip == 0)
             seen += shape[i];
     at = 0;
     for (int i = 0; i < n; i++) {
-        const double part = shape[i] / seen * l->glare / total;
+        const double part = shape[i] / seen * all * l->glare / total;
 
-        if (shape[i] <= 1e-6 || at++ % skip)
+        if (!(shape[i] > 0) || at++ % skip)
             continue;
-        for (int y = 0; y < height; y++)
-            for (int x = 0; x < width; x++) {
-                const int dx = x - i % width, dy = y - i / width;
-                const int r2 = dx * dx + dy * dy;
+        for (int y = 0; y < height; y++) {
+            const int dy = y - i / width, x0 = i % width;
 
+            for (int x = 0; x < width; x++)
                 light[y * width + x] +=
-                    (part * kernel[r2 < KERNEL ? r2 : KERNEL - 1]);
-            }
+                    part * kernel[(x - x0) * (x - x0) + dy * dy];
+        }
     }
+}
+
+void power_see(double *light, int width, int height,
+               const struct power_lamp *lens, double over)
+{
+    const int n = width * height;
+    double *shape = malloc(sizeof *shape * (size_t)n);
+
+    for (int i = 0; i < n; i++)
+        shape[i] = light[i] > over ? light[i] : 0;
+    blur(light, width, height, lens->sigma);
+    add_glare(light, shape, width, height, lens);
     free(shape);
 }
 
 void power_draw(double *light, int width, int height,
                 const struct power_lamp *lamp)
 {
+    const size_t bytes = sizeof *light * (size_t)(width * height);
+    double *shape = malloc(bytes);
+
     cover(light, width, height, lamp);
+    memcpy(shape, light, bytes);
     blur(light, width, height, lamp->sigma);
+    for (int i = 0; i < width * height; i++)
+        light[i] *= 1 - lamp->glare;
     if (lamp->glare > 0)
-        add_glare(light, width, height, lamp);
+        add_glare(light, shape, width, height, lamp);
+    free(shape);
 }
 
-static double code_of(double light)
+enum { CODES = 1 << 16, NOISE = 1 << 16 };
+
+static double code[CODES + 1], noise[NOISE];
+
+static void make_tables(void)
 {
-    return 255 * (light <= 0.0031308 ? 12.92 * fmax(light, 0)
-                                     : 1.055 * pow(light, 1 / 2.4) - 0.055);
+    uint32_t seed = 1;
+
+    for (int i = 0; i <= CODES; i++) {
+        const double light = (double)i / CODES;
+
+        code[i] =
+            255 * (light <= 0.0031308 ? 12.92 * light
+                                      : 1.055 * pow(light, 1 / 2.4) - 0.055);
+    }
+    for (int i = 0; i < NOISE; i++)
+        noise[i] = bell(&seed);
 }
 
 void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
                   double sigma, uint32_t *seed)
 {
+    if (code[CODES] < 1)
+        make_tables();
     for (int i = 0; i < 3 * scene->width * scene->height; i++) {
-        const double code = code_of(fmin(1, gain * scene->rgb[i])) +
-                            (sigma > 0 ? sigma * bell(seed) : 0);
+        const double light = gain * scene->rgb[i];
+        const double v = code[light < 1 ? (int)(light * CODES) : CODES];
 
-        rgb[i] = (uint8_t)fmax(0, fmin(255, floor(code + 0.5)));
+        *seed = *seed * 1664525 + 1013904223;
+        rgb[i] = (uint8_t)fmax(
+            0, fmin(255, floor(v + sigma * noise[*seed >> 16] + 0.5)));
     }
 }

@@ -34,6 +34,11 @@ struct power_scene {
 void power_draw(double *light, int width, int height,
                 const struct power_lamp *lamp);
 
+/* What a camera with LENS makes of LIGHT: blurred, and with the glare of all
+ * that is more than OVER. */
+void power_see(double *light, int width, int height,
+               const struct power_lamp *lens, double over);
+
 /* Codes of sRGB, 8 bits, of GAIN * SCENE with noise of SIGMA codes. */
 void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
                   double sigma, uint32_t *seed);

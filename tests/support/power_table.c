@@ -215,7 +215,7 @@ static struct power_lamp any_lamp(int i, int width, int height, uint32_t *seed)
 static void rendered(int i)
 {
     static const char *const names[POWER_SHAPES] = {"disc", "square", "tube"};
-    enum { W = 320, H = 240 };
+    enum { W = 288, H = 224 };
     struct power_scene scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
     double *light = malloc(sizeof *light * W * H);
     uint32_t seed = (uint32_t)i * 7919 + 17;
@@ -247,8 +247,8 @@ static void rendered(int i)
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
             c.n = 1;
             glint_profile_measure(c.profile, &c.image, c.spot, c.n);
-            note(&c, names[lamp.shape], i & 1, power * gain, c.spot, i,
-                 lamp.rgb);
+            note(&c, names[lamp.shape], (i / 4 + i) & 1, power * gain, c.spot,
+                 i, lamp.rgb);
         }
     }
     close_camera(&c);
@@ -330,37 +330,52 @@ static double mean_of(const struct power_scene *s)
     return sum / (3 * s->width * s->height);
 }
 
-/* Glare of an ordinary lens on all of the view would take a transform: only
- * what exceeds 16 times the mean throws it. */
-static void blur_view(struct power_scene *s, uint32_t *seed)
+/* What a camera makes of SCENE, with a lens of its own. */
+static void see_view(struct power_scene *s, double over, uint32_t *seed)
 {
-    (void)s;
-    (void)seed;
+    const int n = s->width * s->height;
+    double *light = malloc(sizeof *light * (size_t)n);
+    const struct power_lamp lens = any_lamp(0, s->width, s->height, seed);
+
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < n; i++)
+            light[i] = s->rgb[3 * i + c];
+        power_see(light, s->width, s->height, &lens, over);
+        for (int i = 0; i < n; i++)
+            s->rgb[3 * i + c] = light[i];
+    }
+    free(light);
 }
 
+/* As many pixels as the panorama has there, and a third more. TRUTH is what
+ * comes in through the lens, without its glare. */
 static void view(const struct panorama *p, const char *kind, int held, int id,
                  double yaw, double pitch)
 {
-    enum { W = 640, H = 360 };
-    struct power_scene scene = {W, H, malloc(sizeof(double) * 3 * W * H)};
-    uint32_t seed = 99u + (uint32_t)id;
+    const int width = p->width * 2 / 9, height = width * 9 / 16;
+    const size_t bytes = sizeof(double) * 3 * (size_t)(width * height);
+    struct power_scene scene = {width, height, malloc(bytes)};
+    struct power_scene truth = {width, height, malloc(bytes)};
+    uint32_t seed = 99u + (uint32_t)id * 31;
     static const double white[3] = {1, 1, 1};
     struct camera c;
     double base;
 
     look_at(&scene, p, yaw, pitch);
-    blur_view(&scene, &seed);
+    memcpy(truth.rgb, scene.rgb, bytes);
     base = 0.7 / fmax(mean_of(&scene), 1e-4);
-    open_camera(&c, W, H);
+    see_view(&scene, 8 / base, &seed);
+    open_camera(&c, width, height);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
+
         power_expose(c.image.plane[0], &scene, gain, 1.5, &seed);
         c.n = glint_lights_find(c.finder, &c.image, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, &c.image, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {
             struct glint_spot ideal;
             const double power =
-                region_at(&c, &scene, gain, c.spot[i].x_q8 >> 8,
+                region_at(&c, &truth, gain, c.spot[i].x_q8 >> 8,
                           c.spot[i].y_q8 >> 8, &ideal);
 
             if (power > 0 && !c.spot[i].faint)
@@ -369,6 +384,7 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
     }
     close_camera(&c);
     free(scene.rgb);
+    free(truth.rgb);
 }
 
 static void panorama(const char *path, int id)
@@ -385,9 +401,9 @@ static void panorama(const char *path, int id)
     for (int i = 0; i < 3 * p.width * p.height; i++)
         most = fmax(most, p.rgb[i]);
     snprintf(kind, sizeof kind, "hdr-%.*s", (int)strcspn(name, "."), name);
-    for (int k = 0; k < 24; k++)
+    for (int k = 0; k < 16; k++)
         view(&p, kind, id & 1, 100 * id + k, k % 8 * 3.14159265 / 4,
-             (k / 8 - 0.7) * 0.5);
+             (k / 8 - 0.3) * 0.6);
     free(p.rgb);
 }
 
@@ -425,7 +441,7 @@ int main(int argc, char **argv)
 
     if (argc > 1 && strcmp(argv[1], "--features") == 0)
         features = first++;
-    for (int i = 0; i < LAMPS; i++)
+    for (int i = 0; i < LAMPS && (!features || first == argc); i++)
         rendered(i);
     for (int i = first; i < argc; i++)
         panorama(argv[i], i);

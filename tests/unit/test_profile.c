@@ -1,0 +1,478 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a lamp is behind the white: power, colour and extent from its profile.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/log2.h"
+#include "glint/glint.h"
+#include "support/power_scene.h"
+
+enum { W = 160, H = 120, MAX_SPOTS = 64 };
+
+static struct glint_spot spot[MAX_SPOTS];
+static double light[W * H], rgb[3 * W * H];
+static uint8_t codes[3 * W * H];
+static uint32_t seed = 1;
+
+/* --------------------------------------------------------------- by hand */
+
+/* A lamp like any other, in the middle of the picture. */
+static struct power_lamp lamp_of(enum power_shape shape, double radius)
+{
+    return (struct power_lamp){.shape = shape,
+                               .x = W / 2 + 0.3,
+                               .y = H / 2 - 0.2,
+                               .radius = radius,
+                               .sigma = 0.8,
+                               .glare = 0.03,
+                               .reach = 2,
+                               .fall = 2.8,
+                               .rgb = {1, 1, 1}};
+}
+
+static void measure(const struct glint_image *image, int n)
+{
+    const size_t bytes = glint_profile_bytes();
+    struct glint_profile *profile;
+    void *mem;
+
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    memset(mem, 0xa5, bytes);
+    assert_int_equal(glint_profile_init(&profile, mem, bytes), GLINT_OK);
+    glint_profile_measure(profile, image, spot, n);
+    free(mem);
+}
+
+/* Finds all that is bright, and measures it. */
+static int look(const struct glint_image *image)
+{
+    struct glint_lights_config cfg;
+    struct glint_lights *finder;
+    size_t bytes;
+    void *mem;
+    int n;
+
+    glint_lights_defaults(&cfg, image->width, image->height);
+    cfg.judge = 0;
+    cfg.threshold_high_q8 = -256;
+    cfg.threshold_low_q8 = -512;
+    cfg.min_area = 1;
+    cfg.max_share_q15 = 1 << 15;
+    cfg.white_code = 255;
+    bytes = glint_lights_bytes(&cfg);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_lights_init(&finder, &cfg, mem, bytes), GLINT_OK);
+    n = glint_lights_find(finder, image, spot, MAX_SPOTS);
+    free(mem);
+    measure(image, n);
+    return n;
+}
+
+static struct glint_image picture_of(uint8_t *px, int width, int height)
+{
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = width, .height = height};
+
+    glint_image_place(&image, px);
+    return image;
+}
+
+/* Draws what is in light[] at POWER and finds it. */
+static int expose(const struct power_lamp *lamp, double power, double black,
+                  double sigma)
+{
+    const struct power_scene scene = {W, H, rgb};
+    const struct glint_image image = picture_of(codes, W, H);
+
+    for (int i = 0; i < 3 * W * H; i++)
+        rgb[i] = black + power * lamp->rgb[i % 3] * light[i / 3];
+    power_expose(codes, &scene, 1, sigma, &seed);
+    return look(&image);
+}
+
+static double power(void)
+{
+    return (double)spot[0].power_q16 / 65536;
+}
+
+/* ------------------------------------------------------------------- tests */
+
+static void test_logarithms(void **state)
+{
+    (void)state;
+    assert_int_equal(q_log2_q16(1), 0);
+    assert_int_equal(q_log2_q16(1024), 10 << 16);
+    assert_int_equal(q_exp2_q16(0), 65536);
+    assert_int_equal(q_exp2_q16(-(16 << 16)), 1);
+    assert_int_equal(q_exp2_q16(20 << 16), INT64_C(1) << 36);
+    for (int i = 1; i < 1 << 20; i += 7) {
+        const double x = log2(i);
+
+        assert_true(fabs(q_log2_q16((uint64_t)i) / 65536.0 - x) < 1.0 / 16384);
+    }
+    for (int32_t x = -(16 << 16); x < 40 << 16; x += 1013) {
+        const double y = exp2(x / 65536.0) * 65536;
+
+        assert_true(fabs((double)q_exp2_q16(x) - y) <= 1 + y / 32768);
+    }
+}
+
+/* What is not clipped counts as it is: 5 and 20 white pixels, all of which a
+ * bell curve of 1.6 and 3 pixels shows. */
+static void test_unclipped_is_the_flux(void **state)
+{
+    struct power_lamp lamp = lamp_of(POWER_DISC, 0.4);
+
+    (void)state;
+    lamp.glare = 0;
+    lamp.sigma = 1.6;
+    power_draw(light, W, H, &lamp);
+    assert_int_equal(expose(&lamp, 13, 0, 0), 1);
+    print_message("13 white pixels unclipped: %.2f\n", power());
+    assert_true(power() > 0.85 * 13 && power() < 1.1 * 13);
+    lamp.sigma = 3;
+    power_draw(light, W, H, &lamp);
+    assert_int_equal(expose(&lamp, 45, 0, 0), 1);
+    print_message("45 white pixels unclipped: %.2f\n", power());
+    assert_true(power() > 0.85 * 45 && power() < 1.1 * 45);
+}
+
+/* A tube of 2 x 18 pixels, 30 degrees clockwise from across: its longer RMS
+ * semi-axis is 18 / root 3; a disc's are half of its radius. */
+static void test_extent(void **state)
+{
+    struct power_lamp lamp = lamp_of(POWER_TUBE, 18);
+
+    (void)state;
+    lamp.glare = 0.002;
+    lamp.angle = 3.14159265 / 6;
+    power_draw(light, W, H, &lamp);
+    assert_int_equal(expose(&lamp, 2000, 0.002, 0), 1);
+    assert_true(abs(spot[0].axis_q8[0] - 2660) < 200);
+    assert_true(spot[0].axis_q8[1] < 550);
+    assert_true(abs(spot[0].cos_q15 - 28378) < 300);
+    assert_true(abs(spot[0].sin_q15 - 16384) < 500);
+    lamp = lamp_of(POWER_DISC, 12);
+    lamp.glare = 0;
+    power_draw(light, W, H, &lamp);
+    assert_int_equal(expose(&lamp, 2000, 0.002, 0), 1);
+    print_message("disc: axes %d and %d\n", spot[0].axis_q8[0],
+                  spot[0].axis_q8[1]);
+    assert_true(abs(spot[0].axis_q8[0] - 6 * 256) < 200);
+    assert_true(abs(spot[0].axis_q8[1] - 6 * 256) < 200);
+}
+
+/* Sodium light clipped to yellow and white: the fringe says what it is. Of
+ * luminance 1 it is 1.99, 0.79, 0.04. */
+static void test_colour_is_that_of_the_fringe(void **state)
+{
+    struct power_lamp lamp = lamp_of(POWER_DISC, 3);
+
+    (void)state;
+    lamp.rgb[0] = 1.99;
+    lamp.rgb[1] = 0.79;
+    lamp.rgb[2] = 0.04;
+    power_draw(light, W, H, &lamp);
+    for (double p = 50; p < 20000; p *= 4) {
+        assert_int_equal(expose(&lamp, p, 0.01, 1), 1);
+        print_message("power %5.0f: %.2f %.2f %.2f, %.0f\n", p,
+                      spot[0].rgb_q15[0] / 32768.0,
+                      spot[0].rgb_q15[1] / 32768.0,
+                      spot[0].rgb_q15[2] / 32768.0, power());
+        assert_true(abs(spot[0].rgb_q15[0] - 65200) < 13000);
+        assert_true(abs(spot[0].rgb_q15[1] - 25900) < 6000);
+        assert_true(spot[0].rgb_q15[2] < 6000);
+    }
+}
+
+/* Lamps of 2^4 .. 2^14 white pixels, sizes and shapes: none is off by more than
+ * four and a half, half of them by less than one. */
+static void test_power_of_clipped_lamps(void **state)
+{
+    int n = 0, n_near = 0;
+
+    (void)state;
+    for (int shape = 0; shape < POWER_SHAPES; shape++)
+        for (double radius = 1; radius < 12; radius *= 2) {
+            const struct power_lamp lamp =
+                lamp_of((enum power_shape)shape, radius);
+
+            power_draw(light, W, H, &lamp);
+            for (int ev = 4; ev <= 14; ev += 2) {
+                double stops;
+
+                if (expose(&lamp, exp2(ev), 0.01, 1.5) != 1)
+                    continue;
+                stops = log2(power()) - ev;
+                assert_true(fabs(stops) < 4.5);
+                n_near += fabs(stops) < 1;
+                n++;
+            }
+        }
+    print_message("%d of %d lamps within a stop\n", n_near, n);
+    assert_true(n > 40 && 2 * n_near > n);
+}
+
+/* Exposure rises by 1/32 of a stop: so does the power, from where nothing is
+ * clipped to where all is. A lamp rises by less than a quarter of a stop; a
+ * flat face of 18 pixels, which clips all at once, by two fifths. */
+static void test_power_rises_smoothly(void **state)
+{
+    (void)state;
+    for (int shape = 0; shape < POWER_SHAPES; shape++)
+        for (int radius = 1; radius <= 9; radius += 4) {
+            const struct power_lamp lamp =
+                lamp_of((enum power_shape)shape, radius);
+            double last = 0, most = 0, least = 1;
+
+            power_draw(light, W, H, &lamp);
+            for (double ev = 3 + radius / 3; ev < 12; ev += 1 / 32.0) {
+                if (expose(&lamp, exp2(ev), 0.01, 0) != 1)
+                    continue;
+                if (last > 0) {
+                    most = fmax(most, log2(power() / last));
+                    least = fmin(least, log2(power() / last));
+                }
+                last = power();
+            }
+            print_message("shape %d of %d: steps of %+.3f to %+.3f stops\n",
+                          shape, radius, least, most);
+            assert_true(most < 0.4 && least > -0.1);
+        }
+}
+
+/* A sun comes in over the left border, half a pixel at a time. */
+static void test_a_sun_that_enters(void **state)
+{
+    enum { OUT = 48, WIDE = W + OUT };
+    struct power_lamp lamp = lamp_of(POWER_DISC, 6);
+    static double wide[WIDE * H];
+    const double full = 4000;
+    double last = 0, most = 0, least = 0;
+
+    (void)state;
+    for (double x = -20; x < 40; x += 0.5) {
+        lamp.x = OUT + x;
+        power_draw(wide, WIDE, H, &lamp);
+        for (int i = 0; i < W * H; i++)
+            light[i] = wide[i / W * WIDE + i % W + OUT];
+        if (expose(&lamp, full, 0.05, 0) < 1)
+            continue;
+        most = fmax(most, (power() - last) / full);
+        least = fmin(least, (power() - last) / full);
+        last = power();
+    }
+    print_message("entering: steps of %+.3f to %+.3f of it, then %.0f\n", least,
+                  most, last);
+    assert_true(most < 0.1 && least > -0.13);
+}
+
+/* Noise of 3 codes scatters the power by less than a tenth. */
+static void test_noise(void **state)
+{
+    const struct power_lamp lamp = lamp_of(POWER_DISC, 4);
+    double sum = 0, sum2 = 0, still;
+    const int n = 40;
+
+    (void)state;
+    power_draw(light, W, H, &lamp);
+    expose(&lamp, 600, 0.03, 0);
+    still = power();
+    for (int i = 0; i < n; i++) {
+        expose(&lamp, 600, 0.03, 3);
+        sum += power() / n;
+        sum2 += power() * power() / n;
+    }
+    print_message("noise: %.0f becomes %.0f +- %.0f\n", still, sum,
+                  sqrt(fmax(sum2 - sum * sum, 0)));
+    assert_true(fabs(log2(sum / still)) < 0.5);
+    assert_true(sum2 - sum * sum < 0.01 * sum * sum);
+}
+
+/* Two lamps side by side count as each by itself, not twice. */
+static void test_neighbours(void **state)
+{
+    struct power_lamp lamp = lamp_of(POWER_DISC, 3);
+    static double other[W * H];
+    double alone;
+
+    (void)state;
+    lamp.x = 60;
+    power_draw(light, W, H, &lamp);
+    expose(&lamp, 500, 0.01, 0);
+    alone = power();
+    lamp.x = 100;
+    power_draw(other, W, H, &lamp);
+    for (int i = 0; i < W * H; i++)
+        light[i] += other[i];
+    assert_int_equal(expose(&lamp, 500, 0.01, 0), 2);
+    for (int i = 0; i < 2; i++)
+        assert_true(fabs(log2((double)spot[i].power_q16 / 65536 / alone)) <
+                    0.7);
+}
+
+/* A white lamp on grey says the same in all formats, but for the bits they
+ * have. */
+static void test_formats(void **state)
+{
+    static uint8_t px[4 * W * H];
+    const struct power_lamp lamp = lamp_of(POWER_DISC, 4);
+    double expected;
+
+    (void)state;
+    power_draw(light, W, H, &lamp);
+    expose(&lamp, 600, 0.05, 0);
+    expected = power();
+    for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
+        struct glint_image image = {
+            .format = (enum glint_pixel_format)f, .width = W, .height = H};
+
+        if (f == GLINT_LINEAR_Q20)
+            continue;
+        memset(px, 128, sizeof px);
+        glint_image_place(&image, px);
+        for (int i = 0; i < W * H; i++) {
+            const int code = codes[3 * i + 1], x = i % W;
+            uint8_t *row = image.plane[0] + i / W * image.stride_bytes[0];
+            const int bits = code >> 3 << 11 | code >> 2 << 5 | code >> 3;
+
+            switch (f) {
+            case GLINT_RGB24:
+            case GLINT_BGR24:
+                memset(row + 3 * x, code, 3);
+                break;
+            case GLINT_XRGB8888:
+                memset(row + 4 * x, code, 3);
+                break;
+            case GLINT_RGB565:
+                row[2 * x] = (uint8_t)(bits & 255);
+                row[2 * x + 1] = (uint8_t)(bits >> 8);
+                break;
+            case GLINT_YUYV:
+            case GLINT_UYVY:
+                row[2 * x + (f == GLINT_UYVY)] = (uint8_t)code;
+                break;
+            default:
+                row[x] = (uint8_t)code;
+            }
+        }
+        assert_int_equal(look(&image), 1);
+        assert_true(fabs(log2(power() / expected)) <
+                    (f == GLINT_RGB565 ? 1 : 0.1));
+    }
+}
+
+/* ---------------------------------------------------------------- extremes */
+
+static void test_white_pictures(void **state)
+{
+    static const int sides[][2] = {{1, 1}, {2, 1}, {1, 7}, {64, 64}};
+    static uint8_t white[3 * 64 * 64];
+
+    (void)state;
+    memset(white, 255, sizeof white);
+    for (int i = 0; i < 4; i++) {
+        const struct glint_image image =
+            picture_of(white, sides[i][0], sides[i][1]);
+        const int n = look(&image);
+
+        assert_true(n <= 1);
+        for (int k = 0; k < n; k++) {
+            assert_true(spot[k].power_q16 >= 0);
+            assert_int_equal(spot[k].rgb_q15[1], 1 << 15);
+            assert_true(spot[k].axis_q8[0] <= 64 * 256);
+        }
+    }
+}
+
+static void test_a_lamp_of_one_pixel(void **state)
+{
+    const struct glint_image image = picture_of(codes, W, H);
+
+    (void)state;
+    memset(codes, 0, sizeof codes);
+    memset(codes + 3 * (50 * W + 40), 255, 3);
+    assert_int_equal(look(&image), 1);
+    assert_true(power() >= 1 && power() < 64);
+    assert_int_equal(spot[0].axis_q8[0], 0);
+    assert_int_equal(spot[0].axis_q8[1], 0);
+}
+
+/* Whatever the spots say, and in any picture, the results are in bounds. */
+static void test_any_spots(void **state)
+{
+    static const int32_t any[] = {INT32_MIN, -1, 0, 1, 256, 40000, INT32_MAX};
+    struct glint_image image = picture_of(codes, W, H);
+
+    (void)state;
+    for (int round = 0; round < 60; round++) {
+        for (int i = 0; i < 3 * W * H; i++)
+            codes[i] = (uint8_t)(round % 3 ? 255 * power_random(&seed)
+                                           : 255 * (power_random(&seed) > 0.5));
+        for (int i = 0; i < MAX_SPOTS; i++)
+            spot[i] = (struct glint_spot){
+                .x_q8 = i % 4 ? (int)(256 * W * power_random(&seed))
+                              : any[(int)(7 * power_random(&seed))],
+                .y_q8 = i % 5 ? (int)(256 * H * power_random(&seed))
+                              : any[(int)(7 * power_random(&seed))],
+                .size_q8 = i % 3 ? (int)(2560 * power_random(&seed))
+                                 : any[(int)(7 * power_random(&seed))]};
+        measure(&image, MAX_SPOTS);
+        for (int i = 0; i < MAX_SPOTS; i++) {
+            const struct glint_spot *s = &spot[i];
+            const double turn =
+                hypot(s->cos_q15 / 32768.0, s->sin_q15 / 32768.0);
+
+            assert_true(s->power_q16 >= 0 && s->power_q16 <= INT64_C(1) << 42);
+            assert_true(s->axis_q8[0] >= s->axis_q8[1] && s->axis_q8[1] >= 0);
+            assert_true(fabs(turn - 1) < 0.01 && s->cos_q15 >= 0);
+            for (int c = 0; c < 3; c++)
+                assert_true(s->rgb_q15[c] >= 0 && s->rgb_q15[c] <= 1 << 20);
+        }
+    }
+}
+
+static void test_memory(void **state)
+{
+    const size_t bytes = glint_profile_bytes();
+    struct glint_profile *profile;
+    uint8_t *mem;
+
+    (void)state;
+    assert_int_equal(posix_memalign((void **)&mem, 64, bytes + 64), 0);
+    assert_int_equal(glint_profile_init(&profile, mem, bytes - 1),
+                     GLINT_E_MEMORY);
+    assert_int_equal(glint_profile_init(&profile, mem + 8, bytes),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_profile_init(&profile, mem, bytes), GLINT_OK);
+    free(mem);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_logarithms),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_unclipped_is_the_flux),
+        cmocka_unit_test(test_extent),
+        cmocka_unit_test(test_colour_is_that_of_the_fringe),
+        cmocka_unit_test(test_power_of_clipped_lamps),
+        cmocka_unit_test(test_power_rises_smoothly),
+        cmocka_unit_test(test_a_sun_that_enters),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_neighbours),
+        cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_white_pictures),
+        cmocka_unit_test(test_a_lamp_of_one_pixel),
+        cmocka_unit_test(test_any_spots),
+    };
+
+    return cmocka_run_group_tests_name("profile", tests, NULL, NULL);
+}
