@@ -12,6 +12,7 @@
 #   make check    every test (VM=no: not in the emulator);  CONFIG=release|asan|tsan|qcheck  CC=gcc|clang
 #   make check-arm  the run-time half's on ARM, in an emulator
 #   make check-vm   of these those on Debian's kernels in an emulator, ARM too
+#   make check-files   round trips of picture files, by exiftool, ImageMagick, ffmpeg
 #   make mutants  planted faults, each of which a unit test has to catch
 #   make check-valgrind   memory that was never written, by valgrind
 #   make fuzz     every fuzzer for SECONDS=60, two at a time;  FUZZ=lens: that one
@@ -146,7 +147,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
 TOOLS += suggest takes lens_files cmd_lenses child ffmpeg
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films spectrum waves optics trace pupil published quantise bake \
-        exact curve edges resolve composite lights flare plan account beams pnm y4m picture output workers \
+        exact curve edges resolve composite lights flare plan account beams pnm y4m picture samples kept output workers \
         measure lamps bright profile match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame strength show_lights sweep explain budget live \
         $(EXTREMES:%=extremes_%)
@@ -347,7 +348,7 @@ video-report: $(OUT)/steady
 	$(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS)
 demo:
 	@tools/deps "PNG and JPEG pictures, and video to look at" g++ pkg-config \
-	        libopenimageio-dev ffmpeg
+	        libopenimageio-dev libwebp-dev ffmpeg
 	@$(MAKE) --no-print-directory all \
 	        $(shell [ "$(DEPS)" = no ] || echo oiio inputs)
 	@tools/demo
@@ -464,6 +465,12 @@ run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(OUT)/ray_e
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
 	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick
+# What other programs find in files that overlay has written.
+check-files:
+	@tools/deps "picture files as other programs see them" g++ pkg-config libopenimageio-dev \
+	        libwebp-dev openimageio-tools libimage-exiftool-perl imagemagick ffmpeg
+	@$(MAKE) --no-print-directory all oiio
+	@GLINT=build/glint GLINT_OIIO=build/glint-oiio.so tests/cli-files
 # Long cases and random lenses too:  make extremes SEED=1 COUNT=500
 extremes: $(extreme_bins) $(OUT)/random_lenses $(OUT)/motion
 	@tests/extremes $(SEED:%=--seed %) $(COUNT:%=--count %)
@@ -624,7 +631,7 @@ install: all glint-live
 	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
 clean:
 	rm -rf build
-.PHONY: all help video-report corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: check-files all help video-report corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -138,8 +138,11 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
     file->layer = calloc(n, sizeof *file->layer);
     if (!file->layer)
         return GLINT_E_MEMORY;
-    status = look_draw_layer(look, is_deep(drawn_on(file)) || look->flare_only,
-                             file->layer);
+    status =
+        adds_nothing(look)
+            ? GLINT_OK
+            : look_draw_layer(look, is_deep(drawn_on(file)) || look->flare_only,
+                              file->layer);
     if (status == GLINT_OK && !look->flare_only && !adds_nothing(look))
         glint_samples_add(drawn_on(file), file->layer);
     if (status == GLINT_OK && !look->flare_only && look->show_lights)

@@ -12,6 +12,9 @@
 #include <string>
 #include <vector>
 
+#include <stdlib.h>
+#include <unistd.h>
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -570,6 +573,41 @@ bool is_carried_from(const struct glint_oiio_file &file)
            (file.type != "tiff" || glint::is_classic_tiff(file.whole));
 }
 
+/* A folder of our own with one file in it; both go with it. */
+struct scratch {
+    std::string folder, path;
+
+    scratch()
+    {
+        const char *const tmp = std::getenv("TMPDIR");
+
+        folder = std::string(tmp && *tmp ? tmp : "/tmp") + "/glint-XXXXXX";
+        if (!mkdtemp(&folder[0]))
+            throw failure{GLINT_E_OUTPUT, "no temporary folder " + folder};
+        path = folder + "/parts.exr";
+    }
+    ~scratch()
+    {
+        std::remove(path.c_str());
+        std::remove(folder.c_str());
+    }
+};
+
+/* OpenImageIO 2.4 writes an EXR of parts into files alone, whatever it says. */
+bytes encode_by_file(ImageOutput &out, std::vector<ImageSpec> &specs,
+                     const std::vector<part> &parts)
+{
+    const scratch scratch;
+
+    write_parts(out, scratch.path.c_str(), specs, parts);
+    const bytes encoded = read_whole(scratch.path.c_str());
+    const std::unique_ptr<ImageInput> check = ImageInput::open(scratch.path);
+    if (!check || !check->seek_subimage(static_cast<int>(parts.size()) - 1, 0))
+        throw failure{GLINT_E_OUTPUT,
+                      "could not be written to " + scratch.path};
+    return encoded;
+}
+
 bytes encode_by_oiio(ImageOutput &out, const char *path,
                      std::vector<ImageSpec> specs,
                      const std::vector<part> &parts)
@@ -577,10 +615,14 @@ bytes encode_by_oiio(ImageOutput &out, const char *path,
     bytes encoded;
     memory to(encoded);
 
+    if (parts.size() > 1 && out.format_name() == std::string("openexr"))
+        return encode_by_file(out, specs, parts);
     if (!out.supports("ioproxy") || !out.set_ioproxy(&to))
         throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
                                            "type into memory"};
     write_parts(out, path, specs, parts);
+    if (encoded.empty())
+        throw failure{GLINT_E_OUTPUT, "OpenImageIO wrote nothing"};
     return encoded;
 }
 

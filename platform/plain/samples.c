@@ -231,6 +231,12 @@ static void turn(const double m[3][3], const double from[3], double to[3])
         to[i] = m[i][0] * from[0] + m[i][1] * from[1] + m[i][2] * from[2];
 }
 
+/* Infinite light is the largest of a half float; no number, none. */
+static double finite(double value)
+{
+    return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
+}
+
 /* What is seen of PIXEL over black, or, straight, of its colours alone. */
 static void light_of(const struct decoder *d, const uint8_t *pixel,
                      bool straight, double rgb[3])
@@ -244,13 +250,8 @@ static void light_of(const struct decoder *d, const uint8_t *pixel,
     else if (s->has_alpha && !s->is_premultiplied && !straight)
         factor = alpha;
     for (int c = 0; c < 3; c++)
-        own[c] = decode(d, c, pixel) * factor;
+        own[c] = finite(decode(d, c, pixel)) * factor;
     turn(s->colours.to_bt709, own, rgb);
-}
-
-static double finite(double value)
-{
-    return isfinite(value) ? value : 0;
 }
 
 void glint_samples_light(const struct glint_samples *samples, int x, int y,
@@ -263,7 +264,7 @@ void glint_samples_light(const struct glint_samples *samples, int x, int y,
     if (pixel)
         light_of(&by_formula, pixel, false, light);
     for (int c = 0; c < 3; c++)
-        rgb[c] = (float)finite(light[c]);
+        rgb[c] = (float)light[c];
 }
 
 /* ------------------------------------------------------------------- proxy */
@@ -285,7 +286,7 @@ static double white_of(const struct decoder *d)
         double rgb[3], most;
 
         light_of(d, s->mem + i * s->pixel_bytes, false, rgb);
-        most = finite(fmax(rgb[0], fmax(rgb[1], rgb[2])));
+        most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
         if (most > 1)
             bins[(int)fmin(log2(most) * 8 + 64, BINS - 1)]++;
     }

@@ -66,7 +66,8 @@ bool glint_samples_image(const struct glint_samples *samples,
                          struct glint_image *image);
 
 /* Linear light of the upright pixel X, Y, BT.709 primaries, weighted by alpha;
- * black where there is none. What is no finite number counts as black. */
+ * black where there is none. What is no number counts as black, infinity as
+ * 65504. */
 void glint_samples_light(const struct glint_samples *samples, int x, int y,
                          float rgb[3]);
 
