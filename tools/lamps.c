@@ -352,12 +352,15 @@ static void set_power(struct lamp_finder *f, struct glint_spot *spot)
         ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
 }
 
-/* Finds spots, and what is behind them. */
+/* Finds spots, and what is behind as many of the strongest as are followed: in
+ * a city by night a thousand would cost several times what finding them does.
+ */
 static int find(struct lamp_finder *f, const struct glint_image *image, int max)
 {
     const int n = glint_lights_find(f->lights, image, f->spot, max);
 
-    glint_profile_measure(f->profile, image, f->spot, n);
+    glint_profile_measure(f->profile, image, f->spot,
+                          n < f->max_tracks ? n : f->max_tracks);
     f->scale = 1;
     for (int i = 0; i < n && f->headroom_ev >= 0; i++)
         set_power(f, &f->spot[i]);
