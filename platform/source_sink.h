@@ -18,6 +18,9 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
+/* Sides of cameras and panels, pixels, at most; pictures of files have more. */
+#define GLINT_PANEL_SIDE 8192
+
 /* One frame of a source, its memory lent until done. */
 struct glint_source_frame {
     struct glint_image image; /* plane[0] NULL: there is no frame yet */

@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_SIDE 8192 /* pixels, of either side of a picture */
+#define GLINT_MAX_SIDE 32768 /* pixels, of either side of a picture */
 
 enum glint_pixel_format {
     GLINT_RGB24,      /* one plane, R G B bytes */

@@ -55,8 +55,8 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
     void *mem;
 
     *decoder = NULL;
-    if (max_width < 1 || max_width > GLINT_MAX_SIDE || max_height < 1 ||
-        max_height > GLINT_MAX_SIDE)
+    if (max_width < 1 || max_width > GLINT_PANEL_SIDE || max_height < 1 ||
+        max_height > GLINT_PANEL_SIDE)
         return glint_error_report(error, GLINT_E_ARGUMENT, name,
                                   "MJPEG of %d x %d pixels", max_width,
                                   max_height);

@@ -117,8 +117,8 @@ static enum glint_status adopt(struct glint_fbdev *fb,
             "pixels of %u bits (type %u, visual %u) are not packed true "
             "colour; try: fbset -depth 16",
             v->bits_per_pixel, fix->type, fix->visual);
-    if (v->xres < 1 || v->xres > GLINT_MAX_SIDE || v->yres < 1 ||
-        v->yres > GLINT_MAX_SIDE)
+    if (v->xres < 1 || v->xres > GLINT_PANEL_SIDE || v->yres < 1 ||
+        v->yres > GLINT_PANEL_SIDE)
         return glint_error_report(error, GLINT_E_DEVICE, fb->name,
                                   "is %u x %u pixels large", v->xres, v->yres);
     fb->width = (int)v->xres;

@@ -15,7 +15,10 @@
 #include "posix/input.h"
 #include "posix/output.h"
 
-#define MAX_FILE_BYTES ((size_t)GLINT_MAX_SIDE * GLINT_MAX_SIDE * 12 + 4096)
+#define MAX_FILE_BYTES                                             \
+    (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
+         ? SIZE_MAX / 4                                            \
+         : (size_t)(UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE + 4096))
 
 static enum glint_status report_memory(struct glint_error *error,
                                        const char *path,

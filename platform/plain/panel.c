@@ -94,7 +94,7 @@ static enum glint_status take_memory(struct glint_panel *p,
 
 static bool is_side(int side)
 {
-    return side >= 1 && side <= GLINT_MAX_SIDE;
+    return side >= 1 && side <= GLINT_PANEL_SIDE;
 }
 
 enum glint_status glint_panel_open(struct glint_panel *panel,
@@ -108,7 +108,7 @@ enum glint_status glint_panel_open(struct glint_panel *panel,
         !is_side(cfg->image_width) || !is_side(cfg->image_height))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "panel",
                                   "sides must be 1 to %d pixels",
-                                  GLINT_MAX_SIDE);
+                                  GLINT_PANEL_SIDE);
     if (!glint_pixel_layout_is_valid(&cfg->layout))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "panel",
                                   "its pixels are not packed true colour of "

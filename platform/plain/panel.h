@@ -27,11 +27,13 @@
 #include "glint/status.h"
 #include "plain/row_pack.h"
 #include "plain/row_rgb.h"
+#include "source_sink.h"
 
 enum glint_panel_fit { GLINT_PANEL_FIT, GLINT_PANEL_CENTRE };
 
 struct glint_panel_config {
-    int width, height; /* of the panel; 1 .. GLINT_MAX_SIDE, as the picture's */
+    int width,
+        height; /* of the panel; 1 .. GLINT_PANEL_SIDE, as the picture's */
     struct glint_pixel_layout layout;
     int image_width, image_height;
     enum glint_panel_fit fit;

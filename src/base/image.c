@@ -62,15 +62,15 @@ int glint_image_plane_height(enum glint_pixel_format format, int plane,
 
 size_t glint_image_bytes(enum glint_pixel_format format, int width, int height)
 {
-    size_t bytes = 0;
+    uint64_t bytes = 0;
 
     if (width < 1 || height < 1 || width > GLINT_MAX_SIDE ||
         height > GLINT_MAX_SIDE)
         return 0;
     for (int i = 0; i < glint_image_planes(format); i++)
-        bytes += glint_image_row_bytes(format, i, width) *
-                 (size_t)glint_image_plane_height(format, i, height);
-    return bytes;
+        bytes += (uint64_t)glint_image_row_bytes(format, i, width) *
+                 (uint64_t)glint_image_plane_height(format, i, height);
+    return bytes <= PTRDIFF_MAX ? (size_t)bytes : 0;
 }
 
 void glint_image_place(struct glint_image *image, void *mem)

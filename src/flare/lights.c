@@ -84,7 +84,7 @@ static struct glint_lights *carve(struct glint_arena *a,
 void glint_lights_defaults(struct glint_lights_config *cfg, int width,
                            int height)
 {
-    const int pixels = width * height; /* 2^26 at most */
+    const int pixels = width * height; /* 2^30 at most */
 
     *cfg = (struct glint_lights_config){.width = width,
                                         .height = height,

@@ -117,10 +117,18 @@ void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
     *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
 }
 
+/* As if the box were all of one light. */
+static int32_t box_radius_q8(uint64_t diagonal2)
+{
+    return (int32_t)q_root((diagonal2 << 16) / 12);
+}
+
 /* The sums are moved to the pixel nearest to the centroid first, exactly,
  * modulo 2^64. */
 int32_t glint_region_radius_q8(const struct glint_region *sum)
 {
+    const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
+    const uint64_t diagonal2 = (uint64_t)(across * across + down * down);
     const int32_t x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
     const int32_t y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
     const int32_t x = (x_q8 + 128) >> 8, y = (y_q8 + 128) >> 8;
@@ -133,6 +141,8 @@ int32_t glint_region_radius_q8(const struct glint_region *sum)
     const int64_t mean_q16 =
         quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
 
+    if ((uint64_t)sum->w_q14 > (UINT64_C(1) << 63) / (diagonal2 / 4 + 1))
+        return box_radius_q8(diagonal2);
     return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }
 

@@ -18,10 +18,12 @@
  * finished and its label is used again. So no more labels live than a row has
  * runs, twice, and no shape can exceed them.
  *
- * Limits: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^26
- * pixels of coordinates below 2^13, the sums of w and of w x reach 2^40 and
- * 2^53 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about
- * the centroid, which is what we want, is below 2^14 * 8192^4 / 6 < 2^64.
+ * Limits: weights w are linear luminance, _q14, 1 .. 2^14. With at most 2^30
+ * pixels of coordinates below 2^15, the sums of w and of w x reach 2^44 and
+ * 2^59 at most. The sum of w (x^2 + y^2) may wrap, in unsigned; its value about
+ * the centroid, which is what we want, is at most the sum of w times a quarter
+ * of the box's squared diagonal. Where that might be 2^63 or more, which takes
+ * a region brighter than all of 4096 x 4096 white, the box stands for it.
  */
 #ifndef GLINT_FLARE_REGIONS_H
 #define GLINT_FLARE_REGIONS_H

@@ -141,6 +141,39 @@ static void test_largest(void **state)
         "frames: 8192x8192 against its middle by itself", n, 0, "samples"));
 }
 
+/* The longest frames, likewise. */
+static void test_longest(void **state)
+{
+    enum { LONG = GLINT_MAX_SIDE, SHORT = 64, MIDDLE = 512 };
+    uint8_t *large = take(LONG * SHORT), *small = take(MIDDLE * SHORT);
+    int n = 0, lit[2] = {0, 0};
+
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        const int w = turned ? SHORT : LONG, h = turned ? LONG : SHORT;
+        const int sw = turned ? SHORT : MIDDLE, sh = turned ? MIDDLE : SHORT;
+
+        memset(large, 0, LONG * SHORT);
+        memset(small, 0, MIDDLE * SHORT);
+        draw(GLINT_GREY, w, h, 1000, large);
+        assert_int_equal(heliar.drawn.stats.dropped_bundles, 0);
+        draw(GLINT_GREY, sw, sh, 1000, small);
+        for (int y = 0; y < sh; y++)
+            for (int x = 0; x < sw; x++)
+                n += small[y * sw + x] !=
+                     large[(y + (h - sh) / 2) * w + x + (w - sw) / 2];
+        for (int i = 0; i < LONG * SHORT; i++)
+            lit[turned] += large[i] > 0 && large[i] < 255;
+    }
+    free(large);
+    free(small);
+    print_message("%d and %d samples are lit, and not white\n", lit[0], lit[1]);
+    assert_true(lit[0] > 10000 && lit[1] > 10000);
+    assert_true(extreme_at_most(
+        "frames: 32768x64 and 64x32768 against their middles by themselves", n,
+        0, "samples"));
+}
+
 /* --------------------------------------------------------------------- strides
  */
 
@@ -276,9 +309,8 @@ static void test_on_tile_borders(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_size),
-        cmocka_unit_test(test_largest),
-        cmocka_unit_test(test_strides),
+        cmocka_unit_test(test_every_size),      cmocka_unit_test(test_largest),
+        cmocka_unit_test(test_longest),         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_on_tile_borders),
     };
 

@@ -14,6 +14,8 @@
 
 #include <cmocka.h>
 
+#include "flare/regions.h"
+
 enum { MAX_SPOTS = 1024 };
 
 static struct glint_spot spot[MAX_SPOTS];
@@ -464,15 +466,15 @@ static void test_black_and_white(void **state)
     free(image.plane[0]);
 }
 
-/* The largest picture, all white: the moments' worst case. */
-static void test_largest_picture(void **state)
+/* A large picture, all white: the worst case of moments that are summed. */
+static void test_large_picture(void **state)
 {
-    struct glint_image image =
-        new_image(GLINT_GREY, GLINT_MAX_SIDE, GLINT_MAX_SIDE);
+    enum { SIDE = 8192 };
+    struct glint_image image = new_image(GLINT_GREY, SIDE, SIDE);
     struct glint_lights_config cfg = plain_config(&image, 200, 250);
 
     (void)state;
-    memset(image.plane[0], 255, (size_t)GLINT_MAX_SIDE * GLINT_MAX_SIDE);
+    memset(image.plane[0], 255, (size_t)SIDE * SIDE);
     assert_int_equal(find(&cfg, &image), 1);
     assert_int_equal(spot[0].x_q8, 4096 * 256);
     assert_int_equal(spot[0].y_q8, 4096 * 256);
@@ -481,6 +483,81 @@ static void test_largest_picture(void **state)
     assert_true(fabs(spot[0].size_q8 / 256.0 - 8192 / sqrt(6)) < 1.0 / 128);
     assert_int_equal(spot[0].rgb_q15[2], 32768);
     free(image.plane[0]);
+}
+
+static struct glint_region region_of(int x0, int y0, int x1, int y1)
+{
+    const struct glint_region_light white = {1 << 14,
+                                             {1 << 14, 1 << 14, 1 << 14}};
+    struct glint_region r = {
+        .first = y0 * GLINT_MAX_SIDE + x0, .x0 = x0, .y0 = y0, .x1 = x0};
+
+    for (int y = y0; y < y1; y++) {
+        glint_region_add_pixels(&r, &white, x0, x1, y);
+        glint_region_add_run(&r, x0, x1, y);
+    }
+    return r;
+}
+
+/* White rectangles of the largest picture, all of it too: where they are, how
+ * large and how bright. */
+static void test_largest_regions(void **state)
+{
+    enum { S = GLINT_MAX_SIDE };
+    static const int box[][4] = {{0, 0, S, S},          {0, 0, S, S / 2},
+                                 {S - 3, S - 3, S, S},  {0, S - 1, S, S},
+                                 {S - 1, 0, S, S},      {S - 4096, 0, S, 4096},
+                                 {S - 4097, 0, S, 4097}};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof box / sizeof *box; k++) {
+        const int *b = box[k];
+        const double w = b[2] - b[0], h = b[3] - b[1];
+        const struct glint_region r = region_of(b[0], b[1], b[2], b[3]);
+        int32_t x_q8, y_q8, rgb_q15[3];
+
+        glint_region_centroid(&r, &x_q8, &y_q8);
+        glint_region_colour(&r, rgb_q15);
+        assert_int_equal(x_q8, (b[0] + b[2] - 1) * 128);
+        assert_int_equal(y_q8, (b[1] + b[3] - 1) * 128);
+        assert_int_equal(r.area, (int)(w * h));
+        assert_true(r.w_q14 == (int64_t)(w * h) << 14);
+        assert_int_equal(rgb_q15[1], 32768);
+        assert_true(fabs(glint_region_radius_q8(&r) / 256.0 -
+                         sqrt((w * w + h * h - 2) / 12)) < 1.0 / 128);
+    }
+}
+
+/* Lamps at both ends of the longest pictures. */
+static void test_longest_pictures(void **state)
+{
+    enum { LONG = GLINT_MAX_SIDE, SHORT = 64, OFF = 20, SIDE = 6 };
+
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        const int width = turned ? SHORT : LONG, height = turned ? LONG : SHORT;
+        struct glint_image image = new_image(GLINT_GREY, width, height);
+        struct glint_lights_config cfg = plain_config(&image, 200, 250);
+
+        memset(image.plane[0], 0, (size_t)width * (size_t)height);
+        for (int end = 0; end < 2; end++)
+            for (int k = 0; k < SIDE * SIDE; k++) {
+                const int x = (end ? width - OFF - SIDE : OFF) + k % SIDE;
+                const int y = (end ? height - OFF - SIDE : OFF) + k / SIDE;
+
+                image.plane[0][(ptrdiff_t)y * image.stride_bytes[0] + x] =
+                    (uint8_t)(255 - end);
+            }
+        assert_int_equal(find(&cfg, &image), 2);
+        for (int end = 0; end < 2; end++) {
+            const int64_t low = OFF * 256 + SIDE * 128;
+
+            assert_int_equal(spot[end].area, SIDE * SIDE);
+            assert_int_equal(spot[end].x_q8, end ? width * 256 - low : low);
+            assert_int_equal(spot[end].y_q8, end ? height * 256 - low : low);
+        }
+        free(image.plane[0]);
+    }
 }
 
 static void test_sky_is_no_light(void **state)
@@ -1044,7 +1121,9 @@ int main(void)
         cmocka_unit_test(test_hot_pixel_among_dim_ones),
         cmocka_unit_test(test_same_every_time),
         cmocka_unit_test(test_black_and_white),
-        cmocka_unit_test(test_largest_picture),
+        cmocka_unit_test(test_large_picture),
+        cmocka_unit_test(test_largest_regions),
+        cmocka_unit_test(test_longest_pictures),
         cmocka_unit_test(test_sky_is_no_light),
         cmocka_unit_test(test_few_seeds_are_no_light),
         cmocka_unit_test(test_hysteresis),

@@ -138,8 +138,8 @@ static void test_hostile_headers(void **state)
     refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 255#abc"));
     refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 # 255 abc"));
     refuse_pnm(GLINT_E_FORMAT, BYTES("P6 \0001 1 255 abc"));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 8193 1 255 abc"));
-    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 1 8193 255 abc"));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 32769 1 255 abc"));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
     refuse_pnm(GLINT_E_UNSUPPORTED,
                BYTES("P6 99999999999999999999 4294967297 255 abc"));
     /* sizes are believed only when the samples are there */
@@ -243,7 +243,7 @@ static void test_hostile_pfm(void **state)
     refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 -1\0 " ONE));
     refuse_pfm(GLINT_E_FORMAT,
                BYTES("Pf 1 1 -1.0000000000000000000000000000000000000 " ONE));
-    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("Pf 8193 1 -1 " ONE));
+    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("Pf 32769 1 -1 " ONE));
     refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("Pf 1 9999999999999999 -1 " ONE));
     refuse_pfm(GLINT_E_FORMAT, BYTES("PF 8192 8192 -1 " ONE));
 }
