@@ -36,8 +36,8 @@ struct glint_mjpeg; /* opaque */
 /* Whether libjpeg is built in. */
 bool glint_mjpeg_available(void);
 
-/* Makes a decoder for frames up to MAX_WIDTH x MAX_HEIGHT, 1 .. GLINT_PANEL_SIDE,
- * with room for any subsampling. NAME, for errors, is kept.
+/* Makes a decoder for frames up to MAX_WIDTH x MAX_HEIGHT, 1 ..
+ * GLINT_PANEL_SIDE, with room for any subsampling. NAME, for errors, is kept.
  * GLINT_E_UNSUPPORTED: built without libjpeg. GLINT_E_MEMORY. */
 enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
                                    const char *name, int max_width,

@@ -380,7 +380,8 @@ static enum glint_status take_format(struct glint_v4l2_device *d,
                                     .height = (int)pix->height,
                                     .n_blocks = (int)pix->n_blocks};
     if (pix->width < 1 || pix->width > GLINT_PANEL_SIDE || pix->height < 1 ||
-        pix->height > GLINT_PANEL_SIDE || pix->n_blocks < 1 || pix->n_blocks > 3)
+        pix->height > GLINT_PANEL_SIDE || pix->n_blocks < 1 ||
+        pix->n_blocks > 3)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, d->path,
                                   "pictures of %ux%u", pix->width, pix->height);
     for (int i = 0; i < f->n_blocks; i++)

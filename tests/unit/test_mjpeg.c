@@ -526,8 +526,9 @@ static void test_open(void **state)
     assert_int_equal(glint_mjpeg_open(&d, NAME, 0, 8, &error),
                      GLINT_E_ARGUMENT);
     assert_null(d);
-    assert_int_equal(glint_mjpeg_open(&d, NAME, 8, GLINT_PANEL_SIDE + 1, &error),
-                     GLINT_E_ARGUMENT);
+    assert_int_equal(
+        glint_mjpeg_open(&d, NAME, 8, GLINT_PANEL_SIDE + 1, &error),
+        GLINT_E_ARGUMENT);
     assert_string_equal(error.text, NAME ": MJPEG of 8 x 8193 pixels");
     glint_mjpeg_close(NULL);
 }
