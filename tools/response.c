@@ -11,6 +11,9 @@ enum { PROXY_PIXELS = 192 * 108, TOP_MAX = PROXY_PIXELS / 500 };
 
 static const double none_log2 = -100;
 
+/* Tracing every ray takes fifty times as long as a model does. */
+enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
+
 /* Where the brightest pixels are brought to, display white: far from where
  * samples saturate, with as many steps below for what is faint. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
@@ -79,7 +82,7 @@ static struct scene plain_of(const struct scene *scene)
     plain.only_ghost = -1;
     plain.raster = 0;
     plain.uniform = false;
-    plain.grid = 12;
+    plain.grid = scene->model.data ? GRID : EXACT_GRID;
     return plain;
 }
 
@@ -179,11 +182,11 @@ static double corner_deg(struct glint_view view, double focal_mm)
 
 /* The angles that are looked at, denser near the axis, where ghosts lie on top
  * of each other; none where the model has ended. */
-static void set_angles(struct response *r, double corner, double end)
+static void set_angles(struct response *r, int n, double corner, double end)
 {
     r->n = 0;
-    for (int i = 0; i < RESPONSE_ANGLES; i++) {
-        const double theta = corner * pow(i / (RESPONSE_ANGLES - 1.0), 1.5);
+    for (int i = 0; i < n; i++) {
+        const double theta = corner * pow(i / (n - 1.0), 1.5);
 
         if (theta > end && r->n > 0)
             break;
@@ -220,7 +223,8 @@ static enum glint_status measure(struct proxy *p, struct response *r)
     const double all = (double)p->view.width * p->view.height;
     double peak_log2 = 0;
 
-    set_angles(r, corner_deg(p->view, p->plain.setup.optics.focal_mm),
+    set_angles(r, p->frame.lens ? RESPONSE_ANGLES : EXACT_ANGLES,
+               corner_deg(p->view, p->plain.setup.optics.focal_mm),
                model_end_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
         const struct glint_lamp lamp = {

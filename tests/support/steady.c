@@ -23,8 +23,8 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000 };
 struct steady {
     struct tool tool;
     struct look look;
-    double total, own;         /* of the frame before */
-    double worst, largest;     /* step of ours; of any */
+    double total, own;     /* of the frame before */
+    double worst, largest; /* step of ours; of any */
     int worst_frame, cuts, frames, most_lights;
 };
 
