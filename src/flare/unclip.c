@@ -200,11 +200,11 @@ static void list_moments(const struct glint_profile_sums *sums,
     int64_t mean_q16[2];
 
     for (int i = 0; i < 2; i++)
-        mean_q16[i] = q_divide(sums->moment_q16[i] << 16, w);
+        mean_q16[i] = q_divide(sums->moment_q16[i] * ONE_Q16, w);
     for (int i = 0; i < 3; i++) {
         const int64_t mean2 = mean_q16[i == 1] * mean_q16[i > 0];
 
-        m_q16[i] = q_divide(sums->square_q16[i] << 16, w) - (mean2 >> 16);
+        m_q16[i] = q_divide(sums->square_q16[i] * ONE_Q16, w) - (mean2 >> 16);
     }
 }
 
