@@ -342,6 +342,14 @@ std::string missing_of_jpeg(const bytes &file)
     return "is cut off: its end marker is missing";
 }
 
+bool is_progressive(const bytes &jpeg)
+{
+    for (const piece &segment : segments_of_jpeg(jpeg))
+        if (is_marker(segment, 0xc2))
+            return true;
+    return false;
+}
+
 bool has_more_pictures(const bytes &jpeg)
 {
     for (const piece &segment : segments_of_jpeg(jpeg))

@@ -32,6 +32,8 @@ std::string missing_of_tiff(const bytes &file);
 /* 1 .. 100 of libjpeg's scale, nearest to FILE's tables; 0: there are none. */
 int quality_of_jpeg(const bytes &file);
 
+bool is_progressive(const bytes &jpeg);
+
 /* Whether the file has more pictures behind the first, which get lost. */
 bool has_more_pictures(const bytes &jpeg);
 

@@ -648,6 +648,8 @@ bytes encode_parts(const char *path, const std::vector<part> &parts,
         if (type == "jpeg")
             specs.back().attribute("Compression",
                                    "jpeg:" + std::to_string(quality));
+        if (same && type == "jpeg" && glint::is_progressive(file->whole))
+            specs.back().attribute("jpeg:progressive", 1);
     }
     if (type == "webp" && specs[0].nchannels >= 3)
         encoded =
