@@ -14,7 +14,7 @@ void look_defaults(struct look *look)
 {
     *look = (struct look){.lens = "nikon-zoom-short",
                           .headroom_ev = -1,
-                          .threshold_ev = {-0.1, -0.6},
+                          .threshold_ev = {-0.1, -0.15},
                           .white = 1};
     scene_defaults(&look->scene);
     look->scene.coating.kind = COATING_MIXED;
@@ -23,7 +23,7 @@ void look_defaults(struct look *look)
 }
 
 /* Stops by which a region extends below what makes it a lamp, if not told. */
-#define EXTENDS_EV 0.5
+#define EXTENDS_EV 0.05
 
 static bool take_threshold(const char *text, double threshold_ev[2])
 {

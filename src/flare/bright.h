@@ -19,7 +19,7 @@
  * bytes at a time are compared with codes that a bright pixel must exceed, and
  * blocks of BRIGHT_BLOCK pixels without one are left out. Of Y, Cb, Cr one code
  * of luma will not do for strong colours. A block is dark where both Y and
- * |C - 128| stay below one of three pairs of bounds.
+ * |C - 128| stay below one of BRIGHT_BOUNDS pairs of bounds.
  */
 #ifndef GLINT_FLARE_BRIGHT_H
 #define GLINT_FLARE_BRIGHT_H
@@ -34,7 +34,7 @@ enum {
     BRIGHT_CLIPPED = 250, /* a channel here or above says nothing of colour */
     BRIGHT_WHITE = 254,   /* brightness where luma is 237 or more, too, */
     BRIGHT_HOT = 255,     /* and 252 */
-    BRIGHT_BOUNDS = 3
+    BRIGHT_BOUNDS = 4
 };
 
 /* Where a code of a row's pixels lies. */

@@ -89,7 +89,7 @@ void glint_lights_defaults(struct glint_lights_config *cfg, int width,
     *cfg = (struct glint_lights_config){.width = width,
                                         .height = height,
                                         .threshold_high_q8 = -26,
-                                        .threshold_low_q8 = -154,
+                                        .threshold_low_q8 = -38,
                                         .judge = 1,
                                         .min_area =
                                             pixels < 1 << 19 ? 2 : pixels >> 18,

@@ -177,7 +177,7 @@ static void value_at(const struct glint_image *image, int x, int y, int *least,
         judge_ycc(image, code, &largest, &luma);
     }
     for (int i = 0; i < 2; i++) {
-        rounded[i] = (int)floor(largest + 0.49 + 0.02 * i);
+        rounded[i] = (int)floor(largest + 0.3 + 0.4 * i);
         rounded[i] = rounded[i] < 0      ? 0
                      : rounded[i] >= 250 ? clipped_value(luma)
                                          : rounded[i];

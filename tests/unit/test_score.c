@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is a lamp and what is only bright, in drawn pictures: coloured lamps in
+ * every format, underexposed nights, lamps before walls and in haze; and paper,
+ * text, snow, skies and noise, which have none.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/lights.h"
+
+enum { MOST = 64 };
+
+struct scene {
+    int width, height;
+    double *light; /* linear, three a pixel */
+};
+
+static struct glint_spot spot[MOST];
+static uint32_t seed;
+
+static double draw_random(void)
+{
+    seed = seed * 1664525 + 1013904223;
+    return (seed >> 8) * 0x1p-24;
+}
+
+static struct scene new_scene(int width, int height, double light)
+{
+    const size_t n = 3 * (size_t)width * (size_t)height;
+    struct scene s = {width, height, malloc(n * sizeof *s.light)};
+
+    assert_non_null(s.light);
+    seed = 1;
+    for (size_t i = 0; i < n; i++)
+        s.light[i] = light;
+    return s;
+}
+
+/* A lamp at (X, Y), both as shares of the width, whose face is LIGHT and whose
+ * light falls off over FALL. */
+static void add_lamp(const struct scene *s, double x, double y, double radius,
+                     double fall, const double light[3])
+{
+    for (int j = 0; j < s->height; j++)
+        for (int i = 0; i < s->width; i++) {
+            const double r =
+                hypot((i + 0.5) / s->width - x, (j + 0.5) / s->width - y);
+            const double part = exp(-fmax(r - radius, 0) / fall);
+
+            for (int c = 0; c < 3; c++)
+                s->light[3 * (j * s->width + i) + c] += light[c] * part;
+        }
+}
+
+/* A box of even light, by shares of the width. */
+static void fill_box(const struct scene *s, double x0, double y0, double x1,
+                     double y1, double light)
+{
+    for (int j = (int)(y0 * s->width); j < (int)(y1 * s->width); j++)
+        for (int i = (int)(x0 * s->width); i < (int)(x1 * s->width); i++)
+            for (int c = 0; c < 3; c++)
+                s->light[3 * (j * s->width + i) + c] = light;
+}
+
+static double code_of(double light)
+{
+    const double held = fmin(fmax(light, 0), 1);
+
+    return 255 * (held <= 0.0031308 ? 12.92 * held
+                                    : 1.055 * pow(held, 1 / 2.4) - 0.055);
+}
+
+static int held(double code)
+{
+    return (int)fmax(0, fmin(255, floor(code + 0.5)));
+}
+
+/* Full-range BT.601. */
+static void ycc_of(const double rgb[3], double ycc[3])
+{
+    ycc[0] = 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
+    ycc[1] = 128 + (rgb[2] - ycc[0]) / 1.772;
+    ycc[2] = 128 + (rgb[0] - ycc[0]) / 1.402;
+}
+
+static void put(const struct glint_image *image, int x, int y,
+                const double rgb[3])
+{
+    uint8_t *const row = image->plane[0] + y * image->stride_bytes[0];
+    double ycc[3];
+
+    ycc_of(rgb, ycc);
+    if (image->format == GLINT_RGB24) {
+        for (int c = 0; c < 3; c++)
+            row[3 * x + c] = (uint8_t)held(rgb[c]);
+    } else if (image->format == GLINT_YUYV) {
+        row[2 * x] = (uint8_t)held(ycc[0]);
+        row[2 * x + 1] = (uint8_t)held(ycc[1 + x % 2]);
+    } else {
+        row[x] = (uint8_t)held(ycc[0]);
+        for (int i = 1; i < 3; i++)
+            image->plane[i][y * image->stride_bytes[i] + x] =
+                (uint8_t)held(ycc[i]);
+    }
+}
+
+/* What is found in the scene as a picture of FORMAT, with SIGMA codes of noise.
+ */
+static int find(const struct scene *s, enum glint_pixel_format format,
+                double sigma)
+{
+    struct glint_image image = {
+        .format = format, .width = s->width, .height = s->height};
+    struct glint_lights_config cfg;
+    struct glint_lights *finder;
+    void *mem;
+    int n;
+
+    glint_image_place(&image,
+                      malloc(glint_image_bytes(format, s->width, s->height)));
+    for (int y = 0; y < s->height; y++)
+        for (int x = 0; x < s->width; x++) {
+            const double noise =
+                sigma * (draw_random() + draw_random() + draw_random() - 1.5) *
+                2;
+            double rgb[3];
+
+            for (int c = 0; c < 3; c++)
+                rgb[c] = code_of(s->light[3 * (y * s->width + x) + c]) + noise;
+            put(&image, x, y, rgb);
+        }
+    glint_lights_defaults(&cfg, s->width, s->height);
+    assert_int_equal(posix_memalign(&mem, 64, glint_lights_bytes(&cfg)), 0);
+    assert_int_equal(
+        glint_lights_init(&finder, &cfg, mem, glint_lights_bytes(&cfg)),
+        GLINT_OK);
+    n = glint_lights_find(finder, &image, spot, MOST);
+    free(mem);
+    free(image.plane[0]);
+    return n;
+}
+
+static void assert_at(const struct scene *s, double x, double y)
+{
+    double least = HUGE_VAL;
+
+    for (int i = 0; i < MOST; i++)
+        least = fmin(least, hypot(spot[i].x_q8 / 256.0 / s->width - x,
+                                  spot[i].y_q8 / 256.0 / s->width - y));
+    assert_true(least < 0.01);
+}
+
+static void assert_none(struct scene *s)
+{
+    for (double sigma = 0; sigma < 3; sigma += 1.5)
+        assert_int_equal(find(s, GLINT_RGB24, sigma), 0);
+    free(s->light);
+}
+
+/* -------------------------------------------------------------------- lamps */
+
+/* A lamp that clips one channel, or two, alone: by luma none but the yellow one
+ * comes near white. */
+static void test_lamps_of_every_colour(void **state)
+{
+    static const double colours[][3] = {
+        {3, 0.1, 0.05}, {0.05, 3, 0.3}, {0.1, 0.15, 3}, {3, 1.2, 0.2},
+        {3, 0.2, 3},    {0.2, 3, 3},    {3, 3, 0.3},    {3, 3, 3}};
+    static const enum glint_pixel_format formats[] = {GLINT_RGB24, GLINT_YUYV,
+                                                      GLINT_I444};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof colours / sizeof *colours; i++) {
+        struct scene s = new_scene(400, 260, 0.01);
+
+        add_lamp(&s, 0.3, 0.35, 0.015, 0.01, colours[i]);
+        for (int f = 0; f < 3; f++) {
+            assert_int_equal(find(&s, formats[f], 1), 1);
+            assert_at(&s, 0.3, 0.35);
+        }
+        free(s.light);
+    }
+}
+
+/* All a quarter or a third as bright as white, where nothing clips. */
+static void test_underexposed_night(void **state)
+{
+    static const double colour[3] = {0.25, 0.22, 0.15};
+
+    (void)state;
+    for (double gain = 0.5; gain <= 1.5; gain += 0.5) {
+        const double light[3] = {gain * colour[0], gain * colour[1],
+                                 gain * colour[2]};
+        struct scene s = new_scene(400, 260, 0.002);
+
+        add_lamp(&s, 0.3, 0.35, 0.02, 0.01, light);
+        add_lamp(&s, 0.8, 0.15, 0.02, 0.01, light);
+        assert_int_equal(find(&s, GLINT_RGB24, 1), 2);
+        assert_at(&s, 0.3, 0.35);
+        assert_at(&s, 0.8, 0.15);
+        free(s.light);
+    }
+}
+
+static void test_lamp_before_a_bright_wall(void **state)
+{
+    static const double white[3] = {4, 4, 4};
+    struct scene s = new_scene(400, 260, 0.35);
+
+    (void)state;
+    add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
+    assert_int_equal(find(&s, GLINT_RGB24, 1), 1);
+    assert_at(&s, 0.4, 0.3);
+    free(s.light);
+}
+
+/* The sky is brighter than any lamp's glow, and red clips far around the sun.
+ */
+static void test_sun_in_haze(void **state)
+{
+    static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
+    struct scene s = new_scene(400, 260, 0.25);
+
+    (void)state;
+    add_lamp(&s, 0.5, 0.25, 0.04, 0.02, sun);
+    add_lamp(&s, 0.5, 0.25, 0.04, 0.2, haze);
+    assert_int_equal(find(&s, GLINT_RGB24, 1), 1);
+    assert_at(&s, 0.5, 0.25);
+    free(s.light);
+}
+
+/* The same scene at 320 to 2000 pixels has the same lamps. */
+static void test_every_resolution(void **state)
+{
+    static const double lamp[3] = {4, 3, 1.5};
+
+    (void)state;
+    for (int width = 320; width <= 2000; width = width * 5 / 2) {
+        struct scene s = new_scene(width, width * 5 / 8, 0.02);
+
+        add_lamp(&s, 0.2, 0.2, 0.008, 0.006, lamp);
+        add_lamp(&s, 0.5, 0.4, 0.012, 0.008, lamp);
+        add_lamp(&s, 0.8, 0.3, 0.03, 0.01, lamp);
+        assert_int_equal(find(&s, GLINT_RGB24, 1), 3);
+        assert_at(&s, 0.2, 0.2);
+        assert_at(&s, 0.5, 0.4);
+        assert_at(&s, 0.8, 0.3);
+        free(s.light);
+    }
+}
+
+/* --------------------------------------------------------------- none there */
+
+/* Lines of words, dark on white or white on dark. */
+static void write_text(const struct scene *s, double light)
+{
+    for (int line = 0; line < 18; line++)
+        for (double x = 0.05; x < 0.9; x += 0.012) {
+            const double y = 0.04 + line * 0.03;
+            const double tall = 0.008 + 0.008 * draw_random();
+
+            if (draw_random() < 0.15)
+                continue;
+            fill_box(s, x, y, x + 0.003, y + tall, light);
+            fill_box(s, x, y, x + 0.008, y + 0.003, light);
+            if (draw_random() < 0.5)
+                fill_box(s, x + 0.006, y, x + 0.009, y + tall, light);
+        }
+}
+
+static void test_paper_and_text(void **state)
+{
+    struct scene page = new_scene(600, 400, 1);
+    struct scene terminal = new_scene(600, 400, 0.0);
+    struct scene desk = new_scene(600, 400, 0.12);
+
+    (void)state;
+    write_text(&page, 0.02);
+    write_text(&terminal, 1);
+    fill_box(&desk, 0.1, 0.1, 0.6, 0.5, 0.85);
+    assert_none(&page);
+    assert_none(&terminal);
+    assert_none(&desk);
+}
+
+/* Grains of every brightness, many of them white. */
+static void test_snow(void **state)
+{
+    struct scene s = new_scene(600, 400, 0.7);
+
+    (void)state;
+    for (int i = 0; i < 3 * 600 * 400; i += 3) {
+        const double light = 0.45 + 0.7 * draw_random();
+
+        s.light[i] = s.light[i + 1] = s.light[i + 2] = light;
+    }
+    assert_none(&s);
+}
+
+/* From blue above to white at the horizon, over dark ground; and all even. */
+static void test_skies(void **state)
+{
+    struct scene s = new_scene(600, 400, 0.03);
+    struct scene overcast = new_scene(600, 400, 0.95);
+
+    (void)state;
+    for (int y = 0; y < 260; y++)
+        for (int x = 0; x < 600; x++) {
+            double *const px = &s.light[3 * (y * 600 + x)];
+
+            px[0] = 0.2 + y * 0.9 / 260;
+            px[1] = 0.35 + y * 0.75 / 260;
+            px[2] = 0.8 + y * 0.3 / 260;
+        }
+    assert_none(&s);
+    assert_none(&overcast);
+}
+
+/* A lens cap on: noise of the dark, and a little more of it. */
+static void test_noise_in_the_dark(void **state)
+{
+    struct scene s = new_scene(600, 400, 0.001);
+
+    (void)state;
+    for (double sigma = 0; sigma < 10; sigma += 3)
+        assert_int_equal(find(&s, GLINT_RGB24, sigma), 0);
+    free(s.light);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_lamps_of_every_colour),
+        cmocka_unit_test(test_underexposed_night),
+        cmocka_unit_test(test_lamp_before_a_bright_wall),
+        cmocka_unit_test(test_sun_in_haze),
+        cmocka_unit_test(test_every_resolution),
+        cmocka_unit_test(test_paper_and_text),
+        cmocka_unit_test(test_snow),
+        cmocka_unit_test(test_skies),
+        cmocka_unit_test(test_noise_in_the_dark),
+    };
+
+    return cmocka_run_group_tests_name("score", tests, NULL, NULL);
+}
