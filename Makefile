@@ -136,7 +136,7 @@ PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posi
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache coating \
-        model_report measure lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene_waves scene response strength look live_adapt \
+        model_report measure area lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene_waves scene response strength look live_adapt \
         look_layer overlay_file overlay_picture overlay_y4m \
         live_signals live_output live_picture live_stats live_loop \
         explain explain_table explain_picture \
@@ -148,7 +148,7 @@ TOOLS += suggest takes lens_files cmd_lenses child ffmpeg
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films spectrum waves optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture samples kept output workers \
-        measure lamps bright score profile match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
+        measure area lamps bright score profile match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame strength show_lights sweep explain budget live \
         $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights

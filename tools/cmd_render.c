@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "area.h"
 #include "lamps.h"
 #include "measure.h"
 #include "plain/picture.h"
@@ -15,7 +16,8 @@
 #include "takes.h"
 
 static const char help[] =
-    "glint render LENS|MODEL -o OUT --light THETA,PHI[,POWER[,R,G,B]]... "
+    "glint render LENS|MODEL -o OUT --light "
+    "THETA,PHI[,POWER[,R,G,B[,SIZE]]]... "
     "[options]\n"
     "glint render LENS|MODEL -o OUT --lights FILE [options]\n"
     "\n"
@@ -77,10 +79,11 @@ static int take(struct tool *tool, struct render *r, int c)
                 fmax(r->scene.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
             return -1;
         }
-        return tool_usage(tool,
-                          "--light takes THETA,PHI[,POWER[,R,G,B]] with THETA "
-                          "0 to 89.9, not '%s'",
-                          optarg);
+        return tool_usage(
+            tool,
+            "--light takes THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA "
+            "0 to 89.9, not '%s'",
+            optarg);
     case 'f':
         r->lights_file = optarg;
         return -1;
@@ -133,15 +136,42 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
 
 /* ------------------------------------------------------------------ engines */
 
+/* All points of all lamps, N of them. NULL: no memory. */
+static struct glint_lamp *points_of(const struct render *r, int *n)
+{
+    const struct glint_view view = scene_view(&r->scene, r->width, r->height);
+    const double pixels = fabs(r->scene.setup.optics.focal_mm) * view.width /
+                          view.sensor_width_mm;
+    struct glint_lamp *points = NULL;
+    struct area area;
+
+    for (int round = 0; round < 2; round++) {
+        *n = 0;
+        for (int lamp = 0; lamp < r->n_lamps; lamp++) {
+            const int more = area_plan(&area, &r->lamp[lamp], pixels,
+                                       r->scene.area_samples, 1);
+
+            for (int i = 0; points && i < more; i++)
+                points[*n + i] = area_point(&area, i);
+            *n += more;
+        }
+        if (round == 0)
+            points = malloc(((size_t)*n + 1) * sizeof *points);
+    }
+    return points;
+}
+
 static int render_exact(struct tool *tool, struct render *r)
 {
     const size_t n = 3 * (size_t)r->width * (size_t)r->height;
     struct tool_progress progress;
+    int n_points = 0;
+    struct glint_lamp *points = points_of(r, &n_points);
     struct glint_exact_config cfg = {
         .setup = &r->scene.setup,
         .view = scene_view(&r->scene, r->width, r->height),
-        .lamps = r->lamp,
-        .n_lamps = r->n_lamps,
+        .lamps = points,
+        .n_lamps = n_points,
         .grid = r->scene.grid ? (r->scene.grid + 1) / 2 * 2 : 512,
         .only_ghost = r->scene.only_ghost,
         .workers = tool->workers,
@@ -152,12 +182,13 @@ static int render_exact(struct tool *tool, struct render *r)
     enum glint_status status = GLINT_E_MEMORY;
 
     tool_progress_start(&progress, tool, "exact");
-    if (rgb)
+    if (rgb && points)
         status = glint_exact_render(&cfg, rgb);
     tool_progress_end(&progress);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         r->image.rgb[i] = (float)(rgb[i] * scene_scale(&r->scene));
     free(rgb);
+    free(points);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
     if (tool->json)

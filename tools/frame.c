@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "area.h"
 #include "frame_feed.h"
 #include "tool.h"
 
@@ -25,6 +26,7 @@ void frame_init(struct frame *frame, const struct glint_setup *setup,
                                     .antialias = 1},
                             .max_lights = FRAME_MAX_LIGHTS,
                             .apart_px = FRAME_APART_PX,
+                            .area_samples = AREA_SAMPLES,
                             .max_cells = 64,
                             .faintest_codes = FRAME_CULL_CODES,
                             .whole_codes = FRAME_WHOLE_CODES,
@@ -134,21 +136,36 @@ static struct glint_lamp lamp_of(const struct glint_beam *b)
 {
     const double degree = 3.14159265358979323846 / 180;
 
-    return (struct glint_lamp){atan2(b->sine_q30, b->cosine_q30) / degree,
-                               atan2(b->sin_q30, b->cos_q30) / degree,
-                               glint_real_value(b->power),
-                               {b->rgb_q14[0] * 0x1p-14,
-                                b->rgb_q14[1] * 0x1p-14,
-                                b->rgb_q14[2] * 0x1p-14}};
+    return (struct glint_lamp){
+        .theta_deg = atan2(b->sine_q30, b->cosine_q30) / degree,
+        .phi_deg = atan2(b->sin_q30, b->cos_q30) / degree,
+        .power = glint_real_value(b->power),
+        .rgb = {b->rgb_q14[0] * 0x1p-14, b->rgb_q14[1] * 0x1p-14,
+                b->rgb_q14[2] * 0x1p-14}};
+}
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static double pixels_per_tangent(const struct frame *f)
+{
+    return fabs(f->setup->optics.focal_mm * f->view.width /
+                f->view.sensor_width_mm);
 }
 
 /* The angle in which lights are one. */
 static int32_t near_q30(const struct frame *f)
 {
-    const double pixels =
-        f->setup->optics.focal_mm * f->view.width / f->view.sensor_width_mm;
+    const double pixels = pixels_per_tangent(f);
 
-    return (int32_t)lrint(fmin(1, f->apart_px / fabs(pixels)) * 0x1p30);
+    return (int32_t)lrint(fmin(1, f->apart_px / pixels) * 0x1p30);
 }
 
 /* Beams that give nothing must not be merged with others into one that does. */
@@ -178,19 +195,44 @@ static enum glint_status hold_beams(struct frame *f, int n)
     return GLINT_OK;
 }
 
+/* Appends the beams of LAMP's points that the model reaches; WITHIN are there
+ * already. Returns how many there are then. */
+static int add_beams(struct frame *f, const struct glint_lamp *lamp,
+                     double thinning, double scale, int within)
+{
+    struct area area;
+    const int n = area_plan(&area, lamp, pixels_per_tangent(f), f->area_samples,
+                            thinning);
+
+    for (int i = 0; i < n; i++) {
+        const struct glint_lamp point = area_point(&area, i);
+
+        f->beam[within] = beam_of(&point, scale);
+        within += !is_beyond(f, &f->beam[within]);
+    }
+    return within;
+}
+
 /* Makes F's beams of LAMPS, those merged that are too many. */
 static enum glint_status
 set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
 {
-    int within = 0;
+    const int room =
+        f->reserved ? smaller(f->max_lights, f->max_beams) : f->max_lights;
+    int within = 0, total;
+    const double thinning = area_thinning(lamps, n, pixels_per_tangent(f),
+                                          f->area_samples, room, &total);
 
-    if (hold_beams(f, n) != GLINT_OK)
+    if (hold_beams(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;
+    f->n_beyond = 0;
     for (int i = 0; i < n; i++) {
-        f->beam[within] = beam_of(&lamps[i], scale);
-        within += !is_beyond(f, &f->beam[within]);
+        const int before = within;
+
+        within = add_beams(f, &lamps[i], thinning, scale, within);
+        f->n_beyond += within == before;
     }
-    f->n_beyond = n - within;
+    f->n_more = within - (n - f->n_beyond);
     f->n_beams = glint_beams_merge(f->beam, within, near_q30(f), f->max_lights,
                                    &f->n_apart);
     return GLINT_OK;
@@ -234,16 +276,6 @@ static struct glint_rays rays_of(struct frame *f,
 
 /* --------------------------------------------------------------------- memory
  */
-
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
 
 /* A new block for the capacities there are. */
 static enum glint_status regrow(struct frame *f)
@@ -461,7 +493,7 @@ merged_lamps(struct frame *f, const struct glint_lamp *lamps, int *n)
 
     if (set_beams(f, lamps, *n, 1) != GLINT_OK)
         return NULL;
-    if (f->n_beams == *n)
+    if (f->n_beams == *n && f->n_more == 0)
         return lamps;
     *n = f->n_beams;
     merged = realloc(f->merged, ((size_t)*n + 1) * sizeof *merged);
@@ -559,8 +591,8 @@ enum glint_status frame_draw(struct frame *frame,
             budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }
     report->beyond_lights = frame->n_beyond;
-    report->apart_lights = frame->n_apart;
-    report->drawn_lights = frame->n_beams;
+    report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
+    report->drawn_lights = larger(frame->n_beams - frame->n_more, 1);
     report->tiles = glint_flare_tiles(frame->flare);
     report->held_samples = glint_flare_held(frame->flare);
     report->arena_bytes = frame->bytes;

@@ -35,8 +35,10 @@ struct frame {
     struct glint_view view;
     struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop;
                                       capacities are the frame's own */
-    int max_lights;  /* that are drawn; more merge, the faint ones first */
-    double apart_px; /* lights whose images are nearer are one */
+    int max_lights;      /* that are drawn; more merge, the faint ones first */
+    double apart_px;     /* lights whose images are nearer are one */
+    double area_samples; /* points that a lamp of some extent is drawn as, at
+                            most; all together are no more than max_lights */
     int max_cells;
     double faintest_codes; /* codes near black that a ghost may stay below */
     double whole_codes;    /* edges of less lie on whole pixels */
@@ -61,6 +63,7 @@ struct frame {
     int n_beams, max_beams;
     int n_apart;            /* lights that can be told apart */
     int n_beyond;           /* left out before: the model ends before them */
+    int n_more;             /* beams that are further points of a lamp */
     struct glint_rays rays; /* of the last frame, with a model */
     double scale;           /* by which its lights were multiplied */
     bool *seen;             /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "area.h"
 #include "posix/error.h"
 #include "posix/input.h"
 #include "tool.h"
@@ -225,6 +226,12 @@ void lamp_list_free(struct lamp_list *list)
     *list = (struct lamp_list){NULL, 0};
 }
 
+/* On the axis. */
+static double tangent_of_pixel(const struct glint_view *view, double focal_mm)
+{
+    return view->sensor_width_mm / view->width / fabs(focal_mm);
+}
+
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
                     struct glint_lamp *lamps, int max)
@@ -239,6 +246,7 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
         glint_view_to_angles(view, focal_mm, r->x, r->y, &lamps[n]);
         lamps[n].power = r->power;
         memcpy(lamps[n].rgb, r->rgb, sizeof r->rgb);
+        area_set_round(&lamps[n], r->size * tangent_of_pixel(view, focal_mm));
         n++;
     }
     return n;
@@ -385,6 +393,15 @@ static double power_of(const struct lamp_finder *f,
            f->scale;
 }
 
+static void set_extent(struct glint_lamp *lamp, const struct glint_track *track,
+                       double tangent)
+{
+    for (int k = 0; k < 2; k++)
+        lamp->axis[k] = track->axis_q8[k] / 256.0 * tangent;
+    lamp->turn_deg =
+        atan2(-track->sin_q15, track->cos_q15) * 180 / 3.14159265358979323846;
+}
+
 int lamp_finder_frame(struct lamp_finder *finder,
                       const struct glint_image *image, int32_t elapsed_us,
                       const struct glint_view *view, double focal_mm,
@@ -405,6 +422,7 @@ int lamp_finder_frame(struct lamp_finder *finder,
 
         glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
                              track->y_q8 / 256.0, &lamps[i]);
+        set_extent(&lamps[i], track, tangent_of_pixel(view, focal_mm));
         lamps[i].power = power_of(f, track);
         for (int c = 0; c < 3; c++)
             lamps[i].rgb[c] = track->rgb_q15[c] / 32768.0;

@@ -20,7 +20,8 @@ bool lamp_power_ok(double power, const double rgb[3]);
  * of the picture. */
 struct lamp_row {
     int frame; /* -1: every frame */
-    double x, y, power, rgb[3], size;
+    double x, y, power, rgb[3];
+    double size; /* RMS radius, pixels; 0: a point */
 };
 
 struct lamp_list {

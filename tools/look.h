@@ -81,7 +81,7 @@ enum look_option_code {
     "also\n"                                                                   \
     "                      outside; frames count from 0, * is every frame; "   \
     "size\n"                                                                   \
-    "                      is read and not used yet\n"                         \
+    "                      is its RMS radius, pixels: 0.71 of a disc's\n"      \
     "  --light LIST        one by hand, as of glint render, for all frames;\n" \
     "                      repeatable; replaces auto, adds to a FILE\n"        \
     "  --threshold EV[,EV] how bright a lamp must be, and down to what it "    \

@@ -227,8 +227,8 @@ static enum glint_status measure(struct proxy *p, struct response *r)
                corner_deg(p->view, p->plain.setup.optics.focal_mm),
                model_end_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
-        const struct glint_lamp lamp = {
-            r->theta_deg[i], azimuth, all, {1, 1, 1}};
+        const struct glint_lamp lamp = {r->theta_deg[i], azimuth, all,
+                                        {1, 1, 1},       {0, 0},  0};
         const enum glint_status status =
             draw(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "area.h"
 #include "lamps.h"
 #include "cost.h"
 #include "ladder.h"
@@ -21,6 +22,7 @@ void scene_defaults(struct scene *scene)
                             .tolerance = 1,
                             .only_ghost = -1,
                             .apart_px = FRAME_APART_PX,
+                            .area_samples = AREA_SAMPLES,
                             .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
@@ -180,6 +182,8 @@ static bool take(struct scene *s, int option, const char *value)
         return s->balance = true;
     case OPT_MAX_LIGHTS:
         return tool_integer(value, 1, 1 << 20, &s->max_lights);
+    case OPT_AREA_SAMPLES:
+        return tool_integer(value, 1, AREA_MOST_SAMPLES, &s->area_samples);
     case OPT_APART:
         return tool_number(value, &s->apart_px) && s->apart_px >= 0 &&
                s->apart_px <= 1000;
@@ -207,13 +211,18 @@ int scene_option(const struct tool *tool, struct scene *scene, int option,
 
 bool scene_lamp(const char *text, struct glint_lamp *lamp)
 {
-    double v[6] = {0, 0, 1, 1, 1, 1};
-    const int n = tool_numbers(text, v, 6);
+    double v[7] = {0, 0, 1, 1, 1, 1, 0};
+    const int n = tool_numbers(text, v, 7);
 
-    if ((n != 2 && n != 3 && n != 6) || v[0] < 0 || v[0] > 89.9 || v[3] < 0 ||
-        v[4] < 0 || v[5] < 0 || !lamp_power_ok(v[2], v + 3))
+    if ((n != 2 && n != 3 && n < 6) || v[6] < 0 || v[6] > 45 || v[0] < 0 ||
+        v[0] > 89.9 || v[3] < 0 || v[4] < 0 || v[5] < 0 ||
+        !lamp_power_ok(v[2], v + 3))
         return false;
-    *lamp = (struct glint_lamp){v[0], v[1], v[2], {v[3], v[4], v[5]}};
+    *lamp = (struct glint_lamp){.theta_deg = v[0],
+                                .phi_deg = v[1],
+                                .power = v[2],
+                                .rgb = {v[3], v[4], v[5]}};
+    area_set_round(lamp, tan(v[6] * 3.14159265358979323846 / 180));
     return true;
 }
 
@@ -353,6 +362,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->narrow = scene->narrow;
     frame->only_ghost = scene->only_ghost;
     frame->apart_px = scene->apart_px;
+    frame->area_samples = scene->area_samples;
     frame->faintest_codes = scene->cull;
     if (scene->max_lights)
         frame->max_lights = scene->max_lights;
@@ -394,7 +404,7 @@ static double widest_deg(const struct glint_model_header *h)
 int scene_calibrate(const struct tool *tool, const struct scene *scene,
                     struct glint_view view, struct budget *budget)
 {
-    struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}};
+    struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}, {0, 0}, 0};
     struct glint_image image = {
         .format = GLINT_YUYV, .width = view.width, .height = view.height};
     struct scene plain = *scene;

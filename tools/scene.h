@@ -40,8 +40,9 @@ struct scene {
     double sensor_mm[2];  /* 0: the table's film */
     double exposure_ev, gain;
     int only_ghost;
-    int max_lights;  /* 0: not said */
-    double apart_px; /* lights whose images are nearer are one */
+    int max_lights;   /* 0: not said */
+    double apart_px;  /* lights whose images are nearer are one */
+    int area_samples; /* points of a lamp of some extent, at most */
 
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma, quantum, cull;
@@ -88,44 +89,46 @@ enum scene_option {
     OPT_BALANCE,
     OPT_ONLY,
     OPT_MAX_LIGHTS,
+    OPT_AREA_SAMPLES,
     OPT_APART,
     OPT_LAST
 };
 
-#define SCENE_OPTIONS                                              \
-    {"f-number", required_argument, NULL, OPT_F_NUMBER},           \
-        {"coating", required_argument, NULL, OPT_COATING},         \
-        {"stop", required_argument, NULL, OPT_STOP},               \
-        {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS}, \
-        {"dispersion", required_argument, NULL, OPT_DISPERSION},   \
-        {"sensor", required_argument, NULL, OPT_SENSOR},           \
-        {"exposure", required_argument, NULL, OPT_EXPOSURE},       \
-        {"gain", required_argument, NULL, OPT_GAIN},               \
-        {"ghost", required_argument, NULL, OPT_GHOST},             \
-        {"grid", required_argument, NULL, OPT_GRID},               \
-        {"uniform-grid", no_argument, NULL, OPT_UNIFORM},          \
-        {"merge", required_argument, NULL, OPT_MERGE},             \
-        {"tile", required_argument, NULL, OPT_TILE},               \
-        {"coarse", required_argument, NULL, OPT_COARSE},           \
-        {"raster", required_argument, NULL, OPT_RASTER},           \
-        {"weights", required_argument, NULL, OPT_WEIGHTS},         \
-        {"mask", required_argument, NULL, OPT_MASK},               \
-        {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},     \
-        {"dither", no_argument, NULL, OPT_DITHER},                 \
-        {"quantum", required_argument, NULL, OPT_QUANTUM},         \
-        {"whole", required_argument, NULL, OPT_WHOLE},             \
-        {"half", no_argument, NULL, OPT_HALF},                     \
-        {"quality", required_argument, NULL, OPT_QUALITY},         \
-        {"error", required_argument, NULL, OPT_ERROR},             \
-        {"budget", required_argument, NULL, OPT_BUDGET},           \
-        {"rays", required_argument, NULL, OPT_RAYS},               \
-        {"lanes", required_argument, NULL, OPT_LANES},             \
-        {"cull", required_argument, NULL, OPT_CULL},               \
-        {"balance", no_argument, NULL, OPT_BALANCE},               \
-        {"only", required_argument, NULL, OPT_ONLY},               \
-        {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},   \
-    {                                                              \
-        "apart", required_argument, NULL, OPT_APART                \
+#define SCENE_OPTIONS                                                \
+    {"f-number", required_argument, NULL, OPT_F_NUMBER},             \
+        {"coating", required_argument, NULL, OPT_COATING},           \
+        {"stop", required_argument, NULL, OPT_STOP},                 \
+        {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS},   \
+        {"dispersion", required_argument, NULL, OPT_DISPERSION},     \
+        {"sensor", required_argument, NULL, OPT_SENSOR},             \
+        {"exposure", required_argument, NULL, OPT_EXPOSURE},         \
+        {"gain", required_argument, NULL, OPT_GAIN},                 \
+        {"ghost", required_argument, NULL, OPT_GHOST},               \
+        {"grid", required_argument, NULL, OPT_GRID},                 \
+        {"uniform-grid", no_argument, NULL, OPT_UNIFORM},            \
+        {"merge", required_argument, NULL, OPT_MERGE},               \
+        {"tile", required_argument, NULL, OPT_TILE},                 \
+        {"coarse", required_argument, NULL, OPT_COARSE},             \
+        {"raster", required_argument, NULL, OPT_RASTER},             \
+        {"weights", required_argument, NULL, OPT_WEIGHTS},           \
+        {"mask", required_argument, NULL, OPT_MASK},                 \
+        {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},       \
+        {"dither", no_argument, NULL, OPT_DITHER},                   \
+        {"quantum", required_argument, NULL, OPT_QUANTUM},           \
+        {"whole", required_argument, NULL, OPT_WHOLE},               \
+        {"half", no_argument, NULL, OPT_HALF},                       \
+        {"quality", required_argument, NULL, OPT_QUALITY},           \
+        {"error", required_argument, NULL, OPT_ERROR},               \
+        {"budget", required_argument, NULL, OPT_BUDGET},             \
+        {"rays", required_argument, NULL, OPT_RAYS},                 \
+        {"lanes", required_argument, NULL, OPT_LANES},               \
+        {"cull", required_argument, NULL, OPT_CULL},                 \
+        {"balance", no_argument, NULL, OPT_BALANCE},                 \
+        {"only", required_argument, NULL, OPT_ONLY},                 \
+        {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},     \
+        {"area-samples", required_argument, NULL, OPT_AREA_SAMPLES}, \
+    {                                                                \
+        "apart", required_argument, NULL, OPT_APART                  \
     }
 
 /* What they do, for a command's help. */
@@ -166,6 +169,11 @@ enum scene_option {
     "                      faint ones first; of --lights auto the N "          \
     "strongest\n"                                                              \
     "                      (default 16)\n"                                     \
+    "  --area-samples N    points that a lamp of visible extent is drawn as, " \
+    "1 to\n"                                                                   \
+    "                      4096 (default 19); all lamps' together are no "     \
+    "more\n"                                                                   \
+    "                      than --max-lights\n"                                \
     "  --apart PX          lights whose images are nearer are one (default "   \
     "0.125)\n"                                                                 \
     "  --quality Q         0 to 1, or least, draft, default, high, finest: "   \
@@ -248,7 +256,7 @@ void scene_defaults(struct scene *scene);
 int scene_option(const struct tool *tool, struct scene *scene, int option,
                  const char *value);
 
-/* "THETA,PHI[,POWER[,R,G,B]]" */
+/* "THETA,PHI[,POWER[,R,G,B[,SIZE]]]" */
 bool scene_lamp(const char *text, struct glint_lamp *lamp);
 
 /* Reads LENS, a table or a model, and prepares it. Of a table the model is

@@ -19,7 +19,7 @@ static const struct {
     {"live", "output",
      "fb[:/dev/fb0], window, y4m:FILE, y4m:-, v4l2:/dev/videoN or null"},
     {"render", "light",
-     "THETA,PHI[,POWER[,R,G,B]] with THETA 0 to 89.9 degrees"},
+     "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
     {"sweep", "angle", "up to 8 angles of 0 to 60 degrees, with commas"},
     {"sweep", "lights", "up to 8 whole numbers of 1 to 10000, with commas"},
     {"sweep", "repeat", "rounds, from 1"},
@@ -29,6 +29,7 @@ static const struct {
     {"trace", "grid", "a whole number, 1 to 4096"},
 
     {NULL, "apart", "pixels, 0 to 1000"},
+    {NULL, "area-samples", "a whole number, 1 to 4096"},
     {NULL, "band", "two wavelengths LO,HI in nm, within 300 to 1100"},
     {NULL, "basis", "auto or sparse"},
     {NULL, "budget", "milliseconds, above 0 and up to 1000000"},
@@ -55,7 +56,7 @@ static const struct {
     {NULL, "lanes", "16 or 32"},
     {NULL, "jpeg-quality", "a whole number, 1 to 100"},
     {NULL, "layer", "composite, flare or flare-alpha"},
-    {NULL, "light", "THETA,PHI[,POWER[,R,G,B]] with THETA 0 to 89.9 degrees"},
+    {NULL, "light", "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
     {NULL, "light-at",
      "X,Y[,EV]: pixels from the top left corner, within a million, and stops "
      "over white, -40 to 90"},

@@ -88,7 +88,9 @@ void yardstick_lamps(struct glint_lamp *lamp, int n, double angle)
         lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
                                       fmod(33 + 137.5 * i, 360),
                                       power_of(i, n),
-                                      {1, 1, 1}};
+                                      {1, 1, 1},
+                                      {0, 0},
+                                      0};
 }
 
 /* ------------------------------------------------------------------- pictures

@@ -319,6 +319,11 @@ struct glint_lamp {
     double power;     /* its in-focus image, spread over one pixel, would have
                          this linear value; 1 = display white */
     double rgb[3];    /* colour, linear BT.709; white is 1 1 1 */
+    double axis[2];   /* RMS semi-axes of its extent, the major one first, in
+                         tangents of angles off the axis: image over focal
+                         length; 0 0: a point. Here for who makes many points
+                         of it; the picture and the feed take it for one. */
+    double turn_deg;  /* of the major one, 0 = +x, 90 = up */
 };
 
 /* Where a picture lies on the sensor: centred, square pixels. */

@@ -261,6 +261,7 @@ void glint_view_to_angles(const struct glint_view *view, double focal_mm,
 
     lamp->theta_deg = atan(hypot(dx, dy) / fabs(focal_mm)) * degrees;
     lamp->phi_deg = atan2(dy, dx) * degrees;
+    lamp->axis[0] = lamp->axis[1] = lamp->turn_deg = 0;
     if (focal_mm < 0)
         lamp->phi_deg += 180;
 }

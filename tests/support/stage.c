@@ -242,7 +242,7 @@ void stage_close(struct stage *stage)
 
 struct glint_lamp stage_lamp(double theta_deg, double phi_deg, double power)
 {
-    return (struct glint_lamp){theta_deg, phi_deg, power, {1, 1, 1}};
+    return (struct glint_lamp){theta_deg, phi_deg, power, {1, 1, 1}, {0, 0}, 0};
 }
 
 uint64_t stage_random(uint64_t *state)

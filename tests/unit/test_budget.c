@@ -20,9 +20,9 @@ enum { WIDTH = 160, HEIGHT = 120, SETTLED = 40 };
 
 static struct scene scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
-static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}},
-                                          {7, 200, 3e5, {1, 1, 1}},
-                                          {4, 80, 3e5, {1, 1, 1}}};
+static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
+                                          {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
+                                          {4, 80, 3e5, {1, 1, 1}, {0, 0}, 0}};
 
 /* What a frame takes, by the dials that it was drawn with; three intervals. */
 static struct machine {

@@ -56,7 +56,7 @@ static void render(double *out, struct glint_view view,
 
 static struct glint_lamp lamp_at(double theta, double phi)
 {
-    return (struct glint_lamp){theta, phi, 1, {1, 1, 1}};
+    return (struct glint_lamp){theta, phi, 1, {1, 1, 1}, {0, 0}, 0};
 }
 
 static struct glint_float_image as_floats(const double *from, int slot,
@@ -298,8 +298,8 @@ static void test_integers_match(void **state)
 static void test_faint_colour_keeps_steps(void **state)
 {
     const struct glint_view view = {480, 270, 36};
-    const struct glint_lamp green = {5.3, 33, 0.01, {0, 1, 0}};
-    const struct glint_lamp reddish = {5.3, 33, 1, {1, 0.01, 0}};
+    const struct glint_lamp green = {5.3, 33, 0.01, {0, 1, 0}, {0, 0}, 0};
+    const struct glint_lamp reddish = {5.3, 33, 1, {1, 0.01, 0}, {0, 0}, 0};
     struct frame_report report;
     double apart = 0, sum = 0;
 

@@ -29,9 +29,9 @@ static const struct glint_image image = {.format = GLINT_RGB24,
                                          .plane = {rgb},
                                          .stride_bytes = {3 * WIDTH}};
 
-static const struct glint_lamp lamps[] = {{12, 20, 3e6, {1, 1, 1}},
-                                          {8, 140, 2e5, {1, .5, .2}},
-                                          {75, 250, 4e9, {1, 1, 1}}};
+static const struct glint_lamp lamps[] = {{12, 20, 3e6, {1, 1, 1}, {0, 0}, 0},
+                                          {8, 140, 2e5, {1, .5, .2}, {0, 0}, 0},
+                                          {75, 250, 4e9, {1, 1, 1}, {0, 0}, 0}};
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
@@ -143,7 +143,8 @@ static void test_light(void **state)
     (void)state;
     make(&frame);
     frame.only_ghost = 11;
-    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}}}, 1, &report);
+    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+         &report);
     for (int i = 0; i < BYTES; i += 3)
         most = rgb[i] + rgb[i + 1] + rgb[i + 2] > most
                    ? rgb[i] + rgb[i + 1] + rgb[i + 2]
@@ -170,12 +171,12 @@ static void test_reasons(void **state)
         int only_ghost;
         enum glint_fate fate;
     } cases[] = {
-        {{12, 20, 1e7, {1, 1, 1}}, -1, GLINT_FATE_DRAWN},
-        {{12, 20, 1e7, {1, 1, 1}}, -1, GLINT_FATE_CLOSED},
-        {{12, 20, 1e7, {1, 1, 0}}, -1, GLINT_FATE_DARK},
-        {{12, 20, 1e7, {1, 1, 1}}, 3, GLINT_FATE_OTHER},
-        {{12, 20, 1e5, {1, 1, 1}}, -1, GLINT_FATE_FAINT},
-        {{25, 20, 1e7, {1, 1, 1}}, -1, GLINT_FATE_OUTSIDE},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_DRAWN},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_CLOSED},
+        {{12, 20, 1e7, {1, 1, 0}, {0, 0}, 0}, -1, GLINT_FATE_DARK},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, 3, GLINT_FATE_OTHER},
+        {{12, 20, 1e5, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_FAINT},
+        {{25, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_OUTSIDE},
     };
     struct frame_report report;
     struct frame frame;
@@ -274,7 +275,8 @@ static void test_picture(void **state)
     (void)state;
     make(&frame);
     frame.only_ghost = 4;
-    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}}}, 1, &report);
+    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+         &report);
     assert_true(report.tiles > 10 && report.tiles < 200);
     assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
     memset(rgb, 0, sizeof rgb);

@@ -67,9 +67,11 @@ int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 }
 
 static const struct glint_lamp lamps[] = {
-    {3, 20, 3e3, {1, 1, 1}},    {8, 140, 2e3, {1, .5, .2}},
-    {12, 250, 4e3, {.3, 1, 1}}, {6, 300, 1e3, {1, 1, .4}},
-    {10, 80, 3e3, {1, .2, 1}},
+    {3, 20, 3e3, {1, 1, 1}, {0, 0}, 0},
+    {8, 140, 2e3, {1, .5, .2}, {0, 0}, 0},
+    {12, 250, 4e3, {.3, 1, 1}, {0, 0}, 0},
+    {6, 300, 1e3, {1, 1, .4}, {0, 0}, 0},
+    {10, 80, 3e3, {1, .2, 1}, {0, 0}, 0},
 };
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
@@ -306,7 +308,8 @@ static void test_too_many_feeds(void **state)
     (void)state;
     assert_non_null(many);
     for (int i = 0; i < N; i++)
-        many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1, {1, 1, 1}};
+        many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
+                                      {1, 1, 1},    {0, 0},       0};
     make_of(&exact_scene, &frame);
     crowd = exact_scene.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
     crowd.n_ghosts = 2016;

@@ -159,6 +159,8 @@ static void test_lists(void **state)
         assert_true(lamp[0].power == 6 && lamp[0].rgb[1] == 0.5);
         assert_int_equal(lamp_list_frame(&list, 2, &view, 50, lamp, 4), 2);
         assert_true(lamp[1].power == 3 && list.row[2].size == 4);
+        assert_true(lamp[1].axis[0] > 0 && lamp[1].axis[0] == lamp[1].axis[1]);
+        assert_true(lamp[0].axis[0] == 0);
         lamp_list_free(&list);
     }
 }

@@ -37,7 +37,7 @@ static struct response response_of(double slope, double mean)
 
 static struct glint_lamp lamp_of(double theta_deg, double power)
 {
-    return (struct glint_lamp){theta_deg, 30, power, {1, 1, 1}};
+    return (struct glint_lamp){theta_deg, 30, power, {1, 1, 1}, {0, 0}, 0};
 }
 
 /* The peak that N lamps are brought to, each at its LEVEL. */
