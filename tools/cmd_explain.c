@@ -16,7 +16,8 @@
 
 static const char help[] =
     "glint explain IN [-o OUT] [options]\n"
-    "glint explain --size WxH --light THETA,PHI[,POWER[,R,G,B[,SIZE]]]... [-o OUT] "
+    "glint explain --size WxH --light THETA,PHI[,POWER[,R,G,B[,SIZE]]]... [-o "
+    "OUT] "
     "[options]\n"
     "\n"
     "Says of one frame which lights, wavelengths and ghosts are drawn, with\n"

@@ -87,7 +87,7 @@ enum look_option_code {
     "  --threshold EV[,EV] how bright a lamp must be, and down to what it "    \
     "extends,\n"                                                               \
     "                      in stops from the picture's white (default "        \
-    "-0.1,-0.15)\n"                                                             \
+    "-0.1,-0.15)\n"                                                            \
     "  --no-tracking       --lights auto takes each frame of a video by "      \
     "itself,\n"                                                                \
     "                      rather than following lamps from frame to frame\n"  \
