@@ -56,7 +56,8 @@ static const struct {
     {NULL, "lanes", "16 or 32"},
     {NULL, "jpeg-quality", "a whole number, 1 to 100"},
     {NULL, "layer", "composite, flare or flare-alpha"},
-    {NULL, "light", "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
+    {NULL, "light",
+     "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
     {NULL, "light-at",
      "X,Y[,EV]: pixels from the top left corner, within a million, and stops "
      "over white, -40 to 90"},
