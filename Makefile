@@ -144,7 +144,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 # what one asks before one knows
-TOOLS += suggest takes lens_files cmd_lenses child ffmpeg
+TOOLS += suggest takes lens_files cmd_lenses child ffmpeg lamp_keys lamp_save
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films spectrum waves optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture samples kept output workers \

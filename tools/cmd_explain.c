@@ -104,7 +104,8 @@ static int check(struct tool *tool, const struct explain_command *c)
         return tool_usage(tool, "takes one picture, or --size");
     if (c->input && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear goes with --size");
-    if (!c->input && c->look.n_hand == 0 && !c->look.lights_file)
+    if (!c->input && c->look.n_hand == 0 && c->look.at.n == 0 &&
+        !c->look.lights_file)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
     if (s->raster || s->mask_nodes || s->rays != SCENE_RAYS_MODEL)
         return tool_usage(tool, "explains what is drawn by edges from a model, "
@@ -253,8 +254,10 @@ static int run(struct tool *tool, struct explain_command *c)
     if (code != EXIT_OK)
         return code;
     status = linear ? draw_linear(c) : look_draw(&c->look, &c->image, 0);
-    return status == GLINT_OK ? tell(tool, c, linear)
-                              : tool_fail(tool, status, NULL);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    code = look_finish(tool, &c->look);
+    return code == EXIT_OK ? tell(tool, c, linear) : code;
 }
 
 int cmd_explain(int argc, char **argv)

@@ -297,6 +297,8 @@ static int run(struct tool *tool, struct overlay *o)
     else
         code = overlay_picture(tool, o, o->input, o->output);
     if (code == EXIT_OK)
+        code = look_finish(tool, &o->look);
+    if (code == EXIT_OK)
         print_result(tool, o);
     return code;
 }

@@ -303,7 +303,7 @@ static int read_lamps(struct tool *tool, struct render *r)
         r->lamp = all;
         r->n_lamps +=
             lamp_list_frame(&list, 0, &view, r->scene.setup.optics.focal_mm,
-                            all + r->n_lamps, list.n);
+                            all + r->n_lamps, NULL, list.n);
     }
     lamp_list_free(&list);
     return all ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);

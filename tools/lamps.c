@@ -8,19 +8,29 @@
 #include <string.h>
 
 #include "area.h"
+#include "lamp_keys.h"
 #include "posix/error.h"
 #include "posix/input.h"
 #include "tool.h"
 
 enum { FIELDS = 8 };
 
-static const char *const names[FIELDS + 1] = {
-    "frame", "x", "y", "power", "r", "g", "b", "size", NULL};
+static const char *const names[FIELDS + 2] = {
+    "frame", "x", "y", "power", "r", "g", "b", "size", "id", NULL};
 
 static struct lamp_row row_of(const double *v)
 {
-    return (struct lamp_row){(int)v[0],          v[1], v[2], v[3],
-                             {v[4], v[5], v[6]}, v[7]};
+    return (struct lamp_row){.frame = (int)v[0],
+                             .x = v[1],
+                             .y = v[2],
+                             .power = v[3],
+                             .rgb = {v[4], v[5], v[6]},
+                             .size = v[7],
+                             .shape = v[LAMP_SHAPE],
+                             .turn = v[LAMP_TURN],
+                             .level = v[LAMP_LEVEL],
+                             .id = (uint32_t)v[LAMP_ID],
+                             .next = -1};
 }
 
 static bool frame_ok(double frame)
@@ -48,15 +58,25 @@ static const char *check_row(const double *v)
             return "r, g and b must not be negative";
     if (!lamp_power_ok(v[3], v + 4))
         return "power, also times r, g or b, must be 0 to 1e30";
+    if (!(v[LAMP_LEVEL] > 0 && v[LAMP_LEVEL] <= 1))
+        return "level must be above 0 and up to 1";
+    if (!(v[LAMP_SHAPE] >= 0 && v[LAMP_SHAPE] <= 1))
+        return "shape must be 0 to 1";
     return v[7] < 0 ? "size must not be negative" : NULL;
 }
 
 /* "frame,x,y,power[,r,g,b[,size]]" */
-static const char *parse_csv(char *line, double *v)
+static const char *parse_csv(char *line, const struct lamp_columns *columns,
+                             double *v)
 {
     char *comma = strchr(line, ',');
     int n;
 
+    if (columns->n > 0) {
+        const char *cause = lamp_columns_row(columns, line, v);
+
+        return cause ? cause : check_row(v);
+    }
     if (!comma)
         return "expected frame,x,y,power[,r,g,b[,size]]";
     *comma = '\0';
@@ -88,18 +108,24 @@ static const char *parse_member(char **at, double *v, unsigned *given)
     *end = '\0';
     field = tool_word(key, names);
     if (field < 0)
-        return "a key is none of frame x y power r g b size";
+        return "a key is none of frame x y power r g b size id";
     number = skip(end + 1);
     if (*number++ != ':')
         return "expected : after a key";
     number = skip(number);
-    if (field == 0 && strncmp(number, "\"*\"", 3) == 0) {
+    if (field == LAMP_ID && *number == '"' && (end = strchr(number + 1, '"'))) {
+        *end = '\0';
+        v[LAMP_ID] = lamp_id_of(number + 1);
+        *at = end + 1;
+    } else if (field == 0 && strncmp(number, "\"*\"", 3) == 0) {
         v[0] = -1;
         *at = number + 3;
     } else {
         v[field] = strtod(number, at);
         if (*at == number || !isfinite(v[field]))
             return "a value is not a number";
+        if (field == LAMP_ID && (v[field] < 0 || v[field] > UINT32_MAX))
+            return "id must be a text, or 0 to 4294967295";
     }
     *given |= 1u << field;
     return NULL;
@@ -132,30 +158,32 @@ static bool is_heading(const char *line)
     return strncmp(line, "frame", 5) == 0;
 }
 
-static enum glint_status add_row(struct lamp_list *list, int *room,
-                                 const double *v)
+enum glint_status lamp_list_add(struct lamp_list *list,
+                                const struct lamp_row *row)
 {
-    struct lamp_row *more;
+    if (list->n == list->room) {
+        const int room = list->room ? 2 * list->room : 64;
+        struct lamp_row *more = realloc(list->row, (size_t)room * sizeof *more);
 
-    if (list->n == *room) {
-        *room = *room ? 2 * *room : 64;
-        more = realloc(list->row, (size_t)*room * sizeof *more);
         if (!more)
             return GLINT_E_MEMORY;
         list->row = more;
+        list->room = room;
     }
-    list->row[list->n++] = row_of(v);
+    list->row[list->n++] = *row;
     return GLINT_OK;
 }
 
 static enum glint_status parse_text(struct lamp_list *list, char *text,
                                     const char *path, struct glint_error *error)
 {
-    int number = 1, room = 0;
+    struct lamp_columns columns = {.n = 0};
+    int number = 1;
 
     for (char *next; text; text = next, number++) {
-        double v[FIELDS] = {-1, 0, 0, 1, 1, 1, 1, 0};
-        const char *cause;
+        double v[LAMP_COLUMNS] = {-1, 0, 0, 1, 1, 1, 1, 0, 0, 1, 0, 1};
+        const char *cause = NULL;
+        struct lamp_row row;
         char *line;
 
         next = strchr(text, '\n');
@@ -164,9 +192,15 @@ static enum glint_status parse_text(struct lamp_list *list, char *text,
         line = skip(text);
         for (size_t n = strlen(line); n && isspace((unsigned char)line[n - 1]);)
             line[--n] = '\0';
-        if (!*line || *line == '#' || (number == 1 && is_heading(line)))
+        if (!*line || *line == '#')
             continue;
-        cause = *line == '{' ? parse_json(line, v) : parse_csv(line, v);
+        if (number == 1 && is_heading(line)) {
+            cause = lamp_columns_read(&columns, line);
+            if (!cause)
+                continue;
+        } else
+            cause = *line == '{' ? parse_json(line, v)
+                                 : parse_csv(line, &columns, v);
         if (cause)
             return glint_error_report(error, GLINT_E_FORMAT, path, "%d: %s",
                                       number, cause);
@@ -174,7 +208,8 @@ static enum glint_status parse_text(struct lamp_list *list, char *text,
             return glint_error_report(error, GLINT_E_FORMAT, path,
                                       "%d: more than %d lights", number,
                                       LAMP_LIST_MAX_ROWS);
-        if (add_row(list, &room, v) != GLINT_OK)
+        row = row_of(v);
+        if (lamp_list_add(list, &row) != GLINT_OK)
             return glint_error_report(error, GLINT_E_MEMORY, path,
                                       "%d: no memory", number);
     }
@@ -188,7 +223,7 @@ enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
     enum glint_status status;
     char *copy;
 
-    *list = (struct lamp_list){NULL, 0};
+    *list = (struct lamp_list){NULL, 0, 0};
     if (bytes && memchr(text, '\0', bytes))
         return glint_error_report(error, GLINT_E_FORMAT, name,
                                   "not a text file");
@@ -212,7 +247,7 @@ enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
     enum glint_status status =
         glint_input_slurp(&data, &bytes, path, 1 << 28, error);
 
-    *list = (struct lamp_list){NULL, 0};
+    *list = (struct lamp_list){NULL, 0, 0};
     if (status != GLINT_OK)
         return status;
     status = lamp_list_parse(list, (const char *)data, bytes, path, error);
@@ -223,7 +258,7 @@ enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
 void lamp_list_free(struct lamp_list *list)
 {
     free(list->row);
-    *list = (struct lamp_list){NULL, 0};
+    *list = (struct lamp_list){NULL, 0, 0};
 }
 
 /* On the axis. */
@@ -232,21 +267,37 @@ static double tangent_of_pixel(const struct glint_view *view, double focal_mm)
     return view->sensor_width_mm / view->width / fabs(focal_mm);
 }
 
+/* Round unless its SHAPE is not 1. */
+static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
+                      double tangent)
+{
+    const double major = r->size * tangent / sqrt(1 + r->shape * r->shape);
+
+    area_set_round(lamp, r->size * tangent);
+    if (r->shape == 1)
+        return;
+    lamp->axis[0] = major;
+    lamp->axis[1] = r->shape * major;
+    lamp->turn_deg = r->turn;
+}
+
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
-                    struct glint_lamp *lamps, int max)
+                    struct glint_lamp *lamps, double *level, int max)
 {
     int n = 0;
 
     for (int i = 0; i < list->n && n < max; i++) {
-        const struct lamp_row *r = &list->row[i];
+        struct lamp_row r;
 
-        if (r->frame != -1 && r->frame != frame)
+        if (!lamp_keys_at(list, i, frame, &r))
             continue;
-        glint_view_to_angles(view, focal_mm, r->x, r->y, &lamps[n]);
-        lamps[n].power = r->power;
-        memcpy(lamps[n].rgb, r->rgb, sizeof r->rgb);
-        area_set_round(&lamps[n], r->size * tangent_of_pixel(view, focal_mm));
+        glint_view_to_angles(view, focal_mm, r.x, r.y, &lamps[n]);
+        lamps[n].power = r.power;
+        memcpy(lamps[n].rgb, r.rgb, sizeof r.rgb);
+        set_shape(&lamps[n], &r, tangent_of_pixel(view, focal_mm));
+        if (level)
+            level[n] = r.level;
         n++;
     }
     return n;

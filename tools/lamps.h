@@ -21,18 +21,23 @@ bool lamp_power_ok(double power, const double rgb[3]);
 struct lamp_row {
     int frame; /* -1: every frame */
     double x, y, power, rgb[3];
-    double size; /* RMS radius, pixels; 0: a point */
+    double size;  /* RMS radius, pixels; 0: a point */
+    double shape; /* its minor axis over the major one, */
+    double turn;  /* which lies so many degrees from +x, up being 90 */
+    double level; /* share of the power that a lamp coming or going has */
+    uint32_t id;  /* 0: not said */
+    int next;     /* the row that lamp_keys_link() found to follow, or -1 */
 };
 
 struct lamp_list {
     struct lamp_row *row;
-    int n;
+    int n, room;
 };
 
 /* Reads PATH: CSV "frame,x,y,power[,r,g,b[,size]]" with an optional line of
- * names, or JSON lines with these keys; frame "*" or absent is every frame. At
- * most LAMP_LIST_MAX_ROWS rows.
- * ERROR names file, line and cause. */
+ * names, also with "id" as lamp_keys.h has it, or JSON lines with these keys;
+ * frame "*" or absent is every frame. At most LAMP_LIST_MAX_ROWS rows. ERROR
+ * names file, line and cause. */
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error);
 
@@ -42,10 +47,15 @@ enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
                                   struct glint_error *error);
 void lamp_list_free(struct lamp_list *list);
 
-/* The lamps of frame FRAME, at most MAX; returns how many. */
+/* Adds a row. GLINT_E_MEMORY. */
+enum glint_status lamp_list_add(struct lamp_list *list,
+                                const struct lamp_row *row);
+
+/* The lamps of frame FRAME, also those on their way to a later one where the
+ * list is linked, at most MAX; returns how many. LEVEL: of each, or NULL. */
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
-                    struct glint_lamp *lamps, int max);
+                    struct glint_lamp *lamps, double *level, int max);
 
 /* Finds lamps in pictures of one size, and follows them where these are a
  * video. What it needs is taken by open. */

@@ -534,6 +534,8 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     if (code == EXIT_OK) {
         live_stats_start(&l->stats, glint_v4l2_now_us());
         code = loop(l);
+        if (code == EXIT_OK)
+            code = look_finish(tool, &o->look);
         conclude(l, code);
     }
     if (l->camera.source.fd >= 0)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lamp_keys.h"
 #include "show_lights.h"
 #include "takes.h"
 
@@ -24,6 +25,9 @@ void look_defaults(struct look *look)
 
 /* Stops by which a region extends below what makes it a lamp, if not told. */
 #define EXTENDS_EV 0.05
+
+/* Of a lamp by hand, over a white pixel: a street lamp in a night picture. */
+#define DEFAULT_EV 16
 
 static bool take_threshold(const char *text, double threshold_ev[2])
 {
@@ -49,6 +53,25 @@ static bool take_light(struct look *look, const char *text)
     return true;
 }
 
+/* "X,Y[,EV]" */
+static bool take_light_at(struct look *look, const char *text)
+{
+    double v[3] = {0, 0, DEFAULT_EV};
+    const int n = tool_numbers(text, v, 3);
+    const struct lamp_row row = {.frame = -1,
+                                 .x = v[0],
+                                 .y = v[1],
+                                 .power = exp2(v[2]),
+                                 .rgb = {1, 1, 1},
+                                 .shape = 1,
+                                 .level = 1,
+                                 .next = -1};
+
+    return n >= 2 && fabs(v[0]) <= 1e6 && fabs(v[1]) <= 1e6 && v[2] >= -40 &&
+           v[2] <= 90 && look->at.n < SCENE_MAX_LAMPS &&
+           lamp_list_add(&look->at, &row) == GLINT_OK;
+}
+
 static bool take(struct look *look, int option, const char *value)
 {
     static const char *const layers[] = {"composite", "flare", "flare-alpha",
@@ -72,6 +95,13 @@ static bool take(struct look *look, int option, const char *value)
                look->headroom_ev >= 0 && look->headroom_ev <= 40;
     case OPT_NO_TRACKING:
         return look->no_tracking = true;
+    case OPT_LIGHT_AT:
+        return take_light_at(look, value);
+    case OPT_SAVE_LIGHTS:
+        look->save_file = value;
+        return *value != '\0';
+    case OPT_INTERPOLATE:
+        return look->interpolate = true;
     case OPT_SHOW:
         return look->show_lights = tool_word(value, shows) == 0;
     case OPT_STRENGTH:
@@ -120,6 +150,21 @@ int look_option(const struct tool *tool, struct look *look, int option,
 
 /* ------------------------------------------------------------------- making */
 
+/* Rows of a file, those on their way, and those by pixel. */
+static enum glint_status open_list(struct look *look, struct glint_error *error)
+{
+    enum glint_status status = GLINT_OK;
+
+    if (look->lights_file)
+        status = lamp_list_read(&look->list, look->lights_file, error);
+    if (status == GLINT_OK && look->interpolate)
+        status = lamp_keys_link(&look->list);
+    for (int i = 0; i < look->at.n && status == GLINT_OK; i++)
+        status = lamp_list_add(&look->list, &look->at.row[i]);
+    look->is_listed = look->lights_file || look->at.n > 0;
+    return status;
+}
+
 int look_open(const struct tool *tool, struct look *look)
 {
     struct glint_error error = {""};
@@ -129,9 +174,9 @@ int look_open(const struct tool *tool, struct look *look)
 
     if (code != EXIT_OK)
         return code;
-    if (look->lights_file)
-        status = lamp_list_read(&look->list, look->lights_file, &error);
-    look->is_listed = look->lights_file != NULL;
+    status = open_list(look, &error);
+    if (status == GLINT_OK && look->save_file)
+        status = lamp_save_open(&look->save, look->save_file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     n = (size_t)look->n_hand + (size_t)look->list.n + LAMP_FINDER_MAX;
@@ -206,17 +251,36 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
 
 void look_replace(struct look *look, const struct look *fresh)
 {
+    const struct lamp_save save = look->save;
+    const int n_frames = look->n_frames;
+
+    look->save.is_open = false; /* goes on */
     look_close(look);
     *look = *fresh;
+    if (save.is_open) {
+        lamp_save_abort(&look->save);
+        look->save = save;
+        look->n_frames = n_frames;
+    }
     /* what is made by size points here, and is made anew */
     if (look->scene.setup.lens)
         look->scene.setup.lens = &look->scene.lens;
 }
 
+int look_finish(const struct tool *tool, struct look *look)
+{
+    struct glint_error error = {""};
+    const enum glint_status status = lamp_save_finish(&look->save, &error);
+
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
 void look_close(struct look *look)
 {
     unsize(look);
+    lamp_save_abort(&look->save);
     lamp_list_free(&look->list);
+    lamp_list_free(&look->at);
     free(look->lamp);
     look->lamp = NULL;
     free(look->level);
@@ -226,18 +290,59 @@ void look_close(struct look *look)
 
 /* ------------------------------------------------------------------ drawing */
 
-int look_lamps(struct look *look, const struct glint_image *image,
-               int32_t elapsed_us)
+/* Where lamp I is: as it was found, for what is written is read again. */
+static struct lamp_row row_of(const struct look *look, int i)
+{
+    const bool found = !look->is_listed && look->n_hand == 0;
+    const struct glint_lamp *lamp = &look->lamp[i];
+    const double *axis = lamp->axis;
+    const double focal = look->scene.setup.optics.focal_mm;
+    const double pixels = look->view.width * fabs(focal) /
+                          look->view.sensor_width_mm; /* per tangent */
+    struct lamp_row row = {.frame = look->n_frames,
+                           .power = lamp->power,
+                           .size = pixels * hypot(axis[0], axis[1]),
+                           .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
+                           .turn = lamp->turn_deg,
+                           .level = look->level[i],
+                           .id = (uint32_t)i + 1,
+                           .next = -1};
+
+    memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
+    if (found) {
+        const struct glint_track *track = &look->finder.track[i];
+
+        row.x = track->x_q8 / 256.0;
+        row.y = track->y_q8 / 256.0;
+        row.id = track->id;
+    } else
+        glint_view_to_pixel(&look->view, look->scene.setup.optics.focal_mm,
+                            lamp, &row.x, &row.y);
+    return row;
+}
+
+static void save_lamps(struct look *look, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const struct lamp_row row = row_of(look, i);
+
+        lamp_save_row(&look->save, &row);
+    }
+}
+
+static int set_lamps(struct look *look, const struct glint_image *image,
+                     int32_t elapsed_us)
 {
     const double focal = look->scene.setup.optics.focal_mm;
     int n = look->n_hand;
 
     memcpy(look->lamp, look->hand, (size_t)n * sizeof *look->lamp);
-    if (look->is_listed)
-        n += lamp_list_frame(&look->list, look->n_frames, &look->view, focal,
-                             look->lamp + n, look->list.n);
     for (int i = 0; i < n; i++)
         look->level[i] = 1;
+    if (look->is_listed)
+        n += lamp_list_frame(&look->list, look->n_frames, &look->view, focal,
+                             look->lamp + n, look->level + n, look->list.n);
+    look->is_followed = elapsed_us > 0 && !look->no_tracking;
     if (look->is_listed || n > 0)
         return n;
     n = lamp_finder_frame(&look->finder, image,
@@ -245,6 +350,16 @@ int look_lamps(struct look *look, const struct glint_image *image,
                           focal, look->lamp);
     for (int i = 0; i < n; i++)
         look->level[i] = look->finder.track[i].level_q15 / 32768.0;
+    return n;
+}
+
+int look_lamps(struct look *look, const struct glint_image *image,
+               int32_t elapsed_us)
+{
+    const int n = set_lamps(look, image, elapsed_us);
+
+    if (look->save.is_open)
+        save_lamps(look, n);
     return n;
 }
 
@@ -293,24 +408,20 @@ static void blacken(const struct glint_image *image)
 void look_mark(const struct look *look, const struct glint_image *image)
 {
     const bool found = !look->is_listed && look->n_hand == 0;
-    const double focal = look->scene.setup.optics.focal_mm;
 
     for (int i = 0; i < look->n_lamps; i++) {
-        struct glint_track track = {.id = (uint32_t)i + 1,
-                                    .state = GLINT_TRACK_STEADY};
-        double x, y;
+        const struct lamp_row row = row_of(look, i);
+        struct glint_track track = {.id = row.id, .state = GLINT_TRACK_STEADY};
 
-        if (found) {
+        if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
+            continue;
+        if (found)
             track = look->finder.track[i];
-        } else {
-            glint_view_to_pixel(&look->view, focal, &look->lamp[i], &x, &y);
-            if (!(fabs(x) < 1 << 20 && fabs(y) < 1 << 20))
-                continue;
-            track.x_q8 = (int32_t)(x * 256);
-            track.y_q8 = (int32_t)(y * 256);
-        }
-        show_light(image, &track);
+        track.x_q8 = (int32_t)(row.x * 256);
+        track.y_q8 = (int32_t)(row.y * 256);
+        show_light_of(image, &track, row.power);
     }
+    show_legend(image, found && look->is_followed);
 }
 
 double look_scale(const struct look *look)
@@ -321,7 +432,9 @@ double look_scale(const struct look *look)
 void look_expose(struct look *look, int32_t elapsed_us)
 {
     const bool is_new =
-        look->no_tracking || glint_tracks_was_cut(look->finder.tracks);
+        look->no_tracking ||
+        (look->is_listed ? lamp_keys_is_cut(&look->list, look->n_frames)
+                         : glint_tracks_was_cut(look->finder.tracks));
     const struct strength_lamps lamps = {look->lamp, look->level, look->n_lamps,
                                          (double)look->view.width *
                                              look->view.height * look->white};

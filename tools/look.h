@@ -12,6 +12,7 @@
 #ifndef GLINT_TOOLS_LOOK_H
 #define GLINT_TOOLS_LOOK_H
 
+#include "lamp_save.h"
 #include "lamps.h"
 #include "scene.h"
 #include "strength.h"
@@ -19,6 +20,9 @@
 struct look {
     struct scene scene;
     const char *lens, *lights_file; /* NULL: lamps are found */
+    const char *save_file;          /* for lamps, or NULL */
+    bool interpolate;               /* lamps of a file */
+    struct lamp_list at;            /* by hand, by pixel */
     double threshold_ev[2];         /* that seeds a lamp, that it extends to */
     double headroom_ev;
     bool flare_only, no_tracking, show_lights;
@@ -31,7 +35,8 @@ struct look {
 
     /* Made by open and size. */
     bool is_listed; /* lights come from a file; its name is not needed more */
-    struct lamp_list list;
+    struct lamp_list list; /* with those by pixel */
+    struct lamp_save save;
     struct lamp_finder finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
     double *level;           /* of each, its share in its power: struct
@@ -43,6 +48,7 @@ struct look {
     bool sized;
 
     /* Of the last frame. */
+    bool is_followed; /* as a frame of a video */
     int n_frames, n_lamps;
     double find_ms, flare_ms;
     struct frame_report report;
@@ -58,30 +64,48 @@ enum look_option_code {
     OPT_NO_TRACKING,
     OPT_SHOW,
     OPT_STRENGTH,
+    OPT_LIGHT_AT,
+    OPT_SAVE_LIGHTS,
+    OPT_INTERPOLATE,
     OPT_LOOK_LAST
 };
 
-#define LOOK_OPTIONS                                           \
-    {"lens", required_argument, NULL, OPT_LENS},               \
-        {"lights", required_argument, NULL, OPT_LIGHTS},       \
-        {"light", required_argument, NULL, OPT_LIGHT},         \
-        {"threshold", required_argument, NULL, OPT_THRESHOLD}, \
-        {"headroom", required_argument, NULL, OPT_HEADROOM},   \
-        {"layer", required_argument, NULL, OPT_LAYER},         \
-        {"no-tracking", no_argument, NULL, OPT_NO_TRACKING},   \
-        {"show", required_argument, NULL, OPT_SHOW},           \
-        {"strength", required_argument, NULL, OPT_STRENGTH}, SCENE_OPTIONS
+#define LOOK_OPTIONS                                               \
+    {"lens", required_argument, NULL, OPT_LENS},                   \
+        {"lights", required_argument, NULL, OPT_LIGHTS},           \
+        {"light", required_argument, NULL, OPT_LIGHT},             \
+        {"threshold", required_argument, NULL, OPT_THRESHOLD},     \
+        {"headroom", required_argument, NULL, OPT_HEADROOM},       \
+        {"layer", required_argument, NULL, OPT_LAYER},             \
+        {"no-tracking", no_argument, NULL, OPT_NO_TRACKING},       \
+        {"show", required_argument, NULL, OPT_SHOW},               \
+        {"strength", required_argument, NULL, OPT_STRENGTH},       \
+        {"light-at", required_argument, NULL, OPT_LIGHT_AT},       \
+        {"save-lights", required_argument, NULL, OPT_SAVE_LIGHTS}, \
+        {"interpolate", no_argument, NULL, OPT_INTERPOLATE}, SCENE_OPTIONS
 
 #define LOOK_HELP                                                              \
     "  --lens LENS         table or baked model (default nikon-zoom-short)\n"  \
     "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"   \
     "                      frame,x,y,power[,r,g,b[,size]] or JSON lines "      \
     "with\n"                                                                   \
-    "                      these keys; x, y in pixels from the top left, "     \
-    "also\n"                                                                   \
-    "                      outside; frames count from 0, * is every frame; "   \
-    "size\n"                                                                   \
-    "                      is its RMS radius, pixels: 0.71 of a disc's\n"      \
+    "                      these keys, and id; x, y in pixels from the top\n"  \
+    "                      left, also outside; frames count from 0, * is\n"    \
+    "                      every frame; size is its RMS radius, pixels: "      \
+    "0.71\n"                                                                   \
+    "                      of a disc's\n"                                      \
+    "  --interpolate       of a FILE: lamps go from one row to their next, "   \
+    "in\n"                                                                     \
+    "                      frames that have none; the same id (a column of "   \
+    "a\n"                                                                      \
+    "                      heading), else the same place in the frame\n"       \
+    "  --light-at X,Y[,EV] a lamp at a pixel, for all frames, of EV stops\n"   \
+    "                      over a white pixel (default 16); repeatable; "      \
+    "replaces\n"                                                               \
+    "                      auto, adds to a FILE\n"                             \
+    "  --save-lights FILE  writes the lamps of each frame as --lights FILE "   \
+    "takes\n"                                                                  \
+    "                      them\n"                                             \
     "  --light LIST        one by hand, as of glint render, for all frames;\n" \
     "                      repeatable; replaces auto, adds to a FILE\n"        \
     "  --threshold EV[,EV] how bright a lamp must be, and down to what it "    \
@@ -91,7 +115,9 @@ enum look_option_code {
     "  --no-tracking       --lights auto takes each frame of a video by "      \
     "itself,\n"                                                                \
     "                      rather than following lamps from frame to frame\n"  \
-    "  --show lights       draws a box and the number of each light on top\n"  \
+    "  --show lights       draws a box, number and stops over a white pixel "  \
+    "of\n"                                                                     \
+    "                      each light on top\n"                                \
     "  --headroom EV       stops by which clipped pixels really exceed "       \
     "white, 0 to\n"                                                            \
     "                      40 (default: told for each lamp from its halo)\n"   \
@@ -143,6 +169,10 @@ void look_mark(const struct look *look, const struct glint_image *image);
 
 /* Closes LOOK and moves FRESH there, which is open and not yet sized. */
 void look_replace(struct look *look, const struct look *fresh);
+
+/* After a run that went well: what was to be kept is put in place. Returns an
+ * exit code. */
+int look_finish(const struct tool *tool, struct look *look);
 
 void look_close(struct look *look);
 

@@ -31,7 +31,7 @@ void paint_fill(const struct paint *p, int x0, int y0, int x1, int y1);
 void paint_box(const struct paint *p, int x, int y, int half);
 
 /* TEXT, its top left corner at (X, Y), five lines high. Letters are all
- * capitals; of signs there are % . , - : and /, the rest is blank. */
+ * capitals; of signs there are % . , - + : and /, the rest is blank. */
 void paint_text(const struct paint *p, int x, int y, const char *text);
 int paint_text_width(const struct paint *p, const char *text);
 

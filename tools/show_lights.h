@@ -5,6 +5,8 @@
 #ifndef GLINT_TOOLS_SHOW_LIGHTS_H
 #define GLINT_TOOLS_SHOW_LIGHTS_H
 
+#include <stdbool.h>
+
 #include "glint/image.h"
 #include "glint/tracks.h"
 
@@ -12,5 +14,14 @@
  * when steady, yellow rising, red fading, blue where it left. */
 void show_light(const struct glint_image *image,
                 const struct glint_track *track);
+
+/* The same, and its POWER under the number, in stops over that of a white
+ * pixel. */
+void show_light_of(const struct glint_image *image,
+                   const struct glint_track *track, double power);
+
+/* Says in the lower left corner what numbers and, of lamps that are FOLLOWED,
+ * colours are; not in pictures with no room for it. */
+void show_legend(const struct glint_image *image, bool followed);
 
 #endif
