@@ -20,7 +20,8 @@
 #   make extremes  the list of extremes, each with the worst figure seen and its bound
 #   make lint     layers, Q formats, formatting, symbols;  purity: that the
 #                 run-time half has no floats and calls nobody (TARGET= too)
-#   make install  DESTDIR= PREFIX=/usr/local, TARGET= for a board
+#   make install  DESTDIR= PREFIX=/usr/local, TARGET= for a board, MODELS=no
+#                 without baked models;  make uninstall
 #   make bench    what a frame costs;  bench-insn: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it
 #   make budget   what a frame costs on ARM, in instructions and bytes
@@ -194,6 +195,10 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
         -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
+# what knows it is made anew where PREFIX is another
+$(OUT)/tools/lens_files.o $(OUT)/platform/oiio/loader.o: $(OUT)/prefix
+$(OUT)/prefix: always
+	@mkdir -p $(@D); echo '$(PREFIX)' | cmp -s - $@ || echo '$(PREFIX)' >$@
 # What reads files of others is guarded against what no test has found; the
 # run-time half, which has no copies and no arrays of a length from outside, is
 # as it was. A sanitizer sees more by itself, and -O0 takes no _FORTIFY_SOURCE.
@@ -471,6 +476,8 @@ check-files:
 	        libwebp-dev openimageio-tools libimage-exiftool-perl imagemagick ffmpeg
 	@$(MAKE) --no-print-directory all oiio
 	@GLINT=build/glint GLINT_OIIO=build/glint-oiio.so tests/cli-files
+	@GLINT=build/glint tests/cli-video
+	@tests/install
 # Long cases and random lenses too:  make extremes SEED=1 COUNT=500
 extremes: $(extreme_bins) $(OUT)/random_lenses $(OUT)/motion
 	@tests/extremes $(SEED:%=--seed %) $(COUNT:%=--count %)
@@ -613,26 +620,48 @@ purity: $(OUT)/libglint.a
 
 # ---------------------------------------------------------------- to install
 # With TARGET= for a board: copy DESTDIR there, or make it a part of its image.
+# The image plug-in is built where it can be. MODELS=no: without baked models of
+# the lenses, which take minutes where there are none yet.
 program := $(if $(CROSS),$(OUT)/glint,build/glint)
-install: all glint-live
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/glint \
-	        $(DESTDIR)$(PREFIX)/lib/glint $(DESTDIR)$(PREFIX)/share/glint/lenses \
-	        $(DESTDIR)$(PREFIX)/lib/systemd/system
+PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
+        pkg-config --exists OpenImageIO 2>/dev/null && echo yes || echo no))
+MODELS  ?= $(if $(CROSS),no,yes)
+to := $(DESTDIR)$(PREFIX)
+install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so)
+	install -d $(to)/bin $(to)/include/glint $(to)/lib/glint \
+	        $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
-	        $(program) $(OUT)/glint-live $(DESTDIR)$(PREFIX)/bin
-	install -m 644 include/glint/*.h $(DESTDIR)$(PREFIX)/include/glint
-	install -m 644 $(OUT)/libglint.a $(OUT)/libglint-bake.a \
-	        $(DESTDIR)$(PREFIX)/lib
-	install -m 644 lenses/*.lens $(DESTDIR)$(PREFIX)/share/glint/lenses
+	        $(program) $(OUT)/glint-live $(to)/bin
+	install -m 644 include/glint/*.h $(to)/include/glint
+	install -m 644 $(OUT)/libglint.a $(OUT)/libglint-bake.a $(to)/lib
+	install -m 644 lenses/*.lens $(to)/share/glint/lenses
 	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
-	        >$(DESTDIR)$(PREFIX)/lib/systemd/system/glint-live.service
-	chmod 644 $(DESTDIR)$(PREFIX)/lib/systemd/system/glint-live.service
-	[ ! -f build/glint-oiio.so ] || [ -n "$(CROSS)" ] || install -m 755 \
-	        build/glint-oiio.so $(DESTDIR)$(PREFIX)/lib/glint
+	        >$(to)/lib/systemd/system/glint-live.service
+	chmod 644 $(to)/lib/systemd/system/glint-live.service
+	$(if $(filter yes,$(PLUGIN)),install -m 755 build/glint-oiio.so $(to)/lib/glint, \
+	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM and y4m')
+ifneq ($(MODELS),no)
+	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
+	rm -rf build/models-installed # of other tables
+	build/glint lenses --models build/models-installed
+	install -d $(to)/share/glint/models
+	install -m 644 build/models-installed/*.glint $(to)/share/glint/models
+endif
+# What install put there, and folders that are empty then.
+uninstall:
+	rm -f $(to)/bin/glint $(to)/bin/glint-live $(to)/lib/libglint.a \
+	        $(to)/lib/libglint-bake.a $(to)/lib/glint/glint-oiio.so \
+	        $(to)/lib/glint/glint-sdl.so \
+	        $(to)/lib/systemd/system/glint-live.service \
+	        $(patsubst %,$(to)/%,$(wildcard include/glint/*.h)) \
+	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
+	        $(to)/share/glint/models/*.glint
+	-rmdir --ignore-fail-on-non-empty $(to)/include/glint $(to)/lib/glint \
+	        $(to)/share/glint/models $(to)/share/glint/lenses $(to)/share/glint 2>/dev/null
 clean:
 	rm -rf build
 .PHONY: check-files all help video-report corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
-        lint purity install clean
+        lint purity install uninstall clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')
 -include $(shell find $(OUT) -name '*.d' 2>/dev/null)

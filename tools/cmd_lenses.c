@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "lens_files.h"
+#include "look.h"
 #include "model_cache.h"
 #include "posix/output.h"
 #include "scene_table.h"
@@ -25,8 +26,8 @@ static const char help[] =
     "drawn and takes seconds to minutes. A lens of your own is a .lens file\n"
     "(lenses/README.md); those in the folder $GLINT_LENSES are listed, too.\n"
     "\n"
-    "  --models FOLDER   bake what is missing and put all models there, as\n"
-    "                    make install does\n"
+    "  --models FOLDER   bake what is missing and put all models there, of\n"
+    "                    overlay and of render, as make install does\n"
     "  -o, --only NAME   this lens; repeatable\n";
 
 static const char help_end[] = COMMON_HELP;
@@ -41,7 +42,7 @@ struct lenses {
 };
 
 struct entry {
-    struct scene scene; /* as render has it by default */
+    struct scene scene; /* by default */
     struct glint_optics optics;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_ghosts;
@@ -49,14 +50,35 @@ struct entry {
     bool is_baked;
 };
 
-static int look_at(const struct tool *tool, const char *name, struct entry *e)
+/* The scene that overlay, live and explain have without options, or PLAIN that
+ * of render. */
+static int set_scene(struct scene *scene, bool plain)
 {
-    int code;
+    struct look *look = plain ? NULL : calloc(1, sizeof *look);
 
-    scene_defaults(&e->scene);
+    if (plain) {
+        scene_defaults(scene);
+        return EXIT_OK;
+    }
+    if (!look)
+        return EXIT_RUNTIME;
+    look_defaults(look);
+    *scene = look->scene;
+    free(look);
+    return EXIT_OK;
+}
+
+static int look_at(const struct tool *tool, const char *name, struct entry *e,
+                   bool plain)
+{
+    int code = set_scene(&e->scene, plain);
+
+    if (code != EXIT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
     code = tool_lens(tool, name, &e->scene.lens);
     if (code != EXIT_OK)
         return code;
+    coating_apply(&e->scene.coating, &e->scene.lens);
     glint_optics_of(&e->scene.lens, &e->optics);
     e->n_ghosts = glint_ghost_list(&e->scene.lens, e->ghost, GLINT_MAX_GHOSTS);
     e->options = scene_bake_options(&e->scene);
@@ -166,10 +188,14 @@ static bool one(void *ctx, const char *name)
     if (!is_wanted(l, name))
         return true;
     e = calloc(1, sizeof *e);
-    code = e ? look_at(l->tool, name, e)
+    code = e ? look_at(l->tool, name, e, false)
              : tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     if (code == EXIT_OK && l->folder) {
         code = put_model(l, e);
+        if (code == EXIT_OK)
+            code = look_at(l->tool, name, e, true);
+        if (code == EXIT_OK)
+            code = put_model(l, e);
         l->n++;
     } else if (code == EXIT_OK)
         (l->tool->json ? print_json : print_text)(l, name, e);

@@ -15,6 +15,7 @@
 
 #define PLUGIN     "glint-oiio.so"
 #define PATH_BYTES 4096
+#define INSTALLED  "../lib/glint/" /* from bin/, wherever both were moved */
 
 /* The directory of the executable with its slash; false if it has none. */
 static bool find_own_directory(char dir[PATH_BYTES])
@@ -78,8 +79,13 @@ static const struct glint_oiio *search(struct glint_error *error)
                        "'make oiio' builds it");
     if (stated && *stated)
         return load_from(stated, error);
-    if (find_own_directory(own))
+    if (find_own_directory(own)) {
         face = load_from_directory(own, error);
+        if (!face && strlen(own) + sizeof INSTALLED <= sizeof own) {
+            strcat(own, INSTALLED);
+            face = load_from_directory(own, error);
+        }
+    }
 #ifdef GLINT_PLUGIN_DIR
     if (!face)
         face = load_from_directory(GLINT_PLUGIN_DIR "/", error);
