@@ -20,7 +20,8 @@ enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 2};
 static struct scene chosen, three, all;
-static const struct glint_lamp lamp = {12, 33, 3e6, {1, 1, 1}};
+static const struct glint_lamp lamp = {
+    .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
 
 static struct frame_report drawn(struct frame *frame, const struct scene *scene,
                                  int width, double power, uint8_t *rgb)
@@ -218,7 +219,9 @@ static void test_little_room(void **state)
 static void test_same_bits(void **state)
 {
     const struct glint_lamp lamps[3] = {
-        lamp, {5, 200, 2e6, {1, 0.8, 0.5}}, {15, 120, 5e6, {0.5, 0.8, 1}}};
+        lamp,
+        {.theta_deg = 5, .phi_deg = 200, .power = 2e6, .rgb = {1, 0.8, 0.5}},
+        {.theta_deg = 15, .phi_deg = 120, .power = 5e6, .rgb = {0.5, 0.8, 1}}};
     struct glint_workers *pool = tool.workers;
     uint8_t *rgb[2] = {picture, other};
 
