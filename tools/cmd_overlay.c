@@ -19,8 +19,8 @@ static const char help[] =
     "\n"
     "Puts the ghosts of a lens on top of IN, in linear light:\n"
     "  a picture         .ppm; with the image plug-in .png .jpg and more\n"
-    "  a sequence        frames/%04d.ppm -> out/%04d.ppm, from the first that\n"
-    "                    is there to the first that is missing\n"
+    "  a sequence        frames/%04d.ppm -> out/%04d.ppm, all that are there;\n"
+    "                    numbers that are missing are said\n"
     "  a video           .y4m, or - for standard input and output, by itself;\n"
     "                    .mp4 .mkv .mov .webm .avi .mpg, animated .gif and "
     "more\n"
@@ -191,14 +191,21 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
     return EXIT_OK;
 }
 
-void overlay_progress(const struct tool *tool, const struct overlay *o)
+void overlay_progress(const struct tool *tool, struct overlay *o)
 {
-    const double spent = tool_seconds() - o->started;
+    const double now = tool_seconds(), spent = now - o->started;
+    const bool is_terminal = isatty(STDERR_FILENO);
 
-    if (tool->quiet || tool->verbose || !isatty(STDERR_FILENO))
+    if (tool->quiet || tool->verbose)
         return;
-    fprintf(stderr, "\rframe %d  %.1f fps  %d lights \033[K", o->look.n_frames,
-            o->look.n_frames / spent, o->look.report.lights);
+    if (!is_terminal && now - fmax(o->started, o->told) < 5)
+        return;
+    o->told = now;
+    fprintf(stderr,
+            is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
+                        : "glint overlay: frame %d, %.1f fps, %d "
+                          "lights\n",
+            o->look.n_frames, o->look.n_frames / spent, o->look.report.lights);
     fflush(stderr);
 }
 
@@ -295,7 +302,7 @@ static int run(struct tool *tool, struct overlay *o)
     else if (strchr(o->input, '%') && access(o->input, F_OK) != 0)
         code = overlay_sequence(tool, o);
     else
-        code = overlay_picture(tool, o, o->input, o->output);
+        code = overlay_numbered(tool, o);
     if (code == EXIT_OK)
         code = look_finish(tool, &o->look);
     if (code == EXIT_OK)

@@ -24,7 +24,7 @@ struct overlay {
     struct frame_report worst; /* its lights: of the frame with most too many,
                                   and most beyond the model */
     int most_lights;
-    double find_ms, flare_ms, started;
+    double find_ms, flare_ms, started, told; /* seconds; of progress */
     double peak, mean_sum; /* of the flare, 1 = white: the brightest of all
                               frames; the sum of their means */
     size_t peak_bytes;
@@ -43,8 +43,8 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
                     const struct glint_image *image, overlay_draw_fn *draw,
                     void *ctx);
 
-/* Tells a terminal how far it has come. */
-void overlay_progress(const struct tool *tool, const struct overlay *o);
+/* Tells a terminal how far it has come, else a line every few seconds. */
+void overlay_progress(const struct tool *tool, struct overlay *o);
 
 /* Refuses an output TO that is the file FROM: what was photographed would be
  * gone. */
@@ -54,6 +54,9 @@ int overlay_check_apart(const struct tool *tool, const char *from,
 /* One picture from file FROM to file TO. */
 int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
                     const char *to);
+
+/* The picture o->input to o->output, which may have a %d: then the first. */
+int overlay_numbered(struct tool *tool, struct overlay *o);
 
 /* Numbered pictures, as o->input and o->output have them. */
 int overlay_sequence(struct tool *tool, struct overlay *o);
