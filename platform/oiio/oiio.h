@@ -98,8 +98,9 @@ struct glint_oiio {
 
 /* Finds the plug-in, at the first call, and returns its functions. Looks at
  * $GLINT_OIIO, which names the file and then is the only place; beside the
- * executable; in ../lib/glint from there; and in GLINT_PLUGIN_DIR, where that was defined when compiling.
- * GLINT_E_UNSUPPORTED: ERROR has the cause, and no file name yet. Any thread.
+ * executable; in ../lib/glint from there; and in GLINT_PLUGIN_DIR, where that
+ * was defined when compiling. GLINT_E_UNSUPPORTED: ERROR has the cause, and no
+ * file name yet. Any thread.
  */
 enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
                                   struct glint_error *error);
