@@ -28,7 +28,7 @@
 #   make growth   how that grows, as plots;  memory-table: what it takes
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
 #   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
-#   also: oiio table bake-table accuracy-table colour-table ray-table inputs format
+#   also: oiio window table bake-table accuracy-table colour-table ray-table inputs format
 #         golden-update fuzz-keep clean
 
 MAKEFLAGS += -r
@@ -136,6 +136,7 @@ PLATFORM := posix/utf8 posix/error posix/process posix/at_death posix/input posi
         linux/v4l2_device linux/v4l2_buffers linux/v4l2_list linux/v4l2 \
         plain/split plain/row_rgb plain/row_pack plain/panel linux/console \
         linux/fbdev linux/v4l2_sink plain/planar plain/y4m_sink plain/null
+PLATFORM += sdl/window
 TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file model_cache coating \
         model_report measure area lamps paint show_lights frame frame_feed dials ladder cost budget scene_table scene_waves scene response strength look live_adapt \
         look_layer overlay_file overlay_picture overlay_y4m \
@@ -145,7 +146,7 @@ TOOLS := tool $(if $(filter yes,$(WITH_INIH)),config,config_absent) model_file m
         yardstick bench_cases bench_growth bench_report cmd_bench plot sweep_plan sweep_exact sweep_frame \
         sweep_measure sweep_front sweep_csv sweep_svg sweep_png sweep_page cmd_sweep
 # what one asks before one knows
-TOOLS += suggest takes lens_files cmd_lenses child ffmpeg lamp_keys lamp_save
+TOOLS += suggest takes lens_files cmd_lenses child ffmpeg lamp_keys lamp_save live_scene live_input
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films spectrum waves optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture samples kept output workers \
@@ -177,6 +178,7 @@ CORE_armv7   := $(CORE_aarch64)
 CORE_armv7-neon := $(CORE_aarch64)
 ifdef CROSS # a static program has no plug-ins
 PLATFORM := $(PLATFORM:oiio/loader=oiio/absent)
+PLATFORM := $(PLATFORM:sdl/window=sdl/absent)
 endif
 core_o     := $(patsubst %,$(OUT)/src/%.o,$(CORE) $(CORE_$(ARCH)))
 bake_o     := $(BAKE:%=$(OUT)/src/%.o)
@@ -196,7 +198,8 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
 # what knows it is made anew where PREFIX is another
-$(OUT)/tools/lens_files.o $(OUT)/platform/oiio/loader.o: $(OUT)/prefix
+$(OUT)/tools/lens_files.o $(OUT)/platform/oiio/loader.o \
+$(OUT)/platform/sdl/window.o: $(OUT)/prefix
 $(OUT)/prefix: always
 	@mkdir -p $(@D); echo '$(PREFIX)' | cmp -s - $@ || echo '$(PREFIX)' >$@
 # What reads files of others is guarded against what no test has found; the
@@ -347,6 +350,14 @@ build/glint-oiio.so: $(OIIO) $(wildcard platform/oiio/*.h) platform/plain/sample
 	$(Q)$(CXX) -std=c++17 -O2 -Wall -Wextra -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
 	        $(OIIO) -o $@ $$(pkg-config --cflags --libs OpenImageIO) \
 	        $$(pkg-config --exists libwebp && pkg-config --cflags --libs libwebp)
+
+# The window of glint live -o window, through SDL2.
+window: build/glint-sdl.so
+build/glint-sdl.so: platform/sdl/sdl.c platform/sdl/sdl.h
+	@mkdir -p $(@D)
+	$(say) CC $<
+	$(Q)$(CC) -std=c99 -O2 $(filter-out -Wundef,$(WARN)) -fPIC -fvisibility=hidden -shared -Iinclude -Iplatform \
+	        $< -o $@ $$(pkg-config --cflags --libs sdl2)
 
 # ------------------------------------------------------------------- to see
 video-report: $(OUT)/steady
@@ -625,9 +636,11 @@ purity: $(OUT)/libglint.a
 program := $(if $(CROSS),$(OUT)/glint,build/glint)
 PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
         pkg-config --exists OpenImageIO 2>/dev/null && echo yes || echo no))
+WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo yes || echo no))
 MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
-install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so)
+install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
+        $(if $(filter yes,$(WINDOW)),build/glint-sdl.so)
 	install -d $(to)/bin $(to)/include/glint $(to)/lib/glint \
 	        $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
@@ -640,6 +653,7 @@ install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so)
 	chmod 644 $(to)/lib/systemd/system/glint-live.service
 	$(if $(filter yes,$(PLUGIN)),install -m 755 build/glint-oiio.so $(to)/lib/glint, \
 	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM and y4m')
+	$(if $(filter yes,$(WINDOW)),install -m 755 build/glint-sdl.so $(to)/lib/glint)
 ifneq ($(MODELS),no)
 	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
 	rm -rf build/models-installed # of other tables
@@ -660,7 +674,7 @@ uninstall:
 	        $(to)/share/glint/models $(to)/share/glint/lenses $(to)/share/glint 2>/dev/null
 clean:
 	rm -rf build
-.PHONY: check-files all help video-report corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: window check-files all help video-report corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install uninstall clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

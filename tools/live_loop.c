@@ -6,6 +6,7 @@
 
 #include "linux/v4l2_buffers.h"
 #include "live.h"
+#include "live_input.h"
 #include "live_picture.h"
 #include "live_signals.h"
 
@@ -18,7 +19,7 @@ struct live {
     live_reread_fn *reread;
     void *ctx;
 
-    struct glint_v4l2 camera; /* source.fd -1: closed */
+    struct live_input in; /* in.camera.source.fd -1: closed */
     struct live_output output;
     struct live_copy copy; /* of frames that lie in slow memory */
 
@@ -53,10 +54,18 @@ static void say(const struct live *l, const char *text)
 static void say_camera(const struct live *l)
 {
     static const char *const io[] = {"", "mapped", "user", "read"};
-    const struct glint_v4l2 *c = &l->camera;
+    const struct glint_v4l2 *c = &l->in.camera;
     char format[96], text[GLINT_V4L2_PATH + 256];
 
     glint_v4l2_format_text(&c->device.format, format);
+    if (l->in.kind != LIVE_INPUT_CAMERA) {
+        snprintf(text, sizeof text, "%s (%s): %dx%d, %.5g fps", c->device.path,
+                 c->device.card, c->device.format.width,
+                 c->device.format.height,
+                 (double)c->device.format.fps_num / c->device.format.fps_den);
+        say(l, text);
+        return;
+    }
     snprintf(text, sizeof text, "%s (%s): %s, %d %s buffers%s%s",
              c->device.path, c->device.card, format, c->n_buffers, io[c->io],
              c->is_cached ? "" : ", uncached: copied first",
@@ -87,21 +96,22 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
 {
     const struct live_options *o = l->o;
     const enum glint_status status =
-        glint_v4l2_open(&l->camera, &o->camera, o->io, o->n_buffers, error);
+        live_input_open(&l->in, &o->camera, o->io, o->n_buffers,
+                        (uint32_t)l->tool->seed, error);
 
     if (status != GLINT_OK)
         return status;
     l->time_us = 0;
     if (l->o->look.sized)
         lamp_finder_restart(&l->o->look.finder);
-    l->had_signal = l->camera.device.has_signal;
+    l->had_signal = l->in.camera.device.has_signal;
     say_camera(l);
     return GLINT_OK;
 }
 
 static int open_output(struct live *l, const struct glint_image *image)
 {
-    const struct glint_v4l2_format *f = &l->camera.device.format;
+    const struct glint_v4l2_format *f = &l->in.camera.device.format;
     struct glint_error error = {""};
     enum glint_status status;
 
@@ -140,7 +150,7 @@ static int take_size(struct live *l, const struct glint_image *image)
 /* An image of the kind that the camera delivers. */
 static struct glint_image expected(const struct live *l)
 {
-    const struct glint_v4l2_format *f = &l->camera.device.format;
+    const struct glint_v4l2_format *f = &l->in.camera.device.format;
 
     return (struct glint_image){.format = f->is_jpeg ? GLINT_I420 : f->pixels,
                                 .width = f->width,
@@ -167,7 +177,7 @@ static void snapshot(struct live *l, const struct glint_image *image)
 
 static double period_ms(const struct live *l)
 {
-    const struct glint_v4l2_format *f = &l->camera.device.format;
+    const struct glint_v4l2_format *f = &l->in.camera.device.format;
 
     return f->fps_num ? 1e3 * f->fps_den / f->fps_num : 0;
 }
@@ -260,7 +270,7 @@ static int lose(struct live *l, const char *what, enum glint_status status,
 static int lose_camera(struct live *l, enum glint_status status,
                        const char *why)
 {
-    l->camera.source.close(&l->camera.source);
+    l->in.camera.source.close(&l->in.camera.source);
     return lose(l, "camera", status, why);
 }
 
@@ -340,7 +350,7 @@ static int show(struct live *l, const struct glint_source_frame *frame,
 
 static void say_signal(struct live *l)
 {
-    const bool has = l->camera.device.has_signal;
+    const bool has = l->in.camera.device.has_signal;
 
     if (has != l->had_signal)
         say(l, has ? "the camera has a signal again"
@@ -352,17 +362,17 @@ static void say_signal(struct live *l)
 /* One frame, if there is one. Returns -1 to go on. */
 static int step(struct live *l)
 {
-    struct glint_source *source = &l->camera.source;
+    struct glint_source *source = &l->in.camera.source;
     struct glint_source_frame frame;
     struct glint_error error = {""};
-    const int n_restarts = l->camera.n_restarts;
+    const int n_restarts = l->in.camera.n_restarts;
     const int64_t taken_us = glint_v4l2_now_us();
     const enum glint_status status = source->next(source, &frame, &error);
     int code = -1;
 
     if (status != GLINT_OK)
         return lose_camera(l, status, error.text);
-    if (l->camera.n_restarts != n_restarts)
+    if (l->in.camera.n_restarts != n_restarts)
         say_camera(l);
     say_signal(l);
     if (!frame.image.plane[0]) {
@@ -455,29 +465,16 @@ static int loop(struct live *l)
            (l->o->count == 0 || l->n_shown < l->o->count)) {
         if (live_signal(LIVE_RELOAD))
             reload(l);
-        if (l->camera.source.fd < 0) {
+        if (l->in.camera.source.fd < 0) {
             retry_camera(l);
             report(l);
             continue;
         }
-        live_signals_wait(l->camera.source.fd, WAIT_MS);
+        live_signals_wait(l->in.camera.source.fd, WAIT_MS);
         code = step(l);
         report(l);
     }
     return code < 0 ? EXIT_OK : code;
-}
-
-/* What can be told before a lens is baked, is. */
-static enum glint_status look_at_camera(const struct live *l,
-                                        struct glint_error *error)
-{
-    struct glint_v4l2_device device;
-    const enum glint_status status =
-        glint_v4l2_device_attach(&device, l->o->camera.device, error);
-
-    if (status == GLINT_OK)
-        glint_v4l2_device_close(&device);
-    return status;
 }
 
 static int start(struct live *l)
@@ -491,7 +488,7 @@ static int start(struct live *l)
         code = open_output(l, &(struct glint_image){.width = 0});
     if (code != EXIT_OK)
         return code;
-    status = look_at_camera(l, &error);
+    status = live_input_look(l->o->camera.device, &error);
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, error.text);
     code = look_open(l->tool, &l->o->look);
@@ -516,7 +513,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     if (!l)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     *l = (struct live){.tool = tool, .o = o, .reread = reread, .ctx = ctx};
-    l->camera.source.fd = l->camera.device.fd = -1;
+    l->in.camera.source.fd = l->in.camera.device.fd = -1;
     l->report = o->report != LIVE_REPORT_AUTO ? o->report
                 : tool->json                  ? LIVE_REPORT_JSON
                 : tool->quiet                 ? LIVE_REPORT_NONE
@@ -538,8 +535,8 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
             code = look_finish(tool, &o->look);
         conclude(l, code);
     }
-    if (l->camera.source.fd >= 0)
-        l->camera.source.close(&l->camera.source);
+    if (l->in.camera.source.fd >= 0)
+        l->in.camera.source.close(&l->in.camera.source);
     status = live_output_close(&l->output, &error);
     if (status != GLINT_OK && code == EXIT_OK)
         code = tool_fail(tool, status, error.text);

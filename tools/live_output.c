@@ -5,16 +5,16 @@
 
 bool live_output_parse(struct live_output *o, const char *name)
 {
-    static const char *const kinds[] = {"fb", "y4m", "v4l2", "null"};
+    static const char *const kinds[] = {"fb", "y4m", "v4l2", "null", "window"};
     const char *colon = strchr(name, ':');
     const size_t length = colon ? (size_t)(colon - name) : strlen(name);
 
     o->sink = NULL;
     o->path = colon ? colon + 1 : NULL;
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 5; k++)
         if (strlen(kinds[k]) == length && memcmp(kinds[k], name, length) == 0) {
             o->kind = (enum live_output_kind)k;
-            return k == LIVE_OUTPUT_NULL ? !colon
+            return k == LIVE_OUTPUT_NULL || k == LIVE_OUTPUT_WINDOW ? !colon
                    : k == LIVE_OUTPUT_FB ? !colon || *o->path
                                          : colon && *o->path;
         }
@@ -23,7 +23,8 @@ bool live_output_parse(struct live_output *o, const char *name)
 
 bool live_output_is_flexible(const struct live_output *o)
 {
-    return o->kind == LIVE_OUTPUT_FB || o->kind == LIVE_OUTPUT_NULL;
+    return o->kind == LIVE_OUTPUT_FB || o->kind == LIVE_OUTPUT_NULL ||
+           o->kind == LIVE_OUTPUT_WINDOW;
 }
 
 static enum glint_status open_fb(struct live_output *o,
@@ -49,6 +50,16 @@ static enum glint_status open_v4l2(struct live_output *o,
     return status;
 }
 
+static enum glint_status open_window(struct live_output *o,
+                                     struct glint_error *error)
+{
+    const enum glint_status status =
+        glint_window_open(&o->as.window, "glint live", error);
+
+    o->sink = status == GLINT_OK ? &o->as.window.sink : NULL;
+    return status;
+}
+
 enum glint_status live_output_open(struct live_output *o,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error)
@@ -62,6 +73,8 @@ enum glint_status live_output_open(struct live_output *o,
         glint_y4m_sink_open(&o->as.y4m, o->path, fps_num, fps_den);
         o->sink = &o->as.y4m.sink;
         return GLINT_OK;
+    case LIVE_OUTPUT_WINDOW:
+        return open_window(o, error);
     default:
         glint_null_sink_open(&o->as.null);
         o->sink = &o->as.null.sink;

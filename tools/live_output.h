@@ -4,6 +4,7 @@
  *   fb[:/dev/fb0]     the panel of a framebuffer
  *   y4m:FILE | y4m:-  a video file or pipe
  *   v4l2:/dev/videoN  an output node, as of v4l2loopback
+ *   window            one on the desktop, where there is the SDL plug-in
  *   null              nowhere
  */
 #ifndef GLINT_TOOLS_LIVE_OUTPUT_H
@@ -13,13 +14,15 @@
 #include "linux/v4l2_sink.h"
 #include "plain/null.h"
 #include "plain/y4m_sink.h"
+#include "sdl/sdl.h"
 #include "tool.h"
 
 enum live_output_kind {
     LIVE_OUTPUT_FB,
     LIVE_OUTPUT_Y4M,
     LIVE_OUTPUT_V4L2,
-    LIVE_OUTPUT_NULL
+    LIVE_OUTPUT_NULL,
+    LIVE_OUTPUT_WINDOW
 };
 
 struct live_output {
@@ -33,6 +36,7 @@ struct live_output {
         struct glint_y4m_sink y4m;
         struct glint_v4l2_sink v4l2;
         struct glint_null_sink null;
+        struct glint_window window;
     } as;
 };
 

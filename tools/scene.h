@@ -248,7 +248,9 @@ enum scene_option {
     "  -j, --threads N     default: all processors; never changes a result\n" \
     "  --kernels K         c | sse41 | avx2 | neon | auto: never changes a "  \
     "result\n"                                                                \
-    "  --seed N   --json   -q   -v   --help   --version\n"
+    "  --seed N            of the noise of live -d test; nothing else is "    \
+    "random\n"                                                                \
+    "  --json   -q   -v   --help   --version\n"
 
 void scene_defaults(struct scene *scene);
 

@@ -89,8 +89,6 @@ static bool take_sets(struct tool *tool, const char *value)
 
 int tool_option(struct tool *tool, int option, const char *value)
 {
-    int seed;
-
     switch (option) {
     case 'h':
         fputs(tool->help, stdout);
@@ -122,8 +120,8 @@ int tool_option(struct tool *tool, int option, const char *value)
                           "--kernels takes c, auto or what this CPU has "
                           "(glint --version), not '%s'",
                           value);
-    case 'S': /* nothing is random yet: any seed gives the same picture */
-        if (tool_integer(value, 0, INT_MAX, &seed))
+    case 'S':
+        if (tool_integer(value, 0, INT_MAX, &tool->seed))
             return -1;
         return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
     default: /* getopt_long has said what is wrong */

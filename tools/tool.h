@@ -30,8 +30,9 @@ struct tool {
     bool json, quiet;
     int verbose;
     int n_threads;
-    unsigned sets_off;             /* instruction sets not to use */
-    const char *kernels;           /* what --kernels said, or NULL */
+    int seed;            /* of all that is random: the noise of live -d test */
+    unsigned sets_off;   /* instruction sets not to use */
+    const char *kernels; /* what --kernels said, or NULL */
     struct glint_workers *workers; /* made by tool_start */
     const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
                           command line */

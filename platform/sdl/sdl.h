@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * sdl/sdl.h - a window on the desktop, through SDL2.
+ *
+ *     glint_window_open(&window, "glint", &error);
+ *     window.sink.put(&window.sink, &image, &error);   the first one opens it
+ *     window.sink.close(&window.sink);
+ *
+ * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is asked
+ * for: beside the executable, in ../lib/glint from there, or as $GLINT_SDL
+ * names it. The picture keeps its shape in a window of any size. Closing it, or
+ * Escape or q, is GLINT_E_CLOSED: whoever looked has had enough.
+ */
+#ifndef GLINT_SDL_SDL_H
+#define GLINT_SDL_SDL_H
+
+#include "plain/panel.h"
+#include "source_sink.h"
+
+/* Changes with struct glint_sdl; a plug-in of another number is refused. */
+#define GLINT_SDL_VERSION 1
+
+struct glint_sdl {
+    int version;
+
+    /* Opens a window for pictures of WIDTH x HEIGHT. NULL: CAUSE says why. */
+    void *(*open)(const char *title, int width, int height, const char **cause);
+
+    /* Shows PIXELS, four bytes each, B G R and one unused, STRIDE bytes from
+     * row to row. 0: it was shown; 1: the window was closed; -1: failed. */
+    int (*show)(void *window, const void *pixels, int stride);
+    void (*close)(void *window);
+};
+
+struct glint_window {
+    struct glint_sink sink;
+
+    /* Private. */
+    const struct glint_sdl *sdl;
+    void *window; /* NULL: not yet */
+    const char *title;
+    struct glint_panel panel;
+    uint8_t *pixels;
+    int width, height; /* of the window's pictures */
+};
+
+/* TITLE is kept. GLINT_E_DEVICE: no plug-in; ERROR says what does as well. */
+enum glint_status glint_window_open(struct glint_window *window,
+                                    const char *title,
+                                    struct glint_error *error);
+
+#endif
