@@ -244,21 +244,52 @@ static enum glint_status too_long(const char *name, struct glint_error *error)
 /* ------------------------------------------------------------------ decoding
  */
 
-/* The 8-bit format that takes most of what PIXELS, ffmpeg's word, has. */
-static const char *planes_for(const char *pixels)
+/* The bits of a sample of PIXELS, ffmpeg's word: 8, 10, 12 or 16. */
+static int bits_of(const char *pixels)
 {
-    if (strncmp(pixels, "yuvj", 4) == 0) /* of full range by their name */
-        return strstr(pixels, "444")   ? "yuvj444p"
-               : strstr(pixels, "422") ? "yuvj422p"
-                                       : "yuvj420p";
-    if (strncmp(pixels, "gray", 4) == 0)
-        return "gray";
-    if (strncmp(pixels, "yuv", 3) == 0 || strncmp(pixels, "nv", 2) == 0 ||
-        strncmp(pixels, "p0", 2) == 0 || !*pixels)
-        return strstr(pixels, "444")   ? "yuv444p"
-               : strstr(pixels, "422") ? "yuv422p"
-                                       : "yuv420p";
-    return "yuv444p"; /* RGB, palettes */
+    return strstr(pixels, "16") || strstr(pixels, "14")      ? 16
+           : strstr(pixels, "12") && !strstr(pixels, "nv12") ? 12
+           : strstr(pixels, "10") || strstr(pixels, "p9")    ? 10
+                                                             : 8;
+}
+
+/* Words for chroma of CHROMA and BITS. */
+static const char *planes_of(const char *chroma, int bits)
+{
+    static const char *const table[][5] = {
+        {"420", "yuv420p", "yuv420p10le", "yuv420p12le", "yuv420p16le"},
+        {"422", "yuv422p", "yuv422p10le", "yuv422p12le", "yuv422p16le"},
+        {"444", "yuv444p", "yuv444p10le", "yuv444p12le", "yuv444p16le"},
+        {"gray", "gray", "gray10le", "gray12le", "gray16le"}};
+    const int column = bits == 8 ? 1 : bits == 10 ? 2 : bits == 12 ? 3 : 4;
+    size_t i = 0;
+
+    while (i < 3 && strcmp(table[i][0], chroma) != 0)
+        i++;
+    return table[i][column];
+}
+
+static bool is_rgb(const struct ffmpeg_video *v)
+{
+    return *v->pixels && strncmp(v->pixels, "yuv", 3) != 0 &&
+           strncmp(v->pixels, "gray", 4) != 0 &&
+           strncmp(v->pixels, "nv", 2) != 0 && strncmp(v->pixels, "p0", 2) != 0;
+}
+
+/* The format of y4m that takes all of what V has. */
+static const char *planes_for(const struct ffmpeg_video *v)
+{
+    const char *chroma = strstr(v->pixels, "444") || is_rgb(v) ? "444"
+                         : strstr(v->pixels, "422")            ? "422"
+                                                               : "420";
+
+    if (strncmp(v->pixels, "yuvj", 4) == 0) /* of full range by their name */
+        return chroma[2] == '4'   ? "yuvj444p"
+               : chroma[2] == '2' ? "yuvj422p"
+                                  : "yuvj420p";
+    if (strncmp(v->pixels, "gray", 4) == 0)
+        chroma = "gray";
+    return planes_of(chroma, bits_of(v->pixels));
 }
 
 enum glint_status ffmpeg_read(struct child *child, const char *name,
@@ -274,7 +305,7 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     begin(&w);
     add_two(&w, "-i", url);
     add_two(&w, "-map", "0:v:0");
-    add_two(&w, "-pix_fmt", planes_for(video->pixels));
+    add_two(&w, "-pix_fmt", planes_for(video));
     add_two(&w, "-strict", "-1");
     add_two(&w, "-f", "yuv4mpegpipe");
     add(&w, "-");
@@ -344,12 +375,6 @@ static void add_tags(struct words *w, const struct ffmpeg_target *t,
         add_two(w, "-color_primaries", v->primaries);
 }
 
-static bool is_rgb(const struct ffmpeg_video *v)
-{
-    return strcmp(planes_for(v->pixels), "yuv444p") == 0 &&
-           strncmp(v->pixels, "yuv", 3) != 0;
-}
-
 /* Files whose pictures are H.264 unless somebody says otherwise: where two
  * pixels share their colour, odd sides grow by one. */
 static void add_h264(struct words *w, const struct ffmpeg_target *t,
@@ -357,7 +382,7 @@ static void add_h264(struct words *w, const struct ffmpeg_target *t,
 {
     add_two(w, "-crf", "18");
     if (is_rgb(v))
-        add_two(w, "-pix_fmt", "yuv420p");
+        add_two(w, "-pix_fmt", planes_of("420", bits_of(v->pixels)));
     if ((t->width % 2 == 0 && t->height % 2 == 0) || (t->is_444 && !is_rgb(v)))
         return;
     add_two(w, "-vf",
