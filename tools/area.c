@@ -5,37 +5,47 @@
 
 static const double degree = 3.14159265358979323846 / 180;
 
-/* A uniform ellipse has twice its RMS semi-axes for semi-axes. */
-static double points_of(const struct glint_lamp *lamp,
-                        double pixels_per_tangent, double most)
+static double power_of(const struct glint_lamp *lamp)
 {
-    const double pi = 180 * degree;
-    const double pixels = 4 * lamp->axis[0] * lamp->axis[1] *
-                          pixels_per_tangent * pixels_per_tangent * pi /
-                          (AREA_SPACING_PX * AREA_SPACING_PX);
-
-    return fmin(1 + pixels, fmax(most, 1));
+    return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
 }
 
-double area_thinning(const struct glint_lamp *lamps, int n,
-                     double pixels_per_tangent, double most, int room,
-                     int *total)
+/* Before thinning. A uniform ellipse has twice its RMS semi-axes for semi-axes.
+ */
+static double points_of(const struct glint_lamp *lamp,
+                        const struct area_rule *rule)
 {
-    double more = 0, thinning = 1;
+    const double spacing = AREA_SPACING_PX / rule->pixels_per_tangent;
+    const double area = 180 * degree * 4 * lamp->axis[0] * lamp->axis[1];
+    const double share =
+        rule->brightest > 0 ? power_of(lamp) / rule->brightest : 1;
+
+    return 1 + fmin(area / (spacing * spacing),
+                    fmax(rule->most - 1, 0) * sqrt(fmin(share, 1)));
+}
+
+struct area_rule area_rule_of(const struct glint_lamp *lamps, int n,
+                              double pixels_per_tangent, double most, int room,
+                              int *total)
+{
+    struct area_rule rule = {pixels_per_tangent, most, 0, 1};
+    double more = 0;
     int n_wide = 0;
 
+    for (int i = 0; i < n; i++)
+        rule.brightest = fmax(rule.brightest, power_of(&lamps[i]));
     for (int i = 0; i < n; i++) {
-        const double points = points_of(&lamps[i], pixels_per_tangent, most);
+        const double points = points_of(&lamps[i], &rule);
 
         more += points - 1;
         n_wide += points > 1; /* which are rounded up */
     }
     if (n_wide && more > room - n - n_wide)
-        thinning = fmax(room - n - n_wide, 0) / more;
-    if (thinning <= 0)
+        rule.thinning = fmax(room - n - n_wide, 0) / more;
+    if (rule.thinning <= 0)
         n_wide = 0;
-    *total = n + n_wide + (int)(thinning * more);
-    return thinning;
+    *total = n + n_wide + (int)(rule.thinning * more);
+    return rule;
 }
 
 /* Point I of the sunflower within a circle of radius 1. */
@@ -71,7 +81,7 @@ static void set_pattern(struct area *a, int n)
 }
 
 int area_plan(struct area *area, const struct glint_lamp *lamp,
-              double pixels_per_tangent, double most, double thinning)
+              const struct area_rule *rule)
 {
     const double t = tan(lamp->theta_deg * degree);
     const double c = cos(lamp->turn_deg * degree);
@@ -79,7 +89,7 @@ int area_plan(struct area *area, const struct glint_lamp *lamp,
     int n;
 
     *area = (struct area){.lamp = *lamp, .points = 1};
-    area->points += thinning * (points_of(lamp, pixels_per_tangent, most) - 1);
+    area->points += rule->thinning * (points_of(lamp, rule) - 1);
     n = (int)ceil(area->points);
     if (n == 1)
         return 1;

@@ -13,8 +13,10 @@
 
 #include "glint/glint.h"
 
-#define AREA_SAMPLES    19 /* points of one lamp at most, unless asked */
-#define AREA_SPACING_PX 4  /* a point for each square of so many pixels */
+#define AREA_SAMPLES 7 /* points of the brightest lamp at most, unless asked \
+                        */
+#define AREA_STILL      3 /* times as many of those in a picture by itself */
+#define AREA_SPACING_PX 4 /* a point for each square of so many pixels */
 
 enum { AREA_MOST_SAMPLES = 4096 };
 
@@ -28,16 +30,24 @@ struct area {
     double major[2], minor[2]; /* semi-axes, tangents */
 };
 
-/* What the points of LAMPS are thinned by, 0 (each is one point) to 1, so that
- * there are at most ROOM of them; where there are more lamps, 0. TOTAL: no
- * more than so many. */
-double area_thinning(const struct glint_lamp *lamps, int n,
-                     double pixels_per_tangent, double most, int room,
-                     int *total);
+/* How many points lamps get. The steps between them show less of faint lamps,
+ * so these get fewer, by the root of their power. */
+struct area_rule {
+    double pixels_per_tangent;
+    double most;      /* of the brightest lamp */
+    double brightest; /* power of it */
+    double thinning;  /* 0: each is one point; to 1 */
+};
 
-/* Plans the points of LAMP, up to MOST before THINNING. Returns how many. */
+/* The rule for LAMPS by which there are at most ROOM points, or one each where
+ * there are more lamps. MOST: of one lamp. TOTAL: no more than so many. */
+struct area_rule area_rule_of(const struct glint_lamp *lamps, int n,
+                              double pixels_per_tangent, double most, int room,
+                              int *total);
+
+/* Plans the points of LAMP. Returns how many. */
 int area_plan(struct area *area, const struct glint_lamp *lamp,
-              double pixels_per_tangent, double most, double thinning);
+              const struct area_rule *rule);
 
 /* Point I of them, with its share of the power; a lamp without extent. */
 struct glint_lamp area_point(const struct area *area, int i);

@@ -3,6 +3,7 @@
  * glint render: the flare alone, in linear light.
  */
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,12 +145,17 @@ static struct glint_lamp *points_of(const struct render *r, int *n)
                           view.sensor_width_mm;
     struct glint_lamp *points = NULL;
     struct area area;
+    int total;
+    const struct area_rule rule =
+        area_rule_of(r->lamp, r->n_lamps, pixels,
+                     r->scene.area_samples_asked ? r->scene.area_samples_asked
+                                                 : r->scene.area_samples,
+                     INT_MAX, &total);
 
     for (int round = 0; round < 2; round++) {
         *n = 0;
         for (int lamp = 0; lamp < r->n_lamps; lamp++) {
-            const int more = area_plan(&area, &r->lamp[lamp], pixels,
-                                       r->scene.area_samples, 1);
+            const int more = area_plan(&area, &r->lamp[lamp], &rule);
 
             for (int i = 0; points && i < more; i++)
                 points[*n + i] = area_point(&area, i);

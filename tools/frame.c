@@ -198,11 +198,10 @@ static enum glint_status hold_beams(struct frame *f, int n)
 /* Appends the beams of LAMP's points that the model reaches; WITHIN are there
  * already. Returns how many there are then. */
 static int add_beams(struct frame *f, const struct glint_lamp *lamp,
-                     double thinning, double scale, int within)
+                     const struct area_rule *rule, double scale, int within)
 {
     struct area area;
-    const int n = area_plan(&area, lamp, pixels_per_tangent(f), f->area_samples,
-                            thinning);
+    const int n = area_plan(&area, lamp, rule);
 
     for (int i = 0; i < n; i++) {
         const struct glint_lamp point = area_point(&area, i);
@@ -220,8 +219,8 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
     const int room =
         f->reserved ? smaller(f->max_lights, f->max_beams) : f->max_lights;
     int within = 0, total;
-    const double thinning = area_thinning(lamps, n, pixels_per_tangent(f),
-                                          f->area_samples, room, &total);
+    const struct area_rule rule = area_rule_of(lamps, n, pixels_per_tangent(f),
+                                               f->area_samples, room, &total);
 
     if (hold_beams(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;
@@ -229,7 +228,7 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
     for (int i = 0; i < n; i++) {
         const int before = within;
 
-        within = add_beams(f, &lamps[i], thinning, scale, within);
+        within = add_beams(f, &lamps[i], &rule, scale, within);
         f->n_beyond += within == before;
     }
     f->n_more = within - (n - f->n_beyond);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "area.h"
+
 /* Along the front that glint sweep measures over five lenses at 1280x720
  * (tests/figures/trade.md), the coarsest first. What is not on it: coarser
  * models, which save nothing and cost 6 dB, and 16-bit lanes, on processors
@@ -13,19 +15,19 @@
  * wavelengths. */
 /* clang-format off */
 static const struct rung {
-    double quality, grid, quantum, whole, cull, tolerance, dispersion;
+    double quality, grid, quantum, whole, cull, tolerance, dispersion, points;
     bool half;
 } rung[] = {
-    {0,      16, 8,      32,  1,     1, 0, true},
-    {0.0625, 64, 1,      4,   1,     1, 0, true},
-    {0.125,  20, 3,      8,   0.5,   1, 0, false},
-    {0.25,   32, 1,      4,   0.5,   1, 0, false},
-    {0.375,  40, 1,      4,   0.5,   1, 2, false},
-    {0.5,    64, 1,      4,   FRAME_CULL_CODES, 1, FRAME_DISPERSION_PX, false},
-    {0.625,  96, 0.5,    2,   0.125, 0.25, 1, false},
-    {0.75,  160, 0.25,   1,   0.125, 0.25, 0.5, false},
-    {0.875, 192, 0.125,  0.5, 0.125, 0.25, 0.5, false},
-    {1,     256, 0.0625, 0,   0.125, 0.25, 0.25, false},
+    {0,      16, 8,      32,  1,     1, 0, 1, true},
+    {0.0625, 64, 1,      4,   1,     1, 0, 1, true},
+    {0.125,  20, 3,      8,   0.5,   1, 0, 1, false},
+    {0.25,   32, 1,      4,   0.5,   1, 0, 1, false},
+    {0.375,  40, 1,      4,   0.5,   1, 2, 4, false},
+    {0.5,    64, 1,      4,   FRAME_CULL_CODES, 1, FRAME_DISPERSION_PX, AREA_SAMPLES, false},
+    {0.625,  96, 0.5,    2,   0.125, 0.25, 1, 12, false},
+    {0.75,  160, 0.25,   1,   0.125, 0.25, 0.5, 19, false},
+    {0.875, 192, 0.125,  0.5, 0.125, 0.25, 0.5, 37, false},
+    {1,     256, 0.0625, 0,   0.125, 0.25, 0.25, 61, false},
 };
 /* clang-format on */
 
@@ -73,6 +75,7 @@ static struct rung rung_at(double quality)
     r.quantum = between(a->quantum, b->quantum, at - below);
     r.whole = between(a->whole, b->whole, at - below);
     r.cull = between(a->cull, b->cull, at - below);
+    r.points = between(a->points, b->points, at - below);
     if (a->dispersion > 0 && b->dispersion > 0)
         r.dispersion = between(a->dispersion, b->dispersion, at - below);
     return r;
@@ -94,6 +97,7 @@ void ladder_set(struct scene *s, double quality)
     s->whole_codes = r.whole;
     s->cull = r.cull;
     s->dispersion_px = r.dispersion;
+    s->area_samples = r.points;
     s->tolerance = r.tolerance;
     s->half = r.half;
 }
@@ -108,6 +112,7 @@ void ladder_frame(struct frame *frame, double quality)
     frame->faintest_codes = r.cull;
     /* what a set of wavelengths takes is not foretold */
     frame->dispersion_px = frame->budget.ms > 0 ? 0 : r.dispersion;
+    frame->area_samples = r.points;
     frame->half = r.half || frame->always_half;
 }
 

@@ -81,6 +81,7 @@ void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
     frame->dispersion_px = asked->dispersion_px > 0 && rung.dispersion_px > 0
                                ? fmax(asked->dispersion_px, rung.dispersion_px)
                                : 0;
+    frame->area_samples = fmin(asked->area_samples, rung.area_samples);
     frame->half = asked->half || rung.half;
     frame->max_lights = smaller(asked->max_lights, step_of[a->step].max_lights);
     frame_retune(frame);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "lamp_keys.h"
+#include "area.h"
 #include "show_lights.h"
 #include "takes.h"
 
@@ -449,9 +450,13 @@ void look_expose(struct look *look, int32_t elapsed_us)
 void look_find(struct look *look, const struct glint_image *image,
                int32_t elapsed_us)
 {
+    const struct scene *scene = &look->scene;
     const double start = tool_seconds();
 
     look->n_lamps = look_lamps(look, image, elapsed_us);
+    /* there is time for a picture by itself */
+    if (elapsed_us == 0 && !scene->area_samples_asked && scene->budget_ms == 0)
+        look->frame.area_samples = 1 + AREA_STILL * (scene->area_samples - 1);
     look->find_ms = 1e3 * (tool_seconds() - start);
 }
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "area.h"
+
 /* The pictures that are drawn: so many pixels are enough for a thousandth of
  * them, and cost little. */
 enum { PROXY_PIXELS = 192 * 108, TOP_MAX = PROXY_PIXELS / 500 };
@@ -111,7 +113,7 @@ static int open_proxy(const struct tool *tool, const struct scene *scene,
     code = scene_frame(tool, &p->plain, p->view, &p->frame);
     p->frame.for_codes = true;
     if (code == EXIT_OK && bytes &&
-        frame_reserve(&p->frame, bytes, 1, 1) != GLINT_OK)
+        frame_reserve(&p->frame, bytes, 1, AREA_SAMPLES) != GLINT_OK)
         code = tool_fail(tool, GLINT_E_MEMORY, NULL);
     return code;
 }
@@ -216,27 +218,54 @@ static double model_end_deg(const struct frame *frame)
                        : 89;
 }
 
+/* Lamps as LAMP, of up to an eighth of the picture's diagonal. */
+static enum glint_status measure_extents(struct proxy *p, struct response *r,
+                                         struct glint_lamp lamp)
+{
+    const double diagonal =
+        2 * tan(corner_deg(p->view, p->plain.setup.optics.focal_mm) *
+                3.14159265358979323846 / 180);
+    double point_log2 = 0, peak_log2 = 0;
+
+    for (int i = 0; i < RESPONSE_EXTENTS; i++) {
+        struct response_light light;
+        enum glint_status status;
+
+        r->extent[i] = i ? diagonal / (1 << (RESPONSE_EXTENTS + 2 - i)) : 0;
+        area_set_round(&lamp, r->extent[i]);
+        status = draw(p, &lamp, 1, &peak_log2, &light);
+        if (status != GLINT_OK)
+            return status;
+        if (i == 0)
+            point_log2 = peak_log2;
+        r->softened_log2[i] = fmin(peak_log2 - point_log2, 0);
+    }
+    return GLINT_OK;
+}
+
 static enum glint_status measure(struct proxy *p, struct response *r)
 {
     const double azimuth = /* from the middle into the corner */
         atan2(p->view.height, p->view.width) * 180 / 3.14159265358979323846;
     const double all = (double)p->view.width * p->view.height;
+    struct glint_lamp lamp = {
+        .phi_deg = azimuth, .power = all, .rgb = {1, 1, 1}};
     double peak_log2 = 0;
 
     set_angles(r, p->frame.lens ? RESPONSE_ANGLES : EXACT_ANGLES,
                corner_deg(p->view, p->plain.setup.optics.focal_mm),
                model_end_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
-        const struct glint_lamp lamp = {r->theta_deg[i], azimuth, all,
-                                        {1, 1, 1},       {0, 0},  0};
-        const enum glint_status status =
-            draw(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
+        enum glint_status status;
 
+        lamp.theta_deg = r->theta_deg[i];
+        status = draw(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
         if (status != GLINT_OK)
             return status;
         take_logs(&r->log2_of[i]);
     }
-    return GLINT_OK;
+    lamp.theta_deg = r->theta_deg[r->n / 2];
+    return measure_extents(p, r, lamp);
 }
 
 int response_measure(const struct tool *tool, const struct scene *scene,
@@ -279,6 +308,21 @@ void response_at(const struct response *r, double theta_deg,
         light->mean[c] =
             mix(r->log2_of[i].mean[c], r->log2_of[j].mean[c], part);
     }
+}
+
+double response_softening(const struct response *r,
+                          const struct glint_lamp *lamp)
+{
+    const double extent = hypot(lamp->axis[0], lamp->axis[1]);
+    int i = 0;
+    double part;
+
+    while (i + 2 < RESPONSE_EXTENTS && r->extent[i + 1] < extent)
+        i++;
+    if (!(r->extent[i + 1] > r->extent[i]))
+        return 1; /* nothing was measured */
+    part = (extent - r->extent[i]) / (r->extent[i + 1] - r->extent[i]);
+    return mix(r->softened_log2[i], r->softened_log2[i + 1], fmin(part, 1));
 }
 
 /* ------------------------------------------------------------ what was drawn

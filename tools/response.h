@@ -8,8 +8,9 @@
  * Small pictures of the flare of one white lamp, at angles from the axis to
  * the corner of the view, are drawn in linear light and looked at;
  * between the angles the logarithms are interpolated, so that it is a gentle
- * function of the angle. Doubles; the integer engine draws, but is not part of
- * it.
+ * function of the angle. Lamps of visible extent, whose ghosts are softer, are
+ * drawn at one angle and taken to lose as much at all. Doubles; the integer
+ * engine draws, but is not part of it.
  *
  * Unit: light of the picture, 1 = white, of a lamp whose power (white times
  * pixels) is as much as the whole picture white. So it is the same for every
@@ -20,7 +21,7 @@
 
 #include "scene.h"
 
-enum { RESPONSE_ANGLES = 12 };
+enum { RESPONSE_ANGLES = 12, RESPONSE_EXTENTS = 5 };
 
 /* Light of a layer that is the flare alone, by linear R, G, B. */
 struct response_light {
@@ -32,7 +33,10 @@ struct response {
     int n; /* angles, 1 .. RESPONSE_ANGLES; 0: nothing was measured */
     double theta_deg[RESPONSE_ANGLES];              /* rising, from 0 */
     struct response_light log2_of[RESPONSE_ANGLES]; /* -100: none */
-    double ms;                                      /* that it took */
+    /* Lamps of visible extent: their RMS radii, tangents, rising from 0, and
+     * what the brightest of their flares is of that of a point. */
+    double extent[RESPONSE_EXTENTS], softened_log2[RESPONSE_EXTENTS];
+    double ms; /* that it took */
 };
 
 /* Looks at N pixels. */
@@ -52,7 +56,12 @@ int response_measure(const struct tool *tool, const struct scene *scene,
                      struct glint_view view, size_t bytes,
                      struct response *response);
 
-/* The light of a lamp THETA_DEG off the axis. Beyond the corner of the view it
+/* What the brightest part of the flare of LAMP is of that of a point, as its
+ * ghosts overlap themselves: at most 1. */
+double response_softening(const struct response *response,
+                          const struct glint_lamp *lamp);
+
+/* The light of a point THETA_DEG off the axis. Beyond the corner of the view it
  * is what it is at the corner: there lamps fade as the lens has it. */
 void response_at(const struct response *response, double theta_deg,
                  struct response_light *light);

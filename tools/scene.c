@@ -183,7 +183,8 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_MAX_LIGHTS:
         return tool_integer(value, 1, 1 << 20, &s->max_lights);
     case OPT_AREA_SAMPLES:
-        return tool_integer(value, 1, AREA_MOST_SAMPLES, &s->area_samples);
+        return tool_integer(value, 1, AREA_MOST_SAMPLES,
+                            &s->area_samples_asked);
     case OPT_APART:
         return tool_number(value, &s->apart_px) && s->apart_px >= 0 &&
                s->apart_px <= 1000;
@@ -362,7 +363,8 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->narrow = scene->narrow;
     frame->only_ghost = scene->only_ghost;
     frame->apart_px = scene->apart_px;
-    frame->area_samples = scene->area_samples;
+    frame->area_samples = scene->area_samples_asked ? scene->area_samples_asked
+                                                    : scene->area_samples;
     frame->faintest_codes = scene->cull;
     if (scene->max_lights)
         frame->max_lights = scene->max_lights;

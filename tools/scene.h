@@ -40,9 +40,10 @@ struct scene {
     double sensor_mm[2];  /* 0: the table's film */
     double exposure_ev, gain;
     int only_ghost;
-    int max_lights;   /* 0: not said */
-    double apart_px;  /* lights whose images are nearer are one */
-    int area_samples; /* points of a lamp of some extent, at most */
+    int max_lights;         /* 0: not said */
+    double apart_px;        /* lights whose images are nearer are one */
+    double area_samples;    /* points of a lamp of some extent, at most */
+    int area_samples_asked; /* the same by hand; 0: as the quality has it */
 
     int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma, quantum, cull;
@@ -171,9 +172,11 @@ enum scene_option {
     "                      (default 16)\n"                                     \
     "  --area-samples N    points that a lamp of visible extent is drawn as, " \
     "1 to\n"                                                                   \
-    "                      4096 (default 19); all lamps' together are no "     \
-    "more\n"                                                                   \
-    "                      than --max-lights\n"                                \
+    "                      4096, of the brightest lamp (default by "           \
+    "--quality:\n"                                                             \
+    "                      7, of a picture by itself 19); all lamps' "         \
+    "together\n"                                                               \
+    "                      are no more than --max-lights\n"                    \
     "  --apart PX          lights whose images are nearer are one (default "   \
     "0.125)\n"                                                                 \
     "  --quality Q         0 to 1, or least, draft, default, high, finest: "   \

@@ -41,10 +41,11 @@ static void light_of(const struct response *response,
     const struct glint_lamp *l = &lamps->lamp[i];
     const double power =
         l->power / lamps->pixels / (lamps->level ? lamps->level[i] : 1);
+    const double softening = response_softening(response, l);
 
     response_at(response, l->theta_deg, light);
     for (int c = 0; c < 3; c++) {
-        light->peak[c] *= power * l->rgb[c];
+        light->peak[c] *= power * softening * l->rgb[c];
         light->mean[c] *= power * l->rgb[c];
     }
 }

@@ -37,7 +37,8 @@ static int sums_of(const struct glint_lamp *lamp, double thinning,
                    double sum[5])
 {
     struct area area;
-    const int n = area_plan(&area, lamp, PIXELS, MOST, thinning);
+    const struct area_rule rule = {PIXELS, MOST, lamp->power, thinning};
+    const int n = area_plan(&area, lamp, &rule);
     double u0, v0, u, v;
 
     place_of(lamp, &u0, &v0);
@@ -66,9 +67,12 @@ static void test_a_point_stays_one(void **state)
     const struct glint_lamp lamp = lamp_of(0, 0);
     struct area area;
     struct glint_lamp point;
+    int total;
+    const struct area_rule rule =
+        area_rule_of(&lamp, 1, PIXELS, MOST, 100, &total);
 
     (void)state;
-    assert_int_equal(area_plan(&area, &lamp, PIXELS, MOST, 1), 1);
+    assert_int_equal(area_plan(&area, &lamp, &rule), 1);
     point = area_point(&area, 0);
     assert_true(point.theta_deg == lamp.theta_deg); /* to the bit */
     assert_true(point.phi_deg == lamp.phi_deg);
@@ -120,20 +124,36 @@ static void test_all_have_room(void **state)
     for (int i = 0; i < 10; i++)
         lamps[i] = lamp_of(3 * i, 2 * i);
     for (int room = 1; room < 700; room++) {
-        const double thinning =
-            area_thinning(lamps, 10, PIXELS, MOST, room, &total);
+        const struct area_rule rule =
+            area_rule_of(lamps, 10, PIXELS, MOST, room, &total);
         int n = 0;
 
         for (int i = 0; i < 10; i++) {
             struct area area;
 
-            n += area_plan(&area, &lamps[i], PIXELS, MOST, thinning);
+            n += area_plan(&area, &lamps[i], &rule);
         }
         assert_true(n <= total);
         assert_true(total <= (room > 10 ? room : 10));
     }
-    assert_true(area_thinning(lamps, 1, PIXELS, MOST, 0, &total) == 1);
+    assert_true(area_rule_of(lamps, 1, PIXELS, MOST, 0, &total).thinning == 1);
     assert_int_equal(total, 1);
+}
+
+/* Steps between points of a faint lamp show less. */
+static void test_faint_lamps_get_fewer(void **state)
+{
+    struct glint_lamp lamps[2] = {lamp_of(30, 30), lamp_of(30, 30)};
+    struct area area;
+    struct area_rule rule;
+    int total;
+
+    (void)state;
+    lamps[1].power = lamps[0].power / 16;
+    rule = area_rule_of(lamps, 2, PIXELS, MOST, 1000, &total);
+    assert_int_equal(area_plan(&area, &lamps[0], &rule), MOST);
+    assert_int_equal(area_plan(&area, &lamps[1], &rule), 1 + (MOST - 1) / 4);
+    assert_true(total >= MOST + 1 + (MOST - 1) / 4);
 }
 
 int main(void)
@@ -143,6 +163,7 @@ int main(void)
         cmocka_unit_test(test_sums_are_the_lamps),
         cmocka_unit_test(test_it_grows_without_jumps),
         cmocka_unit_test(test_all_have_room),
+        cmocka_unit_test(test_faint_lamps_get_fewer),
     };
 
     return cmocka_run_group_tests_name("area", tests, NULL, NULL);
