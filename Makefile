@@ -117,7 +117,8 @@ endif
 CORE := base/status base/arena base/q base/divide base/sort base/image base/workers \
         kernels/sets kernels/kernels kernels/horner kernels/horner_c kernels/add_quads kernels/turn kernels/turn_c \
         kernels/composite_c \
-        lens/model lens/transfer flare/bright flare/white flare/regions flare/score flare/lights \
+        lens/model lens/transfer flare/bright flare/bright_mark flare/bright_scan flare/white flare/regions flare/row_light flare/score \
+        flare/lights flare/light_rows flare/light_list \
         flare/profile flare/unclip \
         flare/match flare/follow flare/record flare/tracks tile/primitive \
         tile/clip tile/outline tile/bins tile/raster tile/edges tile/sums tile/curve tile/mix tile/codes \
@@ -224,7 +225,7 @@ endif
 $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 -fno-asynchronous-unwind-tables
 # What runs once, or once for a lamp, bundle or row, is small rather than fast, and
 # so is what takes cells to tiles.
-$(patsubst %,$(OUT)/src/%.o,base/status base/arena base/image base/workers lens/model flare/lights flare/match \
+$(patsubst %,$(OUT)/src/%.o,base/status base/arena base/image base/workers lens/model flare/lights flare/light_list flare/match \
         flare/follow flare/record flare/tracks flare/beams flare/plan flare/wave_sets flare/flare flare/account \
         flare/ghost_grid flare/by_cells tile/bins tile/clip tile/resolve tile/curve \
         tile/mix): CFLAGS += -Os
@@ -235,7 +236,8 @@ ifeq ($(ARCH),armv7)
 $(OUT)/src/%_neon.o: CFLAGS += -mfpu=neon
 endif
 # Hot loops: unrolled, or where that buys nothing but bytes in vectors alone.
-$(OUT)/src/kernels/%.o $(patsubst %,$(OUT)/src/%.o,tile/edges flare/bright flare/ghost_edges): CFLAGS += -O3
+$(OUT)/src/kernels/%.o $(patsubst %,$(OUT)/src/%.o,tile/edges flare/bright_mark flare/bright_scan flare/row_light \
+        flare/ghost_edges): CFLAGS += -O3
 $(patsubst %,$(OUT)/src/%.o,tile/codes tile/quads tile/sums flare/by_edges lens/transfer): CFLAGS += -ftree-vectorize
 $(OUT)/src/tile/edges.o: CFLAGS += -fno-tree-vectorize # short loops
 ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)

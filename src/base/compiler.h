@@ -58,5 +58,6 @@ static inline uint32_t bits_set(uint32_t x)
 #define WIDE_VECTORS
 #endif
 #define WHOLLY_INLINE inline __attribute__((always_inline))
+#define NEVER_INLINE  __attribute__((noinline))
 
 #endif

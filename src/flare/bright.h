@@ -17,9 +17,8 @@
  *
  * Most of a picture by night is dark, and that is seen without colour: eight
  * bytes at a time are compared with codes that a bright pixel must exceed, and
- * blocks of BRIGHT_BLOCK pixels without one are left out. Of Y, Cb, Cr one code
- * of luma will not do for strong colours. A block is dark where both Y and
- * |C - 128| stay below one of BRIGHT_BOUNDS pairs of bounds.
+ * blocks of BRIGHT_BLOCK pixels without one are left out. Of Y, Cb, Cr the
+ * largest luma of a block and the ends of its chroma bound its channels.
  */
 #ifndef GLINT_FLARE_BRIGHT_H
 #define GLINT_FLARE_BRIGHT_H
@@ -33,8 +32,7 @@ enum {
     BRIGHT_BLOCK = 32,    /* pixels */
     BRIGHT_CLIPPED = 250, /* a channel here or above says nothing of colour */
     BRIGHT_WHITE = 254,   /* brightness where luma is 237 or more, too, */
-    BRIGHT_HOT = 255,     /* and 252 */
-    BRIGHT_BOUNDS = 4
+    BRIGHT_HOT = 255      /* and 252 */
 };
 
 /* Where a code of a row's pixels lies. */
@@ -54,11 +52,12 @@ struct glint_bright {
     const struct glint_layout *layout;
     struct glint_bright_code code[3]; /* of the row; Y Cb Cr, R G B, or two
                                          bytes */
-    int n_codes;
-    int low;                     /* 1 .. 255 */
-    int low_code[BRIGHT_BOUNDS]; /* the least byte, of Y or of R, G or B, of a
-                                    bright pixel; 256: no code is enough. Of
-                                    Y: while chroma is within that bound */
+    int n_codes;                      /* the rest are as the first */
+    int low;                          /* 1 .. 255 */
+    int low_code;        /* the least byte, of grey or of R, G or B, of a bright
+                            pixel; 256: no code is enough */
+    int32_t low_sum_q16; /* the least largest channel of Y, Cb, Cr that a bright
+                            pixel has, less a code for rounding */
     struct glint_curve *curve;
     int curve_tone; /* that curve is of; -1: none yet */
     struct glint_ycc ycc;
@@ -80,6 +79,10 @@ void glint_bright_set_low(struct glint_bright *b, int low);
 
 /* Sets block and value for row Y. Returns 0 if all of it is below low. */
 int glint_bright_scan(struct glint_bright *b, int y);
+
+/* Sets each block to whether it may have a pixel of low or above, but for one
+ * that the width cuts off. Returns 0 if none may. Part of the scan. */
+int glint_bright_mark(struct glint_bright *b);
 
 /* The linear light of pixel X of the row scanned last, 0 .. white. */
 void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);

@@ -228,7 +228,8 @@ static void find_runs(struct glint_run_row *row, const uint8_t *value, int low,
         if (is_in) {
             *begin = x;
         } else {
-            row->run[row->n_runs++] = (struct glint_run){*begin, x, -1};
+            row->run[row->n_runs++] =
+                (struct glint_run){.x0 = *begin, .x1 = x, .label = -1};
             *begin = -1;
         }
     }
@@ -247,12 +248,14 @@ static void find_all_runs(struct glint_run_row *row,
             find_runs(row, b->value, low, x, end < b->width ? end : b->width,
                       &begin);
         } else if (begin >= 0) {
-            row->run[row->n_runs++] = (struct glint_run){begin, x, -1};
+            row->run[row->n_runs++] =
+                (struct glint_run){.x0 = begin, .x1 = x, .label = -1};
             begin = -1;
         }
     }
     if (begin >= 0)
-        row->run[row->n_runs++] = (struct glint_run){begin, b->width, -1};
+        row->run[row->n_runs++] =
+            (struct glint_run){.x0 = begin, .x1 = b->width, .label = -1};
 }
 
 /* Gives the runs of row Y the labels of what they touch. */

@@ -89,6 +89,8 @@ struct glint_component {
 struct glint_run {
     int32_t x0, x1; /* first pixel, and one past the last */
     int32_t label;
+    int32_t want0, want1; /* pixels in it whose light the caller needs; 0, 0:
+                             none */
 };
 
 struct glint_run_row {

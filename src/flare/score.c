@@ -215,10 +215,11 @@ static int32_t dim_q8(const struct glint_score *s,
                       const struct glint_level *level)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
-    const int half = glint_white_reached_by(s->white, 1);
+    int half;
 
     if (level->clipped >= BRIGHT_CLIPPED)
         return 0;
+    half = glint_white_reached_by(s->white, 1);
     return q_clamp_sat(glint_stops_q8(light_q20[half] + FLOOR_Q20) -
                            glint_stops_q8(light_q20[level->clipped]) + 5 * 256,
                        0, 5 * 256);
@@ -263,15 +264,49 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
+static int is_of_rings(int measure)
+{
+    return measure == EVIDENCE_AROUND || measure == EVIDENCE_HALO ||
+           measure == EVIDENCE_SPREAD;
+}
+
+/* What the surroundings can add to a score at most. */
+static int32_t most_of_rings(void)
+{
+    int32_t sum_q16 = 0;
+
+    for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
+        const struct term *t = &terms[i];
+
+        if (is_of_rings(t->measure) && t->weight_q8 > 0)
+            sum_q16 += (t->most_q8 - t->least_q8) * t->weight_q8;
+    }
+    return (sum_q16 >> 8) + 1;
+}
+
+/* The score of C if its surroundings spoke for it as much as they can. */
+static int32_t most_of(struct glint_candidate *c, int32_t most_of_rings_q8)
+{
+    for (int i = 0; i < EVIDENCES; i++)
+        if (is_of_rings(i))
+            c->evidence_q8[i] = INT16_MIN; /* the least of each term: 0 */
+    return score_of(c->evidence_q8) + most_of_rings_q8;
+}
+
 void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n)
 {
+    const int32_t most_q8 = most_of_rings();
+
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &candidate[order[i]];
 
-        look_at_rings(c, score);
         look_at_shape(c, score);
+        c->score_q8 = most_of(c, most_q8);
+        if (score->is_brief && c->score_q8 < -SCORE_DOUBT)
+            continue;
+        look_at_rings(c, score);
         c->score_q8 = score_of(c->evidence_q8);
     }
 }

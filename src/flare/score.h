@@ -71,6 +71,9 @@ struct glint_score {
     const struct glint_white *white;
     int width, height;
     const struct glint_level *level;
+    int is_brief; /* 1: of what must fall below -SCORE_DOUBT the surroundings
+                     are not read; its score is some number below that, and no
+                     less than it would be */
 };
 
 /* Sets the score of the N candidates of ORDER. */
