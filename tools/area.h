@@ -13,8 +13,9 @@
 
 #include "glint/glint.h"
 
-#define AREA_SAMPLES 7 /* points of the brightest lamp at most, unless asked \
-                        */
+#define AREA_SAMPLES                                        \
+    7 /* points of the brightest lamp at most, unless asked \
+       */
 #define AREA_STILL      3 /* times as many of those in a picture by itself */
 #define AREA_SPACING_PX 4 /* a point for each square of so many pixels */
 
