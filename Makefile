@@ -151,7 +151,7 @@ TOOLS += suggest takes lens_files cmd_lenses child ffmpeg lamp_keys lamp_save li
 EXTREMES := angles powers lenses frames caustics outlines sums runs
 UNIT := arena divide cuts kernels model prescription films spectrum waves optics trace pupil published quantise bake \
         exact curve edges resolve composite lights flare plan account beams pnm y4m picture samples kept output workers \
-        measure area lamps bright score profile match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
+        measure area lamps bright light_rows score profile match tracks utf8 at_death fourcc v4l2 v4l2_faults panel \
         fbdev sinks live_stats live_adapt frame strength show_lights sweep explain budget live \
         $(EXTREMES:%=extremes_%)
 FUZZERS := lens model y4m pnm lights

@@ -16,8 +16,9 @@ void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
     b->curve = glint_arena_take(arena, 1, sizeof *b->curve);
     b->full_luma = glint_arena_take(arena, 256, 1);
     b->beyond = glint_arena_take(arena, 256, 1);
-    b->value = glint_arena_take(arena, (size_t)width, sizeof *b->value);
+    b->value = glint_arena_take(arena, blocks_of(width), BRIGHT_BLOCK);
     b->block = glint_arena_take(arena, blocks_of(width), sizeof *b->block);
+    b->marked = glint_arena_take(arena, blocks_of(width), sizeof *b->marked);
 }
 
 void glint_bright_init(struct glint_bright *b, int width)

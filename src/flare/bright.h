@@ -43,9 +43,12 @@ struct glint_bright_code {
 
 struct glint_bright {
     int width;
-    uint8_t *value; /* brightness of a row, where its block is marked */
-    uint8_t *block; /* [width / BRIGHT_BLOCK, rounded up]: the greatest
-                       brightness in it, or 0: all is below low */
+    uint8_t *value;  /* brightness of a row, where its block is marked, and room
+                        for the rest of the last block */
+    uint8_t *block;  /* [width / BRIGHT_BLOCK, rounded up]: the greatest
+                        brightness in it, or 0: all is below low */
+    int32_t *marked; /* the blocks that are not 0, from the left */
+    int n_marked;
 
     /* Private. */
     const struct glint_image *image;

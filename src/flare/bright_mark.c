@@ -2,41 +2,22 @@
  *
  * Which blocks of a row may have a bright pixel.
  */
+#include "base/bytes.h"
 #include "base/compiler.h"
 #include "flare/bright.h"
 #include "flare/bright_code.h"
 
-#define EACH_BYTE UINT64_C(0x0101010101010101)
-#define LOW_BITS  (0x7f * EACH_BYTE)
-#define HIGH_BITS (0x80 * EACH_BYTE)
+/* ------------------------------------------------------------ one threshold */
 
-/* ------------------------------------------------------------- one threshold
- */
-
-/* Eight bytes, the first lowest; written so that compilers make one load of it.
- */
-static WHOLLY_INLINE uint64_t load(const uint8_t *p)
-{
-    return (uint64_t)p[0] | (uint64_t)p[1] << 8 | (uint64_t)p[2] << 16 |
-           (uint64_t)p[3] << 24 | (uint64_t)p[4] << 32 | (uint64_t)p[5] << 40 |
-           (uint64_t)p[6] << 48 | (uint64_t)p[7] << 56;
-}
-
-/* High bits of the bytes of N words at P that are CODE or more. No byte carries
- * into the next: both addends are below 128. */
+/* High bits of the bytes of N words at P that are CODE or more. */
 static WHOLLY_INLINE uint64_t high_codes(const uint8_t *p, int n, int code,
                                          int is_above_128)
 {
-    const uint64_t add =
-        (uint64_t)((is_above_128 ? 256 : 128) - code) * EACH_BYTE;
     uint64_t found = 0;
 
-    for (int i = 0; i < n; i++) {
-        const uint64_t v = load(p + 8 * i), sum = (v & LOW_BITS) + add;
-
-        found |= is_above_128 ? sum & v : sum | v;
-    }
-    return found & HIGH_BITS;
+    for (int i = 0; i < n; i++)
+        found |= bytes_reach(bytes_load(p + 8 * i), code, is_above_128);
+    return found;
 }
 
 /* The least of N_BITS bits that becomes CODE or more when its highest bits are
@@ -60,7 +41,7 @@ static uint64_t high_565(const uint8_t *p, int n, int code)
     uint64_t found = 0;
 
     for (int i = 0; i < n; i++) {
-        const uint64_t v = load(p + 8 * i);
+        const uint64_t v = bytes_load(p + 8 * i);
 
         found |= ((v >> 11 & 31 * each) + add_5) & 32 * each;
         found |= (((v & 31 * each) + add_5) & 32 * each);
@@ -128,8 +109,7 @@ static int mark_row_565(struct glint_bright *b, const uint8_t *px)
     return any;
 }
 
-/* -------------------------------------------------------------- Y, Cb and Cr
- */
+/* ------------------------------------------------------------- Y, Cb and Cr */
 
 /* The greatest and the least of the bytes at every fourth place. */
 struct extremes {

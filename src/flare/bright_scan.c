@@ -6,8 +6,7 @@
 #include "flare/bright.h"
 #include "flare/bright_code.h"
 
-/* ---------------------------------------------------------------- R, G and B
- */
+/* --------------------------------------------------------------- R, G and B */
 
 /* Of pixel X, which is clipped. */
 static WHOLLY_INLINE uint8_t beyond_of_rgb(const struct glint_bright *b, int x)
@@ -36,42 +35,54 @@ static int read_values_rgb(struct glint_bright *b, int x, int end)
     return greatest;
 }
 
-/* The greatest of bytes P[I .. I + 2] for each I below 94, which are all that
- * lie in a block of three bytes a pixel; the last vector overlaps. */
-static WHOLLY_INLINE void find_largest(const uint8_t *p, uint8_t largest[94])
-{
-    for (int from = 0; from <= 78; from = from == 64 ? 78 : from + 16)
-        for (int i = 0; i < 16; i++) {
-            const uint8_t *v = p + from + i;
-            const uint8_t two = v[0] > v[1] ? v[0] : v[1];
+enum { RGB_BYTES = 3 * BRIGHT_BLOCK };
 
-            largest[from + i] = two > v[2] ? two : v[2];
-        }
+/* The greatest of bytes P[I .. I + 2] for each I where these lie in a block.
+ * Returns the greatest of all. The last vector overlaps. */
+static NEVER_INLINE int find_largest(const uint8_t *p,
+                                     uint8_t largest[RGB_BYTES])
+{
+    uint8_t greatest = 0;
+
+    for (int i = 0; i < RGB_BYTES - 16; i++) {
+        const uint8_t two = p[i] > p[i + 1] ? p[i] : p[i + 1];
+        const uint8_t most = two > p[i + 2] ? two : p[i + 2];
+
+        largest[i] = most;
+        greatest = greatest > most ? greatest : most;
+    }
+    for (int i = RGB_BYTES - 18; i < RGB_BYTES - 2; i++) {
+        const uint8_t two = p[i] > p[i + 1] ? p[i] : p[i + 1];
+        const uint8_t most = two > p[i + 2] ? two : p[i + 2];
+
+        largest[i] = most;
+        greatest = greatest > most ? greatest : most;
+    }
+    return greatest;
 }
 
-/* The same of a whole block from X of three bytes a pixel. */
+/* The same as read_values_rgb of a whole block from X of three bytes a pixel.
+ */
 static int read_block_rgb24(struct glint_bright *b, int x)
 {
-    const uint8_t *p =
-        b->code[0].first - b->layout->sample[0].offset + (ptrdiff_t)3 * x;
-    uint8_t largest[3 * BRIGHT_BLOCK - 2], *value = b->value + x;
-    uint8_t greatest = 0, brighter = 0;
+    const ptrdiff_t at = (ptrdiff_t)3 * x - b->layout->sample[0].offset;
+    uint8_t largest[RGB_BYTES], *value = b->value + x;
+    int greatest = find_largest(b->code[0].first + at, largest);
 
-    find_largest(p, largest);
-    for (int i = 0; i < 3 * BRIGHT_BLOCK - 2; i++)
-        greatest = greatest > largest[i] ? greatest : largest[i];
     for (int i = 0; i < BRIGHT_BLOCK; i++)
         value[i] = largest[3 * i];
-    for (int i = 0; i < BRIGHT_BLOCK && greatest >= BRIGHT_CLIPPED; i++)
+    if (greatest < BRIGHT_CLIPPED)
+        return greatest;
+    greatest = 0;
+    for (int i = 0; i < BRIGHT_BLOCK; i++) {
         if (value[i] >= BRIGHT_CLIPPED)
             value[i] = beyond_of_rgb(b, x + i);
-    for (int i = 0; i < BRIGHT_BLOCK; i++)
-        brighter = brighter > value[i] ? brighter : value[i];
-    return brighter;
+        greatest = bright_larger(greatest, value[i]);
+    }
+    return greatest;
 }
 
-/* --------------------------------------------------------------- Y, Cb and Cr
- */
+/* ------------------------------------------------------------- Y, Cb and Cr */
 
 /* A * B / 2^16, rounded down. */
 static WHOLLY_INLINE int16_t high_product(int16_t a, int16_t b)
@@ -211,6 +222,7 @@ int glint_bright_scan(struct glint_bright *b, int y)
     const int n_blocks = (b->width + BRIGHT_BLOCK - 1) / BRIGHT_BLOCK;
     int any, greatest = 0;
 
+    b->n_marked = 0;
     glint_bright_go(b, y);
     any = glint_bright_mark(b);
     if (n_blocks * BRIGHT_BLOCK > b->width) /* the rest is looked at as it is */
@@ -218,6 +230,8 @@ int glint_bright_scan(struct glint_bright *b, int y)
     for (int i = 0; any && i < n_blocks; i++)
         if (b->block[i]) {
             b->block[i] = (uint8_t)read_block(b, i);
+            b->marked[b->n_marked] = i;
+            b->n_marked += b->block[i] > 0;
             greatest = bright_larger(greatest, b->block[i]);
         }
     return greatest;

@@ -2,6 +2,7 @@
 #include "flare/regions.h"
 
 #include "base/arena.h"
+#include "base/bytes.h"
 #include "base/q.h"
 #include "flare/bright.h"
 
@@ -15,25 +16,6 @@ static int32_t smaller(int32_t a, int32_t b)
 static int32_t larger(int32_t a, int32_t b)
 {
     return a > b ? a : b;
-}
-
-static int64_t luminance(int64_t r, int64_t g, int64_t b)
-{
-    return q_shift(r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
-                       b * Q_CONST(0.0722, 15),
-                   15);
-}
-
-struct glint_region_light glint_region_light_of(const int32_t rgb_q20[3])
-{
-    struct glint_region_light light;
-    const int64_t seen_q14 =
-        q_shift(luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]), 20 - 14);
-
-    light.w_q14 = seen_q14 > 1 ? seen_q14 : 1;
-    for (int i = 0; i < 3; i++)
-        light.rgb_q14[i] = q_narrow(q_shift(rgb_q20[i], 20 - 14));
-    return light;
 }
 
 /* 0 + 1 + 4 + ... + (n - 1)^2 */
@@ -65,13 +47,6 @@ void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y)
     sum->x1 = larger(sum->x1, x1);
     sum->y0 = smaller(sum->y0, y);
     sum->y1 = larger(sum->y1, y + 1);
-}
-
-void glint_region_add_rim(struct glint_region *sum,
-                          const struct glint_region_light *light, int n)
-{
-    for (int i = 0; i < 3; i++)
-        sum->rim_rgb_q14[i] += (int64_t)light->rgb_q14[i] * n;
 }
 
 void glint_region_absorb(struct glint_region *sum,
@@ -155,7 +130,7 @@ void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
 
     for (int i = 0; i < 3; i++)
         c[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
-    y = luminance(c[0], c[1], c[2]);
+    y = region_luminance(c[0], c[1], c[2]);
     for (int i = 0; i < 3; i++)
         rgb_q15[i] =
             y > 0 ? q_narrow(quotient((uint64_t)c[i], y, 15)) : 1 << 15;
@@ -215,47 +190,71 @@ static int32_t new_label(struct glint_regions *r, int32_t first)
     return label;
 }
 
-/* Goes on with the runs of pixels X .. END - 1: *BEGIN is where the one begins
- * that X may continue, or -1. */
-static void find_runs(struct glint_run_row *row, const uint8_t *value, int low,
-                      int x, int end, int *begin)
+/* Bits of the pixels of a block, the first lowest, that are LOW or more. */
+static WHOLLY_INLINE uint32_t reach_of(const uint8_t value[BRIGHT_BLOCK],
+                                       int low, int is_above_128)
 {
-    for (; x < end; x++) {
-        const int is_in = value[x] >= low;
+    uint32_t bits = 0;
 
-        if (is_in == (*begin >= 0))
-            continue;
-        if (is_in) {
-            *begin = x;
-        } else {
-            row->run[row->n_runs++] =
-                (struct glint_run){.x0 = *begin, .x1 = x, .label = -1};
-            *begin = -1;
-        }
+    for (int i = 0; i < BRIGHT_BLOCK / 8; i++)
+        bits |= bytes_high_bits(
+                    bytes_reach(bytes_load(value + 8 * i), low, is_above_128))
+                << 8 * i;
+    return bits;
+}
+
+/* Ends the run that begins at BEGIN, if that is not -1. */
+static WHOLLY_INLINE void end_run(struct glint_run_row *row, int begin, int end)
+{
+    if (begin >= 0)
+        row->run[row->n_runs++] =
+            (struct glint_run){.x0 = begin, .x1 = end, .label = -1};
+}
+
+/* Goes on with the runs of a block from X, whose pixels of BITS are in. BEGIN
+ * is where the one begins that X may continue, or -1; returns the next of
+ * these.
+ */
+static int find_runs(struct glint_run_row *row, uint32_t bits, int x, int begin)
+{
+    uint32_t edges = bits ^ (bits << 1 | (begin >= 0));
+
+    for (; edges; edges &= edges - 1) {
+        const int at = x + bit_length(edges & -edges) - 1;
+
+        end_run(row, begin, at);
+        begin = begin < 0 ? at : -1;
     }
+    return begin;
 }
 
 static void find_all_runs(struct glint_run_row *row,
                           const struct glint_bright *b, int low)
 {
-    int begin = -1;
+    const int last = (b->width - 1) / BRIGHT_BLOCK;
+    const int past = (last + 1) * BRIGHT_BLOCK - b->width;
+    int begin = -1, next = 0; /* block */
 
     row->n_runs = 0;
-    for (int i = 0; i * BRIGHT_BLOCK < b->width; i++) {
-        const int x = i * BRIGHT_BLOCK, end = x + BRIGHT_BLOCK;
+    for (int k = 0; k < b->n_marked; k++) {
+        const int i = b->marked[k], x = i * BRIGHT_BLOCK;
+        uint32_t bits;
 
-        if (b->block[i] >= low) {
-            find_runs(row, b->value, low, x, end < b->width ? end : b->width,
-                      &begin);
-        } else if (begin >= 0) {
-            row->run[row->n_runs++] =
-                (struct glint_run){.x0 = begin, .x1 = x, .label = -1};
+        if (b->block[i] < low)
+            continue;
+        bits = low > 128 ? reach_of(b->value + x, low, 1)
+                         : reach_of(b->value + x, low, 0);
+        if (i == last)
+            bits &= UINT32_MAX >> past;
+        if (i > next) {
+            end_run(row, begin, next * BRIGHT_BLOCK);
             begin = -1;
         }
+        begin = find_runs(row, bits, x, begin);
+        next = i + 1;
     }
-    if (begin >= 0)
-        row->run[row->n_runs++] =
-            (struct glint_run){.x0 = begin, .x1 = b->width, .label = -1};
+    next *= BRIGHT_BLOCK;
+    end_run(row, begin, next < b->width ? next : b->width);
 }
 
 /* Gives the runs of row Y the labels of what they touch. */

@@ -30,6 +30,8 @@
 
 #include <stdint.h>
 
+#include "base/q.h"
+
 struct glint_arena;
 struct glint_bright;
 
@@ -51,8 +53,27 @@ struct glint_region_light {
     int32_t rgb_q14[3];
 };
 
+/* Linear luminance, BT.709. */
+static inline int64_t region_luminance(int64_t r, int64_t g, int64_t b)
+{
+    return q_shift(r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
+                       b * Q_CONST(0.0722, 15),
+                   15);
+}
+
 /* Of linear light RGB, 0 .. white. */
-struct glint_region_light glint_region_light_of(const int32_t rgb_q20[3]);
+static inline struct glint_region_light
+region_light_of(const int32_t rgb_q20[3])
+{
+    struct glint_region_light light;
+    const int64_t seen_q14 =
+        q_shift(region_luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]), 20 - 14);
+
+    light.w_q14 = seen_q14 > 1 ? seen_q14 : 1;
+    for (int i = 0; i < 3; i++) /* 2^14 at most */
+        light.rgb_q14[i] = (int32_t)q_shift(rgb_q20[i], 20 - 14);
+    return light;
+}
 
 /* Adds pixels X0 .. X1 - 1 of row Y, all of the same light, to the moments and
  * the colour. */
@@ -62,10 +83,6 @@ void glint_region_add_pixels(struct glint_region *sum,
 
 /* Adds the pixels of a run of row Y to the area and the box. */
 void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y);
-
-/* Adds N pixels that show the colour. */
-void glint_region_add_rim(struct glint_region *sum,
-                          const struct glint_region_light *light, int n);
 
 void glint_region_absorb(struct glint_region *sum,
                          const struct glint_region *other);

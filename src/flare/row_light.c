@@ -16,73 +16,84 @@ void glint_row_light_begin(struct glint_row_light *row)
     row->end = -1;
 }
 
-/* What a pixel adds. A colour is known only where no channel is clipped. */
-struct pixel {
-    int32_t w_q14, rgb_q14[3], rim_rgb_q14[3];
-};
+/* What a pixel of linear light RGB adds. A colour is known only where no
+ * channel is clipped. */
+static WHOLLY_INLINE void set_sums(int32_t of[ROW_LIGHT_SUMS],
+                                   const int32_t rgb_q20[3],
+                                   int32_t clipped_q20)
+{
+    const struct glint_region_light light = region_light_of(rgb_q20);
+    const int is_clipped = rgb_q20[0] >= clipped_q20 ||
+                           rgb_q20[1] >= clipped_q20 ||
+                           rgb_q20[2] >= clipped_q20;
 
-static WHOLLY_INLINE struct pixel pixel_of(const struct glint_bright *b, int x)
+    of[ROW_LIGHT_W] = (int32_t)light.w_q14;
+    for (int i = 0; i < 3; i++) {
+        of[ROW_LIGHT_RGB + i] = light.rgb_q14[i];
+        of[ROW_LIGHT_RIM_RGB + i] = is_clipped ? 0 : light.rgb_q14[i];
+    }
+}
+
+/* SUM and a pixel of column X, in *NEXT. */
+static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
+                                    const struct glint_row_sum *restrict sum,
+                                    const int32_t of[ROW_LIGHT_SUMS], int x)
+{
+    const int64_t wx_q14 = (int64_t)of[ROW_LIGHT_W] * x;
+
+    for (int i = 0; i < ROW_LIGHT_SUMS; i++)
+        next->of[i] = sum->of[i] + of[i];
+    next->wx_q14 = sum->wx_q14 + wx_q14;
+    next->wx2_q14 = sum->wx2_q14 + wx_q14 * x;
+}
+
+/* Sums pixels X0 .. X1 - 1, whose codes lie STEP and STEP_C bytes apart; those
+ * of the second and the third are each of 1 << SHIFT pixels. */
+static WHOLLY_INLINE void sum_pixels(struct glint_row_sum *sum,
+                                     const struct glint_bright *b, int x0,
+                                     int x1, int step, int step_c, int shift)
 {
     const int32_t clipped_q20 = b->curve->decode_q20[BRIGHT_CLIPPED];
-    struct glint_region_light light;
-    struct pixel p;
-    int32_t rgb_q20[3];
-    int is_clipped;
+    const uint8_t *c0 = b->code[0].first, *c1 = b->code[1].first;
+    const uint8_t *c2 = b->code[2].first;
+    int32_t of[ROW_LIGHT_SUMS] = {0}, codes = -1, rgb_q20[3];
 
-    bright_read(b, x, rgb_q20);
-    light = glint_region_light_of(rgb_q20);
-    is_clipped = rgb_q20[0] >= clipped_q20 || rgb_q20[1] >= clipped_q20 ||
-                 rgb_q20[2] >= clipped_q20;
-    p.w_q14 = (int32_t)light.w_q14;
-    for (int i = 0; i < 3; i++) {
-        p.rgb_q14[i] = light.rgb_q14[i];
-        p.rim_rgb_q14[i] = is_clipped ? 0 : light.rgb_q14[i];
-    }
-    return p;
-}
+    for (int x = x0; x < x1; x++) {
+        const ptrdiff_t at_c = (ptrdiff_t)(x >> shift) * step_c;
+        const int32_t here =
+            c0[(ptrdiff_t)x * step] | c1[at_c] << 8 | c2[at_c] << 16;
 
-/* Adds P, of column X, to what is left of it. */
-static WHOLLY_INLINE void add_pixel(struct glint_row_sum *sum,
-                                    const struct pixel *p, int x)
-{
-    const int64_t wx_q14 = (int64_t)p->w_q14 * x;
-
-    sum->w_q14 += p->w_q14;
-    sum->wx_q14 += wx_q14;
-    sum->wx2_q14 += wx_q14 * x;
-    for (int i = 0; i < 3; i++) {
-        sum->rgb_q14[i] += p->rgb_q14[i];
-        sum->rim_rgb_q14[i] += p->rim_rgb_q14[i];
+        if (here != codes) {
+            bright_read(b, x, rgb_q20);
+            set_sums(of, rgb_q20, clipped_q20);
+        }
+        codes = here;
+        add_pixel(&sum[x + 1], &sum[x], of, x);
     }
 }
 
-/* All codes of pixel X. */
-static WHOLLY_INLINE int32_t codes_of(const struct glint_bright *b, int x)
+/* The same with constant steps where they are the usual ones. */
+static void sum_stretch(struct glint_row_sum *sum, const struct glint_bright *b,
+                        int x0, int x1)
 {
-    return code_at(b, 0, x) | code_at(b, 1, x) << 8 | code_at(b, 2, x) << 16;
+    const struct glint_bright_code *c = b->code;
+
+    if (c[0].step == 3)
+        sum_pixels(sum, b, x0, x1, 3, 3, 0);
+    else if (c[0].step == 2 && c[1].step == 4)
+        sum_pixels(sum, b, x0, x1, 2, 4, 1);
+    else
+        sum_pixels(sum, b, x0, x1, c[0].step, c[1].step, c[1].shift);
 }
 
 void glint_row_light_extend(struct glint_row_light *row,
                             const struct glint_bright *bright, int x0, int x1)
 {
-    struct glint_row_sum sum = {0};
-    struct pixel p = {0};
-    int32_t codes = -1;
-
-    if (x0 <= row->end) {
+    if (x0 <= row->end)
         x0 = row->end;
-        sum = row->sum[x0];
-    }
-    row->sum[x0] = sum;
-    for (int x = x0; x < x1; x++) {
-        const int32_t here = codes_of(bright, x);
-
-        if (here != codes)
-            p = pixel_of(bright, x);
-        codes = here;
-        add_pixel(&sum, &p, x);
-        row->sum[x + 1] = sum;
-    }
+    else
+        row->sum[x0] = (struct glint_row_sum){.wx_q14 = 0};
+    sum_stretch(row->sum, bright, x0, x1);
     if (x1 > row->end)
         row->end = x1;
 }
@@ -95,7 +106,7 @@ void glint_row_light_add(const struct glint_row_light *row,
     const int rim0 = x0 > ROW_LIGHT_RIM ? x0 - ROW_LIGHT_RIM : 0;
     const int rim1 = x1 < width - ROW_LIGHT_RIM ? x1 + ROW_LIGHT_RIM : width;
     const struct glint_row_sum *c = &row->sum[rim0], *d = &row->sum[rim1];
-    const int64_t w_q14 = b->w_q14 - a->w_q14;
+    const int64_t w_q14 = b->of[ROW_LIGHT_W] - a->of[ROW_LIGHT_W];
 
     region->w_q14 += w_q14;
     region->wx_q14 += b->wx_q14 - a->wx_q14;
@@ -103,7 +114,9 @@ void glint_row_light_add(const struct glint_row_light *row,
     region->wr2_q14 += (uint64_t)(b->wx2_q14 - a->wx2_q14) +
                        (uint64_t)w_q14 * (uint64_t)((int64_t)y * y);
     for (int i = 0; i < 3; i++) {
-        region->rgb_q14[i] += b->rgb_q14[i] - a->rgb_q14[i];
-        region->rim_rgb_q14[i] += d->rim_rgb_q14[i] - c->rim_rgb_q14[i];
+        const int rgb = ROW_LIGHT_RGB + i, rim = ROW_LIGHT_RIM_RGB + i;
+
+        region->rgb_q14[i] += b->of[rgb] - a->of[rgb];
+        region->rim_rgb_q14[i] += d->of[rim] - c->of[rim];
     }
 }

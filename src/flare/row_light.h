@@ -25,12 +25,18 @@
 
 enum { ROW_LIGHT_RIM = 2 }; /* pixels beside a run that show its colour, too */
 
+/* Places of what is summed in 32 bits. */
+enum {
+    ROW_LIGHT_W,   /* linear luminance, _q14 */
+    ROW_LIGHT_RGB, /* _q14, and the same of those with no channel clipped */
+    ROW_LIGHT_RIM_RGB = ROW_LIGHT_RGB + 3,
+    ROW_LIGHT_SUMS = 8 /* a power of two: for vectors */
+};
+
 /* Of the pixels left of one, from wherever its stretch began. */
 struct glint_row_sum {
+    int32_t of[ROW_LIGHT_SUMS];
     int64_t wx_q14, wx2_q14;
-    int32_t w_q14, rgb_q14[3];
-    int32_t rim_rgb_q14[3]; /* of those with no channel clipped */
-    int32_t unused;
 };
 
 struct glint_row_light {

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Eight bytes in a word, the first lowest.
+ */
+#ifndef GLINT_BASE_BYTES_H
+#define GLINT_BASE_BYTES_H
+
+#include "base/compiler.h"
+
+#define BYTES_EACH UINT64_C(0x0101010101010101)
+#define BYTES_LOW  (0x7f * BYTES_EACH)
+#define BYTES_HIGH (0x80 * BYTES_EACH)
+
+/* Written so that compilers make one load of it. */
+static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
+{
+    return (uint64_t)p[0] | (uint64_t)p[1] << 8 | (uint64_t)p[2] << 16 |
+           (uint64_t)p[3] << 24 | (uint64_t)p[4] << 32 | (uint64_t)p[5] << 40 |
+           (uint64_t)p[6] << 48 | (uint64_t)p[7] << 56;
+}
+
+/* High bits of the bytes of V that are CODE or more, 1 .. 128, or 129 .. 256 if
+ * IS_ABOVE_128. No byte carries into the next: both addends are below 128. */
+static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
+                                          int is_above_128)
+{
+    const uint64_t add =
+        (uint64_t)((is_above_128 ? 256 : 128) - code) * BYTES_EACH;
+    const uint64_t sum = (v & BYTES_LOW) + add;
+
+    return (is_above_128 ? sum & v : sum | v) & BYTES_HIGH;
+}
+
+/* The eight high bits of HIGH side by side, the first byte's lowest. */
+static WHOLLY_INLINE uint32_t bytes_high_bits(uint64_t high)
+{
+    return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);
+}
+
+#endif
