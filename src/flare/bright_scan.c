@@ -167,14 +167,13 @@ static void gather(const struct glint_bright *b, int i, int x,
     }
 }
 
-/* Value of pixels X .. END - 1, a block, of luma and chroma or of luma alone;
+/* Value of the block from pixel X, of luma and chroma or of luma alone;
  * returns the greatest, or 0 below low. */
-static int read_values_ycc(struct glint_bright *b, int x, int end)
+static NEVER_INLINE int read_values_ycc(struct glint_bright *b, int x)
 {
     uint8_t luma[BRIGHT_BLOCK], cb[BRIGHT_BLOCK], cr[BRIGHT_BLOCK];
     uint8_t value[BRIGHT_BLOCK];
-    uint8_t greatest_code = 0;
-    int greatest = 0;
+    uint8_t greatest_code = 0, greatest = 0, *row = b->value + x;
 
     gather(b, 0, x, luma);
     if (b->layout->kind == GLINT_LAYOUT_GREY) {
@@ -192,10 +191,10 @@ static int read_values_ycc(struct glint_bright *b, int x, int end)
             value[i] = b->beyond[b->full_luma[luma[i]]];
     if (greatest_code < b->low && greatest_code < BRIGHT_CLIPPED)
         return 0;
-    for (int i = 0; i < end - x; i++) {
-        b->value[x + i] = value[i];
-        greatest = bright_larger(greatest, value[i]);
-    }
+    for (int i = 0; i < BRIGHT_BLOCK; i++)
+        greatest = greatest > value[i] ? greatest : value[i];
+    for (int i = 0; i < BRIGHT_BLOCK; i++)
+        row[i] = value[i];
     return greatest;
 }
 
@@ -208,7 +207,7 @@ static int read_block(struct glint_bright *b, int i)
     int greatest;
 
     if (!bright_is_rgb(b))
-        greatest = read_values_ycc(b, x, end);
+        greatest = read_values_ycc(b, x);
     else if (is_whole && b->layout->kind == GLINT_LAYOUT_RGB &&
              b->code[0].step == 3)
         greatest = read_block_rgb24(b, x);

@@ -47,11 +47,31 @@ static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
     next->wx2_q14 = sum->wx2_q14 + wx_q14 * x;
 }
 
+/* Linear light of CODES of pixel X, which are Y, Cb, Cr if IS_YCC. */
+static WHOLLY_INLINE void decode(const struct glint_bright *b, int x,
+                                 int32_t codes, int is_ycc, int32_t rgb_q20[3])
+{
+    int32_t rgb_q7[3];
+
+    if (!is_ycc) {
+        bright_read(b, x, rgb_q20);
+        return;
+    }
+    ycc_to_rgb(&b->ycc, codes & 255, codes >> 8 & 255, codes >> 16, rgb_q7);
+    for (int i = 0; i < 3; i++) {
+        const int32_t held_q7 =
+            rgb_q7[i] < CODE_WHITE_Q7 ? rgb_q7[i] : CODE_WHITE_Q7;
+
+        rgb_q20[i] = curve_decode(b->curve, held_q7 > 0 ? held_q7 : 0);
+    }
+}
+
 /* Sums pixels X0 .. X1 - 1, whose codes lie STEP and STEP_C bytes apart; those
  * of the second and the third are each of 1 << SHIFT pixels. */
 static WHOLLY_INLINE void sum_pixels(struct glint_row_sum *sum,
                                      const struct glint_bright *b, int x0,
-                                     int x1, int step, int step_c, int shift)
+                                     int x1, int is_ycc, int step, int step_c,
+                                     int shift)
 {
     const int32_t clipped_q20 = b->curve->decode_q20[BRIGHT_CLIPPED];
     const uint8_t *c0 = b->code[0].first, *c1 = b->code[1].first;
@@ -64,7 +84,7 @@ static WHOLLY_INLINE void sum_pixels(struct glint_row_sum *sum,
             c0[(ptrdiff_t)x * step] | c1[at_c] << 8 | c2[at_c] << 16;
 
         if (here != codes) {
-            bright_read(b, x, rgb_q20);
+            decode(b, x, here, is_ycc, rgb_q20);
             set_sums(of, rgb_q20, clipped_q20);
         }
         codes = here;
@@ -77,13 +97,16 @@ static void sum_stretch(struct glint_row_sum *sum, const struct glint_bright *b,
                         int x0, int x1)
 {
     const struct glint_bright_code *c = b->code;
+    const int is_ycc = b->layout->kind == GLINT_LAYOUT_YCC;
 
     if (c[0].step == 3)
-        sum_pixels(sum, b, x0, x1, 3, 3, 0);
-    else if (c[0].step == 2 && c[1].step == 4)
-        sum_pixels(sum, b, x0, x1, 2, 4, 1);
+        sum_pixels(sum, b, x0, x1, 0, 3, 3, 0);
+    else if (is_ycc && c[0].step == 2)
+        sum_pixels(sum, b, x0, x1, 1, 2, 4, 1);
+    else if (is_ycc)
+        sum_pixels(sum, b, x0, x1, 1, c[0].step, c[1].step, c[1].shift);
     else
-        sum_pixels(sum, b, x0, x1, c[0].step, c[1].step, c[1].shift);
+        sum_pixels(sum, b, x0, x1, 0, c[0].step, c[1].step, c[1].shift);
 }
 
 void glint_row_light_extend(struct glint_row_light *row,
