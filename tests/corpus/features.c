@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * features PICTURE.ppm... - what the finder knows of each region that may be a
+ * lamp, as CSV, for tests/corpus/fit: the picture, its size, level and cost of
+ * the level, box, centroid (pixels), pixels, then the measures of
+ * enum glint_evidence and the score that the library gives.
+ *
+ * Regions are no part of the interface, so this is a build of the finder
+ * itself.
+ */
+#include "flare/lights.c"
+#include "ppm.h"
+
+static void put(const char *name, const struct glint_lights *f,
+                const struct glint_candidate *c)
+{
+    const struct glint_region *sum = &c->sum;
+    int32_t x_q8, y_q8;
+
+    glint_region_centroid(sum, &x_q8, &y_q8);
+    printf("%s,%d,%d,%d,%d,%d,%d,%d,%d,%.2f,%.2f,%d", name, f->cfg.width,
+           f->cfg.height, c->level, (int)f->level[c->level].cost_q8,
+           (int)sum->x0, (int)sum->y0, (int)sum->x1, (int)sum->y1, x_q8 / 256.0,
+           y_q8 / 256.0, (int)sum->area);
+    for (int i = 0; i < EVIDENCES; i++)
+        printf(",%d", (int)c->evidence_q8[i]);
+    printf(",%d\n", (int)c->score_q8);
+}
+
+static int list(const char *name, const struct glint_image *image)
+{
+    struct glint_lights_config cfg;
+    struct glint_lights *f;
+    void *mem = NULL;
+    size_t bytes;
+
+    glint_lights_defaults(&cfg, image->width, image->height);
+    bytes = glint_lights_bytes(&cfg);
+    if (posix_memalign(&mem, 64, bytes) != 0 ||
+        glint_lights_init(&f, &cfg, mem, bytes) != GLINT_OK) {
+        fprintf(stderr, "%s: no finder for this size\n", name);
+        free(mem);
+        return 1;
+    }
+    find_candidates(f, image);
+    glint_score_all(&(struct glint_score){&f->bright, f->white, f->cfg.width,
+                                          f->cfg.height, f->level},
+                    f->candidate, f->order, f->n);
+    for (int i = 0; i < f->n; i++)
+        put(name, f, &f->candidate[f->order[i]]);
+    free(mem);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct glint_image image;
+    int code = 0;
+
+    puts("file,width,height,level,cost,x0,y0,x1,y1,x,y,area,around,halo,spread,"
+         "fill,box,size,rest,colour,tint,dim,score");
+    for (int i = 1; i < argc && code == 0; i++) {
+        code = ppm_read(argv[i], &image);
+        if (code == 0) {
+            code = list(argv[i], &image);
+            free(image.plane[0]);
+        }
+    }
+    return code;
+}
