@@ -401,6 +401,11 @@ corpus-report: corpus all
 $(OUT)/tests/corpus/%.o: CPPFLAGS += -Itools/examples
 $(OUT)/corpus-found: $(OUT)/tests/corpus/found.o $(libs)
 	$(link)
+# The weights of src/flare/score.c, from the pictures that are there to tune on.
+corpus-fit: corpus $(OUT)/corpus-features
+	@OUT=$(OUT) tests/corpus/fit
+$(OUT)/corpus-features: $(OUT)/tests/corpus/features.o $(libs)
+	$(link)
 bench: all
 	@build/glint bench
 growth: all
@@ -676,7 +681,7 @@ uninstall:
 	        $(to)/share/glint/models $(to)/share/glint/lenses $(to)/share/glint 2>/dev/null
 clean:
 	rm -rf build
-.PHONY: window check-files all help video-report corpus corpus-evaluate corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
+.PHONY: window check-files all help video-report corpus corpus-evaluate corpus-fit corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
         lint purity install uninstall clean
 Q   := $(if $(V),,@)
 say := @$(if $(V),:,printf ' %s %s\n')

@@ -16,7 +16,7 @@
  * distances grow with the region and with the picture, so that the same scene
  * in more pixels has the same score.
  *
- * Limits: each term is below 2^13 * 2^10, so that the sum of a dozen fits 32
+ * Limits: each term is below 2^13 * 2^10, so that the sum of some 14 fits 32
  * bits with ease; what areas and boxes need is in 64.
  */
 #ifndef GLINT_FLARE_SCORE_H
@@ -26,7 +26,12 @@
 #include "flare/regions.h"
 #include "flare/white.h"
 
-enum { SCORE_RINGS = 3, SCORE_POINTS = 16, SCORE_DOUBT = 256 };
+enum {
+    SCORE_RINGS = 3,
+    SCORE_POINTS = 16,
+    SCORE_DOUBT = 256,
+    SCORE_LEVELS = 8
+};
 
 /* Measures, _q8. */
 enum glint_evidence {
@@ -37,12 +42,13 @@ enum glint_evidence {
     EVIDENCE_FILL,   /* area over that of a disc that is as wide: 256 for one */
     EVIDENCE_BOX,    /* area over that of its box */
     EVIDENCE_SIZE,   /* log2 of its share of the picture: 0 and less */
-    EVIDENCE_REST,   /* log2 of the share of the picture that is as bright, but
-                        for three times itself: lamps come in pairs */
     EVIDENCE_COLOUR, /* saturation, 256: one channel alone; of a small region */
-    EVIDENCE_TINT,   /* the same of a large one: a lamp would be white there */
     EVIDENCE_DIM,    /* stops by which half of the picture is less than five
                         below a white that is none */
+    EVIDENCE_CLOSE,  /* as AROUND, close to the edge: that of a lamp is steep */
+    EVIDENCE_SOLID,  /* share of it that is clipped: 256 is all of it */
+    EVIDENCE_WHITE,  /* stops of its mean luminance over its level's white */
+    EVIDENCE_CROWD,  /* log2 of the regions of its level: lamps are few */
     EVIDENCES
 };
 

@@ -4,11 +4,8 @@
  * lamp, as CSV, for tests/corpus/fit: the picture, its size, level and cost of
  * the level, box, centroid (pixels), pixels, then the measures of
  * enum glint_evidence and the score that the library gives.
- *
- * Regions are no part of the interface, so this is a build of the finder
- * itself.
  */
-#include "flare/lights.c"
+#include "flare/lights_state.h"
 #include "ppm.h"
 
 static void put(const char *name, const struct glint_lights *f,
@@ -27,6 +24,14 @@ static void put(const char *name, const struct glint_lights *f,
     printf(",%d\n", (int)c->score_q8);
 }
 
+static void score(struct glint_lights *f)
+{
+    const struct glint_score all = {&f->bright,    f->white, f->cfg.width,
+                                    f->cfg.height, f->level, 0};
+
+    glint_score_all(&all, f->candidate, f->order, f->n);
+}
+
 static int list(const char *name, const struct glint_image *image)
 {
     struct glint_lights_config cfg;
@@ -42,10 +47,8 @@ static int list(const char *name, const struct glint_image *image)
         free(mem);
         return 1;
     }
-    find_candidates(f, image);
-    glint_score_all(&(struct glint_score){&f->bright, f->white, f->cfg.width,
-                                          f->cfg.height, f->level},
-                    f->candidate, f->order, f->n);
+    glint_lights_collect(f, image);
+    score(f);
     for (int i = 0; i < f->n; i++)
         put(name, f, &f->candidate[f->order[i]]);
     free(mem);
@@ -58,7 +61,7 @@ int main(int argc, char **argv)
     int code = 0;
 
     puts("file,width,height,level,cost,x0,y0,x1,y1,x,y,area,around,halo,spread,"
-         "fill,box,size,rest,colour,tint,dim,score");
+         "fill,box,size,colour,dim,close,solid,white,crowd,score");
     for (int i = 1; i < argc && code == 0; i++) {
         code = ppm_read(argv[i], &image);
         if (code == 0) {
