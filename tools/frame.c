@@ -104,6 +104,7 @@ static void set_waves(struct frame *f)
     const struct glint_set_wave *w = s->set_wave;
 
     f->sets = (struct glint_wave_sets){
+        .planner = &glint_wave_planner,
         .n_sets = s->n_sets,
         .apart_q8 = (int32_t)lrint(f->dispersion_px * 256)};
     for (int i = 0; i < s->n_sets; i++)

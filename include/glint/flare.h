@@ -101,10 +101,16 @@ struct glint_wave {
                                  by: the direct image's at angle 0, mm^2 */
 };
 
+/* Chooses among sets of waves. */
+struct glint_wave_planner;
+extern const struct glint_wave_planner glint_wave_planner;
+
 /* Sets of waves that each stand for the same light, so that a ghost takes the
  * smallest one whose steps cannot be seen: where the outlines of neighbouring
  * waves lie near each other, or are faint. */
 struct glint_wave_sets {
+    /* glint_wave_planner, which only a program that names it links. */
+    const struct glint_wave_planner *planner;
     int n_sets;                    /* 1 .. GLINT_MAX_WAVE_SETS */
     int size[GLINT_MAX_WAVE_SETS]; /* waves of each, 2 or more, rising: one set
                                       after the other in glint_rays.wave */

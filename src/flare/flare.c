@@ -288,7 +288,7 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                                       .half = flare->half,
                                       .round = flare->cfg.stop.n_blades == 0};
     flare->flux = flare->brightest = (struct glint_real){0, 0};
-    keep_seen(flare, rays->sets ? glint_wave_sets_plan(flare, n_jobs)
+    keep_seen(flare, rays->sets ? rays->sets->planner->plan(flare, n_jobs)
                                 : plan_all(flare, n_jobs));
     if (flare->cfg.raster->fill)
         flare->cfg.raster->fill(flare);

@@ -78,7 +78,6 @@ static int64_t floor_of(int channel, int64_t value)
     case GLINT_CHANNEL_Y:
         return 65536 / 32;
     case GLINT_CHANNEL_FLUX:
-        return value / 64 + 1;
     case GLINT_CHANNEL_POWER:
         return value / 64 + 1;
     case GLINT_CHANNEL_SIZE:

@@ -27,7 +27,7 @@ static int64_t luminance(const int64_t v[3])
 static void set_colour(struct glint_spot *spot,
                        const struct glint_profile_sums *sums)
 {
-    int64_t v[3], y;
+    int64_t v[3] = {0, 0, 0}, y;
     int down = 0;
 
     for (int c = 0; c < 3; c++) {

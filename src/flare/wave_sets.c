@@ -255,7 +255,7 @@ static int place(struct glint_flare *f, int n, int64_t *need)
     return total;
 }
 
-int glint_wave_sets_plan(struct glint_flare *flare, int n_jobs)
+static int plan_sets(struct glint_flare *flare, int n_jobs)
 {
     struct glint_flare_stats *s = &flare->stats;
     const int size = flare->plan.rays->sets->size[0];
@@ -277,3 +277,5 @@ int glint_wave_sets_plan(struct glint_flare *flare, int n_jobs)
     s->need_bundles = q_narrow(q_clamp_sat(least, 0, INT32_MAX));
     return total;
 }
+
+const struct glint_wave_planner glint_wave_planner = {plan_sets};

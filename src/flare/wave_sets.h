@@ -17,9 +17,11 @@
 
 #include "flare/state.h"
 
-/* Plans N_JOBS pairs of a ghost and a beam, ghosts first; returns how many
- * bundles there are, and sets the statistics of what was needed. */
-int glint_wave_sets_plan(struct glint_flare *flare, int n_jobs);
+struct glint_wave_planner {
+    /* Plans N_JOBS pairs of a ghost and a beam, ghosts first; returns how many
+     * bundles there are, and sets the statistics of what was needed. */
+    int (*plan)(struct glint_flare *flare, int n_jobs);
+};
 
 /* First wave of set SET. */
 int glint_wave_sets_first(const struct glint_wave_sets *sets, int set);
