@@ -169,7 +169,7 @@ static enum glint_status draw_linear(struct explain_command *c)
     enum glint_status status = GLINT_E_MEMORY;
     uint8_t *codes;
 
-    look->n_lamps = look_lamps(look, &c->image, 0);
+    look_lamps(look, &c->image, 0);
     light.rgb = calloc(3 * n, sizeof *light.rgb);
     if (light.rgb)
         status = frame_draw_alone(&look->frame, look->lamp, look->n_lamps,

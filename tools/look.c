@@ -322,9 +322,9 @@ static struct lamp_row row_of(const struct look *look, int i)
     return row;
 }
 
-static void save_lamps(struct look *look, int n)
+static void save_lamps(struct look *look)
 {
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; look->save.is_open && i < look->n_lamps; i++) {
         const struct lamp_row row = row_of(look, i);
 
         lamp_save_row(&look->save, &row);
@@ -357,11 +357,9 @@ static int set_lamps(struct look *look, const struct glint_image *image,
 int look_lamps(struct look *look, const struct glint_image *image,
                int32_t elapsed_us)
 {
-    const int n = set_lamps(look, image, elapsed_us);
-
-    if (look->save.is_open)
-        save_lamps(look, n);
-    return n;
+    look->n_lamps = set_lamps(look, image, elapsed_us);
+    save_lamps(look);
+    return look->n_lamps;
 }
 
 /* Whether codes are luma and chroma, or grey: then black may be 16. */
@@ -440,6 +438,7 @@ void look_expose(struct look *look, int32_t elapsed_us)
                                          (double)look->view.width *
                                              look->view.height * look->white};
 
+    save_lamps(look);
     look->strength.is_physical = look->scene.has_exposure;
     look->strength.exposure_ev = look->scene.exposure_ev;
     look->strength.gain = look->scene.gain;
@@ -453,7 +452,7 @@ void look_find(struct look *look, const struct glint_image *image,
     const struct scene *scene = &look->scene;
     const double start = tool_seconds();
 
-    look->n_lamps = look_lamps(look, image, elapsed_us);
+    look->n_lamps = set_lamps(look, image, elapsed_us);
     /* there is time for a picture by itself */
     if (elapsed_us == 0 && !scene->area_samples_asked && scene->budget_ms == 0)
         look->frame.area_samples = 1 + AREA_STILL * (scene->area_samples - 1);

@@ -159,8 +159,8 @@ enum glint_status look_draw(struct look *look, const struct glint_image *image,
                             int32_t elapsed_us);
 
 /* The parts of look_draw, for tools/look_layer.h: sets the lamps of IMAGE and
- * their number, then what their light is multiplied by, and draws over IMAGE
- * where they are. */
+ * their number; saves them, which may have been measured in between, and sets
+ * what their light is multiplied by; and draws over IMAGE where they are. */
 void look_find(struct look *look, const struct glint_image *image,
                int32_t elapsed_us);
 void look_expose(struct look *look, int32_t elapsed_us);

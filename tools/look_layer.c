@@ -105,14 +105,17 @@ static struct sum seen_of(const struct glint_track *track, double white)
 static void set_lamp(struct look *look, int i, const struct sum *sum)
 {
     struct glint_lamp *const lamp = &look->lamp[i];
+    struct glint_track *const track = &look->finder.track[i];
     const double focal = look->scene.setup.optics.focal_mm;
 
     if (!(sum->luminance > 0))
         return;
-    glint_view_to_angles(&look->view, focal, sum->x / sum->luminance,
-                         sum->y / sum->luminance, lamp);
-    lamp->power = fmin(sum->luminance, LAMP_MAX_POWER) *
-                  look->finder.track[i].level_q15 / 32768;
+    track->x_q8 = (int32_t)lrint(256 * sum->x / sum->luminance);
+    track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
+    glint_view_to_angles(&look->view, focal, track->x_q8 / 256.0,
+                         track->y_q8 / 256.0, lamp);
+    lamp->power =
+        fmin(sum->luminance, LAMP_MAX_POWER) * track->level_q15 / 32768;
     for (int c = 0; c < 3; c++)
         lamp->rgb[c] = sum->rgb[c] / sum->luminance;
 }
