@@ -243,7 +243,8 @@ static int end_writer(struct video *v)
                 v->o->output);
         return EXIT_OUTPUT;
     }
-    if (status == GLINT_OK && v->writes)
+    /* an encoder that has had enough, as with -frames:v, has made a file */
+    if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED))
         status = glint_output_commit(&v->file, &v->error);
     return status == GLINT_OK ? EXIT_OK : fail(v, status);
 }
