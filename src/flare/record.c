@@ -271,7 +271,11 @@ static void follow_light(struct glint_record *r,
 {
     struct glint_follow *f = &r->of[channel];
     const int64_t before = f->value, shown = glint_follow_shown(f);
-    const int64_t larger = target > before ? target : before;
+    const int64_t larger =
+        channel == GLINT_CHANNEL_COS2 || channel == GLINT_CHANNEL_SIN2
+            ? ONE_Q15 /* whichever way the axis lies */
+        : target > before ? target
+                          : before;
     const int64_t floor = floor_of(channel, larger);
     int32_t share_q15;
     int64_t change;

@@ -173,6 +173,54 @@ static void test_static_scene_stands_still(void **state)
     night_close(&night);
 }
 
+/* How far the axis of a tube that lies at DEGREES turns from frame to frame,
+ * RMS, as seen with noise of 3.5 degrees. */
+static double turns_of(double degrees)
+{
+    struct moments turn = {0, 0, 0};
+
+    night_init(&night, 320, 200);
+    assert_true(night_open(&night));
+    for (int frame = 0; frame < 300; frame++) {
+        const double angle =
+            (degrees + (night_random(&night, 1201) - 600) / 100.0) * 3.14159 /
+            180;
+        const struct glint_spot spot = {
+            .x_q8 = 160 << 8,
+            .y_q8 = 100 << 8,
+            .size_q8 = 8 << 8,
+            .area = 200,
+            .flux_q16 = 200 << 16,
+            .power_q16 = 200 << 16,
+            .axis_q8 = {8 << 8, 2 << 8},
+            .cos_q15 = (int32_t)lrint(32768 * fabs(cos(angle))),
+            .sin_q15 =
+                (int32_t)lrint(32768 * sin(angle)) * (cos(angle) < 0 ? -1 : 1),
+            .rgb_q15 = {1 << 15, 1 << 15, 1 << 15}};
+        double off;
+
+        assert_int_equal(glint_tracks_step(night.tracks, &spot, 1, FPS30,
+                                           night.track, NIGHT_MAX),
+                         1);
+        off = atan2(night.track[0].sin_q15, night.track[0].cos_q15) * 180 /
+                  3.14159 -
+              degrees;
+        if (frame >= 30)
+            add(&turn, remainder(off, 180));
+    }
+    night_close(&night);
+    return deviation(&turn);
+}
+
+static void test_axes_are_steady_however_they_lie(void **state)
+{
+    const double lying = turns_of(0), standing = turns_of(90);
+
+    (void)state;
+    print_message("axes: %.2f degrees lying, %.2f standing\n", lying, standing);
+    assert_true(lying < 1 && standing < 1);
+}
+
 /* A lamp of 8 x 8 pixels, far from white, and one pixel of it 41 times as
  * bright (code 255 against 43, linear 1 against 0.0242): another one in each
  * picture, or now and then. */
@@ -909,6 +957,7 @@ int main(void)
         cmocka_unit_test(test_memory_is_exact),
         cmocka_unit_test(test_bad_configurations_are_refused),
         cmocka_unit_test(test_static_scene_stands_still),
+        cmocka_unit_test(test_axes_are_steady_however_they_lie),
         cmocka_unit_test(test_sparkle_moves_less_than_a_pixel),
         cmocka_unit_test(test_hysteresis),
         cmocka_unit_test(test_faint_spots_begin_no_track),
