@@ -40,7 +40,8 @@ int glint_samples_height(const struct glint_samples *samples)
 static uint8_t *find(const struct glint_samples *s, int x, int y)
 {
     const int right = s->window_width - 1, bottom = s->window_height - 1;
-    int column = is_turned(s) ? y : x, row = is_turned(s) ? x : y;
+    /* windows of a file may be anywhere */
+    int64_t column = is_turned(s) ? y : x, row = is_turned(s) ? x : y;
 
     if (s->orientation == 2 || s->orientation == 3 || s->orientation == 7 ||
         s->orientation == 8)

@@ -30,7 +30,7 @@ void glint_tone_curve_set(struct glint_tone_curve *transfer,
 static double look_up(const struct glint_tone_curve *t, double code)
 {
     const double at = code * (t->n_entries - 1);
-    const int i = code >= 1 ? t->n_entries - 2 : (int)at;
+    const int i = code < 1 ? (int)at : t->n_entries - 2; /* no number, too */
 
     return (t->entry[i] + (at - i) * (t->entry[i + 1] - t->entry[i])) / 65535;
 }

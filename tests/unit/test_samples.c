@@ -138,6 +138,21 @@ static void test_profile(void **state)
     }
 }
 
+/* Floats may hold what is no place in a table. */
+static void test_tables_of_any_float(void **state)
+{
+    struct glint_tone_curve t = {
+        .gamma = 1, .a = 1, .n_entries = 3, .entry = {0, 16384, 65535}};
+
+    (void)state;
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.25) < 1e-4);
+    assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-4);
+    assert_true(glint_tone_curve_decode(&t, 1) == 1);
+    assert_true(glint_tone_curve_decode(&t, 2) > 1);
+    assert_true(isinf(glint_tone_curve_decode(&t, HUGE_VAL)));
+    assert_true(isnan(glint_tone_curve_decode(&t, NAN)));
+}
+
 static void test_light_is_added(void **state)
 {
     uint16_t mem[] = {0, 1000, 65535, 32768, 32768, 32768};
@@ -277,6 +292,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_half),
         cmocka_unit_test(test_curves),
+        cmocka_unit_test(test_tables_of_any_float),
         cmocka_unit_test(test_profile),
         cmocka_unit_test(test_light_is_added),
         cmocka_unit_test(test_floats),
