@@ -62,7 +62,8 @@ static const char *check_row(const double *v)
         return "level must be above 0 and up to 1";
     if (!(v[LAMP_SHAPE] >= 0 && v[LAMP_SHAPE] <= 1))
         return "shape must be 0 to 1";
-    return v[7] < 0 ? "size must not be negative" : NULL;
+    return v[7] >= 0 && v[7] <= 1e6 ? NULL
+                                    : "size must be 0 to a million pixels";
 }
 
 /* "frame,x,y,power[,r,g,b[,size]]" */
