@@ -23,6 +23,7 @@ struct video {
     struct ffmpeg_video about;
     struct child reader, writer;
     struct glint_output file; /* what ffmpeg writes, until it is whole */
+    char pipe[32];            /* its name, which OUT keeps */
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
 };
@@ -145,7 +146,6 @@ static enum glint_status open_encoder(struct video *v)
         .quiet = v->tool->quiet};
     enum glint_status status =
         glint_output_open(&v->file, o->output, GLINT_OUTPUT_BINARY, &v->error);
-    char pipe[32];
 
     if (status != GLINT_OK)
         return status;
@@ -156,8 +156,8 @@ static enum glint_status open_encoder(struct video *v)
     status = ffmpeg_write(&v->writer, &target, &v->about, &v->error);
     if (status != GLINT_OK)
         return status;
-    snprintf(pipe, sizeof pipe, "/proc/self/fd/%d", v->writer.fd);
-    status = glint_y4m_writer_open(&v->out, pipe, &v->in.header, &v->error);
+    snprintf(v->pipe, sizeof v->pipe, "/proc/self/fd/%d", v->writer.fd);
+    status = glint_y4m_writer_open(&v->out, v->pipe, &v->in.header, &v->error);
     close(v->writer.fd); /* the other is closed with the stream */
     v->writer.fd = -1;
     return status;
