@@ -244,13 +244,27 @@ static enum glint_status too_long(const char *name, struct glint_error *error)
 /* ------------------------------------------------------------------ decoding
  */
 
-/* The bits of a sample of PIXELS, ffmpeg's word: 8, 10, 12 or 16. */
+static bool has_one_of(const char *text, const char *const *words)
+{
+    for (; *words; words++)
+        if (strstr(text, *words))
+            return true;
+    return false;
+}
+
+/* The bits of a sample of PIXELS, ffmpeg's word: 8, 10, 12 or 16. In some words
+ * a number is that of the layout, or of all samples of a pixel. */
 static int bits_of(const char *pixels)
 {
-    return strstr(pixels, "16") || strstr(pixels, "14")      ? 16
-           : strstr(pixels, "12") && !strstr(pixels, "nv12") ? 12
-           : strstr(pixels, "10") || strstr(pixels, "p9")    ? 10
-                                                             : 8;
+    static const char *const of_8[] = {"nv12", "nv16", "yuv410p", NULL};
+    static const char *const of_16[] = {"16", "14", "48", "64", "f32", NULL};
+    static const char *const of_10[] = {"10", "p9", NULL};
+
+    return has_one_of(pixels, of_8)    ? 8
+           : has_one_of(pixels, of_16) ? 16
+           : strstr(pixels, "12")      ? 12
+           : has_one_of(pixels, of_10) ? 10
+                                       : 8;
 }
 
 /* Words for chroma of CHROMA and BITS. */
@@ -279,8 +293,9 @@ static bool is_rgb(const struct ffmpeg_video *v)
 /* The format of y4m that takes all of what V has. */
 static const char *planes_for(const struct ffmpeg_video *v)
 {
+    static const char *const of_422[] = {"422", "nv16", "nv20", NULL};
     const char *chroma = strstr(v->pixels, "444") || is_rgb(v) ? "444"
-                         : strstr(v->pixels, "422")            ? "422"
+                         : has_one_of(v->pixels, of_422)       ? "422"
                                                                : "420";
 
     if (strncmp(v->pixels, "yuvj", 4) == 0) /* of full range by their name */
