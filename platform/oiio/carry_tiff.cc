@@ -58,15 +58,17 @@ unsigned unit_of(unsigned type)
     return type == 5 || type == 10 ? 4 : size_of(type);
 }
 
-void read_entry(const reader &r, uint64_t at, directory &to)
+/* Takes what its values need from ROOM. */
+void read_entry(const reader &r, uint64_t at, uint64_t &room, directory &to)
 {
     const unsigned type = r.number(at + 2, 2), unit = unit_of(type);
     const uint32_t count = r.number(at + 4, 4);
     const uint64_t n = uint64_t(count) * size_of(type);
     const uint64_t from = n <= 4 ? at + 8 : r.number(at + 8, 4);
 
-    if (n == 0 || !r.holds(from, n))
+    if (n == 0 || n > room || !r.holds(from, n))
         return;
+    room -= n;
     struct entry e = {type, count, bytes(n)};
     for (uint64_t i = 0; i < n; i++)
         e.values[i] =
@@ -79,13 +81,14 @@ void read_entry(const reader &r, uint64_t at, directory &to)
 directory read_directory(const reader &r, uint64_t at, uint32_t &next)
 {
     const unsigned n = r.number(at, 2);
+    uint64_t room = r.file.size(); /* values that overlap may need far more */
     directory read;
 
     next = 0;
     if (at == 0 || !r.holds(at, 2 + 12 * uint64_t(n) + 4))
         return read;
     for (unsigned i = 0; i < n; i++)
-        read_entry(r, at + 2 + 12 * uint64_t(i), read);
+        read_entry(r, at + 2 + 12 * uint64_t(i), room, read);
     next = r.number(at + 2 + 12 * uint64_t(n), 4);
     return read;
 }
