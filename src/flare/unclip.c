@@ -27,7 +27,7 @@ static int64_t luminance(const int64_t v[3])
 static void set_colour(struct glint_spot *spot,
                        const struct glint_profile_sums *sums)
 {
-    int64_t v[3] = {0, 0, 0}, y;
+    int64_t v[3], y;
     int down = 0;
 
     for (int c = 0; c < 3; c++) {
@@ -38,7 +38,7 @@ static void set_colour(struct glint_spot *spot,
                    : down;
     }
     for (int c = 0; c < 3; c++)
-        v[c] >>= down;
+        v[c] >>= down & 31; /* 20 at most */
     y = luminance(v);
     for (int c = 0; c < 3 && y > 0; c++)
         spot->rgb_q15[c] = q_clamp_sat(q_divide(v[c] << 15, y), 0, 1 << 20);
