@@ -241,6 +241,8 @@ static int run(struct tool *tool, struct explain_command *c)
     enum glint_status status;
     int code;
 
+    if (c->output && tool_check_output(tool, c->output) != EXIT_OK)
+        return EXIT_OUTPUT;
     if (c->output && glint_picture_check(c->output, GLINT_PICTURE_8BIT,
                                          &error) != GLINT_OK) {
         tool_fail(tool, GLINT_E_OUTPUT, error.text);

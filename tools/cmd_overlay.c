@@ -103,8 +103,14 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
         } else if ((code = tool_option(tool, c, optarg)) >= 0)
             return code;
     }
+    if (optind == argc)
+        return tool_usage(tool, "needs a picture, a sequence or a video");
     if (optind + 1 != argc)
-        return tool_usage(tool, "takes one input");
+        return tool_usage(tool,
+                          o->output ? "takes one input; '%s' is too much"
+                                    : "takes one input; where that goes "
+                                      "follows -o: -o '%s'",
+                          argv[argc - 1]);
     if (!o->output)
         return tool_usage(tool, "needs -o OUT");
     o->input = argv[optind];
@@ -282,6 +288,8 @@ static int check_output(struct tool *tool, struct overlay *o)
     if (!frames && o->is_video != overlay_is_video(o->output))
         return tool_usage(tool, "a video becomes a video (.y4m, - or one of "
                                 "ffmpeg's), a picture a picture");
+    if (tool_check_output(tool, o->output) != EXIT_OK)
+        return EXIT_OUTPUT;
     if (o->is_video || glint_kept_check(o->output, &error) == GLINT_OK)
         return EXIT_OK;
     tool_fail(tool, GLINT_E_OUTPUT, error.text);

@@ -282,6 +282,8 @@ static int check_output(struct tool *tool, struct render *r)
     enum glint_status status =
         glint_picture_check(r->output, GLINT_PICTURE_FLOAT, &error);
 
+    if (tool_check_output(tool, r->output) != EXIT_OK)
+        return EXIT_OUTPUT;
     r->linear = status == GLINT_OK;
     if (!r->linear)
         status = glint_picture_check(r->output, GLINT_PICTURE_8BIT, &error);

@@ -93,10 +93,13 @@ static void print_title(const struct explain *e, const struct explain_title *t)
 
     printf("%s, %dx%d, %s\n", t->lens, e->frame->view.width,
            e->frame->view.height, t->linear ? "linear light" : "codes");
-    printf("drawn: lights %d of %d, ghosts %d of %d, bundles %d of %d, tiles "
-           "%d of %d\n",
-           e->n_beams, t->n_lamps, ghosts_drawn(e), e->n_ghosts,
-           explain_drawn(all), explain_bundles(all), all->tiles, e->n_tiles);
+    /* a lamp of visible extent is drawn as several points */
+    printf(e->n_beams > t->n_lamps ? "drawn: %d points of %d lights"
+                                   : "drawn: lights %d of %d",
+           e->n_beams, t->n_lamps);
+    printf(", ghosts %d of %d, bundles %d of %d, tiles %d of %d\n",
+           ghosts_drawn(e), e->n_ghosts, explain_drawn(all),
+           explain_bundles(all), all->tiles, e->n_tiles);
     printf("barrels that cut: ");
     for (int k = 0, some = 0; k < EXPLAIN_BARRELS; k++)
         if (e->barrels[k])

@@ -121,7 +121,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
     if (o->most_lights == 0) {
         fputs("no light was found, so nothing was drawn; see --threshold, or "
-              "give one with --light\n",
+              "give one with --light-at X,Y\n",
               to);
         return;
     }

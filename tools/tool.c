@@ -16,7 +16,9 @@
 #include <unistd.h>
 
 #include "linux/sets.h"
+#include "posix/error.h"
 #include "posix/input.h"
+#include "posix/output.h"
 #include "posix/utf8.h"
 #include "posix/workers.h"
 
@@ -266,6 +268,19 @@ double tool_seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+int tool_check_output(const struct tool *tool, const char *path)
+{
+    struct glint_error error = {""};
+    const char *const slash = strrchr(path, '/'), *pattern = strchr(path, '%');
+
+    if (slash && pattern && pattern < slash) /* folders by number */
+        return EXIT_OK;
+    if (glint_output_check(path, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
 /* -------------------------------------------------------------------- lens */
 
 static bool offer(void *suggest, const char *name)
@@ -296,6 +311,29 @@ static int no_lens(const struct tool *tool, const char *name)
     return EXIT_LENS;
 }
 
+/* Pictures and the like are no tables, which a line and column of one would
+ * not say. */
+static enum glint_status parse_table(const char *file,
+                                     struct glint_prescription *lens,
+                                     struct glint_error *error)
+{
+    enum glint_status status;
+    uint8_t *text = NULL;
+    size_t bytes = 0;
+
+    status = glint_input_slurp(&text, &bytes, file, 1 << 20, error);
+    if (status == GLINT_E_UNSUPPORTED ||
+        (status == GLINT_OK && bytes > 0 && memchr(text, 0, bytes)))
+        status = glint_error_report(error, GLINT_E_FORMAT, file,
+                                    "is no lens table; glint lenses lists "
+                                    "those that come with glint");
+    else if (status == GLINT_OK)
+        status = glint_prescription_parse(lens, (const char *)text, bytes, file,
+                                          error);
+    free(text);
+    return status;
+}
+
 int tool_lens(const struct tool *tool, const char *argument,
               struct glint_prescription *lens)
 {
@@ -303,8 +341,6 @@ int tool_lens(const struct tool *tool, const char *argument,
     char path[1024];
     const char *file = argument;
     enum glint_status status;
-    uint8_t *text = NULL;
-    size_t bytes = 0;
 
     if (!tool_is_file_name(argument)) {
         if (!lens_file_find(argument, path, sizeof path))
@@ -317,11 +353,7 @@ int tool_lens(const struct tool *tool, const char *argument,
                 tool->name, file);
         return EXIT_LENS;
     }
-    status = glint_input_slurp(&text, &bytes, file, 1 << 20, &error);
-    if (status == GLINT_OK)
-        status = glint_prescription_parse(lens, (const char *)text, bytes, file,
-                                          &error);
-    free(text);
+    status = parse_table(file, lens, &error);
     if (status == GLINT_OK)
         return EXIT_OK;
     tool_fail(tool, status, error.text);

@@ -99,6 +99,10 @@ double tool_seconds(void);
 
 /* -------------------------------------------------------------------- lens */
 
+/* Refuses PATH, where no file can be created, before a lens is baked: EXIT_OK
+ * or EXIT_OUTPUT, said. The last part of it may be a pattern. */
+int tool_check_output(const struct tool *tool, const char *path);
+
 /* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
  * Returns an exit code; has printed on failure. */
 int tool_lens(const struct tool *tool, const char *argument,

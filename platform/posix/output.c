@@ -194,6 +194,25 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
     return status;
 }
 
+enum glint_status glint_output_check(const char *path,
+                                     struct glint_error *error)
+{
+    struct glint_output out;
+    enum glint_status status;
+    struct stat st;
+    const bool is_there = stat(path, &st) == 0;
+
+    if (is_there && S_ISDIR(st.st_mode))
+        return glint_error_report(error, GLINT_E_OUTPUT, path,
+                                  "is a folder; name a file in it");
+    if (!strcmp(path, "-") || (is_there && !S_ISREG(st.st_mode)))
+        return GLINT_OK;
+    status = glint_output_open(&out, path, GLINT_OUTPUT_TEXT, error);
+    if (status == GLINT_OK)
+        glint_output_abort(&out);
+    return status;
+}
+
 /* ----------------------------------------------------------------- writing */
 
 static enum glint_status report_failed(const struct glint_output *out,

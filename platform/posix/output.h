@@ -52,6 +52,12 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
                                     enum glint_output_kind kind,
                                     struct glint_error *error);
 
+/* Whether a file can be created at PATH, before there is work for it; leaves
+ * nothing. What is written straight into is not touched, and is fine.
+ * GLINT_E_OUTPUT: it cannot; GLINT_E_MEMORY. */
+enum glint_status glint_output_check(const char *path,
+                                     struct glint_error *error);
+
 /* Writes all of DATA[BYTES], or fails; once failed, it keeps failing.
  * GLINT_E_CLOSED: the reader of a pipe went away. GLINT_E_OUTPUT: the rest. */
 enum glint_status glint_output_write(struct glint_output *out, const void *data,

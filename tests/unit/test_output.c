@@ -400,6 +400,26 @@ static void test_refuses(void **state)
                                        " it: No such file or directory"));
 }
 
+static void test_checks(void **state)
+{
+    struct glint_error error;
+    char name[300], text[300];
+
+    (void)state;
+    snprintf(text, sizeof text, "%s: is a folder; name a file in it", dir);
+    assert_int_equal(glint_output_check(dir, &error), GLINT_E_OUTPUT);
+    assert_string_equal(error.text, text);
+    assert_int_equal(glint_output_check("/nowhere/x.ppm", &error),
+                     GLINT_E_OUTPUT);
+    assert_string_equal(error.text, "/nowhere/x.ppm: cannot create a file "
+                                    "beside it: No such file or directory");
+    assert_int_equal(glint_output_check("-", &error), GLINT_OK);
+    assert_int_equal(glint_output_check("/dev/null", &error), GLINT_OK);
+    snprintf(name, sizeof name, "%s/x.ppm", dir);
+    assert_int_equal(glint_output_check(name, &error), GLINT_OK);
+    assert_int_equal(n_files(), 0);
+}
+
 static void test_many_at_a_time(void **state)
 {
     struct glint_output out[17];
@@ -435,6 +455,7 @@ int main(void)
         cmocka_unit_test(test_closed_pipe),
         cmocka_unit_test(test_nonblocking_pipe),
         cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_checks),
         cmocka_unit_test(test_many_at_a_time),
     };
 
