@@ -677,8 +677,9 @@ uninstall:
 	        $(patsubst %,$(to)/%,$(wildcard include/glint/*.h)) \
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
 	        $(to)/share/glint/models/*.glint
-	-rmdir --ignore-fail-on-non-empty $(to)/include/glint $(to)/lib/glint \
-	        $(to)/share/glint/models $(to)/share/glint/lenses $(to)/share/glint 2>/dev/null
+	@for d in include/glint lib/glint share/glint/models share/glint/lenses share/glint \
+	        lib/systemd/system lib/systemd; do \
+	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done
 clean:
 	rm -rf build
 .PHONY: window check-files all help video-report corpus corpus-evaluate corpus-fit corpus-sheet corpus-report glint-live always oiio demo inputs table bake-table accuracy-table colour-table ray-table bench bench-insn budget size growth trade memory-table check run-check extremes mutants check-arm arm-tests check-valgrind run-valgrind check-vm vm-deps vm-programs golden-update fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format \
