@@ -208,18 +208,40 @@ static void list_moments(const struct glint_profile_sums *sums,
     }
 }
 
+/* What of the clipped core is the lamp, 0 .. 1: the glare of a small lamp that
+ * is far over white is clipped, too, and falls off over as much as its radius;
+ * a large lamp has a sharp rim, of a pixel. */
+static int32_t lamp_share_q15(const struct glint_profile_sums *sums)
+{
+    const struct glint_profile_channel *of = &sums->of[0];
+    int64_t inner_q8, outer_q8, rim_q8;
+
+    for (int c = 1; c < 3; c++)
+        if (sums->of[c].area_q8[0] > of->area_q8[0])
+            of = &sums->of[c];
+    /* radii of circles, but for the root of pi */
+    inner_q8 = q_root((uint64_t)of->area_q8[0] << 8);
+    outer_q8 = q_root((uint64_t)of->area_q8[2] << 8);
+    rim_q8 = outer_q8 - inner_q8 - Q_CONST(1.7725, 8);
+    if (inner_q8 <= 0 || rim_q8 <= 0)
+        return 1 << 15;
+    return (1 << 15) -
+           q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
+}
+
 /* The semi-axes are the roots of the eigenvalues of the second moments. */
 static void set_extent(struct glint_spot *spot,
                        const struct glint_profile_sums *sums)
 {
+    const int32_t share_q15 = lamp_share_q15(sums);
     int64_t m_q16[3], half, mid, apart, cos2_q15;
 
     list_moments(sums, m_q16);
     half = (m_q16[0] - m_q16[1]) / 2;
     mid = (m_q16[0] + m_q16[1]) / 2;
     apart = (int64_t)q_root((uint64_t)(half * half + m_q16[2] * m_q16[2]));
-    spot->axis_q8[0] = root_q8(mid + apart, sums->step);
-    spot->axis_q8[1] = root_q8(mid - apart, sums->step);
+    spot->axis_q8[0] = q_mul(root_q8(mid + apart, sums->step), share_q15, 15);
+    spot->axis_q8[1] = q_mul(root_q8(mid - apart, sums->step), share_q15, 15);
     cos2_q15 = apart > 0
                    ? q_clamp_sat(q_divide(half * 32768, apart), -32768, 32768)
                    : 32768;

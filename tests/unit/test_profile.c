@@ -169,6 +169,22 @@ static void test_extent(void **state)
     assert_true(abs(spot[0].axis_q8[1] - 6 * 256) < 200);
 }
 
+/* A lamp of a pixel, sixteen thousand times white, is a core of clipped glare
+ * some pixels wide; its extent is not the core's. */
+static void test_glare_is_no_extent(void **state)
+{
+    struct power_lamp lamp = lamp_of(POWER_DISC, 1);
+
+    (void)state;
+    lamp.glare = 0.1;
+    power_draw(light, W, H, &lamp);
+    assert_int_equal(expose(&lamp, 16384, 0.002, 0), 1);
+    print_message("glare: axes %d of a core of %d pixels, size %d\n",
+                  spot[0].axis_q8[0], spot[0].n_clipped, spot[0].size_q8);
+    assert_true(spot[0].n_clipped > 20);
+    assert_true(spot[0].axis_q8[0] < spot[0].size_q8 / 3);
+}
+
 /* Sodium light clipped to yellow and white: the fringe says what it is. Of
  * luminance 1 it is 1.99, 0.79, 0.04. */
 static void test_colour_is_that_of_the_fringe(void **state)
@@ -462,6 +478,7 @@ int main(void)
         cmocka_unit_test(test_memory),
         cmocka_unit_test(test_unclipped_is_the_flux),
         cmocka_unit_test(test_extent),
+        cmocka_unit_test(test_glare_is_no_extent),
         cmocka_unit_test(test_colour_is_that_of_the_fringe),
         cmocka_unit_test(test_power_of_clipped_lamps),
         cmocka_unit_test(test_power_rises_smoothly),
