@@ -34,7 +34,7 @@ bool child_exists(const char *name);
 /* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
  * it is not there. GLINT_E_IO: no processes or descriptors to be had. */
 enum glint_status child_start(struct child *child, const char *const *argv,
-                              enum child_pipe pipe, struct glint_error *error);
+                              enum child_pipe kind, struct glint_error *error);
 
 /* Closes the pipe and waits for the end. Returns the exit status, or 128 and
  * the signal that killed it; 0 of none. */

@@ -188,8 +188,11 @@ static bool one(void *ctx, const char *name)
     if (!is_wanted(l, name))
         return true;
     e = calloc(1, sizeof *e);
-    code = e ? look_at(l->tool, name, e, false)
-             : tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+    if (!e) {
+        l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+        return true;
+    }
+    code = look_at(l->tool, name, e, false);
     if (code == EXIT_OK && l->folder) {
         code = put_model(l, e);
         if (code == EXIT_OK)

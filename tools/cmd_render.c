@@ -143,7 +143,7 @@ static struct glint_lamp *points_of(const struct render *r, int *n)
     const struct glint_view view = scene_view(&r->scene, r->width, r->height);
     const double pixels = fabs(r->scene.setup.optics.focal_mm) * view.width /
                           view.sensor_width_mm;
-    struct glint_lamp *points = NULL;
+    struct glint_lamp *points;
     struct area area;
     int total;
     const struct area_rule rule =
@@ -152,17 +152,13 @@ static struct glint_lamp *points_of(const struct render *r, int *n)
                                                  : r->scene.area_samples,
                      INT_MAX, &total);
 
-    for (int round = 0; round < 2; round++) {
-        *n = 0;
-        for (int lamp = 0; lamp < r->n_lamps; lamp++) {
-            const int more = area_plan(&area, &r->lamp[lamp], &rule);
+    *n = 0;
+    points = malloc(((size_t)total + 1) * sizeof *points);
+    for (int lamp = 0; points && lamp < r->n_lamps; lamp++) {
+        const int more = area_plan(&area, &r->lamp[lamp], &rule);
 
-            for (int i = 0; points && i < more; i++)
-                points[*n + i] = area_point(&area, i);
-            *n += more;
-        }
-        if (round == 0)
-            points = malloc(((size_t)*n + 1) * sizeof *points);
+        for (int i = 0; i < more; i++)
+            points[(*n)++] = area_point(&area, i);
     }
     return points;
 }

@@ -54,7 +54,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
         {"csv", no_argument, NULL, 'c'},
         {"coating", required_argument, NULL, 'C'},
         TOOL_COMMON_OPTIONS};
-    int c, code, index = 0;
+    int c, code = -1, index = 0;
 
     while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
            0) {
@@ -71,11 +71,10 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
             ok = tool_integer(optarg, 1, 4096, &o->grid);
         else if (c == 'm')
             o->model = optarg;
-        else if (c == 'C' &&
-                 (code = coating_take(tool, &o->coating, optarg)) >= 0)
-            return code;
-        else if (c != 'c' && c != 'C' &&
-                 (code = tool_option(tool, c, optarg)) >= 0)
+        else if (c != 'c')
+            code = c == 'C' ? coating_take(tool, &o->coating, optarg)
+                            : tool_option(tool, c, optarg);
+        if (code >= 0)
             return code;
         if (!ok)
             return tool_refuse(tool, options[index].name, optarg);

@@ -85,20 +85,23 @@ static int no_command(const char *name)
 static int help_of(const char *name)
 {
     char argument[] = "--help", *argv[] = {NULL, argument, NULL};
+    const struct command *command;
 
     if (!name) {
         fputs(help, stdout);
         return EXIT_OK;
     }
-    return find(name) ? run_command(find(name), 2, argv) : no_command(name);
+    command = find(name);
+    return command ? run_command(command, 2, argv) : no_command(name);
 }
 
 static int run(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
+    const struct command *command = find(name);
 
-    if (find(name))
-        return run_command(find(name), argc - 1, argv + 1);
+    if (command)
+        return run_command(command, argc - 1, argv + 1);
     if (strcmp(name, "help") == 0)
         return help_of(argc > 2 ? argv[2] : NULL);
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)

@@ -126,7 +126,8 @@ static enum glint_status open_timer(struct live_input *in,
     const struct glint_v4l2_format *f = &in->camera.device.format;
     const int64_t stated = 1000000000LL * f->fps_den / f->fps_num;
     const int64_t ns = stated > 1000 ? stated : 1000; /* 0 would stop it */
-    const struct timespec period = {ns / 1000000000, ns % 1000000000};
+    const struct timespec period = {(time_t)(ns / 1000000000),
+                                    (long)(ns % 1000000000)};
     const struct itimerspec times = {period, period};
 
     in->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);

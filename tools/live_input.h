@@ -39,8 +39,7 @@ struct live_input {
 enum live_input_kind live_input_kind(const char *device);
 
 /* Tells what can be told before there is a lens. GLINT_E_DEVICE, _IO. */
-enum glint_status live_input_look(const char *device,
-                                  struct glint_error *error);
+enum glint_status live_input_look(const char *name, struct glint_error *error);
 
 /* Opens what WISH names; IO and N_BUFFERS are a camera's, SEED the test's. Once
  * a stand-in has come to its end, next fails with GLINT_E_CLOSED. */

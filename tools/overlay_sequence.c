@@ -35,12 +35,17 @@ static bool is_pattern(const char *text)
 /* NAME of NAME_BYTES becomes that of picture NUMBER. False: it is too long. */
 static bool name_of(char *name, const char *pattern, int number)
 {
-    const char *at = strchr(pattern, '%');
-    const long stated = at[1] == 'd' ? 0 : strtol(at + 1, NULL, 10);
-    const int digits = stated >= 0 && stated < 20 ? (int)stated : 20;
-    const int n = snprintf(name, NAME_BYTES, "%.*s%0*d%s", (int)(at - pattern),
-                           pattern, digits, number, strchr(at, 'd') + 1);
+    const char *at = strchr(pattern, '%'); /* there is one: is_pattern() */
+    const char *end = at ? strchr(at, 'd') : NULL;
+    long stated;
+    int digits, n;
 
+    if (!end)
+        return false;
+    stated = at[1] == 'd' ? 0 : strtol(at + 1, NULL, 10);
+    digits = stated >= 0 && stated < 20 ? (int)stated : 20;
+    n = snprintf(name, NAME_BYTES, "%.*s%0*d%s", (int)(at - pattern), pattern,
+                 digits, number, end + 1);
     return n >= 0 && n < NAME_BYTES;
 }
 

@@ -7,15 +7,15 @@ float glint_half_decode(uint16_t half)
 {
     const uint32_t sign = (uint32_t)(half & 0x8000) << 16;
     const uint32_t rest = half & 0x7fff;
-    uint32_t bits;
+    const uint32_t exponent =
+        rest >= 0x7c00 ? UINT32_C(224) << 23 : UINT32_C(112) << 23;
+    const uint32_t bits = (sign | (rest << 13)) + exponent;
     float value;
 
     if (rest < 0x400) { /* 0 or subnormal: steps of 2^-24 */
         value = (float)rest * 0x1p-24F;
         return sign ? -value : value;
     }
-    bits = sign | (rest << 13);
-    bits += rest >= 0x7c00 ? UINT32_C(224) << 23 : UINT32_C(112) << 23;
     memcpy(&value, &bits, sizeof value);
     return value;
 }

@@ -200,8 +200,8 @@ static bool set_by_name(struct glint_colours *c, const char *name)
     else if (strcasecmp(name, "AdobeRGB") == 0) {
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
         return glint_colours_primaries(c, adobe);
-    } else if (sscanf(name, "Gamma%lf", &gamma) == 1 && gamma > 0.1 &&
-               gamma < 10)
+    } else if (strncmp(name, "Gamma", 5) == 0 &&
+               (gamma = strtod(name + 5, NULL)) > 0.1 && gamma < 10)
         glint_colours_set(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
     else
         return false;

@@ -136,7 +136,7 @@ enum glint_status glint_pfm_read(struct glint_float_image *floats,
                                  const void *data, size_t bytes,
                                  const char *name, struct glint_error *error)
 {
-    struct glint_pfm_header h;
+    struct glint_pfm_header h = {0};
     enum glint_status status =
         glint_pfm_header_read(&h, data, bytes, name, error);
     size_t n_pixels;

@@ -141,7 +141,7 @@ enum glint_status glint_pnm_read(struct glint_image *image, const void *data,
     struct glint_image made = {.range = GLINT_RANGE_FULL,
                                .matrix = GLINT_MATRIX_BT601,
                                .transfer = GLINT_TONE_SRGB};
-    struct glint_pnm_header h;
+    struct glint_pnm_header h = {0};
     size_t n_samples;
     enum glint_status status =
         glint_pnm_header_read(&h, data, bytes, name, error);

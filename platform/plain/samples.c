@@ -429,12 +429,12 @@ void glint_samples_add(struct glint_samples *samples, const float *layer)
 static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
                       const double rgb[3])
 {
-    double own[3];
+    double own[3] = {0, 0, 0};
 
     turn(s->colours.from_bt709, rgb, own);
     if (s->n_colours == 1)
         own[0] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-    for (int c = 0; c < s->n_colours; c++)
+    for (int c = 0; c < s->n_colours && c < 3; c++)
         put(&s->colour[c], s->maximum, pixel,
             glint_tone_curve_encode(&s->colours.transfer[c], own[c]));
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE /* flock */
+/* NOLINTNEXTLINE(bugprone-reserved-identifier): flock */
+#define _DEFAULT_SOURCE
 #include "posix/output.h"
 
 #include <errno.h>

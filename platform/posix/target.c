@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#define _XOPEN_SOURCE   700 /* realpath */
-#define _DEFAULT_SOURCE     /* flock */
+#define _XOPEN_SOURCE 700 /* realpath */
+/* NOLINTNEXTLINE(bugprone-reserved-identifier): flock */
+#define _DEFAULT_SOURCE
 #include "posix/target.h"
 
 #include <dirent.h>
