@@ -300,10 +300,12 @@ static enum glint_status list_bundles(struct picture *p)
     const struct glint_exact_config *c = p->cfg;
     const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
     const uint64_t n = (uint64_t)c->n_lamps * (uint64_t)(ghosts * waves);
+    const size_t most =
+        SIZE_MAX / 2 / sizeof *p->bundle; /* 32 bits hold less */
     const int all = n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 
-    p->bundle =
-        n > MAX_BUNDLES ? NULL : calloc((size_t)n + 1, sizeof *p->bundle);
+    if (n <= MAX_BUNDLES && n < most)
+        p->bundle = calloc((size_t)n + 1, sizeof *p->bundle);
     if (!p->bundle)
         return GLINT_E_MEMORY;
     for (int k = 0; k < all; k++) {
