@@ -189,23 +189,23 @@ static void clean(int folder, const char *name)
 
 void glint_target_clean(const char *target)
 {
-    static dev_t cleaned_dev; /* atomic enough: at worst it looks again */
-    static ino_t cleaned_ino;
+    static unsigned long cleaned; /* what 32 bits can hold of its numbers */
+    unsigned long here;
     char folder[PATH_BYTES];
     const struct dirent *entry;
     struct stat st;
     DIR *dir;
 
     set_folder(folder, target);
-    if (stat(folder, &st) < 0 ||
-        (st.st_dev == __atomic_load_n(&cleaned_dev, __ATOMIC_RELAXED) &&
-         st.st_ino == __atomic_load_n(&cleaned_ino, __ATOMIC_RELAXED)))
+    if (stat(folder, &st) < 0)
+        return;
+    here = (unsigned long)st.st_ino * 31 + (unsigned long)st.st_dev;
+    if (here == __atomic_load_n(&cleaned, __ATOMIC_RELAXED))
         return;
     dir = opendir(folder);
     while (dir && (entry = readdir(dir)))
         clean(dirfd(dir), entry->d_name);
     if (dir)
         closedir(dir);
-    __atomic_store_n(&cleaned_dev, st.st_dev, __ATOMIC_RELAXED);
-    __atomic_store_n(&cleaned_ino, st.st_ino, __ATOMIC_RELAXED);
+    __atomic_store_n(&cleaned, here, __ATOMIC_RELAXED);
 }
