@@ -73,7 +73,6 @@ static enum glint_status next(struct glint_source *source,
     struct live_input *in = (struct live_input *)source;
     const struct glint_v4l2_format *f = &in->camera.device.format;
     const uint64_t n = due(in);
-    enum glint_status status = GLINT_OK;
 
     *frame = (struct glint_source_frame){.cached = true};
     if (n == 0)
@@ -85,7 +84,8 @@ static enum glint_status next(struct glint_source *source,
         frame->image = in->scene.image;
     }
     for (uint64_t i = 0; in->kind != LIVE_INPUT_TEST && i < n; i++) {
-        status = read_frame(in, frame, error);
+        const enum glint_status status = read_frame(in, frame, error);
+
         if (status != GLINT_OK)
             return status;
         in->n++;
