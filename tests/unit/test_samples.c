@@ -150,7 +150,7 @@ static void test_tables_of_any_float(void **state)
     assert_true(glint_tone_curve_decode(&t, 1) == 1);
     assert_true(glint_tone_curve_decode(&t, 2) > 1);
     assert_true(isinf(glint_tone_curve_decode(&t, HUGE_VAL)));
-    assert_true(isnan(glint_tone_curve_decode(&t, NAN)));
+    assert_true(isnan(glint_tone_curve_decode(&t, (double)NAN)));
 }
 
 static void test_light_is_added(void **state)

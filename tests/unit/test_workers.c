@@ -233,8 +233,7 @@ static void test_stacks(void **state)
     with_little(dig_in_pool);
     with_little(dig_on_stack);
     threads_left = 0; /* then it is called directly */
-    assert_int_equal(glint_process_on_stack((size_t)1 << 50, dig, &(int){4}),
-                     5);
+    assert_int_equal(glint_process_on_stack(SIZE_MAX / 4, dig, &(int){4}), 5);
     threads_left = -1;
 }
 
