@@ -370,7 +370,7 @@ demo:
 	@tools/deps "PNG and JPEG pictures, and video to look at" g++ pkg-config \
 	        libopenimageio-dev libwebp-dev ffmpeg
 	@$(MAKE) --no-print-directory all \
-	        $(shell [ "$(DEPS)" = no ] || echo oiio inputs)
+	        $(shell [ "$(DEPS)" = no ] || echo oiio)
 	@tools/demo
 inputs:
 	@tools/inputs
