@@ -65,10 +65,16 @@ const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
 uint32_t lamp_id_of(const char *text)
 {
     uint32_t id = 2166136261u; /* FNV-1a */
+    uint64_t number = 0;
+    const char *digit = text;
 
+    for (; *digit >= '0' && *digit <= '9' && number <= UINT32_MAX; digit++)
+        number = 10 * number + (uint64_t)(*digit - '0');
+    if (!*digit && *text != '0' && number > 0 && number <= UINT32_MAX)
+        return (uint32_t)number;
     for (; *text; text++)
         id = (id ^ (unsigned char)*text) * 16777619u;
-    return id ? id : 1;
+    return id | LAMP_ID_TEXT;
 }
 
 const char *lamp_columns_row(const struct lamp_columns *c, char *row, double *v)
@@ -192,6 +198,22 @@ static int ids_of(const struct lamp_list *list, int frame,
         if (list->row[i].id && lamp_keys_at(list, i, frame, &row))
             id[n++] = row.id;
     return n;
+}
+
+void lamp_keys_ids(const struct lamp_list *list, int frame, uint32_t *id)
+{
+    struct lamp_row row;
+    uint32_t largest = 0;
+    int n = 0;
+
+    for (int i = 0; i < list->n; i++)
+        if (list->row[i].id < LAMP_ID_TEXT && list->row[i].id > largest)
+            largest = list->row[i].id;
+    for (int i = 0; i < list->n; i++)
+        if (lamp_keys_at(list, i, frame, &row)) {
+            id[n] = row.id ? row.id : largest + 1 + (uint32_t)n;
+            n++;
+        }
 }
 
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame)

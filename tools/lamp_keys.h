@@ -37,7 +37,9 @@ const char *lamp_columns_read(struct lamp_columns *columns,
 const char *lamp_columns_row(const struct lamp_columns *columns, char *row,
                              double *v);
 
-/* A number for an id, not 0. */
+/* A number for an id, not 0: one of 32 bits is itself, so that a list that was
+ * saved has the ids of its source; other texts become one from LAMP_ID_TEXT. */
+#define LAMP_ID_TEXT (UINT32_C(1) << 31)
 uint32_t lamp_id_of(const char *text);
 
 /* Links the rows of each lamp in order of frames. GLINT_E_MEMORY. */
@@ -47,6 +49,10 @@ enum glint_status lamp_keys_link(struct lamp_list *list);
  * there. */
 bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
                   struct lamp_row *row);
+
+/* The ids of FRAME's lamps, in the order of lamp_list_frame. Lamps without one
+ * get numbers above those of the list, by their places. */
+void lamp_keys_ids(const struct lamp_list *list, int frame, uint32_t *id);
 
 /* Whether FRAME has lamps with ids of which the one before, which has, too,
  * knows none: as after a cut. Of a thousand each it looks at no more. */

@@ -183,8 +183,10 @@ int look_open(const struct tool *tool, struct look *look)
     n = (size_t)look->n_hand + (size_t)look->list.n + LAMP_FINDER_MAX;
     look->lamp = malloc(n * sizeof *look->lamp);
     look->level = malloc(n * sizeof *look->level);
-    return look->lamp && look->level ? EXIT_OK
-                                     : tool_fail(tool, GLINT_E_MEMORY, NULL);
+    look->id = malloc(n * sizeof *look->id);
+    return look->lamp && look->level && look->id
+               ? EXIT_OK
+               : tool_fail(tool, GLINT_E_MEMORY, NULL);
 }
 
 /* Lamps to look for: a picture has many that hardly show. */
@@ -286,6 +288,8 @@ void look_close(struct look *look)
     look->lamp = NULL;
     free(look->level);
     look->level = NULL;
+    free(look->id);
+    look->id = NULL;
     scene_close(&look->scene);
 }
 
@@ -306,7 +310,7 @@ static struct lamp_row row_of(const struct look *look, int i)
                            .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
                            .turn = lamp->turn_deg,
                            .level = look->level[i],
-                           .id = (uint32_t)i + 1,
+                           .id = look->id[i],
                            .next = -1};
 
     memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
@@ -315,7 +319,6 @@ static struct lamp_row row_of(const struct look *look, int i)
 
         row.x = track->x_q8 / 256.0;
         row.y = track->y_q8 / 256.0;
-        row.id = track->id;
     } else
         glint_view_to_pixel(&look->view, look->scene.setup.optics.focal_mm,
                             lamp, &row.x, &row.y);
@@ -338,19 +341,25 @@ static int set_lamps(struct look *look, const struct glint_image *image,
     int n = look->n_hand;
 
     memcpy(look->lamp, look->hand, (size_t)n * sizeof *look->lamp);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         look->level[i] = 1;
-    if (look->is_listed)
+        look->id[i] = (look->is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i;
+    }
+    if (look->is_listed) {
+        lamp_keys_ids(&look->list, look->n_frames, look->id + n);
         n += lamp_list_frame(&look->list, look->n_frames, &look->view, focal,
                              look->lamp + n, look->level + n, look->list.n);
+    }
     look->is_followed = elapsed_us > 0 && !look->no_tracking;
     if (look->is_listed || n > 0)
         return n;
     n = lamp_finder_frame(&look->finder, image,
                           look->no_tracking ? 0 : elapsed_us, &look->view,
                           focal, look->lamp);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         look->level[i] = look->finder.track[i].level_q15 / 32768.0;
+        look->id[i] = look->finder.track[i].id;
+    }
     return n;
 }
 
@@ -410,7 +419,8 @@ void look_mark(const struct look *look, const struct glint_image *image)
 
     for (int i = 0; i < look->n_lamps; i++) {
         const struct lamp_row row = row_of(look, i);
-        struct glint_track track = {.id = row.id, .state = GLINT_TRACK_STEADY};
+        const uint32_t id = row.id < LAMP_ID_TEXT ? row.id : (uint32_t)i + 1;
+        struct glint_track track = {.id = id, .state = GLINT_TRACK_STEADY};
 
         if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
             continue;

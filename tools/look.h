@@ -41,6 +41,7 @@ struct look {
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
     double *level;           /* of each, its share in its power: struct
                                 strength_lamps */
+    uint32_t *id;            /* of each, as it is saved */
     struct response response;
     double white; /* light of the picture's white, 1 by default */
     struct glint_view view;
