@@ -51,7 +51,7 @@ static const char help[] =
     "  --memory MIB        all that drawing may take, 1 to 1024 (default 32);\n"
     "                      what does not fit is left out and counted\n"
     "  --snapshot NAME     for SIGUSR2 (default glint-%03d.ppm)\n"
-    "  --config FILE       these options, without dashes: lens = heliar.glint\n"
+    "  --config FILE       these options, without dashes: lens = zoom.glint\n"
     "Signals: SIGHUP reads --config and the lens again, SIGUSR1 reports now,\n"
     "SIGUSR2 saves a snapshot.\n"
     "Lens and lights\n" LOOK_HELP;

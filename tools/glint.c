@@ -31,7 +31,7 @@ static const char help[] =
     "  glint --version\n"
     "\n"
     "LENS is a .lens file or the name of one that comes with glint, such as\n"
-    "heliar-tronnier. Exit codes: 0 ok, 1 run-time failure, 2 usage, 3 input\n"
+    "nikon-zoom-short. Exit codes: 0 ok, 1 run-time failure, 2 usage, 3 input\n"
     "or format, 4 device, 5 lens or model data, 6 output.\n";
 
 struct command {
@@ -106,7 +106,8 @@ static int run(int argc, char **argv)
         return help_of(argc > 2 ? argv[2] : NULL);
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
         return help_of(NULL);
-    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0 ||
+        strcmp(name, "version") == 0) {
         struct tool tool = {.name = "version", .help = help};
 
         return tool_option(&tool, 'V', NULL);

@@ -110,7 +110,8 @@ void ladder_frame(struct frame *frame, double quality)
     frame->cfg.irradiance_steps = scene_steps(r.quantum);
     frame->whole_codes = r.whole;
     frame->faintest_codes = r.cull;
-    /* what a set of wavelengths takes is not foretold */
+    /* No cost model covers sets of wavelengths, so a budget draws with three.
+     */
     frame->dispersion_px = frame->budget.ms > 0 ? 0 : r.dispersion;
     frame->area_samples = r.points;
     frame->half = r.half || frame->always_half;

@@ -109,6 +109,29 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     return GLINT_OK;
 }
 
+/* Says ERROR and what does for now where there is no such device. */
+static int fail_without(const struct live *l, enum glint_status status,
+                        const struct glint_error *error, const char *instead)
+{
+    char text[sizeof error->text + 80];
+
+    if (status != GLINT_E_DEVICE || !instead)
+        return tool_fail(l->tool, status, error->text);
+    snprintf(text, sizeof text, "%s; without one: %s", error->text, instead);
+    return tool_fail(l->tool, status, text);
+}
+
+static int fail_camera(const struct live *l, enum glint_status status,
+                       const struct glint_error *error)
+{
+    const char *const device = l->o->camera.device;
+
+    return fail_without(l, status, error,
+                        live_input_kind(device) == LIVE_INPUT_CAMERA
+                            ? "-d test, or a .y4m file"
+                            : NULL);
+}
+
 static int open_output(struct live *l, const struct glint_image *image)
 {
     const struct glint_v4l2_format *f = &l->in.camera.device.format;
@@ -127,7 +150,10 @@ static int open_output(struct live *l, const struct glint_image *image)
         l->retry_us = glint_v4l2_now_us() + 1000 * RETRY_MS;
         return EXIT_OK;
     }
-    return tool_fail(l->tool, status, error.text);
+    return fail_without(l, status, &error,
+                        l->output.kind == LIVE_OUTPUT_FB
+                            ? "-o window, or -o y4m:- into a player"
+                            : NULL);
 }
 
 /* Makes all that depends on the size of the pictures. */
@@ -490,14 +516,14 @@ static int start(struct live *l)
         return code;
     status = live_input_look(l->o->camera.device, &error);
     if (status != GLINT_OK)
-        return tool_fail(l->tool, status, error.text);
+        return fail_camera(l, status, &error);
     code = look_open(l->tool, &l->o->look);
     if (code != EXIT_OK)
         return code;
     live_signals_take(); /* until here, whoever is impatient may kill it */
     status = open_camera(l, &error);
     if (status != GLINT_OK)
-        return tool_fail(l->tool, status, error.text);
+        return fail_camera(l, status, &error);
     image = expected(l);
     return take_size(l, &image);
 }

@@ -46,7 +46,7 @@ void scene_weigh(struct scene *s)
 {
     if (s->waves == SCENE_WAVES_COUNT)
         glint_setup_weigh(&s->setup);
-    /* those of the sparse basis are for three wavelengths and no others */
+    /* A model of the sparse basis holds its three wavelengths and no others. */
     else if (s->waves == SCENE_WAVES_AUTO && s->model.data &&
              s->model.lens.header->basis != GLINT_BASIS_SPARSE)
         glint_setup_spread(&s->setup, &s->model.lens);

@@ -7,7 +7,8 @@ static const struct {
     const char *command; /* NULL: any */
     const char *option, *takes;
 } table[] = {
-    /* what means another thing elsewhere comes first */
+    /* An option that takes something else in one command comes before the row
+     * for any command, as the first row that fits is taken. */
     {"bake", "max-angle", "degrees, 1 to 89"},
     {"bench", "format", "yuyv, i420, nv12, rgb24, xrgb8888 or rgb565"},
     {"explain", "top", "a whole number, from 0"},

@@ -350,6 +350,16 @@ bool is_progressive(const bytes &jpeg)
     return false;
 }
 
+bool is_of_inks(const bytes &jpeg)
+{
+    for (const piece &segment : segments_of_jpeg(jpeg))
+        if ((is_marker(segment, 0xc0) || is_marker(segment, 0xc1) ||
+             is_marker(segment, 0xc2)) &&
+            segment.data_bytes > 5)
+            return segment.data[5] == 4;
+    return false;
+}
+
 bool has_more_pictures(const bytes &jpeg)
 {
     for (const piece &segment : segments_of_jpeg(jpeg))

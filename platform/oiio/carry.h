@@ -34,6 +34,10 @@ int quality_of_jpeg(const bytes &file);
 
 bool is_progressive(const bytes &jpeg);
 
+/* Whether its colours are those of inks: C M Y K, of which pixels become R G B.
+ */
+bool is_of_inks(const bytes &jpeg);
+
 /* Whether the file has more pictures behind the first, which get lost. */
 bool has_more_pictures(const bytes &jpeg);
 

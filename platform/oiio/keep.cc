@@ -383,6 +383,8 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
         facts.quality = glint::quality_of_jpeg(file.whole);
         if (glint::has_more_pictures(file.whole))
             say(facts, "only the first of its pictures is kept");
+        if (glint::is_of_inks(file.whole))
+            say(facts, "its CMYK becomes RGB");
     }
     if (spec.get_int_attribute("oiio:Movie", 0) ||
         spec.get_int_attribute("gif:FrameCount", 0) > 1)
