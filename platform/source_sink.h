@@ -9,8 +9,8 @@
  * Errors are GLINT_E_DEVICE for a device that failed or went away and
  * GLINT_E_OUTPUT for what cannot be written, with one line that names it.
  */
-#ifndef GLINT_SOURCE_SINK_H
-#define GLINT_SOURCE_SINK_H
+#ifndef GLINT_PLATFORM_SOURCE_SINK_H
+#define GLINT_PLATFORM_SOURCE_SINK_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -21,8 +21,8 @@
  * each frame, in blocks so small that no system call comes of it once the
  * heap is warm. Built without libjpeg, open fails with GLINT_E_UNSUPPORTED.
  */
-#ifndef GLINT_JPEG_MJPEG_H
-#define GLINT_JPEG_MJPEG_H
+#ifndef GLINT_PLATFORM_JPEG_MJPEG_H
+#define GLINT_PLATFORM_JPEG_MJPEG_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -17,8 +17,8 @@
  * the console next, as the next run does, brings the text back. So does
  * SysRq + K, or echo k > /proc/sysrq-trigger from elsewhere.
  */
-#ifndef GLINT_LINUX_CONSOLE_H
-#define GLINT_LINUX_CONSOLE_H
+#ifndef GLINT_PLATFORM_LINUX_CONSOLE_H
+#define GLINT_PLATFORM_LINUX_CONSOLE_H
 
 #include <stdbool.h>
 

@@ -17,8 +17,8 @@
  * does not tell, for it stays mapped. A frame of a new size takes new memory,
  * any other none.
  */
-#ifndef GLINT_LINUX_FBDEV_H
-#define GLINT_LINUX_FBDEV_H
+#ifndef GLINT_PLATFORM_LINUX_FBDEV_H
+#define GLINT_PLATFORM_LINUX_FBDEV_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,7 +27,7 @@
 #include <linux/fb.h>
 
 #include "linux/console.h"
-#include "plain/panel.h"
+#include "panel/panel.h"
 #include "source_sink.h"
 
 struct glint_fbdev_options {

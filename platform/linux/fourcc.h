@@ -6,8 +6,8 @@
  * planes exist twice in V4L2: NV12 in one block of memory, NM12 in one block
  * for each plane; both are GLINT_NV12 here.
  */
-#ifndef GLINT_LINUX_FOURCC_H
-#define GLINT_LINUX_FOURCC_H
+#ifndef GLINT_PLATFORM_LINUX_FOURCC_H
+#define GLINT_PLATFORM_LINUX_FOURCC_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -5,8 +5,8 @@
  *     int counter = glint_instructions_open();       -1: not to be had here
  *     before = glint_instructions_read(counter);
  */
-#ifndef GLINT_LINUX_INSTRUCTIONS_H
-#define GLINT_LINUX_INSTRUCTIONS_H
+#ifndef GLINT_PLATFORM_LINUX_INSTRUCTIONS_H
+#define GLINT_PLATFORM_LINUX_INSTRUCTIONS_H
 
 #include <stdint.h>
 

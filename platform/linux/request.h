@@ -2,8 +2,8 @@
  *
  * linux/request.h - requests to devices, and what their failure means.
  */
-#ifndef GLINT_LINUX_REQUEST_H
-#define GLINT_LINUX_REQUEST_H
+#ifndef GLINT_PLATFORM_LINUX_REQUEST_H
+#define GLINT_PLATFORM_LINUX_REQUEST_H
 
 #include "glint/status.h"
 

@@ -17,8 +17,8 @@
  * silence for STALL. When that does not help within a second, or the device is
  * gone, next fails with GLINT_E_DEVICE.
  */
-#ifndef GLINT_LINUX_V4L2_H
-#define GLINT_LINUX_V4L2_H
+#ifndef GLINT_PLATFORM_LINUX_V4L2_H
+#define GLINT_PLATFORM_LINUX_V4L2_H
 
 #include "linux/v4l2_device.h"
 #include "source_sink.h"

@@ -3,8 +3,8 @@
  * linux/v4l2_buffers.h - the memory that frames come in, and its way to the
  * driver and back. Part of linux/v4l2.h; failures leave errno set.
  */
-#ifndef GLINT_LINUX_V4L2_BUFFERS_H
-#define GLINT_LINUX_V4L2_BUFFERS_H
+#ifndef GLINT_PLATFORM_LINUX_V4L2_BUFFERS_H
+#define GLINT_PLATFORM_LINUX_V4L2_BUFFERS_H
 
 #include "linux/v4l2.h"
 

@@ -6,8 +6,8 @@
  * What was asked for is a wish: the device answers with what it can do, and
  * that is believed, strides and sizes included.
  */
-#ifndef GLINT_LINUX_V4L2_DEVICE_H
-#define GLINT_LINUX_V4L2_DEVICE_H
+#ifndef GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
+#define GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -12,8 +12,8 @@
  * has no room drops the frame, which is counted. Multi-planar nodes, and those
  * that only stream, are refused.
  */
-#ifndef GLINT_LINUX_V4L2_SINK_H
-#define GLINT_LINUX_V4L2_SINK_H
+#ifndef GLINT_PLATFORM_LINUX_V4L2_SINK_H
+#define GLINT_PLATFORM_LINUX_V4L2_SINK_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -4,8 +4,8 @@
  * PNG and WebP, segments of JPEG and tags of TIFF, taken over byte for byte;
  * and what it does not check: whether a JPEG or TIFF is all there.
  */
-#ifndef GLINT_OIIO_CARRY_H
-#define GLINT_OIIO_CARRY_H
+#ifndef GLINT_PLATFORM_OIIO_CARRY_H
+#define GLINT_PLATFORM_OIIO_CARRY_H
 
 #include <cstddef>
 #include <string>

@@ -2,8 +2,8 @@
  *
  * oiio/guard.h - between exceptions and statuses, for the plug-in's files.
  */
-#ifndef GLINT_OIIO_GUARD_H
-#define GLINT_OIIO_GUARD_H
+#ifndef GLINT_PLATFORM_OIIO_GUARD_H
+#define GLINT_PLATFORM_OIIO_GUARD_H
 
 #include <cstdio>
 #include <cstring>

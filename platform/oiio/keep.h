@@ -2,8 +2,8 @@
  *
  * oiio/keep.h - the functions of oiio/oiio.h that keep a file as it is.
  */
-#ifndef GLINT_OIIO_KEEP_H
-#define GLINT_OIIO_KEEP_H
+#ifndef GLINT_PLATFORM_OIIO_KEEP_H
+#define GLINT_PLATFORM_OIIO_KEEP_H
 
 #include "oiio/oiio.h"
 

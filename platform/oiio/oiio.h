@@ -10,13 +10,13 @@
  * plug-in, glint-oiio.so, which is loaded when a picture first needs it and
  * then stays. glint works without; oiio.cc is its only file in C++.
  */
-#ifndef GLINT_OIIO_OIIO_H
-#define GLINT_OIIO_OIIO_H
+#ifndef GLINT_PLATFORM_OIIO_OIIO_H
+#define GLINT_PLATFORM_OIIO_OIIO_H
 
 #include <stddef.h>
 
 #include "glint/status.h"
-#include "plain/samples.h"
+#include "formats/samples.h"
 
 /* Changes with struct glint_oiio; a plug-in of another number is refused. */
 #define GLINT_OIIO_VERSION 2

@@ -2,8 +2,8 @@
  *
  * oiio/webp.h - WebP pictures with straight alpha, as they are.
  */
-#ifndef GLINT_OIIO_WEBP_H
-#define GLINT_OIIO_WEBP_H
+#ifndef GLINT_PLATFORM_OIIO_WEBP_H
+#define GLINT_PLATFORM_OIIO_WEBP_H
 
 #include "oiio/carry.h"
 

@@ -15,8 +15,8 @@
  * the deadly ones get a handler. An application with handlers of its own ends
  * by itself and with exit(), or calls glint_at_death_by().
  */
-#ifndef GLINT_POSIX_AT_DEATH_H
-#define GLINT_POSIX_AT_DEATH_H
+#ifndef GLINT_PLATFORM_POSIX_AT_DEATH_H
+#define GLINT_PLATFORM_POSIX_AT_DEATH_H
 
 #include <stdbool.h>
 

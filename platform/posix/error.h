@@ -2,8 +2,8 @@
  *
  * posix/error.h - one line for a person about a file that was refused.
  */
-#ifndef GLINT_POSIX_ERROR_H
-#define GLINT_POSIX_ERROR_H
+#ifndef GLINT_PLATFORM_POSIX_ERROR_H
+#define GLINT_PLATFORM_POSIX_ERROR_H
 
 #include "glint/status.h"
 

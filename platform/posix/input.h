@@ -9,8 +9,8 @@
  * Reads are repeated after signals and wait on descriptors that do not block.
  * A terminal is refused as standard input: nobody types a picture.
  */
-#ifndef GLINT_POSIX_INPUT_H
-#define GLINT_POSIX_INPUT_H
+#ifndef GLINT_PLATFORM_POSIX_INPUT_H
+#define GLINT_PLATFORM_POSIX_INPUT_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -23,8 +23,8 @@
  * says. An application that handles deadly ones itself must abort or commit
  * what it has open, or exit().
  */
-#ifndef GLINT_POSIX_OUTPUT_H
-#define GLINT_POSIX_OUTPUT_H
+#ifndef GLINT_PLATFORM_POSIX_OUTPUT_H
+#define GLINT_PLATFORM_POSIX_OUTPUT_H
 
 #include <stddef.h>
 #include <stdint.h>

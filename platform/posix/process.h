@@ -2,8 +2,8 @@
  *
  * posix/process.h - what a program sees to before anything else.
  */
-#ifndef GLINT_POSIX_PROCESS_H
-#define GLINT_POSIX_PROCESS_H
+#ifndef GLINT_PLATFORM_POSIX_PROCESS_H
+#define GLINT_PLATFORM_POSIX_PROCESS_H
 
 #include <stddef.h>
 

@@ -2,8 +2,8 @@
  *
  * posix/target.h - where an output file goes, for posix/output.c.
  */
-#ifndef GLINT_POSIX_TARGET_H
-#define GLINT_POSIX_TARGET_H
+#ifndef GLINT_PLATFORM_POSIX_TARGET_H
+#define GLINT_PLATFORM_POSIX_TARGET_H
 
 #include <stdbool.h>
 #include <sys/stat.h>

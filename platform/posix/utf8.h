@@ -2,8 +2,8 @@
  *
  * posix/utf8.h - text of files and names, fit for a terminal.
  */
-#ifndef GLINT_POSIX_UTF8_H
-#define GLINT_POSIX_UTF8_H
+#ifndef GLINT_PLATFORM_POSIX_UTF8_H
+#define GLINT_PLATFORM_POSIX_UTF8_H
 
 #include <stddef.h>
 

@@ -14,8 +14,8 @@
  * the threads of the pool and go to those of the application, except for those
  * of a thread's own faults.
  */
-#ifndef GLINT_POSIX_WORKERS_H
-#define GLINT_POSIX_WORKERS_H
+#ifndef GLINT_PLATFORM_POSIX_WORKERS_H
+#define GLINT_PLATFORM_POSIX_WORKERS_H
 
 #include "glint/status.h"
 #include "glint/workers.h"

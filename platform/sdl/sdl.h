@@ -11,10 +11,10 @@
  * names it. The picture keeps its shape in a window of any size. Closing it, or
  * Escape or q, is GLINT_E_CLOSED: whoever looked has had enough.
  */
-#ifndef GLINT_SDL_SDL_H
-#define GLINT_SDL_SDL_H
+#ifndef GLINT_PLATFORM_SDL_SDL_H
+#define GLINT_PLATFORM_SDL_SDL_H
 
-#include "plain/panel.h"
+#include "panel/panel.h"
 #include "source_sink.h"
 
 /* Changes with struct glint_sdl; a plug-in of another number is refused. */

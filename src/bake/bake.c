@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/cells.h"
-#include "bake/fit.h"
-#include "bake/published.h"
+#include "bake/exact/cells.h"
+#include "bake/fit/fit.h"
+#include "bake/published/published.h"
 #include "bake/write_model.h"
 
 enum {

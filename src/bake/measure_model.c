@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/degrees.h"
-#include "bake/zone.h"
+#include "bake/trace/degrees.h"
+#include "bake/fit/zone.h"
 
 enum { RAYS = 400, TRIES = 1600, PER_BUNDLE = 16 };
 

@@ -6,8 +6,8 @@
 #ifndef GLINT_BAKE_MEASURE_MODEL_H
 #define GLINT_BAKE_MEASURE_MODEL_H
 
-#include "bake/fitted.h"
-#include "bake/hunt.h"
+#include "bake/fit/fitted.h"
+#include "bake/fit/hunt.h"
 #include "glint/lens.h"
 
 struct glint_errors {

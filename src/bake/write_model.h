@@ -6,7 +6,7 @@
 #define GLINT_BAKE_WRITE_MODEL_H
 
 #include "bake/measure_model.h"
-#include "bake/quantise.h"
+#include "bake/fit/quantise.h"
 #include "glint/bake.h"
 
 /* A model in the making; owned. */

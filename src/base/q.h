@@ -3,7 +3,7 @@
  * Fixed-point arithmetic.
  *
  * The container is a stdint type, the format is the name's suffix: x_q30 has
- * 30 fraction bits, and q_mul(a_qA, b_qB, s) is a Q(A + B - s); tools/lint-q
+ * 30 fraction bits, and q_mul(a_qA, b_qB, s) is a Q(A + B - s); tools/lint/q
  * checks that. One rounding everywhere: to nearest, ties up.
  * With -DGLINT_Q_CHECK an operation whose exact result does not fit aborts.
  */

@@ -4,7 +4,7 @@
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
-#include "tile/outline.h"
+#include "flare/outline.h"
 
 /* What cuts: side K of the stop, or barrel K - BARREL. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };

@@ -26,8 +26,8 @@
 #include <stdint.h>
 
 #include "glint/flare.h"
-#include "tile/edges.h"
-#include "tile/outline.h"
+#include "flare/edges.h"
+#include "flare/outline.h"
 
 enum {
     GLINT_LIGHT_OCTAVES = 45, /* of irradiance _q20 */

@@ -8,13 +8,13 @@
 
 #include "base/arena.h"
 #include "flare/ghost_edges.h"
-#include "flare/ghost_grid.h"
+#include "published/ghost_grid.h"
 #include "flare/plan.h"
 #include "glint/flare.h"
 #include "tile/bins.h"
-#include "tile/edges.h"
-#include "tile/raster.h"
-#include "tile/quads.h"
+#include "flare/edges.h"
+#include "published/raster.h"
+#include "image/quads.h"
 
 /* What one worker needs while it draws. */
 struct glint_flare_worker {

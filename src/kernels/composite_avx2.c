@@ -19,7 +19,7 @@ static inline void v_chroma_of(__m128i codes, V c[2]);
 static inline __m128i b_of_pairs(const V x[1]);
 static inline __m128i b_of_chroma(const V c[2]);
 
-#include "kernels/composite_x86.h"
+#include "kernels/composite_x86.inc"
 
 /* Eight values, over and over. */
 static inline V v_repeat(const int16_t *p)
@@ -144,7 +144,7 @@ static inline V v_quads_of_block(V x, int b)
              : _mm256_permute2x128_si256(x, x, 0x00);
 }
 
-#include "kernels/composite_v.h"
+#include "kernels/composite_v.inc"
 
 /* ---------------------------------------------------------------------- sums
  */
@@ -176,4 +176,4 @@ static inline V w_narrow(V a, V b)
     return _mm256_permute4x64_epi64(_mm256_packus_epi32(a, b), 0xd8);
 }
 
-#include "kernels/run_sum_x86.h"
+#include "kernels/run_sum_x86.inc"

@@ -256,7 +256,7 @@ static inline V v_pair_mean(const V x[2])
     return v_mean(x[0], x[1]);
 }
 
-#include "kernels/composite_v.h"
+#include "kernels/composite_v.inc"
 
 /* ---------------------------------------------------------------------- sums
  */

@@ -17,7 +17,7 @@ static inline V b_of_pairs(const V x[2]);
 #define v_chroma_of v_pairs_of
 #define b_of_chroma b_of_pairs
 
-#include "kernels/composite_x86.h"
+#include "kernels/composite_x86.inc"
 
 static inline V v_repeat(const int16_t *p)
 {
@@ -83,7 +83,7 @@ static inline V v_pair_mean(const V x[2])
     return v_mean(x[0], x[1]);
 }
 
-#include "kernels/composite_v.h"
+#include "kernels/composite_v.inc"
 
 /* ---------------------------------------------------------------------- sums
  */
@@ -108,4 +108,4 @@ static inline V w_last(V x)
 /* Held to 0 .. 65535. */
 #define w_narrow _mm_packus_epi32
 
-#include "kernels/run_sum_x86.h"
+#include "kernels/run_sum_x86.inc"

@@ -9,5 +9,5 @@
 #define OP(name)     _mm256_##name
 #define WHOLE(name)  _mm256_##name##_si256
 
-#include "kernels/horner_x86.h"
-#include "kernels/horner_v.h"
+#include "kernels/horner_x86.inc"
+#include "kernels/horner_v.inc"

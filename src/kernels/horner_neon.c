@@ -37,4 +37,4 @@ static inline W w_times(W a, struct factor by, struct shift s)
     return vqrdmulhq_s32(vshlq_s32(a, s.up), by.x);
 }
 
-#include "kernels/horner_v.h"
+#include "kernels/horner_v.inc"

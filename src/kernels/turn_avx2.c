@@ -9,4 +9,4 @@
 #define OP(name)     _mm256_##name
 #define WHOLE(name)  _mm256_##name##_si256
 
-#include "kernels/turn_x86.h"
+#include "kernels/turn_x86.inc"

@@ -9,4 +9,4 @@
 #define OP(name)     _mm_##name
 #define WHOLE(name)  _mm_##name##_si128
 
-#include "kernels/turn_x86.h"
+#include "kernels/turn_x86.inc"

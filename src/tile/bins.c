@@ -63,14 +63,13 @@ void glint_bins_sum(struct glint_bins *bins)
     }
 }
 
-void glint_bins_put(struct glint_bins *bins, struct glint_box box,
-                    int32_t primitive)
+void glint_bins_put(struct glint_bins *bins, struct glint_box box, int32_t item)
 {
     const struct glint_box t = tile_range(bins, box);
 
     for (int y = t.y0; y < t.y1; y++)
         for (int x = t.x0; x < t.x1; x++)
-            bins->ref[bins->start[y * bins->tiles_x + x]++] = primitive;
+            bins->ref[bins->start[y * bins->tiles_x + x]++] = item;
 }
 
 void glint_bins_close(struct glint_bins *bins)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Index lists: which primitives may touch which tile.
+ * Index lists: which items, each of a box of pixels, may touch which tile.
  *
  * Three steps, so that every list has exactly the length it needs and order is
- * by primitive, never by arrival: count, prefix sum, scatter. The same code
+ * by item, never by arrival: count, prefix sum, scatter. The same code
  * serves both levels: the frame in large tiles, a large tile in small ones.
  */
 #ifndef GLINT_TILE_BINS_H
@@ -11,14 +11,14 @@
 
 #include <stdint.h>
 
-#include "tile/primitive.h"
+#include "tile/box.h"
 
 struct glint_bins {
     struct glint_box region; /* pixels that the tiles cover */
     int tile_log2;
     int tiles_x, tiles_y;
     int32_t *start; /* [tiles_x * tiles_y + 1], into ref */
-    int32_t *ref;   /* primitive indices, rising within a tile */
+    int32_t *ref;   /* indices of items, rising within a tile */
 };
 
 /* Tiles across and down REGION. */
@@ -35,7 +35,7 @@ void glint_bins_count(struct glint_bins *bins, struct glint_box box);
 void glint_bins_sum(struct glint_bins *bins);
 /* scatter: the same boxes again, in the order wanted */
 void glint_bins_put(struct glint_bins *bins, struct glint_box box,
-                    int32_t primitive);
+                    int32_t item);
 /* puts the starts back where the scatter found them */
 void glint_bins_close(struct glint_bins *bins);
 

@@ -5,7 +5,7 @@
  * the level, box, centroid (pixels), pixels, then the measures of
  * enum glint_evidence and the score that the library gives.
  */
-#include "flare/lights_state.h"
+#include "lamps/lights_state.h"
 #include "ppm.h"
 
 static void put(const char *name, const struct glint_lights *f,

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "plain/pfm.h"
-#include "plain/pnm.h"
+#include "formats/pfm.h"
+#include "formats/pnm.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

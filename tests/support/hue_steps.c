@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "glint/image.h"
-#include "plain/picture.h"
+#include "formats/picture.h"
 
 static long pairs_of[2 * 255 * 2 + 1]; /* by their hue step */
 

@@ -10,9 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "plain/picture.h"
-#include "plain/y4m.h"
-#include "tool.h"
+#include "formats/picture.h"
+#include "formats/y4m.h"
+#include "options/tool.h"
 
 static uint32_t random_next(uint32_t *state)
 {

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "flare/profile.h"
+#include "lamps/profile.h"
 #include "glint/glint.h"
 #include "support/power_scene.h"
 

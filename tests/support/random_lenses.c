@@ -25,7 +25,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "plain/picture.h"
+#include "formats/picture.h"
 #include "support/extreme.h"
 #include "support/random_lens.h"
 #include "support/stage.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "glint/kernels.h"
-#include "model_cache.h"
+#include "model/model_cache.h"
 
 static bool refuse(const char *why)
 {

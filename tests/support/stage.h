@@ -17,9 +17,9 @@
 
 #include <stdbool.h>
 
-#include "frame.h"
-#include "measure.h"
-#include "model_file.h"
+#include "engine/frame.h"
+#include "engine/measure.h"
+#include "model/model_file.h"
 
 struct stage {
     struct glint_prescription lens;
@@ -42,7 +42,7 @@ bool stage_parse(struct stage *stage, const char *text);
 bool stage_prepare(struct stage *stage, int n_blades);
 
 /* A model for lights up to MAX_DEG: baked here and now, or the one that other
- * tests have baked before (tools/model_cache.h). */
+ * tests have baked before (tools/model/model_cache.h). */
 bool stage_bake(struct stage *stage, double tolerance, double max_deg);
 bool stage_model(struct stage *stage, double tolerance, double max_deg);
 

@@ -13,8 +13,8 @@
 #include <getopt.h>
 #include <stdio.h>
 
-#include "look.h"
-#include "plain/y4m.h"
+#include "overlay/look.h"
+#include "formats/y4m.h"
 #include "posix/error.h"
 #include "support/night.h"
 

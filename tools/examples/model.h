@@ -2,8 +2,8 @@
  *
  * Baked models, for the examples.
  */
-#ifndef GLINT_EXAMPLES_MODEL_H
-#define GLINT_EXAMPLES_MODEL_H
+#ifndef GLINT_TOOLS_EXAMPLES_MODEL_H
+#define GLINT_TOOLS_EXAMPLES_MODEL_H
 
 #include <stdio.h>
 #include <stdlib.h>

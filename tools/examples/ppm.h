@@ -2,8 +2,8 @@
  *
  * The simplest of pictures, for the examples: binary PPM of 8 bits.
  */
-#ifndef GLINT_EXAMPLES_PPM_H
-#define GLINT_EXAMPLES_PPM_H
+#ifndef GLINT_TOOLS_EXAMPLES_PPM_H
+#define GLINT_TOOLS_EXAMPLES_PPM_H
 
 #include <stdio.h>
 #include <stdlib.h>

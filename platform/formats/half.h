@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/half.h - floats of 16 bits, as EXR and TIFF have them.
+ */
+#ifndef GLINT_PLATFORM_FORMATS_HALF_H
+#define GLINT_PLATFORM_FORMATS_HALF_H
+
+#include <stdint.h>
+
+/* Exact. */
+float glint_half_decode(uint16_t half);
+
+/* To nearest, ties to even; infinite beyond 65504. */
+uint16_t glint_half_encode(float value);
+
+#endif

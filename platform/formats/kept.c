@@ -1,0 +1,558 @@
+/* SPDX-License-Identifier: MIT */
+#include "formats/kept.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "formats/kept_types.h"
+#include "formats/pfm.h"
+#include "formats/picture.h"
+#include "formats/pnm.h"
+#include "posix/error.h"
+#include "posix/input.h"
+#include "posix/output.h"
+
+#define MAX_FILE_BYTES                                             \
+    (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
+         ? SIZE_MAX / 4                                            \
+         : (size_t)(UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE + 4096))
+
+static enum glint_status report_memory(struct glint_error *error,
+                                       const char *path,
+                                       const struct glint_samples *s)
+{
+    return glint_error_report(error, GLINT_E_MEMORY, path,
+                              "no memory for a %d x %d picture", s->width,
+                              s->height);
+}
+
+/* Pixels of CHANNELS samples one after the other; the last of 2 and 4 is alpha.
+ */
+static void lay_out(struct glint_samples *s, int width, int height,
+                    enum glint_sample sample, int channels)
+{
+    const size_t bytes = glint_sample_bytes(sample);
+
+    *s = (struct glint_samples){
+        .width = width,
+        .height = height,
+        .window_width = width,
+        .window_height = height,
+        .orientation = 1,
+        .pixel_bytes = bytes * (size_t)channels,
+        .n_colours = channels < 3 ? 1 : 3,
+        .has_alpha = channels % 2 == 0,
+        .is_premultiplied = true,
+        .alpha = {sample, bytes * (size_t)(channels - 1)}};
+    for (int c = 0; c < 3; c++)
+        s->colour[c] = (struct glint_sample_place){
+            sample, channels < 3 ? 0 : bytes * (size_t)c};
+    s->maximum = sample == GLINT_SAMPLE_U8    ? UINT8_MAX
+                 : sample == GLINT_SAMPLE_U16 ? UINT16_MAX
+                                              : UINT32_MAX;
+    if (glint_sample_is_float(sample))
+        glint_colours_set(&s->colours, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else
+        glint_colours_set(&s->colours, GLINT_TONE_IS_SRGB, 0, "sRGB");
+}
+
+static size_t samples_bytes(const struct glint_samples *s)
+{
+    return (size_t)s->width * (size_t)s->height * s->pixel_bytes;
+}
+
+/* -------------------------------------------------------------- PNM and PFM */
+
+/* Samples of two bytes between the file's order and this machine's. */
+static void swap_shorts(uint8_t *to, const uint8_t *from, size_t bytes)
+{
+    const uint16_t one = 1;
+    const bool swap = *(const uint8_t *)&one == 1;
+
+    for (size_t i = 0; i < bytes; i += 2) {
+        to[i] = from[i + swap];
+        to[i + 1] = from[i + !swap];
+    }
+}
+
+/* Rows of floats, the last first, between the file's order and this machine's.
+ */
+static void swap_rows(uint8_t *to, const uint8_t *from,
+                      const struct glint_samples *s, bool little)
+{
+    const uint16_t one = 1;
+    const bool swap = (*(const uint8_t *)&one == 1) != little;
+    const size_t row = (size_t)s->width * s->pixel_bytes;
+
+    for (int y = 0; y < s->height; y++)
+        for (size_t i = 0; i < row; i++)
+            to[(size_t)y * row + (swap ? i ^ 3 : i)] =
+                from[(size_t)(s->height - 1 - y) * row + i];
+}
+
+static enum glint_status open_pnm(struct glint_kept *k,
+                                  struct glint_error *error)
+{
+    struct glint_pnm_header h;
+    enum glint_status status =
+        glint_pnm_header_read(&h, k->native, k->native_bytes, k->path, error);
+
+    if (status)
+        return status;
+    k->header_bytes = h.bytes;
+    lay_out(&k->samples, h.width, h.height,
+            h.maximum > 255 ? GLINT_SAMPLE_U16 : GLINT_SAMPLE_U8, h.channels);
+    k->samples.maximum = (uint32_t)h.maximum;
+    k->samples.mem = k->native + h.bytes;
+    if (h.maximum <= 255)
+        return GLINT_OK;
+    k->own = malloc(samples_bytes(&k->samples));
+    if (!k->own)
+        return report_memory(error, k->path, &k->samples);
+    swap_shorts(k->own, k->native + h.bytes, samples_bytes(&k->samples));
+    k->samples.mem = k->own;
+    return GLINT_OK;
+}
+
+static enum glint_status open_pfm(struct glint_kept *k,
+                                  struct glint_error *error)
+{
+    struct glint_pfm_header h;
+    enum glint_status status =
+        glint_pfm_header_read(&h, k->native, k->native_bytes, k->path, error);
+
+    if (status)
+        return status;
+    k->header_bytes = h.bytes;
+    k->is_pfm = true;
+    k->is_little = h.little;
+    lay_out(&k->samples, h.width, h.height, GLINT_SAMPLE_FLOAT, h.channels);
+    k->own = malloc(samples_bytes(&k->samples));
+    if (!k->own)
+        return report_memory(error, k->path, &k->samples);
+    swap_rows(k->own, k->native + h.bytes, &k->samples, h.little);
+    k->samples.mem = k->own;
+    return GLINT_OK;
+}
+
+/* Puts the samples back where they came from. */
+static void refill_native(struct glint_kept *k)
+{
+    uint8_t *const at = k->native + k->header_bytes;
+
+    if (k->is_pfm)
+        swap_rows(at, k->own, &k->samples, k->is_little);
+    else if (k->own)
+        swap_shorts(at, k->own, samples_bytes(&k->samples));
+}
+
+/* ----------------------------------------------------------------- meaning */
+
+static void note(struct glint_kept *k, const char *text)
+{
+    const size_t used = strlen(k->note);
+
+    snprintf(k->note + used, sizeof k->note - used, "%s%s", used ? "; " : "",
+             text);
+}
+
+/* By ITU-T H.273. False: not one that is known here. */
+static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
+{
+    static const double p3[4][2] = {
+        {0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.3127, 0.329}};
+    static const double bt2020[4][2] = {
+        {0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}};
+
+    if (cicp[1] == 13)
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    else if (cicp[1] == 8)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else if (cicp[1] == 4 || cicp[1] == 5)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, cicp[1] == 4 ? 2.2 : 2.8,
+                          "gamma");
+    else if (cicp[1] == 1 || cicp[1] == 6 || cicp[1] == 14 || cicp[1] == 15)
+        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+    else
+        return false;
+    if (cicp[0] == 9)
+        return glint_colours_primaries(c, bt2020);
+    return cicp[0] != 12 || glint_colours_primaries(c, p3);
+}
+
+/* As OpenImageIO calls colour spaces. False: not one that is known here. */
+static bool set_by_name(struct glint_colours *c, const char *name)
+{
+    static const double adobe[4][2] = {
+        {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, {0.3127, 0.329}};
+    double gamma;
+
+    if (strcasecmp(name, "sRGB") == 0)
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    else if (strcasecmp(name, "linear") == 0 ||
+             strncasecmp(name, "lin_", 4) == 0)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else if (strcasecmp(name, "Rec709") == 0)
+        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+    else if (strcasecmp(name, "AdobeRGB") == 0) {
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
+        return glint_colours_primaries(c, adobe);
+    } else if (strncmp(name, "Gamma", 5) == 0 &&
+               (gamma = strtod(name + 5, NULL)) > 0.1 && gamma < 10)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
+    else
+        return false;
+    return true;
+}
+
+static void set_colours(struct glint_kept *k,
+                        const struct glint_oiio_facts *facts)
+{
+    struct glint_samples *const s = &k->samples;
+    struct glint_colours *const c = &s->colours;
+    char text[96];
+    bool known = true;
+
+    if (k->is_float)
+        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+    else
+        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+    if (facts->cicp[1])
+        known = set_by_cicp(c, facts->cicp);
+    else if (facts->icc)
+        known = glint_icc_read(c, facts->icc, facts->icc_bytes);
+    else if (facts->gamma > 0.1 && facts->gamma < 10)
+        glint_colours_set(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
+    else if (*facts->colour_space && !k->is_float)
+        known = set_by_name(c, facts->colour_space);
+    if (!facts->icc && !facts->cicp[1] && facts->has_primaries)
+        glint_colours_primaries(c, (const double(*)[2])facts->primaries);
+    if (known)
+        return;
+    snprintf(text, sizeof text, "%.24s is not known here; taken as %s",
+             facts->cicp[1] ? "the transfer of its cICP"
+             : facts->icc   ? "what its profile says"
+                            : facts->colour_space,
+             k->is_float ? "linear" : "sRGB");
+    note(k, text);
+}
+
+static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
+                                        struct glint_error *error)
+{
+    struct glint_oiio_facts facts;
+    const struct glint_oiio *oiio;
+    enum glint_status status = glint_oiio_load(&oiio, error);
+
+    if (status)
+        return glint_picture_needs_plugin(k->path, type, error);
+    status = oiio->open(&k->file, &k->samples, &facts, k->path, error);
+    if (status)
+        return status;
+    k->oiio = oiio;
+    k->has_icc = facts.icc != NULL;
+    k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
+    if (*facts.note)
+        note(k, facts.note);
+    set_colours(k, &facts);
+    return GLINT_OK;
+}
+
+/* ----------------------------------------------------------------- opening */
+
+/* The whole of a PNM or PFM, or the first bytes of another file. */
+static enum glint_status read_native(struct glint_kept *k,
+                                     struct glint_error *error)
+{
+    struct glint_input in;
+    enum glint_status status = glint_input_open(&in, k->path, error);
+    ptrdiff_t n = 1;
+
+    if (status)
+        return status;
+    k->native = malloc(12);
+    if (!k->native)
+        status = glint_error_report(error, GLINT_E_MEMORY, k->path,
+                                    "no memory for a buffer");
+    while (!status && n > 0 && k->native_bytes < 12) {
+        n = glint_input_some(&in, k->native + k->native_bytes,
+                             12 - k->native_bytes);
+        k->native_bytes += n > 0 ? (size_t)n : 0;
+    }
+    if (n < 0)
+        status = glint_error_report(error, GLINT_E_IO, k->path, "%s",
+                                    strerror(errno));
+    if (!status && k->native_bytes == 0)
+        status = glint_error_report(error, GLINT_E_FORMAT, k->path, "is empty");
+    if (!status && (glint_pnm_matches(k->native, k->native_bytes) ||
+                    glint_pfm_matches(k->native, k->native_bytes)))
+        status = glint_input_append(&in, &k->native, &k->native_bytes,
+                                    MAX_FILE_BYTES, error);
+    glint_input_close(&in);
+    return status;
+}
+
+static enum glint_status open_any(struct glint_kept *k,
+                                  struct glint_error *error)
+{
+    enum glint_status status = read_native(k, error);
+
+    if (status)
+        return status;
+    if (glint_pnm_matches(k->native, k->native_bytes))
+        return open_pnm(k, error);
+    if (glint_pfm_matches(k->native, k->native_bytes)) {
+        k->is_float = true;
+        return open_pfm(k, error);
+    }
+    if (k->native_bytes >= 9 && !memcmp(k->native, "YUV4MPEG2", 9))
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, k->path,
+                                  "is a video, not a picture");
+    return open_by_plugin(k, glint_picture_type(k->native, k->native_bytes),
+                          error);
+}
+
+enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
+                                  struct glint_error *error)
+{
+    enum glint_status status;
+
+    memset(kept, 0, sizeof *kept);
+    kept->path = path;
+    status = open_any(kept, error);
+    if (status)
+        glint_kept_close(kept);
+    return status;
+}
+
+void glint_kept_close(struct glint_kept *kept)
+{
+    if (kept->oiio)
+        kept->oiio->close(kept->file);
+    free(kept->native);
+    free(kept->own);
+    kept->oiio = NULL;
+    kept->native = kept->own = NULL;
+}
+
+/* ------------------------------------------------------------------ saving */
+
+enum glint_status glint_kept_check(const char *path, struct glint_error *error)
+{
+    const struct glint_file_type *const type = glint_file_type_of(path);
+    const struct glint_oiio *oiio;
+
+    if (!type)
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, path,
+            "unknown extension; pictures are .ppm .pgm .png .jpg .tif .bmp "
+            ".tga .webp, linear light is .pfm .exr .hdr .tif");
+    if (!type->is_native && glint_oiio_load(&oiio, error))
+        return glint_picture_needs_plugin(path, type->extension, error);
+    return GLINT_OK;
+}
+
+bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path)
+{
+    const struct glint_file_type *const type = glint_file_type_of(path);
+
+    if (!type)
+        return false;
+    if (kept->oiio)
+        return !type->is_native && kept->oiio->is_same_type(kept->file, path);
+    return type->is_native && kept->is_pfm == type->takes_float &&
+           (kept->is_pfm || type->is_grey == (kept->samples.n_colours == 1) ||
+            strcasecmp(type->extension, ".pnm") == 0);
+}
+
+enum glint_status glint_kept_copy(const struct glint_kept *kept,
+                                  const char *path, struct glint_error *error)
+{
+    struct glint_output out;
+    uint8_t *data;
+    size_t bytes;
+    enum glint_status status =
+        glint_input_slurp(&data, &bytes, kept->path, SIZE_MAX / 2, error);
+
+    if (status)
+        return status;
+    status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
+    if (!status)
+        status = glint_output_finish(&out, data, bytes, error);
+    free(data);
+    return status;
+}
+
+enum glint_status glint_kept_blank(struct glint_samples *blank,
+                                   const struct glint_samples *from,
+                                   bool has_alpha)
+{
+    const enum glint_sample sample = from->colour[0].sample == GLINT_SAMPLE_U32
+                                         ? GLINT_SAMPLE_FLOAT
+                                         : from->colour[0].sample;
+
+    lay_out(blank, glint_samples_width(from), glint_samples_height(from),
+            sample, has_alpha ? 4 : 3);
+    blank->mem = calloc((size_t)blank->width * (size_t)blank->height,
+                        blank->pixel_bytes);
+    return blank->mem ? GLINT_OK : GLINT_E_MEMORY;
+}
+
+static void say(struct glint_kept_options *options, const char *text)
+{
+    const size_t used = strlen(options->said);
+
+    snprintf(options->said + used, sizeof options->said - used, "%s%s",
+             used ? "; " : "", text);
+}
+
+static void say_losses(struct glint_kept_options *options,
+                       const struct glint_samples *to,
+                       const struct glint_samples *from)
+{
+    const bool was_float = glint_sample_is_float(from->colour[0].sample);
+
+    if (from->has_alpha && !to->has_alpha)
+        say(options, "the file type has no alpha: what is seen over black is "
+                     "written");
+    if (was_float && !glint_sample_is_float(to->colour[0].sample))
+        say(options, to->colour[0].sample == GLINT_SAMPLE_U8
+                         ? "light above white is clipped, and 8 bits are left"
+                         : "light above white is clipped, and 16 bits are "
+                           "left");
+    else if (glint_sample_bytes(from->colour[0].sample) > 1 &&
+             to->colour[0].sample == GLINT_SAMPLE_U8)
+        say(options, "8 bits are left");
+}
+
+/* FROM as TYPE takes it; TO's memory is the caller's to free. */
+static enum glint_status convert(struct glint_samples *to,
+                                 const struct glint_samples *from,
+                                 const struct glint_file_type *type)
+{
+    const bool has_alpha = from->has_alpha && type->alpha != GLINT_ALPHA_NONE;
+    const bool is_grey = type->is_grey ||
+                         (from->n_colours == 1 && !type->is_native) ||
+                         (from->n_colours == 1 && type->takes_float);
+
+    lay_out(to, glint_samples_width(from), glint_samples_height(from),
+            glint_file_type_sample(type, from->colour[0].sample),
+            (is_grey ? 1 : 3) + has_alpha);
+    to->is_premultiplied = type->alpha != GLINT_ALPHA_STRAIGHT;
+    to->mem = malloc(samples_bytes(to));
+    if (!to->mem)
+        return GLINT_E_MEMORY;
+    glint_samples_convert(to, from);
+    return GLINT_OK;
+}
+
+static enum glint_status write_native(struct glint_output *out,
+                                      struct glint_samples *s,
+                                      const struct glint_file_type *type,
+                                      struct glint_error *error)
+{
+    const size_t bytes = samples_bytes(s);
+    const bool is_wide = s->colour[0].sample == GLINT_SAMPLE_U16;
+    const char *const kind = type->takes_float
+                                 ? (s->n_colours == 1 ? "Pf" : "PF")
+                                 : (s->n_colours == 1 ? "P5" : "P6");
+    uint8_t *const data = malloc(bytes);
+    enum glint_status status;
+    char header[64];
+    int n;
+
+    if (!data)
+        return report_memory(error, out->name, s);
+    if (type->takes_float)
+        swap_rows(data, s->mem, s, true);
+    else if (is_wide)
+        swap_shorts(data, s->mem, bytes);
+    else
+        memcpy(data, s->mem, bytes);
+    n = snprintf(header, sizeof header, "%s\n%d %d\n%s\n", kind, s->width,
+                 s->height,
+                 type->takes_float ? "-1.0"
+                 : is_wide         ? "65535"
+                                   : "255");
+    status = glint_output_write(out, header, (size_t)n, error);
+    if (!status)
+        status = glint_output_write(out, data, bytes, error);
+    free(data);
+    return status;
+}
+
+static enum glint_status
+write_by_plugin(struct glint_kept *k, struct glint_output *out,
+                const struct glint_samples *pixels,
+                const struct glint_kept_options *options,
+                struct glint_error *error)
+{
+    const struct glint_oiio_options how = {.quality = options->quality,
+                                           .drop_icc = pixels != NULL &&
+                                                       pixels != &k->samples};
+    const struct glint_oiio *oiio;
+    enum glint_status status = glint_oiio_load(&oiio, error);
+    void *data;
+    size_t bytes;
+
+    if (!status)
+        status = oiio->encode_file(&data, &bytes, out->name, k->file, pixels,
+                                   &how, error);
+    if (status)
+        return status;
+    status = glint_output_write(out, data, bytes, error);
+    free(data);
+    return status;
+}
+
+/* As another type, or another picture. */
+static enum glint_status save_converted(struct glint_kept *k,
+                                        struct glint_output *out,
+                                        const struct glint_samples *from,
+                                        struct glint_kept_options *options,
+                                        struct glint_error *error)
+{
+    const struct glint_file_type *const type = glint_file_type_of(out->name);
+    struct glint_samples to;
+    enum glint_status status = convert(&to, from, type);
+
+    if (status)
+        return report_memory(error, out->name, &to);
+    say_losses(options, &to, from);
+    status = type->is_native ? write_native(out, &to, type, error)
+                             : write_by_plugin(k, out, &to, options, error);
+    free(to.mem);
+    return status;
+}
+
+enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
+                                  const struct glint_samples *alone,
+                                  struct glint_kept_options *options,
+                                  struct glint_error *error)
+{
+    struct glint_output out;
+    enum glint_status status = glint_kept_check(path, error);
+
+    options->said[0] = '\0';
+    if (!status)
+        status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
+    if (status)
+        return status;
+    if (alone || !glint_kept_is_same_type(kept, path)) {
+        status = save_converted(kept, &out, alone ? alone : &kept->samples,
+                                options, error);
+    } else if (kept->oiio) {
+        status = write_by_plugin(kept, &out, NULL, options, error);
+    } else {
+        refill_native(kept);
+        status =
+            glint_output_write(&out, kept->native, kept->native_bytes, error);
+    }
+    if (!status)
+        return glint_output_commit(&out, error);
+    glint_output_abort(&out);
+    return status;
+}

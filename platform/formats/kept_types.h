@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/kept_types.h - what picture file types can hold.
+ */
+#ifndef GLINT_PLATFORM_FORMATS_KEPT_TYPES_H
+#define GLINT_PLATFORM_FORMATS_KEPT_TYPES_H
+
+#include <stdbool.h>
+
+#include "formats/samples.h"
+
+enum glint_type_alpha {
+    GLINT_ALPHA_NONE,
+    GLINT_ALPHA_STRAIGHT,
+    GLINT_ALPHA_PREMULTIPLIED
+};
+
+struct glint_file_type {
+    const char *extension;
+    bool is_native; /* written by glint itself */
+    bool is_grey;   /* nothing but */
+    enum glint_type_alpha alpha;
+    bool takes_u8, takes_u16, takes_half, takes_float;
+};
+
+/* By the extension of PATH; NULL: unknown. */
+const struct glint_file_type *glint_file_type_of(const char *path);
+
+/* The sample nearest to SAMPLE that TYPE takes. */
+enum glint_sample glint_file_type_sample(const struct glint_file_type *type,
+                                         enum glint_sample sample);
+
+#endif

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/pfm.h - PFM pictures: linear light in floats, without a library.
+ *
+ *     glint_pfm_read(&floats, data, bytes, "x.pfm", &error);
+ *     ...
+ *     free(floats.rgb);
+ *
+ * "PF" holds R G B, "Pf" grey, which is read as R = G = B. The third number of
+ * the header gives the byte order by its sign (negative: little end first); its
+ * magnitude, which writers do not agree on, is ignored. Values are taken as
+ * they are, not-a-numbers and infinities included.
+ */
+#ifndef GLINT_PLATFORM_FORMATS_PFM_H
+#define GLINT_PLATFORM_FORMATS_PFM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+#include "posix/output.h"
+
+/* Linear light, BT.709 primaries, 1 = display white. */
+struct glint_float_image {
+    int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
+    float *rgb;        /* [height][width][3], the top row first */
+};
+
+/* Whether DATA begins like a PFM. */
+bool glint_pfm_matches(const void *data, size_t bytes);
+
+/* What stands before the samples, the bottom row of which comes first. */
+struct glint_pfm_header {
+    int width, height; /* 1 .. GLINT_MAX_SIDE */
+    int channels;      /* 3 or 1 */
+    bool little;       /* end first */
+    size_t bytes;      /* of the header itself */
+};
+
+/* Reads the header of DATA[BYTES], which has all samples. Errors as below. */
+enum glint_status glint_pfm_header_read(struct glint_pfm_header *header,
+                                        const void *data, size_t bytes,
+                                        const char *name,
+                                        struct glint_error *error);
+
+/* Reads DATA[BYTES]; floats->rgb is malloc'ed and the caller frees it. NAME is
+ * for errors. GLINT_E_FORMAT: malformed or cut short. GLINT_E_UNSUPPORTED: no
+ * PFM, or a side above GLINT_MAX_SIDE. GLINT_E_MEMORY. */
+enum glint_status glint_pfm_read(struct glint_float_image *floats,
+                                 const void *data, size_t bytes,
+                                 const char *name, struct glint_error *error);
+
+/* Writes FLOATS as a "PF", little end first. */
+enum glint_status glint_pfm_write(struct glint_output *out,
+                                  const struct glint_float_image *floats,
+                                  struct glint_error *error);
+
+#endif

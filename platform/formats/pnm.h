@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/pnm.h - PPM and PGM pictures without a library.
+ *
+ *     glint_pnm_read(&image, data, bytes, "x.ppm", &error);
+ *     ...
+ *     free(image.plane[0]);
+ *
+ * The binary kinds only: P6 (colour) and P5 (grey), maximum value 1 .. 65535,
+ * comments anywhere in the header. Samples are scaled to 8 bits, to nearest;
+ * those above the stated maximum count as the maximum. What follows the first
+ * picture is ignored, since PNM files may hold several.
+ */
+#ifndef GLINT_PLATFORM_FORMATS_PNM_H
+#define GLINT_PLATFORM_FORMATS_PNM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+#include "posix/output.h"
+
+/* Whether DATA begins like a P5 or P6. */
+bool glint_pnm_matches(const void *data, size_t bytes);
+
+/* What stands before the samples. */
+struct glint_pnm_header {
+    int width, height; /* 1 .. GLINT_MAX_SIDE */
+    int channels;      /* 3 or 1 */
+    int maximum;       /* 1 .. 65535; above 255 in two bytes, the high first */
+    size_t bytes;      /* of the header itself */
+};
+
+/* Reads the header of DATA[BYTES], which has all samples. Errors as below. */
+enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
+                                        const void *data, size_t bytes,
+                                        const char *name,
+                                        struct glint_error *error);
+
+/* Reads DATA[BYTES] into IMAGE: GLINT_RGB24 for P6, GLINT_GREY for P5, full
+ * range, sRGB transfer. plane[0] is one malloc'ed block without padding, which
+ * the caller frees. NAME is for errors.
+ * GLINT_E_FORMAT: malformed or cut short. GLINT_E_UNSUPPORTED: another kind, or
+ * a side above GLINT_MAX_SIDE. GLINT_E_MEMORY. */
+enum glint_status glint_pnm_read(struct glint_image *image, const void *data,
+                                 size_t bytes, const char *name,
+                                 struct glint_error *error);
+
+/* Writes IMAGE, GLINT_RGB24 with any strides, as a P6 with maximum 255. */
+enum glint_status glint_pnm_write(struct glint_output *out,
+                                  const struct glint_image *image,
+                                  struct glint_error *error);
+
+#endif

@@ -1,0 +1,491 @@
+/* SPDX-License-Identifier: MIT */
+#include "formats/samples.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "formats/half.h"
+
+size_t glint_sample_bytes(enum glint_sample sample)
+{
+    static const uint8_t bytes[] = {1, 2, 4, 2, 4, 8};
+
+    return bytes[sample];
+}
+
+bool glint_sample_is_float(enum glint_sample sample)
+{
+    return sample >= GLINT_SAMPLE_HALF;
+}
+
+/* ------------------------------------------------------------------- places */
+
+static bool is_turned(const struct glint_samples *s)
+{
+    return s->orientation >= 5;
+}
+
+int glint_samples_width(const struct glint_samples *samples)
+{
+    return is_turned(samples) ? samples->window_height : samples->window_width;
+}
+
+int glint_samples_height(const struct glint_samples *samples)
+{
+    return is_turned(samples) ? samples->window_width : samples->window_height;
+}
+
+/* The pixel that is seen at X, Y; NULL: there is none. */
+static uint8_t *find(const struct glint_samples *s, int x, int y)
+{
+    const int right = s->window_width - 1, bottom = s->window_height - 1;
+    /* windows of a file may be anywhere */
+    int64_t column = is_turned(s) ? y : x, row = is_turned(s) ? x : y;
+
+    if (s->orientation == 2 || s->orientation == 3 || s->orientation == 7 ||
+        s->orientation == 8)
+        column = right - column;
+    if (s->orientation == 3 || s->orientation == 4 || s->orientation == 6 ||
+        s->orientation == 7)
+        row = bottom - row;
+    column -= s->x;
+    row -= s->y;
+    if (column < 0 || row < 0 || column >= s->width || row >= s->height)
+        return NULL;
+    return s->mem +
+           ((size_t)row * (size_t)s->width + (size_t)column) * s->pixel_bytes;
+}
+
+bool glint_samples_image(const struct glint_samples *samples,
+                         struct glint_image *image)
+{
+    const struct glint_samples *const s = samples;
+
+    if (!s->colours.is_srgb || s->n_colours != 3 || s->has_alpha ||
+        s->pixel_bytes != 3 || s->colour[0].sample != GLINT_SAMPLE_U8 ||
+        s->colour[0].offset != 0 || s->colour[1].offset != 1 ||
+        s->colour[2].offset != 2 || s->maximum != 255 || s->orientation != 1 ||
+        s->x || s->y || s->width != s->window_width ||
+        s->height != s->window_height)
+        return false;
+    *image = (struct glint_image){.format = GLINT_RGB24,
+                                  .width = s->width,
+                                  .height = s->height,
+                                  .range = GLINT_RANGE_FULL,
+                                  .transfer = GLINT_TONE_SRGB};
+    glint_image_place(image, s->mem);
+    return true;
+}
+
+/* ------------------------------------------------------------------- samples
+ */
+
+static uint32_t take_integer(const struct glint_sample_place *c,
+                             const uint8_t *pixel)
+{
+    uint16_t wide;
+    uint32_t long_;
+
+    switch (c->sample) {
+    case GLINT_SAMPLE_U8:
+        return pixel[c->offset];
+    case GLINT_SAMPLE_U16:
+        memcpy(&wide, pixel + c->offset, sizeof wide);
+        return wide;
+    default:
+        memcpy(&long_, pixel + c->offset, sizeof long_);
+        return long_;
+    }
+}
+
+static void put_integer(const struct glint_sample_place *c, uint8_t *pixel,
+                        uint32_t code)
+{
+    const uint16_t wide = (uint16_t)code;
+
+    if (c->sample == GLINT_SAMPLE_U8)
+        pixel[c->offset] = (uint8_t)code;
+    else if (c->sample == GLINT_SAMPLE_U16)
+        memcpy(pixel + c->offset, &wide, sizeof wide);
+    else
+        memcpy(pixel + c->offset, &code, sizeof code);
+}
+
+static double take_float(const struct glint_sample_place *c,
+                         const uint8_t *pixel)
+{
+    uint16_t half;
+    float single;
+    double value;
+
+    switch (c->sample) {
+    case GLINT_SAMPLE_HALF:
+        memcpy(&half, pixel + c->offset, sizeof half);
+        return (double)glint_half_decode(half);
+    case GLINT_SAMPLE_FLOAT:
+        memcpy(&single, pixel + c->offset, sizeof single);
+        return (double)single;
+    default:
+        memcpy(&value, pixel + c->offset, sizeof value);
+        return value;
+    }
+}
+
+static void put_float(const struct glint_sample_place *c, uint8_t *pixel,
+                      double value)
+{
+    const float single = (float)value;
+    const uint16_t half =
+        glint_half_encode(value > 65504 ? 65504.0F : single); /* held */
+
+    if (c->sample == GLINT_SAMPLE_HALF)
+        memcpy(pixel + c->offset, &half, sizeof half);
+    else if (c->sample == GLINT_SAMPLE_FLOAT)
+        memcpy(pixel + c->offset, &single, sizeof single);
+    else
+        memcpy(pixel + c->offset, &value, sizeof value);
+}
+
+static uint32_t most_of(enum glint_sample sample)
+{
+    return sample == GLINT_SAMPLE_U8    ? UINT8_MAX
+           : sample == GLINT_SAMPLE_U16 ? UINT16_MAX
+                                        : UINT32_MAX;
+}
+
+/* 0 .. 1, floats whatever they hold. */
+static double take(const struct glint_sample_place *c, uint32_t maximum,
+                   const uint8_t *pixel)
+{
+    if (glint_sample_is_float(c->sample))
+        return take_float(c, pixel);
+    return (double)take_integer(c, pixel) / maximum;
+}
+
+static void put(const struct glint_sample_place *c, uint32_t maximum,
+                uint8_t *pixel, double value)
+{
+    if (glint_sample_is_float(c->sample))
+        put_float(c, pixel, value);
+    else if (!(value > 0))
+        put_integer(c, pixel, 0);
+    else
+        put_integer(c, pixel,
+                    value >= 1 ? maximum : (uint32_t)(value * maximum + 0.5));
+}
+
+static double alpha_of(const struct glint_samples *s, const uint8_t *pixel)
+{
+    const double alpha =
+        s->has_alpha ? take(&s->alpha, most_of(s->alpha.sample), pixel) : 1;
+
+    return alpha > 0 ? fmin(alpha, 1) : 0;
+}
+
+/* ------------------------------------------------------------ linear light */
+
+/* Light of all codes of colours that have no more than 65536; entries NULL:
+ * as the formula says each time. */
+struct decoder {
+    const struct glint_samples *samples;
+    float *entries[3];
+};
+
+static void decoder_open(struct decoder *d, const struct glint_samples *s)
+{
+    const size_t n = (size_t)s->maximum + 1;
+
+    *d = (struct decoder){.samples = s};
+    if (glint_sample_is_float(s->colour[0].sample) || s->maximum > UINT16_MAX)
+        return;
+    for (int c = 0; c < 3; c++) {
+        d->entries[c] = malloc(n * sizeof *d->entries[c]);
+        for (size_t i = 0; i < n && d->entries[c]; i++)
+            d->entries[c][i] = (float)glint_tone_curve_decode(
+                &s->colours.transfer[c], (double)i / s->maximum);
+    }
+}
+
+static void decoder_close(struct decoder *d)
+{
+    for (int c = 0; c < 3; c++)
+        free(d->entries[c]);
+}
+
+static double decode(const struct decoder *d, int c, const uint8_t *pixel)
+{
+    const struct glint_samples *const s = d->samples;
+    const struct glint_sample_place *const from = &s->colour[c];
+    uint32_t code;
+
+    if (!d->entries[c])
+        return glint_tone_curve_decode(&s->colours.transfer[c],
+                                       take(from, s->maximum, pixel));
+    code = take_integer(from, pixel);
+    return (double)d->entries[c][code < s->maximum ? code : s->maximum];
+}
+
+static void turn(const double m[3][3], const double from[3], double to[3])
+{
+    for (int i = 0; i < 3; i++)
+        to[i] = m[i][0] * from[0] + m[i][1] * from[1] + m[i][2] * from[2];
+}
+
+/* Infinite light is the largest of a half float; no number, none. */
+static double finite(double value)
+{
+    return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
+}
+
+/* What is seen of PIXEL over black, or, straight, of its colours alone. */
+static void light_of(const struct decoder *d, const uint8_t *pixel,
+                     bool straight, double rgb[3])
+{
+    const struct glint_samples *const s = d->samples;
+    const double alpha = alpha_of(s, pixel);
+    double own[3], factor = 1;
+
+    if (s->has_alpha && s->is_premultiplied && straight)
+        factor = alpha > 0 ? 1 / alpha : 0;
+    else if (s->has_alpha && !s->is_premultiplied && !straight)
+        factor = alpha;
+    for (int c = 0; c < 3; c++)
+        own[c] = finite(decode(d, c, pixel)) * factor;
+    turn(s->colours.to_bt709, own, rgb);
+}
+
+void glint_samples_light(const struct glint_samples *samples, int x, int y,
+                         float rgb[3])
+{
+    const struct decoder by_formula = {.samples = samples};
+    const uint8_t *const pixel = find(samples, x, y);
+    double light[3] = {0, 0, 0};
+
+    if (pixel)
+        light_of(&by_formula, pixel, false, light);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (float)light[c];
+}
+
+/* ------------------------------------------------------------------- proxy */
+
+#define BINS 256 /* eight an octave, from 2^-8 to 2^24 */
+
+/* Light that a hundredth of the picture exceeds, at least 1. */
+static double white_of(const struct decoder *d)
+{
+    const struct glint_samples *const s = d->samples;
+    const size_t n = (size_t)s->width * (size_t)s->height;
+    uint32_t bins[BINS] = {0};
+    size_t above = 0;
+    int bin = BINS;
+
+    if (!glint_sample_is_float(s->colour[0].sample))
+        return 1;
+    for (size_t i = 0; i < n; i++) {
+        double rgb[3], most;
+
+        light_of(d, s->mem + i * s->pixel_bytes, false, rgb);
+        most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
+        if (most > 1)
+            bins[(int)fmin(log2(most) * 8 + 64, BINS - 1)]++;
+    }
+    while (bin > 64 && above * 100 <= n)
+        above += bins[--bin];
+    return bin <= 64 ? 1 : exp2((bin - 63) / 8.0);
+}
+
+#define STEPS 65536
+
+static uint8_t *code_table(void)
+{
+    struct glint_tone_curve srgb;
+    uint8_t *const codes = malloc(STEPS);
+
+    glint_tone_curve_set(&srgb, GLINT_TONE_IS_SRGB, 0);
+    for (int i = 0; i < STEPS && codes; i++)
+        codes[i] =
+            (uint8_t)(glint_tone_curve_encode(&srgb, i / (STEPS - 1.0)) * 255 +
+                      0.5);
+    return codes;
+}
+
+static void fill_proxy(const struct decoder *d, const struct glint_image *proxy,
+                       double white, const uint8_t *codes)
+{
+    for (int y = 0; y < proxy->height; y++) {
+        uint8_t *at = proxy->plane[0] + y * proxy->stride_bytes[0];
+
+        for (int x = 0; x < proxy->width; x++, at += 3) {
+            const uint8_t *const pixel = find(d->samples, x, y);
+            double rgb[3] = {0, 0, 0};
+
+            if (pixel)
+                light_of(d, pixel, false, rgb);
+            for (int c = 0; c < 3; c++) {
+                const double light = rgb[c] / white;
+
+                at[c] = !(light > 0)
+                            ? 0
+                            : codes[(int)(fmin(light, 1) * (STEPS - 1) + 0.5)];
+            }
+        }
+    }
+}
+
+enum glint_status glint_samples_proxy(const struct glint_samples *samples,
+                                      struct glint_image *proxy, double *white)
+{
+    struct glint_image made = {.format = GLINT_RGB24,
+                               .width = glint_samples_width(samples),
+                               .height = glint_samples_height(samples),
+                               .range = GLINT_RANGE_FULL,
+                               .transfer = GLINT_TONE_SRGB};
+    uint8_t *const mem =
+        malloc(glint_image_bytes(GLINT_RGB24, made.width, made.height));
+    uint8_t *const codes = code_table();
+    struct decoder d;
+
+    if (!mem || !codes) {
+        free(mem);
+        free(codes);
+        return GLINT_E_MEMORY;
+    }
+    glint_image_place(&made, mem);
+    decoder_open(&d, samples);
+    *white = white_of(&d);
+    fill_proxy(&d, &made, *white, codes);
+    decoder_close(&d);
+    free(codes);
+    *proxy = made;
+    return GLINT_OK;
+}
+
+/* ------------------------------------------------------------------ adding */
+
+static void add_to(const struct decoder *d, int c, uint8_t *pixel, double light)
+{
+    const struct glint_samples *const s = d->samples;
+    const struct glint_sample_place *const at = &s->colour[c];
+    const struct glint_tone_curve *const transfer = &s->colours.transfer[c];
+    const double sum = decode(d, c, pixel) + light;
+    uint32_t code, lit;
+
+    if (!(light > 0) || !isfinite(sum))
+        return;
+    if (glint_sample_is_float(at->sample)) {
+        put_float(at, pixel, glint_tone_curve_encode(transfer, sum));
+        return;
+    }
+    code = take_integer(at, pixel);
+    lit = (uint32_t)(fmin(glint_tone_curve_encode(transfer, sum), 1) *
+                         s->maximum +
+                     0.5);
+    if (lit > code)
+        put_integer(at, pixel, lit);
+}
+
+static void add_pixel(const struct decoder *d, uint8_t *pixel,
+                      const float *layer)
+{
+    const struct glint_samples *const s = d->samples;
+    const double light[3] = {(double)layer[0], (double)layer[1],
+                             (double)layer[2]};
+    double own[3];
+
+    if (s->n_colours == 1) {
+        add_to(d, 0, pixel,
+               0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2]);
+        return;
+    }
+    turn(s->colours.from_bt709, light, own);
+    for (int c = 0; c < 3; c++)
+        add_to(d, c, pixel, own[c]);
+}
+
+void glint_samples_add(struct glint_samples *samples, const float *layer)
+{
+    const int width = glint_samples_width(samples);
+    const int height = glint_samples_height(samples);
+    struct decoder d;
+
+    decoder_open(&d, samples);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++, layer += 3) {
+            uint8_t *pixel;
+
+            if (!(layer[0] > 0) && !(layer[1] > 0) && !(layer[2] > 0))
+                continue;
+            pixel = find(samples, x, y);
+            if (pixel)
+                add_pixel(&d, pixel, layer);
+        }
+    decoder_close(&d);
+}
+
+/* ----------------------------------------------------------------- putting */
+
+static void put_pixel(const struct glint_samples *s, uint8_t *pixel,
+                      const double rgb[3])
+{
+    double own[3] = {0, 0, 0};
+
+    turn(s->colours.from_bt709, rgb, own);
+    if (s->n_colours == 1)
+        own[0] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+    for (int c = 0; c < s->n_colours && c < 3; c++)
+        put(&s->colour[c], s->maximum, pixel,
+            glint_tone_curve_encode(&s->colours.transfer[c], own[c]));
+}
+
+void glint_samples_put(struct glint_samples *samples,
+                       const struct glint_image *drawn, const uint8_t *before)
+{
+    const uint8_t *at = drawn->plane[0];
+    struct glint_tone_curve srgb;
+
+    glint_tone_curve_set(&srgb, GLINT_TONE_IS_SRGB, 0);
+    for (int y = 0; y < drawn->height; y++)
+        for (int x = 0; x < drawn->width; x++, at += 3, before += 3) {
+            uint8_t *const pixel = find(samples, x, y);
+            double rgb[3];
+
+            if (!pixel || memcmp(at, before, 3) == 0)
+                continue;
+            for (int c = 0; c < 3; c++)
+                rgb[c] = glint_tone_curve_decode(&srgb, at[c] / 255.0);
+            put_pixel(samples, pixel, rgb);
+            if (samples->has_alpha)
+                put(&samples->alpha, most_of(samples->alpha.sample), pixel, 1);
+        }
+}
+
+/* -------------------------------------------------------------- converting */
+
+static void convert_pixel(const struct glint_samples *to, uint8_t *dst,
+                          const struct decoder *from, const uint8_t *src)
+{
+    const bool straight = to->has_alpha && !to->is_premultiplied;
+    double rgb[3] = {0, 0, 0};
+
+    if (src)
+        light_of(from, src, straight, rgb);
+    put_pixel(to, dst, rgb);
+    if (to->has_alpha)
+        put(&to->alpha, most_of(to->alpha.sample), dst,
+            src ? alpha_of(from->samples, src) : 0);
+}
+
+void glint_samples_convert(struct glint_samples *to,
+                           const struct glint_samples *from)
+{
+    struct decoder d;
+    uint8_t *dst = to->mem;
+
+    decoder_open(&d, from);
+    for (int y = 0; y < to->height; y++)
+        for (int x = 0; x < to->width; x++, dst += to->pixel_bytes)
+            convert_pixel(to, dst, &d, find(from, x, y));
+    decoder_close(&d);
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/y4m_layout.h - what a frame of Y4M looks like, by its tag C.
+ *
+ *     C420 420jpeg 420mpeg2 420paldv 411 422 444 444alpha mono
+ *     and 420 422 444 with p9 p10 p12 p14 p16, mono with 9 10 12 14 16
+ *
+ * A sample of more than 8 bits takes two bytes, the low one first.
+ */
+#ifndef GLINT_PLATFORM_FORMATS_Y4M_LAYOUT_H
+#define GLINT_PLATFORM_FORMATS_Y4M_LAYOUT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "glint/image.h"
+
+struct glint_y4m_layout {
+    enum glint_pixel_format format; /* _GREY, _I420, _I422 or _I444; _I422 also
+                                       of 411, seen through a copy */
+    int bits;                       /* of a sample, 8 .. 16 */
+    bool has_alpha; /* a fourth plane of full size, which is passed on */
+    bool is_411;    /* chroma is a quarter as wide */
+};
+
+/* By TAG, "" being 420jpeg. False: no such. */
+bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag);
+
+/* What a header of our own says for FORMAT. */
+const char *glint_y4m_layout_tag(enum glint_pixel_format format);
+
+/* Whether a frame is a struct glint_image as it is, but for an alpha plane. */
+bool glint_y4m_layout_is_plain(const struct glint_y4m_layout *layout);
+
+/* Samples across and down plane PLANE, 0 .. 3; 0 and 0 if there is none. */
+void glint_y4m_layout_size(const struct glint_y4m_layout *layout, int plane,
+                           int width, int height, int size[2]);
+
+/* Bytes of all planes of a frame. */
+size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
+                              int height);
+
+#endif

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/panel.h - pictures for a panel of packed true-colour pixels.
+ *
+ *     glint_panel_open(&panel, &cfg, &error);         takes all memory
+ *     glint_panel_clear(&panel, mem, stride);         once: black everywhere
+ *     glint_panel_draw(&panel, &image, mem, stride);  each frame
+ *     glint_panel_close(&panel);
+ *
+ * A picture of another size than the panel is fitted in, its shape kept, each
+ * pixel of the panel showing the nearest one of the picture; or it is centred
+ * as it is, and what does not fit is cut off. What the picture does not cover
+ * is left alone by draw.
+ *
+ * Each row is made in cached memory (plain/row_rgb.h, plain/row_pack.h) and
+ * then copied, so the panel's own memory is only written, and in order: it may
+ * be write-combining. Rows that show the same row of the picture are made once.
+ */
+#ifndef GLINT_PLATFORM_PANEL_PANEL_H
+#define GLINT_PLATFORM_PANEL_PANEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+#include "panel/row_pack.h"
+#include "panel/row_rgb.h"
+#include "source_sink.h"
+
+enum glint_panel_fit { GLINT_PANEL_FIT, GLINT_PANEL_CENTRE };
+
+struct glint_panel_config {
+    int width,
+        height; /* of the panel; 1 .. GLINT_PANEL_SIDE, as the picture's */
+    struct glint_pixel_layout layout;
+    int image_width, image_height;
+    enum glint_panel_fit fit;
+    bool dither; /* pixels of 16 bits */
+};
+
+struct glint_panel {
+    struct glint_panel_config cfg;
+    /* Where the picture lies on the panel, and the part of it that is seen. */
+    struct glint_panel_area {
+        int x, y, width, height;
+    } shown, seen;
+
+    /* Private. */
+    struct glint_row_rgb rgb;
+    struct glint_row_pack pack;
+    uint16_t *from_x; /* pixel of the seen part, by pixel shown; NULL: same */
+    uint8_t *line;    /* packed, of the seen part */
+    uint8_t *scaled;  /* packed, of what is shown */
+    void *mem;        /* of all these; NULL: closed */
+};
+
+/* GLINT_E_UNSUPPORTED: a layout that is not valid, or a size out of range.
+ * GLINT_E_MEMORY. On failure PANEL is closed. */
+enum glint_status glint_panel_open(struct glint_panel *panel,
+                                   const struct glint_panel_config *cfg,
+                                   struct glint_error *error);
+
+/* Black, opaque, over the whole panel at MEM, rows STRIDE bytes apart. */
+void glint_panel_clear(struct glint_panel *panel, uint8_t *mem,
+                       ptrdiff_t stride);
+
+/* Draws IMAGE, of the size that was configured and any 8-bit format. */
+void glint_panel_draw(struct glint_panel *panel,
+                      const struct glint_image *image, uint8_t *mem,
+                      ptrdiff_t stride);
+
+/* Does nothing when closed already. */
+void glint_panel_close(struct glint_panel *panel);
+
+#endif

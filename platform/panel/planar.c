@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+#include "panel/planar.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#include "panel/split.h"
+
+enum glint_pixel_format glint_planar_format(enum glint_pixel_format format)
+{
+    switch (format) {
+    case GLINT_NV12:
+    case GLINT_NV21:
+        return GLINT_I420;
+    case GLINT_YUYV:
+    case GLINT_UYVY:
+        return GLINT_I422;
+    case GLINT_GREY:
+    case GLINT_I420:
+    case GLINT_I422:
+        return format;
+    default:
+        return GLINT_I444;
+    }
+}
+
+static uint8_t *row_at(const struct glint_image *image, int plane, int y)
+{
+    return image->plane[plane] + y * image->stride_bytes[plane];
+}
+
+static void copy_plane(const struct glint_image *to,
+                       const struct glint_image *from, int plane)
+{
+    const size_t bytes = glint_image_row_bytes(to->format, plane, to->width);
+    const int rows = glint_image_plane_height(to->format, plane, to->height);
+
+    for (int y = 0; y < rows; y++)
+        memcpy(row_at(to, plane, y), row_at(from, plane, y), bytes);
+}
+
+/* Its last pair may have one pixel, whose twin is left out. */
+static void split_row(const struct glint_image *to,
+                      const struct glint_image *from, struct glint_row_rgb *row,
+                      int y)
+{
+    const int half = (from->width + 1) / 2;
+    uint8_t *const cb = row_at(to, 1, y), *const cr = row_at(to, 2, y);
+
+    if (from->format == GLINT_YUYV)
+        glint_split_yuyv(row->luma, cb, cr, row_at(from, 0, y), half);
+    else
+        glint_split_uyvy(row->luma, cb, cr, row_at(from, 0, y), half);
+    memcpy(row_at(to, 0, y), row->luma, (size_t)from->width);
+}
+
+static void split_chroma(const struct glint_image *to,
+                         const struct glint_image *from)
+{
+    const int cb = from->format == GLINT_NV12 ? 1 : 2;
+
+    for (int y = 0; y < (from->height + 1) / 2; y++)
+        glint_split_pairs(row_at(to, cb, y), row_at(to, 3 - cb, y),
+                          row_at(from, 1, y), (from->width + 1) / 2);
+}
+
+/* --------------------------------------------------------------- from RGB */
+
+enum { ONE_Q16 = 1 << 16, HALF_Q16 = 1 << 15 };
+
+/* Rows Y', Cb, Cr by R', G', B'. */
+struct mix {
+    int32_t by_q16[3][3], zero_q16[3];
+};
+
+/* clang-format off */
+#define Q16(x) ((int32_t)((x) * ONE_Q16 + ((x) < 0 ? -0.5 : 0.5)))
+#define MIX(black, luma, chroma, r, b) {                                       \
+    {{Q16((luma) * (r)), Q16((luma) * (1 - (r) - (b))), Q16((luma) * (b))},    \
+     {Q16((chroma) * -.5 * (r) / (1 - (b))),                                   \
+      Q16((chroma) * -.5 * (1 - (r) - (b)) / (1 - (b))), Q16((chroma) * .5)},  \
+     {Q16((chroma) * .5), Q16((chroma) * -.5 * (1 - (r) - (b)) / (1 - (r))),   \
+      Q16((chroma) * -.5 * (b) / (1 - (r)))}},                                 \
+    {(black) * ONE_Q16 + HALF_Q16, 128 * ONE_Q16 + HALF_Q16,                   \
+     128 * ONE_Q16 + HALF_Q16}}
+
+static const struct mix mixes[2][2] = {
+    [GLINT_MATRIX_BT601] = {
+        [GLINT_RANGE_FULL] = MIX(0, 1., 1., .299, .114),
+        [GLINT_RANGE_LIMITED] = MIX(16, 219. / 255, 224. / 255, .299, .114)},
+    [GLINT_MATRIX_BT709] = {
+        [GLINT_RANGE_FULL] = MIX(0, 1., 1., .2126, .0722),
+        [GLINT_RANGE_LIMITED] = MIX(16, 219. / 255, 224. / 255, .2126, .0722)},
+};
+/* clang-format on */
+
+/* Pure red or blue of full range is half a code beyond the last. */
+static uint8_t code_of(int32_t sum_q16)
+{
+    return (uint8_t)(sum_q16 >= 256 * ONE_Q16 ? 255 : sum_q16 >> 16);
+}
+
+static void mix_row(const struct mix *m, uint8_t *restrict to, int i,
+                    const uint8_t *const channel[3], int n)
+{
+    const int32_t r = m->by_q16[i][0], g = m->by_q16[i][1], b = m->by_q16[i][2],
+                  zero = m->zero_q16[i];
+
+    for (int x = 0; x < n; x++)
+        to[x] = code_of(channel[0][x] * r + channel[1][x] * g +
+                        channel[2][x] * b + zero);
+}
+
+/* ------------------------------------------------------------------ pictures
+ */
+
+void glint_planar_write(const struct glint_image *to,
+                        const struct glint_image *from,
+                        struct glint_row_rgb *row)
+{
+    switch (from->format) {
+    case GLINT_YUYV:
+    case GLINT_UYVY:
+        for (int y = 0; y < from->height; y++)
+            split_row(to, from, row, y);
+        return;
+    case GLINT_NV12:
+    case GLINT_NV21:
+        copy_plane(to, from, 0);
+        split_chroma(to, from);
+        return;
+    case GLINT_GREY:
+    case GLINT_I420:
+    case GLINT_I422:
+    case GLINT_I444:
+        for (int i = 0; i < glint_image_planes(to->format); i++)
+            copy_plane(to, from, i);
+        return;
+    default:
+        for (int y = 0; y < from->height; y++) {
+            glint_row_rgb_read(row, from, 0, y, from->width);
+            for (int i = 0; i < 3; i++)
+                mix_row(&mixes[to->matrix][to->range], row_at(to, i, y), i,
+                        row->channel, from->width);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/planar.h - any 8-bit picture as planes of Y', Cb, Cr, for files.
+ *
+ * Packed and half-packed formats have their samples moved, none is computed.
+ * RGB becomes GLINT_I444 by the matrix and range of the result, rounded to the
+ * nearest code.
+ */
+#ifndef GLINT_PLATFORM_PANEL_PLANAR_H
+#define GLINT_PLATFORM_PANEL_PLANAR_H
+
+#include <stddef.h>
+
+#include "glint/image.h"
+#include "panel/row_rgb.h"
+
+/* GLINT_GREY, _I420, _I422 or _I444: what keeps all samples of FORMAT, which
+ * is not GLINT_LINEAR_Q20. */
+enum glint_pixel_format glint_planar_format(enum glint_pixel_format format);
+
+/* Fills TO, of FROM's size and glint_planar_format(), its planes in place. ROW
+ * is work memory for that width. */
+void glint_planar_write(const struct glint_image *to,
+                        const struct glint_image *from,
+                        struct glint_row_rgb *row);
+
+#endif

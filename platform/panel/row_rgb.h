@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain/row_rgb.h - a stretch of a row of a picture as R', G', B' bytes.
+ *
+ *     in   picture of 8-bit codes, any format but GLINT_LINEAR_Q20
+ *     out  three arrays of codes of full range, one for each channel
+ *
+ * R' = Y' ky + Cr k and so on, in integers: constants have 13 fraction bits
+ * (_q13), one rounding to the nearest code, ties up, then a clamp to 0 .. 255.
+ * Over all codes that is within 1 of the same sum in exact arithmetic, equal to
+ * it for 99.6 % of them and for all greys. Chroma of subsampled formats is
+ * repeated, as where flares are drawn (src/image/codes.c).
+ *
+ * Channels may point into the picture itself where nothing has to be computed.
+ */
+#ifndef GLINT_PLATFORM_PANEL_ROW_RGB_H
+#define GLINT_PLATFORM_PANEL_ROW_RGB_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/image.h"
+
+struct glint_row_rgb {
+    const uint8_t *channel[3]; /* R', G', B' of the last read */
+
+    /* Private. */
+    uint8_t *rgb[3], *luma, *cb, *cr; /* in the caller's memory */
+};
+
+/* Bytes of memory for rows of up to WIDTH pixels. */
+size_t glint_row_rgb_bytes(int width);
+
+/* MEM[glint_row_rgb_bytes(width)] is kept. */
+void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width);
+
+/* Points channels at the pixels X .. X + N - 1 of row Y. X is even. */
+void glint_row_rgb_read(struct glint_row_rgb *row,
+                        const struct glint_image *image, int x, int y, int n);
+
+#endif

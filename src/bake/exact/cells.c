@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/exact/cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "bake/trace/survey.h"
+#include "bake/trace/degrees.h"
+
+enum { SURVEY = 96 }; /* rays a side that decide which barrels matter */
+
+static void find_cuts(struct glint_cells *c)
+{
+    struct glint_survey survey;
+
+    glint_survey_run(&survey, c->path, &c->pupil, c->direction,
+                     c->setup->optics.stop_radius_mm, SURVEY);
+    c->n_cuts = survey.n_cuts < GLINT_MAX_CUTS ? survey.n_cuts : GLINT_MAX_CUTS;
+    for (int k = 0; k < c->n_cuts; k++)
+        c->cut_event[k] = survey.cut_event[k];
+}
+
+bool glint_cells_init(struct glint_cells *cells,
+                      const struct glint_setup *setup,
+                      const struct glint_path *path, double theta_deg,
+                      double phi_deg, int n)
+{
+    cells->setup = setup;
+    cells->path = path;
+    cells->direction[0] = glint_sin_deg(theta_deg);
+    cells->direction[1] = 0;
+    cells->direction[2] = glint_cos_deg(theta_deg);
+    cells->cos_phi = glint_cos_deg(phi_deg);
+    cells->sin_phi = glint_sin_deg(phi_deg);
+    cells->n = n;
+    cells->node = NULL;
+    if (!glint_pupil_find(&cells->pupil, path, theta_deg,
+                          setup->optics.stop_radius_mm, NULL))
+        return false;
+    find_cuts(cells);
+    cells->stride = NODE_CUT + 2 * cells->n_cuts;
+    return true;
+}
+
+size_t glint_cells_bytes(const struct glint_cells *cells)
+{
+    return (size_t)(cells->n + 1) * (size_t)(cells->n + 1) *
+           (size_t)cells->stride * sizeof *cells->node;
+}
+
+static double *node_at(const struct glint_cells *c, int i, int j)
+{
+    return c->node +
+           ((size_t)j * (size_t)(c->n + 1) + (size_t)i) * (size_t)c->stride;
+}
+
+double glint_cells_area(const struct glint_cells *cells)
+{
+    const struct glint_pupil *p = &cells->pupil;
+
+    return (p->x1_mm - p->x0_mm) / cells->n * (2 * p->y1_mm / cells->n);
+}
+
+/* Angle 0 .. of a polygonal stop's side SIDE, as its outward normal. */
+static void side_normal(const struct glint_setup *s, int side, double n[2])
+{
+    const double a = s->blade_rotation_deg + (side + 0.5) * 360.0 / s->n_blades;
+
+    n[0] = glint_cos_deg(a);
+    n[1] = glint_sin_deg(a);
+}
+
+static double inner_radius(const struct glint_setup *s)
+{
+    return s->n_blades ? cos(GLINT_PI / s->n_blades) : 1;
+}
+
+/* One ray as a node; MIRROR -1 is the ray on the other side of the light's
+ * plane. */
+static void fill_node(const struct glint_cells *c, const struct glint_ray *ray,
+                      double (*hits)[2], double mirror, double *node)
+{
+    const double stop_mm = c->setup->optics.stop_radius_mm;
+    const double sensor_y = mirror * ray->sensor_y_mm;
+    const double stop_y = mirror * ray->stop_y_mm;
+    bool clear;
+
+    node[NODE_X] = ray->sensor_x_mm * c->cos_phi - sensor_y * c->sin_phi;
+    node[NODE_Y] = ray->sensor_x_mm * c->sin_phi + sensor_y * c->cos_phi;
+    node[NODE_STOP_X] =
+        (ray->stop_x_mm * c->cos_phi - stop_y * c->sin_phi) / stop_mm;
+    node[NODE_STOP_Y] =
+        (ray->stop_x_mm * c->sin_phi + stop_y * c->cos_phi) / stop_mm;
+    node[NODE_ENERGY] = ray->energy;
+    clear =
+        hypot(node[NODE_STOP_X], node[NODE_STOP_Y]) < inner_radius(c->setup);
+    for (int k = 0; k < c->n_cuts; k++) {
+        const int e = c->cut_event[k];
+        const double semi = c->path->event[e].semi_mm;
+
+        node[NODE_CUT + 2 * k] = hits[e][0] / semi;
+        node[NODE_CUT + 2 * k + 1] = mirror * hits[e][1] / semi;
+        clear &= hypot(hits[e][0], hits[e][1]) < semi;
+    }
+    node[NODE_STATE] = clear ? 2 : 1;
+}
+
+void glint_cells_trace(const struct glint_cells *cells, int row)
+{
+    enum { SOME = 8 };
+    const struct glint_pupil *p = &cells->pupil;
+    const double *d = cells->direction;
+    const int n = cells->n;
+    double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_ray ray[SOME];
+    enum glint_ray_status status[SOME];
+    struct glint_row rays = {0,
+                             0,
+                             (p->x1_mm - p->x0_mm) / n,
+                             p->y1_mm * (2.0 * row - n) / n,
+                             {d[0], d[1], d[2]}};
+
+    for (int i = 0; i <= n; i++) {
+        double *node = node_at(cells, i, row);
+        double *mirrored = node_at(cells, i, n - row);
+        const int k = i % SOME;
+        double(*h)[2] = hits + k * cells->path->n_events;
+
+        if (k == 0) {
+            rays.n = n + 1 - i < SOME ? n + 1 - i : SOME;
+            rays.x0_mm = p->x0_mm + i * rays.step_mm;
+            glint_trace_row(cells->path, &rays, ray, status, hits);
+        }
+        node[NODE_STATE] = mirrored[NODE_STATE] = 0;
+        if (status[k] != GLINT_RAY_OK)
+            continue;
+        fill_node(cells, &ray[k], h, 1, node);
+        if (mirrored != node)
+            fill_node(cells, &ray[k], h, -1, mirrored);
+    }
+}
+
+/* --------------------------------------------------------------------- clip */
+
+/* A triangle and the polygon left of it, in barycentric coordinates of its
+ * second and third corner. */
+struct shape {
+    const double *corner[3];
+    int n;
+    double uv[GLINT_MAX_PIECE][2];
+};
+
+static double channel(const struct shape *s, int index, const double uv[2])
+{
+    const double a = s->corner[0][index];
+
+    return a + (s->corner[1][index] - a) * uv[0] +
+           (s->corner[2][index] - a) * uv[1];
+}
+
+/* What a cut is: a half plane n . c <= limit, or the unit disc, of the channels
+ * FIRST and FIRST + 1. */
+struct cut {
+    int first;
+    bool disc;
+    double normal[2], limit;
+};
+
+static double cut_value(const struct shape *s, const struct cut *cut,
+                        const double uv[2])
+{
+    const double x = channel(s, cut->first, uv);
+    const double y = channel(s, cut->first + 1, uv);
+
+    return cut->disc ? 1 - (x * x + y * y)
+                     : cut->limit - cut->normal[0] * x - cut->normal[1] * y;
+}
+
+/* Where between A (value FA) and B (value FB, other sign) the cut lies. */
+static double crossing(const struct shape *s, const struct cut *cut,
+                       const double a[2], const double b[2], double fa,
+                       double fb)
+{
+    double ax, ay, dx, dy, qa, qb, root, t;
+
+    if (!cut->disc)
+        return fa / (fa - fb);
+    ax = channel(s, cut->first, a);
+    ay = channel(s, cut->first + 1, a);
+    dx = channel(s, cut->first, b) - ax;
+    dy = channel(s, cut->first + 1, b) - ay;
+    qa = dx * dx + dy * dy;
+    qb = ax * dx + ay * dy;
+    root = sqrt(fmax(0, qb * qb + qa * fa)); /* fa = 1 - |a|^2 */
+    t = fa > 0 ? (root - qb) / qa : (-root - qb) / qa;
+    return fmin(1, fmax(0, t));
+}
+
+static void clip_one(struct shape *s, const struct cut *cut)
+{
+    double kept[GLINT_MAX_PIECE][2];
+    double value[GLINT_MAX_PIECE];
+    bool outside = false;
+    int n = 0;
+
+    for (int i = 0; i < s->n; i++) {
+        value[i] = cut_value(s, cut, s->uv[i]);
+        outside |= value[i] < 0;
+    }
+    if (!outside)
+        return;
+    for (int i = 0; i < s->n && n < GLINT_MAX_PIECE - 2; i++) {
+        const int j = i + 1 < s->n ? i + 1 : 0;
+        const double *a = s->uv[i], *b = s->uv[j];
+
+        if (value[i] >= 0) {
+            kept[n][0] = a[0];
+            kept[n++][1] = a[1];
+        }
+        if ((value[i] >= 0) != (value[j] >= 0)) {
+            const double t = crossing(s, cut, a, b, value[i], value[j]);
+
+            kept[n][0] = a[0] + t * (b[0] - a[0]);
+            kept[n++][1] = a[1] + t * (b[1] - a[1]);
+        }
+    }
+    s->n = n;
+    for (int i = 0; i < n; i++) {
+        s->uv[i][0] = kept[i][0];
+        s->uv[i][1] = kept[i][1];
+    }
+}
+
+static void clip_all(const struct glint_cells *c, struct shape *s)
+{
+    const struct glint_setup *setup = c->setup;
+    struct cut cut = {.first = NODE_STOP_X, .disc = setup->n_blades == 0};
+
+    for (int k = 0; k < c->n_cuts && s->n; k++)
+        clip_one(s, &(struct cut){.first = NODE_CUT + 2 * k, .disc = true});
+    if (cut.disc) {
+        clip_one(s, &cut);
+        return;
+    }
+    cut.limit = inner_radius(setup);
+    for (int side = 0; side < setup->n_blades && s->n; side++) {
+        side_normal(setup, side, cut.normal);
+        clip_one(s, &cut);
+    }
+}
+
+static double polygon_area(const double (*p)[2], int n)
+{
+    double sum = 0;
+
+    for (int i = 0; i < n; i++) {
+        const double *a = p[i], *b = p[i + 1 < n ? i + 1 : 0];
+
+        sum += a[0] * b[1] - a[1] * b[0];
+    }
+    return 0.5 * sum;
+}
+
+/* Diagonals mirror each other about the light's plane, so that the picture of a
+ * symmetric light is symmetric. */
+static bool pick_corners(const struct glint_cells *c, int i, int j, int half,
+                         const double **corner)
+{
+    static const int order[2][2][3] = {{{0, 1, 2}, {0, 2, 3}},
+                                       {{3, 2, 1}, {3, 1, 0}}};
+    const double *q[4] = {node_at(c, i, j), node_at(c, i + 1, j),
+                          node_at(c, i + 1, j + 1), node_at(c, i, j + 1)};
+    const int *pick = order[2 * j >= c->n][half];
+
+    for (int k = 0; k < 3; k++) {
+        corner[k] = q[pick[k]];
+        /* NOLINTNEXTLINE: all nodes were traced, with or by their mirror */
+        if (corner[k][NODE_STATE] == 0)
+            return false;
+    }
+    return true;
+}
+
+void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
+                      struct glint_piece *piece)
+{
+    struct shape s = {.n = 3, .uv = {{0, 0}, {1, 0}, {0, 1}}};
+    double middle[2] = {0, 0};
+
+    piece->n = 0;
+    if (!pick_corners(cells, i, j, half, s.corner))
+        return;
+    if (s.corner[0][NODE_STATE] != 2 || s.corner[1][NODE_STATE] != 2 ||
+        s.corner[2][NODE_STATE] != 2)
+        clip_all(cells, &s);
+    if (s.n < 3)
+        return;
+    piece->n = s.n;
+    for (int k = 0; k < s.n; k++) {
+        piece->xy[k][0] = channel(&s, NODE_X, s.uv[k]);
+        piece->xy[k][1] = channel(&s, NODE_Y, s.uv[k]);
+        middle[0] += s.uv[k][0] / s.n;
+        middle[1] += s.uv[k][1] / s.n;
+    }
+    piece->share = fabs(2 * polygon_area((const double(*)[2])s.uv, s.n));
+    piece->energy = channel(&s, NODE_ENERGY, middle);
+}
+
+bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
+                       double low, double high)
+{
+    bool above = true, below = true;
+
+    for (int k = 0; k < 4; k++) {
+        const double *node = node_at(cells, i + (k & 1), j + (k >> 1));
+
+        above &= node[NODE_STATE] == 0 || node[NODE_Y] <= low;
+        below &= node[NODE_STATE] == 0 || node[NODE_Y] >= high;
+    }
+    return !above && !below;
+}
+
+double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm)
+{
+    struct glint_piece piece;
+    struct glint_cells cells;
+    struct glint_path path;
+    double sum = 0;
+
+    glint_path_init(&path, setup->lens, NULL, wavelength_nm);
+    if (!glint_cells_init(&cells, setup, &path, 0, 0, 256))
+        return 0;
+    cells.node = malloc(glint_cells_bytes(&cells));
+    if (!cells.node)
+        return -1;
+    for (int j = 0; j <= cells.n / 2; j++)
+        glint_cells_trace(&cells, j);
+    for (int k = 0; k < 2 * cells.n * cells.n; k++) {
+        /* NOLINTNEXTLINE: n is 256 */
+        glint_cells_clip(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1,
+                         &piece);
+        if (piece.n)
+            sum += piece.share * piece.energy;
+    }
+    free(cells.node);
+    return sum * 0.5 * glint_cells_area(&cells);
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A dense grid of exact rays over a ghost's pupil, cut exactly.
+ *
+ *   in   a path, a light in the x-z plane, the part of the pupil that counts
+ *   out  triangles of the grid, clipped by the stop and by every barrel that
+ *        limits this path, each barrel by its own circle
+ *
+ * Between the rays everything is linear. A curved edge becomes a chord per
+ * triangle, so errors fall with the square of the cell size.
+ */
+#ifndef GLINT_BAKE_EXACT_CELLS_H
+#define GLINT_BAKE_EXACT_CELLS_H
+
+#include "glint/bake.h"
+
+enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
+
+/* Channels of a node; from CUT on, x and y over the semi-diameter for each
+ * barrel that may cut. */
+enum {
+    NODE_STATE, /* 0 lost, 1 traced, 2 traced and clear of every cut */
+    NODE_X,     /* sensor, mm in the light's frame or as the owner maps it */
+    NODE_Y,
+    NODE_STOP_X, /* stop radii, in the camera's frame */
+    NODE_STOP_Y,
+    NODE_ENERGY,
+    NODE_CUT
+};
+
+struct glint_cells {
+    const struct glint_setup *setup;
+    const struct glint_path *path;
+    struct glint_pupil pupil;
+    double direction[3];
+    double cos_phi, sin_phi; /* from the light's frame to the camera's */
+    int n;                   /* cells a side, even */
+    int n_cuts;
+    int cut_event[GLINT_MAX_CUTS];
+    int stride;   /* doubles a node */
+    double *node; /* [n + 1][n + 1][stride] */
+};
+
+/* Sets everything but NODE for a light at THETA, PHI; finds the barrels that
+ * cut. False: nothing gets through. */
+bool glint_cells_init(struct glint_cells *cells,
+                      const struct glint_setup *setup,
+                      const struct glint_path *path, double theta_deg,
+                      double phi_deg, int n);
+
+/* Bytes that NODE needs. */
+size_t glint_cells_bytes(const struct glint_cells *cells);
+
+/* Traces row ROW (0 .. n / 2) of the nodes and mirrors it into row n - ROW. */
+void glint_cells_trace(const struct glint_cells *cells, int row);
+
+/* The visible part of a triangle: convex, in NODE_X and NODE_Y. */
+struct glint_piece {
+    int n; /* corners; 0: nothing */
+    double xy[GLINT_MAX_PIECE][2];
+    double share;  /* of the triangle's pupil area, 0 .. 1 */
+    double energy; /* mean over the piece */
+};
+
+/* Clips triangle HALF (0 or 1) of cell (I, J). */
+void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
+                      struct glint_piece *piece);
+
+/* Whether cell (I, J) has a NODE_Y between LOW and HIGH, or on both sides. */
+bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
+                       double low, double high);
+
+/* Pupil area of a cell, mm^2. */
+double glint_cells_area(const struct glint_cells *cells);
+
+/* Flux of the direct image at angle 0 for irradiance 1, mm^2; -1: no memory. */
+double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm);
+
+#endif

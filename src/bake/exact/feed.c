@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Exact rays for the run-time half, where a model's are not wanted.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "bake/trace/degrees.h"
+#include "bake/trace/survey.h"
+#include "glint/bake.h"
+#include "glint/flare.h"
+
+enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
+/* where the survey finds fewer rays, cells a stop radius */
+enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
+
+/* The ghost's box on the sensor, turned by the light's azimuth, meets the
+ * picture. */
+static bool in_view(const struct glint_feed_config *cfg,
+                    const struct glint_feed *feed)
+{
+    const double *s = feed->pupil.sensor_mm;
+    const double half_w = 0.5 * cfg->view.sensor_width_mm;
+    const double half_h = half_w * cfg->view.height / cfg->view.width;
+    const double c = glint_cos_deg(feed->lamp->phi_deg);
+    const double d = glint_sin_deg(feed->lamp->phi_deg);
+    const double x = 0.5 * (s[0] + s[1]);
+    const double w = 0.5 * (s[1] - s[0]), h = s[3];
+
+    return fabs(x * c) - fabs(c) * w - fabs(d) * h < half_w &&
+           fabs(x * d) - fabs(d) * w - fabs(c) * h < half_h;
+}
+
+/* Grows the pupil by what a pixel is worth on each side: a pixel whose centre
+ * lies just outside of the ghost still gets the light on its inner half. */
+static void add_rim(const struct glint_feed_config *cfg,
+                    struct glint_feed *feed)
+{
+    struct glint_pupil *p = &feed->pupil;
+    double *s = p->sensor_mm;
+    const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
+    const double x = fmin(0.5, pixel / (s[1] - s[0] + 1e-9));
+    const double y = fmin(0.5, pixel / (s[3] - s[2] + 1e-9));
+    const double wide = x * (p->x1_mm - p->x0_mm), across = x * (s[1] - s[0]);
+
+    p->x0_mm -= wide;
+    p->x1_mm += wide;
+    p->y1_mm *= 1 + 2 * y;
+    s[0] -= across;
+    s[1] += across;
+    s[2] *= 1 + 2 * y;
+    s[3] *= 1 + 2 * y;
+}
+
+/* As many cells as keep what is straight between rays within a hundredth of a
+ * pixel of what bends, at 64, and outlines within a tenth: light piles up along
+ * folds, but not along cuts. And none that could step over the stop: where a
+ * rim next to total reflection comes through as well, the pupil is the whole
+ * front, of which the opening may be a hundredth. */
+static int cells_of(const struct glint_feed_config *cfg,
+                    const struct glint_survey *s)
+{
+    const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
+    const double round = cfg->setup->n_blades == 0 ? s->round_mm : 0;
+    const double outline = fmax(s->outline_mm, round);
+    const double bend = fmax(s->bend_mm, 0.1 * outline);
+    const double finer = cfg->max_cells / 64.0;
+    const double most = (s->folds ? 4 : 2) * cfg->max_cells;
+    const double n = fmin(most, finer * sqrt(bend * pixels / (8 * 0.01)));
+    const double least =
+        s->n_inside < FEW_INSIDE
+            ? fmin(4 * cfg->max_cells, CELLS_A_RADIUS * s->step)
+            : 8;
+
+    if (cfg->uniform)
+        return cfg->max_cells;
+    return (int)ceil(fmin(GLINT_MAX_CELLS, fmax(fmax(8, least), n)) / 4) * 4;
+}
+
+static void light_direction(const struct glint_feed *feed, double direction[3])
+{
+    direction[0] = glint_sin_deg(feed->lamp->theta_deg);
+    direction[1] = 0;
+    direction[2] = glint_cos_deg(feed->lamp->theta_deg);
+}
+
+/* The barrels that cut, the one that is most of the outline first: the maximum
+ * over the others may have kinks. */
+static void choose_cuts(struct glint_feed *feed, struct glint_survey *survey)
+{
+    for (feed->n_cuts = 0; feed->n_cuts < GLINT_FEED_CUTS; feed->n_cuts++) {
+        int most = 0;
+
+        for (int k = 1; k < survey->n_cuts; k++)
+            if (survey->cut_weight[k] > survey->cut_weight[most])
+                most = k;
+        if (survey->n_cuts == 0 || survey->cut_weight[most] == 0)
+            break;
+        survey->cut_weight[most] = 0;
+        feed->cut_event[feed->n_cuts] = survey->cut_event[most];
+    }
+}
+
+void glint_feed_plan(const struct glint_feed_config *cfg,
+                     struct glint_feed *feed, const struct glint_feed *near)
+{
+    const struct glint_setup *s = cfg->setup;
+    struct glint_survey survey;
+    struct glint_path path;
+    double direction[3];
+
+    glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
+                    s->wavelength_nm[feed->wavelength]);
+    feed->n_cells = 0;
+    feed->found = glint_pupil_find(&feed->pupil, &path, feed->lamp->theta_deg,
+                                   s->optics.stop_radius_mm,
+                                   near && near->found ? &near->pupil : NULL);
+    /* some head-room over what the search for the pupil saw */
+    feed->energy_unit = 1.5 * feed->pupil.energy;
+    if (feed->found && in_view(cfg, feed)) {
+        light_direction(feed, direction);
+        glint_survey_run(&survey, &path, &feed->pupil, direction,
+                         s->optics.stop_radius_mm, SURVEY);
+        choose_cuts(feed, &survey);
+        feed->n_cells = cells_of(cfg, &survey);
+        add_rim(cfg, feed);
+    }
+}
+
+/* The colour of the bundle, and what it takes to bring its largest channel to
+ * 1: saturated lamps exceed the range of the format by far. */
+static double colour_of(const struct glint_setup *s,
+                        const struct glint_feed *feed, double rgb[3])
+{
+    double largest = 0;
+
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = s->rgb[feed->wavelength][c] * feed->lamp->rgb[c];
+        largest = fmax(largest, fabs(rgb[c]));
+    }
+    for (int c = 0; c < 3 && largest > 0; c++)
+        rgb[c] /= largest;
+    return largest;
+}
+
+void glint_feed_bundle(const struct glint_feed_config *cfg,
+                       const struct glint_feed *feed,
+                       struct glint_bundle *bundle)
+{
+    const struct glint_setup *s = cfg->setup;
+    const struct glint_pupil *p = &feed->pupil;
+    const double n = feed->n_cells;
+    const double area = (p->x1_mm - p->x0_mm) / n * (2 * p->y1_mm / n);
+    double rgb[3];
+    const double flux = colour_of(s, feed, rgb) * cfg->scale *
+                        feed->lamp->power *
+                        glint_cos_deg(feed->lamp->theta_deg) * area *
+                        feed->energy_unit / s->unit_flux[feed->wavelength];
+    int exponent = 0;
+    const double mantissa =
+        flux > 0 && isfinite(flux) ? frexp(flux, &exponent) : 0;
+
+    bundle->n_cells = feed->n_cells;
+    bundle->flux_q31 = (int32_t)floor(mantissa * 0x1p31);
+    bundle->flux_exponent = exponent;
+    for (int c = 0; c < 3; c++)
+        bundle->rgb_q14[c] = (int32_t)lrint(rgb[c] * 16384);
+}
+
+/* (1 + r^2) / 2 at the barrel of event K. */
+static double barrel_value(const struct glint_path *path, int k,
+                           double (*hits)[2])
+{
+    const double semi = path->event[k].semi_mm;
+    const double x = hits[k][0] / semi, y = hits[k][1] / semi;
+
+    return 0.5 * (1 + x * x + y * y);
+}
+
+static void barrel_values(const struct glint_feed *feed,
+                          const struct glint_path *path, double (*hits)[2],
+                          double value[2])
+{
+    value[0] = value[1] = 0;
+    for (int k = 0; k < feed->n_cuts; k++) {
+        double *into = &value[k > 0];
+
+        *into = fmax(*into, barrel_value(path, feed->cut_event[k], hits));
+    }
+}
+
+/* Where a ray goes, as the vertex will hold it. */
+struct landing {
+    double x, y, stop_x, stop_y, energy, barrel[2];
+};
+
+/* Nothing outside these ranges may become a vertex: geometry never saturates.
+ */
+static bool in_range(const struct landing *l)
+{
+    return fabs(l->x) < 0x1p20 && fabs(l->y) < 0x1p20 &&
+           fabs(l->stop_x) < 0x1p14 && fabs(l->stop_y) < 0x1p14 &&
+           l->barrel[0] < 0x1p14 && l->barrel[1] < 0x1p14;
+}
+
+static void quantise(const struct landing *l, struct glint_vertex *v)
+{
+    if (!in_range(l))
+        return;
+    v->x_q8 = (int32_t)lrint(l->x * 256);
+    v->y_q8 = (int32_t)lrint(l->y * 256);
+    v->stop_x_q16 = (int32_t)lrint(l->stop_x * 65536);
+    v->stop_y_q16 = (int32_t)lrint(l->stop_y * 65536);
+    for (int k = 0; k < 2; k++)
+        v->barrel_q16[k] = (int32_t)lrint(l->barrel[k] * 65536);
+    v->energy_q16 = (int32_t)lrint(l->energy * 65536);
+}
+
+/* From the light's frame to the picture; MIRROR -1 is the ray on the other side
+ * of the light's plane. */
+static struct landing land(const struct glint_feed_config *cfg,
+                           const struct glint_feed *feed,
+                           const struct glint_ray *ray, double mirror)
+{
+    const double scale = cfg->view.width / cfg->view.sensor_width_mm;
+    const double stop = cfg->setup->optics.stop_radius_mm;
+    const double c = glint_cos_deg(feed->lamp->phi_deg);
+    const double s = glint_sin_deg(feed->lamp->phi_deg);
+    const double sensor_y = mirror * ray->sensor_y_mm;
+    const double stop_y = mirror * ray->stop_y_mm;
+
+    return (struct landing){.x = 0.5 * cfg->view.width +
+                                 scale * (ray->sensor_x_mm * c - sensor_y * s),
+                            .y = 0.5 * cfg->view.height -
+                                 scale * (ray->sensor_x_mm * s + sensor_y * c),
+                            .stop_x = (ray->stop_x_mm * c - stop_y * s) / stop,
+                            .stop_y = (ray->stop_x_mm * s + stop_y * c) / stop,
+                            .energy = fmin(1, ray->energy / feed->energy_unit)};
+}
+
+static void trace_row(const struct glint_feed_config *cfg,
+                      const struct glint_feed *feed,
+                      const struct glint_path *path, int j,
+                      struct glint_vertex *row, struct glint_vertex *mirrored)
+{
+    const struct glint_pupil *p = &feed->pupil;
+    const int n = feed->n_cells;
+    double direction[3];
+
+    light_direction(feed, direction);
+    for (int i = 0; i <= n; i++) {
+        double hits[GLINT_MAX_EVENTS + 1][2];
+        struct landing here, there;
+        struct glint_ray ray;
+
+        row[i].energy_q16 = mirrored[i].energy_q16 = -1;
+        if (glint_trace(path, p->x0_mm + (p->x1_mm - p->x0_mm) * i / n,
+                        p->y1_mm * (2.0 * j - n) / n, direction, &ray,
+                        hits) != GLINT_RAY_OK)
+            continue;
+        here = land(cfg, feed, &ray, 1);
+        there = land(cfg, feed, &ray, -1);
+        barrel_values(feed, path, hits, here.barrel);
+        barrel_values(feed, path, hits, there.barrel);
+        quantise(&here, &row[i]);
+        quantise(&there, &mirrored[i]);
+    }
+}
+
+void glint_feed_trace(const struct glint_feed_config *cfg,
+                      const struct glint_feed *feed,
+                      struct glint_vertex *vertex)
+{
+    const struct glint_setup *s = cfg->setup;
+    const int n = feed->n_cells;
+    struct glint_path path;
+
+    glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
+                    s->wavelength_nm[feed->wavelength]);
+    for (int j = 0; j <= n / 2; j++)
+        trace_row(cfg, feed, &path, j, vertex + (size_t)j * (size_t)(n + 1),
+                  vertex + (size_t)(n - j) * (size_t)(n + 1));
+}

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bake/trace/degrees.h"
+#include "bake/fit/zone_fit.h"
+
+#define LEAST_FILL 0.33 /* of a box; below it the grids waste their cells */
+#define CROWD_DEG                                                            \
+    1.5               /* a vertex has room for two barrels: more make a zone \
+                         worth halving down to here */
+#define FILL_DEG  0.6 /* narrower zones need not care for that */
+#define LEAST_DEG 0.7
+#define BRIGHT_EASE                                         \
+    1.5 /* zones of ghosts as bright as that may be half as \
+           wide */
+#define STUCK                                                  \
+    0.75 /* half a zone that is left with so much of the whole \
+            one's error gains nothing from halving... */
+#define STUCK_DEG     1.2  /* ...once it is this narrow */
+#define PART_LEFT     5.0  /* zones that show more than that are parted */
+#define MOST_HIDDEN   3.0  /* of very faint ones: so many times as much */
+#define HOPELESS      20.0 /* times that is what more terms cannot mend, */
+#define HALVES_ANYWAY 10.0 /* nor, where it can be halved, so much */
+#define WANDERS                                                  \
+    0.5 /* boxes that do so more make it worth to halve the band \
+         */
+#define LEAST_BAND 0.6
+#define WORTH_CROP 0.8 /* as long as cropping a part leaves less, */
+
+enum {
+    BAND_DEPTH = 2, /* times that a band is, down to LEAST_BAND */
+    CROPS = 2       /* it is done so many times */
+};
+
+struct fitter {
+    const struct glint_hunt *hunt;
+    struct glint_fitted_ghost *out;
+    struct glint_zone_fit fit;
+    glint_zone_survey survey;
+    struct glint_profile profile;
+    struct glint_hunt in_band, in_part;
+    struct glint_profile band_profile;
+    double profiled[4]; /* what it is of: angles and band */
+    double wanders;     /* the box with the colour, half widths */
+    int n_parts;        /* of the zone so far */
+};
+
+/* ------------------------------------------------------------------- zones */
+
+static void system_finish(struct glint_fitted_system *system)
+{
+    for (int k = 0; k < system->n_outputs; k++)
+        free(system->output[k].coef);
+    free(system->knot);
+    free(system->box);
+}
+
+static enum glint_status append(struct glint_fitted_ghost *ghost,
+                                const struct glint_fitted_system *system)
+{
+    const size_t n = (size_t)ghost->n_systems;
+    struct glint_fitted_system *all =
+        realloc(ghost->system, (n + 1) * sizeof *all);
+
+    if (!all)
+        return GLINT_E_MEMORY;
+    all[ghost->n_systems++] = *system;
+    ghost->system = all;
+    return GLINT_OK;
+}
+
+static enum glint_status set_box(struct glint_fitted_system *system,
+                                 const struct glint_zone *zone)
+{
+    const size_t bytes = GLINT_BOX_TERMS * sizeof(double);
+
+    system->box = malloc(3 * bytes);
+    if (!system->box)
+        return GLINT_E_MEMORY;
+    memcpy(system->box, zone->middle, bytes);
+    memcpy(system->box + GLINT_BOX_TERMS, zone->half_x, bytes);
+    memcpy(system->box + 2 * GLINT_BOX_TERMS, zone->half_y, bytes);
+    return GLINT_OK;
+}
+
+static double degrees_between(double lo, double hi)
+{
+    return (asin(hi) - asin(lo)) * (180 / GLINT_PI);
+}
+
+/* A zone, or a part of one, to be fitted; BEFORE is what was left of it at the
+ * last attempt. By all means: with a box that follows the colours, a root of
+ * the energy, and more terms. */
+struct pending {
+    double lo, hi, before;
+    double w0, w1; /* the part of the band, -1 .. 1 */
+    bool by_all_means;
+    struct glint_part part;
+    int depth; /* of the part; 0: the whole zone */
+};
+
+static bool is_whole_band(double w0, double w1)
+{
+    return w0 <= -1 && w1 >= 1;
+}
+
+/* The boxes for the angles and the part of the band of P. */
+static const struct glint_profile *profile_of(struct fitter *f,
+                                              const struct pending *p)
+{
+    const double range[2] = {p->lo, p->hi};
+    const double key[4] = {p->lo, p->hi, p->w0, p->w1};
+
+    if (is_whole_band(p->w0, p->w1))
+        return &f->profile;
+    /* NOLINTNEXTLINE: other bits for equal numbers cost a profile, no more */
+    if (memcmp(key, f->profiled, sizeof key) != 0) {
+        glint_hunt_narrow(&f->in_band, f->hunt, p->w0, p->w1);
+        glint_hunt_profile(&f->in_band, range, &f->band_profile);
+        memcpy(f->profiled, key, sizeof key);
+    }
+    return &f->band_profile;
+}
+
+static void cut_out(struct fitter *f, const struct pending *p,
+                    struct glint_zone *zone)
+{
+    const struct glint_part *part = &p->part;
+    const struct glint_hunt *band =
+        is_whole_band(p->w0, p->w1) ? f->hunt : &f->in_band;
+
+    glint_zone_cut(zone, part);
+    f->fit.hunt = band;
+    if (!is_whole_band(part->w0, part->w1)) {
+        glint_hunt_narrow(&f->in_part, band, part->w0, part->w1);
+        f->fit.hunt = &f->in_part;
+    }
+}
+
+/* Cuts P out of ZONE, and by all means leaves off what is not seen: a ghost
+ * that comes through here in red and there in blue leaves much. */
+static void set_part(struct fitter *f, struct pending *p,
+                     struct glint_zone *zone)
+{
+    const struct glint_zone uncropped = *zone;
+    double rest = p->by_all_means ? 0 : 1;
+
+    cut_out(f, p, zone);
+    for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
+        rest = glint_zone_crop(zone, f->fit.hunt, &p->part);
+        *zone = uncropped;
+        cut_out(f, p, zone);
+    }
+}
+
+/* How far off places of the zone may be, in tolerances. */
+static double bearable(const struct fitter *f)
+{
+    return PART_LEFT * fmin(f->fit.hidden, MOST_HIDDEN);
+}
+
+/* Times that P's box may be halved. */
+static int most_depth(const struct fitter *f, const struct pending *p)
+{
+    return p->lo <= 0 ? f->fit.tolerance->axis_depth : GLINT_PART_DEPTH;
+}
+
+/* What is left of P that will be halved or parted, whatever comes of it. The
+ * halves of wide zones are not yet at the end of halving, where what is left
+ * has to be known. */
+static double hopeless(const struct fitter *f, const struct pending *p)
+{
+    if (p->by_all_means)
+        return p->depth < most_depth(f, p) ? HOPELESS * bearable(f) : 0;
+    return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
+}
+
+/* Fits a zone; *LEFT becomes how bad it is: at most 1 if good. A part that
+ * nothing comes through has no outputs afterwards. P's part may shrink. */
+static enum glint_status try_zone(struct fitter *f, struct pending *p,
+                                  struct glint_fitted_system *system,
+                                  double *left)
+{
+    const struct glint_profile *profile = profile_of(f, p);
+    enum glint_status status;
+    struct glint_zone zone;
+
+    *system = (struct glint_fitted_system){.ghost = f->hunt->ghost,
+                                           .hollow = p->part.hollow,
+                                           .sine_lo = p->lo,
+                                           .sine_hi = p->hi};
+    f->fit.by_all_means = p->by_all_means;
+    *left = f->fit.off = 0;
+    if (profile->n == 0)
+        return GLINT_OK;
+    *left = HUGE_VAL;
+    glint_zone_init(&zone, profile, p->lo, p->hi, p->by_all_means);
+    f->wanders = (fabs(zone.middle[GLINT_BOX_POWERS]) +
+                  fabs(zone.half_x[GLINT_BOX_POWERS])) /
+                 zone.half_x[0];
+    if (!p->by_all_means && zone.fill < LEAST_FILL &&
+        degrees_between(p->lo, p->hi) > FILL_DEG)
+        return GLINT_OK;
+    set_part(f, p, &zone);
+    system->wave_lo = f->fit.hunt->wave_lo;
+    system->wave_hi = f->fit.hunt->wave_hi;
+    glint_zone_survey_barrels(&zone, f->fit.hunt, f->fit.tolerance->escape,
+                              &f->survey, &f->fit.rays);
+    if (f->fit.rays.n_barrels > 2 && degrees_between(p->lo, p->hi) > CROWD_DEG)
+        return GLINT_OK;
+    glint_zone_trace(&zone, f->fit.hunt, &f->fit.rays, &f->fit.energies);
+    *left = 0;
+    if ((p->depth > 0 || !is_whole_band(p->w0, p->w1)) &&
+        glint_zone_fit_is_dark(&f->fit))
+        return GLINT_OK;
+    status = set_box(system, &zone);
+    glint_zone_fit_begin(&f->fit, &zone);
+    f->fit.hopeless = hopeless(f, p);
+    if (status == GLINT_OK)
+        status = glint_zone_fit_run(&f->fit, &zone, system, left);
+    system->met = *left <= 1;
+    return status;
+}
+
+/* What to do about a zone that is left with LEFT. Halves of bright ones are
+ * worth more. */
+enum next { KEEP, HALVE, ALL_MEANS, BANDS, PART };
+
+static enum next next_step(const struct fitter *f, const struct pending *p,
+                           double left)
+{
+    const bool helped = left <= STUCK * p->before;
+    const double width =
+        degrees_between(p->lo, p->hi) * (f->fit.ease < BRIGHT_EASE ? 2 : 1);
+    const double least = p->lo <= 0 ? f->fit.tolerance->axis : 1;
+    const bool stuck =
+        width < least * LEAST_DEG || (!helped && width < least * STUCK_DEG);
+
+    if (p->by_all_means && f->fit.off <= bearable(f))
+        return KEEP;
+    if (p->by_all_means && p->depth == 0 && f->wanders > WANDERS &&
+        p->w1 - p->w0 > LEAST_BAND)
+        return BANDS;
+    if (p->by_all_means)
+        return p->depth < most_depth(f, p) ? PART : KEEP;
+    if (left <= 1)
+        return KEEP;
+    return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
+}
+
+static const struct glint_part whole = {-1, 1, 1, -1, 1, 0};
+
+/* Puts the halves of P on the stack: along v first, so that what is seen
+ * through the middle gets apart from what is seen through the rim. Returns how
+ * many there are then. */
+static int push_halves(struct pending *stack, int n, struct pending p,
+                       enum next how)
+{
+    const double angle = 0.5 * (p.lo + p.hi);
+    struct pending a = p, b = p;
+
+    if (how == HALVE) {
+        a.hi = b.lo = angle;
+    } else if (how == BANDS) {
+        a.w1 = b.w0 = 0.5 * (p.w0 + p.w1);
+        a.part = b.part = whole;
+    } else {
+        a.depth = b.depth = p.depth + 1;
+        glint_part_halve(&p.part, p.depth % 2 == 0, &a.part, &b.part);
+    }
+    stack[n] = b;
+    stack[n + 1] = a;
+    return n + 2;
+}
+
+/* Zones from the lowest angle up; the upper halves wait on a stack. */
+static enum glint_status fit_range(struct fitter *f, const double range[2])
+{
+    /* halvings of a sine down to half of LEAST_DEG, or a tenth of it: 20 */
+    enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_AXIS_DEPTH };
+    struct pending stack[DEEP] = {
+        {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};
+    enum glint_status status = GLINT_OK;
+    int n = 1;
+
+    glint_hunt_profile(f->hunt, range, &f->profile);
+    if (f->profile.n == 0)
+        return GLINT_OK;
+    while (n > 0 && status == GLINT_OK) {
+        struct pending p = stack[--n];
+        struct glint_fitted_system system;
+        enum next next = KEEP;
+        double left;
+
+        status = try_zone(f, &p, &system, &left);
+        if (status == GLINT_OK)
+            next = n + 2 > DEEP ? KEEP : next_step(f, &p, left);
+        if (p.depth == 0 && p.w0 <= -1)
+            f->n_parts = 0;
+        system.part = f->n_parts;
+        if (status == GLINT_OK && next == KEEP && system.n_outputs > 0) {
+            status = append(f->out, &system);
+            f->n_parts++;
+        } else {
+            system_finish(&system);
+        }
+        p.before = left;
+        if (next == ALL_MEANS) {
+            p.by_all_means = true;
+            stack[n++] = p;
+        } else if (next != KEEP) {
+            n = push_halves(stack, n, p, next);
+        }
+    }
+    return status;
+}
+
+enum glint_status glint_fit_ghost(const struct glint_hunt *hunt, double max_deg,
+                                  const struct glint_tolerance *tolerance,
+                                  struct glint_fitted_ghost *out)
+{
+    struct fitter *f = calloc(1, sizeof *f);
+    enum glint_status status = GLINT_E_MEMORY;
+    double range[GLINT_MAX_RANGES][2];
+
+    *out = (struct glint_fitted_ghost){0};
+    if (!f)
+        return status;
+    f->hunt = hunt;
+    f->fit.tolerance = tolerance;
+    f->profiled[0] = HUGE_VAL; /* of nothing yet */
+    f->out = out;
+    f->fit.scratch =
+        malloc(glint_regress_doubles(GLINT_ZONE_RAYS) * sizeof *f->fit.scratch);
+    if (f->fit.scratch) {
+        const int n = glint_hunt_ranges(hunt, max_deg, range);
+
+        status = GLINT_OK;
+        for (int k = 0; k < n && status == GLINT_OK; k++)
+            status = fit_range(f, range[k]);
+    }
+    free(f->fit.scratch);
+    free(f);
+    return status;
+}

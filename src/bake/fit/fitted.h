@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a fit leaves behind, in double precision, before it is made integers:
+ * the shape of glint/lens.h without its formats.
+ */
+#ifndef GLINT_BAKE_FIT_FITTED_H
+#define GLINT_BAKE_FIT_FITTED_H
+
+#include "bake/fit/regress.h"
+#include "glint/lens.h"
+#include "glint/status.h"
+
+/* One output. COEF is [sets][n_terms], sets as the system says; owned. */
+struct glint_fitted_output {
+    enum glint_channel kind;
+    int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
+    uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
+    double *coef;
+    double grain; /* rounding of a coefficient that does no harm; 0: none */
+    int event;    /* of the path, for a barrel */
+    int roots;    /* the energy is the polynomial squared so many times */
+    double most;  /* of the polynomial of the energy, where light gets through;
+                     0: unknown */
+    bool met;     /* the tolerance */
+};
+
+struct glint_fitted_system {
+    int ghost, part; /* of the pupil: 0, 1 .. where it is parted */
+    int hollow;      /* see struct glint_model_system */
+    double sine_lo, sine_hi;
+    double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
+    int n_knots;             /* 0, or as many sets of coefficients */
+    double *knot;            /* sines, rising; owned */
+    double *box;             /* mm, as in the model; owned */
+    double radius_mm;        /* of the sparse basis; else unused */
+    int n_outputs;
+    struct glint_fitted_output output[GLINT_OUT_KINDS]; /* kinds rising */
+    bool met;
+};
+
+/* All systems of one ghost, in the order of the model; owned. */
+struct glint_fitted_ghost {
+    int n_systems;
+    struct glint_fitted_system *system;
+};
+
+/* Moves the systems of part PART to OUT, which is empty. GLINT_E_MEMORY. */
+enum glint_status glint_fitted_part(struct glint_fitted_ghost *ghost, int part,
+                                    struct glint_fitted_ghost *out);
+
+void glint_fitted_finish(struct glint_fitted_ghost *ghost);
+
+#endif

@@ -1,0 +1,434 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/hunt.h"
+
+#include <math.h>
+
+#include "bake/trace/degrees.h"
+
+enum {
+    ACROSS = 64, /* cells of the finest grid */
+    SCAN_DEG = 1,
+    BISECTIONS = 8,
+    AFRESH = 4, /* angles after which to look for what has appeared elsewhere */
+    FARTHER = 4 /* steps that the ends of the band may outlast its middle */
+};
+
+static double wave_of(const struct glint_hunt *hunt, double w)
+{
+    return 0.5 * (hunt->wave_lo + hunt->wave_hi) +
+           0.5 * w * (hunt->wave_hi - hunt->wave_lo);
+}
+
+void glint_hunt_path(const struct glint_hunt *hunt, double w,
+                     struct glint_path *path)
+{
+    glint_path_init(path, hunt->setup->lens, &hunt->setup->ghost[hunt->ghost],
+                    1e3 / sqrt(wave_of(hunt, w)));
+}
+
+static void set_paths(struct glint_hunt *hunt)
+{
+    for (int k = 0; k < GLINT_HUNT_WAVES; k++) {
+        glint_hunt_path(hunt, -cos(GLINT_PI * k / (GLINT_HUNT_WAVES - 1)),
+                        &hunt->path[k]);
+        hunt->scout[k] = hunt->path[k];
+        hunt->scout[k].places_only = true;
+    }
+}
+
+void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,
+                     int ghost, double field_mm, const double band_nm[2])
+{
+    hunt->setup = setup;
+    hunt->ghost = ghost;
+    hunt->field_mm = field_mm;
+    hunt->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
+    hunt->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
+    set_paths(hunt);
+}
+
+void glint_hunt_narrow(struct glint_hunt *hunt, const struct glint_hunt *whole,
+                       double w0, double w1)
+{
+    hunt->setup = whole->setup;
+    hunt->ghost = whole->ghost;
+    hunt->field_mm = whole->field_mm;
+    hunt->wave_lo = wave_of(whole, w0);
+    hunt->wave_hi = wave_of(whole, w1);
+    set_paths(hunt);
+}
+
+bool glint_hunt_visible(const struct glint_hunt *hunt,
+                        const struct glint_ray *ray)
+{
+    return ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+               hunt->setup->optics.stop_radius_mm &&
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= hunt->field_mm;
+}
+
+/* -------------------------------------------------------------------- boxes */
+
+/* Columns and rows of a grid that hold rays that get through. */
+struct extent {
+    int i0, i1, j1;
+};
+
+static bool survey(const struct glint_hunt *h, const struct glint_path *path,
+                   double sine, int across, int down,
+                   const struct glint_pupil *box, struct extent *extent)
+{
+    struct glint_row row = {across + 1,
+                            box->x0_mm,
+                            (box->x1_mm - box->x0_mm) / across,
+                            0,
+                            {sine, 0, sqrt(1 - sine * sine)}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+
+    *extent = (struct extent){across + 1, -1, -1};
+    for (int j = 0; j <= down; j++) {
+        row.y_mm = box->y1_mm * j / down;
+        glint_trace_row(path, &row, ray, status, NULL);
+        for (int i = 0; i <= across; i++) {
+            if (status[i] != GLINT_RAY_OK || !glint_hunt_visible(h, &ray[i]))
+                continue;
+            extent->i0 = i < extent->i0 ? i : extent->i0;
+            extent->i1 = i > extent->i1 ? i : extent->i1;
+            extent->j1 = j;
+        }
+    }
+    return extent->i1 >= 0;
+}
+
+/* Shrinks BOX to the rays of a grid that get through and a cell around them.
+ * Returns whether there are any. */
+static bool shrink(const struct glint_hunt *h, const struct glint_path *path,
+                   double sine, int across, int down, struct glint_pupil *box)
+{
+    const double dx = (box->x1_mm - box->x0_mm) / across;
+    const double dy = box->y1_mm / down, x0 = box->x0_mm;
+    struct extent e;
+
+    if (!survey(h, path, sine, across, down, box, &e))
+        return false;
+    box->x0_mm = x0 + fmax(e.i0 - 1, 0) * dx;
+    box->x1_mm = x0 + fmin(e.i1 + 1, across) * dx;
+    box->y1_mm = fmin(e.j1 + 1, down) * dy;
+    return true;
+}
+
+/* Grows BOX on every side that light comes through, until none does. */
+static bool enclose(const struct glint_hunt *h, const struct glint_path *path,
+                    double sine, struct glint_pupil *box)
+{
+    enum { COARSE = 16, DOWN = 8, ROUNDS = 8 };
+
+    for (int round = 0; round < ROUNDS; round++) {
+        const double more = 0.5 * (box->x1_mm - box->x0_mm);
+        struct extent e;
+
+        if (!survey(h, path, sine, COARSE, DOWN, box, &e))
+            return false;
+        if (e.i0 > 0 && e.i1 < COARSE && e.j1 < DOWN)
+            return true;
+        box->x0_mm -= e.i0 == 0 ? more : 0;
+        box->x1_mm += e.i1 == COARSE ? more : 0;
+        box->y1_mm *= e.j1 == DOWN ? 1.5 : 1;
+    }
+    return false;
+}
+
+/* The box of the rays that get through, from one that holds it. */
+static bool tighten(const struct glint_hunt *h, const struct glint_path *path,
+                    double sine, struct glint_pupil *box)
+{
+    bool found = shrink(h, path, sine, 24, 12, box) ||
+                 shrink(h, path, sine, ACROSS, 32, box);
+
+    for (int round = 0; round < 5 && found; round++) {
+        const double before = (box->x1_mm - box->x0_mm) * box->y1_mm;
+
+        if (!shrink(h, path, sine, 24, 12, box) ||
+            (box->x1_mm - box->x0_mm) * box->y1_mm > 0.8 * before)
+            break;
+    }
+    return found;
+}
+
+/* By how much RAY misses what it has to get through: 1 or less is visible. */
+static double miss_of(const struct glint_hunt *h, const struct glint_ray *ray)
+{
+    const double stop =
+        hypot(ray->stop_x_mm, ray->stop_y_mm) / h->setup->optics.stop_radius_mm;
+    const double field =
+        hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
+
+    return fmax(ray->rel_radius, fmax(stop, field));
+}
+
+/* Closes BOX around the ray of a grid that misses by least, a cell and a half
+ * to each side. Returns by how much it does; HUGE_VAL: all were lost. */
+static double close_in(const struct glint_hunt *h,
+                       const struct glint_path *path, double sine,
+                       struct glint_pupil *box)
+{
+    enum { DOWN = 32 };
+    const double dx = (box->x1_mm - box->x0_mm) / ACROSS;
+    const double dy = box->y1_mm / DOWN, x0 = box->x0_mm;
+    struct glint_row row = {
+        ACROSS + 1, x0, dx, 0, {sine, 0, sqrt(1 - sine * sine)}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+    double least = HUGE_VAL;
+
+    for (int j = 0; j <= DOWN; j++) {
+        row.y_mm = dy * j;
+        glint_trace_row(path, &row, ray, status, NULL);
+        for (int i = 0; i <= ACROSS; i++) {
+            if (status[i] != GLINT_RAY_OK || miss_of(h, &ray[i]) >= least)
+                continue;
+            least = miss_of(h, &ray[i]);
+            box->x0_mm = x0 + (i - 1.5) * dx;
+            box->x1_mm = x0 + (i + 1.5) * dx;
+            box->y1_mm = (j + 1.5) * dy;
+        }
+    }
+    return least;
+}
+
+/* What a grid over BOX steps over: where the field is far smaller than the
+ * front, so is the part of the pupil that it is seen through. */
+static bool seek(const struct glint_hunt *h, const struct glint_path *path,
+                 double sine, struct glint_pupil *box)
+{
+    enum { ROUNDS = 4 };
+
+    if (h->field_mm > 0.1 * h->setup->lens->surface[0].semi_mm)
+        return false;
+    for (int round = 0; round < ROUNDS; round++)
+        if (close_in(h, path, sine, box) <= 1)
+            return enclose(h, path, sine, box);
+    return false;
+}
+
+static double degrees_of(double sine)
+{
+    return asin(sine) * (180 / GLINT_PI);
+}
+
+static bool find_box(const struct glint_hunt *h, const struct glint_path *path,
+                     double sine, struct glint_pupil *box)
+{
+    struct glint_pupil spot;
+
+    if (!glint_pupil_find_within(box, path, degrees_of(sine),
+                                 h->setup->optics.stop_radius_mm, h->field_mm,
+                                 NULL))
+        return false;
+    spot = *box;
+    if (tighten(h, path, sine, box))
+        return true;
+    *box = spot;
+    return seek(h, path, sine, box) && tighten(h, path, sine, box);
+}
+
+/* The same, looked for around NEAR first. */
+static bool follow_box(const struct glint_hunt *h,
+                       const struct glint_path *path, double sine,
+                       const struct glint_pupil *near, struct glint_pupil *box)
+{
+    const double more = 0.2 * (near->x1_mm - near->x0_mm);
+
+    *box = *near;
+    box->x0_mm -= more;
+    box->x1_mm += more;
+    box->y1_mm *= 1.25;
+    return (enclose(h, path, sine, box) && tighten(h, path, sine, box)) ||
+           find_box(h, path, sine, box);
+}
+
+/* ------------------------------------------------------------------- angles */
+
+/* Ends and middle of the band. */
+static const int waves[] = {GLINT_HUNT_WAVES / 2, 0, GLINT_HUNT_WAVES - 1};
+
+/* Something gets through at the first N of these wavelengths. */
+static bool passes(const struct glint_hunt *h, double sine, int n)
+{
+    struct glint_pupil box;
+
+    for (int k = 0; k < n; k++)
+        if (find_box(h, &h->scout[waves[k]], sine, &box))
+            return true;
+    return false;
+}
+
+/* The last sine at which something of any colour gets through, from one that
+ * has it at the middle of the band towards one that has not. */
+static double edge(const struct glint_hunt *h, double with, double without)
+{
+    for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
+        const double next = without + (without - with);
+
+        if (!passes(h, without, 3))
+            break;
+        with = without;
+        without = fmin(1, fmax(0, next));
+    }
+    for (int k = 0; k < BISECTIONS; k++) {
+        const double middle = 0.5 * (with + without);
+
+        if (passes(h, middle, 3))
+            with = middle;
+        else
+            without = middle;
+    }
+    return with;
+}
+
+/* Ends range N - 1 of N at HI. Returns how many there are now: light that comes
+ * through for a moment only is none, and where one range begins before the last
+ * one has ended, they are one. */
+static int end_range(double (*range)[2], int n, double hi)
+{
+    double *last = range[n - 1];
+
+    last[1] = hi;
+    if (last[1] <= last[0])
+        return n - 1;
+    if (n == 1 || last[0] > range[n - 2][1])
+        return n;
+    range[n - 2][1] = last[1];
+    return n - 1;
+}
+
+int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
+                      double (*range)[2])
+{
+    const int steps = (int)ceil(max_deg / SCAN_DEG);
+    double before = 0;
+    bool inside = false;
+    int n = 0;
+
+    for (int k = 0; k <= steps; k++) {
+        const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
+        const bool now = passes(hunt, sine, 1);
+
+        if (now && !inside && n == GLINT_MAX_RANGES)
+            break;
+        if (now && !inside)
+            range[n++][0] = k ? edge(hunt, sine, before) : 0;
+        if (!now && inside)
+            n = end_range(range, n, edge(hunt, before, sine));
+        inside = now;
+        before = sine;
+    }
+    return inside ? end_range(range, n, before) : n;
+}
+
+static void join(struct glint_pupil *a, const struct glint_pupil *b)
+{
+    a->x0_mm = fmin(a->x0_mm, b->x0_mm);
+    a->x1_mm = fmax(a->x1_mm, b->x1_mm);
+    a->y1_mm = fmax(a->y1_mm, b->y1_mm);
+}
+
+/* BOX moved on from BEFORE by as much as it had moved to get there. */
+static struct glint_pupil predict(const struct glint_pupil *before,
+                                  const struct glint_pupil *box, double ratio)
+{
+    const double step =
+        0.5 * ratio * (box->x0_mm + box->x1_mm - before->x0_mm - before->x1_mm);
+    struct glint_pupil p = *box;
+
+    p.x0_mm += step;
+    p.x1_mm += step;
+    return p;
+}
+
+/* What gets through by angle and wavelength. */
+struct glimpses {
+    bool seen[GLINT_PROFILE][GLINT_HUNT_WAVES];
+    struct glint_pupil box[GLINT_PROFILE][GLINT_HUNT_WAVES];
+};
+
+/* Looks at one wavelength, at the angles that WANTED names. */
+static void look(const struct glint_hunt *h, const double *sine,
+                 const bool *wanted, int wave, struct glimpses *g)
+{
+    const struct glint_path *path = &h->scout[wave];
+    struct glint_pupil box = {.y1_mm = 0}, before = box;
+    int have = 0; /* boxes in a row */
+
+    for (int k = 0; k < GLINT_PROFILE; k++) {
+        const double *s = sine + k;
+        struct glint_pupil near = box;
+        bool now;
+
+        if (!wanted[k]) {
+            have = 0;
+            continue;
+        }
+        if (have > 1)
+            near = predict(&before, &box, (s[0] - s[-1]) / (s[-1] - s[-2]));
+        before = box;
+        now = have ? follow_box(h, path, *s, &near, &box)
+                   : find_box(h, path, *s, &box);
+        if (have && k % AFRESH == 0 && find_box(h, path, *s, &near)) {
+            if (now)
+                join(&near, &box);
+            box = near;
+            now = true;
+        }
+        have = now ? have + 1 : 0;
+        g->seen[k][wave] = now;
+        g->box[k][wave] = box;
+    }
+}
+
+static void add_angle(struct glint_profile *p, double sine,
+                      const struct glimpses *g, int k)
+{
+    const int first = p->n_glimpses;
+
+    for (int wave = 0; wave < GLINT_HUNT_WAVES; wave++)
+        if (g->seen[k][wave])
+            p->glimpse[p->n_glimpses++] = (struct glint_glimpse){
+                sine, -cos(GLINT_PI * wave / (GLINT_HUNT_WAVES - 1)),
+                g->box[k][wave]};
+    if (p->n_glimpses == first)
+        return;
+    p->sine[p->n] = sine;
+    p->box[p->n] = p->glimpse[first].box;
+    for (int i = first + 1; i < p->n_glimpses; i++)
+        join(&p->box[p->n], &p->glimpse[i].box);
+    p->n++;
+}
+
+void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
+                        struct glint_profile *profile)
+{
+    struct glimpses g = {.seen = {{false}}};
+    double sine[GLINT_PROFILE];
+    bool wanted[GLINT_PROFILE];
+
+    for (int k = 0; k < GLINT_PROFILE; k++) {
+        const double t = sin(0.5 * GLINT_PI * k / (GLINT_PROFILE - 1));
+
+        sine[k] = range[0] + t * (range[1] - range[0]);
+        wanted[k] = true;
+    }
+    for (int i = 0; i < 3; i++)
+        look(hunt, sine, wanted, waves[i], &g);
+    /* Where only some colours get through, boxes of others may lie between. */
+    for (int k = 0; k < GLINT_PROFILE; k++)
+        wanted[k] = !(g.seen[k][waves[0]] && g.seen[k][waves[1]] &&
+                      g.seen[k][waves[2]]);
+    for (int wave = 1; wave < GLINT_HUNT_WAVES - 1; wave++)
+        if (wave != GLINT_HUNT_WAVES / 2)
+            look(hunt, sine, wanted, wave, &g);
+    profile->n = profile->n_glimpses = 0;
+    for (int k = 0; k < GLINT_PROFILE; k++)
+        add_angle(profile, sine[k], &g, k);
+}

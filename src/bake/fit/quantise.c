@@ -1,0 +1,385 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/quantise.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "glint/bake.h"
+
+struct glint_real glint_real_of(double x)
+{
+    int exponent;
+    const double mantissa = frexp(x, &exponent);
+    const double rounded = floor(fabs(mantissa) * 0x1p31);
+
+    if (x == 0 || !isfinite(x))
+        return (struct glint_real){0, 0};
+    return (struct glint_real){(int32_t)copysign(rounded, x), exponent - 31};
+}
+
+double glint_real_value(struct glint_real x)
+{
+    return ldexp(x.mantissa, x.exponent);
+}
+
+/* ------------------------------------------------------------------ scaling */
+
+static int sets_of(const struct glint_fitted_system *s)
+{
+    return s->n_knots ? s->n_knots : 1;
+}
+
+/* The largest sum of magnitudes over the sets of N values. */
+static double largest_sum(const double *value, int sets, int n)
+{
+    double most = 0;
+
+    for (int k = 0; k < sets; k++) {
+        double sum = 0;
+
+        for (int i = 0; i < n; i++)
+            sum += fabs(value[k * n + i]);
+        most = fmax(most, sum);
+    }
+    return most;
+}
+
+enum { LEAST_EXPONENT = -80 }; /* that a model may have */
+
+/* The sum of the N values' largest magnitudes over the sets: a bound on any sum
+ * of values between those of the sets. */
+static double hull_sum(const double *value, int sets, int n)
+{
+    double sum = 0;
+
+    for (int i = 0; i < n; i++) {
+        double most = 0;
+
+        for (int k = 0; k < sets; k++)
+            most = fmax(most, fabs(value[k * n + i]));
+        sum += most;
+    }
+    return sum;
+}
+
+/* The exponent at which a sum of N values of magnitude SUM, each rounded, stays
+ * below the limit. */
+static int exponent_for(double sum, int n)
+{
+    int exponent;
+
+    frexp(sum, &exponent);
+    exponent = exponent - 29 > LEAST_EXPONENT ? exponent - 29 : LEAST_EXPONENT;
+    while (ldexp(sum, -exponent) + n > (double)GLINT_COEF_LIMIT)
+        exponent++;
+    return exponent;
+}
+
+static bool all_finite(const double *value, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!isfinite(value[i]))
+            return false;
+    return true;
+}
+
+static enum glint_status to_integers(const double *value, int n, int exponent,
+                                     int32_t **out)
+{
+    *out = malloc((size_t)n * sizeof **out);
+    if (!*out)
+        return GLINT_E_MEMORY;
+    for (int i = 0; i < n; i++)
+        (*out)[i] = (int32_t)lrint(ldexp(value[i], -exponent));
+    return GLINT_OK;
+}
+
+/* ---------------------------------------------------------------- intervals */
+
+/* What a number of the run time may be, and how far rounding may have taken it
+ * from what it stands for. In steps of its unit; doubles hold these exactly
+ * enough: they stay below 2^31, and errors are rounded up at the end. */
+struct range {
+    double lo, hi, error;
+};
+
+static double reach(struct range r)
+{
+    return fmax(fabs(r.lo), fabs(r.hi)) + r.error;
+}
+
+struct proof {
+    double bound; /* of all intermediates so far */
+};
+
+static struct range seen(struct proof *p, struct range r)
+{
+    p->bound = fmax(p->bound, reach(r));
+    return r;
+}
+
+static struct range plus(struct proof *p, struct range a, struct range b)
+{
+    return seen(p, (struct range){a.lo + b.lo, a.hi + b.hi, a.error + b.error});
+}
+
+/* q_mul(a, x, 30): X is a variable of -1 .. 1, its error in steps of 2^-30. */
+static struct range times(struct proof *p, struct range a, struct range x)
+{
+    const double c[4] = {a.lo * x.lo, a.lo * x.hi, a.hi * x.lo, a.hi * x.hi};
+    const double most_x = fmax(fabs(x.lo), fabs(x.hi));
+
+    return seen(
+        p, (struct range){fmin(fmin(c[0], c[1]), fmin(c[2], c[3])),
+                          fmax(fmax(c[0], c[1]), fmax(c[2], c[3])),
+                          a.error * (most_x + x.error * 0x1p-30) +
+                              fmax(fabs(a.lo), fabs(a.hi)) * x.error * 0x1p-30 +
+                              0.5});
+}
+
+/* X to the power N as the run time makes it, from a variable with an error of
+ * its own. */
+static struct range power_of(struct range x, int n)
+{
+    struct range r = {n % 2 ? x.lo : fmax(0, x.lo), 1,
+                      n * x.error + (n > 1 ? 0.5 * n : 0)};
+
+    if (n % 2 == 0 && x.lo >= 0)
+        r.lo = 0;
+    return r;
+}
+
+static const struct range both_ways = {-1, 1, 0};
+
+/* x, y, r and 1 - r of the sparse basis, rounded from the box and u, v. */
+static const struct range place[4] = {
+    {-1, 1, 1.5}, {-1, 1, 1.5}, {0, 1, 4}, {0, 1, 4}};
+
+/* Coefficient K: itself, or anything between the sets. Rounding it to an
+ * integer, or to a multiple of 2^SHIFT, is part of the error. */
+static struct range coefficient(const int32_t *coef, int sets, int n, int k,
+                                int shift)
+{
+    struct range r = {coef[k], coef[k], 0.5 + (shift ? ldexp(0.5, shift) : 0)};
+
+    for (int set = 1; set < sets; set++) {
+        r.lo = fmin(r.lo, coef[set * n + k]);
+        r.hi = fmax(r.hi, coef[set * n + k]);
+    }
+    r.error += sets > 1 ? 0.5 : 0;
+    return r;
+}
+
+/* Angle and wavelength go in: the table of what stays with u and v. */
+static void prove_table(struct proof *p, const struct glint_fitted_output *o,
+                        const struct glint_quantised_output *q,
+                        struct range table[][GLINT_MAX_POWER + 1])
+{
+    for (int i = 0; i < o->n_terms; i++) {
+        const int k = q->order[i];
+        const int shift = i < o->n_terms - q->n_narrow ? 0 : q->shift;
+        struct range value =
+            seen(p, coefficient(q->coef, 1, o->n_terms, k, shift));
+        struct range *to = &table[o->power[k][1]][o->power[k][0]];
+
+        for (int x = 2; x < 4; x++)
+            if (o->power[k][x])
+                value = times(p, value, power_of(both_ways, o->power[k][x]));
+        *to = plus(p, *to, value);
+    }
+}
+
+static void prove_auto(struct proof *p, const struct glint_fitted_output *o,
+                       const struct glint_quantised_output *q,
+                       struct range *result)
+{
+    struct range table[GLINT_MAX_POWER + 1][GLINT_MAX_POWER + 1] = {
+        {{0, 0, 0}}};
+    const int odd =
+        o->kind == GLINT_OUT_SENSOR_Y || o->kind == GLINT_OUT_STOP_Y;
+    const struct range v2 = {0, 1, 0.5};
+
+    prove_table(p, o, q, table);
+    for (int a = GLINT_MAX_POWER; a >= 0; a--) {
+        struct range sum = {0, 0, 0};
+
+        for (int b = GLINT_MAX_POWER - 1 + odd; b >= 0; b -= 2)
+            sum = plus(p, times(p, sum, v2), table[b][a]);
+        if (odd)
+            sum = times(p, sum, both_ways);
+        *result = plus(p, times(p, *result, both_ways), sum);
+    }
+}
+
+static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
+                         const int32_t *coef, int sets, struct range *result)
+{
+    for (int k = 0; k < o->n_terms; k++) {
+        struct range value = seen(p, coefficient(coef, sets, o->n_terms, k, 0));
+
+        for (int i = 0; i < 4; i++)
+            if (o->power[k][i])
+                value = times(p, value, power_of(place[i], o->power[k][i]));
+        *result = plus(p, *result, value);
+    }
+}
+
+/* What the run time makes of the polynomial of the energy. */
+static struct range energy_of(struct range x, int head, int roots)
+{
+    if (head || roots)
+        x = (struct range){0, fmin(fmax(0, ldexp(x.hi, head)), 0x1p29),
+                           ldexp(x.error, head)};
+    for (int k = 0; k < roots; k++)
+        x = (struct range){0, x.hi * x.hi * 0x1p-29,
+                           (2 * x.hi + x.error) * x.error * 0x1p-29 + 0.5};
+    return x;
+}
+
+static void prove(const struct glint_fitted_output *o, int sets, bool knots,
+                  struct glint_quantised_output *out)
+{
+    struct proof p = {0};
+    struct range result = {0, 0, 0};
+
+    if (knots)
+        prove_sparse(&p, o, out->coef, sets, &result);
+    else
+        prove_auto(&p, o, out, &result);
+    while (out->head > 0 &&
+           energy_of(result, out->head, o->roots).error >= 0x1p22)
+        out->head--; /* nothing but rounding up there */
+    result = energy_of(result, out->head, o->roots);
+    out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
+    out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
+    out->rounding_q8 = out->proven ? (uint32_t)ceil(256 * result.error) : 0;
+}
+
+/* ------------------------------------------------------------------- narrow */
+
+/* Moves the coefficients that 16 bits are enough for to the end of the order.
+ */
+static void narrow(const struct glint_fitted_output *o,
+                   struct glint_quantised_output *out)
+{
+    const double steps = ldexp(o->grain, -out->exponent);
+    int n_wide = 0, end = o->n_terms;
+
+    for (out->shift = 0; out->shift < 16 && ldexp(1, out->shift + 1) <= steps;)
+        out->shift++;
+    for (int k = 0; k < o->n_terms; k++) {
+        const int32_t step = INT32_C(1) << out->shift;
+        const double part = rint((double)out->coef[k] / step);
+
+        if (out->shift < 4 || fabs(part) > INT16_MAX) {
+            out->order[n_wide++] = (uint8_t)k;
+            continue;
+        }
+        out->coef[k] = (int32_t)part * step;
+        out->order[--end] = (uint8_t)k;
+    }
+    out->n_narrow = o->n_terms - n_wide;
+}
+
+/* ------------------------------------------------------------------ systems */
+
+/* Exponents of x and y are one, so that they can be turned. */
+static int paired(enum glint_channel kind)
+{
+    return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1
+           : kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y ? -1
+                                                                    : 0;
+}
+
+static int output_exponent(const struct glint_fitted_system *s, int k)
+{
+    const struct glint_fitted_output *o = &s->output[k];
+
+    return exponent_for(hull_sum(o->coef, sets_of(s), o->n_terms), o->n_terms);
+}
+
+/* How many bits above what it is where light gets through a polynomial could
+ * reach: above twice as much, or where that is its fourth power, above what is
+ * twice the energy. Each bit more would take four of the energy's. */
+static int head_of(const struct glint_fitted_output *o, int exponent)
+{
+    const double most = o->roots ? 0x1.ap28 : 0x1p28;
+    int head = 0;
+
+    while (o->most > 0 && head < 28 &&
+           ldexp(o->most, head + 1 - exponent) < most)
+        head++;
+    return head;
+}
+
+static enum glint_status quantise_output(const struct glint_fitted_system *s,
+                                         int k,
+                                         struct glint_quantised_output *out)
+{
+    const struct glint_fitted_output *o = &s->output[k];
+    const int pair = paired(o->kind), n = sets_of(s) * o->n_terms;
+    enum glint_status status;
+
+    out->exponent = output_exponent(s, k);
+    if (pair) {
+        const int other = output_exponent(s, k + pair);
+
+        out->exponent = out->exponent > other ? out->exponent : other;
+    }
+    out->head = head_of(o, out->exponent);
+    status = to_integers(o->coef, n, out->exponent, &out->coef);
+    for (int i = 0; i < o->n_terms; i++)
+        out->order[i] = (uint8_t)i;
+    if (status == GLINT_OK) {
+        if (s->n_knots == 0)
+            narrow(o, out);
+        prove(o, sets_of(s), s->n_knots > 0, out);
+        status = out->proven ? GLINT_OK : GLINT_E_LENS;
+    }
+    return status;
+}
+
+/* Whether there is something to quantise: numbers everywhere. */
+static bool is_sound(const struct glint_fitted_system *s)
+{
+    const int n_box = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
+
+    for (int k = 0; k < s->n_outputs; k++) {
+        const struct glint_fitted_output *o = &s->output[k];
+
+        if (o->n_terms < 1 || !all_finite(o->coef, sets_of(s) * o->n_terms))
+            return false;
+    }
+    return all_finite(s->box, n_box) &&
+           (s->n_knots == 0 || (s->radius_mm > 0 && isfinite(s->radius_mm)));
+}
+
+enum glint_status glint_quantise(const struct glint_fitted_system *system,
+                                 struct glint_quantised_system *out)
+{
+    enum glint_status status;
+
+    *out = (struct glint_quantised_system){.box_exponent = 0};
+    out->n_box = 3 * (system->n_knots ? system->n_knots : GLINT_BOX_TERMS);
+    if (!is_sound(system))
+        return GLINT_E_LENS;
+    if (system->n_knots) {
+        out->box_exponent = (int)lrint(log2(system->radius_mm)) - 30;
+        if (ldexp(system->radius_mm, -out->box_exponent) != 0x1p30)
+            return GLINT_E_LENS; /* not a power of two */
+    } else {
+        out->box_exponent = exponent_for(
+            largest_sum(system->box, 3, GLINT_BOX_TERMS), GLINT_BOX_TERMS);
+    }
+    status = to_integers(system->box, out->n_box, out->box_exponent, &out->box);
+    for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)
+        status = quantise_output(system, k, &out->output[k]);
+    return status;
+}
+
+void glint_quantised_finish(struct glint_quantised_system *system)
+{
+    for (int k = 0; k < GLINT_OUT_KINDS; k++)
+        free(system->output[k].coef);
+    free(system->box);
+}

@@ -1,0 +1,492 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/zone_fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/compiler.h"
+
+STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
+
+#define PEAK        5.0 /* times the root mean square */
+#define WIDE_ENERGY 60  /* most over least energy of which to take a root */
+
+enum {
+    FEW_TERMS = 64,
+    MANY_TERMS = 96, /* of places, by all means */
+    PATIENCE = 36    /* terms, with what looks hopeless */
+};
+
+/* ----------------------------------------------------------------- outputs */
+
+static const struct glint_degrees position_degrees = {
+    .most = {GLINT_MAX_POWER, 8, 5, 4},
+    .weight = {1, 1, 1, 2},
+    .total = 12,
+    .terms = FEW_TERMS};
+
+static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
+                                                    .weight = {1, 1, 1, 1},
+                                                    .total = 10,
+                                                    .terms = FEW_TERMS};
+
+/* By all means, where it changes a lot over the pupil. */
+static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
+                                                   .weight = {1, 1, 1, 1},
+                                                   .total = 12,
+                                                   .terms = MANY_TERMS};
+
+/* Full weight a little past the edge, where cells straddle it; hardly any where
+ * nothing is seen, which only has to stay unseen. */
+static double weight_past_edge(double excess)
+{
+    const double past = (excess - 1.02) / 0.05;
+
+    return past <= 0 ? 1 : fmax(0.002, exp(-past * past));
+}
+
+/* Light beyond the field only has to stay there: it may be off by a fifth of
+ * how far it is out. */
+static double weight_past_field(const struct glint_zone_fit *f, double fields)
+{
+    const double out_mm = (fields - 1.01) * f->hunt->field_mm;
+
+    return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->sensor_mm);
+}
+
+/* The rays of one angle and wavelength from FIRST on: what is seen of them. */
+struct sight {
+    int n, n_all;
+    double low[2], high[2]; /* on the sensor */
+    double energy;          /* mean */
+};
+
+static struct sight look(const struct glint_rays *r, int first)
+{
+    struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
+                      .high = {-HUGE_VAL, -HUGE_VAL}};
+
+    for (int i = first; i < r->n && r->x[2][i] == r->x[2][first] &&
+                        r->x[3][i] == r->x[3][first];
+         i++, s.n_all++) {
+        if (!glint_rays_seen(r, i))
+            continue;
+        for (int k = 0; k < 2; k++) {
+            s.low[k] = fmin(s.low[k], r->at[RAY_SENSOR_X + k][i]);
+            s.high[k] = fmax(s.high[k], r->at[RAY_SENSOR_X + k][i]);
+        }
+        s.energy += r->at[RAY_ENERGY][i];
+        s.n++;
+    }
+    s.energy /= s.n > 0 ? s.n : 1;
+    return s;
+}
+
+/* How bright the ghost is at its brightest in the zone, as a share of what is
+ * as bright as counts. */
+static double share_of(const struct glint_zone_fit *f,
+                       const struct glint_zone *zone)
+{
+    enum { FEW = 4 }; /* rays have no area to speak of */
+    const struct glint_rays *r = &f->rays;
+    double most = 0;
+
+    for (int i = 0, next; i < r->n; i = next) {
+        const struct sight v = look(r, i);
+        const double s = r->x[2][i], w = r->x[3][i];
+        const double pupil = 4 * (1 - glint_zone_rim(zone->hollow)) *
+                             glint_zone_at(zone->half_x, s, w) *
+                             glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
+        const double level = glint_brightness_at(
+            f->tolerance->brightness,
+            0.5 * (zone->lo + zone->hi) + 0.5 * s * (zone->hi - zone->lo));
+        const double y = fmax(fabs(v.low[1]), fabs(v.high[1])); /* mirrored */
+
+        next = i + v.n_all;
+        if (v.n >= FEW)
+            most = fmax(most, v.energy * pupil /
+                                  fmax(1e-9, (v.high[0] - v.low[0]) * 1.6 * y) /
+                                  fmax(level, 1e-30));
+    }
+    return most;
+}
+
+/* Sensor millimetres for a unit of the place A, B (or A alone), root mean
+ * square over neighbours; of barrels only where they cut. */
+static double stretch_of(const struct glint_rays *r, const double *a,
+                         const double *b, double near)
+{
+    double moved2 = 0, change2 = 0;
+
+    for (int i = 1; i < r->n; i++) {
+        const double *x = r->at[RAY_SENSOR_X], *y = r->at[RAY_SENSOR_Y];
+
+        if (r->x[1][i] != r->x[1][i - 1] || r->x[2][i] != r->x[2][i - 1] ||
+            r->x[3][i] != r->x[3][i - 1] || !glint_rays_seen(r, i) ||
+            !glint_rays_seen(r, i - 1) || a[i] < near)
+            continue;
+        moved2 += (x[i] - x[i - 1]) * (x[i] - x[i - 1]) +
+                  (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
+        change2 += (a[i] - a[i - 1]) * (a[i] - a[i - 1]);
+        if (b)
+            change2 += (b[i] - b[i - 1]) * (b[i] - b[i - 1]);
+    }
+    return change2 > 0 ? sqrt(moved2 / change2) : 0;
+}
+
+/* What an outline may be off, in units of which STRETCH_MM are a millimetre. */
+static double outline_tolerance(const struct glint_zone_fit *f, double most,
+                                double stretch_mm)
+{
+    return fmax(0.06 * most, fmin(most, f->edge_mm / fmax(1e-12, stretch_mm)));
+}
+
+static void set_tolerances(struct glint_zone_fit *f,
+                           const struct glint_zone *zone)
+{
+    const struct glint_tolerance *t = f->tolerance;
+    const struct glint_rays *r = &f->rays;
+    const double share = share_of(f, zone);
+    const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
+    const double ease = fmin(t->ease, shows);
+    const double axis = zone->lo <= 0 ? t->axis : 1;
+
+    f->ease = ease;
+    f->edge_mm = ease * t->edge_mm;
+    f->sensor_mm = axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm);
+    f->hidden = shows * t->sensor_mm / f->sensor_mm;
+    f->stop = outline_tolerance(
+        f, t->stop,
+        stretch_of(r, r->at[RAY_STOP_X], r->at[RAY_STOP_Y], -HUGE_VAL));
+    f->energy = ease * t->energy;
+}
+
+static void set_weights(struct glint_zone_fit *f)
+{
+    const struct glint_rays *r = &f->rays;
+
+    for (int i = 0; i < r->n; i++) {
+        f->weight[i] = weight_past_edge(r->at[RAY_EXCESS][i]);
+        f->sensor_weight[i] =
+            f->weight[i] * weight_past_field(f, r->at[RAY_FIELD][i]);
+        if (r->at[RAY_FIELD][i] > 1.05)
+            f->weight[i] *= 0.1;
+    }
+}
+
+/* The polynomials let ray I pass, which the lens stops by far. */
+static bool leaks(const struct glint_rays *r, int i,
+                  const struct glint_fitted_system *system, double field_mm)
+{
+    const double x[GLINT_VARIABLES] = {r->x[0][i], r->x[1][i], r->x[2][i],
+                                       r->x[3][i]};
+    double at[GLINT_OUT_KINDS] = {0};
+    bool passes = r->at[RAY_EXCESS][i] > 1.05;
+
+    for (int k = 0; k < system->n_outputs && passes; k++) {
+        const struct glint_fitted_output *o = &system->output[k];
+
+        if (o->kind != GLINT_OUT_ENERGY)
+            at[o->kind] = glint_poly_at(o->n_terms, o->power, o->coef, x);
+        if (o->kind >= GLINT_OUT_BARREL_0)
+            passes = at[o->kind] < 1;
+    }
+    return passes && hypot(at[GLINT_OUT_STOP_X], at[GLINT_OUT_STOP_Y]) < 1 &&
+           hypot(at[GLINT_OUT_SENSOR_X], at[GLINT_OUT_SENSOR_Y]) < field_mm;
+}
+
+/* Gives rays that leak a weight that they are heard with. Returns whether there
+ * are any. */
+static bool stop_leaks(struct glint_zone_fit *f,
+                       const struct glint_fitted_system *system)
+{
+    bool any = false;
+
+    for (int i = 0; i < f->rays.n; i++)
+        if (leaks(&f->rays, i, system, f->hunt->field_mm)) {
+            f->weight[i] = fmax(f->weight[i], 0.1);
+            any = true;
+        }
+    return any;
+}
+
+static enum glint_status keep(struct glint_fitted_system *system,
+                              enum glint_channel kind,
+                              const struct glint_poly *poly, double rms,
+                              bool met)
+{
+    struct glint_fitted_output *o = &system->output[system->n_outputs];
+
+    o->coef = malloc((size_t)poly->n * sizeof *o->coef);
+    if (!o->coef)
+        return GLINT_E_MEMORY;
+    o->kind = kind;
+    o->n_terms = poly->n;
+    o->grain = rms / 6; /* a few dozen of these stay below a third of it */
+    o->met = met;
+    memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
+    memcpy(o->coef, poly->coef, (size_t)poly->n * sizeof *o->coef);
+    system->n_outputs++;
+    return GLINT_OK;
+}
+
+/* Fits VALUE over RAYS with CHANNEL_WEIGHT; returns what is left. */
+static double fit_poly(struct glint_zone_fit *f, const struct glint_rays *r,
+                       enum glint_channel kind, double rms,
+                       struct glint_poly *poly)
+{
+    const struct glint_samples samples = {
+        r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->channel_weight};
+    struct glint_degrees degrees =
+        kind != GLINT_OUT_ENERGY ? position_degrees
+        : f->by_all_means && glint_rays_spread(&f->rays) > GLINT_STEEP
+            ? steep_degrees
+            : energy_degrees;
+
+    if (f->by_all_means && kind != GLINT_OUT_ENERGY)
+        degrees.terms = MANY_TERMS;
+    degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->hopeless;
+    degrees.patience = PATIENCE;
+    degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
+    return glint_regress_fit(f->scratch, &samples, f->value, &degrees, rms,
+                             PEAK * rms, poly);
+}
+
+/* *WORST becomes what is left, if larger. */
+static enum glint_status fit_output(struct glint_zone_fit *f,
+                                    const struct glint_rays *r,
+                                    enum glint_channel kind, double rms,
+                                    struct glint_fitted_system *system,
+                                    double *worst)
+{
+    struct glint_poly poly;
+    const double left = fit_poly(f, r, kind, rms, &poly);
+
+    *worst = fmax(*worst, left);
+    return keep(system, kind, &poly, rms, left <= 1);
+}
+
+static enum glint_status fit_channel(struct glint_zone_fit *f, int channel,
+                                     double rms,
+                                     struct glint_fitted_system *system,
+                                     double *worst)
+{
+    const size_t bytes = (size_t)f->rays.n * sizeof *f->value;
+
+    memcpy(f->value, f->rays.at[channel], bytes);
+    memcpy(f->channel_weight,
+           channel <= RAY_SENSOR_Y ? f->sensor_weight : f->weight, bytes);
+    return fit_output(f, &f->rays, (enum glint_channel)channel, rms, system,
+                      worst);
+}
+
+/* Least and most energy of what is seen. */
+static void energies_of(const struct glint_rays *r, double *least, double *most)
+{
+    for (int i = 0; i < r->n; i++)
+        if (glint_rays_seen(r, i)) {
+            *least = fmin(*least, r->at[RAY_ENERGY][i]);
+            *most = fmax(*most, r->at[RAY_ENERGY][i]);
+        }
+}
+
+/* Sets VALUE to the energy, or its fourth root, and CHANNEL_WEIGHT, so that
+ * energy counts by its share, down to a two-hundredth of MOST. Returns the
+ * largest weight. */
+static double set_energies(struct glint_zone_fit *f, const struct glint_rays *r,
+                           double most, bool root)
+{
+    double largest = 0;
+
+    for (int i = 0; i < r->n; i++) {
+        const double out = fmax(r->at[RAY_EXCESS][i], r->at[RAY_FIELD][i]);
+        const double energy = r->at[RAY_ENERGY][i];
+        const double share = fmax(energy, 0.005 * most);
+
+        /* an error of the root is a quarter of the energy's */
+        f->value[i] = root ? sqrt(sqrt(energy)) : energy;
+        f->channel_weight[i] = fmax(weight_past_edge(out), 0.001) /
+                               (root ? 0.25 * sqrt(sqrt(share)) : share);
+        largest = fmax(largest, f->channel_weight[i]);
+    }
+    return largest;
+}
+
+/* Towards total reflection energy grows a thousandfold; its fourth root is as
+ * tame as a position. Where a coating lets all light of some colour through,
+ * the root has a cusp and energy itself is tame. */
+static enum glint_status fit_energy(struct glint_zone_fit *f,
+                                    struct glint_fitted_system *system,
+                                    double *worst)
+{
+    const struct glint_rays *r = f->energies.n ? &f->energies : &f->rays;
+    struct glint_fitted_output *o = &system->output[system->n_outputs];
+    double least = HUGE_VAL, most = 1e-30, left, grain;
+    struct glint_poly poly, other;
+    bool root;
+
+    energies_of(r, &least, &most);
+    energies_of(&f->rays, &least, &most);
+    root = f->by_all_means && most > WIDE_ENERGY * least;
+    grain = f->energy / set_energies(f, r, most, root);
+    left = fit_poly(f, r, GLINT_OUT_ENERGY, f->energy, &poly);
+    if (root && left > 1) {
+        const double other_grain = f->energy / set_energies(f, r, most, false);
+        const double other_left =
+            fit_poly(f, r, GLINT_OUT_ENERGY, f->energy, &other);
+
+        if (other_left < left) {
+            root = false;
+            left = other_left;
+            grain = other_grain;
+            poly = other;
+        }
+    }
+    o->roots = root ? 2 : 0;
+    o->most = least > most ? 0 : root ? sqrt(sqrt(most)) : most;
+    *worst = fmax(*worst, left);
+    return keep(system, GLINT_OUT_ENERGY, &poly, fmin(grain, f->energy),
+                left <= 1);
+}
+
+/* Where the barrel cuts is what counts. */
+static enum glint_status fit_barrel(struct glint_zone_fit *f, int barrel,
+                                    struct glint_fitted_system *system,
+                                    double *worst)
+{
+    const struct glint_rays *r = &f->rays;
+    double stretch;
+
+    for (int i = 0; i < r->n; i++) {
+        const double radius = r->radius[barrel][i];
+        const double off = (radius - 1) / 0.15;
+
+        f->value[i] = 0.5 * (1 + radius * radius);
+        f->channel_weight[i] = f->weight[i] * fmax(0.05, 1 / (1 + off * off));
+    }
+    stretch = stretch_of(r, f->value, NULL, 0.8);
+    system->output[system->n_outputs].event = r->barrel[barrel];
+    return fit_output(f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
+                      outline_tolerance(f, f->tolerance->barrel, stretch),
+                      system, worst);
+}
+
+static void drop_outputs(struct glint_fitted_system *system)
+{
+    while (system->n_outputs > 0)
+        free(system->output[--system->n_outputs].coef);
+}
+
+static bool is_hopeless(const struct glint_zone_fit *f)
+{
+    return f->hopeless > 0 && f->off > f->hopeless;
+}
+
+static enum glint_status fit_outputs(struct glint_zone_fit *f,
+                                     struct glint_fitted_system *system,
+                                     double *worst)
+{
+    enum glint_status status = GLINT_OK;
+
+    *worst = 0;
+    for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++) {
+        status = fit_channel(f, c, c <= RAY_SENSOR_Y ? f->sensor_mm : f->stop,
+                             system, worst);
+        f->off = *worst;
+        if (is_hopeless(f))
+            return status;
+    }
+    if (status == GLINT_OK)
+        status = fit_energy(f, system, worst);
+    for (int b = 0; b < f->rays.n_barrels && status == GLINT_OK; b++)
+        status = fit_barrel(f, b, system, &f->off);
+    *worst = fmax(*worst, f->off);
+    return status;
+}
+
+/* ------------------------------------------------------------------ checks */
+
+/* What may be left of rays that were not fitted, in tolerances. */
+#define CHECK_RMS 1.6
+
+/* The root mean square error of one output over the rays that get through, in
+ * units of RMS. */
+static double check_output(const struct glint_zone_fit *f,
+                           const struct glint_fitted_output *o,
+                           const double *value, double rms)
+{
+    const struct glint_rays *r = &f->rays;
+    double sum2 = 0;
+    int n = 0;
+
+    for (int i = 0; i < r->n; i++) {
+        const double x[GLINT_VARIABLES] = {r->x[0][i], r->x[1][i], r->x[2][i],
+                                           r->x[3][i]};
+        double error;
+
+        if (r->at[RAY_EXCESS][i] > 1.02 || r->at[RAY_FIELD][i] > 1)
+            continue;
+        error = glint_poly_at(o->n_terms, o->power, o->coef, x) - value[i];
+        sum2 += error * error;
+        n++;
+    }
+    return n ? sqrt(sum2 / n) / rms : 0;
+}
+
+/* How much worse than it may be the zone is at rays between those that were
+ * fitted: a fit can be good at every node and nowhere else. */
+static double check_zone(struct glint_zone_fit *f,
+                         const struct glint_zone *zone,
+                         const struct glint_fitted_system *system)
+{
+    double worst = 0;
+
+    glint_zone_check(zone, f->hunt, &f->rays);
+    for (int k = 0; k < system->n_outputs; k++) {
+        const struct glint_fitted_output *o = &system->output[k];
+
+        if (o->kind <= GLINT_OUT_STOP_Y)
+            worst = fmax(worst, check_output(f, o, f->rays.at[o->kind],
+                                             o->kind <= GLINT_OUT_SENSOR_Y
+                                                 ? f->sensor_mm
+                                                 : f->stop));
+    }
+    return worst / CHECK_RMS;
+}
+
+/* --------------------------------------------------------------------- all */
+
+bool glint_zone_fit_is_dark(const struct glint_zone_fit *f)
+{
+    for (int i = 0; i < f->rays.n; i++)
+        if (glint_rays_seen(&f->rays, i))
+            return false;
+    return true;
+}
+
+void glint_zone_fit_begin(struct glint_zone_fit *f,
+                          const struct glint_zone *zone)
+{
+    set_tolerances(f, zone);
+    set_weights(f);
+}
+
+enum glint_status glint_zone_fit_run(struct glint_zone_fit *f,
+                                     const struct glint_zone *zone,
+                                     struct glint_fitted_system *system,
+                                     double *left)
+{
+    enum glint_status status = fit_outputs(f, system, left);
+
+    if (status != GLINT_OK || is_hopeless(f))
+        return status;
+    if ((f->by_all_means || *left <= 1) && stop_leaks(f, system)) {
+        drop_outputs(system);
+        status = fit_outputs(f, system, left);
+    }
+    if (status == GLINT_OK)
+        f->off = fmax(f->off, check_zone(f, zone, system));
+    *left = fmax(*left, f->off);
+    return status;
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The published method of fitting a ghost [Bodonyi25], which ours is compared
+ * with.
+ *
+ *   in   a ghost of a lens, wavelengths, the field that counts
+ *   out  for every wavelength (and range of angles in which the ghost is seen)
+ *        polynomials in x, y, r and 1 - r of stop, sensor, energy and largest
+ *        relative radius, with coefficients at knots that are equal angles
+ *        apart
+ *
+ * Method: a zone is the surroundings of a knot. Rays are traced all over the
+ * ghost's pupil box there, joined with the boxes of the neighbours, so that
+ * what is interpolated between two knots is good where either lets light
+ * through. One sparse basis for each output, found on some of the zones
+ * (bake/shared_basis.h), serves all of them. It serves all wavelengths too,
+ * which the method leaves open: the search takes its zones from each in turn,
+ * for a third of the time.
+ *
+ * Limits: those of the hunt for angles and boxes; ranges and boxes are
+ * shared by all wavelengths; boxes run straight between those of the hunt's
+ * profile. Between two knots the error is that of the interpolation: where the
+ * box moves by its own size from knot to knot it is much larger than at them.
+ */
+#ifndef GLINT_BAKE_PUBLISHED_PUBLISHED_H
+#define GLINT_BAKE_PUBLISHED_PUBLISHED_H
+
+#include "bake/fit/fitted.h"
+#include "glint/bake.h"
+
+struct glint_published_options {
+    int n_zones;    /* angles 0 .. max_deg, at least 2; 241 as published */
+    double max_deg; /* at most 89; 60 as published */
+    int max_terms;  /* per output, 1 .. 12 */
+    const double *wavelength_nm; /* in any order, no two the same */
+    int n_wavelengths;           /* 1 .. GLINT_MAX_WAVELENGTHS */
+    double field_mm; /* light beyond this radius on the sensor is no loss */
+};
+
+/* 241 zones, 60 degrees, 5 terms for lenses of up to 20 surfaces and 10 for
+ * others, and the wavelengths and half the diagonal of SETUP's film. The
+ * wavelengths are kept. */
+void glint_published_defaults(struct glint_published_options *options,
+                              const struct glint_setup *setup);
+
+/* Fits GHOST of SETUP. No systems: it is never seen. radius_mm is a power of
+ * two, the same for all systems of the ghost, and r = hypot(x, y) is at most 1
+ * in every box. An output met the tolerance if its root mean square error over
+ * the knots did: 0.0002 mm, 0.0002 stop radii and relative radii, 0.1 % of the
+ * energy. GLINT_E_ARGUMENT, GLINT_E_MEMORY: OUT is empty. Deterministic. */
+enum glint_status
+glint_published_fit(const struct glint_setup *setup, int ghost,
+                    const struct glint_published_options *options,
+                    struct glint_fitted_ghost *out);
+
+#endif

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One sparse basis for many zones of a ghost.
+ *
+ *   in   rays of some zones
+ *   out  the few monomials that serve all of them
+ *
+ * Method: adaptive sparse regression [Zheng17], as [Bodonyi25] shares it among
+ * zones. A basis begins with its best single term and then grows by a term that
+ * is one exponent away from one it has, or by a pure power; terms are swapped
+ * for such terms while that helps; a term leaves when what remains beats the
+ * best known basis of that size. The error is the mean over the zones of the
+ * weighted squared error (bake/shared_zone.h). Outputs that are even in y have
+ * even powers of y only, and odd ones odd powers, as symmetric rays choose.
+ *
+ * Limits: a local search; the neighbours it tries are those named above.
+ */
+#ifndef GLINT_BAKE_PUBLISHED_SHARED_BASIS_H
+#define GLINT_BAKE_PUBLISHED_SHARED_BASIS_H
+
+#include "bake/published/shared_zone.h"
+
+/* Finds the basis of output KIND for RAYS[N_ZONES], N_ZONES >= 1: the smallest
+ * one with at most MAX_TERMS whose root mean square error is at most
+ * TOLERANCE, or the best one. ZONE[N_ZONES] is scratch. */
+void glint_shared_search(struct glint_shared_zone *zone,
+                         const struct glint_shared_rays *rays, int n_zones,
+                         enum glint_channel kind, int max_terms,
+                         double tolerance, struct glint_shared_basis *basis);
+
+#endif

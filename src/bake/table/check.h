@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Whether a lens whose values are all in range can exist and work.
+ *
+ *   in   a prescription read to the end, and where its table says what
+ *   out  true, or the first mistake written as the error of the text
+ *
+ * Checked in this order: the last medium is air; elements do not overlap and
+ * the sensor lies behind them; the lens has a focus behind it, and its stop
+ * opens wide enough for the f-number; stated focal lengths agree with those of
+ * the paraxial matrices. A new f-number must pass the same test of the stop.
+ * Limits: neighbours are compared at one height, CLEAR_SHARE of the smaller
+ * semi-diameter; that rays pass the barrels is not checked.
+ */
+#ifndef GLINT_BAKE_TABLE_CHECK_H
+#define GLINT_BAKE_TABLE_CHECK_H
+
+#include <stdbool.h>
+
+#include "bake/table/prescription.h"
+#include "bake/table/text.h"
+
+#define GLINT_MAX_FOCAL_MM 1e6 /* a longer one is no power at all */
+#define GLINT_MIN_F_NUMBER 0.5
+#define GLINT_MAX_F_NUMBER 1000.0
+
+/* Of the numbers in the table. */
+struct glint_places {
+    struct glint_text_place f_number, stop; /* of the stop its semi-diameter */
+    struct glint_text_place focal, back_focal; /* line 0: not stated */
+    struct glint_text_place thickness[GLINT_MAX_ELEMENTS];
+    struct glint_text_place medium; /* of the last surface */
+};
+
+/* False: the error is written. */
+bool glint_prescription_check(const struct glint_prescription *lens,
+                              const struct glint_text *text,
+                              const struct glint_places *places);
+
+#endif

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * First-order optics: lens -> focal lengths, pupil and stop, at the d line.
+ *
+ * Two paraxial rays (y, n u) meet all elements in turn: n u loses y times the
+ * power of a surface, y gains n u times the reduced gap. A lens without power
+ * has infinite focal lengths; glint_prescription_parse takes none of that kind.
+ */
+#include "bake/table/prescription.h"
+
+#include <stddef.h>
+
+/* A ray at one element: height, and slope times the index around it. */
+struct paraxial_ray {
+    double y_mm, nu;
+};
+
+/* Leads RAY from the vertex plane of the front surface to element LAST and
+ * through it. */
+static void lead(struct paraxial_ray *ray,
+                 const struct glint_prescription *lens, int last)
+{
+    double n = 1.0;
+
+    if (lens->stop_after == 0) /* a stop in front: backwards through air */
+        ray->y_mm -= ray->nu * element_gap_mm(lens, 0);
+    for (int e = 0; e <= last; e++) {
+        const int k = element_surface(lens, e);
+
+        if (e > 0)
+            ray->y_mm += ray->nu / n * element_gap_mm(lens, e - 1);
+        if (k >= 0) {
+            ray->nu -= ray->y_mm * (lens->surface[k].nd - n) *
+                       element_curvature(lens, e);
+            n = lens->surface[k].nd;
+        }
+    }
+}
+
+void glint_optics_of(const struct glint_prescription *lens,
+                     struct glint_optics *optics)
+{
+    struct paraxial_ray marginal = {1.0, 0.0}, to_stop = {1.0, 0.0};
+    struct paraxial_ray slanted = {0.0, 1.0};
+
+    lead(&marginal, lens, surface_element(lens, lens->n_surfaces - 1));
+    lead(&to_stop, lens, lens->stop_after);
+    lead(&slanted, lens, lens->stop_after);
+
+    optics->focal_mm = -1.0 / marginal.nu;
+    optics->back_focal_mm = -marginal.y_mm / marginal.nu;
+    optics->entrance_radius_mm = optics->focal_mm / (2.0 * lens->f_number);
+    optics->stop_radius_mm = optics->entrance_radius_mm * to_stop.y_mm;
+    if (optics->stop_radius_mm < 0.0)
+        optics->stop_radius_mm = -optics->stop_radius_mm;
+    /* A ray of height h and slope u meets the axis at -h / u and the stop at
+     * h to_stop.y + u slanted.y, which is to be its centre. */
+    optics->entrance_z_mm = slanted.y_mm / to_stop.y_mm;
+    optics->length_mm = 0.0;
+    for (int e = lens->stop_after == 0; e < element_count(lens); e++)
+        optics->length_mm += element_gap_mm(lens, e);
+}

@@ -1,0 +1,419 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Text of a lens table -> struct glint_prescription, or the first mistake and
+ * its place. lenses/README.md is the manual of the format.
+ *
+ * Reading stores values that are in range, one word at a time; the lens as a
+ * whole is checked by bake/check.h when all is read.
+ */
+#include "bake/table/prescription.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "bake/table/check.h"
+#include "bake/table/films.h"
+#include "bake/table/text.h"
+#include "base/compiler.h"
+
+#define MAX_GLASSES      64
+#define GLASS_NAME_BYTES 24
+
+STATIC_ASSERT(sizeof(((struct glint_prescription *)0)->source) >
+              GLINT_LINE_BYTES);
+
+struct medium {
+    double nd, vd;
+};
+
+static const struct glint_range f_number_range = {
+    "f-number", GLINT_MIN_F_NUMBER, GLINT_MAX_F_NUMBER};
+static const struct glint_range film_width_range = {"film width", 0.1, 1000};
+static const struct glint_range film_height_range = {"film height", 0.1, 1000};
+static const struct glint_range stated_range = {"focal length", 0.01,
+                                                GLINT_MAX_FOCAL_MM};
+static const struct glint_range radius_range = {"radius", 0.01, 1e9};
+static const struct glint_range thickness_range = {"thickness", 0, 1e5};
+static const struct glint_range semi_range = {"semi-diameter", 0.01, 1e4};
+static const struct glint_range nd_range = {"index", 1.01, 4};
+static const struct glint_range vd_range = {"Abbe number", 10, 150};
+
+enum field {
+    NAME,
+    SOURCE,
+    F_NUMBER,
+    FILM,
+    FOCAL,
+    BACK_FOCAL,
+    COATING,
+    MIXED,
+    GLASS,
+    SURFACE,
+    STOP,
+    N_FIELDS
+};
+
+struct parser {
+    struct glint_text text;
+    struct glint_prescription lens;
+    struct glint_text_place word[N_FIELDS]; /* latest of each, line 0: none */
+    struct glint_places places;
+    struct glint_film coating; /* of surfaces without their own */
+    bool has_coating[GLINT_MAX_SURFACES];
+    int n_elements;
+    int n_glasses;
+    struct {
+        char name[GLASS_NAME_BYTES];
+        struct medium medium;
+    } glass[MAX_GLASSES];
+};
+
+/* ------------------------------------------------------------ header lines */
+
+static bool is_lower(char c)
+{
+    return c >= 'a' && c <= 'z';
+}
+
+static bool is_letter(char c)
+{
+    return is_lower(c) || (c >= 'A' && c <= 'Z');
+}
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+static bool read_name(struct parser *p)
+{
+    const struct glint_word word = glint_text_next_word(&p->text);
+
+    if (!word.length)
+        return glint_text_fail(&p->text, word.place, "name is missing");
+    if (word.length >= GLINT_NAME_BYTES)
+        return glint_text_fail(&p->text, word.place,
+                               "name is longer than %d bytes",
+                               GLINT_NAME_BYTES - 1);
+    for (int i = 0; i < word.length; i++) {
+        const char c = word.start[i];
+
+        if (!is_lower(c) && !is_digit(c) && (c != '-' || i == 0))
+            return glint_text_fail(&p->text, word.place,
+                                   "name may have a-z, 0-9 and, inside, -");
+    }
+    memcpy(p->lens.name, word.start, (size_t)word.length);
+    return true;
+}
+
+static bool read_source(struct parser *p)
+{
+    const struct glint_word rest = glint_text_rest(&p->text);
+
+    if (!rest.length)
+        return glint_text_fail(&p->text, rest.place, "source is missing");
+    memcpy(p->lens.source, rest.start, (size_t)rest.length);
+    return true;
+}
+
+static bool read_f_number(struct parser *p)
+{
+    return glint_text_value(&p->text, &f_number_range, &p->lens.f_number,
+                            &p->places.f_number);
+}
+
+static bool read_film(struct parser *p)
+{
+    return glint_text_value(&p->text, &film_width_range, &p->lens.film_width_mm,
+                            NULL) &&
+           glint_text_value(&p->text, &film_height_range,
+                            &p->lens.film_height_mm, NULL);
+}
+
+static bool read_focal(struct parser *p)
+{
+    return glint_text_value(&p->text, &stated_range, &p->lens.check_focal_mm,
+                            &p->places.focal);
+}
+
+static bool read_back_focal(struct parser *p)
+{
+    return glint_text_value(&p->text, &stated_range, &p->lens.check_back_mm,
+                            &p->places.back_focal);
+}
+
+/* "none" or NM [INDEX]. */
+static bool read_coating_value(struct parser *p, struct glint_film *coating)
+{
+    struct glint_word word = glint_text_next_word(&p->text);
+
+    if (!glint_film_of(&p->text, &word, coating) || coating->nm <= 0.0)
+        return glint_word_is(&word, "none");
+    word = glint_text_next_word(&p->text);
+    return !word.length ||
+           glint_text_value_of(&p->text, &word, &glint_film_index_range,
+                               &coating->index);
+}
+
+static bool read_coating(struct parser *p)
+{
+    return read_coating_value(p, &p->coating);
+}
+
+static bool read_mixed(struct parser *p)
+{
+    return glint_films_read(&p->text, p->lens.mixed, &p->lens.n_mixed);
+}
+
+/* ------------------------------------------------------------------- glass */
+
+/* Index into p->glass, -1 if there is none of that name. */
+static int find_glass(const struct parser *p, const struct glint_word *word)
+{
+    int i = p->n_glasses - 1;
+
+    while (i >= 0 && !glint_word_is(word, p->glass[i].name))
+        i--;
+    return i;
+}
+
+static bool check_glass_name(struct parser *p, const struct glint_word *word)
+{
+    bool good = word->length > 0 && is_letter(word->start[0]);
+
+    if (!word->length)
+        return glint_text_fail(&p->text, word->place, "glass name is missing");
+    for (int i = 0; i < word->length; i++)
+        good = good && (is_letter(word->start[i]) || is_digit(word->start[i]) ||
+                        word->start[i] == '-');
+    if (!good || word->length >= GLASS_NAME_BYTES)
+        return glint_text_fail(&p->text, word->place,
+                               "glass name must be a letter and at most %d "
+                               "letters, digits and -",
+                               GLASS_NAME_BYTES - 2);
+    if (glint_word_is(word, "air") || find_glass(p, word) >= 0)
+        return glint_text_fail(&p->text, word->place,
+                               "glass of this name is already defined");
+    return true;
+}
+
+static bool read_glass(struct parser *p)
+{
+    const struct glint_word word = glint_text_next_word(&p->text);
+    const int n = p->n_glasses;
+
+    if (!check_glass_name(p, &word))
+        return false;
+    if (n == MAX_GLASSES)
+        return glint_text_fail(&p->text, word.place, "more than %d glasses",
+                               MAX_GLASSES);
+    memcpy(p->glass[n].name, word.start, (size_t)word.length);
+    p->n_glasses++;
+    return glint_text_value(&p->text, &nd_range, &p->glass[n].medium.nd,
+                            NULL) &&
+           glint_text_value(&p->text, &vd_range, &p->glass[n].medium.vd, NULL);
+}
+
+/* "air", ND VD or the name of a glass. */
+static bool read_medium(struct parser *p, struct medium *medium)
+{
+    const struct glint_word word = glint_text_next_word(&p->text);
+    char quote[GLINT_QUOTE_BYTES];
+    int glass;
+
+    p->places.medium = word.place;
+    if (!word.length)
+        return glint_text_fail(&p->text, word.place,
+                               "medium is missing: air, ND VD or a glass");
+    *medium = (struct medium){1.0, 0.0};
+    if (glint_word_is(&word, "air"))
+        return true;
+    if (!is_letter(word.start[0]))
+        return glint_text_value_of(&p->text, &word, &nd_range, &medium->nd) &&
+               glint_text_value(&p->text, &vd_range, &medium->vd, NULL);
+    glass = find_glass(p, &word);
+    if (glass < 0)
+        return glint_text_fail(&p->text, word.place,
+                               "no glass '%s' is defined above this line",
+                               glint_word_quote(&word, quote));
+    *medium = p->glass[glass].medium;
+    return true;
+}
+
+/* ---------------------------------------------------------------- elements */
+
+static bool read_radius(struct parser *p, double *radius_mm)
+{
+    const struct glint_word word = glint_text_next_word(&p->text);
+
+    *radius_mm = 0.0;
+    if (glint_word_is(&word, "flat"))
+        return true;
+    if (!glint_text_number_of(&p->text, &word, radius_range.name, radius_mm))
+        return false;
+    if (*radius_mm == 0.0)
+        return glint_text_fail(&p->text, word.place,
+                               "radius must not be 0; a plane is flat");
+    return glint_text_in_range(&p->text, word.place, &radius_range,
+                               fabs(*radius_mm));
+}
+
+/* Thickness and semi-diameter of any element. */
+static bool read_gap_and_semi(struct parser *p, double *thickness_mm,
+                              double *semi_mm, struct glint_text_place *semi)
+{
+    return glint_text_value(&p->text, &thickness_range, thickness_mm,
+                            &p->places.thickness[p->n_elements++]) &&
+           glint_text_value(&p->text, &semi_range, semi_mm, semi);
+}
+
+/* The coating of surface K, if it has its own. CEMENTED: glass on both
+ * sides. */
+static bool read_surface_coating(struct parser *p, int k, bool cemented)
+{
+    struct glint_surface *s = &p->lens.surface[k];
+    const struct glint_word word = glint_text_next_word(&p->text);
+    char quote[GLINT_QUOTE_BYTES];
+    struct glint_film coating;
+
+    p->has_coating[k] = cemented || word.length;
+    if (!word.length)
+        return true;
+    if (!glint_word_is(&word, "coating"))
+        return glint_text_fail(&p->text, word.place,
+                               "'%s' stands where only coating may follow",
+                               glint_word_quote(&word, quote));
+    if (!read_coating_value(p, &coating))
+        return false;
+    if (cemented && coating.nm > 0.0)
+        return glint_text_fail(&p->text, word.place,
+                               "a cemented surface has no coating");
+    s->coating_nm = coating.nm;
+    s->coating_n = coating.index;
+    return true;
+}
+
+static bool read_surface(struct parser *p)
+{
+    const int k = p->lens.n_surfaces;
+    struct glint_surface *s = &p->lens.surface[k];
+    struct medium before = {1.0, 0.0}, medium = before;
+    struct glint_text_place semi;
+
+    if (k == GLINT_MAX_SURFACES)
+        return glint_text_fail(&p->text, p->word[SURFACE],
+                               "more than %d surfaces", GLINT_MAX_SURFACES);
+    if (!read_radius(p, &s->radius_mm) ||
+        !read_gap_and_semi(p, &s->thickness_mm, &s->semi_mm, &semi))
+        return false;
+    if (s->radius_mm != 0.0 && s->semi_mm >= fabs(s->radius_mm))
+        return glint_text_fail(&p->text, semi,
+                               "semi-diameter %g must be less than the "
+                               "radius %g",
+                               s->semi_mm, fabs(s->radius_mm));
+    if (!read_medium(p, &medium))
+        return false;
+    if (k > 0)
+        before = (struct medium){s[-1].nd, s[-1].vd};
+    if (before.nd == medium.nd && before.vd == medium.vd)
+        return glint_text_fail(&p->text, p->places.medium,
+                               "medium is the same on both sides");
+    s->nd = medium.nd;
+    s->vd = medium.vd;
+    p->lens.n_surfaces++;
+    return read_surface_coating(p, k, before.vd > 0.0 && medium.vd > 0.0);
+}
+
+static bool read_stop(struct parser *p)
+{
+    p->lens.stop_after = p->lens.n_surfaces;
+    return read_gap_and_semi(p, &p->lens.stop_thickness_mm,
+                             &p->lens.stop_semi_mm, &p->places.stop);
+}
+
+/* ------------------------------------------------------------------- lines */
+
+static const struct {
+    const char *word;
+    bool (*read)(struct parser *p);
+    bool required, repeats;
+} fields[N_FIELDS] = {
+    [NAME] = {"name", read_name, true, false},
+    [SOURCE] = {"source", read_source, false, false},
+    [F_NUMBER] = {"f-number", read_f_number, true, false},
+    [FILM] = {"film", read_film, true, false},
+    [FOCAL] = {"focal-length", read_focal, false, false},
+    [BACK_FOCAL] = {"back-focal-length", read_back_focal, false, false},
+    [COATING] = {"coating", read_coating, false, false},
+    [MIXED] = {"mixed-coating", read_mixed, false, false},
+    [GLASS] = {"glass", read_glass, false, true},
+    [SURFACE] = {"surface", read_surface, true, true},
+    [STOP] = {"stop", read_stop, true, false},
+};
+
+static bool read_line(struct parser *p)
+{
+    struct glint_word word = glint_text_next_word(&p->text);
+    char quote[GLINT_QUOTE_BYTES];
+    int f = 0;
+
+    if (!word.length)
+        return true;
+    while (f < N_FIELDS && !glint_word_is(&word, fields[f].word))
+        f++;
+    if (f == N_FIELDS)
+        return glint_text_fail(&p->text, word.place, "unknown word '%s'",
+                               glint_word_quote(&word, quote));
+    if (p->word[f].line && !fields[f].repeats)
+        return glint_text_fail(&p->text, word.place,
+                               "a second %s; the first is on line %d",
+                               fields[f].word, p->word[f].line);
+    p->word[f] = word.place;
+    if (!fields[f].read(p))
+        return false;
+    word = glint_text_next_word(&p->text);
+    return !word.length ||
+           glint_text_fail(&p->text, word.place, "'%s' is more than %s takes",
+                           glint_word_quote(&word, quote), fields[f].word);
+}
+
+static bool read_lines(struct parser *p)
+{
+    while (glint_text_next_line(&p->text))
+        if (!read_line(p))
+            return false;
+    for (int f = 0; f < N_FIELDS; f++)
+        if (fields[f].required && !p->word[f].line)
+            return glint_text_fail(&p->text, glint_text_end(&p->text),
+                                   "there is no %s line", fields[f].word);
+    return true;
+}
+
+/* ---------------------------------------------------------------- the lens */
+
+static void coat(struct parser *p)
+{
+    for (int k = 0; k < p->lens.n_surfaces; k++)
+        if (!p->has_coating[k]) {
+            p->lens.surface[k].coating_nm = p->coating.nm;
+            p->lens.surface[k].coating_n = p->coating.index;
+        }
+}
+
+enum glint_status glint_prescription_parse(struct glint_prescription *lens,
+                                           const char *text, size_t bytes,
+                                           const char *file_name,
+                                           struct glint_error *error)
+{
+    struct parser p;
+
+    memset(&p, 0, sizeof(p));
+    p.coating = (struct glint_film){550, GLINT_MGF2_INDEX};
+    if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
+        !read_lines(&p) ||
+        !glint_prescription_check(&p.lens, &p.text, &p.places))
+        return GLINT_E_LENS;
+    coat(&p);
+    *lens = p.lens;
+    return GLINT_OK;
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A lens seen as a row of elements: its surfaces and, among them, the stop, in
+ * the order of the table. Element E is the stop where E == lens->stop_after.
+ */
+#ifndef GLINT_BAKE_TABLE_PRESCRIPTION_H
+#define GLINT_BAKE_TABLE_PRESCRIPTION_H
+
+#include "glint/bake.h"
+
+#define GLINT_MAX_ELEMENTS (GLINT_MAX_SURFACES + 1)
+
+static inline int element_count(const struct glint_prescription *lens)
+{
+    return lens->n_surfaces + 1;
+}
+
+/* Surface of element E, -1 for the stop. */
+static inline int element_surface(const struct glint_prescription *lens, int e)
+{
+    return e == lens->stop_after ? -1 : e - (e > lens->stop_after);
+}
+
+/* Element of surface K. */
+static inline int surface_element(const struct glint_prescription *lens, int k)
+{
+    return k + (k >= lens->stop_after);
+}
+
+/* From element E to the next one or the sensor. */
+static inline double element_gap_mm(const struct glint_prescription *lens,
+                                    int e)
+{
+    const int k = element_surface(lens, e);
+
+    return k < 0 ? lens->stop_thickness_mm : lens->surface[k].thickness_mm;
+}
+
+static inline double element_semi_mm(const struct glint_prescription *lens,
+                                     int e)
+{
+    const int k = element_surface(lens, e);
+
+    return k < 0 ? lens->stop_semi_mm : lens->surface[k].semi_mm;
+}
+
+/* 1 / radius, 0 for a plane and the stop. */
+static inline double element_curvature(const struct glint_prescription *lens,
+                                       int e)
+{
+    const int k = element_surface(lens, e);
+
+    return k < 0 || lens->surface[k].radius_mm == 0.0
+               ? 0.0
+               : 1.0 / lens->surface[k].radius_mm;
+}
+
+#endif

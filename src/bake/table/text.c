@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/table/text.h"
+
+#include <limits.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/compiler.h"
+
+STATIC_ASSERT(GLINT_TEXT_BYTES < INT_MAX);
+
+#define FILE_NAME_SHOWN 100 /* bytes: the cause must fit behind it */
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* Bytes of the character at AT, or 0 where it is no well-formed UTF-8 or a
+ * control character. */
+static int character_length(const char *at, const char *end)
+{
+    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
+    const unsigned char *byte = (const unsigned char *)at;
+    const int length = byte[0] < 0x80   ? 1
+                       : byte[0] < 0xc2 ? 0
+                       : byte[0] < 0xe0 ? 2
+                       : byte[0] < 0xf0 ? 3
+                       : byte[0] < 0xf5 ? 4
+                                        : 0;
+    uint32_t code;
+
+    if (length <= 1)
+        return byte[0] == '\t' || (byte[0] >= ' ' && byte[0] != 0x7f) ? length
+                                                                      : 0;
+    if (end - at < length)
+        return 0;
+    code = byte[0] & (0x7fu >> length);
+    for (int i = 1; i < length; i++) {
+        if ((byte[i] & 0xc0) != 0x80)
+            return 0;
+        code = code << 6 | (byte[i] & 0x3fu);
+    }
+    if (code < smallest[length] || code < 0xa0 || code > 0x10ffff ||
+        (code >= 0xd800 && code < 0xe000))
+        return 0;
+    return length;
+}
+
+/* Bytes of the line end at AT: 0, 1 (LF) or 2 (CRLF). */
+static int line_end_length(const char *at, const char *end)
+{
+    if (at < end && *at == '\n')
+        return 1;
+    return end - at >= 2 && at[0] == '\r' && at[1] == '\n' ? 2 : 0;
+}
+
+static bool check_characters(struct glint_text *text)
+{
+    struct glint_text_place place = {1, 1};
+
+    for (const char *at = text->next; at < text->end;) {
+        const int line_end = line_end_length(at, text->end);
+        const int length = character_length(at, text->end);
+
+        if (line_end) {
+            place.line++;
+            place.column = 1;
+            at += line_end;
+            continue;
+        }
+        if (!length)
+            return glint_text_fail(text, place,
+                                   "byte 0x%02x is not text (UTF-8)",
+                                   (unsigned)(unsigned char)*at);
+        if (place.column + length - 1 > GLINT_LINE_BYTES)
+            return glint_text_fail(text, place, "line is longer than %d bytes",
+                                   GLINT_LINE_BYTES);
+        place.column += length;
+        at += length;
+    }
+    return true;
+}
+
+bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
+                     const char *file_name, struct glint_error *error)
+{
+    static const char mark[] = {'\xef', '\xbb', '\xbf'};
+
+    memset(text, 0, sizeof(*text));
+    text->file_name = file_name;
+    text->error = error;
+    if (bytes > GLINT_TEXT_BYTES)
+        return glint_text_fail(text, (struct glint_text_place){1, 1},
+                               "text is longer than %d bytes",
+                               GLINT_TEXT_BYTES);
+    if (!bytes) /* DATA may be NULL then */
+        data = "";
+    if (bytes >= sizeof(mark) && memcmp(data, mark, sizeof(mark)) == 0) {
+        data += sizeof(mark); /* some editors put it before UTF-8 */
+        bytes -= sizeof(mark);
+    }
+    text->next = text->line = text->at = text->stop = data;
+    text->end = data + bytes;
+    return check_characters(text);
+}
+
+bool glint_text_next_line(struct glint_text *text)
+{
+    const char *at = text->next;
+
+    if (at == text->end)
+        return false;
+    text->line_number++;
+    text->line = text->at = at;
+    while (at < text->end && !line_end_length(at, text->end) &&
+           !(*at == '#' && (at == text->line || is_blank(at[-1]))))
+        at++;
+    text->stop = at;
+    while (at < text->end && !line_end_length(at, text->end))
+        at++;
+    text->next = at + line_end_length(at, text->end);
+    return true;
+}
+
+static struct glint_word start_word(struct glint_text *text)
+{
+    struct glint_word word = {NULL, 0, {0, 0}};
+
+    while (text->at < text->stop && is_blank(*text->at))
+        text->at++;
+    word.start = text->at;
+    word.place.line = text->line_number;
+    word.place.column = (int)(text->at - text->line) + 1;
+    return word;
+}
+
+struct glint_word glint_text_next_word(struct glint_text *text)
+{
+    struct glint_word word = start_word(text);
+
+    while (text->at < text->stop && !is_blank(*text->at))
+        text->at++;
+    word.length = (int)(text->at - word.start);
+    return word;
+}
+
+struct glint_word glint_text_rest(struct glint_text *text)
+{
+    struct glint_word word = start_word(text);
+
+    text->at = text->stop;
+    word.length = (int)(text->stop - word.start);
+    while (word.length > 0 && is_blank(word.start[word.length - 1]))
+        word.length--;
+    return word;
+}
+
+struct glint_text_place glint_text_end(const struct glint_text *text)
+{
+    return (struct glint_text_place){text->line_number + 1, 1};
+}
+
+bool glint_text_fail(const struct glint_text *text,
+                     struct glint_text_place place, const char *format, ...)
+{
+    struct glint_error *error = text->error;
+    const size_t length = strlen(text->file_name);
+    const bool cut = length > FILE_NAME_SHOWN;
+    const char *name = text->file_name + (cut ? length - FILE_NAME_SHOWN : 0);
+    const int n = snprintf(error->text, sizeof(error->text),
+                           "%s%s:%d:%d: ", cut ? "..." : "", name, place.line,
+                           place.column);
+    va_list arguments;
+
+    va_start(arguments, format);
+    vsnprintf(error->text + n, sizeof(error->text) - (size_t)n, format,
+              arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool glint_word_is(const struct glint_word *word, const char *string)
+{
+    const size_t length = strlen(string);
+
+    return (size_t)word->length == length &&
+           memcmp(word->start, string, length) == 0;
+}
+
+const char *glint_word_quote(const struct glint_word *word,
+                             char quote[GLINT_QUOTE_BYTES])
+{
+    const int most = GLINT_QUOTE_BYTES - 4; /* room for the dots and the 0 */
+    const int n = word->length < most ? word->length : most;
+
+    for (int i = 0; i < n; i++) {
+        const char c = word->start[i];
+
+        quote[i] = c > ' ' && c <= '~' ? c : '?';
+    }
+    strcpy(quote + n, n < word->length ? "..." : "");
+    return quote;
+}
+
+/* The unread part of a number, and what was read of it. */
+struct digits {
+    const char *at, *end;
+    uint64_t value; /* of the significant digits */
+    int significant, n;
+};
+
+/* Reads digits as long as they fit 64 bits, counts all of them. */
+static void read_digits(struct digits *digits)
+{
+    digits->n = 0;
+    for (; digits->at < digits->end && is_digit(*digits->at); digits->at++) {
+        digits->n++;
+        if (digits->significant || *digits->at != '0')
+            digits->significant++;
+        if (digits->significant <= GLINT_NUMBER_DIGITS)
+            digits->value = 10 * digits->value + (uint64_t)(*digits->at - '0');
+    }
+}
+
+/* Steps over C1 or C2. */
+static bool skip(struct digits *digits, char c1, char c2)
+{
+    if (digits->at == digits->end || (*digits->at != c1 && *digits->at != c2))
+        return false;
+    digits->at++;
+    return true;
+}
+
+static bool read_sign(struct digits *digits)
+{
+    const bool negative = digits->at < digits->end && *digits->at == '-';
+
+    skip(digits, '+', '-');
+    return negative;
+}
+
+/* The power of ten after the e, held to +-1000; false: it is none. */
+static bool read_exponent(struct digits *mantissa, int *exponent)
+{
+    struct digits power = {mantissa->at, mantissa->end, 0, 0, 0};
+    const bool negative = read_sign(&power);
+
+    read_digits(&power);
+    *exponent =
+        power.value < 1000 && power.significant < 4 ? (int)power.value : 1000;
+    if (negative)
+        *exponent = -*exponent;
+    mantissa->at = power.at;
+    return power.n > 0;
+}
+
+/* 10^n, 0 <= n <= 22: exact in a double. */
+static double power_of_ten(int n)
+{
+    double power = 1.0;
+
+    while (n-- > 0)
+        power *= 10.0;
+    return power;
+}
+
+const char *glint_word_number(const struct glint_word *word, double *value)
+{
+    static const char garbage[] = "is not a number";
+    struct digits digits = {word->start, word->start + word->length, 0, 0, 0};
+    const bool negative = read_sign(&digits);
+    int whole, exponent = 0;
+    double magnitude;
+
+    read_digits(&digits);
+    whole = digits.n;
+    digits.n = 0;
+    if (skip(&digits, '.', '.'))
+        read_digits(&digits);
+    if (whole + digits.n == 0)
+        return garbage;
+    if (skip(&digits, 'e', 'E') && !read_exponent(&digits, &exponent))
+        return garbage;
+    if (digits.at != digits.end)
+        return garbage;
+    if (digits.significant > GLINT_NUMBER_DIGITS)
+        return "has more than 15 digits";
+    exponent -= digits.n;
+    if (digits.value == 0)
+        exponent = 0;
+    if (exponent < -22 || exponent > 22)
+        return "is too large or too small";
+    /* Both operands are exact, so one rounding gives the nearest double. */
+    magnitude = exponent < 0 ? (double)digits.value / power_of_ten(-exponent)
+                             : (double)digits.value * power_of_ten(exponent);
+    *value = negative ? -magnitude : magnitude;
+    return NULL;
+}
+
+bool glint_text_number_of(const struct glint_text *text,
+                          const struct glint_word *word, const char *name,
+                          double *value)
+{
+    char quote[GLINT_QUOTE_BYTES];
+    const char *wrong;
+
+    if (!word->length)
+        return glint_text_fail(text, word->place, "%s is missing", name);
+    wrong = glint_word_number(word, value);
+    return !wrong || glint_text_fail(text, word->place, "%s '%s' %s", name,
+                                     glint_word_quote(word, quote), wrong);
+}
+
+bool glint_text_in_range(const struct glint_text *text,
+                         struct glint_text_place place,
+                         const struct glint_range *range, double value)
+{
+    return (value >= range->min && value <= range->max) ||
+           glint_text_fail(text, place, "%s must be %.10g .. %.10g, not %g",
+                           range->name, range->min, range->max, value);
+}
+
+bool glint_text_value_of(const struct glint_text *text,
+                         const struct glint_word *word,
+                         const struct glint_range *range, double *value)
+{
+    return glint_text_number_of(text, word, range->name, value) &&
+           glint_text_in_range(text, word->place, range, *value);
+}
+
+bool glint_text_value(struct glint_text *text, const struct glint_range *range,
+                      double *value, struct glint_text_place *place)
+{
+    const struct glint_word word = glint_text_next_word(text);
+
+    if (place)
+        *place = word.place;
+    return glint_text_value_of(text, &word, range, value);
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a boundary between two media reflects, its cosines already known.
+ *
+ * Inline, because the tracer asks once per surface and has the cosines. With
+ * one film the reflectance of the stack is Airy's sum over all orders, written
+ * for real numbers as in a characteristic matrix: with the admittances a, f, b
+ * of the sides and the film (n cos for s, n / cos for p) and D half the phase,
+ *
+ *     R = (a - b)^2 C + (a b / f - f)^2 S     C = cos^2 D
+ *         -------------------------------  ,
+ *         (a + b)^2 C + (a b / f + f)^2 S     S = sin^2 D
+ *
+ * multiplied through so that each polarisation takes one division. Beyond the
+ * critical angle inside the film f becomes imaginary, C and S turn into cosh^2
+ * and sinh^2, and one sign changes in each of the inner sums. [Hullin11]
+ */
+#ifndef GLINT_BAKE_TRACE_COATING_H
+#define GLINT_BAKE_TRACE_COATING_H
+
+#include <math.h>
+
+/* (s / s_all + p / p_all) / 2 by one division, and never above 1. */
+static inline double mean_ratio(double s, double s_all, double p, double p_all)
+{
+    const double mean = 0.5 * (s * p_all + p * s_all) / (s_all * p_all);
+
+    return mean < 1.0 ? mean : 1.0;
+}
+
+/* A bare boundary met at the cosine C1 and left at C2, both > 0. */
+static inline double bare_reflectance(double n1, double c1, double n2,
+                                      double c2)
+{
+    const double s = n1 * c1 - n2 * c2, s_all = n1 * c1 + n2 * c2;
+    const double p = n1 * c2 - n2 * c1, p_all = n1 * c2 + n2 * c1;
+
+    return mean_ratio(s * s, s_all * s_all, p * p, p_all * p_all);
+}
+
+/* The square of the cosine inside a film of index NF, negative where there is
+ * none; never all but zero. */
+static inline double film_inside(double n1, double c1, double nf)
+{
+    const double ratio = n1 / nf;
+    const double inside = 1.0 - ratio * ratio * (1.0 - c1 * c1);
+
+    return fabs(inside) > 1e-60 ? inside : 1e-60;
+}
+
+/* sin^2 D of PHASE = 4 pi nf d / wavelength, or sinh^2. */
+static inline double film_sine2(double inside, double phase)
+{
+    const double half = 0.5 * phase * sqrt(fabs(inside)); /* |D| */
+    /* sinh(100) is a film that nothing passes, and far from overflow. */
+    const double root = inside < 0.0 ? sinh(fmin(half, 100.0)) : sin(half);
+
+    return root * root;
+}
+
+/* The same as for a bare boundary, with a film of index NF and the two above.
+ */
+static inline double film_reflectance(double n1, double c1, double n2,
+                                      double c2, double nf, double inside,
+                                      double sin2)
+{
+    const double size = fabs(inside), sign = inside < 0.0 ? -1.0 : 1.0;
+    const double cos2 = 1.0 - sign * sin2;
+    /* s times f, p times f cos(t1) cos(t2); f^2 carries SIGN */
+    const double f2_s = nf * nf * size, f2_p = nf * nf;
+    const double a_s = n1 * c1, b_s = n2 * c2;
+    const double a_p = n1 * c2, b_p = n2 * c1; /* n / c, times c1 c2 */
+    const double ab_s = a_s * b_s, ab_p = n1 * n2 * size;
+    const double g_s = sign * f2_s, g_p = sign * f2_p * c1 * c2;
+    const double minus_s = (a_s - b_s) * (a_s - b_s) * f2_s * cos2 +
+                           (ab_s - g_s) * (ab_s - g_s) * sin2;
+    const double plus_s = (a_s + b_s) * (a_s + b_s) * f2_s * cos2 +
+                          (ab_s + g_s) * (ab_s + g_s) * sin2;
+    const double minus_p = (a_p - b_p) * (a_p - b_p) * f2_p * size * cos2 +
+                           (ab_p - g_p) * (ab_p - g_p) * sin2;
+    const double plus_p = (a_p + b_p) * (a_p + b_p) * f2_p * size * cos2 +
+                          (ab_p + g_p) * (ab_p + g_p) * sin2;
+
+    return mean_ratio(minus_s, plus_s, minus_p, plus_p);
+}
+
+#endif

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Sine and cosine of degrees, exact at multiples of 90, so that a light on an
+ * axis gives a picture that is symmetric to the bit.
+ */
+#ifndef GLINT_BAKE_TRACE_DEGREES_H
+#define GLINT_BAKE_TRACE_DEGREES_H
+
+#include <math.h>
+
+#define GLINT_PI 3.14159265358979323846
+
+static inline double glint_sin_deg(double degrees)
+{
+    const double r = remainder(degrees, 360.0); /* -180 .. 180 */
+    const double side = r > 90 ? 180 - r : r < -90 ? -180 - r : r;
+
+    return fabs(side) == 90 ? side / 90
+           : fabs(side) > 45
+               ? copysign(cos((90 - fabs(side)) * (GLINT_PI / 180)), side)
+               : sin(side * (GLINT_PI / 180));
+}
+
+static inline double glint_cos_deg(double degrees)
+{
+    return glint_sin_deg(90 - fabs(remainder(degrees, 360.0)));
+}
+
+#endif

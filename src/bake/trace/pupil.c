@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Finds the part of the pupil that a ghost's visible rays come through.
+ *
+ * A grid over the front element keeps the cells that may hold a visible ray,
+ * judged by the box of their corners' stop positions and by their relative
+ * radii, both with a margin for what bends in between; then a finer grid over
+ * what was kept, until it no longer shrinks. Where that finds nothing, a spot
+ * on the light's plane is looked for. Limits: a visible part that is smaller
+ * than a 64th of the front element and whose surroundings bend by more than the
+ * margin can be missed if it is long or lies aside.
+ */
+#include "glint/bake.h"
+
+#include <math.h>
+
+#include "bake/trace/degrees.h"
+
+enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
+
+enum {
+    LINES = 4
+}; /* times ACROSS: cells of the line that spots are found on */
+
+/* Later rounds look at less and get by with a coarser grid. */
+enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
+
+struct search {
+    const struct glint_path *path;
+    double direction[3];
+    double stop_mm, field_mm;
+    int across, down; /* cells of this round */
+    struct glint_ray ray[DOWN + 1][ACROSS + 1];
+    enum glint_ray_status status[DOWN + 1][ACROSS + 1];
+};
+
+static double column_x(const struct search *s, const struct glint_pupil *p,
+                       int i)
+{
+    return p->x0_mm + (p->x1_mm - p->x0_mm) * i / s->across;
+}
+
+static void sample_grid(struct search *s, const struct glint_pupil *p)
+{
+    struct glint_row row = {
+        s->across + 1,
+        p->x0_mm,
+        (p->x1_mm - p->x0_mm) / s->across,
+        0,
+        {s->direction[0], s->direction[1], s->direction[2]}};
+
+    for (int j = 0; j <= s->down; j++) {
+        row.y_mm = p->y1_mm * j / s->down;
+        glint_trace_row(s->path, &row, s->ray[j], s->status[j], NULL);
+    }
+}
+
+struct bounds {
+    int n;
+    double low[5], high[5]; /* stop x, y; radius; sensor x, y */
+};
+
+static void bounds_add(struct bounds *b, const struct glint_ray *ray)
+{
+    const double v[5] = {ray->stop_x_mm, ray->stop_y_mm, ray->rel_radius,
+                         ray->sensor_x_mm, ray->sensor_y_mm};
+
+    for (int k = 0; k < 5; k++) {
+        b->low[k] = b->n ? fmin(b->low[k], v[k]) : v[k];
+        b->high[k] = b->n ? fmax(b->high[k], v[k]) : v[k];
+    }
+    b->n++;
+}
+
+static double from_zero(double low, double high)
+{
+    return low > 0 ? low : high < 0 ? -high : 0;
+}
+
+/* Whether a cell may hold a ray that gets through. Cells with lost corners are
+ * judged by what they have, with twice the margin. */
+static bool may_pass(const struct search *s, const struct bounds *b)
+{
+    const double more = b->n == 4 ? 0.5 : 1;
+    double low[5], high[5];
+
+    if (b->n == 0)
+        return false;
+    for (int k = 0; k < 5; k++) {
+        const double grow = more * (b->high[k] - b->low[k]);
+
+        low[k] = b->low[k] - grow;
+        high[k] = b->high[k] + grow;
+    }
+    return low[2] <= 1 &&
+           hypot(from_zero(low[0], high[0]), from_zero(low[1], high[1])) <=
+               s->stop_mm &&
+           hypot(from_zero(low[3], high[3]), from_zero(low[4], high[4])) <=
+               s->field_mm;
+}
+
+/* Tallies one kept cell: where it is, its energy and its light's extent. */
+static void keep(const struct search *s, int i, int j,
+                 const struct bounds *cell, struct bounds *box,
+                 struct glint_pupil *found)
+{
+    const int at[4] = {i, i + 1, j, j + 1};
+    double *sensor = found->sensor_mm;
+
+    for (int k = 0; k < 4; k += 2) {
+        const double lo = at[k], hi = at[k + 1];
+
+        box->low[k] = box->n ? fmin(box->low[k], lo) : lo;
+        box->high[k] = box->n ? fmax(box->high[k], hi) : hi;
+    }
+    for (int k = 0; k < 2; k++) {
+        const double lo = cell->low[3 + k], hi = cell->high[3 + k];
+
+        sensor[2 * k] = box->n ? fmin(sensor[2 * k], lo) : lo;
+        sensor[2 * k + 1] = box->n ? fmax(sensor[2 * k + 1], hi) : hi;
+    }
+    box->n++;
+    for (int k = 0; k < 4; k++) {
+        const int row = j + (k >> 1), column = i + (k & 1);
+
+        if (s->status[row][column] == GLINT_RAY_OK)
+            found->energy = fmax(found->energy, s->ray[row][column].energy);
+    }
+}
+
+/* Shrinks P to the cells that may pass. */
+static bool shrink(struct search *s, struct glint_pupil *p)
+{
+    struct glint_pupil found = *p;
+    struct bounds box = {.n = 0};
+
+    found.energy = 0;
+    sample_grid(s, p);
+    for (int j = 0; j < s->down; j++)
+        for (int i = 0; i < s->across; i++) {
+            struct bounds cell = {.n = 0};
+
+            for (int k = 0; k < 4; k++)
+                if (s->status[j + (k >> 1)][i + (k & 1)] == GLINT_RAY_OK)
+                    bounds_add(&cell, &s->ray[j + (k >> 1)][i + (k & 1)]);
+            if (may_pass(s, &cell))
+                keep(s, i, j, &cell, &box, &found);
+        }
+    if (box.n == 0)
+        return false;
+    found.x0_mm = column_x(s, p, (int)box.low[0]);
+    found.x1_mm = column_x(s, p, (int)box.high[0]);
+    found.y1_mm = p->y1_mm * box.high[2] / s->down;
+    /* mirrored in y */
+    found.sensor_mm[3] =
+        fmax(fabs(found.sensor_mm[2]), fabs(found.sensor_mm[3]));
+    found.sensor_mm[2] = -found.sensor_mm[3];
+    *p = found;
+    return true;
+}
+
+/* All that can enter. A slanted ray crosses the vertex plane beside where it
+ * meets the curved surface: by the sag at the rim times the tangent. */
+static struct glint_pupil whole_front(const struct glint_event *front,
+                                      const double direction[3])
+{
+    const double h = front->semi_mm, c = front->curvature;
+    const double sag = c * h * h / (1 + sqrt(fmax(0, 1 - c * c * h * h)));
+    const double aside = fabs(sag) * fabs(direction[0] / direction[2]);
+
+    return (struct glint_pupil){
+        .x0_mm = -h - aside, .x1_mm = h + aside, .y1_mm = h};
+}
+
+static double extent(const struct glint_pupil *p)
+{
+    return (p->x1_mm - p->x0_mm) * p->y1_mm;
+}
+
+/* BOX and half of its size around it, and a part of the whole front for boxes
+ * that are slivers. */
+static struct glint_pupil surroundings(const struct glint_pupil *box,
+                                       const struct glint_pupil *front)
+{
+    const double more =
+        0.5 * (box->x1_mm - box->x0_mm) + 0.01 * (front->x1_mm - front->x0_mm);
+
+    return (struct glint_pupil){
+        .x0_mm = fmax(front->x0_mm, box->x0_mm - more),
+        .x1_mm = fmin(front->x1_mm, box->x1_mm + more),
+        .y1_mm = fmin(front->y1_mm, 1.5 * box->y1_mm + 0.02 * front->y1_mm)};
+}
+
+/* Rounds of grids over P, the first of ACROSS x DOWN cells. */
+static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
+                      int down)
+{
+    bool found = true;
+
+    for (int round = 0; round < ROUNDS && found; round++) {
+        const double before = extent(p);
+
+        s->across = round ? NEXT_ACROSS : across;
+        s->down = round ? NEXT_DOWN : down;
+        found = shrink(s, p);
+        if (round > 0 && extent(p) > 0.8 * before)
+            break;
+    }
+    return found;
+}
+
+/* -------------------------------------------------------------------- slivers
+ */
+
+/* The part of the light's plane that may hold rays that get through, judged by
+ * near neighbours; FRONT is all that can enter. */
+static bool find_on_line(struct search *s, const struct glint_pupil *front,
+                         double x_mm[2])
+{
+    const double step = (front->x1_mm - front->x0_mm) / (LINES * ACROSS);
+    bool found = false;
+
+    for (int k = 0; k < LINES; k++) {
+        const double x0 = front->x0_mm + k * ACROSS * step;
+        const struct glint_row row = {
+            ACROSS + 1,
+            x0,
+            step,
+            0,
+            {s->direction[0], s->direction[1], s->direction[2]}};
+
+        glint_trace_row(s->path, &row, s->ray[0], s->status[0], NULL);
+        for (int i = 0; i < ACROSS; i++) {
+            struct bounds pair = {.n = 0};
+
+            for (int end = 0; end < 2; end++)
+                if (s->status[0][i + end] == GLINT_RAY_OK)
+                    bounds_add(&pair, &s->ray[0][i + end]);
+            if (pair.n < 2 || !may_pass(s, &pair))
+                continue;
+            x_mm[0] = found ? x_mm[0] : x0 + i * step;
+            x_mm[1] = x0 + (i + 1) * step;
+            found = true;
+        }
+    }
+    return found;
+}
+
+/* What comes through a spot that is smaller than a cell of the first grid and
+ * has lost rays around it: the light's plane goes through its middle. What is
+ * far larger the other way lies at the rim of something and is no spot. */
+static bool find_spot(struct search *s, const struct glint_pupil *front,
+                      struct glint_pupil *p)
+{
+    double x[2], more;
+
+    if (!find_on_line(s, front, x))
+        return false;
+    more = x[1] - x[0];
+    *p = (struct glint_pupil){
+        .x0_mm = x[0] - more, .x1_mm = x[1] + more, .y1_mm = more};
+    return shrink_on(s, p, NEXT_ACROSS, NEXT_DOWN) && p->y1_mm < more;
+}
+
+bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
+                      double theta_deg, double stop_radius_mm,
+                      const struct glint_pupil *near)
+{
+    return glint_pupil_find_within(pupil, path, theta_deg, stop_radius_mm,
+                                   HUGE_VAL, near);
+}
+
+bool glint_pupil_find_within(struct glint_pupil *pupil,
+                             const struct glint_path *path, double theta_deg,
+                             double stop_radius_mm, double field_mm,
+                             const struct glint_pupil *near)
+{
+    struct search s; /* 120 KB: the offline half has the stack for it */
+    struct glint_pupil whole, p;
+    const struct glint_event *front = NULL;
+    bool found;
+
+    for (int k = 0; k < path->n_events && !front; k++)
+        if (path->event[k].kind != GLINT_STOP)
+            front = &path->event[k];
+    if (!front)
+        return false;
+    s.path = path;
+    s.direction[0] = glint_sin_deg(theta_deg);
+    s.direction[1] = 0;
+    s.direction[2] = glint_cos_deg(theta_deg);
+    s.stop_mm = stop_radius_mm;
+    s.field_mm = field_mm;
+    whole = whole_front(front, s.direction);
+    p = near ? surroundings(near, &whole) : whole;
+    found = shrink_on(&s, &p, near ? NEXT_ACROSS : ACROSS,
+                      near ? NEXT_DOWN : DOWN) ||
+            find_spot(&s, &whole, &p);
+    if (found)
+        *pupil = p;
+    return found;
+}

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Few wavelengths that stand for all.
+ *
+ *   in   how many
+ *   out  which, and the colour of each
+ *
+ * Method: a spectrum is taken at the wavelengths and interpolated by cubics
+ * through the four nearest; the colours are what the observer sees of each of
+ * these, summed over 31 wavelengths that are as good as all. An edge that
+ * moves with the wavelength becomes so many steps. Places with the density
+ * (sum of squares of the colour over 1 / wavelength^2)^(1/3) make the squares
+ * of the differences to the smooth edge least.
+ */
+#include "bake/trace/spectrum.h"
+
+#include <math.h>
+
+#include "glint/bake.h"
+
+enum {
+    N_ALL = 31,
+    FIRST_NM = 400,
+    LAST_NM = 700,
+    STEP_NM = 10,
+    BEYOND_NM = 15, /* cubics go on beyond the outermost wavelengths */
+    POINTS = 4
+};
+
+/* A Gaussian with one width on either side. */
+static double lobe(double nm, double centre, double below, double above)
+{
+    const double t = (nm - centre) / (nm < centre ? below : above);
+
+    return exp(-0.5 * t * t);
+}
+
+/* CIE 1931 2 degree observer, multi-lobe fit [Wyman13] table 1; within 1 % of
+ * the peak of the tabulated functions. */
+static void observer(double nm, double xyz[3])
+{
+    xyz[0] = 1.056 * lobe(nm, 599.8, 37.9, 31.0) +
+             0.362 * lobe(nm, 442.0, 16.0, 26.7) -
+             0.065 * lobe(nm, 501.1, 20.4, 26.2);
+    xyz[1] = 0.821 * lobe(nm, 568.8, 46.9, 40.5) +
+             0.286 * lobe(nm, 530.9, 16.3, 31.1);
+    xyz[2] = 1.217 * lobe(nm, 437.0, 11.8, 36.0) +
+             0.681 * lobe(nm, 459.0, 26.0, 13.8);
+}
+
+static void to_bt709(const double xyz[3], double rgb[3])
+{
+    static const double m[3][3] = {{3.2404542, -1.5371385, -0.4985314},
+                                   {-0.9692660, 1.8760108, 0.0415560},
+                                   {0.0556434, -0.2040259, 1.0572252}};
+
+    for (int c = 0; c < 3; c++)
+        rgb[c] = m[c][0] * xyz[0] + m[c][1] * xyz[1] + m[c][2] * xyz[2];
+}
+
+void glint_observer_rgb(double nm, double rgb[3])
+{
+    double xyz[3];
+
+    observer(nm, xyz);
+    to_bt709(xyz, rgb);
+}
+
+/* What light of each of all wavelengths gives, so that a flat spectrum is
+ * white. */
+static void all_colours(double rgb[N_ALL][3])
+{
+    for (int j = 0; j < N_ALL; j++)
+        glint_observer_rgb(FIRST_NM + STEP_NM * j, rgb[j]);
+    for (int c = 0; c < 3; c++) {
+        double sum = 0;
+
+        for (int j = 0; j < N_ALL; j++)
+            sum += rgb[j][c];
+        for (int j = 0; j < N_ALL; j++)
+            rgb[j][c] /= sum;
+    }
+}
+
+/* Wavelengths that should lie within a nanometre of NM. */
+static double density(double nm)
+{
+    double rgb[3], squares = 0;
+
+    glint_observer_rgb(nm, rgb);
+    for (int c = 0; c < 3; c++)
+        squares += rgb[c] * rgb[c];
+    return cbrt(squares / (nm * nm * nm)); /* d (1 / nm^2) ~ nm^-3 */
+}
+
+/* Each has as much of the density on either side. */
+static void place(int n, double *wavelength_nm)
+{
+    double sum = 0, passed = 0;
+    int i = 0;
+
+    for (int nm = FIRST_NM; nm < LAST_NM; nm++)
+        sum += density(nm + 0.5);
+    for (int nm = FIRST_NM; nm < LAST_NM; nm++) {
+        const double here = density(nm + 0.5);
+
+        for (; i < n && sum * (i + 0.5) / n < passed + here; i++)
+            wavelength_nm[i] = nm + (sum * (i + 0.5) / n - passed) / here;
+        passed += here;
+    }
+}
+
+/* The first of the wavelengths that what is at NM is interpolated from. */
+static int first_near(int n, const double *wavelength_nm, double nm)
+{
+    int i = 0;
+
+    while (i < n && wavelength_nm[i] < nm)
+        i++;
+    i -= POINTS / 2;
+    i = i < n - POINTS ? i : n - POINTS;
+    return i > 0 ? i : 0;
+}
+
+/* The share of wavelength K in what is at NM: Lagrange's polynomial. */
+static double share_of(int n, const double *wavelength_nm, int k, double nm)
+{
+    const double at = fmin(fmax(nm, wavelength_nm[0] - BEYOND_NM),
+                           wavelength_nm[n - 1] + BEYOND_NM);
+    const int first = first_near(n, wavelength_nm, at);
+    double share = 1;
+
+    if (k < first || k >= first + POINTS)
+        return 0;
+    for (int i = first; i < n && i < first + POINTS; i++)
+        if (i != k)
+            share *=
+                (at - wavelength_nm[i]) / (wavelength_nm[k] - wavelength_nm[i]);
+    return share;
+}
+
+void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
+                    double *share)
+{
+    double all[N_ALL][3];
+
+    all_colours(all);
+    place(n, wavelength_nm);
+    for (int k = 0; k < n; k++) {
+        share[k] = rgb[k][0] = rgb[k][1] = rgb[k][2] = 0;
+        for (int j = 0; j < N_ALL; j++) {
+            const double part =
+                share_of(n, wavelength_nm, k, FIRST_NM + STEP_NM * j);
+
+            share[k] += part / N_ALL;
+            for (int c = 0; c < 3; c++)
+                rgb[k][c] += part * all[j][c];
+        }
+    }
+}

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The colours of wavelengths.
+ */
+#ifndef GLINT_BAKE_TRACE_SPECTRUM_H
+#define GLINT_BAKE_TRACE_SPECTRUM_H
+
+/* Linear BT.709 of light of NM, by the CIE 1931 observer; negative where it is
+ * more saturated than any mixture of the primaries. */
+void glint_observer_rgb(double nm, double rgb[3]);
+
+#endif

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/trace/survey.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+/* Weight of a ray that shows a cut, against one that only suggests it. */
+enum { SHOWN = 1000 };
+
+/* A ray of the survey. */
+struct probe {
+    bool traced, inside;
+    double x_mm, y_mm; /* on the sensor */
+    double stop_x, stop_y, stop_r2;
+    double r2[GLINT_MAX_EVENTS + 1]; /* relative radius, squared */
+};
+
+static void probe_ray(struct probe *p, const struct glint_path *path, double x,
+                      double y, const double direction[3],
+                      double stop_radius_mm)
+{
+    double hits[GLINT_MAX_EVENTS + 1][2];
+    struct glint_ray ray;
+    double sx, sy;
+
+    p->traced = glint_trace(path, x, y, direction, &ray, hits) == GLINT_RAY_OK;
+    if (!p->traced)
+        return;
+    p->x_mm = ray.sensor_x_mm;
+    p->y_mm = ray.sensor_y_mm;
+    sx = ray.stop_x_mm / stop_radius_mm;
+    sy = ray.stop_y_mm / stop_radius_mm;
+    p->stop_x = sx;
+    p->stop_y = sy;
+    p->stop_r2 = sx * sx + sy * sy;
+    p->inside = p->stop_r2 <= 1 && ray.rel_radius <= 1;
+    for (int k = 0; k < path->n_events; k++) {
+        const struct glint_event *e = &path->event[k];
+        const double hx = hits[k][0] / e->semi_mm, hy = hits[k][1] / e->semi_mm;
+
+        p->r2[k] = e->kind == GLINT_STOP ? 0 : hx * hx + hy * hy;
+    }
+}
+
+/* A barrel may cut if it stops a ray that everything else lets pass, with a
+ * margin for what lies between the rays; and where many barrels stop a ray that
+ * the stop lets pass, as beyond a fold, the tightest must be there to do it. */
+static void mark_alone(const struct probe *p, int n, int *weight)
+{
+    const double margin = 1.1;
+    double worst = p->traced ? p->stop_r2 : 0, second = 0;
+    int at = -1;
+
+    for (int k = 0; k < n && p->traced; k++) {
+        const double r2 = p->r2[k];
+
+        if (r2 > worst) {
+            second = worst;
+            worst = r2;
+            at = k;
+        } else if (r2 > second) {
+            second = r2;
+        }
+    }
+    if (at >= 0 && worst > 0.99 * 0.99 &&
+        (second < margin * margin || p->stop_r2 < margin * margin))
+        weight[at]++;
+}
+
+/* How far from IN (inside) to OUT the way to A = 1 is; 2 where it is further.
+ */
+static double crossing(double in, double out)
+{
+    return out > 1 ? (1 - in) / (out - in) : 2;
+}
+
+/* Between a ray that passes and one that does not, the barrel that is met first
+ * cuts, and so may those that are met little later. */
+static void mark_between(const struct probe *a, const struct probe *b, int n,
+                         int *weight)
+{
+    const struct probe *in = a, *out = b;
+    double first;
+
+    if (!a->traced || !b->traced || a->inside == b->inside)
+        return;
+    if (b->inside) {
+        in = b;
+        out = a;
+    }
+    first = crossing(in->stop_r2, out->stop_r2);
+    for (int k = 0; k < n; k++)
+        first = fmin(first, crossing(in->r2[k], out->r2[k]));
+    for (int k = 0; k < n; k++) {
+        const double at = crossing(in->r2[k], out->r2[k]);
+
+        if (at <= first)
+            weight[k] += SHOWN;
+        else if (at < first + 0.2)
+            weight[k]++;
+    }
+}
+
+/* --------------------------------------------------------------------- bend
+ */
+
+/* How a quantity changes along the grid's lines: sums of squares. */
+struct change {
+    double first, second;
+};
+
+struct bend {
+    int n;
+    struct change sensor; /* mm */
+    struct change stop;
+    struct change barrel[GLINT_MAX_EVENTS + 1]; /* of r^2 / 2 */
+    int up, down; /* cells by how they are turned */
+    int n_steps;
+    double thick; /* rays a stop radius, sum */
+};
+
+static void add_change(struct change *change, double a, double b, double c)
+{
+    change->first += 0.25 * (c - a) * (c - a);
+    change->second += (a - 2 * b + c) * (a - 2 * b + c);
+}
+
+/* B in the middle of A and C. */
+static void add_bend(struct bend *bend, const struct probe *a,
+                     const struct probe *b, const struct probe *c, int n_events)
+{
+    if (!b->traced || !b->inside || !a->traced || !c->traced)
+        return;
+    add_change(&bend->sensor, a->x_mm, b->x_mm, c->x_mm);
+    add_change(&bend->sensor, a->y_mm, b->y_mm, c->y_mm);
+    add_change(&bend->stop, a->stop_x, b->stop_x, c->stop_x);
+    add_change(&bend->stop, a->stop_y, b->stop_y, c->stop_y);
+    for (int k = 0; k < n_events; k++)
+        add_change(&bend->barrel[k], 0.5 * a->r2[k], 0.5 * b->r2[k],
+                   0.5 * c->r2[k]);
+    bend->n++;
+}
+
+/* What the bend of CUT is worth on the sensor, over one step of the survey. */
+static double on_sensor_mm(const struct bend *bend, const struct change *cut)
+{
+    return cut->first > 0
+               ? sqrt(cut->second / bend->n * bend->sensor.first / cut->first)
+               : 0;
+}
+
+static double outline_bend_mm(const struct bend *bend, const int *weight,
+                              int n_events)
+{
+    double most = on_sensor_mm(bend, &bend->stop);
+
+    for (int k = 0; k < n_events; k++)
+        if (weight[k] >= SHOWN)
+            most = fmax(most, on_sensor_mm(bend, &bend->barrel[k]));
+    return most;
+}
+
+/* From A to B the opening may be passed: it is as near as they are far apart.
+ * Where rays lie thick more light gets through, so that the mean is of that. */
+static void add_step(struct bend *bend, const struct probe *a,
+                     const struct probe *b)
+{
+    double step;
+
+    if (!a->traced || !b->traced)
+        return;
+    step = hypot(b->stop_x - a->stop_x, b->stop_y - a->stop_y);
+    if (step == 0 || sqrt(fmin(a->stop_r2, b->stop_r2)) > 1 + step)
+        return;
+    bend->n_steps++;
+    bend->thick += 1 / step;
+}
+
+/* A cell whose first corner is A, with B beside and C below it. */
+static void add_turn(struct bend *bend, const struct probe *a,
+                     const struct probe *b, const struct probe *c)
+{
+    double turn;
+
+    if (!a->traced || !b->traced || !c->traced ||
+        !(a->inside || b->inside || c->inside))
+        return;
+    turn = (b->x_mm - a->x_mm) * (c->y_mm - a->y_mm) -
+           (b->y_mm - a->y_mm) * (c->x_mm - a->x_mm);
+    bend->up += turn > 0;
+    bend->down += turn < 0;
+}
+
+/* ------------------------------------------------------------------- survey
+ */
+
+struct rows {
+    struct probe row[3][GLINT_MAX_SURVEY + 1]; /* the last three, in turn */
+};
+
+static void look_back(const struct rows *r, int i, int j, int n_events,
+                      int *weight, struct bend *bend)
+{
+    const struct probe *here = &r->row[j % 3][i];
+    const struct probe *above = &r->row[(j + 2) % 3][i];
+
+    mark_alone(here, n_events, weight);
+    if (i > 0) {
+        mark_between(here - 1, here, n_events, weight);
+        add_step(bend, here - 1, here);
+    }
+    if (j > 0) {
+        mark_between(above, here, n_events, weight);
+        add_step(bend, above, here);
+    }
+    if (i > 1)
+        add_bend(bend, here - 2, here - 1, here, n_events);
+    if (j > 1)
+        add_bend(bend, &r->row[(j + 1) % 3][i], above, here, n_events);
+    if (i > 0 && j > 0)
+        add_turn(bend, above - 1, above, here - 1);
+}
+
+void glint_survey_run(struct glint_survey *survey,
+                      const struct glint_path *path,
+                      const struct glint_pupil *p, const double direction[3],
+                      double stop_radius_mm, int side)
+{
+    int weight[GLINT_MAX_EVENTS + 1] = {0};
+    struct bend bend = {.n = 0};
+    struct rows r; /* 350 KB: the offline half has the stack for it */
+
+    for (int j = 0; j <= side / 2; j++)
+        for (int i = 0; i <= side; i++) {
+            probe_ray(&r.row[j % 3][i], path,
+                      p->x0_mm + (p->x1_mm - p->x0_mm) * i / side,
+                      p->y1_mm * 2 * j / side, direction, stop_radius_mm);
+            look_back(&r, i, j, path->n_events, weight, &bend);
+        }
+    survey->bend_mm = survey->outline_mm = survey->round_mm = 0;
+    survey->n_inside = bend.n;
+    survey->step = bend.n_steps ? bend.n_steps / bend.thick * side : 0;
+    if (bend.n) {
+        survey->bend_mm = sqrt(bend.sensor.second / bend.n) * side * side;
+        survey->outline_mm =
+            outline_bend_mm(&bend, weight, path->n_events) * side * side;
+        /* r^2 / 2 changes as fast as the stop position S does at its outline,
+         * and bends by S'^2 */
+        survey->round_mm =
+            sqrt(bend.stop.first * bend.sensor.first) / bend.n * side * side;
+    }
+    survey->folds = bend.up > 0 && bend.down > 0;
+    survey->n_cuts = 0;
+    for (int k = 0; k < path->n_events && survey->n_cuts < GLINT_MAX_EVENTS;
+         k++)
+        if (weight[k]) {
+            survey->cut_event[survey->n_cuts] = k;
+            survey->cut_weight[survey->n_cuts++] = weight[k];
+        }
+}

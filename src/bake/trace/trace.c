@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Exact sequential rays: path, start -> stop, sensor, energy, relative radius.
+ *
+ * Every intersection is worked out about the vertex plane of its surface,
+ * where nothing cancels however large the radius: with the curvature c, the
+ * point (X, Y) where the ray meets that plane and its direction (l, m, n),
+ *
+ *     F = c (X^2 + Y^2),  G = n - c (X l + Y m),  W = +-sqrt(G^2 - c F),
+ *     t = F / (G + W), the sign of W that of n.
+ *
+ * W is also the cosine between ray and normal. A plane is c = 0. Planes, huge
+ * and small radii keep about 1e-14 of the coordinates. [Hullin11] section 4
+ */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "bake/trace/coating.h"
+#include "base/compiler.h"
+#include "bake/table/prescription.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* ------------------------------------------------------------------- paths */
+
+/* What a path is made from, and how far it has come. */
+struct route {
+    const struct glint_prescription *lens;
+    struct glint_path *path;
+    double wavelength_nm;
+    int at; /* last element, -1: none yet */
+};
+
+/* Indices in front of surface K and behind it. */
+static void media_of(const struct route *route, int k, double *front,
+                     double *behind)
+{
+    const struct glint_surface *s = &route->lens->surface[k];
+
+    *front = k ? glint_index(s[-1].nd, s[-1].vd, route->wavelength_nm) : 1.0;
+    *behind = glint_index(s->nd, s->vd, route->wavelength_nm);
+}
+
+/* z from the last event to element E, a neighbour. */
+static double step_mm(const struct route *route, int e)
+{
+    if (route->at < 0) /* from the vertex plane of the first surface */
+        return route->lens->stop_after == 0 ? -element_gap_mm(route->lens, 0)
+                                            : 0.0;
+    return e > route->at ? element_gap_mm(route->lens, route->at)
+                         : -element_gap_mm(route->lens, e);
+}
+
+/* Appends the meeting with element E; FORWARD is the way it is met. */
+static void append(struct route *route, int e, enum glint_event_kind kind,
+                   bool forward)
+{
+    const int k = element_surface(route->lens, e);
+    struct glint_event *event = &route->path->event[route->path->n_events++];
+
+    memset(event, 0, sizeof(*event));
+    event->kind = k < 0 ? GLINT_STOP : kind;
+    event->surface = k;
+    event->curvature = element_curvature(route->lens, e);
+    event->advance_mm = step_mm(route, e);
+    event->semi_mm = element_semi_mm(route->lens, e);
+    event->n_from = event->n_to = 1.0;
+    route->at = e;
+    if (k < 0)
+        return;
+    media_of(route, k, forward ? &event->n_from : &event->n_to,
+             forward ? &event->n_to : &event->n_from);
+    if (route->lens->surface[k].coating_nm > 0.0) {
+        event->film_n = route->lens->surface[k].coating_n;
+        /* A quarter wave thick: 4 pi n d / wavelength, n d = design / 4. */
+        event->film_phase =
+            pi * route->lens->surface[k].coating_nm / route->wavelength_nm;
+    }
+}
+
+void glint_path_init(struct glint_path *path,
+                     const struct glint_prescription *lens,
+                     const struct glint_ghost *ghost, double wavelength_nm)
+{
+    struct route route = {lens, path, wavelength_nm, -1};
+    const int n = element_count(lens);
+    int e = 0;
+
+    path->n_events = 0;
+    path->places_only = false;
+    if (ghost && ghost->i >= 0) {
+        const int near = surface_element(lens, ghost->i);
+        const int far = surface_element(lens, ghost->j);
+
+        for (; e < far; e++)
+            append(&route, e, GLINT_REFRACT, true);
+        append(&route, far, GLINT_REFLECT, true);
+        for (e = far - 1; e > near; e--)
+            append(&route, e, GLINT_REFRACT, false);
+        append(&route, near, GLINT_REFLECT, false);
+        e = near + 1;
+    }
+    for (; e < n; e++)
+        append(&route, e, GLINT_REFRACT, true);
+    path->to_sensor_mm = element_gap_mm(lens, n - 1);
+}
+
+/* -------------------------------------------------------------------- rays */
+
+/* Rays are traced some at a time: a root or a division has to wait for the one
+ * before, but not for those of other rays. Everything is a loop over the lanes,
+ * N of them, and what is a condition for one ray is a choice between two values
+ * here, so that compilers can use vectors; a lost ray goes on as nonsense. The
+ * operations of a ray do not depend on N, and neither do its bits. */
+enum { LANES = 8 };
+
+struct beam {
+    double x[LANES], y[LANES], z[LANES]; /* mm, from the vertex of the event */
+    double l[LANES], m[LANES], n[LANES]; /* direction, unit length */
+    double cosine[LANES]; /* between ray and normal, where they meet */
+    double energy[LANES];
+    double height2[LANES], semi2[LANES]; /* of the largest height / semi-
+                                            diameter so far, undivided */
+    double stop_x[LANES], stop_y[LANES];
+    double status[LANES]; /* an enum glint_ray_status, as a number */
+};
+
+/* A ray that was fine so far is lost for the reason STATUS unless FINE. */
+static WHOLLY_INLINE double judge(double so_far, bool fine,
+                                  enum glint_ray_status status)
+{
+    const double now = fine ? (double)GLINT_RAY_OK : (double)status;
+
+    return so_far > GLINT_RAY_OK ? so_far : now;
+}
+
+/* Goes straight on to the plane ADVANCE away. */
+static WHOLLY_INLINE void go(struct beam *b, int n, double advance_mm)
+{
+    for (int k = 0; k < n; k++) {
+        const double s = (advance_mm - b->z[k]) / b->n[k];
+
+        b->x[k] += s * b->l[k];
+        b->y[k] += s * b->m[k];
+        b->z[k] = 0.0;
+    }
+}
+
+/* Goes from the vertex plane to the surface; its normal there is (-c x, -c y,
+ * 1 - c z). Comparisons are such that a NaN misses. */
+static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
+{
+    for (int k = 0; k < n; k++) {
+        const double x = b->x[k], y = b->y[k];
+        const double f = c * (x * x + y * y);
+        const double g = b->n[k] - c * (x * b->l[k] + y * b->m[k]);
+        const double square = g * g - c * f;
+        const double root = sqrt(square);
+        const double cosine = b->n[k] < 0.0 ? -root : root;
+        const double t = f / (g + cosine);
+
+        b->cosine[k] = cosine;
+        b->x[k] = x + t * b->l[k];
+        b->y[k] = y + t * b->m[k];
+        b->z[k] = t * b->n[k];
+        b->status[k] =
+            judge(b->status[k], (square > 0.0) & (1.0 - c * b->z[k] > 0.0),
+                  GLINT_RAY_MISSED);
+    }
+}
+
+/* Adds PART times the normal to S times the direction. Rays that then do not go
+ * on the way WAY, 1 as before or -1 back, are lost. */
+static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
+                               double part, double way)
+{
+    const double before = b->n[k];
+
+    b->l[k] = s * b->l[k] - part * c * b->x[k];
+    b->m[k] = s * b->m[k] - part * c * b->y[k];
+    b->n[k] = s * before + part * (1.0 - c * b->z[k]);
+    b->status[k] =
+        judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
+}
+
+/* PART becomes what E reflects of rays that leave it at the cosine OUT, all of
+ * it where that is 0. */
+static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
+                                       const struct glint_event *e,
+                                       const double *out, double *part)
+{
+    const double n1 = e->n_from, n2 = e->n_to, nf = e->film_n;
+    const bool bare = !(nf > 0.0);
+    double inside[LANES], sine2[LANES];
+
+    for (int k = 0; k < n && bare; k++)
+        part[k] = bare_reflectance(n1, fabs(b->cosine[k]), n2, out[k]);
+    for (int k = 0; k < n && !bare; k++)
+        inside[k] = film_inside(n1, fabs(b->cosine[k]), nf);
+    for (int k = 0; k < n && !bare; k++)
+        sine2[k] = film_sine2(inside[k], e->film_phase);
+    for (int k = 0; k < n && !bare; k++)
+        part[k] = film_reflectance(n1, fabs(b->cosine[k]), n2, out[k], nf,
+                                   inside[k], sine2[k]);
+    for (int k = 0; k < n; k++)
+        part[k] = out[k] > 0.0 ? part[k] : 1.0;
+}
+
+/* Bends or mirrors the rays, which have met the surface of E. */
+static WHOLLY_INLINE void cross(struct beam *b, int n,
+                                const struct glint_event *e, bool energies)
+{
+    const double ratio = e->n_from / e->n_to, c = e->curvature;
+    const bool reflects = e->kind == GLINT_REFLECT;
+    double out[LANES], part[LANES];
+
+    for (int k = 0; k < n; k++) {
+        const double cosine = b->cosine[k];
+        const double out2 = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
+
+        out[k] = sqrt(out2 > 0.0 ? out2 : 0.0);
+    }
+    if (energies)
+        reflectances(b, n, e, out, part);
+    for (int k = 0; k < n && energies; k++)
+        b->energy[k] *= reflects ? part[k] : 1.0 - part[k];
+    for (int k = 0; k < n && reflects; k++)
+        turn(b, k, c, 1.0, -2.0 * b->cosine[k], -1.0);
+    for (int k = 0; k < n && !reflects; k++) {
+        b->status[k] =
+            judge(b->status[k], out[k] > 0.0, GLINT_RAY_TOTAL_REFLECTION);
+        turn(b, k, c, ratio,
+             (b->n[k] < 0.0 ? -out[k] : out[k]) - ratio * b->cosine[k], 1.0);
+    }
+}
+
+static WHOLLY_INLINE void widen(struct beam *b, int n, double semi_mm)
+{
+    const double semi2 = semi_mm * semi_mm;
+
+    for (int k = 0; k < n; k++) {
+        const double height2 = b->x[k] * b->x[k] + b->y[k] * b->y[k];
+        const bool wider = height2 * b->semi2[k] > b->height2[k] * semi2;
+
+        b->height2[k] = wider ? height2 : b->height2[k];
+        b->semi2[k] = wider ? semi2 : b->semi2[k];
+    }
+}
+
+static WHOLLY_INLINE bool all_lost(const struct beam *b, int n)
+{
+    double least = b->status[0];
+
+    for (int k = 1; k < n; k++)
+        least = b->status[k] < least ? b->status[k] : least;
+    return least > GLINT_RAY_OK;
+}
+
+static WHOLLY_INLINE void start(struct beam *b, int k,
+                                const struct glint_launch *from)
+{
+    b->x[k] = from->x_mm;
+    b->y[k] = from->y_mm;
+    b->z[k] = b->height2[k] = b->stop_x[k] = b->stop_y[k] = 0.0;
+    b->l[k] = from->direction[0];
+    b->m[k] = from->direction[1];
+    b->n[k] = from->direction[2];
+    b->energy[k] = b->semi2[k] = 1.0;
+    b->status[k] = judge(GLINT_RAY_OK, b->n[k] > 0.0, GLINT_RAY_MISSED);
+}
+
+/* One meeting; HITS[k * n_events] is its place for lane K, below ASKED. */
+static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
+                               const struct glint_path *path,
+                               const struct glint_event *e, bool energies,
+                               double (*hits)[2])
+{
+    go(b, n, e->advance_mm);
+    if (e->kind == GLINT_STOP)
+        for (int k = 0; k < n; k++) {
+            b->stop_x[k] = b->x[k];
+            b->stop_y[k] = b->y[k];
+        }
+    else
+        meet(b, n, e->curvature);
+    for (int k = 0; k < asked && hits; k++)
+        if (!(b->status[k] > GLINT_RAY_OK)) {
+            hits[k * path->n_events][0] = b->x[k];
+            hits[k * path->n_events][1] = b->y[k];
+        }
+    if (e->kind == GLINT_STOP)
+        return;
+    widen(b, n, e->semi_mm);
+    cross(b, n, e, energies);
+}
+
+static inline enum glint_ray_status arrive(const struct beam *b, int k,
+                                           struct glint_ray *ray)
+{
+    if (b->status[k] > GLINT_RAY_OK)
+        return (enum glint_ray_status)b->status[k];
+    if (!isfinite(b->x[k]) || !isfinite(b->y[k]))
+        return GLINT_RAY_MISSED; /* ran all but along the sensor */
+    *ray = (struct glint_ray){b->stop_x[k], b->stop_y[k],
+                              b->x[k],      b->y[k],
+                              b->energy[k], sqrt(b->height2[k] / b->semi2[k])};
+    return GLINT_RAY_OK;
+}
+
+/* Of LANES lanes the first N are asked for. */
+static WHOLLY_INLINE void trace(const struct glint_path *path, int lanes, int n,
+                                bool energies, const struct glint_launch *from,
+                                struct glint_ray *ray,
+                                enum glint_ray_status *status,
+                                double (*hits)[2])
+{
+    struct beam b;
+
+    for (int k = 0; k < lanes; k++)
+        start(&b, k, &from[k < n ? k : 0]);
+    for (int i = 0; i < path->n_events && !all_lost(&b, lanes); i++)
+        pass(&b, lanes, n, path, &path->event[i], energies,
+             hits ? hits + i : NULL);
+    go(&b, lanes, path->to_sensor_mm);
+    for (int k = 0; k < n; k++)
+        status[k] = arrive(&b, k, &ray[k]);
+}
+
+WIDE_VECTORS
+void glint_trace_many(const struct glint_path *path, int n,
+                      const struct glint_launch *from, struct glint_ray *ray,
+                      enum glint_ray_status *status, double (*hits)[2])
+{
+    for (int at = 0; at < n; at += LANES) {
+        const int now = n - at < LANES ? n - at : LANES;
+        double(*h)[2] = hits ? hits + at * path->n_events : NULL;
+
+        if (path->places_only)
+            trace(path, LANES, now, false, from + at, ray + at, status + at, h);
+        else
+            trace(path, LANES, now, true, from + at, ray + at, status + at, h);
+    }
+}
+
+void glint_trace_row(const struct glint_path *path, const struct glint_row *row,
+                     struct glint_ray *ray, enum glint_ray_status *status,
+                     double (*hits)[2])
+{
+    struct glint_launch from[LANES];
+
+    for (int at = 0; at < row->n; at += LANES) {
+        const int n = row->n - at < LANES ? row->n - at : LANES;
+
+        for (int k = 0; k < n; k++)
+            from[k] = (struct glint_launch){
+                row->x0_mm + (at + k) * row->step_mm,
+                row->y_mm,
+                {row->direction[0], row->direction[1], row->direction[2]}};
+        glint_trace_many(path, n, from, ray + at, status + at,
+                         hits ? hits + at * path->n_events : NULL);
+    }
+}
+
+enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
+                                  double py_mm, const double direction[3],
+                                  struct glint_ray *ray, double (*hits)[2])
+{
+    const struct glint_launch from = {
+        px_mm, py_mm, {direction[0], direction[1], direction[2]}};
+    enum glint_ray_status status;
+
+    trace(path, 1, 1, !path->places_only, &from, ray, &status, hits);
+    return status;
+}

@@ -1,0 +1,544 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/edges.h"
+
+#include <stddef.h>
+
+#include "base/compiler.h"
+#include "base/divide.h"
+#include "base/q.h"
+
+#define ONE_Q16 (INT32_C(1) << 16)
+#define ONE_Q40 (INT64_C(1) << 40)
+
+/* Below 2^31, in whatever a CPU adds up at once. */
+typedef int_fast32_t fast;
+
+/* --------------------------------------------------------------------- edge
+ */
+
+/* ACROSS / DOWN, or nearer to 0 by no more than 2^-31 of it and a unit; DOWN >
+ * 0, both below 2^30. */
+static int64_t slope_of(int32_t across, int32_t down)
+{
+    const int up = q_up((uint32_t)down);
+    const int64_t r = q_reciprocal((uint32_t)down << up);
+    const int64_t size_q40 = (across < 0 ? -across : across) * r >> (31 - up);
+
+    return across < 0 ? -size_q40 : size_q40;
+}
+
+int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
+                   const int32_t b_q8[2], int32_t light, int32_t other)
+{
+    const int up = b_q8[1] < a_q8[1];
+    const int32_t *upper = up ? b_q8 : a_q8, *lower = up ? a_q8 : b_q8;
+
+    if (a_q8[1] == b_q8[1])
+        return 0;
+    *edge = (struct glint_edge){
+        .x_q8 = upper[0],
+        .y_q8 = upper[1],
+        .end_y_q8 = lower[1],
+        .slope_q40 = slope_of(lower[0] - upper[0], lower[1] - upper[1]),
+        .left = up ? other : light,
+        .right = up ? light : other};
+    return 1;
+}
+
+/* Half a pixel on, the nearest one is the one that it is in. */
+void glint_edge_make_whole(struct glint_edge *edge)
+{
+    edge->x_q8 += edge->whole ? 0 : 128;
+    edge->whole = 1;
+}
+
+/* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
+ * slope is never too large, so it never lies beyond its ends. */
+static int64_t x_at_q40(const struct glint_edge *e, int32_t y_q8)
+{
+    return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
+}
+
+static int32_t later(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+
+static int32_t sooner(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
+/* --------------------------------------------------------------------- bins
+ */
+
+enum visit { COUNT, PUT, SPAN };
+
+/* The tile of N that has column X of the region. */
+static inline int tile_of(int x, int last, int log2)
+{
+    return (x < 0 ? 0 : x > last ? last : x) >> log2;
+}
+
+/* Visits the tiles that EDGE crosses, by rows of tiles; what lies left of the
+ * region is taken for its first column. Returns how many. */
+static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
+                                   const struct glint_bins *bins,
+                                   enum visit visit, int32_t index)
+{
+    const struct glint_box *r = &bins->region;
+    const int log2 = bins->tile_log2, last = r->x1 - 1 - r->x0;
+    const int32_t end_q8 = sooner(e->end_y_q8, r->y1 * 256);
+    int32_t y_q8 = later(e->y_q8, r->y0 * 256);
+    const int row = ((y_q8 >> 8) - r->y0) >> log2;
+    int32_t floor_q8 = (r->y0 + ((row + 1) * (1 << log2))) * 256;
+    int32_t *start = bins->start + (ptrdiff_t)row * bins->tiles_x;
+    int64_t x_q40 = x_at_q40(e, y_q8) - r->x0 * ONE_Q40;
+    int n = 0;
+
+    while (y_q8 < end_q8) {
+        const int32_t next_q8 = sooner(end_q8, floor_q8);
+        const int64_t next_q40 = x_q40 + e->slope_q40 * (next_q8 - y_q8);
+        const int x = (int)(x_q40 >> 40), next_x = (int)(next_q40 >> 40);
+        const int low = sooner(x, next_x), high = later(x, next_x);
+
+        if (low <= last)
+            for (int k = tile_of(low, last, log2);
+                 k <= tile_of(high, last, log2); k++) {
+                n++;
+                if (visit == PUT)
+                    bins->ref[start[k]] = index;
+                if (visit != SPAN)
+                    start[k]++;
+            }
+        y_q8 = next_q8;
+        x_q40 = next_q40;
+        floor_q8 += 256 << log2;
+        start += bins->tiles_x;
+    }
+    return n;
+}
+
+int glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins)
+{
+    return each_tile(edge, bins, COUNT, 0);
+}
+
+void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
+                    int32_t index)
+{
+    each_tile(edge, bins, PUT, index);
+}
+
+int glint_edge_span(const struct glint_edge *edge,
+                    const struct glint_bins *bins)
+{
+    return each_tile(edge, bins, SPAN, 0);
+}
+
+/* --------------------------------------------------------------------- add
+ */
+
+/* Sums of 64 bits, or of 32, of light _q16 below this. */
+enum mode { WIDE, NARROW };
+#define MOST_NARROW (INT64_C(1) << 23)
+
+/* One row of one channel of a tile, from where pixel 0 of the picture would be.
+ */
+struct run {
+    union {
+        uint64_t *wide;
+        uint32_t *narrow_q24;
+    } row;      /* by mode */
+    int less;   /* bits of areas _q16 that do not count: 8, or of linear light 0
+                 */
+    int x0, x1; /* the tile's columns */
+    int64_t light;
+    int64_t rise_q32; /* see rise_of */
+};
+
+static inline void change(const struct run *r, enum mode mode, int x, fast area)
+{
+    if (mode == NARROW)
+        r->row.narrow_q24[x] += (uint32_t)r->light * (uint32_t)area;
+    else
+        r->row.wide[x] += (uint64_t)(r->light * area);
+}
+
+/* AREA, a pixel at most, in what sums count. */
+static inline fast units(const struct run *r, enum mode mode, fast area_q16)
+{
+    const int less = mode == NARROW ? 8 : r->less;
+
+    return (area_q16 + (1 << less >> 1)) >> less;
+}
+
+/* A piece of an edge within one row, from A to B (A <= B) over HEIGHT, in
+ * several pixels. Covered areas rise from pixel to pixel, from 0 to HEIGHT; so
+ * much of each as lies in the tile is what it changes by. */
+static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
+                     int64_t b_q40, fast height_q16)
+{
+    const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
+    const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
+    /* with the last pixel of the tile before, if there is one */
+    const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
+    const int from = first > begin ? first : begin;
+    const int to = last < r->x1 - 1 ? last : r->x1 - 1;
+    fast low = 0, before = 0;
+
+    if (from > first)
+        low = (fast)(r->rise_q32 * ((int64_t)from * ONE_Q16 - a_q16) >> 32);
+    for (int i = from; i <= to; i++) {
+        const int64_t side_q16 = (i + INT64_C(1)) * ONE_Q16;
+        const fast high = i < last
+                              ? (fast)(r->rise_q32 * (side_q16 - a_q16) >> 32)
+                              : height_q16;
+        /* how far the piece's ends lie from the pixel's right side */
+        const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
+                                    (i < last ? 0 : side_q16 - b_q16));
+        const fast area =
+            units(r, mode, low + (fast)((int64_t)(high - low) * far_q16 >> 17));
+
+        if (i >= r->x0)
+            change(r, mode, i, area - before);
+        before = area;
+        low = high;
+    }
+    if (last < r->x1 && last >= r->x0)
+        change(r, mode, last + 1, units(r, mode, height_q16) - before);
+}
+
+/* How much an edge rises per pixel, _q16 per _q16, with 32 bits more. One that
+ * is so steep that it never leaves a pixel by more than 2^-16 may say less. */
+static int64_t rise_of(int64_t slope_q40)
+{
+    const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
+    const int64_t least = INT64_C(1) << 24;
+
+    const uint64_t by = (uint64_t)(size > least ? size : least);
+    const int up = q_up(by);                         /* 7 at most */
+    const int64_t r = q_reciprocal(q_upper(by, up)); /* 2^(63 - up) / size */
+
+    /* 1/256 pixel of height is 2^8 of _q16 */
+    return (r << 8) >> (7 - up);
+}
+
+/* The same where it is one pixel or two, both in the tile: what a register
+ * holds does. */
+static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
+                            fast b_q16, fast height_q16)
+{
+    const int first = (int)(a_q16 >> 16);
+    const fast far_q16 = ONE_Q16 - (a_q16 & 0xffff);
+    const fast left_q16 = ONE_Q16 - (b_q16 & 0xffff);
+    const fast height = units(r, mode, height_q16);
+
+    if (first == b_q16 >> 16) {
+        const int64_t area_q33 = (int64_t)height_q16 * (far_q16 + left_q16);
+        const fast area = units(r, mode, (fast)(area_q33 >> 17));
+
+        change(r, mode, first, area);
+        change(r, mode, first + 1, height - area);
+    } else {
+        const fast low_q16 = (fast)(r->rise_q32 * far_q16 >> 32);
+        const int64_t rest_q33 =
+            (int64_t)(height_q16 - low_q16) * (ONE_Q16 + left_q16);
+        const fast one =
+            units(r, mode, (fast)((int64_t)low_q16 * far_q16 >> 17));
+        const fast two = units(r, mode, low_q16 + (fast)(rest_q33 >> 17));
+
+        change(r, mode, first, one);
+        change(r, mode, first + 1, two - one);
+        change(r, mode, first + 2, height - two);
+    }
+}
+
+/* From A to B, in any order, over HEIGHT. */
+static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
+                             int64_t b_q40, fast height_q16)
+{
+    const int64_t low_q40 = a_q40 < b_q40 ? a_q40 : b_q40;
+    const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
+    const int first = (int)(low_q40 >> 40), last = (int)(high_q40 >> 40);
+
+    if (last < r->x0) { /* what lies left of the picture counts from its side */
+        if (r->x0 == 0)
+            change(r, mode, 0, units(r, mode, height_q16));
+    } else if (first >= r->x1) {
+        return;
+    } else if (first == last ||
+               (last == first + 1 && first >= r->x0 && last < r->x1)) {
+        add_near(r, mode, (fast)(low_q40 >> 24), (fast)(high_q40 >> 24),
+                 height_q16);
+    } else {
+        add_wide(r, mode, low_q40, high_q40, height_q16);
+    }
+}
+
+/* N rows further down. */
+static inline void go_down(struct run *r, enum mode mode, ptrdiff_t n)
+{
+    if (mode == NARROW)
+        r->row.narrow_q24 += n;
+    else
+        r->row.wide += n;
+}
+
+/* Rows A .. B - 1, of 64. */
+static uint64_t rows_between(int a, int b)
+{
+    return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
+}
+
+/* N whole rows from X on, STEP further in each. */
+static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
+                            int64_t step_q40, int stride)
+{
+    for (; n > 0; n--) {
+        add_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
+        go_down(&r, mode, stride);
+        x_q40 += step_q40;
+    }
+}
+
+/* The same where all of them lie within the tile, one pixel or two in each. */
+static inline void add_rows_within(struct run r, enum mode mode, int n,
+                                   int64_t x_q40, int64_t step_q40, int stride)
+{
+    for (; n > 0; n--) {
+        const fast a_q16 = (fast)(x_q40 >> 24);
+        const fast b_q16 = (fast)((x_q40 += step_q40) >> 24);
+
+        add_near(&r, mode, a_q16 < b_q16 ? a_q16 : b_q16,
+                 a_q16 < b_q16 ? b_q16 : a_q16, ONE_Q16);
+        go_down(&r, mode, stride);
+    }
+}
+
+/* An edge's part in one channel of a tile. */
+struct part {
+    struct run run; /* its first row */
+    int32_t y_q8, end_q8;
+    int64_t x_q40; /* where it begins */
+};
+
+static inline struct part part_of(const struct glint_edge_sums *s,
+                                  enum mode mode, const struct glint_edge *e,
+                                  int64_t light, int channel)
+{
+    const struct glint_box *t = &s->tile;
+    const int32_t end_q8 = sooner(e->end_y_q8, t->y1 * 256);
+    const int32_t y_q8 = later(e->y_q8, t->y0 * 256);
+    const int row = (y_q8 >> 8) - t->y0;
+    const ptrdiff_t at =
+        (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
+    struct part p = {{{NULL}, s->linear ? 0 : 8, t->x0, t->x1, light, 0},
+                     y_q8,
+                     end_q8,
+                     x_at_q40(e, y_q8)};
+
+    s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
+    if (mode == NARROW)
+        p.run.row.narrow_q24 = s->narrow_q24 + at;
+    else
+        p.run.row.wide = s->wide + at;
+    return p;
+}
+
+/* Of the row that P begins in, the part of it; not a whole one. */
+static inline int32_t height_of(const struct part *p)
+{
+    return sooner((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
+}
+
+/* All its rows. */
+static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
+                              const struct glint_edge *e, struct part p)
+{
+    const int64_t end_q40 = x_at_q40(e, p.end_q8);
+    const int64_t low_q40 = p.x_q40 < end_q40 ? p.x_q40 : end_q40;
+    const int64_t high_q40 = p.x_q40 < end_q40 ? end_q40 : p.x_q40;
+    int n;
+
+    if (low_q40 >> 40 != high_q40 >> 40)
+        p.run.rise_q32 = rise_of(e->slope_q40);
+    if (p.y_q8 & 255) {
+        const int32_t height_q8 = height_of(&p);
+        const int64_t next_q40 = p.x_q40 + e->slope_q40 * height_q8;
+
+        add_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * 256);
+        go_down(&p.run, mode, s->stride);
+        p.x_q40 = next_q40;
+        p.y_q8 += height_q8;
+    }
+    n = (p.end_q8 - p.y_q8) >> 8;
+    if (n > 0) { /* else so flat an edge's step might overflow */
+        const int64_t step_q40 = e->slope_q40 * 256;
+        const int is_narrow = step_q40 < ONE_Q40 && step_q40 > -ONE_Q40;
+
+        if (low_q40 >> 40 < p.run.x0 || high_q40 >> 40 >= p.run.x1 ||
+            !is_narrow)
+            add_rows(p.run, mode, n, p.x_q40, step_q40, s->stride);
+        else
+            add_rows_within(p.run, mode, n, p.x_q40, step_q40, s->stride);
+        go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+        p.x_q40 += n * step_q40;
+        p.y_q8 += n * 256;
+    }
+    if (p.y_q8 < p.end_q8)
+        add_piece(&p.run, mode, p.x_q40, end_q40, (p.end_q8 - p.y_q8) * 256);
+}
+
+/* All of a row's light, AREA, from the pixel on that the edge is in there,
+ * X_Q40 from the tile's first; that of one left of the picture from its side.
+ */
+static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
+                             fast area)
+{
+    const int x = (int)(x_q40 >> 40);
+
+    if ((unsigned)x < (unsigned)r->x1)
+        change(r, mode, x, area);
+    else if (x < 0 && r->x0 == 0)
+        change(r, mode, 0, area);
+}
+
+/* The same in N whole rows, STEP further in each. */
+static inline void add_full_rows(struct run r, enum mode mode, int n,
+                                 int64_t x_q40, int64_t step_q40, int stride)
+{
+    const uint64_t end_q40 = (uint64_t)(r.x1 * ONE_Q40);
+    const fast full = units(&r, mode, ONE_Q16);
+
+    x_q40 += step_q40 / 2;
+    if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
+        for (; n > 0; n--, x_q40 += step_q40) {
+            add_whole(&r, mode, x_q40, full);
+            go_down(&r, mode, stride);
+        }
+        return;
+    }
+    /* into the tile, through it, and out of it for good */
+    for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
+        go_down(&r, mode, stride);
+    for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
+        change(&r, mode, (int)(x_q40 >> 40), full);
+        go_down(&r, mode, stride);
+    }
+}
+
+/* All its rows, on whole pixels. */
+static inline void add_whole_rows(const struct glint_edge_sums *s,
+                                  enum mode mode, const struct glint_edge *e,
+                                  struct part p)
+{
+    int n;
+
+    go_down(&p.run, mode, p.run.x0); /* from here on columns of the tile */
+    p.x_q40 -= p.run.x0 * ONE_Q40;
+    p.run.x1 -= p.run.x0;
+    if (p.y_q8 & 255) {
+        const int32_t height_q8 = height_of(&p);
+        const int64_t step_q40 = e->slope_q40 * height_q8;
+
+        add_whole(&p.run, mode, p.x_q40 + step_q40 / 2,
+                  units(&p.run, mode, height_q8 * 256));
+        go_down(&p.run, mode, s->stride);
+        p.x_q40 += step_q40;
+        p.y_q8 += height_q8;
+    }
+    n = (p.end_q8 - p.y_q8) >> 8;
+    if (n > 0) { /* else so flat an edge's step might overflow */
+        add_full_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256, s->stride);
+        go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
+        p.x_q40 += n * (e->slope_q40 * 256);
+        p.y_q8 += n * 256;
+    }
+    if (p.y_q8 < p.end_q8)
+        add_whole(&p.run, mode,
+                  p.x_q40 + e->slope_q40 * (p.end_q8 - p.y_q8) / 2,
+                  units(&p.run, mode, (p.end_q8 - p.y_q8) * 256));
+}
+
+static int64_t coloured_q20(int32_t light, int32_t colour_q14)
+{
+    const int64_t light_q20 = glint_light_q20(light);
+
+    return colour_q14 == 1 << 14 ? light_q20
+                                 : q_shift(light_q20 * colour_q14, 14);
+}
+
+/* What EDGE changes light by in one channel, without so many bits of _q20. */
+static int64_t step_of(const struct glint_edge *e, int32_t colour_q14, int less)
+{
+    return q_shift(coloured_q20(e->right, colour_q14), less) -
+           q_shift(coloured_q20(e->left, colour_q14), less);
+}
+
+/* Returns how far sums can come from where they begin, all steps added up. */
+static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
+                                     enum mode mode,
+                                     const struct glint_edge *edge,
+                                     const struct glint_bundle *bundle,
+                                     const int32_t *ref, int n_refs)
+{
+    const int less = mode == NARROW || !(s->linear || s->fine) ? 4 : 0;
+    int64_t far[3] = {0, 0, 0}, most;
+
+    for (int k = 0; k < n_refs; k++) {
+        const struct glint_edge *e = &edge[ref[k]];
+        const int32_t *rgb_q14 = bundle[e->bundle].rgb_q14;
+
+        for (int c = 0; c < 3; c++) {
+            const int64_t step = rgb_q14[c] ? step_of(e, rgb_q14[c], less) : 0;
+
+            if (step == 0)
+                continue;
+            far[c] += step < 0 ? -step : step;
+            if (mode == NARROW && far[c] >= MOST_NARROW)
+                return far[c]; /* for nothing: they have to be wide */
+            if (e->whole)
+                add_whole_rows(s, mode, e, part_of(s, mode, e, step, c));
+            else
+                add_smooth(s, mode, e, part_of(s, mode, e, step, c));
+        }
+    }
+    most = far[0] > far[1] ? far[0] : far[1];
+    return most > far[2] ? most : far[2];
+}
+
+static int64_t far_carry(const struct glint_edge_sums *s)
+{
+    int64_t most = 0;
+
+    for (int i = 0; i < 3 << s->tile_log2; i++) {
+        const int64_t size = s->carry[i] < 0 ? -s->carry[i] : s->carry[i];
+
+        most = size > most ? size : most;
+    }
+    return most;
+}
+
+void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
+                    const struct glint_bundle *bundle, const int32_t *ref,
+                    int n_refs)
+{
+    const int64_t most_q24 = MOST_NARROW * 256;
+    int64_t far_q24 = 0;
+
+    sums->narrow = 0;
+    if (!sums->linear && !sums->fine)
+        far_q24 = far_carry(sums);
+    if (!sums->linear && !sums->fine && far_q24 < most_q24) {
+        far_q24 +=
+            add_all(sums, NARROW, edge, bundle, ref, n_refs) * INT64_C(256);
+        if (far_q24 + 128 < most_q24) {
+            sums->narrow = 1;
+            return;
+        }
+        for (int i = 0; i < (3 << sums->tile_log2) * sums->stride; i++)
+            sums->narrow_q24[i] = 0;
+    }
+    add_all(sums, WIDE, edge, bundle, ref, n_refs);
+}

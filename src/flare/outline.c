@@ -1,0 +1,314 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/outline.h"
+
+#include "base/divide.h"
+#include "base/q.h"
+
+enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
+
+/* ------------------------------------------------------------------ functions
+ */
+
+/* A round stop's cut: (1 - r^2) / 2, held where it is far outside. */
+static int64_t disc_value(const struct glint_vertex *v)
+{
+    const int64_t x = v->stop_x_q16 / 2, y = v->stop_y_q16 / 2;
+
+    return q_clamp_sat((INT64_C(1) << 15) - q_shift(x * x + y * y, 15),
+                       -(1 << 30), 1 << 30);
+}
+
+/* ----------------------------------------------------------------- classify
+ */
+
+enum side { OUTSIDE, CUT, INSIDE };
+
+static enum side side_of(const int64_t *value, int n)
+{
+    int inside = 0;
+
+    for (int i = 0; i < n; i++)
+        inside += value[i] >= 0;
+    return inside == n ? INSIDE : inside ? CUT : OUTSIDE;
+}
+
+static enum side worse(enum side a, enum side b)
+{
+    return a < b ? a : b;
+}
+
+static enum side barrel_side(const struct glint_corners *c)
+{
+    enum side all = INSIDE;
+
+    for (int barrel = 0; barrel < 2; barrel++) {
+        int64_t value[4];
+
+        for (int i = 0; i < c->n; i++)
+            value[i] = glint_barrel_q16(barrel, c->at[i]);
+        all = worse(all, side_of(value, c->n));
+    }
+    return all;
+}
+
+/* The disc may bulge into a primitive whose corners all lie outside, so that
+ * only far ones are left out. */
+static enum side disc_side(const struct glint_corners *c)
+{
+    int64_t value[4];
+    enum side side;
+
+    for (int i = 0; i < c->n; i++)
+        value[i] = disc_value(c->at[i]);
+    side = side_of(value, c->n);
+    if (side != OUTSIDE)
+        return side;
+    for (int i = 0; i < c->n; i++)
+        value[i] += 1 << 14;
+    return worse(CUT, side_of(value, c->n));
+}
+
+static enum side stop_side(const struct glint_corners *c,
+                           const struct glint_stop *stop)
+{
+    enum side all = INSIDE;
+
+    if (stop->n_blades == 0)
+        return disc_side(c);
+    for (int side = 0; side < stop->n_blades && all != OUTSIDE; side++) {
+        int64_t value[4];
+
+        for (int i = 0; i < c->n; i++)
+            value[i] = glint_side_q16(stop, side, c->at[i]);
+        all = worse(all, side_of(value, c->n));
+    }
+    return all;
+}
+
+int glint_outline_classify(const struct glint_corners *corners,
+                           const struct glint_stop *stop)
+{
+    const enum side at_barrel = barrel_side(corners);
+    const enum side at_stop =
+        at_barrel == OUTSIDE ? OUTSIDE : stop_side(corners, stop);
+
+    if (at_stop == OUTSIDE)
+        return -1;
+    return (at_stop == CUT ? GLINT_CUT_STOP : 0) |
+           (at_barrel == CUT ? GLINT_CUT_BARREL : 0);
+}
+
+/* --------------------------------------------------------------------- cut
+ */
+
+static int64_t value_at(const int64_t *value_q16, const struct glint_uv *p)
+{
+    return value_q16[0] + q_shift((value_q16[1] - value_q16[0]) * p->u_q28 +
+                                      (value_q16[2] - value_q16[0]) * p->v_q28,
+                                  28);
+}
+
+/* A + (B - A) FA / (FA - FB): below 2^28 times 2^33. */
+static int32_t between(int32_t a_q28, int32_t b_q28, int64_t fa, int64_t fb)
+{
+    return a_q28 + (int32_t)q_divide((b_q28 - a_q28) * fa, fa - fb);
+}
+
+/* Keeps what lies on the inner side of one half plane, given its values at the
+ * triangle's corners. */
+static void cut_one(struct glint_outline *o, const int64_t *value_q16)
+{
+    int64_t here, next;
+    int n = 0;
+
+    if (o->n == 0 || side_of(value_q16, 3) == INSIDE)
+        return;
+    o->uv[o->n] = o->uv[0];
+    here = value_at(value_q16, &o->uv[0]);
+    for (int i = 0; i < o->n; i++, here = next) {
+        const struct glint_uv *a = &o->uv[i], *b = &o->uv[i + 1];
+
+        next = value_at(value_q16, b);
+        if (here >= 0)
+            o->kept[n++] = *a;
+        if ((here >= 0) != (next >= 0))
+            o->kept[n++] =
+                (struct glint_uv){between(a->u_q28, b->u_q28, here, next),
+                                  between(a->v_q28, b->v_q28, here, next)};
+    }
+    o->n = n < 3 ? 0 : n;
+    for (int i = 0; i < o->n; i++)
+        o->uv[i] = o->kept[i];
+}
+
+static void cut_barrels(struct glint_outline *o,
+                        const struct glint_vertex *const *at)
+{
+    for (int barrel = 0; barrel < 2; barrel++) {
+        int64_t value[3];
+
+        for (int i = 0; i < 3; i++)
+            value[i] = glint_barrel_q16(barrel, at[i]);
+        cut_one(o, value);
+    }
+}
+
+/* Between the corners 1 - r^2 runs above the straight line by half the sum of
+ * l_i l_j |s_i - s_j|^2; over the triangle l_i l_j is 1/12 in the mean. */
+static int64_t disc_lift_q16(const struct glint_vertex *const *at)
+{
+    int64_t sum_q16 = 0;
+
+    for (int i = 0; i < 3; i++) {
+        const struct glint_vertex *a = at[i], *b = at[i < 2 ? i + 1 : 0];
+        const int64_t dx = (int64_t)a->stop_x_q16 - b->stop_x_q16;
+        const int64_t dy = (int64_t)a->stop_y_q16 - b->stop_y_q16;
+        const int64_t one = 1 << 16;
+
+        if (dx > one || dx < -one || dy > one || dy < -one)
+            return 0; /* too coarse to be called smooth */
+        sum_q16 += (dx * dx + dy * dy) >> 16;
+    }
+    return sum_q16 / 24;
+}
+
+static void cut_stop(struct glint_outline *o,
+                     const struct glint_vertex *const *at,
+                     const struct glint_stop *stop, int lowered)
+{
+    int64_t value[3];
+
+    if (stop->n_blades == 0) {
+        for (int i = 0; i < 3; i++)
+            value[i] = disc_value(at[i]) + (lowered ? 0 : disc_lift_q16(at));
+        cut_one(o, value);
+    }
+    for (int side = 0; side < stop->n_blades; side++) {
+        for (int i = 0; i < 3; i++)
+            value[i] = glint_side_q16(stop, side, at[i]);
+        cut_one(o, value);
+    }
+}
+
+/* From u and v to pixels: differences below 2^29 times 2^28. */
+static void place(struct glint_outline *o, const struct glint_vertex *const *at)
+{
+    const int64_t ux = at[1]->x_q8 - at[0]->x_q8;
+    const int64_t uy = at[1]->y_q8 - at[0]->y_q8;
+    const int64_t vx = at[2]->x_q8 - at[0]->x_q8;
+    const int64_t vy = at[2]->y_q8 - at[0]->y_q8;
+
+    for (int i = 0; i < o->n; i++) {
+        const int64_t u = o->uv[i].u_q28, v = o->uv[i].v_q28;
+
+        o->x_q16[i] = at[0]->x_q8 * (INT64_C(1) << TO_Q16) +
+                      q_shift(ux * u + vx * v, 28 - TO_Q16);
+        o->y_q16[i] = at[0]->y_q8 * (INT64_C(1) << TO_Q16) +
+                      q_shift(uy * u + vy * v, 28 - TO_Q16);
+    }
+}
+
+/* Share and energy; the triangle's area is 1/2 in u and v. */
+static void weigh(struct glint_outline *o, const struct glint_vertex *const *at)
+{
+    const int64_t energy_q16[3] = {at[0]->energy_q16, at[1]->energy_q16,
+                                   at[2]->energy_q16};
+    const struct glint_uv *first = &o->uv[0];
+    int64_t twice_q56 = 0, energy = 0;
+
+    for (int i = 0; i < o->n; i++)
+        energy += value_at(energy_q16, &o->uv[i]);
+    for (int i = 1; i + 1 < o->n; i++) {
+        const struct glint_uv *a = &o->uv[i], *b = &o->uv[i + 1];
+
+        twice_q56 +=
+            (int64_t)(a->u_q28 - first->u_q28) * (b->v_q28 - first->v_q28) -
+            (int64_t)(a->v_q28 - first->v_q28) * (b->u_q28 - first->u_q28);
+    }
+    o->share_q28 = (int32_t)(twice_q56 >> 28);
+    o->energy_q16 = (int32_t)(o->n ? energy / o->n : 0);
+}
+
+void glint_outline_cut(struct glint_outline *outline,
+                       const struct glint_corners *corners, int k,
+                       const struct glint_stop *stop, int cut)
+{
+    const struct glint_vertex *const at[3] = {
+        corners->at[0], corners->at[k + 1], corners->at[k + 2]};
+    const int32_t one_q28 = 1 << 28;
+
+    outline->n = 3;
+    outline->uv[0] = (struct glint_uv){0, 0};
+    outline->uv[1] = (struct glint_uv){one_q28, 0};
+    outline->uv[2] = (struct glint_uv){0, one_q28};
+    if (cut & GLINT_CUT_BARREL)
+        cut_barrels(outline, at);
+    if (cut & GLINT_CUT_STOP)
+        cut_stop(outline, at, stop, cut & GLINT_CUT_LOWERED);
+    place(outline, at);
+    weigh(outline, at);
+}
+
+void glint_outline_whole(struct glint_outline *outline,
+                         const struct glint_corners *corners)
+{
+    int64_t energy_q16 = 0;
+
+    outline->n = corners->n;
+    for (int i = 0; i < corners->n; i++) {
+        const struct glint_vertex *v = corners->at[i];
+
+        outline->x_q16[i] = v->x_q8 * (INT64_C(1) << TO_Q16);
+        outline->y_q16[i] = v->y_q8 * (INT64_C(1) << TO_Q16);
+        energy_q16 += v->energy_q16;
+    }
+    outline->share_q28 = 1 << 28;
+    outline->energy_q16 = (int32_t)(energy_q16 / corners->n);
+}
+
+/* -------------------------------------------------------------------- widen
+ */
+
+/* A strip from A to B along the first coordinate, in order. Too short a one
+ * grows about its middle. */
+static int64_t strip(int64_t a[2], int64_t b[2])
+{
+    const int64_t middle = (a[0] + b[0]) >> 1;
+
+    if (b[0] - a[0] < 2 * STRIP_HALF_Q16) {
+        a[0] = middle - STRIP_HALF_Q16;
+        b[0] = middle + STRIP_HALF_Q16;
+    }
+    return 2 * (b[0] - a[0]) * 2 * STRIP_HALF_Q16;
+}
+
+int64_t glint_outline_widen_q32(struct glint_outline *o)
+{
+    int left = 0, right = 0, top = 0, bottom = 0, flat;
+    const int64_t *x = o->x_q16, *y = o->y_q16;
+    int64_t a[2], b[2], area2_q32;
+
+    for (int i = 1; i < o->n; i++) {
+        left = x[i] < x[left] ? i : left;
+        right = x[i] > x[right] ? i : right;
+        top = y[i] < y[top] ? i : top;
+        bottom = y[i] > y[bottom] ? i : bottom;
+    }
+    flat = x[right] - x[left] > y[bottom] - y[top];
+    a[0] = flat ? x[left] : y[top], a[1] = flat ? y[left] : x[top];
+    b[0] = flat ? x[right] : y[bottom], b[1] = flat ? y[right] : x[bottom];
+    area2_q32 = strip(a, b);
+    o->n = 4;
+    for (int i = 0; i < 4; i++) {
+        /* round the same way for both: left, right, right, left; or top ... */
+        const int far = flat ? i == 1 || i == 2 : i >= 2;
+        const int beyond = flat ? i >= 2 : i == 1 || i == 2;
+        const int64_t along = far ? b[0] : a[0];
+        const int64_t across =
+            (far ? b[1] : a[1]) + (beyond ? STRIP_HALF_Q16 : -STRIP_HALF_Q16);
+
+        o->x_q16[i] = flat ? along : across;
+        o->y_q16[i] = flat ? across : along;
+    }
+    return area2_q32;
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What can be seen of a primitive, as a convex polygon.
+ *
+ *   in   a triangle of a primitive's corners, the stop, two barrels
+ *   out  the polygon that the stop's sides and the barrels leave, all of them
+ *        linear between the corners: corners in pixels, share of the triangle,
+ *        mean energy
+ *
+ * Method: half planes cut the triangle in barycentric coordinates u, v of its
+ * second and third corner, one after the other, so that a triangle without area
+ * on the screen is cut as well as any other. A round stop is taken as a half
+ * plane, too: 1 - r^2 between the corners, lifted by its mean over the
+ * triangle, which makes the area right.
+ *
+ * Formats: u, v _q28; functions _q16, below 2^33, times u or v below 2^61;
+ * pixels _q16 in 64 bits.
+ */
+#ifndef GLINT_FLARE_OUTLINE_H
+#define GLINT_FLARE_OUTLINE_H
+
+#include <stdint.h>
+
+#include "base/q.h"
+#include "flare/primitive.h"
+
+/* How far V lies inside of side SIDE of a stop, stop radii, and of a barrel. */
+static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
+                                     const struct glint_vertex *v)
+{
+    const int64_t nx = stop->normal_q30[side][0];
+    const int64_t ny = stop->normal_q30[side][1];
+
+    return stop->apothem_q16 -
+           q_shift(nx * v->stop_x_q16 + ny * v->stop_y_q16, 30);
+}
+
+static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
+{
+    return (INT64_C(1) << 16) - v->barrel_q16[barrel];
+}
+
+/* A triangle's, one more for each cut, and one for the loops to lean on. */
+enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
+
+/* 2 KiB: scratch of a worker. */
+struct glint_outline {
+    int n; /* corners; 0: nothing is seen */
+    int64_t x_q16[GLINT_OUTLINE_CORNERS], y_q16[GLINT_OUTLINE_CORNERS];
+    int32_t share_q28;  /* of the triangle, 0 .. 1 */
+    int32_t energy_q16; /* mean of the corners */
+    struct glint_uv {
+        int32_t u_q28, v_q28;
+    } uv[GLINT_OUTLINE_CORNERS], kept[GLINT_OUTLINE_CORNERS];
+};
+
+/* Which cuts cross the primitive: a set of GLINT_CUT_, or -1 where nothing of
+ * it is seen. The stop has no mask. */
+int glint_outline_classify(const struct glint_corners *corners,
+                           const struct glint_stop *stop);
+
+/* All of CORNERS, as they are. */
+void glint_outline_whole(struct glint_outline *outline,
+                         const struct glint_corners *corners);
+
+/* What the cuts CUT leave of the triangle of corners 0, K + 1, K + 2. */
+void glint_outline_cut(struct glint_outline *outline,
+                       const struct glint_corners *corners, int k,
+                       const struct glint_stop *stop, int cut);
+
+/* Makes OUTLINE a strip a sixteenth of a pixel wide along the longer way, and
+ * at least as long: for what is thinner than that. Returns twice its area. */
+int64_t glint_outline_widen_q32(struct glint_outline *outline);
+
+#endif

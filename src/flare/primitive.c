@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/primitive.h"
+
+#include "base/compiler.h"
+#include "base/divide.h"
+#include "base/q.h"
+
+void glint_corners_gather(struct glint_corners *corners,
+                          const struct glint_vertex *v, const int32_t *vertex,
+                          int n)
+{
+    const struct glint_vertex *at[4] = {v, v, v, v};
+
+    for (int i = 0; i < n; i++)
+        at[i] = &v[vertex[i]];
+    glint_corners_set(corners, at, n);
+}
+
+/* First pixel whose centre is at X or beyond. */
+static int first_centre(int32_t x_q8)
+{
+    return (x_q8 + 127) >> 8;
+}
+
+static int clamp(int x, int max)
+{
+    return x < 0 ? 0 : x > max ? max : x;
+}
+
+/* The box of the corners, q8. */
+static struct glint_box extent_q8(const struct glint_corners *corners)
+{
+    struct glint_box b = {corners->at[0]->x_q8, corners->at[0]->y_q8,
+                          corners->at[0]->x_q8, corners->at[0]->y_q8};
+
+    for (int i = 1; i < corners->n; i++) {
+        const int32_t x = corners->at[i]->x_q8, y = corners->at[i]->y_q8;
+
+        b.x0 = x < b.x0 ? x : b.x0;
+        b.x1 = x > b.x1 ? x : b.x1;
+        b.y0 = y < b.y0 ? y : b.y0;
+        b.y1 = y > b.y1 ? y : b.y1;
+    }
+    return b;
+}
+
+struct glint_box glint_corners_box(const struct glint_corners *corners,
+                                   int width, int height)
+{
+    const struct glint_box e = extent_q8(corners);
+
+    return (struct glint_box){clamp(first_centre(e.x0), width),
+                              clamp(first_centre(e.y0), height),
+                              clamp(first_centre(e.x1 + 1), width),
+                              clamp(first_centre(e.y1 + 1), height)};
+}
+
+int glint_corners_tiny(const struct glint_corners *corners, int part)
+{
+    const int size = (1 << GLINT_VERTEX_FRAC) / part;
+    const struct glint_box e = extent_q8(corners);
+
+    return e.x1 - e.x0 <= size && e.y1 - e.y0 <= size;
+}
+
+int glint_corners_lean(const struct glint_corners *corners)
+{
+    const struct glint_box e = extent_q8(corners);
+    const int64_t x = e.x1 - e.x0, y = e.y1 - e.y0;
+    const int64_t area2 =
+        corners->area2_q16 < 0 ? -corners->area2_q16 : corners->area2_q16;
+
+    return area2 < 2 * (1 << GLINT_VERTEX_FRAC) / 16 * (x > y ? x : y) ||
+           area2 == 0;
+}
+
+/* Grown by half a strip, and a step for what rounding may add. */
+struct glint_box glint_corners_reach(const struct glint_corners *corners,
+                                     int width, int height)
+{
+    const int grow = (1 << GLINT_VERTEX_FRAC) / 32 + 1;
+    const struct glint_box e = extent_q8(corners);
+
+    return (struct glint_box){
+        clamp((e.x0 - grow) >> GLINT_VERTEX_FRAC, width),
+        clamp((e.y0 - grow) >> GLINT_VERTEX_FRAC, height),
+        clamp(((e.x1 + grow) >> GLINT_VERTEX_FRAC) + 1, width),
+        clamp(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
+}
+
+/* MANTISSA * 2^UP, held to LIMIT: it is light. */
+static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit, int *n_held)
+{
+    int64_t x;
+
+    if (mantissa == 0 || up < -62)
+        return 0;
+    if (up > 0 && up + bit_length((uint64_t)mantissa) > 62)
+        x = INT64_MAX;
+    else
+        x = up > 0 ? mantissa << up : q_shift(mantissa, -up);
+    *n_held += x > limit;
+    return x < limit ? x : limit;
+}
+
+int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
+                             int64_t area, int frac, int32_t limit_q8,
+                             int *n_held)
+{
+    /* the area is brought to 32 bits before it divides */
+    const int up = q_up((uint64_t)area);
+    const uint32_t area_32 = q_upper((uint64_t)area, up);
+    /* rounded, so that it is exact where the area is a power of two */
+    const int64_t ratio =
+        (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +
+                   (1 << 30)) >>
+                  31);
+    /* light over less than a pixel: limit_q8 below 2^20, area at least 2^-33 */
+    const int64_t limit_q22 =
+        (area >> frac ? (int64_t)limit_q8
+                      : q_divide((int64_t)limit_q8 << frac, area))
+        << 14;
+
+    /* flux 2^(e - 31), area = area_32 2^(-up - frac), ratio of both times 2^32;
+     * result q22 */
+    return scaled_sat(
+        ratio, bundle->flux_exponent - 31 + share_log2 + up + frac - 32 + 22,
+        limit_q22, n_held);
+}
+
+struct glint_box glint_corners_pixel(const struct glint_corners *corners,
+                                     int width, int height)
+{
+    int64_t x_q8 = 0, y_q8 = 0;
+    int x, y;
+
+    for (int i = 0; i < corners->n; i++) {
+        x_q8 += corners->at[i]->x_q8;
+        y_q8 += corners->at[i]->y_q8;
+    }
+    if (x_q8 < 0 || y_q8 < 0)
+        return (struct glint_box){0, 0, 0, 0};
+    x = (int)(x_q8 / corners->n) >> 8;
+    y = (int)(y_q8 / corners->n) >> 8;
+    if (x >= width || y >= height)
+        return (struct glint_box){0, 0, 0, 0};
+    return (struct glint_box){x, y, x + 1, y + 1};
+}
+
+struct glint_box glint_primitive_box(const struct glint_primitive *p,
+                                     const struct glint_corners *corners,
+                                     int width, int height)
+{
+    if (p->flags & GLINT_SAMPLED)
+        return glint_corners_reach(corners, width, height);
+    return p->flags & GLINT_POINT ? glint_corners_pixel(corners, width, height)
+                                  : glint_corners_box(corners, width, height);
+}

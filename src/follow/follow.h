@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One number of a light over time: noise is averaged, change is followed.
+ *
+ *   in   what each picture says, at any rate
+ *   out  a number that does not scatter, lag or jump
+ *
+ * Method: errors of the number are averaged with their signs (drift) and
+ * without (spread). Noise drifts nowhere, so the drift is a small part of the
+ * spread, and the number moves a small part of the way, as an average over the
+ * pace's time does. Change drifts all one way, or is far larger than the
+ * spread, and the number goes all of it at once. So the filter takes each light
+ * by its own noise, and lags behind steady change by no more than five times
+ * the harmless error that it is given (floor).
+ *
+ * A change that must not be seen at once is blended: the number has it, and
+ * what is shown goes there at a bounded speed.
+ *
+ * What repeats bit for bit is no noise, and is settled for soon and exactly.
+ *
+ * Limits: numbers are below 2^43 either way, times below 2^26 us.
+ */
+#ifndef GLINT_FOLLOW_FOLLOW_H
+#define GLINT_FOLLOW_FOLLOW_H
+
+#include <stdint.h>
+
+struct glint_follow {
+    int64_t value;
+    int64_t drift, spread; /* of errors */
+    int64_t offset;        /* what is shown is value + offset */
+    int64_t stride;        /* the offset goes so far in the time of a blend */
+};
+
+/* What the time between two pictures makes of the filter. */
+struct glint_pace {
+    int32_t elapsed_us;
+    int32_t smooth_q15; /* part of the way for noise */
+    int32_t settle_q15; /* and for what repeats */
+};
+
+struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us);
+
+/* ELAPSED_US / (ELAPSED_US + TIME_US): the part of the way that an average over
+ * that time goes; TIME_US >= 1. */
+int32_t glint_pace_part_q15(int32_t elapsed_us, int32_t time_us);
+
+/* ELAPSED_US / TIME_US, 1 at most: the part of the way at a steady speed. */
+int32_t glint_pace_share_q15(int32_t elapsed_us, int32_t time_us);
+
+/* Begins at VALUE, whose errors are taken to be SPREAD until they are known. */
+void glint_follow_start(struct glint_follow *f, int64_t value, int64_t spread);
+
+/* Lets time pass for what is shown: a stride takes TIME_US. */
+void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
+                        int32_t time_us);
+
+enum glint_follow_as {
+    GLINT_FOLLOW_JUDGED,   /* noise or change, by what it was so far */
+    GLINT_FOLLOW_REPEATED, /* all of the light is as it was */
+    GLINT_FOLLOW_CHANGED
+};
+
+/* Follows TARGET; FLOOR is an error that does no harm, >= 1. Returns how much
+ * of a change it was, 0 .. 1.
+ */
+int32_t glint_follow_step_q15(struct glint_follow *f, int64_t target,
+                              int64_t floor, const struct glint_pace *pace,
+                              enum glint_follow_as as);
+
+/* Goes from AHEAD towards TARGET as for noise, and takes noise to be of SPREAD
+ * or more until it is known better. */
+void glint_follow_doubt(struct glint_follow *f, int64_t ahead, int64_t target,
+                        int64_t spread, const struct glint_pace *pace);
+
+/* Takes VALUE and goes on showing SHOWN; blends go to VALUE from there, within
+ * their time if nothing else comes. */
+void glint_follow_jump(struct glint_follow *f, int64_t value, int64_t shown);
+
+static inline int64_t glint_follow_shown(const struct glint_follow *f)
+{
+    return f->value + f->offset;
+}
+
+#endif

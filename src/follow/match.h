@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Which spot of a picture is which light of the one before.
+ *
+ *   in   spots in any order; where each light should be by now
+ *   out  for each light its spot, or none; no spot twice
+ *
+ * Method: of all pairs within reach the nearest is taken, then the nearest of
+ * what is left, and so on. Faint spots, and lights that were lost before, count
+ * as twice as far. Each light looks at the NEAREST_SPOTS nearest only, which it
+ * finds among spots sorted by x, so that 1024 spots cost no more than a look at
+ * those in reach; a light that finds all of these taken stays without.
+ */
+#ifndef GLINT_FOLLOW_MATCH_H
+#define GLINT_FOLLOW_MATCH_H
+
+#include "glint/lights.h"
+
+struct glint_arena;
+
+/* A light that looks for its spot. */
+struct glint_seeker {
+    uint32_t id; /* settles ties; no two have the same */
+    int32_t x_q8, y_q8;
+    int32_t reach_q8;       /* 0 .. 2^23 */
+    int32_t max_faint_area; /* larger faint spots are something else */
+    int is_lost;
+    int32_t spot; /* result: index, or -1 */
+};
+
+struct glint_pair;
+
+struct glint_match {
+    struct glint_seeker *seeker;
+    int n_seekers;
+    int32_t *by_x;  /* all spots, in an order that only depends on what they
+                       are */
+    uint8_t *taken; /* result, by spot */
+    struct glint_pair *pair;
+    int32_t *order; /* of pairs */
+    int n_pairs;
+};
+
+void glint_match_carve(struct glint_match *m, struct glint_arena *arena,
+                       int max_seekers, int max_spots);
+
+/* Sets the spot of m->seeker[0 .. n_seekers - 1], and by_x and taken of the N
+ * SPOTS. */
+void glint_match_find(struct glint_match *m, const struct glint_spot *spots,
+                      int n);
+
+#endif

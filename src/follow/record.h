@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One light over time: what is held of it, and what a picture makes of that.
+ *
+ *     glint_record_begin(r, id, spot);               once
+ *     glint_record_look_ahead(r, &step);             each picture
+ *     glint_record_see(r, &step, spot);              or
+ *     glint_record_miss(r, &step);
+ *     glint_record_set_level(r, &step);
+ */
+#ifndef GLINT_FOLLOW_RECORD_H
+#define GLINT_FOLLOW_RECORD_H
+
+#include "follow/follow.h"
+#include "glint/tracks.h"
+
+/* What is followed: places _q16, the rest as in a spot. */
+enum glint_channel {
+    GLINT_CHANNEL_X,
+    GLINT_CHANNEL_Y,
+    GLINT_CHANNEL_FLUX,
+    GLINT_CHANNEL_POWER,
+    GLINT_CHANNEL_SIZE,
+    GLINT_CHANNEL_MAJOR,
+    GLINT_CHANNEL_MINOR,
+    GLINT_CHANNEL_COS2, /* of twice the orientation */
+    GLINT_CHANNEL_SIN2,
+    GLINT_CHANNEL_RED,
+    GLINT_CHANNEL_GREEN,
+    GLINT_CHANNEL_BLUE,
+    GLINT_CHANNELS
+};
+
+struct glint_record {
+    uint32_t id; /* 0: forgotten */
+    enum glint_track_state state;
+    struct glint_follow of[GLINT_CHANNELS];
+    struct glint_spot last;  /* it was seen as */
+    int n_same;              /* pictures in a row before that showed the same */
+    int64_t velocity_q16[2]; /* pixels a second */
+    int64_t ahead_q16[2];    /* where it should be now */
+    int32_t level_q30;
+    int32_t lost_us; /* since it was seen; 0: seen now */
+    int is_shown;    /* the caller's: its level rises while it is seen */
+};
+
+/* What is the same for all records of a picture. */
+struct glint_record_step {
+    const struct glint_tracks_config *cfg;
+    struct glint_pace pace;
+    int is_fresh; /* what begins is at full level at once */
+};
+
+/* The flux of a spot, held to 0 .. 2^42: the largest picture, all white. */
+int64_t glint_record_flux_q16(const struct glint_spot *spot);
+
+/* Its power, held to the same. */
+int64_t glint_record_power_q16(const struct glint_spot *spot);
+
+void glint_record_begin(struct glint_record *r, uint32_t id,
+                        const struct glint_spot *spot);
+
+/* Sets where the light should be by now. */
+void glint_record_look_ahead(struct glint_record *r,
+                             const struct glint_record_step *step);
+
+void glint_record_see(struct glint_record *r,
+                      const struct glint_record_step *step,
+                      const struct glint_spot *spot);
+
+/* There is no spot: the light moves on, and is forgotten in time. */
+void glint_record_miss(struct glint_record *r,
+                       const struct glint_record_step *step);
+
+/* Lets the level rise or fall by the time of the step; sets the state. */
+void glint_record_set_level(struct glint_record *r,
+                            const struct glint_record_step *step);
+
+struct glint_track glint_record_track(const struct glint_record *r);
+
+#endif

@@ -1,0 +1,400 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lights over time: spots of one picture after the other become tracks.
+ *
+ * A step: tracks move to where they should be by now and take the spots they
+ * find there (match.h); each goes on from its spot or without (record.h); what
+ * spots are left over become tracks; the strongest are shown.
+ */
+#include "glint/tracks.h"
+
+#include "base/arena.h"
+#include "base/q.h"
+#include "base/sort.h"
+#include "follow/match.h"
+#include "follow/record.h"
+
+enum {
+    MAX_SPOTS = 1024,
+    MAX_TRACKS = 1024,
+    MAX_MS = 60000,
+    FEW_SPOTS = 8,
+    MANY_LIGHTS = 3
+};
+
+#define MAX_ELAPSED_US 10000000
+#define REACH_US       1000000 /* a lost light may be as far again */
+#define MAX_REACHES    3
+
+struct glint_tracks {
+    struct glint_tracks_config cfg;
+    int32_t reach_q8;
+    uint32_t last_id;
+    int was_cut;
+    struct glint_record_step step;
+    struct glint_record *record; /* [max_tracks] */
+    struct glint_match match;
+    int32_t *owner; /* of match.seeker: index of record */
+    int32_t *order; /* of spots or records */
+};
+
+/* ------------------------------------------------------------------- memory */
+
+static int is_time(int32_t ms)
+{
+    return ms >= 1 && ms <= MAX_MS;
+}
+
+static int is_valid(const struct glint_tracks_config *c)
+{
+    return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
+           c->height <= GLINT_MAX_SIDE && c->max_tracks >= 1 &&
+           c->max_tracks <= MAX_TRACKS && c->max_shown >= 1 &&
+           c->max_shown <= c->max_tracks && c->match_q15 >= 0 &&
+           c->match_q15 <= 1 << 15 && c->cut_q15 >= 1 &&
+           is_time(c->attack_ms) && is_time(c->release_ms) &&
+           is_time(c->leave_ms) && is_time(c->memory_ms) &&
+           is_time(c->smooth_ms);
+}
+
+/* Runs twice: to measure, and to place. NULL if measuring or full. */
+static struct glint_tracks *carve(struct glint_arena *a,
+                                  const struct glint_tracks_config *c)
+{
+    const size_t n_records = (size_t)c->max_tracks;
+    struct glint_tracks *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_tracks measured;
+    struct glint_tracks *t = placed ? placed : &measured;
+
+    t->record = glint_arena_take(a, n_records, sizeof *t->record);
+    t->owner = glint_arena_take(a, n_records, sizeof *t->owner);
+    t->order = glint_arena_take(a, MAX_SPOTS, sizeof *t->order);
+    glint_match_carve(&t->match, a, c->max_tracks, MAX_SPOTS);
+    return a->used <= a->size ? placed : NULL;
+}
+
+void glint_tracks_defaults(struct glint_tracks_config *cfg, int width,
+                           int height)
+{
+    *cfg = (struct glint_tracks_config){.width = width,
+                                        .height = height,
+                                        .max_tracks = 128,
+                                        .max_shown = 16,
+                                        .match_q15 = Q_CONST(0.06, 15),
+                                        .cut_q15 = Q_CONST(0.75, 15),
+                                        .attack_ms = 200,
+                                        .release_ms = 200,
+                                        .leave_ms = 400,
+                                        .memory_ms = 2000,
+                                        .smooth_ms = 300};
+}
+
+size_t glint_tracks_bytes(const struct glint_tracks_config *cfg)
+{
+    struct glint_arena measured = glint_arena_measure();
+
+    if (!is_valid(cfg))
+        return 0;
+    carve(&measured, cfg);
+    return measured.used;
+}
+
+enum glint_status glint_tracks_init(struct glint_tracks **tracks,
+                                    const struct glint_tracks_config *cfg,
+                                    void *mem, size_t bytes)
+{
+    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_tracks *t;
+
+    if (!is_valid(cfg) || (uintptr_t)mem % GLINT_ALIGN)
+        return GLINT_E_ARGUMENT;
+    t = carve(&arena, cfg);
+    if (!t)
+        return GLINT_E_MEMORY;
+    t->cfg = *cfg;
+    t->step.cfg = &t->cfg;
+    t->reach_q8 =
+        q_narrow(q_shift((int64_t)cfg->width * cfg->match_q15, 15 - 8));
+    t->last_id = 0;
+    t->was_cut = 0;
+    glint_tracks_restart(t);
+    *tracks = t;
+    return GLINT_OK;
+}
+
+void glint_tracks_restart(struct glint_tracks *tracks)
+{
+    for (int i = 0; i < tracks->cfg.max_tracks; i++)
+        tracks->record[i].id = 0;
+    tracks->step.is_fresh = 1;
+}
+
+int glint_tracks_was_cut(const struct glint_tracks *tracks)
+{
+    return tracks->was_cut;
+}
+
+/* ----------------------------------------------------------------- matching */
+
+static int32_t reach_of_q8(const struct glint_tracks *t,
+                           const struct glint_record *r)
+{
+    const int64_t more_q8 = (int64_t)t->reach_q8 * r->lost_us / REACH_US;
+    const int32_t most_q8 = t->reach_q8 * (MAX_REACHES - 1);
+
+    return t->reach_q8 + (more_q8 < most_q8 ? (int32_t)more_q8 : most_q8);
+}
+
+/* All tracks look where they should be by now. */
+static void send_seekers(struct glint_tracks *t)
+{
+    struct glint_match *m = &t->match;
+
+    m->n_seekers = 0;
+    for (int i = 0; i < t->cfg.max_tracks; i++) {
+        struct glint_record *r = &t->record[i];
+
+        if (!r->id)
+            continue;
+        glint_record_look_ahead(r, &t->step);
+        t->owner[m->n_seekers] = i;
+        m->seeker[m->n_seekers++] = (struct glint_seeker){
+            .id = r->id,
+            .x_q8 = q_narrow(r->ahead_q16[0] / 256),
+            .y_q8 = q_narrow(r->ahead_q16[1] / 256),
+            .reach_q8 = reach_of_q8(t, r),
+            .max_faint_area = q_clamp_sat(r->last.area, 0, 1 << 26) * 4,
+            .is_lost = r->lost_us > 0};
+    }
+}
+
+/* How near a spot must be to be the same light where there are N spots: among
+ * many there is always one in reach, by chance. */
+static int64_t near2_q16(const struct glint_tracks *t, int n)
+{
+    const int64_t reach2_q16 = (int64_t)t->reach_q8 * t->reach_q8;
+
+    return n > FEW_SPOTS ? reach2_q16 * FEW_SPOTS / n : reach2_q16;
+}
+
+/* What spot NOW keeps of the light that was seen as BEFORE, where it should be
+ * by S. */
+static int64_t kept_of(const struct glint_seeker *s,
+                       const struct glint_spot *before,
+                       const struct glint_spot *now, int64_t limit2_q16)
+{
+    const int64_t dx_q8 = (int64_t)now->x_q8 - s->x_q8;
+    const int64_t dy_q8 = (int64_t)now->y_q8 - s->y_q8;
+    const int64_t p_q16 = glint_record_flux_q16(before);
+    const int64_t q_q16 = glint_record_flux_q16(now);
+
+    if (dx_q8 * dx_q8 + dy_q8 * dy_q8 > limit2_q16)
+        return 0;
+    return p_q16 < q_q16 ? p_q16 : q_q16;
+}
+
+/* One side of a cut: what is seen in one picture, and what of it both have. */
+struct side {
+    int64_t flux, kept;
+    int n;
+};
+
+/* Whether most of A is not in B. Where nothing is seen on this side, many
+ * lights on the other speak for a cut: they came or went all at once. */
+static int is_apart(const struct glint_tracks *t, const struct side *a,
+                    const struct side *b)
+{
+    return a->flux > 0 ? a->flux - a->kept >= (a->flux * t->cfg.cut_q15) >> 15
+                       : b->n >= MANY_LIGHTS;
+}
+
+/* Whether most of what was seen is gone and most of what is seen is new. */
+static int is_cut(const struct glint_tracks *t, const struct glint_spot *spots,
+                  int n)
+{
+    const int64_t limit2_q16 = near2_q16(t, n);
+    struct side before = {0, 0, 0}, now = {0, 0, 0};
+
+    for (int i = 0; i < n; i++)
+        if (!spots[i].faint || t->match.taken[i]) {
+            now.flux += glint_record_flux_q16(&spots[i]);
+            now.n++;
+        }
+    for (int i = 0; i < t->match.n_seekers; i++) {
+        const struct glint_seeker *s = &t->match.seeker[i];
+        const struct glint_spot *last = &t->record[t->owner[i]].last;
+        const int64_t kept =
+            s->spot < 0 ? 0 : kept_of(s, last, &spots[s->spot], limit2_q16);
+
+        now.kept += kept;
+        if (s->is_lost)
+            continue;
+        before.flux += glint_record_flux_q16(last);
+        before.kept += kept;
+        before.n++;
+    }
+    return is_apart(t, &before, &now) && is_apart(t, &now, &before);
+}
+
+/* Gives each track its spot, or after a cut none. */
+static void match(struct glint_tracks *t, const struct glint_spot *spots, int n)
+{
+    send_seekers(t);
+    glint_match_find(&t->match, spots, n);
+    if (is_cut(t, spots, n)) {
+        glint_tracks_restart(t);
+        send_seekers(t);
+        glint_match_find(&t->match, spots, n);
+    }
+    t->was_cut = t->step.is_fresh;
+}
+
+/* --------------------------------------------------------------------- new */
+
+/* Whether P should make room before Q: what was lost, then what is faint, then
+ * what is young. */
+static int yields_first(const struct glint_record *p,
+                        const struct glint_record *q)
+{
+    const int64_t p_q16 = p->of[GLINT_CHANNEL_POWER].value;
+    const int64_t q_q16 = q->of[GLINT_CHANNEL_POWER].value;
+
+    if ((p->lost_us > 0) != (q->lost_us > 0))
+        return p->lost_us > 0;
+    return p_q16 != q_q16 ? p_q16 < q_q16 : p->id > q->id;
+}
+
+/* The place for a new light of POWER: a free one, else that of one which is not
+ * shown and either lost or fainter. NULL: none. */
+static struct glint_record *place_for(struct glint_tracks *t, int64_t power_q16)
+{
+    struct glint_record *best = NULL;
+
+    for (int i = 0; i < t->cfg.max_tracks; i++) {
+        struct glint_record *r = &t->record[i];
+
+        if (!r->id)
+            return r;
+        if (r->level_q30 > 0 || r->is_shown ||
+            (r->lost_us == 0 && r->of[GLINT_CHANNEL_POWER].value >= power_q16))
+            continue;
+        if (!best || yields_first(r, best))
+            best = r;
+    }
+    return best;
+}
+
+struct ranked_spots {
+    const struct glint_spot *spots;
+    const int32_t *by_x;
+};
+
+static int is_brighter(const void *ctx, int32_t a, int32_t b)
+{
+    const struct ranked_spots *r = ctx;
+    const int64_t p_q16 = glint_record_power_q16(&r->spots[r->by_x[a]]);
+    const int64_t q_q16 = glint_record_power_q16(&r->spots[r->by_x[b]]);
+
+    return p_q16 != q_q16 ? p_q16 > q_q16 : a < b;
+}
+
+/* Spots that no track took become tracks, the brightest first. */
+static void begin_tracks(struct glint_tracks *t, const struct glint_spot *spots,
+                         int n)
+{
+    const struct ranked_spots ranked = {spots, t->match.by_x};
+    int n_new = 0;
+
+    for (int i = 0; i < n; i++) {
+        const int32_t spot = t->match.by_x[i];
+
+        if (!t->match.taken[spot] && !spots[spot].faint)
+            t->order[n_new++] = i;
+    }
+    glint_sort(t->order, n_new, is_brighter, &ranked);
+    for (int i = 0; i < n_new; i++) {
+        const struct glint_spot *s = &spots[t->match.by_x[t->order[i]]];
+        struct glint_record *r = place_for(t, glint_record_power_q16(s));
+
+        if (!r)
+            return;
+        glint_record_begin(r, ++t->last_id, s);
+    }
+}
+
+/* -------------------------------------------------------------------- shown */
+
+/* Those that are shown stay so until another is brighter by a quarter: two of
+ * the same power do not take turns. */
+static int64_t score_of(const struct glint_record *r)
+{
+    const int64_t power_q16 = r->of[GLINT_CHANNEL_POWER].value;
+
+    return power_q16 + (r->is_shown ? power_q16 / 4 : 0);
+}
+
+static int is_stronger(const void *ctx, int32_t a, int32_t b)
+{
+    const struct glint_record *record = ctx;
+    const int64_t p = score_of(&record[a]), q = score_of(&record[b]);
+
+    return p != q ? p > q : record[a].id < record[b].id;
+}
+
+/* Lists all tracks in t->order, the strongest first, and picks those that are
+ * shown. */
+static int rank_tracks(struct glint_tracks *t)
+{
+    int n = 0, n_shown = 0;
+
+    for (int i = 0; i < t->cfg.max_tracks; i++)
+        if (t->record[i].id)
+            t->order[n++] = i;
+    glint_sort(t->order, n, is_stronger, t->record);
+    for (int i = 0; i < n; i++) {
+        struct glint_record *r = &t->record[t->order[i]];
+
+        r->is_shown = r->lost_us == 0 && n_shown < t->cfg.max_shown;
+        n_shown += r->is_shown;
+    }
+    return n;
+}
+
+static int show(struct glint_tracks *t, struct glint_track *out, int max)
+{
+    const int n = rank_tracks(t);
+    int n_out = 0;
+
+    for (int i = 0; i < n; i++) {
+        struct glint_record *r = &t->record[t->order[i]];
+
+        glint_record_set_level(r, &t->step);
+        if (r->level_q30 >= 1 << 15 && n_out < max)
+            out[n_out++] = glint_record_track(r);
+    }
+    return n_out;
+}
+
+int glint_tracks_step(struct glint_tracks *tracks,
+                      const struct glint_spot *spots, int n, int32_t elapsed_us,
+                      struct glint_track *out, int max)
+{
+    struct glint_tracks *t = tracks;
+
+    t->step.pace = glint_pace_of(q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US),
+                                 t->cfg.smooth_ms * 1000);
+    match(t, spots, n);
+    for (int i = 0; i < t->match.n_seekers; i++) {
+        struct glint_record *r = &t->record[t->owner[i]];
+        const int32_t spot = t->match.seeker[i].spot;
+
+        if (spot >= 0)
+            glint_record_see(r, &t->step, &spots[spot]);
+        else
+            glint_record_miss(r, &t->step);
+    }
+    begin_tracks(t, spots, n);
+    n = show(t, out, max);
+    t->step.is_fresh = 0;
+    return n;
+}

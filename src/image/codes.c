@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/codes.h"
+
+enum { WIDTH = GLINT_CODES_WIDTH };
+
+/* N samples, TO_STEP and FROM_STEP bytes apart: loops that become vectors where
+ * the steps are known. */
+static inline void copy(uint8_t *restrict to, int to_step,
+                        const uint8_t *restrict from, int from_step, int n)
+{
+    if (to_step == 1 && from_step == 1)
+        for (int i = 0; i < n; i++)
+            to[i] = from[i];
+    else if (to_step == 1 && from_step == 2)
+        for (int i = 0; i < n; i++)
+            to[i] = from[2 * i];
+    else if (to_step == 2 && from_step == 1)
+        for (int i = 0; i < n; i++)
+            to[2 * i] = from[i];
+    else if (to_step == 1 && from_step == 4)
+        for (int i = 0; i < n; i++)
+            to[i] = from[4 * i];
+    else
+        for (int i = 0; i < n; i++)
+            to[(ptrdiff_t)i * to_step] = from[(ptrdiff_t)i * from_step];
+}
+
+/* Repeats the last of N groups of SIZE samples. */
+static void pad(uint8_t *to, int n, int size)
+{
+    for (int i = n * size; i < WIDTH; i++)
+        to[i] = to[i - size];
+}
+
+/* ----------------------------------------------------------------------- RGB
+ */
+
+static void read_565(struct glint_codes *c, const uint8_t *px, int n, int row)
+{
+    for (int i = 0; i < n; i++) {
+        const int bits = px[2 * i] | px[2 * i + 1] << 8;
+        const int r = bits >> 11, g = bits >> 5 & 63, b = bits & 31;
+
+        c->sample[0][row][i] = (uint8_t)(r << 3 | r >> 2);
+        c->sample[1][row][i] = (uint8_t)(g << 2 | g >> 4);
+        c->sample[2][row][i] = (uint8_t)(b << 3 | b >> 2);
+    }
+    for (int k = 0; k < 3; k++)
+        pad(c->sample[k][row], n, 1);
+}
+
+/* CODE of 0 .. 255 as one of 0 .. MOST, rounded: those that were widened come
+ * back. */
+static int fewer(int code, int most)
+{
+    return (code * most + 127) / 255;
+}
+
+static void write_565(const struct glint_codes *c, uint8_t *px, int n, int row)
+{
+    for (int i = 0; i < n; i++) {
+        const int bits = fewer(c->sample[0][row][i], 31) << 11 |
+                         fewer(c->sample[1][row][i], 63) << 5 |
+                         fewer(c->sample[2][row][i], 31);
+
+        px[2 * i] = (uint8_t)(bits & 255);
+        px[2 * i + 1] = (uint8_t)(bits >> 8);
+    }
+}
+
+/* -------------------------------------------------------------------- chroma
+ */
+
+/* Where the chroma of a row of pairs lies: Cb and Cr by turns already? */
+static int is_woven(const struct glint_layout *l)
+{
+    return l->planes == 2 && l->sample[1].offset == 0;
+}
+
+static void read_chroma(const struct glint_layout *l,
+                        const struct glint_image *image, int x, int y, int n,
+                        uint8_t *to)
+{
+    const uint8_t *cb = glint_layout_at(l, image, 1, x, y);
+    const uint8_t *cr = glint_layout_at(l, image, 2, x, y);
+
+    if (glint_layout_is_packed(l))
+        copy(to, 1, cb, 2, 2 * n);
+    else if (is_woven(l))
+        copy(to, 1, cb, 1, 2 * n);
+    else {
+        copy(to, 2, cb, l->sample[1].step, n);
+        copy(to + 1, 2, cr, l->sample[2].step, n);
+    }
+    pad(to, n, 2);
+}
+
+static void write_chroma(const struct glint_layout *l,
+                         const struct glint_image *image, int x, int y, int n,
+                         const uint8_t *from)
+{
+    uint8_t *cb = glint_layout_at(l, image, 1, x, y);
+    uint8_t *cr = glint_layout_at(l, image, 2, x, y);
+
+    if (glint_layout_is_packed(l))
+        copy(cb, 2, from, 1, 2 * n);
+    else if (is_woven(l))
+        copy(cb, 1, from, 1, 2 * n);
+    else {
+        copy(cb, l->sample[1].step, from, 2, n);
+        copy(cr, l->sample[2].step, from + 1, 2, n);
+    }
+}
+
+/* ---------------------------------------------------------------------- rows
+ */
+
+/* Channels that have a sample for each pixel. */
+static int whole_channels(const struct glint_layout *l)
+{
+    return l->kind == GLINT_LAYOUT_GREY || l->log2_x ? 1 : 3;
+}
+
+static void read_row(struct glint_codes *c, const struct glint_layout *l,
+                     const struct glint_image *image, int x, int y, int n,
+                     int row)
+{
+    for (int i = 0; i < whole_channels(l); i++) {
+        copy(c->sample[i][row], 1, glint_layout_at(l, image, i, x, y),
+             l->sample[i].step, n);
+        pad(c->sample[i][row], n, 1);
+    }
+    if (l->kind == GLINT_LAYOUT_GREY)
+        for (int i = 0; i < WIDTH; i++)
+            c->sample[1][row][i] = c->sample[2][row][i] = 128;
+    if (l->log2_x && (row == 0 || !l->log2_y))
+        read_chroma(l, image, x, y, (n + 1) / 2, c->chroma[row]);
+}
+
+static void write_row(const struct glint_codes *c, const struct glint_layout *l,
+                      const struct glint_image *image, int x, int y, int n,
+                      int row)
+{
+    for (int i = 0; i < whole_channels(l); i++)
+        copy(glint_layout_at(l, image, i, x, y), l->sample[i].step,
+             c->sample[i][row], 1, n);
+    if (l->log2_x && (row == 0 || !l->log2_y))
+        write_chroma(l, image, x, y, (n + 1) / 2, c->chroma[row]);
+}
+
+void glint_codes_read(struct glint_codes *codes,
+                      const struct glint_image *image, int x, int y, int n_x,
+                      int n_y)
+{
+    const struct glint_layout *l = glint_layout_of(image->format);
+
+    for (int row = 0; row < n_y; row++)
+        if (l->kind == GLINT_LAYOUT_565)
+            read_565(codes, glint_layout_at(l, image, 0, x, y + row), n_x, row);
+        else
+            read_row(codes, l, image, x, y + row, n_x, row);
+}
+
+void glint_codes_write(const struct glint_codes *codes,
+                       const struct glint_image *image, int x, int y, int n_x,
+                       int n_y)
+{
+    const struct glint_layout *l = glint_layout_of(image->format);
+
+    for (int row = 0; row < n_y; row++)
+        if (l->kind == GLINT_LAYOUT_565)
+            write_565(codes, glint_layout_at(l, image, 0, x, y + row), n_x,
+                      row);
+        else
+            write_row(codes, l, image, x, y + row, n_x, row);
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/curve.h"
+
+#include "base/compiler.h"
+
+/* A standard's curve, v = code / 255:
+ *   v * toe_divisor^-1                     up to code last_toe
+ *   u^(2 + 2 / root), u = (v + a) / (1 + a)  above */
+struct standard {
+    int last_toe;
+    int toe_divisor_100; /* hundredths */
+    int a_1000;          /* thousandths */
+    int root;            /* 5: u^2.4; 9: u^(20/9) = u^(1 / 0.45) */
+};
+
+static const struct standard srgb = {10, 1292, 55, 5}; /* v <= 0.04045 */
+static const struct standard bt709 = {20, 450, 99, 9}; /* v < 0.081 */
+
+static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
+{
+    return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
+}
+
+/* x^5 or x^9, 0 <= x <= 1. */
+static uint64_t power_q30(uint64_t x_q30, int n)
+{
+    const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
+    const uint64_t x4_q30 = mul_q30(x2_q30, x2_q30);
+
+    return mul_q30(n == 9 ? mul_q30(x4_q30, x4_q30) : x4_q30, x_q30);
+}
+
+/* Largest r with r^n <= x. Rounding moves r by 2^-27 at most where it is used:
+ * r >= 0.38 for n = 5, r >= 0.67 for n = 9. */
+static uint64_t root_q30(uint64_t x_q30, int n)
+{
+    uint64_t r_q30 = 0;
+
+    for (uint64_t bit = UINT64_C(1) << 30; bit; bit >>= 1)
+        if ((r_q30 | bit) <= UINT64_C(1) << 30 &&
+            power_q30(r_q30 | bit, n) <= x_q30)
+            r_q30 |= bit;
+    return r_q30;
+}
+
+static int32_t light_of_code_q20(const struct standard *s, int code)
+{
+    const uint64_t divisor = 255 * (1000 + (uint64_t)s->a_1000);
+    const uint64_t toe_divisor = 255 * (uint64_t)s->toe_divisor_100;
+    uint64_t u_q30, u2_q30;
+
+    if (code <= s->last_toe)
+        return (int32_t)((((uint64_t)code * 100 << 20) + toe_divisor / 2) /
+                         toe_divisor);
+    u_q30 = (((uint64_t)(1000 * code + 255 * s->a_1000) << 30) + divisor / 2) /
+            divisor;
+    u2_q30 = mul_q30(u_q30, u_q30);
+    return (int32_t)((mul_q30(u2_q30, root_q30(u2_q30, s->root)) + (1 << 9)) >>
+                     10);
+}
+
+void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer)
+{
+    const struct standard *s = transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
+
+    for (int i = 0; i < 256; i++)
+        curve->decode_q20[i] = light_of_code_q20(s, i);
+    curve->decode_q20[256] = 2 * LINEAR_WHITE_Q20;
+}
+
+/* N / D * 2^FRAC, rounded; D > 0. */
+static int32_t ratio(int64_t n, int64_t d, int frac)
+{
+    const int64_t twice = n * ((int64_t)2 << frac) + d;
+
+    return (int32_t)(twice >= 0 ? twice / (2 * d)
+                                : -((-twice + 2 * d - 1) / (2 * d)));
+}
+
+/* R', G', B' of equal luma differ by what Cb and Cr say: B' - Y' is
+ * 2 (1 - kb) Cb, R' - Y' is 2 (1 - kr) Cr, and G' makes the luma come out. */
+static void fill_to_rgb(struct glint_ycc *ycc, int64_t kr, int64_t kb,
+                        int y_steps, int c_steps)
+{
+    const int64_t one = 10000, kg = one - kr - kb;
+    int32_t(*m_q16)[3] = ycc->to_rgb_q16;
+
+    for (int i = 0; i < 3; i++)
+        m_q16[i][0] = ratio(255, y_steps, 16);
+    m_q16[0][1] = 0;
+    m_q16[0][2] = ratio(255 * 2 * (one - kr), one * c_steps, 16);
+    m_q16[1][1] = ratio(-255 * 2 * kb * (one - kb), kg * one * c_steps, 16);
+    m_q16[1][2] = ratio(-255 * 2 * kr * (one - kr), kg * one * c_steps, 16);
+    m_q16[2][1] = ratio(255 * 2 * (one - kb), one * c_steps, 16);
+    m_q16[2][2] = 0;
+}
+
+/* Green takes the rounding errors, so that the row sums are exact. */
+static void fill_to_ycc(struct glint_ycc *ycc, int64_t kr, int64_t kb,
+                        int y_steps, int c_steps)
+{
+    const int64_t one = 10000;
+    int32_t(*m_q15)[3] = ycc->to_ycc_q15;
+
+    m_q15[0][0] = ratio(kr * y_steps, one * 255, 15);
+    m_q15[0][2] = ratio(kb * y_steps, one * 255, 15);
+    m_q15[0][1] = ratio(y_steps, 255, 15) - m_q15[0][0] - m_q15[0][2];
+    m_q15[1][0] = ratio(-kr * c_steps, 2 * (one - kb) * 255, 15);
+    m_q15[1][2] = ratio(c_steps, 2 * 255, 15);
+    m_q15[1][1] = -m_q15[1][0] - m_q15[1][2];
+    m_q15[2][0] = ratio(c_steps, 2 * 255, 15);
+    m_q15[2][2] = ratio(-kb * c_steps, 2 * (one - kr) * 255, 15);
+    m_q15[2][1] = -m_q15[2][0] - m_q15[2][2];
+}
+
+void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
+                    enum glint_range range)
+{
+    const int64_t kr = matrix == GLINT_MATRIX_BT601 ? 2990 : 2126;
+    const int64_t kb = matrix == GLINT_MATRIX_BT601 ? 1140 : 722;
+    const int y_steps = range == GLINT_RANGE_FULL ? 255 : 219;
+    const int c_steps = range == GLINT_RANGE_FULL ? 255 : 224;
+
+    ycc->black = range == GLINT_RANGE_FULL ? 0 : 16;
+    fill_to_rgb(ycc, kr, kb, y_steps, c_steps);
+    fill_to_ycc(ycc, kr, kb, y_steps, c_steps);
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From the codes of a picture to linear light, and between its colours.
+ *
+ *   curve  a full-range code R', G', B' or Y' -> linear light, sRGB or BT.709
+ *   ycc    Y, Cb, Cr codes of 8 bits <-> full-range R', G', B'
+ *
+ * Full-range codes have 7 fraction bits (_q7: 255 << 7 is white), linear light
+ * has 20 (1 << 20 is white). A curve is straight between the 256 codes, and
+ * within 2^-21 of the true one there. The way back is the kernels':
+ * kernels/tone.h.
+ *
+ * Integers only, the same on every CPU; no division but in init.
+ */
+#ifndef GLINT_IMAGE_CURVE_H
+#define GLINT_IMAGE_CURVE_H
+
+#include <stdint.h>
+
+#include "glint/image.h"
+
+#define CODE_WHITE_Q7    (255 << 7)
+#define LINEAR_WHITE_Q20 (1 << 20)
+
+struct glint_curve {
+    int32_t decode_q20[257]; /* of whole codes; [256] only ends the last */
+};
+
+/* Fills CURVE for TRANSFER: 256 roots by bit search. */
+void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
+
+/* Light of CODE_Q7, 0 .. CODE_WHITE_Q7. */
+static inline int32_t curve_decode(const struct glint_curve *curve,
+                                   int32_t code_q7)
+{
+    const int32_t *at_q20 = curve->decode_q20 + (code_q7 >> 7);
+
+    return at_q20[0] + (((at_q20[1] - at_q20[0]) * (code_q7 & 127) + 64) >> 7);
+}
+
+/* Equal R'G'B' have Cb = Cr = 128 to the last bit: the sums of the rows hold
+ * exactly. */
+struct glint_ycc {
+    int black;                /* code of Y' = 0 */
+    int32_t to_rgb_q16[3][3]; /* R'G'B' per step of Y - black, Cb - 128, ... */
+    int32_t to_ycc_q15[3][3]; /* Y, Cb, Cr per code of R', G', B' */
+};
+
+/* Fills YCC for MATRIX and RANGE; the first columns serve grey pictures. */
+void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
+                    enum glint_range range);
+
+/* R'G'B' of 8-bit codes. Not clamped: -290 .. 550 codes may come out. */
+static inline void ycc_to_rgb(const struct glint_ycc *ycc, int y, int cb,
+                              int cr, int32_t rgb_q7[3])
+{
+    for (int i = 0; i < 3; i++)
+        rgb_q7[i] = ((y - ycc->black) * ycc->to_rgb_q16[i][0] +
+                     (cb - 128) * ycc->to_rgb_q16[i][1] +
+                     (cr - 128) * ycc->to_rgb_q16[i][2] + (1 << 8)) >>
+                    9;
+}
+
+#endif

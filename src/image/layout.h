@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where the samples of a picture lie.
+ */
+#ifndef GLINT_IMAGE_LAYOUT_H
+#define GLINT_IMAGE_LAYOUT_H
+
+#include "glint/image.h"
+
+enum glint_layout_kind {
+    GLINT_LAYOUT_GREY,
+    GLINT_LAYOUT_YCC,
+    GLINT_LAYOUT_RGB,
+    GLINT_LAYOUT_565,
+    GLINT_LAYOUT_LINEAR
+};
+
+struct glint_layout {
+    enum glint_layout_kind kind;
+    int planes;
+    int log2_x, log2_y; /* chroma is halved so many times: 0 or 1 */
+    /* Y, Cb, Cr or R, G, B: plane, bytes from the row's start, bytes from one
+     * to the next */
+    struct glint_layout_sample {
+        int plane, offset, step;
+    } sample[3];
+};
+
+const struct glint_layout *glint_layout_of(enum glint_pixel_format format);
+
+/* YUYV: every other byte is luma, and the rest is chroma by turns. */
+static inline int glint_layout_is_packed(const struct glint_layout *layout)
+{
+    return layout->planes == 1 && layout->log2_x;
+}
+
+/* Sample I that pixel (X, Y) has a part in. */
+static inline uint8_t *glint_layout_at(const struct glint_layout *layout,
+                                       const struct glint_image *image, int i,
+                                       int x, int y)
+{
+    const struct glint_layout_sample *s = &layout->sample[i];
+    const int cx = i ? x >> layout->log2_x : x,
+              cy = i ? y >> layout->log2_y : y;
+
+    return image->plane[s->plane] + cy * image->stride_bytes[s->plane] +
+           s->offset + (ptrdiff_t)cx * s->step;
+}
+
+#endif

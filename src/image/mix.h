@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The constants of kernels/tone.h for a picture's coding.
+ */
+#ifndef GLINT_IMAGE_MIX_H
+#define GLINT_IMAGE_MIX_H
+
+#include "glint/image.h"
+#include "kernels/tone.h"
+
+const struct glint_tone16 *glint_tone16_of(enum glint_tone transfer);
+
+/* Fills MIX for pictures that are coded as IMAGE is. */
+void glint_mix_init(struct glint_mix *mix, const struct glint_image *image);
+
+#endif

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+#include "lamps/bright.h"
+
+#include "base/arena.h"
+#include "base/q.h"
+#include "lamps/bright_code.h"
+
+static size_t blocks_of(int width)
+{
+    return ((size_t)width + BRIGHT_BLOCK - 1) / BRIGHT_BLOCK;
+}
+
+void glint_bright_carve(struct glint_bright *b, struct glint_arena *arena,
+                        int width)
+{
+    b->curve = glint_arena_take(arena, 1, sizeof *b->curve);
+    b->full_luma = glint_arena_take(arena, 256, 1);
+    b->beyond = glint_arena_take(arena, 256, 1);
+    b->value = glint_arena_take(arena, blocks_of(width), BRIGHT_BLOCK);
+    b->block = glint_arena_take(arena, blocks_of(width), sizeof *b->block);
+    b->marked = glint_arena_take(arena, blocks_of(width), sizeof *b->marked);
+}
+
+void glint_bright_init(struct glint_bright *b, int width)
+{
+    b->width = width;
+    b->curve_tone = -1;
+}
+
+/* Steps of 15: the least of them below luma 192, the last from 252 on. */
+static void set_beyond(uint8_t beyond[256])
+{
+    for (int luma = 0; luma < 256; luma++)
+        beyond[luma] =
+            (uint8_t)(BRIGHT_CLIPPED + (luma > 177 ? (luma - 177) / 15 : 0));
+}
+
+void glint_bright_begin(struct glint_bright *b, const struct glint_image *image)
+{
+    b->image = image;
+    b->layout = glint_layout_of(image->format);
+    b->n_codes = b->layout->kind == GLINT_LAYOUT_GREY  ? 1
+                 : b->layout->kind == GLINT_LAYOUT_565 ? 2
+                                                       : 3;
+    if (b->curve_tone != (int)image->transfer)
+        glint_curve_init(b->curve, image->transfer);
+    b->curve_tone = (int)image->transfer;
+    glint_ycc_init(&b->ycc, image->matrix, image->range);
+    for (int code = 0; code < 256; code++)
+        b->full_luma[code] = (uint8_t)q_clamp_sat(
+            q_shift((int64_t)(code - b->ycc.black) * b->ycc.to_rgb_q16[0][0],
+                    16),
+            0, 255);
+    set_beyond(b->beyond);
+}
+
+/* The least Y code whose luma is LUMA or more; 256: there is none. */
+static int least_of_luma(const struct glint_bright *b, int luma)
+{
+    int code = luma > 0 ? 1 : 0;
+
+    while (code < 256 && b->full_luma[code] < luma)
+        code++;
+    return code;
+}
+
+void glint_bright_set_low(struct glint_bright *b, int low)
+{
+    const int channel = low < BRIGHT_CLIPPED ? low : BRIGHT_CLIPPED;
+
+    b->low = low;
+    b->low_code = bright_is_rgb(b) ? channel : least_of_luma(b, channel);
+    b->low_sum_q16 = (channel - 1) * 65536;
+}
+
+/* -------------------------------------------------------------------- value */
+
+void glint_bright_go(struct glint_bright *b, int y)
+{
+    const struct glint_layout *layout = b->layout;
+
+    for (int i = 0; i < b->n_codes; i++)
+        b->code[i] = (struct glint_bright_code){
+            glint_layout_at(layout, b->image, i, 0, y), layout->sample[i].step,
+            i ? layout->log2_x : 0};
+    for (int i = b->n_codes; i < 3; i++)
+        b->code[i] = b->code[0];
+    if (layout->kind == GLINT_LAYOUT_565)
+        b->code[1].first = b->code[0].first + 1;
+}
+
+static int value_of_rgb(const struct glint_bright *b, int x)
+{
+    int rgb[3], largest;
+
+    bright_read_rgb(b, x, rgb);
+    largest = bright_larger(rgb[0], bright_larger(rgb[1], rgb[2]));
+    return largest < BRIGHT_CLIPPED ? largest : b->beyond[bright_luma(rgb)];
+}
+
+/* What the chroma of pixel X adds to the largest channel, of full-range codes.
+ */
+static WHOLLY_INLINE int32_t chroma_q16(const struct glint_bright *b, int x)
+{
+    const int cb = code_at(b, 1, x) - 128, cr = code_at(b, 2, x) - 128;
+    const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
+    const int32_t red_q16 = cb * m_q16[0][1] + cr * m_q16[0][2];
+    const int32_t green_q16 = cb * m_q16[1][1] + cr * m_q16[1][2];
+    const int32_t blue_q16 = cb * m_q16[2][1] + cr * m_q16[2][2];
+
+    return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
+}
+
+static WHOLLY_INLINE int value_of_luma(const struct glint_bright *b, int code,
+                                       int32_t added_q16)
+{
+    const int32_t sum_q16 =
+        (code - b->ycc.black) * b->ycc.to_rgb_q16[0][0] + added_q16;
+    const int largest = (sum_q16 + (1 << 15)) >> 16;
+
+    if (largest < BRIGHT_CLIPPED)
+        return bright_larger(largest, 0);
+    return b->beyond[b->full_luma[code]];
+}
+
+int glint_bright_value_at(const struct glint_bright *b, int x)
+{
+    if (bright_is_rgb(b))
+        return value_of_rgb(b, x);
+    return value_of_luma(b, code_at(b, 0, x),
+                         b->layout->kind == GLINT_LAYOUT_YCC ? chroma_q16(b, x)
+                                                             : 0);
+}
+
+/* -------------------------------------------------------------------- light */
+
+void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3])
+{
+    bright_read(b, x, rgb_q20);
+}
+
+int glint_bright_same(const struct glint_bright *b, int x, int end)
+{
+    int code[3];
+
+    for (int i = 0; i < b->n_codes; i++)
+        code[i] = code_at(b, i, x);
+    for (x++; x < end; x++)
+        for (int i = 0; i < b->n_codes; i++)
+            if (code_at(b, i, x) != code[i])
+                return x;
+    return end;
+}

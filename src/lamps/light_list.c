@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Candidates for lights: held by flux, merged where they are near, capped.
+ */
+#include "base/q.h"
+#include "lamps/lights_state.h"
+
+#define JOIN_REACH 4 /* what exceeds MAX joins within so many merge radii */
+
+static int is_brighter(const struct glint_lights *f, int32_t a, int32_t b)
+{
+    const struct glint_candidate *p = &f->candidate[a], *q = &f->candidate[b];
+
+    if (p->faint != q->faint)
+        return q->faint;
+    return p->sum.w_q14 != q->sum.w_q14 ? p->sum.w_q14 > q->sum.w_q14
+                                        : p->sum.first < q->sum.first;
+}
+
+static void swap(int32_t *a, int32_t *b)
+{
+    const int32_t old = *a;
+
+    *a = *b;
+    *b = old;
+}
+
+/* Restores the heap order[0 .. n - 1], the faintest first, below AT. */
+static void sift_down(struct glint_lights *f, int at, int n)
+{
+    int32_t *order = f->order;
+
+    for (;;) {
+        int child = 2 * at + 1;
+
+        if (child >= n)
+            return;
+        if (child + 1 < n && is_brighter(f, order[child], order[child + 1]))
+            child++;
+        if (is_brighter(f, order[child], order[at]))
+            return;
+        swap(&order[child], &order[at]);
+        at = child;
+    }
+}
+
+static void make_heap(struct glint_lights *f, int n)
+{
+    for (int i = n / 2 - 1; i >= 0; i--)
+        sift_down(f, i, n);
+}
+
+static void sort_by_flux(struct glint_lights *f)
+{
+    make_heap(f, f->n);
+    for (int end = f->n - 1; end > 0; end--) {
+        swap(&f->order[0], &f->order[end]);
+        sift_down(f, 0, end);
+    }
+}
+
+void glint_lights_hold(struct glint_lights *f,
+                       const struct glint_candidate *candidate)
+{
+    struct glint_candidate *last = &f->candidate[LIGHT_CANDIDATES];
+
+    if (f->n < LIGHT_CANDIDATES) {
+        f->candidate[f->n] = *candidate;
+        f->order[f->n] = f->n;
+        f->n++;
+        if (f->n == LIGHT_CANDIDATES)
+            make_heap(f, f->n);
+        return;
+    }
+    *last = *candidate;
+    if (is_brighter(f, LIGHT_CANDIDATES, f->order[0])) {
+        const struct glint_candidate out = f->candidate[f->order[0]];
+
+        f->candidate[f->order[0]] = *last;
+        *last = out;
+        sift_down(f, 0, f->n);
+    }
+    f->dropped += !last->faint;
+}
+
+void glint_lights_compact(struct glint_lights *f)
+{
+    const int n_before = f->n;
+
+    f->n = 0;
+    for (int i = 0; i < n_before; i++)
+        if (!f->candidate[f->order[i]].gone)
+            f->order[f->n++] = f->order[i];
+}
+
+/* ------------------------------------------------------------------ merging */
+
+static void locate(struct glint_lights *f)
+{
+    for (int i = 0; i < f->n; i++) {
+        struct glint_candidate *c = &f->candidate[f->order[i]];
+
+        glint_region_centroid(&c->sum, &c->x_q8, &c->y_q8);
+        c->gone = 0;
+    }
+}
+
+/* Of the sorted candidates these come first. */
+static int count_lights(const struct glint_lights *f)
+{
+    int n = f->n;
+
+    while (n > 0 && f->candidate[f->order[n - 1]].faint)
+        n--;
+    return n;
+}
+
+static int64_t distance2_q16(const struct glint_candidate *a,
+                             const struct glint_candidate *b)
+{
+    const int64_t dx_q8 = a->x_q8 - b->x_q8, dy_q8 = a->y_q8 - b->y_q8;
+
+    return dx_q8 * dx_q8 + dy_q8 * dy_q8;
+}
+
+/* Gives CANDIDATE to INTO; positions stay until the next locate. */
+static void give(struct glint_candidate *candidate,
+                 struct glint_candidate *into)
+{
+    glint_region_absorb(&into->sum, &candidate->sum);
+    candidate->gone = 1;
+}
+
+/* Each, the brightest first, takes what lies within the merge distance of where
+ * it was. Returns whether anything merged. */
+static int merge_once(struct glint_lights *f)
+{
+    const int n_before = f->n;
+    int n_lights;
+
+    sort_by_flux(f);
+    locate(f);
+    n_lights = count_lights(f);
+    for (int i = 0; i < n_lights; i++) {
+        struct glint_candidate *c = &f->candidate[f->order[i]];
+
+        for (int j = i + 1; j < n_lights && !c->gone; j++) {
+            struct glint_candidate *other = &f->candidate[f->order[j]];
+
+            if (!other->gone && distance2_q16(c, other) < f->merge2_q16)
+                give(other, c);
+        }
+    }
+    glint_lights_compact(f);
+    return f->n < n_before;
+}
+
+void glint_lights_merge(struct glint_lights *f)
+{
+    while (merge_once(f))
+        ;
+}
+
+/* The nearest of the first MAX to candidate C, or NULL if none is in reach. */
+static struct glint_candidate *nearest_kept(const struct glint_lights *f,
+                                            const struct glint_candidate *c,
+                                            int max)
+{
+    int64_t best_q16 = JOIN_REACH * JOIN_REACH * f->merge2_q16;
+    struct glint_candidate *best = NULL;
+
+    for (int i = 0; i < max; i++) {
+        struct glint_candidate *kept = &f->candidate[f->order[i]];
+        const int64_t d_q16 = distance2_q16(c, kept);
+
+        if (d_q16 < best_q16) {
+            best_q16 = d_q16;
+            best = kept;
+        }
+    }
+    return best;
+}
+
+void glint_lights_cap(struct glint_lights *f, int max)
+{
+    const int n_lights = count_lights(f);
+
+    for (int i = max; i < n_lights; i++) {
+        struct glint_candidate *c = &f->candidate[f->order[i]];
+        struct glint_candidate *kept = nearest_kept(f, c, max);
+
+        if (kept)
+            give(c, kept);
+        else
+            f->dropped++;
+    }
+    if (f->n > max)
+        f->n = max;
+    sort_by_flux(f);
+}

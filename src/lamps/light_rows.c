@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From the rows of a picture to candidates for lights.
+ *
+ * Regions of all levels are linked first, by brightness alone; then the light
+ * of a row is summed where one needs it that may still be a light.
+ */
+#include "base/q.h"
+#include "lamps/lights_state.h"
+
+/* Regions of which less than 1 / 2^SEED_LOG2 reaches the upper threshold are
+ * lit surfaces, not lights. */
+#define SEED_LOG2 3
+
+/* A lamp is meant as wide as it is at the thresholds, unless its core by itself
+ * is clearly more of a lamp; in the dark of a picture it is one if nothing in
+ * it is. */
+#define COST_CLIPPED_Q8 64
+#define COST_WHITE_Q8   32
+#define COST_DARK_Q8    1024
+#define DARK_SHARE_Q15  Q_CONST(0.125, 15)
+
+/* ------------------------------------------------------------------- levels */
+
+/* Regions at LIGHT times the thresholds. */
+static void add_level(struct glint_lights *f, int32_t light_q20)
+{
+    const struct glint_bright *b = &f->bright;
+    struct glint_level *level = &f->level[f->n_levels++];
+
+    level->low = glint_white_code(b, light_q20, f->cfg.threshold_low_q8);
+    level->seed = glint_white_code(b, light_q20, f->cfg.threshold_high_q8);
+    level->clipped = glint_white_code(b, light_q20, 0);
+    level->cost_q8 = 0;
+}
+
+/* The same of a picture that is darker than white, unless much of it is as
+ * bright. */
+static void add_dark_level(struct glint_lights *f)
+{
+    if (!f->cfg.judge || f->white->light_q20 >= LINEAR_WHITE_Q20)
+        return;
+    add_level(f, f->white->light_q20);
+    f->level[0].cost_q8 = COST_DARK_Q8;
+    f->level[1] = f->level[0];
+    f->level[1].low = f->level[1].seed;
+    f->level[1].cost_q8 += COST_CLIPPED_Q8;
+    f->n_levels = 2;
+    if (glint_white_share_q15(f->white, f->level[0].low) > DARK_SHARE_Q15)
+        f->n_levels = 0;
+}
+
+/* Regions of what is clipped, in one channel or in all, LOW and above. */
+static void add_core(struct glint_lights *f, int low, int32_t cost_q8)
+{
+    f->level[f->n_levels++] =
+        (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
+}
+
+/* A picture that is darker than white has lamps that are, and may have others
+ * that are not. */
+static void set_levels(struct glint_lights *f)
+{
+    const int white_code = f->cfg.white_code;
+    struct glint_bright *b = &f->bright;
+
+    glint_white_measure(f->white, b, f->cfg.height);
+    f->n_levels = 0;
+    if (white_code) {
+        add_level(f, b->curve->decode_q20[white_code]);
+    } else {
+        add_dark_level(f);
+        add_level(f, LINEAR_WHITE_Q20);
+    }
+    if (f->cfg.judge) {
+        add_core(f, BRIGHT_CLIPPED, COST_CLIPPED_Q8);
+        add_core(f, BRIGHT_WHITE, COST_WHITE_Q8);
+        add_core(f, BRIGHT_HOT, 0);
+    }
+    glint_bright_set_low(b, f->level[0].low);
+}
+
+/* --------------------------------------------------------------- candidates */
+
+static int is_light(const struct glint_lights *f,
+                    const struct glint_region *sum)
+{
+    return sum->area >= f->cfg.min_area && sum->n_seeds > 0 &&
+           sum->n_seeds >= sum->area >> SEED_LOG2;
+}
+
+/* Large enough to be what is left of a light. */
+static int is_faint(const struct glint_lights *f,
+                    const struct glint_region *sum)
+{
+    return f->cfg.keep_faint && sum->area >= (f->cfg.min_area + 1) / 2;
+}
+
+/* Holds SUM if it qualifies. */
+static void offer(void *finder, const struct glint_region *sum)
+{
+    struct glint_lights *f = finder;
+    const int light = is_light(f, sum);
+
+    if (sum->area <= f->max_area && (light || is_faint(f, sum)))
+        glint_lights_hold(f,
+                          &(struct glint_candidate){.sum = *sum,
+                                                    .level = (int16_t)f->at,
+                                                    .faint = (uint8_t)!light});
+}
+
+/* --------------------------------------------------------------------- rows */
+
+/* Adds RUN of row Y to what is known of SUM without its light. */
+static void count_run(struct glint_region *sum, const struct glint_lights *f,
+                      const struct glint_run *run, int y)
+{
+    const struct glint_level *level = &f->level[f->at];
+    const uint8_t *value = f->bright.value;
+    const int all = run->x1 - run->x0;
+    int n_seeds = 0, n_clipped = 0;
+
+    glint_region_add_run(sum, run->x0, run->x1, y);
+    if (level->low < level->seed || level->low < level->clipped)
+        for (int x = run->x0; x < run->x1; x++) {
+            n_seeds += value[x] >= level->seed;
+            n_clipped += value[x] >= level->clipped;
+        }
+    sum->n_seeds += level->low < level->seed ? n_seeds : all;
+    sum->n_clipped += level->low < level->clipped ? n_clipped : all;
+}
+
+/* Lets the run of the first level, *OUTER or a later one, that RUN is in know
+ * that the light of RUN is needed. */
+static void want(struct glint_run **outer, const struct glint_run *run)
+{
+    while ((*outer)->x1 <= run->x0)
+        ++*outer;
+    if ((*outer)->want1 == 0 || run->x0 < (*outer)->want0)
+        (*outer)->want0 = run->x0;
+    if (run->x1 > (*outer)->want1)
+        (*outer)->want1 = run->x1;
+}
+
+/* What is larger is no light, whatever else it is. */
+static int may_be_light(const struct glint_lights *f,
+                        const struct glint_region *sum)
+{
+    return sum->area <= f->max_area;
+}
+
+static void link_level(struct glint_lights *f, int greatest, int y)
+{
+    struct glint_regions *r = &f->regions[f->at];
+    const int low = f->level[f->at].low;
+    struct glint_run *outer = f->regions[0].here.run;
+
+    if (greatest < low)
+        return;
+    glint_regions_link_row(r, &f->bright, low, y);
+    for (int i = 0; i < r->here.n_runs; i++) {
+        struct glint_region *sum = glint_regions_of_run(r, i);
+
+        count_run(sum, f, &r->here.run[i], y);
+        if (may_be_light(f, sum))
+            want(&outer, &r->here.run[i]);
+    }
+}
+
+/* Sums light where a region of any level needs it. */
+static void sum_row(struct glint_lights *f)
+{
+    const struct glint_run_row *row = &f->regions[0].here;
+    const int last = f->cfg.width - ROW_LIGHT_RIM;
+
+    glint_row_light_begin(&f->row);
+    for (int i = 0; i < row->n_runs; i++) {
+        const struct glint_run *run = &row->run[i];
+        const int x0 = run->want0, x1 = run->want1;
+
+        if (x1 > 0)
+            glint_row_light_extend(&f->row, &f->bright,
+                                   x0 > ROW_LIGHT_RIM ? x0 - ROW_LIGHT_RIM : 0,
+                                   x1 < last ? x1 + ROW_LIGHT_RIM
+                                             : f->cfg.width);
+    }
+}
+
+static void light_level(struct glint_lights *f, int y)
+{
+    struct glint_regions *r = &f->regions[f->at];
+
+    for (int i = 0; i < r->here.n_runs; i++) {
+        struct glint_region *sum = glint_regions_of_run(r, i);
+        const struct glint_run *run = &r->here.run[i];
+
+        if (may_be_light(f, sum))
+            glint_row_light_add(&f->row, sum, run->x0, run->x1, f->cfg.width,
+                                y);
+    }
+    if (r->n_active > 0)
+        glint_regions_end_row(r, offer, f, y);
+}
+
+static void take_row(struct glint_lights *f, int y)
+{
+    const int greatest = glint_bright_scan(&f->bright, y);
+
+    for (f->at = 0; f->at < f->n_levels; f->at++)
+        link_level(f, greatest, y);
+    sum_row(f);
+    for (f->at = 0; f->at < f->n_levels; f->at++)
+        light_level(f, y);
+}
+
+void glint_lights_collect(struct glint_lights *f,
+                          const struct glint_image *image)
+{
+    f->n = f->dropped = 0;
+    glint_bright_begin(&f->bright, image);
+    set_levels(f);
+    for (f->at = 0; f->at < f->n_levels; f->at++)
+        glint_regions_begin(&f->regions[f->at]);
+    for (int y = 0; y < f->cfg.height; y++)
+        take_row(f, y);
+    for (f->at = 0; f->at < f->n_levels; f->at++)
+        glint_regions_end_row(&f->regions[f->at], offer, f, f->cfg.height);
+}

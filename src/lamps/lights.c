@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From the regions of a picture to its lights.
+ *
+ * A region that qualifies becomes a candidate; of these the brightest
+ * LIGHT_CANDIDATES are held, and only when all are found is anything merged.
+ */
+#include "glint/lights.h"
+
+#include "base/arena.h"
+#include "base/q.h"
+#include "lamps/lights_state.h"
+
+#define MAX_SPOTS 1024
+#define EV_MIN_Q8 (-20 * 256)
+
+/* ------------------------------------------------------------------- memory */
+
+static int is_valid(const struct glint_lights_config *c)
+{
+    return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
+           c->height <= GLINT_MAX_SIDE && c->threshold_low_q8 >= EV_MIN_Q8 &&
+           c->threshold_low_q8 <= c->threshold_high_q8 &&
+           c->threshold_high_q8 <= 0 && c->white_code >= 0 &&
+           c->white_code <= 255 && c->judge >= 0 && c->judge <= 1 &&
+           c->min_area >= 1 && c->max_share_q15 >= 0 &&
+           c->max_share_q15 <= 1 << 15 && c->merge_q15 >= 0 &&
+           c->merge_q15 <= 1 << 15 && c->keep_faint >= 0 && c->keep_faint <= 1;
+}
+
+/* Runs twice: to measure, and to place. NULL if measuring or full. */
+static struct glint_lights *carve(struct glint_arena *a,
+                                  const struct glint_lights_config *c)
+{
+    struct glint_lights *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_lights measured;
+    struct glint_lights *f = placed ? placed : &measured;
+
+    glint_bright_carve(&f->bright, a, c->width);
+    for (int i = 0; i < LIGHT_LEVELS; i++)
+        glint_regions_carve(&f->regions[i], a, c->width);
+    glint_row_light_carve(&f->row, a, c->width);
+    f->white = glint_arena_take(a, 1, sizeof *f->white);
+    f->candidate =
+        glint_arena_take(a, LIGHT_CANDIDATES + 1, sizeof *f->candidate);
+    f->order = glint_arena_take(a, LIGHT_CANDIDATES, sizeof *f->order);
+    return a->used <= a->size ? placed : NULL;
+}
+
+void glint_lights_defaults(struct glint_lights_config *cfg, int width,
+                           int height)
+{
+    const int pixels = width * height; /* 2^30 at most */
+
+    *cfg = (struct glint_lights_config){.width = width,
+                                        .height = height,
+                                        .threshold_high_q8 = -26,
+                                        .threshold_low_q8 = -38,
+                                        .judge = 1,
+                                        .min_area =
+                                            pixels < 1 << 19 ? 2 : pixels >> 18,
+                                        .max_share_q15 = Q_CONST(0.25, 15),
+                                        .merge_q15 = Q_CONST(0.01, 15)};
+}
+
+size_t glint_lights_bytes(const struct glint_lights_config *cfg)
+{
+    struct glint_arena measured = glint_arena_measure();
+
+    if (!is_valid(cfg))
+        return 0;
+    carve(&measured, cfg);
+    return measured.used;
+}
+
+enum glint_status glint_lights_init(struct glint_lights **finder,
+                                    const struct glint_lights_config *cfg,
+                                    void *mem, size_t bytes)
+{
+    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_lights *f;
+    int64_t merge_q8;
+
+    if (!is_valid(cfg) || (uintptr_t)mem % GLINT_ALIGN)
+        return GLINT_E_ARGUMENT;
+    f = carve(&arena, cfg);
+    if (!f)
+        return GLINT_E_MEMORY;
+    f->cfg = *cfg;
+    glint_bright_init(&f->bright, cfg->width);
+    f->n = f->dropped = 0;
+    merge_q8 = q_shift((int64_t)cfg->width * cfg->merge_q15, 7);
+    f->merge2_q16 = merge_q8 * merge_q8;
+    f->max_area =
+        q_shift((int64_t)cfg->width * cfg->height * cfg->max_share_q15, 15);
+    *finder = f;
+    return GLINT_OK;
+}
+
+/* -------------------------------------------------------------------- score */
+
+/* Leaves what looks like a lamp, and what may still be one as faint. */
+static void judge(struct glint_lights *f)
+{
+    const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
+                                      f->cfg.height, f->level, 1};
+    const int n = f->n;
+    const int32_t least_q8 = f->cfg.keep_faint ? -SCORE_DOUBT : 0;
+
+    glint_score_all(&score, f->candidate, f->order, n);
+    f->n = 0;
+    for (int i = 0; i < n; i++) {
+        struct glint_candidate *c = &f->candidate[f->order[i]];
+
+        c->faint |= c->score_q8 < 0;
+        if (c->score_q8 >= least_q8)
+            f->order[f->n++] = f->order[i];
+    }
+    glint_score_choose(&score, f->candidate, f->order, f->n);
+    glint_lights_compact(f);
+}
+
+/* ------------------------------------------------------------------- result */
+
+/* A spot's origin is the corner of the first pixel, a region's its centre. */
+static struct glint_spot spot_of(const struct glint_candidate *candidate)
+{
+    const struct glint_region *sum = &candidate->sum;
+    struct glint_spot s = {.size_q8 = glint_region_radius_q8(sum),
+                           .area = sum->area,
+                           .n_clipped = sum->n_clipped,
+                           .flux_q16 = sum->w_q14 * 4,
+                           .faint = candidate->faint,
+                           .power_q16 = sum->w_q14 * 4,
+                           .cos_q15 = 1 << 15};
+
+    glint_region_centroid(sum, &s.x_q8, &s.y_q8);
+    s.x_q8 += 128;
+    s.y_q8 += 128;
+    glint_region_colour(sum, s.rgb_q15);
+    s.axis_q8[0] = s.axis_q8[1] = q_mul(s.size_q8, Q_CONST(0.70711, 15), 15);
+    return s;
+}
+
+int glint_lights_find(struct glint_lights *finder,
+                      const struct glint_image *image, struct glint_spot *spots,
+                      int max)
+{
+    glint_lights_collect(finder, image);
+    if (finder->cfg.judge)
+        judge(finder);
+    glint_lights_merge(finder);
+    glint_lights_cap(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
+    for (int i = 0; i < finder->n; i++)
+        spots[i] = spot_of(&finder->candidate[finder->order[i]]);
+    return finder->n;
+}
+
+int glint_lights_dropped(const struct glint_lights *finder)
+{
+    return finder->dropped;
+}

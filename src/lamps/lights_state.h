@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the parts of the finder of lights share: light_rows.c makes candidates
+ * of a picture, light_list.c holds, sorts and merges them.
+ */
+#ifndef GLINT_LAMPS_LIGHTS_STATE_H
+#define GLINT_LAMPS_LIGHTS_STATE_H
+
+#include "lamps/bright.h"
+#include "lamps/regions.h"
+#include "lamps/row_light.h"
+#include "lamps/score.h"
+#include "lamps/white.h"
+#include "glint/lights.h"
+
+enum {
+    LIGHT_CANDIDATES = 2048, /* at least the 1024 that find may be asked for */
+    LIGHT_LEVELS = 6
+};
+
+struct glint_lights {
+    struct glint_lights_config cfg;
+    int64_t max_area;
+    int64_t merge2_q16; /* squared merge distance */
+    struct glint_bright bright;
+    struct glint_white *white;
+    struct glint_row_light row;
+    struct glint_regions regions[LIGHT_LEVELS];
+    struct glint_level level[LIGHT_LEVELS]; /* of rising brightness */
+    int n_levels;
+    int at;                            /* level that regions are offered of */
+    struct glint_candidate *candidate; /* and one on its way out */
+    int32_t *order; /* of candidates: a heap, then by falling flux */
+    int n;          /* in order, the faint ones last */
+    int dropped;
+};
+
+/* Holds the candidates that IMAGE has, and no others. */
+void glint_lights_collect(struct glint_lights *f,
+                          const struct glint_image *image);
+
+/* Holds CANDIDATE, at the expense of the last if need be. */
+void glint_lights_hold(struct glint_lights *f,
+                       const struct glint_candidate *candidate);
+
+/* Takes those out of the order that are gone. */
+void glint_lights_compact(struct glint_lights *f);
+
+/* Sorts by falling flux and unites what is nearer than the merge distance. */
+void glint_lights_merge(struct glint_lights *f);
+
+/* Leaves MAX: what exceeds it joins the nearest that is kept, or is dropped. */
+void glint_lights_cap(struct glint_lights *f, int max);
+
+#endif

@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: MIT */
+#include "lamps/regions.h"
+
+#include "base/arena.h"
+#include "base/bytes.h"
+#include "base/q.h"
+#include "lamps/bright.h"
+
+/* --------------------------------------------------------------------- sums */
+
+static int32_t smaller(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
+static int32_t larger(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+
+/* 0 + 1 + 4 + ... + (n - 1)^2 */
+static int64_t squares_below(int64_t n)
+{
+    return (n - 1) * n * (2 * n - 1) / 6;
+}
+
+void glint_region_add_pixels(struct glint_region *sum,
+                             const struct glint_region_light *light, int x0,
+                             int x1, int y)
+{
+    const int64_t n = x1 - x0, w_q14 = light->w_q14;
+    const int64_t r2 =
+        squares_below(x1) - squares_below(x0) + n * ((int64_t)y * y);
+
+    sum->w_q14 += w_q14 * n;
+    sum->wx_q14 += w_q14 * (n * (x0 + x1 - 1) / 2);
+    sum->wy_q14 += w_q14 * n * y;
+    sum->wr2_q14 += (uint64_t)w_q14 * (uint64_t)r2;
+    for (int i = 0; i < 3; i++)
+        sum->rgb_q14[i] += light->rgb_q14[i] * n;
+}
+
+void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y)
+{
+    sum->area += x1 - x0;
+    sum->x0 = smaller(sum->x0, x0);
+    sum->x1 = larger(sum->x1, x1);
+    sum->y0 = smaller(sum->y0, y);
+    sum->y1 = larger(sum->y1, y + 1);
+}
+
+void glint_region_absorb(struct glint_region *sum,
+                         const struct glint_region *other)
+{
+    if (other->first < sum->first)
+        sum->first = other->first;
+    sum->area += other->area;
+    sum->n_seeds += other->n_seeds;
+    sum->n_clipped += other->n_clipped;
+    sum->x0 = smaller(sum->x0, other->x0);
+    sum->x1 = larger(sum->x1, other->x1);
+    sum->y0 = smaller(sum->y0, other->y0);
+    sum->y1 = larger(sum->y1, other->y1);
+    sum->w_q14 += other->w_q14;
+    sum->wx_q14 += other->wx_q14;
+    sum->wy_q14 += other->wy_q14;
+    sum->wr2_q14 += other->wr2_q14;
+    for (int i = 0; i < 3; i++) {
+        sum->rgb_q14[i] += other->rgb_q14[i];
+        sum->rim_rgb_q14[i] += other->rim_rgb_q14[i];
+    }
+}
+
+/* A / B * 2^FRAC, rounded; 0 <= A / B < 2^(62 - FRAC), 0 < B < 2^(62 - FRAC).
+ */
+static int64_t quotient(uint64_t a, int64_t b, int frac)
+{
+    const uint64_t d = (uint64_t)b;
+
+    return (int64_t)((a / d << frac) + (((a % d) << frac) + d / 2) / d);
+}
+
+static int32_t mean_q8(int64_t wx_q14, int64_t w_q14)
+{
+    return q_narrow(quotient((uint64_t)wx_q14, w_q14, 8));
+}
+
+void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
+                           int32_t *y_q8)
+{
+    *x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
+    *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
+}
+
+/* As if the box were all of one light. */
+static int32_t box_radius_q8(uint64_t diagonal2)
+{
+    return (int32_t)q_root((diagonal2 << 16) / 12);
+}
+
+/* The sums are moved to the pixel nearest to the centroid first, exactly,
+ * modulo 2^64. */
+int32_t glint_region_radius_q8(const struct glint_region *sum)
+{
+    const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
+    const uint64_t diagonal2 = (uint64_t)(across * across + down * down);
+    const int32_t x_q8 = mean_q8(sum->wx_q14, sum->w_q14);
+    const int32_t y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
+    const int32_t x = (x_q8 + 128) >> 8, y = (y_q8 + 128) >> 8;
+    const int64_t fx_q8 = x_q8 - x * 256, fy_q8 = y_q8 - y * 256;
+    const uint64_t about =
+        sum->wr2_q14 - 2 * (uint64_t)x * (uint64_t)sum->wx_q14 -
+        2 * (uint64_t)y * (uint64_t)sum->wy_q14 +
+        ((uint64_t)x * (uint64_t)x + (uint64_t)y * (uint64_t)y) *
+            (uint64_t)sum->w_q14;
+    const int64_t mean_q16 =
+        quotient(about, sum->w_q14, 16) - fx_q8 * fx_q8 - fy_q8 * fy_q8;
+
+    if ((uint64_t)sum->w_q14 > (UINT64_C(1) << 63) / (diagonal2 / 4 + 1))
+        return box_radius_q8(diagonal2);
+    return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
+}
+
+/* A clipped pixel tells little, so it counts 1/64: the rim decides where there
+ * is one worth the name, and white comes out where everything is clipped to
+ * white, without a step in between. */
+void glint_region_colour(const struct glint_region *sum, int32_t rgb_q15[3])
+{
+    int64_t c[3], y;
+
+    for (int i = 0; i < 3; i++)
+        c[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
+    y = region_luminance(c[0], c[1], c[2]);
+    for (int i = 0; i < 3; i++)
+        rgb_q15[i] =
+            y > 0 ? q_narrow(quotient((uint64_t)c[i], y, 15)) : 1 << 15;
+}
+
+/* ---------------------------------------------------------------- labelling */
+
+void glint_regions_carve(struct glint_regions *r, struct glint_arena *arena,
+                         int width)
+{
+    const size_t n_runs = ((size_t)width + 1) / 2;
+
+    r->width = width;
+    r->above.run = glint_arena_take(arena, n_runs, sizeof *r->above.run);
+    r->here.run = glint_arena_take(arena, n_runs, sizeof *r->here.run);
+    r->component = glint_arena_take(arena, 2 * n_runs, sizeof *r->component);
+    r->active = glint_arena_take(arena, 2 * n_runs, sizeof *r->active);
+    r->idle = glint_arena_take(arena, 2 * n_runs, sizeof *r->idle);
+}
+
+void glint_regions_begin(struct glint_regions *r)
+{
+    r->n_active = r->n_idle = 0;
+    r->above.n_runs = r->here.n_runs = 0;
+    for (int label = 2 * ((r->width + 1) / 2); label > 0; label--)
+        r->idle[r->n_idle++] = label - 1;
+}
+
+static int32_t find_root(struct glint_component *c, int32_t label)
+{
+    while (c[label].parent != label) {
+        c[label].parent = c[c[label].parent].parent;
+        label = c[label].parent;
+    }
+    return label;
+}
+
+static int32_t unite(struct glint_component *c, int32_t a, int32_t b)
+{
+    a = find_root(c, a);
+    b = find_root(c, b);
+    if (a == b)
+        return a;
+    glint_region_absorb(&c[a].sum, &c[b].sum);
+    c[b].parent = a;
+    return a;
+}
+
+static int32_t new_label(struct glint_regions *r, int32_t first)
+{
+    const int32_t label = r->idle[--r->n_idle];
+
+    r->component[label] = (struct glint_component){
+        .sum = {.first = first, .x0 = INT32_MAX, .y0 = INT32_MAX},
+        .parent = label};
+    r->active[r->n_active++] = label;
+    return label;
+}
+
+/* Bits of the pixels of a block, the first lowest, that are LOW or more. */
+static WHOLLY_INLINE uint32_t reach_of(const uint8_t value[BRIGHT_BLOCK],
+                                       int low, int is_above_128)
+{
+    uint32_t bits = 0;
+
+    for (int i = 0; i < BRIGHT_BLOCK / 8; i++)
+        bits |= bytes_high_bits(
+                    bytes_reach(bytes_load(value + 8 * i), low, is_above_128))
+                << 8 * i;
+    return bits;
+}
+
+/* Ends the run that begins at BEGIN, if that is not -1. */
+static WHOLLY_INLINE void end_run(struct glint_run_row *row, int begin, int end)
+{
+    if (begin >= 0)
+        row->run[row->n_runs++] =
+            (struct glint_run){.x0 = begin, .x1 = end, .label = -1};
+}
+
+/* Goes on with the runs of a block from X, whose pixels of BITS are in. BEGIN
+ * is where the one begins that X may continue, or -1; returns the next of
+ * these.
+ */
+static int find_runs(struct glint_run_row *row, uint32_t bits, int x, int begin)
+{
+    uint32_t edges = bits ^ (bits << 1 | (begin >= 0));
+
+    for (; edges; edges &= edges - 1) {
+        const int at = x + bit_length(edges & -edges) - 1;
+
+        end_run(row, begin, at);
+        begin = begin < 0 ? at : -1;
+    }
+    return begin;
+}
+
+static void find_all_runs(struct glint_run_row *row,
+                          const struct glint_bright *b, int low)
+{
+    const int last = (b->width - 1) / BRIGHT_BLOCK;
+    const int past = (last + 1) * BRIGHT_BLOCK - b->width;
+    int begin = -1, next = 0; /* block */
+
+    row->n_runs = 0;
+    for (int k = 0; k < b->n_marked; k++) {
+        const int i = b->marked[k], x = i * BRIGHT_BLOCK;
+        uint32_t bits;
+
+        if (b->block[i] < low)
+            continue;
+        bits = low > 128 ? reach_of(b->value + x, low, 1)
+                         : reach_of(b->value + x, low, 0);
+        if (i == last)
+            bits &= UINT32_MAX >> past;
+        if (i > next) {
+            end_run(row, begin, next * BRIGHT_BLOCK);
+            begin = -1;
+        }
+        begin = find_runs(row, bits, x, begin);
+        next = i + 1;
+    }
+    next *= BRIGHT_BLOCK;
+    end_run(row, begin, next < b->width ? next : b->width);
+}
+
+/* Gives the runs of row Y the labels of what they touch. */
+static void link_runs(struct glint_regions *r, int y)
+{
+    const struct glint_run_row *above = &r->above;
+    int first = 0; /* of the runs above that may touch this one or a later */
+
+    for (int i = 0; i < r->here.n_runs; i++) {
+        struct glint_run *run = &r->here.run[i];
+        int32_t label = -1;
+
+        while (first < above->n_runs && above->run[first].x1 < run->x0)
+            first++;
+        for (int j = first; j < above->n_runs && above->run[j].x0 <= run->x1;
+             j++)
+            label = label < 0 ? find_root(r->component, above->run[j].label)
+                              : unite(r->component, label, above->run[j].label);
+        if (label < 0)
+            label = new_label(r, y * r->width + run->x0);
+        r->component[label].last_row = y;
+        run->label = label;
+    }
+}
+
+void glint_regions_link_row(struct glint_regions *r,
+                            const struct glint_bright *bright, int low, int y)
+{
+    find_all_runs(&r->here, bright, low);
+    link_runs(r, y);
+}
+
+struct glint_region *glint_regions_of_run(struct glint_regions *r, int i)
+{
+    return &r->component[find_root(r->component, r->here.run[i].label)].sum;
+}
+
+static void swap_rows(struct glint_regions *r)
+{
+    const struct glint_run_row here = r->here;
+
+    r->here = r->above;
+    r->above = here;
+    r->here.n_runs = 0;
+}
+
+void glint_regions_end_row(struct glint_regions *r, glint_region_fn *done,
+                           void *ctx, int y)
+{
+    const int n_before = r->n_active;
+
+    for (int i = 0; i < r->here.n_runs; i++)
+        r->here.run[i].label = find_root(r->component, r->here.run[i].label);
+    r->n_active = 0;
+    for (int i = 0; i < n_before; i++) {
+        const int32_t label = r->active[i];
+        const struct glint_component *c = &r->component[label];
+
+        if (c->parent == label && c->last_row == y) {
+            r->active[r->n_active++] = label;
+            continue;
+        }
+        if (c->parent == label)
+            done(ctx, &c->sum);
+        r->idle[r->n_idle++] = label;
+    }
+    swap_rows(r);
+}

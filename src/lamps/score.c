@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: MIT */
+#include "lamps/score.h"
+
+#include "base/q.h"
+#include "base/sort.h"
+
+enum {
+    FLOOR_Q20 = 1 << 12, /* added to light: noise of the dark is no contrast */
+    LEAST_Q8 = -256,     /* of a contrast */
+    MOST_Q8 = 6 * 256,
+    SMALL_Q8 = -2424, /* log2 of a share of the picture: 1/700; a colour counts
+                         for a lamp here, */
+    LARGE_Q8 = -1400, /* and against it from here on */
+    SURE_Q8 = 384     /* scores beyond are all the same */
+};
+
+/* Adds WEIGHT of MEASURE, held to LEAST .. MOST, over LEAST. */
+struct term {
+    int8_t measure;
+    int16_t least_q8, most_q8, weight_q8;
+};
+
+/* By logistic regression, weights held to the sign that their reason gives
+ * them: tests/corpus/fit prints them; 64 are a natural logarithm of odds. */
+enum { BIAS_Q8 = -1207 };
+
+static const struct term terms[] = {
+    {EVIDENCE_AROUND, 0, 448, 94},      {EVIDENCE_HALO, -256, 512, 72},
+    {EVIDENCE_SPREAD, 0, 512, -51},     {EVIDENCE_FILL, 64, 160, 262},
+    {EVIDENCE_FILL, 160, 224, 333},     {EVIDENCE_BOX, 96, 200, 79},
+    {EVIDENCE_SIZE, -4400, -3400, 104}, {EVIDENCE_SIZE, -3400, -2000, 22},
+    {EVIDENCE_COLOUR, 0, 256, 83},      {EVIDENCE_DIM, 0, 1280, -75},
+    {EVIDENCE_CLOSE, 0, 300, 110},      {EVIDENCE_SOLID, 0, 256, 137},
+    {EVIDENCE_WHITE, -512, 0, 136},     {EVIDENCE_CROWD, 0, 2620, -39}};
+
+/* ----------------------------------------------------------------- contrast */
+
+static int64_t largest(const int64_t v[3])
+{
+    const int64_t most = v[0] > v[1] ? v[0] : v[1];
+
+    return most > v[2] ? most : v[2];
+}
+
+/* Stops of the largest channel and of luminance. */
+static void stops_of(const int64_t rgb_q20[3], int32_t stops_q8[2])
+{
+    const int64_t y_q20 =
+        (rgb_q20[0] * 54 + rgb_q20[1] * 183 + rgb_q20[2] * 19) >> 8;
+
+    stops_q8[0] = glint_stops_q8(largest(rgb_q20) + FLOOR_Q20);
+    stops_q8[1] = glint_stops_q8(y_q20 + FLOOR_Q20);
+}
+
+/* Of what is IN over pixel X of the row: by the largest channel or luminance,
+ * whichever shows more. */
+static int32_t contrast_at(const struct glint_score *s, const int32_t in_q8[2],
+                           int x)
+{
+    int32_t rgb_q20[3], out_q8[2];
+    int64_t wide_q20[3];
+
+    glint_bright_read(s->bright, x, rgb_q20);
+    for (int i = 0; i < 3; i++)
+        wide_q20[i] = rgb_q20[i];
+    stops_of(wide_q20, out_q8);
+    for (int i = 0; i < 2; i++)
+        out_q8[i] = in_q8[i] - out_q8[i];
+    return q_clamp_sat(out_q8[0] > out_q8[1] ? out_q8[0] : out_q8[1], LEAST_Q8,
+                       MOST_Q8);
+}
+
+/* Point I of the ellipse in SUM's box that is D pixels larger on each side. */
+static void point_of(const struct glint_region *sum, int32_t d, int i,
+                     int32_t *x, int32_t *y)
+{
+    static const int16_t sine_q14[SCORE_POINTS + SCORE_POINTS / 4] = {
+        0,      6270,  11585, 15137,  16384,  15137,  11585,
+        6270,   0,     -6270, -11585, -15137, -16384, -15137,
+        -11585, -6270, 0,     6270,   11585,  15137};
+    const int64_t w = sum->x1 - sum->x0 - 1 + 2 * (int64_t)d;
+    const int64_t h = sum->y1 - sum->y0 - 1 + 2 * (int64_t)d;
+
+    *x = q_narrow(sum->x0 - d +
+                  q_shift(w * (16384 + sine_q14[i + SCORE_POINTS / 4]), 15));
+    *y = q_narrow(sum->y0 - d + q_shift(h * (16384 + sine_q14[i]), 15));
+}
+
+/* Contrasts at the points that are in the picture; returns how many. */
+static int look_around(const struct glint_score *s,
+                       const struct glint_region *sum, int32_t d,
+                       const int32_t in_q8[2], int32_t found_q8[SCORE_POINTS])
+{
+    int n = 0;
+
+    for (int i = 0; i < SCORE_POINTS; i++) {
+        int32_t x, y;
+
+        point_of(sum, d, i, &x, &y);
+        if (x < 0 || y < 0 || x >= s->width || y >= s->height)
+            continue;
+        glint_bright_go(s->bright, y);
+        found_q8[n++] = contrast_at(s, in_q8, x);
+    }
+    return n;
+}
+
+static int32_t mean_of(const int32_t *v, int n)
+{
+    int32_t sum = 0;
+
+    for (int i = 0; i < n; i++)
+        sum += v[i];
+    return n ? sum / n : 0;
+}
+
+static void sort(int32_t *v, int n)
+{
+    for (int i = 1; i < n; i++)
+        for (int j = i; j > 0 && v[j] < v[j - 1]; j--) {
+            const int32_t old = v[j];
+
+            v[j] = v[j - 1];
+            v[j - 1] = old;
+        }
+}
+
+/* Distance of ring I from the box of SUM: in 1/800 of the picture's side, and
+ * in half of the box's. */
+static int32_t distance_of(const struct glint_score *s,
+                           const struct glint_region *sum, int i)
+{
+    static const int16_t in_q8[SCORE_RINGS][2] = {
+        {320, 64}, {768, 192}, {2048, 512}};
+    const int64_t side = q_root((uint64_t)((int64_t)s->width * s->height));
+    const int64_t box =
+        q_root((uint64_t)((int64_t)(sum->x1 - sum->x0) * (sum->y1 - sum->y0)));
+
+    return (int32_t)(1 +
+                     (in_q8[i][0] * side / 800 + in_q8[i][1] * box / 2) / 256);
+}
+
+/* Contrast around a region at one distance. */
+struct ring {
+    int32_t mean_q8, lower_q8, upper_q8; /* quartiles */
+};
+
+/* RING stays where no point is in the picture. */
+static void look_at_ring(struct ring *ring, const struct glint_score *s,
+                         const struct glint_region *sum, int32_t d,
+                         const int32_t in_q8[2])
+{
+    int32_t found_q8[SCORE_POINTS];
+    const int n = look_around(s, sum, d, in_q8, found_q8);
+
+    if (n == 0)
+        return;
+    sort(found_q8, n);
+    ring->mean_q8 = mean_of(found_q8, n);
+    ring->lower_q8 = found_q8[n / 4];
+    ring->upper_q8 = found_q8[n - 1 - n / 4];
+}
+
+static void mean_stops(const struct glint_region *sum, int32_t stops_q8[2])
+{
+    int64_t mean_q20[3];
+
+    for (int i = 0; i < 3; i++)
+        mean_q20[i] = sum->rgb_q14[i] * 64 / sum->area;
+    stops_of(mean_q20, stops_q8);
+}
+
+static void look_at_rings(struct glint_candidate *c,
+                          const struct glint_score *s)
+{
+    struct ring ring[SCORE_RINGS] = {{0, 0, 0}};
+    int32_t in_q8[2];
+
+    mean_stops(&c->sum, in_q8);
+    for (int i = 0; i < SCORE_RINGS; i++) {
+        if (i > 0)
+            ring[i] = ring[i - 1];
+        look_at_ring(&ring[i], s, &c->sum, distance_of(s, &c->sum, i), in_q8);
+    }
+    c->evidence_q8[EVIDENCE_AROUND] = ring[1].lower_q8;
+    c->evidence_q8[EVIDENCE_HALO] = ring[2].mean_q8 - ring[0].mean_q8;
+    c->evidence_q8[EVIDENCE_CLOSE] = ring[0].lower_q8;
+    c->evidence_q8[EVIDENCE_SPREAD] = ring[0].upper_q8 - ring[0].lower_q8;
+}
+
+/* -------------------------------------------------------------------- shape */
+
+/* Over 2 pi r^2; a pixel by itself has 1 / 6 of a squared pixel. */
+static int32_t fill_q8(const struct glint_region *sum)
+{
+    const int64_t r_q8 = glint_region_radius_q8(sum);
+    const int64_t disc_q16 = q_shift(
+        (r_q8 * r_q8 + Q_CONST(1.0 / 6, 16)) * Q_CONST(6.2831853, 8), 8);
+
+    return q_clamp_sat(((int64_t)sum->area << 24) / disc_q16, 0, 512);
+}
+
+static int32_t colour_q8(const struct glint_region *sum)
+{
+    int64_t rim[3], least;
+
+    for (int i = 0; i < 3; i++)
+        rim[i] = 63 * sum->rim_rgb_q14[i] + sum->rgb_q14[i];
+    least = rim[0] < rim[1] ? rim[0] : rim[1];
+    least = least < rim[2] ? least : rim[2];
+    return 256 - (int32_t)(least / (largest(rim) / 256 + 1));
+}
+
+/* Of the picture: 2^20 is all of it. */
+static int64_t share_q20(const struct glint_score *s, int64_t pixels)
+{
+    return (pixels << 20) / ((int64_t)s->width * s->height);
+}
+
+/* A picture by night that is underexposed has lamps that do not clip; a grey
+ * one has grey things. */
+static int32_t dim_q8(const struct glint_score *s,
+                      const struct glint_level *level)
+{
+    const int32_t *light_q20 = s->bright->curve->decode_q20;
+    int half;
+
+    if (level->clipped >= BRIGHT_CLIPPED)
+        return 0;
+    half = glint_white_reached_by(s->white, 1);
+    return q_clamp_sat(glint_stops_q8(light_q20[half] + FLOOR_Q20) -
+                           glint_stops_q8(light_q20[level->clipped]) + 5 * 256,
+                       0, 5 * 256);
+}
+
+static void look_at_shape(struct glint_candidate *c,
+                          const struct glint_score *s)
+{
+    const struct glint_region *sum = &c->sum;
+    const int64_t box = (int64_t)(sum->x1 - sum->x0) * (sum->y1 - sum->y0);
+    const int32_t size_q8 = glint_stops_q8(share_q20(s, sum->area));
+    const int32_t large_q8 =
+        q_clamp_sat((int64_t)size_q8 - SMALL_Q8, 0, LARGE_Q8 - SMALL_Q8);
+    const int32_t tint_q8 = colour_q8(sum) * large_q8 / (LARGE_Q8 - SMALL_Q8);
+    int32_t *e_q8 = c->evidence_q8;
+    int32_t in_q8[2];
+
+    mean_stops(sum, in_q8);
+    e_q8[EVIDENCE_WHITE] =
+        in_q8[1] -
+        glint_stops_q8(
+            s->bright->curve->decode_q20[s->level[c->level].clipped]);
+    e_q8[EVIDENCE_DIM] = dim_q8(s, &s->level[c->level]);
+    e_q8[EVIDENCE_FILL] = fill_q8(sum);
+    e_q8[EVIDENCE_BOX] = (int32_t)(((int64_t)sum->area << 8) / box);
+    e_q8[EVIDENCE_SIZE] = size_q8;
+    e_q8[EVIDENCE_COLOUR] = colour_q8(sum) - tint_q8;
+    e_q8[EVIDENCE_SOLID] =
+        (int32_t)(((int64_t)sum->n_clipped << 8) / sum->area);
+}
+
+/* -------------------------------------------------------------------- score */
+
+static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
+{
+    int32_t sum_q16 = BIAS_Q8 * 256;
+
+    for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
+        const struct term *t = &terms[i];
+        const int32_t v_q8 =
+            q_clamp_sat(evidence_q8[t->measure], t->least_q8, t->most_q8);
+
+        sum_q16 += (v_q8 - t->least_q8) * t->weight_q8;
+    }
+    return sum_q16 >> 8;
+}
+
+static int is_of_rings(int measure)
+{
+    return measure == EVIDENCE_AROUND || measure == EVIDENCE_HALO ||
+           measure == EVIDENCE_SPREAD || measure == EVIDENCE_CLOSE;
+}
+
+/* What the surroundings can add to a score at most. */
+static int32_t most_of_rings(void)
+{
+    int32_t sum_q16 = 0;
+
+    for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
+        const struct term *t = &terms[i];
+
+        if (is_of_rings(t->measure) && t->weight_q8 > 0)
+            sum_q16 += (t->most_q8 - t->least_q8) * t->weight_q8;
+    }
+    return (sum_q16 >> 8) + 1;
+}
+
+/* The score of C if its surroundings spoke for it as much as they can. */
+static int32_t most_of(struct glint_candidate *c, int32_t most_of_rings_q8)
+{
+    for (int i = 0; i < EVIDENCES; i++)
+        if (is_of_rings(i))
+            c->evidence_q8[i] = INT16_MIN; /* the least of each term: 0 */
+    return score_of(c->evidence_q8) + most_of_rings_q8;
+}
+
+static void count_crowd(struct glint_candidate *candidate, const int32_t *order,
+                        int n)
+{
+    int32_t n_at[SCORE_LEVELS] = {0};
+
+    for (int i = 0; i < n; i++)
+        n_at[candidate[order[i]].level] += !candidate[order[i]].faint;
+    for (int i = 0; i < n; i++) {
+        struct glint_candidate *c = &candidate[order[i]];
+
+        c->evidence_q8[EVIDENCE_CROWD] =
+            glint_stops_q8((int64_t)n_at[c->level] << 20);
+    }
+}
+
+void glint_score_all(const struct glint_score *score,
+                     struct glint_candidate *candidate, const int32_t *order,
+                     int n)
+{
+    const int32_t most_q8 = most_of_rings();
+
+    count_crowd(candidate, order, n);
+    for (int i = 0; i < n; i++) {
+        struct glint_candidate *c = &candidate[order[i]];
+
+        look_at_shape(c, score);
+        c->score_q8 = most_of(c, most_q8);
+        if (score->is_brief && c->score_q8 < -SCORE_DOUBT)
+            continue;
+        look_at_rings(c, score);
+        c->score_q8 = score_of(c->evidence_q8);
+    }
+}
+
+/* ----------------------------------------------------------- one of its kind
+ */
+
+static int by_rank(const void *ctx, int32_t a, int32_t b)
+{
+    const struct glint_candidate *p = (const struct glint_candidate *)ctx + a;
+    const struct glint_candidate *q = (const struct glint_candidate *)ctx + b;
+
+    if (p->rank_q8 != q->rank_q8)
+        return p->rank_q8 > q->rank_q8;
+    if (p->level != q->level)
+        return p->level < q->level;
+    return p->sum.first < q->sum.first;
+}
+
+/* Whether INNER, of a higher level, lies in the box of OUTER. */
+static int is_within(const struct glint_candidate *inner,
+                     const struct glint_candidate *outer)
+{
+    const struct glint_region *in = &inner->sum, *out = &outer->sum;
+
+    return inner->level > outer->level && in->x0 >= out->x0 &&
+           in->x1 <= out->x1 && in->y0 >= out->y0 && in->y1 <= out->y1;
+}
+
+void glint_score_choose(const struct glint_score *score,
+                        struct glint_candidate *candidate, int32_t *order,
+                        int n)
+{
+    for (int i = 0; i < n; i++) {
+        struct glint_candidate *c = &candidate[order[i]];
+
+        c->rank_q8 = (c->score_q8 < SURE_Q8 ? c->score_q8 : SURE_Q8) -
+                     score->level[c->level].cost_q8;
+    }
+    glint_sort(order, n, by_rank, candidate);
+    for (int i = 0; i < n; i++) {
+        const struct glint_candidate *c = &candidate[order[i]];
+
+        for (int j = i + 1; j < n && !c->gone; j++) {
+            struct glint_candidate *other = &candidate[order[j]];
+
+            other->gone |=
+                (uint8_t)(is_within(other, c) || is_within(c, other));
+        }
+    }
+}

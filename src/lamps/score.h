@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How much a bright region looks like a lamp.
+ *
+ *   in   the bright regions of a picture, at each of the levels of brightness
+ *        that they were sought at, and the picture around them
+ *   out  a score of each: 0 and more speak for a lamp, 64 are a factor e of
+ *        its odds; below -SCORE_DOUBT it is none even if it was one before
+ *
+ * The score is a sum of terms, each a measure held to a range and weighed; so
+ * it moves little where the picture does. Regions of the levels lie within each
+ * other, a lamp in its glow in the sky, and of those the one with the highest
+ * score is meant.
+ *
+ * Around a region SCORE_POINTS pixels are read on each of SCORE_RINGS ellipses:
+ * distances grow with the region and with the picture, so that the same scene
+ * in more pixels has the same score.
+ *
+ * Limits: each term is below 2^13 * 2^10, so that the sum of some 14 fits 32
+ * bits with ease; what areas and boxes need is in 64.
+ */
+#ifndef GLINT_LAMPS_SCORE_H
+#define GLINT_LAMPS_SCORE_H
+
+#include "lamps/bright.h"
+#include "lamps/regions.h"
+#include "lamps/white.h"
+
+enum {
+    SCORE_RINGS = 3,
+    SCORE_POINTS = 16,
+    SCORE_DOUBT = 256,
+    SCORE_LEVELS = 8
+};
+
+/* Measures, _q8. */
+enum glint_evidence {
+    EVIDENCE_AROUND, /* stops over what is around: the lower quartile */
+    EVIDENCE_HALO,   /* by how much that is more further out: light falls off */
+    EVIDENCE_SPREAD, /* between the quartiles close around: it does not do so
+                        alike in all directions */
+    EVIDENCE_FILL,   /* area over that of a disc that is as wide: 256 for one */
+    EVIDENCE_BOX,    /* area over that of its box */
+    EVIDENCE_SIZE,   /* log2 of its share of the picture: 0 and less */
+    EVIDENCE_COLOUR, /* saturation, 256: one channel alone; of a small region */
+    EVIDENCE_DIM,    /* stops by which half of the picture is less than five
+                        below a white that is none */
+    EVIDENCE_CLOSE,  /* as AROUND, close to the edge: that of a lamp is steep */
+    EVIDENCE_SOLID,  /* share of it that is clipped: 256 is all of it */
+    EVIDENCE_WHITE,  /* stops of its mean luminance over its level's white */
+    EVIDENCE_CROWD,  /* log2 of the regions of its level: lamps are few */
+    EVIDENCES
+};
+
+/* A region that may be a lamp. */
+struct glint_candidate {
+    struct glint_region sum;
+    int32_t x_q8, y_q8;
+    int32_t score_q8;
+    int16_t level; /* counts from 0, the darkest */
+    int32_t rank_q8;
+    uint8_t faint;
+    uint8_t gone; /* merged into another, or another stands for it */
+    int32_t evidence_q8[EVIDENCES];
+};
+
+/* Brightness that regions are made of. */
+struct glint_level {
+    int low;           /* of their pixels */
+    int seed, clipped; /* of pixels that are counted */
+    int32_t cost_q8;   /* taken off the score where regions of several levels
+                          lie within each other */
+};
+
+struct glint_score {
+    struct glint_bright *bright;
+    const struct glint_white *white;
+    int width, height;
+    const struct glint_level *level;
+    int is_brief; /* 1: of what must fall below -SCORE_DOUBT the surroundings
+                     are not read; its score is some number below that, and no
+                     less than it would be */
+};
+
+/* Sets the score of the N candidates of ORDER. */
+void glint_score_all(const struct glint_score *score,
+                     struct glint_candidate *candidate, const int32_t *order,
+                     int n);
+
+/* Marks those gone that lie within or around one with a higher score. ORDER
+ * comes out by falling score. */
+void glint_score_choose(const struct glint_score *score,
+                        struct glint_candidate *candidate, int32_t *order,
+                        int n);
+
+#endif

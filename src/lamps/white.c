@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+#include "lamps/white.h"
+
+#include "base/q.h"
+
+/* With f the part after the leading bit, log2(1 + f) is within 0.002 of
+ * f + f (1 - f) (0.4273 - 0.175 f). */
+int32_t glint_stops_q8(int64_t light_q20)
+{
+    const uint64_t v = light_q20 > 0 ? (uint64_t)light_q20 : 1;
+    const int bits = bit_length(v) - 1;
+    const int32_t f_q12 =
+        (int32_t)((bits >= 12 ? v >> (bits - 12) : v << (12 - bits)) - 4096);
+    const int32_t bent_q12 = q_mul(f_q12, 4096 - f_q12, 12);
+    const int32_t by_q12 =
+        Q_CONST(0.4273, 12) - q_mul(Q_CONST(0.175, 12), f_q12, 12);
+
+    return (bits - 20) * 256 +
+           (int32_t)q_shift(f_q12 + q_mul(bent_q12, by_q12, 12), 4);
+}
+
+/* Linear, 2^(EV / 256) of white, EV -20 .. 0: by the codes' own stops. */
+static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
+{
+    int code = 1;
+
+    while (code < BRIGHT_CLIPPED &&
+           glint_stops_q8(b->curve->decode_q20[code]) < stops_q8)
+        code++;
+    return code;
+}
+
+static void count(struct glint_white *w, struct glint_bright *b, int height)
+{
+    const int nx = b->width < WHITE_GRID_X ? b->width : WHITE_GRID_X;
+    const int ny = height < WHITE_GRID_Y ? height : WHITE_GRID_Y;
+
+    for (int j = 0; j < ny; j++) {
+        glint_bright_go(b, (int)((2 * j + 1) * (int64_t)height / (2 * ny)));
+        for (int i = 0; i < nx; i++)
+            w->at_least[glint_bright_value_at(
+                b, (int)((2 * i + 1) * (int64_t)b->width / (2 * nx)))]++;
+    }
+    w->n = nx * ny;
+}
+
+void glint_white_measure(struct glint_white *white, struct glint_bright *bright,
+                         int height)
+{
+    int code;
+
+    *white = (struct glint_white){0};
+    count(white, bright, height);
+    for (int value = 255; value >= 0; value--)
+        white->at_least[value] += white->at_least[value + 1];
+    code = glint_white_reached_by(white, WHITE_PART_LOG2);
+    if (code >= BRIGHT_CLIPPED)
+        white->light_q20 = LINEAR_WHITE_Q20;
+    else
+        white->light_q20 =
+            bright->curve->decode_q20[code > WHITE_LEAST ? code : WHITE_LEAST];
+}
+
+int glint_white_code(const struct glint_bright *bright, int32_t light_q20,
+                     int32_t ev_q8)
+{
+    return code_of_stops(bright, glint_stops_q8(light_q20) + ev_q8);
+}
+
+int glint_white_reached_by(const struct glint_white *white, int part_log2)
+{
+    int value = 0;
+
+    while (value < 256 && white->at_least[value] > white->n >> part_log2)
+        value++;
+    return value < 256 ? value : 255;
+}
+
+int32_t glint_white_share_q15(const struct glint_white *white, int value)
+{
+    return (int32_t)(((int64_t)white->at_least[value] << 15) / white->n);
+}

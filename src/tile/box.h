@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Boxes of pixels.
+ */
+#ifndef GLINT_TILE_BOX_H
+#define GLINT_TILE_BOX_H
+
+/* Pixels X0 .. X1 - 1, Y0 .. Y1 - 1. */
+struct glint_box {
+    int x0, y0, x1, y1;
+};
+
+/* What A and B have in common. */
+static inline struct glint_box glint_box_cut(struct glint_box a,
+                                             struct glint_box b)
+{
+    return (struct glint_box){
+        a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0,
+        a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
+}
+
+static inline int glint_box_empty(struct glint_box b)
+{
+    return b.x0 >= b.x1 || b.y0 >= b.y1;
+}
+
+#endif

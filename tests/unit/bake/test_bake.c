@@ -1,0 +1,925 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Whole models: the same bytes whatever must not matter, nothing missing, and
+ * errors as they are said to be.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/measure_model.h"
+#include "bake/fit/zone.h"
+#include "bake/fit/quantise.h"
+#include "support/lens_check.h"
+#include "support/shuffle.h"
+
+#define TOLERANCE 20
+#define MAX_DEG   12
+
+struct baked {
+    unsigned char *data;
+    size_t bytes;
+    struct glint_bake_report report;
+    struct glint_lens lens;
+};
+
+static struct glint_prescription heliar;
+static struct glint_setup setup;
+static struct glint_bake_options options;
+static struct baked model;
+static double field_mm;
+
+static void bake(struct baked *b, const struct glint_prescription *lens,
+                 const struct glint_bake_options *o)
+{
+    struct glint_error error;
+    const char *reason = "";
+
+    *b = (struct baked){.data = NULL};
+    if (glint_bake(lens, o, &b->data, &b->bytes, &b->report, &error))
+        fail_msg("%s", error.text);
+    if (glint_lens_open(&b->lens, b->data, b->bytes, &reason))
+        fail_msg("%s", reason);
+}
+
+static int load(void **state)
+{
+    (void)state;
+    load_setup(&setup, &heliar, "heliar-tronnier");
+    glint_bake_defaults(&options);
+    options.tolerance = TOLERANCE;
+    options.max_deg = MAX_DEG;
+    bake(&model, &heliar, &options);
+    field_mm = glint_real_value(model.lens.header->field_mm);
+    return 0;
+}
+
+static int unload(void **state)
+{
+    (void)state;
+    free(model.data);
+    return 0;
+}
+
+static void parse(struct glint_prescription *lens, const char *text)
+{
+    struct glint_error error;
+
+    if (glint_prescription_parse(lens, text, strlen(text), "test", &error))
+        fail_msg("%s", error.text);
+}
+
+/* One pair of surfaces. */
+static void make_singlet(struct glint_prescription *lens)
+{
+    parse(lens, "name singlet\n"
+                "source none\n"
+                "f-number 8\n"
+                "film 36 24\n"
+                "surface 51.68 5 12 1.5168 64.17\n"
+                "surface flat 2 12 air\n"
+                "stop 94 10\n");
+}
+
+#define FAST_SINGLET                  \
+    "name fast\n"                     \
+    "source none\n"                   \
+    "f-number 1.8\n"                  \
+    "film 36 24\n"                    \
+    "surface 28 18 17 1.5168 64.17\n" \
+    "surface flat 2 17 air\n"         \
+    "stop 46 17\n"
+
+/* So fast, and to be fitted so closely, that its pupil is parted. */
+static void bake_fast_singlet(struct baked *b, struct glint_prescription *lens,
+                              const char *text, double tolerance,
+                              double max_deg)
+{
+    struct glint_bake_options o = options;
+
+    parse(lens, text);
+    o.tolerance = tolerance;
+    o.max_deg = max_deg;
+    bake(b, lens, &o);
+}
+
+static void make_doublet(struct glint_prescription *lens)
+{
+    parse(lens, "name doublet\n"
+                "source none\n"
+                "f-number 5.6\n"
+                "film 36 24\n"
+                "surface 61.47 6 13 1.5168 64.17\n"
+                "surface -44.64 2.5 13 1.6727 32.21\n"
+                "surface -129.94 2 13 air\n"
+                "stop 93 10\n");
+}
+
+/* -------------------------------------------------------------------- bytes */
+
+static void same_bytes(const struct glint_prescription *lens,
+                       const struct glint_bake_options *o,
+                       const struct baked *expected, int workers, uint32_t seed)
+{
+    struct glint_bake_options shuffled = *o;
+    struct shuffle shuffle;
+    struct baked b;
+
+    shuffle_init(&shuffle, workers, seed);
+    shuffled.workers = workers ? &shuffle.workers : NULL;
+    bake(&b, lens, &shuffled);
+    assert_int_equal(b.bytes, expected->bytes);
+    assert_memory_equal(b.data, expected->data, b.bytes);
+    assert_memory_equal(&b.report, &expected->report, sizeof b.report);
+    free(b.data);
+}
+
+static void test_workers(void **state)
+{
+    (void)state;
+    same_bytes(&heliar, &options, &model, 3, 11);
+}
+
+static void test_twice(void **state)
+{
+    static struct glint_prescription lens;
+    struct glint_bake_options o = options;
+    struct baked b;
+
+    (void)state;
+    make_singlet(&lens);
+    for (int basis = GLINT_BASIS_AUTO; basis <= GLINT_BASIS_SPARSE; basis++) {
+        o.basis = basis;
+        if (basis == GLINT_BASIS_SPARSE)
+            o.tolerance = 1; /* it has its own */
+        bake(&b, &lens, &o);
+        assert_int_equal(b.lens.header->n_ghosts, 1);
+        assert_true(b.lens.header->n_systems >= 1);
+        same_bytes(&lens, &o, &b, basis == GLINT_BASIS_AUTO ? 0 : 3, 5);
+        free(b.data);
+    }
+}
+
+/* ------------------------------------------------------------------- header */
+
+static void test_header(void **state)
+{
+    const struct glint_model_header *h = model.lens.header;
+    const uint64_t key = glint_bake_key(&heliar, &options);
+
+    (void)state;
+    assert_string_equal(h->name, "heliar-tronnier");
+    assert_near(glint_real_value(h->focal_mm), setup.optics.focal_mm, 1e-6);
+    assert_near(glint_real_value(h->stop_radius_mm),
+                setup.optics.stop_radius_mm, 1e-8);
+    assert_near(glint_real_value(h->front_mm), 14.5, 1e-7);
+    assert_near(field_mm, 0.55 * hypot(36, 24), 1e-6);
+    assert_near(h->sine_hi_q30 * 0x1p-30, sin(MAX_DEG * 3.14159265358979 / 180),
+                1e-9);
+    assert_near(1e3 / sqrt(h->wave_lo_q24 * 0x1p-24), 700, 1e-3);
+    assert_near(1e3 / sqrt(h->wave_hi_q24 * 0x1p-24), 400, 1e-3);
+    assert_int_equal(h->key[0], (uint32_t)key);
+    assert_int_equal(h->key[1], (uint32_t)(key >> 32));
+    assert_int_equal(h->n_surfaces, 8);
+    assert_int_equal(h->n_ghosts, 13);
+    for (int k = 0; k < 13; k++) {
+        assert_int_equal(model.lens.ghost[k].i, setup.ghost[k].i);
+        assert_int_equal(model.lens.ghost[k].j, setup.ghost[k].j);
+    }
+}
+
+/* The polynomial of the direct image, against the flux itself. */
+static void test_flux(void **state)
+{
+    static const double nm[] = {400, 450, 532, 650, 700};
+    const struct glint_model_header *h = model.lens.header;
+    static struct glint_setup five;
+    struct glint_error error;
+
+    (void)state;
+    assert_int_equal(glint_setup_init(&five, &heliar, 0, 0, nm, 5, &error),
+                     GLINT_OK);
+    for (int k = 0; k < 5; k++) {
+        const double lo = 1 / (700.0 * 700), hi = 1 / (400.0 * 400);
+        const double w = (2 / (nm[k] * nm[k]) - lo - hi) / (hi - lo);
+        double sum = 0;
+
+        for (int i = 5; i >= 0; i--)
+            sum = sum * w + glint_real_value(h->direct_flux[i]);
+        assert_near(sum / five.direct_flux[k], 1, 5e-5);
+    }
+}
+
+/* ------------------------------------------------------------------- ghosts */
+
+static bool covered(const struct glint_lens *lens, int ghost, double theta_deg,
+                    double nm)
+{
+    static struct glint_transfer t;
+    const double sine = sin(theta_deg * 3.14159265358979323846 / 180);
+
+    return glint_transfer_init(&t, lens, ghost, (int32_t)lrint(sine * 0x1p30),
+                               (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
+}
+
+/* Found by the search that draws pictures: the bake must have it. */
+static void test_nothing_missing(void **state)
+{
+    static const double deg[] = {0, 3, 7, 11};
+    int seen = 0, lost_in_field = 0;
+
+    (void)state;
+    for (int g = 0; g < setup.n_ghosts; g++)
+        for (int k = 0; k < 4; k++) {
+            struct glint_path path;
+            struct glint_pupil box;
+
+            glint_path_init(&path, &heliar, &setup.ghost[g], 532);
+            if (!glint_pupil_find_within(&box, &path, deg[k],
+                                         setup.optics.stop_radius_mm, field_mm,
+                                         NULL))
+                continue;
+            seen++;
+            if (!covered(&model.lens, g, deg[k], 532)) {
+                print_error("ghost %d at %g degrees is missing\n", g, deg[k]);
+                lost_in_field++;
+            }
+        }
+    assert_in_range(seen, 45, 52);
+    assert_int_equal(lost_in_field, 0);
+    assert_false(covered(&model.lens, 0, MAX_DEG + 0.01, 532));
+}
+
+/* -------------------------------------------------------------------- parts */
+
+/* Place of a ray in the box of a part. Returns whether the part has it. */
+static bool is_in(const struct glint_transfer *t, double x_mm, double y_mm,
+                  double uv[2])
+{
+    const double unit = ldexp(1, t->box_exponent);
+
+    uv[0] = (x_mm / unit - t->box[0]) / t->box[1];
+    uv[1] = y_mm / unit / t->box[2];
+    return fabs(uv[0]) <= 1 && fabs(uv[1]) <= 1 &&
+           fabs(uv[1]) >= ldexp(glint_transfer_v(t, 0, 1), -30);
+}
+
+/* How many parts have the ray from (X, Y), and in *OFF how far they take it
+ * from where it goes, mm. */
+static int parts_of(const struct glint_transfer *part, int n, double x_mm,
+                    double y_mm, const struct glint_ray *ray, double *off)
+{
+    int found = 0;
+
+    for (int k = 0; k < n; k++) {
+        struct glint_outputs out;
+        double uv[2];
+
+        if (!is_in(&part[k], x_mm, y_mm, uv))
+            continue;
+        found++;
+        glint_transfer_ray(&part[k], (int32_t)lrint(ldexp(uv[0], 30)),
+                           (int32_t)lrint(ldexp(uv[1], 30)), &out);
+        *off = hypot(ldexp(out.at[GLINT_OUT_SENSOR_X],
+                           part[k].exponent[GLINT_OUT_SENSOR_X]) -
+                         ray->sensor_x_mm,
+                     ldexp(out.at[GLINT_OUT_SENSOR_Y],
+                           part[k].exponent[GLINT_OUT_SENSOR_Y]) -
+                         ray->sensor_y_mm);
+    }
+    return found;
+}
+
+/* Whatever comes through is one part's, and one's alone but on the lines where
+ * parts meet, as the axis is one; and every part is there for something. */
+static void test_parts(void **state)
+{
+    enum { MOST = 8, ANGLES = 16, SIDE = 61 };
+    static struct glint_transfer part[MOST];
+    static struct glint_prescription lens;
+    static struct glint_setup fast;
+    const double nm = 480;
+    struct glint_error error;
+    int shared_deg = 0, n_rays = 0;
+    struct baked b;
+
+    (void)state;
+    bake_fast_singlet(&b, &lens, FAST_SINGLET, 0.1, 4);
+    assert_int_equal(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error),
+                     GLINT_OK);
+    assert_int_equal(b.lens.header->n_ghosts - b.lens.header->n_parts, 1);
+    assert_in_range(b.lens.header->n_parts, 1, MOST - 1);
+    for (int a = 0; a < ANGLES; a++) {
+        const double sine = sin(3.99 * a / (ANGLES - 1) * 0.0174532925199433);
+        const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+        struct glint_path path;
+        int n = 0;
+
+        for (int k = 0; k < (int)b.lens.header->n_ghosts; k++)
+            n += glint_transfer_init(&part[n], &b.lens, k,
+                                     (int32_t)lrint(sine * 0x1p30),
+                                     (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
+        shared_deg += n > 1;
+        glint_path_init(&path, &lens, &fast.ghost[0], nm);
+        for (int k = 0; k < SIDE * SIDE; k++) {
+            const double x = 16.9 * (2.0 * (k % SIDE) / (SIDE - 1) - 1.001);
+            const double y = 16.9 * (2.0 * (k / SIDE) / (SIDE - 1) - 1.001);
+            struct glint_ray ray;
+            double off = 0;
+
+            if (glint_trace(&path, x, y, direction, &ray, NULL) ||
+                ray.rel_radius > 0.999 ||
+                hypot(ray.stop_x_mm, ray.stop_y_mm) >
+                    0.999 * fast.optics.stop_radius_mm ||
+                hypot(ray.sensor_x_mm, ray.sensor_y_mm) > 0.99 * 0.55 * 43.2666)
+                continue;
+            n_rays++;
+            assert_int_equal(parts_of(part, n, x, y, &ray, &off), 1);
+            assert_true(off < 0.1 * 36 / 1920);
+        }
+    }
+    assert_true(n_rays > 1000);
+    assert_in_range(shared_deg, 1, ANGLES - 1);
+    free(b.data);
+}
+
+/* Two barrels cut this ghost within 0.0008 radii of each other: the second
+ * counts for who asks for that. */
+static void test_near_barrels(void **state)
+{
+    static const double band_nm[2] = {400, 700};
+    static const double range[2] = {0.29, 0.305};
+    static struct glint_prescription lens;
+    static struct glint_setup zoom;
+    static struct glint_hunt hunt;
+    static struct glint_profile profile;
+    static glint_zone_survey survey;
+    static struct glint_rays rays;
+    struct glint_error error;
+    struct glint_zone zone;
+
+    (void)state;
+    load_lens(&lens, "canon-zoom-long");
+    assert_int_equal(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error),
+                     GLINT_OK);
+    glint_hunt_init(&hunt, &zoom, 71, 23.8, band_nm);
+    glint_hunt_profile(&hunt, range, &profile);
+    glint_zone_init(&zone, &profile, range[0], range[1], false);
+    glint_zone_survey_barrels(&zone, &hunt, 1e-3, &survey, &rays);
+    assert_int_equal(rays.n_barrels, 1);
+    assert_true(rays.missed_cut <= 1e-3);
+    glint_zone_survey_barrels(&zone, &hunt, 2.5e-4, &survey, &rays);
+    assert_int_equal(rays.n_barrels, 2);
+    assert_true(rays.missed_cut <= 2.5e-4);
+}
+
+static double unit(uint32_t *seed)
+{
+    return shuffle_next(seed) * 0x1p-31 - 1;
+}
+
+/* A cut box is the box, in the part's coordinates. */
+static void test_cut(void **state)
+{
+    struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
+    const struct glint_part part = {-0.25, 0.5, 0.75, -0.5, 0.75, 3};
+    uint32_t seed = 3;
+
+    (void)state;
+    for (int k = 0; k < GLINT_BOX_TERMS; k++) {
+        zone.middle[k] = unit(&seed);
+        zone.half_x[k] = unit(&seed);
+        zone.half_y[k] = unit(&seed);
+    }
+    cut = zone;
+    glint_zone_cut(&cut, &part);
+    assert_int_equal(cut.hollow, 3);
+    for (int k = 0; k < 100; k++) {
+        const double u = unit(&seed), s = unit(&seed), w = unit(&seed);
+        const double whole_w = 0.125 + 0.625 * w, whole_u = 0.125 + 0.375 * u;
+
+        assert_near(glint_zone_at(cut.middle, s, w) +
+                        u * glint_zone_at(cut.half_x, s, w),
+                    glint_zone_at(zone.middle, s, whole_w) +
+                        whole_u * glint_zone_at(zone.half_x, s, whole_w),
+                    1e-12);
+        assert_near(glint_zone_at(cut.half_y, s, w),
+                    0.75 * glint_zone_at(zone.half_y, s, whole_w), 1e-12);
+    }
+}
+
+static bool part_has(const struct glint_part *p, double u, double v)
+{
+    return u >= p->u0 && u < p->u1 && v < p->top &&
+           v >= p->top * glint_zone_rim(p->hollow);
+}
+
+/* However often a box is halved, each place is in one half. */
+static void test_halves(void **state)
+{
+    enum { DEPTH = 8, PARTS = 1 << DEPTH };
+    static struct glint_part part[PARTS] = {{-1, 1, 1, -1, 1, 0}};
+    uint32_t seed = 5;
+    double area = 0;
+
+    (void)state;
+    for (int depth = 0; depth < DEPTH; depth++)
+        for (int k = (1 << depth) - 1; k >= 0; k--) {
+            const struct glint_part whole = part[k];
+
+            glint_part_halve(&whole, depth % 2 == 0, &part[2 * k],
+                             &part[2 * k + 1]);
+        }
+    for (int k = 0; k < PARTS; k++) {
+        assert_in_range(part[k].hollow, 0, GLINT_MAX_HOLLOW);
+        area += (part[k].u1 - part[k].u0) * part[k].top *
+                (1 - glint_zone_rim(part[k].hollow));
+    }
+    assert_near(area, 2, 1e-12);
+    for (int i = 0; i < 1000; i++) {
+        const double u = unit(&seed), v = fabs(unit(&seed));
+        int found = 0;
+
+        for (int k = 0; k < PARTS; k++)
+            found += part_has(&part[k], u, v);
+        assert_int_equal(found, 1);
+    }
+}
+
+/* What is cropped off was dark, in a zone wider than its ghost and colours. */
+static void test_crop(void **state)
+{
+    const double range[2] = {sin(0.1), sin(0.2)};
+    static struct glint_hunt hunt, narrow;
+    static struct glint_profile profile;
+    const struct glint_part whole = {-1, 1, 1, -1, 1, false};
+    struct glint_part part = whole;
+    struct glint_zone zone;
+    uint32_t seed = 8;
+    int seen = 0;
+
+    (void)state;
+    glint_hunt_init(&hunt, &setup, 7, field_mm, options.band_nm);
+    glint_hunt_narrow(&narrow, &hunt, -0.5, 1);
+    assert_near(narrow.wave_lo,
+                hunt.wave_lo + 0.25 * (hunt.wave_hi - hunt.wave_lo), 1e-12);
+    assert_near(narrow.wave_hi, hunt.wave_hi, 1e-12);
+    glint_hunt_profile(&hunt, range, &profile);
+    glint_zone_init(&zone, &profile, range[0], range[1], true);
+    for (int k = 0; k < GLINT_BOX_TERMS; k++) {
+        zone.half_x[k] *= 3;
+        zone.half_y[k] *= 2;
+    }
+    assert_in_range((long)(100 * glint_zone_crop(&zone, &hunt, &part)), 10, 45);
+    for (int k = 0; k < 4000; k++) {
+        const double u = unit(&seed), v = fabs(unit(&seed)), s = unit(&seed),
+                     w = unit(&seed);
+        const double sine =
+            0.5 * (range[0] + range[1]) + 0.5 * s * (range[1] - range[0]);
+        const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+        struct glint_path path;
+        struct glint_ray ray;
+
+        glint_hunt_path(&hunt, w, &path);
+        if (glint_trace(&path,
+                        glint_zone_at(zone.middle, s, w) +
+                            u * glint_zone_at(zone.half_x, s, w),
+                        v * glint_zone_at(zone.half_y, s, w), direction, &ray,
+                        NULL) ||
+            !glint_hunt_visible(&hunt, &ray))
+            continue;
+        seen++;
+        assert_true(u >= part.u0 && u <= part.u1 && v <= part.top);
+        assert_true(w >= part.w0 && w <= part.w1);
+    }
+    assert_true(seen > 100);
+}
+
+/* ------------------------------------------------------------------- errors */
+
+enum { TRIED = GLINT_OUT_ENERGY + 1, BUNDLES = 300, PER_BUNDLE = 12 };
+
+struct tally {
+    long n;
+    double sum2[TRIED], energy_error[BUNDLES * PER_BUNDLE],
+        energy[BUNDLES * PER_BUNDLE], most;
+};
+
+static bool passes(const struct glint_ray *ray)
+{
+    return ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+               setup.optics.stop_radius_mm &&
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= field_mm;
+}
+
+static void try_ray(struct tally *tally, const struct glint_transfer *t,
+                    const struct glint_path *path, const double direction[3],
+                    uint32_t *seed)
+{
+    const int32_t u_q30 = (int32_t)shuffle_next(seed) / 2;
+    const int32_t v_q30 = (int32_t)shuffle_next(seed) / 2;
+    const double unit = ldexp(1, t->box_exponent),
+                 stop = setup.optics.stop_radius_mm;
+    const double x = unit * (t->box[0] + t->box[1] * (u_q30 * 0x1p-30));
+    const double y = unit * t->box[2] * (v_q30 * 0x1p-30);
+    struct glint_outputs out;
+    struct glint_ray ray;
+
+    if (glint_trace(path, x, y, direction, &ray, NULL) || !passes(&ray))
+        return;
+    glint_transfer_ray(t, u_q30, v_q30, &out);
+    {
+        const double truth[TRIED] = {ray.sensor_x_mm, ray.sensor_y_mm,
+                                     ray.stop_x_mm / stop, ray.stop_y_mm / stop,
+                                     ray.energy};
+
+        for (int kind = 0; kind < TRIED; kind++) {
+            const double unit_of = kind <= GLINT_OUT_SENSOR_Y ? 1920 / 36.0 : 1;
+            const double error =
+                unit_of *
+                (ldexp(out.at[kind], t->exponent[kind]) - truth[kind]);
+
+            tally->sum2[kind] += error * error;
+            tally->energy_error[tally->n] = error;
+        }
+        tally->energy[tally->n++] = ray.energy;
+        tally->most = fmax(tally->most, ray.energy);
+    }
+}
+
+/* Root mean square errors of SYSTEM of GHOST in the file's units, without help
+ * of the bake. */
+static long measure(const struct glint_lens *lens, int ghost, int system,
+                    double rms[TRIED])
+{
+    static struct glint_transfer t;
+    static struct tally tally;
+    const struct glint_model_system *s = &lens->system[system];
+    uint32_t seed = 4711 + (uint32_t)system;
+
+    tally = (struct tally){.n = 0};
+    for (int k = 0; k < BUNDLES; k++) {
+        const double a = shuffle_next(&seed) * 0x1p-32;
+        const double b = shuffle_next(&seed) * 0x1p-32;
+        const int32_t sine_q30 =
+            s->sine_lo_q30 + 1 +
+            (int32_t)(a * (s->sine_hi_q30 - s->sine_lo_q30 - 2));
+        const int32_t wave_q24 =
+            s->wave_lo_q24 + (int32_t)(b * (s->wave_hi_q24 - s->wave_lo_q24));
+        const double sine = sine_q30 * 0x1p-30;
+        const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
+        struct glint_path path;
+
+        assert_true(glint_transfer_init(&t, lens, ghost, sine_q30, wave_q24));
+        assert_ptr_equal(t.system, s);
+        glint_path_init(&path, &heliar, &setup.ghost[ghost],
+                        1e3 / sqrt(wave_q24 * 0x1p-24));
+        for (int i = 0; i < PER_BUNDLE; i++)
+            try_ray(&tally, &t, &path, direction, &seed);
+    }
+    tally.sum2[GLINT_OUT_ENERGY] = 0;
+    for (long k = 0; k < tally.n; k++) {
+        const double share =
+            tally.energy_error[k] / fmax(tally.energy[k], 0.1 * tally.most);
+
+        tally.sum2[GLINT_OUT_ENERGY] += share * share;
+    }
+    for (int kind = 0; kind < TRIED; kind++)
+        rms[kind] = tally.n ? sqrt(tally.sum2[kind] / (double)tally.n) : 0;
+    return tally.n;
+}
+
+static const struct glint_model_output *outputs_of(const struct baked *b,
+                                                   int system)
+{
+    return (const void *)(b->data + b->lens.system[system].output_at);
+}
+
+static double error_of(uint16_t stored)
+{
+    return ldexp((double)glint_model_error_q20(stored), -20);
+}
+
+/* What the file says is what is there. */
+static void test_errors_are_true(void **state)
+{
+    (void)state;
+    for (int g = 0; g < setup.n_ghosts; g++)
+        for (uint32_t k = 0; k < model.lens.ghost[g].n_systems; k++) {
+            const int system = (int)(model.lens.ghost[g].first_system + k);
+            const struct glint_model_output *o = outputs_of(&model, system);
+            double rms[TRIED];
+
+            assert_true(measure(&model.lens, g, system, rms) > 300);
+            for (int kind = 0; kind < TRIED; kind++) {
+                const double said = error_of(o[kind].rms);
+
+                if (fabs(rms[kind] - said) > 0.3 * said)
+                    fail_msg("system %d: output %d is off by %g, the file says "
+                             "%g",
+                             system, kind, rms[kind], said);
+                assert_true(o[kind].p50 <= o[kind].p99);
+                assert_true(o[kind].p99 <= o[kind].max);
+                assert_true(o[kind].rms <= o[kind].max);
+            }
+        }
+}
+
+/* And it is what was asked for. */
+static void test_errors_are_small(void **state)
+{
+    static const double aim[TRIED] = {0.08, 0.08, 4.5e-4, 4.5e-4, 1.2e-2};
+
+    (void)state;
+    assert_int_equal(model.report.unmet, 0);
+    assert_true(model.report.rays > 300 * (int)model.lens.header->n_systems);
+    assert_true(model.report.intruders < model.report.rays / 1000);
+    for (uint32_t k = 0; k < model.lens.header->n_systems; k++) {
+        const struct glint_model_output *o = outputs_of(&model, (int)k);
+
+        for (int kind = 0; kind < TRIED; kind++)
+            assert_true(error_of(o[kind].rms) <= 1.6 * TOLERANCE * aim[kind]);
+    }
+}
+
+/* Where light folds into rings, a finer tolerance is finer still. */
+static void test_axis_is_finer(void **state)
+{
+    const double tolerance = 0.25, aim_px = 0.04;
+    struct glint_prescription lens;
+    struct baked b;
+
+    (void)state;
+    bake_fast_singlet(&b, &lens, FAST_SINGLET, tolerance, 4);
+    assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
+    assert_true(error_of(outputs_of(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
+                1.6 * tolerance * tolerance * aim_px);
+    free(b.data);
+}
+
+/* A film as good as this lets all light of its colour through, and the energy
+ * of a ghost has a zero there. */
+static void test_energy_has_zeros(void **state)
+{
+    struct glint_prescription lens;
+    struct baked b;
+
+    (void)state;
+    bake_fast_singlet(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
+    assert_true(b.lens.header->n_parts > 0);
+    for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
+        const struct glint_model_output *o = outputs_of(&b, (int)k);
+
+        assert_true(error_of(o[GLINT_OUT_ENERGY].rms) < 1e-3);
+    }
+    free(b.data);
+}
+
+/* One coefficient's sign: both measurements tell, or they could not fail. */
+static void test_planted_error(void **state)
+{
+    static const struct glint_fitted_system no_barrels;
+    static const double band_nm[2] = {400, 700};
+    static struct glint_hunt hunt;
+    struct baked b = model;
+    const struct glint_model_output *o;
+    struct glint_measured before, after;
+    double rms[TRIED];
+    int32_t *coef;
+    uint32_t largest = 0;
+
+    (void)state;
+    b.data = malloc(model.bytes);
+    assert_non_null(b.data);
+    memcpy(b.data, model.data, model.bytes);
+    b.lens.header = (const void *)b.data;
+    b.lens.ghost = (const void *)(b.data + b.lens.header->ghost_at);
+    b.lens.system = (const void *)(b.data + b.lens.header->system_at);
+    glint_hunt_init(&hunt, &setup, 0, field_mm, band_nm);
+    glint_measure_system(&hunt, &b.lens, 0, &no_barrels, &before);
+    o = outputs_of(&b, 0);
+    assert_near(error_of(o->rms) / before.of[0].rms, 1, 1e-3);
+    coef = (void *)(b.data + o->coef_at);
+    for (uint32_t k = 1; k < o->n_terms; k++)
+        largest = labs(coef[k]) > labs(coef[largest]) ? k : largest;
+    coef[largest] = -coef[largest];
+    glint_measure_system(&hunt, &b.lens, 0, &no_barrels, &after);
+    measure(&b.lens, 0, 0, rms);
+    assert_true(after.of[0].rms > 50 * before.of[0].rms);
+    assert_true(after.of[0].max > 50 * before.of[0].max);
+    assert_true(rms[0] > 50 * before.of[0].rms);
+    assert_near(after.of[1].rms, before.of[1].rms, 0); /* y is as it was */
+    free(b.data);
+}
+
+/* ------------------------------------------------------------- key, refusals
+ */
+
+static void other_key(const struct glint_prescription *lens,
+                      const struct glint_bake_options *o)
+{
+    assert_true(glint_bake_key(lens, o) != glint_bake_key(&heliar, &options));
+}
+
+static void test_key(void **state)
+{
+    struct glint_prescription lens = heliar;
+    struct glint_bake_options o = options;
+    double *const of_lens[] = {&lens.f_number, &lens.film_width_mm,
+                               &lens.film_height_mm, &lens.stop_thickness_mm};
+    double *const of_options[] = {&o.band_nm[0], &o.band_nm[1], &o.max_deg,
+                                  &o.field_mm, &o.tolerance};
+
+    (void)state;
+    assert_true(glint_bake_key(&lens, &o) == glint_bake_key(&heliar, &options));
+    for (size_t k = 0; k < sizeof of_lens / sizeof *of_lens; k++) {
+        lens = heliar;
+        *of_lens[k] = nextafter(*of_lens[k], 1000);
+        other_key(&lens, &o);
+    }
+    for (int s = 0; s < heliar.n_surfaces; s++)
+        for (int k = 0; k < 7; k++) {
+            struct glint_surface *f = &lens.surface[s];
+            double *const number[] = {
+                &f->radius_mm, &f->thickness_mm, &f->semi_mm,  &f->nd,
+                &f->vd,        &f->coating_nm,   &f->coating_n};
+
+            lens = heliar;
+            *number[k] = nextafter(*number[k], 1000);
+            other_key(&lens, &o);
+        }
+    lens = heliar;
+    lens.stop_after--;
+    other_key(&lens, &o);
+    lens = heliar;
+    lens.name[0]++;
+    other_key(&lens, &o);
+    lens = heliar;
+    for (size_t k = 0; k < sizeof of_options / sizeof *of_options; k++) {
+        o = options;
+        *of_options[k] = nextafter(*of_options[k], 1000);
+        other_key(&lens, &o);
+    }
+    o = options;
+    o.basis = GLINT_BASIS_SPARSE;
+    other_key(&lens, &o);
+    /* but not with what never changes the model */
+    o = options;
+    o.workers = (void *)&lens;
+    o.progress_ctx = &lens;
+    lens.source[0]++;
+    assert_true(glint_bake_key(&lens, &o) == glint_bake_key(&heliar, &options));
+}
+
+static void test_refusals(void **state)
+{
+    static const double numbers[] = {(double)NAN, -1, 1e9, HUGE_VAL, -HUGE_VAL};
+
+    (void)state;
+    for (int k = 0; k < 5 * 5 + 3; k++) {
+        struct glint_bake_options o = options;
+        double *const of_options[] = {&o.band_nm[0], &o.band_nm[1], &o.max_deg,
+                                      &o.field_mm, &o.tolerance};
+        struct glint_bake_report report = {7, 7, 7};
+        unsigned char *data = NULL;
+        struct glint_error error = {"?"};
+        size_t bytes = 7;
+
+        if (k < 25)
+            *of_options[k / 5] = numbers[k % 5];
+        else if (k == 25)
+            o.max_deg = 0;
+        else if (k == 26)
+            o.band_nm[1] = o.band_nm[0];
+        else
+            o.basis = GLINT_BASIS_SPARSE + 1;
+        assert_int_equal(
+            glint_bake(&heliar, &o, &data, &bytes, &report, &error),
+            GLINT_E_ARGUMENT);
+        assert_true(strlen(error.text) > 10);
+        assert_null(data);
+        assert_int_equal(bytes, 7);
+        assert_int_equal(report.rays, 7);
+    }
+}
+
+/* ------------------------------------------------------------- odd requests */
+
+static void test_no_ghosts(void **state)
+{
+    static struct glint_prescription lens;
+    struct baked b;
+
+    (void)state;
+    make_singlet(&lens);
+    lens.n_surfaces = 1; /* into glass, and the sensor in it */
+    lens.stop_after = 1;
+    bake(&b, &lens, &options);
+    assert_int_equal(b.lens.header->n_ghosts, 0);
+    assert_int_equal(b.lens.header->n_systems, 0);
+    assert_int_equal(b.report.rays, 0);
+    free(b.data);
+}
+
+/* However little is asked for. */
+static void test_loosest(void **state)
+{
+    static struct glint_prescription lens;
+    struct glint_bake_options o = options;
+    struct baked b;
+
+    (void)state;
+    make_singlet(&lens);
+    o.tolerance = 100;
+    bake(&b, &lens, &o);
+    for (uint32_t k = 0; k < b.lens.header->n_systems; k++)
+        assert_in_range(outputs_of(&b, (int)k)->n_terms, 1,
+                        GLINT_MAX_MODEL_TERMS);
+    free(b.data);
+}
+
+/* So little of the sensor counts that a ghost shows at angle 0 alone. */
+static void test_ranges_have_width(void **state)
+{
+    static const double band_nm[2] = {400, 700};
+    static struct glint_prescription lens;
+    static struct glint_setup doublet;
+    static struct glint_hunt hunt;
+    double range[GLINT_MAX_RANGES][2];
+    struct glint_error error;
+
+    (void)state;
+    make_doublet(&lens);
+    assert_int_equal(
+        glint_setup_init(&doublet, &lens, 0, 0, band_nm, 2, &error), GLINT_OK);
+    for (int g = 0; g < doublet.n_ghosts; g++) {
+        int n;
+
+        glint_hunt_init(&hunt, &doublet, g, 1e-3, band_nm);
+        n = glint_hunt_ranges(&hunt, 15, range);
+        for (int k = 0; k < n; k++)
+            assert_true(range[k][1] > range[k][0]);
+    }
+}
+
+/* The stop is seen so small through these ghosts that they come through a
+ * twentieth of a millimetre of the front; they do so up to their ends. */
+static void test_ranges_of_spots(void **state)
+{
+    static const struct {
+        int ghost;
+        double end_deg;
+    } spot[] = {{85, 16}, {87, 9.5}};
+    static const double band_nm[2] = {400, 700};
+    static struct glint_prescription lens;
+    static struct glint_setup zoom;
+    static struct glint_hunt hunt;
+    double range[GLINT_MAX_RANGES][2];
+    struct glint_error error;
+
+    (void)state;
+    load_lens(&lens, "nikon-zoom-short");
+    assert_int_equal(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error),
+                     GLINT_OK);
+    for (size_t i = 0; i < sizeof spot / sizeof *spot; i++) {
+        glint_hunt_init(&hunt, &zoom, spot[i].ghost, 23.8, band_nm);
+        assert_int_equal(glint_hunt_ranges(&hunt, 60, range), 1);
+        assert_near(range[0][0], 0, 1e-12);
+        assert_true(range[0][1] > sin(spot[i].end_deg * 0.0174532925));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_workers),
+        cmocka_unit_test(test_twice),
+        cmocka_unit_test(test_header),
+        cmocka_unit_test(test_flux),
+        cmocka_unit_test(test_nothing_missing),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_near_barrels),
+        cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_halves),
+        cmocka_unit_test(test_crop),
+        cmocka_unit_test(test_errors_are_true),
+        cmocka_unit_test(test_errors_are_small),
+        cmocka_unit_test(test_axis_is_finer),
+        cmocka_unit_test(test_energy_has_zeros),
+        cmocka_unit_test(test_planted_error),
+        cmocka_unit_test(test_key),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_no_ghosts),
+        cmocka_unit_test(test_loosest),
+        cmocka_unit_test(test_ranges_have_width),
+        cmocka_unit_test(test_ranges_of_spots),
+    };
+
+    return cmocka_run_group_tests(tests, load, unload);
+}

@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The exact picture: against an independent program, against itself at another
+ * grid, and against the symmetries of optics; then the integer engine, fed by
+ * exact rays, against it.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/frame.h"
+#include "engine/measure.h"
+#include "posix/input.h"
+#include "posix/workers.h"
+#include "support/lens_check.h"
+
+enum { MAX_PIXELS = 480 * 270 };
+
+static struct glint_prescription lens;
+static struct glint_setup setup;
+static struct glint_workers *workers;
+static double rgb[3 * MAX_PIXELS], other[3 * MAX_PIXELS];
+static float floats[2][3 * MAX_PIXELS];
+
+static int open_pool(void **state)
+{
+    (void)state;
+    return glint_pool_create(&workers, glint_cpu_count()) != GLINT_OK;
+}
+
+static int close_pool(void **state)
+{
+    (void)state;
+    glint_pool_destroy(workers);
+    return 0;
+}
+
+static void render(double *out, struct glint_view view,
+                   const struct glint_lamp *lamps, int n_lamps, int grid)
+{
+    const struct glint_exact_config cfg = {.setup = &setup,
+                                           .view = view,
+                                           .lamps = lamps,
+                                           .n_lamps = n_lamps,
+                                           .grid = grid,
+                                           .only_ghost = -1,
+                                           .workers = workers};
+
+    assert_int_equal(glint_exact_render(&cfg, out), GLINT_OK);
+}
+
+static struct glint_lamp lamp_at(double theta, double phi)
+{
+    return (struct glint_lamp){theta, phi, 1, {1, 1, 1}, {0, 0}, 0};
+}
+
+static struct glint_float_image as_floats(const double *from, int slot,
+                                          struct glint_view view)
+{
+    for (int i = 0; i < 3 * view.width * view.height; i++)
+        floats[slot][i] = (float)from[i];
+    return (struct glint_float_image){view.width, view.height, floats[slot]};
+}
+
+static double psnr(const double *a, const double *b, struct glint_view view)
+{
+    const struct glint_float_image x = as_floats(a, 0, view);
+    const struct glint_float_image y = as_floats(b, 1, view);
+    struct measure m;
+
+    assert_true(measure_compare(&x, &y, false, &m));
+    return m.psnr_db;
+}
+
+/* ------------------------------------------------------------------ goldens */
+
+struct golden {
+    const char *name;
+    double theta, phi;
+    int grid;
+};
+
+/* Pictures of an independent program, beside the repository where it has them;
+ * GLINT_SHARED names another place. */
+static bool load_golden(const char *name, struct glint_float_image *image)
+{
+    const char *shared = getenv("GLINT_SHARED");
+    struct glint_error error = {""};
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    char path[512];
+    bool ok;
+
+    snprintf(path, sizeof path, "%s/golden/pictures/%s.pfm",
+             shared ? shared : "../shared", name);
+    ok = glint_input_slurp(&data, &bytes, path, 1 << 26, &error) == GLINT_OK &&
+         glint_pfm_read(image, data, bytes, path, &error) == GLINT_OK;
+    free(data);
+    return ok;
+}
+
+static void compare_golden(const struct golden *g)
+{
+    const struct glint_view view = {480, 270, 36};
+    const struct glint_lamp lamp = lamp_at(g->theta, g->phi);
+    struct glint_float_image want, got;
+    struct measure m;
+
+    if (!load_golden(g->name, &want)) {
+        print_message("no golden picture of %s here\n", g->name);
+        skip();
+    }
+    load_setup(&setup, &lens, g->name);
+    render(rgb, view, &lamp, 1, g->grid);
+    got = as_floats(rgb, 0, view);
+    assert_true(measure_compare(&want, &got, true, &m));
+    print_message("%s: %.1f dB\n", g->name, m.psnr_db);
+    free(want.rgb);
+    assert_true(m.psnr_db >= 50);
+}
+
+static void test_golden_heliar(void **state)
+{
+    (void)state;
+    compare_golden(&(struct golden){"heliar-tronnier", 7.58, 33.2, 128});
+}
+
+static void test_golden_angenieux(void **state)
+{
+    (void)state;
+    compare_golden(&(struct golden){"double-gauss-angenieux", 5.33, -20.8, 96});
+}
+
+static void test_golden_canon(void **state)
+{
+    (void)state;
+    if (getenv("GLINT_QUICK") &&
+        *getenv("GLINT_QUICK")) /* sanitizers would take minutes */
+        skip();
+    compare_golden(&(struct golden){"canon-zoom-mid", 5.06, 10.2, 64});
+}
+
+/* ---------------------------------------------------------------- symmetries
+ */
+
+static void test_axis_light_is_symmetric(void **state)
+{
+    const struct glint_view view = {160, 160, 24};
+    const struct glint_lamp lamp = lamp_at(0, 0);
+    double worst = 0, peak = 0;
+
+    (void)state;
+    load_setup(&setup, &lens, "heliar-tronnier");
+    render(rgb, view, &lamp, 1, 128);
+    for (int y = 0; y < 160; y++)
+        for (int x = 0; x < 160; x++)
+            for (int c = 0; c < 3; c++) {
+                const double v = rgb[3 * (y * 160 + x) + c];
+                const double up = rgb[3 * ((159 - y) * 160 + x) + c];
+                const double side = rgb[3 * (y * 160 + 159 - x) + c];
+
+                worst = fmax(worst, fmax(fabs(v - up), fabs(v - side)));
+                peak = fmax(peak, v);
+            }
+    assert_true(peak > 0);
+    /* up and down to the last bits, left and right as the grid allows */
+    assert_true(worst < 2e-3 * peak);
+}
+
+/* Turning the light by 90 degrees turns the picture: an octagonal stop looks
+ * the same, a square picture too. */
+static void test_quarter_turn(void **state)
+{
+    const struct glint_view view = {160, 160, 24};
+    const struct glint_lamp lamp = lamp_at(6, 20), turned = lamp_at(6, 110);
+
+    (void)state;
+    load_setup(&setup, &lens, "double-gauss-angenieux");
+    render(rgb, view, &lamp, 1, 96);
+    render(other, view, &turned, 1, 96);
+    for (int y = 0; y < 160; y++) /* turn it back: (x, y) came from (y, -x) */
+        for (int x = 0; x < 160; x++)
+            for (int c = 0; c < 3; c++)
+                floats[0][3 * (y * 160 + x) + c] =
+                    (float)other[3 * ((159 - x) * 160 + y) + c];
+    for (int i = 0; i < 3 * 160 * 160; i++)
+        other[i] = (double)floats[0][i];
+    assert_true(psnr(rgb, other, view) > 80);
+}
+
+/* ---------------------------------------------------------------- accuracy */
+
+static void test_doubling_the_grid(void **state)
+{
+    const struct glint_view view = {240, 135, 36};
+    const struct glint_lamp lamp = lamp_at(7.58, 33.2);
+    double db;
+
+    (void)state;
+    load_setup(&setup, &lens, "heliar-tronnier");
+    render(rgb, view, &lamp, 1, 256);
+    render(other, view, &lamp, 1, 512);
+    db = psnr(other, rgb, view);
+    print_message("256 against 512: %.1f dB\n", db);
+    assert_true(db > 60);
+}
+
+/* What a ghost brings to the sensor is no more than its reflectances leave of
+ * what enters the front: 13 pairs of at most 5 % twice. */
+static void test_flux_is_bounded(void **state)
+{
+    const struct glint_view view = {200, 200, 2000};
+    const struct glint_lamp lamp = lamp_at(10, 45);
+    const double front = 3.14159265 * 14.5 * 14.5;
+    double sum[3] = {0, 0, 0};
+
+    (void)state;
+    load_setup(&setup, &lens, "heliar-tronnier");
+    render(rgb, view, &lamp, 1, 64);
+    for (int i = 0; i < 3 * 200 * 200; i++)
+        sum[i % 3] += rgb[i];
+    for (int c = 0; c < 3; c++) {
+        assert_true(sum[c] > 0);
+        assert_true(sum[c] * setup.unit_flux[c] <
+                    13 * 0.05 * 0.05 * front * cos(10 * 3.14159265 / 180));
+    }
+}
+
+static void test_threads_do_not_matter(void **state)
+{
+    const struct glint_view view = {120, 67, 36};
+    const struct glint_lamp lamps[2] = {lamp_at(5, 33), lamp_at(9, -120)};
+    struct glint_workers *const pool = workers;
+
+    (void)state;
+    load_setup(&setup, &lens, "heliar-tronnier");
+    workers = NULL;
+    render(rgb, view, lamps, 2, 64);
+    for (int n = 2; n <= 8; n += 3) {
+        assert_int_equal(glint_pool_create(&workers, n), GLINT_OK);
+        render(other, view, lamps, 2, 64);
+        glint_pool_destroy(workers);
+        assert_memory_equal(rgb, other, sizeof(double) * 3 * 120 * 67);
+    }
+    workers = pool;
+}
+
+/* --------------------------------------------------------- integers against it
+ */
+
+static void integers(struct glint_view view, const struct glint_lamp *lamps,
+                     int n_lamps, double *out, struct frame_report *report)
+{
+    static float linear[3 * MAX_PIXELS];
+    struct frame frame;
+
+    frame_init(&frame, &setup, view, workers);
+    assert_int_equal(
+        frame_draw_alone(&frame, lamps, n_lamps, 1, linear, report), GLINT_OK);
+    for (int i = 0; i < 3 * view.width * view.height; i++)
+        out[i] = (double)linear[i];
+    frame_finish(&frame);
+}
+
+static void test_integers_match(void **state)
+{
+    static const char *const names[] = {"heliar-tronnier",
+                                        "double-gauss-angenieux"};
+    const struct glint_view view = {480, 270, 36};
+    const struct glint_lamp lamps[2] = {lamp_at(7.58, 33.2),
+                                        lamp_at(3.1, -100)};
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        struct frame_report report;
+        double db;
+
+        load_setup(&setup, &lens, names[i / 2]);
+        render(rgb, view, lamps, 1 + i % 2, 192);
+        integers(view, lamps, 1 + i % 2, other, &report);
+        db = psnr(rgb, other, view);
+        print_message("%s, %d light(s): %.1f dB\n", names[i / 2], 1 + i % 2,
+                      db);
+        assert_true(db >= 45);
+        /* the memory is exactly what the frame took */
+        assert_int_equal(report.arena_bytes, report.peak_bytes);
+        assert_int_equal(report.stats.dropped_bundles, 0);
+    }
+}
+
+/* The hot spot of this lens is far fainter than its box makes it look, and a
+ * hundredth of the light is green: it is drawn as if it were alone. */
+static void test_faint_colour_keeps_steps(void **state)
+{
+    const struct glint_view view = {480, 270, 36};
+    const struct glint_lamp green = {5.3, 33, 0.01, {0, 1, 0}, {0, 0}, 0};
+    const struct glint_lamp reddish = {5.3, 33, 1, {1, 0.01, 0}, {0, 0}, 0};
+    struct frame_report report;
+    double apart = 0, sum = 0;
+
+    (void)state;
+    load_setup(&setup, &lens, "itoh-zoom-short");
+    integers(view, &green, 1, rgb, &report);
+    integers(view, &reddish, 1, other, &report);
+    for (int i = 1; i < 3 * view.width * view.height; i += 3) {
+        apart += fabs(rgb[i] - other[i]);
+        sum += rgb[i];
+    }
+    print_message("apart by %.5f of the light\n", apart / sum);
+    assert_true(apart < 0.001 * sum);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_golden_heliar),
+        cmocka_unit_test(test_golden_angenieux),
+        cmocka_unit_test(test_golden_canon),
+        cmocka_unit_test(test_axis_light_is_symmetric),
+        cmocka_unit_test(test_quarter_turn),
+        cmocka_unit_test(test_doubling_the_grid),
+        cmocka_unit_test(test_flux_is_bounded),
+        cmocka_unit_test(test_threads_do_not_matter),
+        cmocka_unit_test(test_integers_match),
+        cmocka_unit_test(test_faint_colour_keeps_steps),
+    };
+
+    return cmocka_run_group_tests_name("exact", tests, open_pool, close_pool);
+}

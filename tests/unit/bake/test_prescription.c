@@ -1,0 +1,630 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lens tables: what is read from a good one, and for every mistake the place
+ * and the cause that are named.
+ */
+#include <dirent.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/lens_check.h"
+#include "glint/bake.h"
+
+#define CORPUS "tests/fuzz/corpus/lens"
+
+/* A good table. The mistakes below replace one of its lines. */
+static const char *const good[] = {
+    "name tiny-4",                       /* 1 */
+    "source Tiny, US 1,234",             /* 2 */
+    "f-number 8",                        /* 3 */
+    "film 36 24",                        /* 4 */
+    "glass N-BK7 1.5168 64.17",          /* 5 */
+    "surface   50  6 12  N-BK7",         /* 6 */
+    "surface  -50  3 12  air",           /* 7 */
+    "stop          5  8",                /* 8 */
+    "surface flat  2 10  1.62 36.3",     /* 9 */
+    "surface  -80 40 10  air  # behind", /* 10 */
+};
+
+#define N_GOOD 10
+
+/* The good table with line NUMBER (from 1; 0: none) replaced; each line ends
+ * with END. Returns its bytes. */
+static size_t compose(char text[4096], int number, const char *line,
+                      const char *end)
+{
+    text[0] = 0;
+    for (int i = 0; i < N_GOOD; i++) {
+        strcat(text, i + 1 == number ? line : good[i]);
+        strcat(text, end);
+    }
+    return strlen(text);
+}
+
+static enum glint_status parse(struct glint_prescription *lens,
+                               const char *text, size_t bytes,
+                               struct glint_error *error)
+{
+    /* A copy that ends where the text does, for the address sanitizer. */
+    char *copy = malloc(bytes ? bytes : 1);
+    enum glint_status status;
+
+    assert_non_null(copy);
+    if (bytes)
+        memcpy(copy, text, bytes);
+    status = glint_prescription_parse(lens, copy, bytes, "x.lens", error);
+    free(copy);
+    return status;
+}
+
+static void expect_good(struct glint_prescription *lens, const char *text,
+                        size_t bytes)
+{
+    struct glint_error error;
+
+    if (parse(lens, text, bytes, &error))
+        fail_msg("%s", error.text);
+}
+
+static void expect_error(const char *text, size_t bytes, const char *expected)
+{
+    static struct glint_prescription lens, before;
+    struct glint_error error;
+
+    memset(&lens, 0x55, sizeof(lens));
+    before = lens;
+    assert_int_equal(parse(&lens, text, bytes, &error), GLINT_E_LENS);
+    assert_string_equal(error.text, expected);
+    assert_memory_equal(&lens, &before, sizeof(lens));
+}
+
+/* -------------------------------------------------------------- good tables */
+
+static void expect_surface(const struct glint_surface *s, double radius,
+                           double thickness, double semi, double nd, double vd,
+                           double coating_nm)
+{
+    assert_true(s->radius_mm == radius);
+    assert_true(s->thickness_mm == thickness);
+    assert_true(s->semi_mm == semi);
+    assert_true(s->nd == nd);
+    assert_true(s->vd == vd);
+    assert_true(s->coating_nm == coating_nm);
+    assert_true(s->coating_n == (coating_nm > 0 ? 1.38 : 0.0));
+}
+
+static void expect_tiny(const struct glint_prescription *lens)
+{
+    assert_string_equal(lens->name, "tiny-4");
+    assert_string_equal(lens->source, "Tiny, US 1,234");
+    assert_true(lens->f_number == 8.0);
+    assert_true(lens->film_width_mm == 36.0 && lens->film_height_mm == 24.0);
+    assert_int_equal(lens->n_surfaces, 4);
+    expect_surface(&lens->surface[0], 50, 6, 12, 1.5168, 64.17, 550);
+    expect_surface(&lens->surface[1], -50, 3, 12, 1, 0, 550);
+    expect_surface(&lens->surface[2], 0, 2, 10, 1.62, 36.3, 550);
+    expect_surface(&lens->surface[3], -80, 40, 10, 1, 0, 550);
+    assert_int_equal(lens->stop_after, 2);
+    assert_true(lens->stop_thickness_mm == 5.0 && lens->stop_semi_mm == 8.0);
+    assert_true(lens->check_focal_mm == 0.0 && lens->check_back_mm == 0.0);
+}
+
+static void test_good_table(void **state)
+{
+    static struct glint_prescription lens;
+    char text[4096];
+
+    (void)state;
+    expect_good(&lens, text, compose(text, 0, NULL, "\n"));
+    expect_tiny(&lens);
+    expect_good(&lens, text, compose(text, 0, NULL, "\r\n"));
+    expect_tiny(&lens);
+    expect_good(&lens, text, compose(text, 0, NULL, " \t \n\n"));
+    expect_tiny(&lens);
+    expect_good(&lens, text, compose(text, 0, NULL, "\n") - 1); /* no end */
+    expect_tiny(&lens);
+    expect_good(&lens, text,
+                compose(text, 1, "\xef\xbb\xbf# mark\nname tiny-4", "\n"));
+    expect_tiny(&lens);
+    expect_good(&lens, text, compose(text, 3, "\tf-number\t+.8E1", "\n"));
+    expect_tiny(&lens);
+}
+
+static void expect_coatings(int number, const char *line, const double nm[4],
+                            const double n[4])
+{
+    static struct glint_prescription lens;
+    char text[4096];
+
+    expect_good(&lens, text, compose(text, number, line, "\n"));
+    for (int k = 0; k < 4; k++) {
+        assert_true(lens.surface[k].coating_nm == nm[k]);
+        assert_true(lens.surface[k].coating_n == n[k]);
+    }
+}
+
+static void test_coatings(void **state)
+{
+    static const double zero[4] = {0};
+
+    (void)state;
+    expect_coatings(5, "coating none\nglass N-BK7 1.5 64", zero, zero);
+    expect_coatings(10, "surface -80 40 10 air\ncoating 480", /* anywhere */
+                    (const double[]){480, 480, 480, 480},
+                    (const double[]){1.38, 1.38, 1.38, 1.38});
+    expect_coatings(7, "surface -50 3 12 air coating 600 1.46",
+                    (const double[]){550, 600, 550, 550},
+                    (const double[]){1.38, 1.46, 1.38, 1.38});
+    expect_coatings(7, "surface -50 3 12 air coating none",
+                    (const double[]){550, 0, 550, 550},
+                    (const double[]){1.38, 0, 1.38, 1.38});
+    /* surface 1 becomes cemented: bare whatever the others are */
+    expect_coatings(7,
+                    "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating "
+                    "500 1.4",
+                    (const double[]){500, 0, 500, 500},
+                    (const double[]){1.4, 0, 1.4, 1.4});
+    expect_coatings(7,
+                    "surface -50 3 12 1.7 30 coating none\n"
+                    "surface -90 3 12 air",
+                    (const double[]){550, 0, 550, 550},
+                    (const double[]){1.38, 0, 1.38, 1.38});
+}
+
+static void test_stop_at_either_end(void **state)
+{
+    static struct glint_prescription lens;
+    static const char last[] = "name a\nf-number 8\nfilm 36 24\n"
+                               "surface 50 6 12 1.5 60\nsurface -50 3 12 air\n"
+                               "stop 40 8";
+    static const char first[] = "name a\nf-number 8\nfilm 36 24\nstop 3 8\n"
+                                "surface 50 6 12 1.5 60\n"
+                                "surface -50 45 12 air";
+
+    (void)state;
+    expect_good(&lens, last, strlen(last));
+    assert_int_equal(lens.stop_after, 2);
+    expect_good(&lens, first, strlen(first));
+    assert_int_equal(lens.stop_after, 0);
+}
+
+/* Decimals are rounded as the compiler rounds them. */
+static void test_numbers_are_exact(void **state)
+{
+    static const struct {
+        const char *word;
+        double value;
+    } cases[] = {
+        {"1.6525", 1.6525},
+        {"81.315056", 81.315056},
+        {"0.1e2", 0.1e2},
+        {"9.87654321012345", 9.87654321012345},
+        {"00000000000000000000012.50", 12.5},
+        {"123456789012345e-13", 123456789012345e-13},
+        {"5.", 5.0},
+        {"+3.3", 3.3},
+        {"1e-0", 1.0},
+    };
+    static struct glint_prescription lens;
+    char text[4096], line[100];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+        snprintf(line, sizeof(line), "film 36 %s", cases[i].word);
+        expect_good(&lens, text, compose(text, 4, line, "\n"));
+        assert_true(lens.film_height_mm == cases[i].value);
+    }
+}
+
+/* ------------------------------------------------------------------ mistakes
+ */
+
+static const struct {
+    int number; /* of the line replaced */
+    const char *line, *error;
+} mistakes[] = {
+    /* names and words */
+    {1, "", "x.lens:11:1: there is no name line"},
+    {1, "name", "x.lens:1:5: name is missing"},
+    {1, "name Tiny", "x.lens:1:6: name may have a-z, 0-9 and, inside, -"},
+    {1, "name -a", "x.lens:1:6: name may have a-z, 0-9 and, inside, -"},
+    {1, "name ../a", "x.lens:1:6: name may have a-z, 0-9 and, inside, -"},
+    {1, "name a b", "x.lens:1:8: 'b' is more than name takes"},
+    {1,
+     "name aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
+     "x.lens:1:6: name is longer than 63 bytes"},
+    {2, "source   # none", "x.lens:2:10: source is missing"},
+    {2, "fnumber 8", "x.lens:2:1: unknown word 'fnumber'"},
+    {2, "  Surface 1", "x.lens:2:3: unknown word 'Surface'"},
+    {2, "\xc3\xa9tude", "x.lens:2:1: unknown word '??tude'"},
+    {2, "an-endless-word-of-forty-letters-or-more",
+     "x.lens:2:1: unknown word 'an-endless-word-of-forty-let...'"},
+    /* f-number and film */
+    {3, "", "x.lens:11:1: there is no f-number line"},
+    {3, "f-number", "x.lens:3:9: f-number is missing"},
+    {3, "f-number f8", "x.lens:3:10: f-number 'f8' is not a number"},
+    {3, "f-number 0", "x.lens:3:10: f-number must be 0.5 .. 1000, not 0"},
+    {3, "f-number 0.1", "x.lens:3:10: f-number must be 0.5 .. 1000, not 0.1"},
+    {3, "f-number -8", "x.lens:3:10: f-number must be 0.5 .. 1000, not -8"},
+    {3, "f-number 8\nf-number 8",
+     "x.lens:4:1: a second f-number; the first is on line 3"},
+    {3, "f-number 1.5",
+     "x.lens:3:10: f/1.5 needs a stop of 11.42 mm radius, but its "
+     "semi-diameter is 8 mm"},
+    {4, "", "x.lens:11:1: there is no film line"},
+    {4, "film 36", "x.lens:4:8: film height is missing"},
+    {4, "film 0 24", "x.lens:4:6: film width must be 0.1 .. 1000, not 0"},
+    {4, "film 36 x24", "x.lens:4:9: film height 'x24' is not a number"},
+    /* numbers that C knows and we do not */
+    {3, "f-number inf", "x.lens:3:10: f-number 'inf' is not a number"},
+    {3, "f-number nan", "x.lens:3:10: f-number 'nan' is not a number"},
+    {3, "f-number 0x8", "x.lens:3:10: f-number '0x8' is not a number"},
+    {3, "f-number 5,6", "x.lens:3:10: f-number '5,6' is not a number"},
+    {3, "f-number 1e", "x.lens:3:10: f-number '1e' is not a number"},
+    {3, "f-number 1e+", "x.lens:3:10: f-number '1e+' is not a number"},
+    {3, "f-number .", "x.lens:3:10: f-number '.' is not a number"},
+    {3, "f-number +", "x.lens:3:10: f-number '+' is not a number"},
+    {3, "f-number --8", "x.lens:3:10: f-number '--8' is not a number"},
+    {3, "f-number 8#", "x.lens:3:10: f-number '8#' is not a number"},
+    {3, "f-number 1e400",
+     "x.lens:3:10: f-number '1e400' is too large or too small"},
+    {3, "f-number 1e99999999999999999999",
+     "x.lens:3:10: f-number '1e99999999999999999999' is too large or too "
+     "small"},
+    {3, "f-number 8.000000000000001",
+     "x.lens:3:10: f-number '8.000000000000001' has more than 15 digits"},
+    /* glasses */
+    {5, "glass", "x.lens:5:6: glass name is missing"},
+    {5, "glass N-BK7", "x.lens:5:12: index is missing"},
+    {5, "glass N-BK7 1.5", "x.lens:5:16: Abbe number is missing"},
+    {5, "glass N-BK7 0.9 60", "x.lens:5:13: index must be 1.01 .. 4, not 0.9"},
+    {5, "glass N-BK7 1.5 5",
+     "x.lens:5:17: Abbe number must be 10 .. 150, not 5"},
+    {5, "glass 7N 1.5 60",
+     "x.lens:5:7: glass name must be a letter and at most 22 letters, digits "
+     "and -"},
+    {5, "glass air 1.5 60",
+     "x.lens:5:7: glass of this name is already defined"},
+    {5, "glass N-BK7 1.5 60\nglass N-BK7 1.6 50",
+     "x.lens:6:7: glass of this name is already defined"},
+    {5, "glass N-BK 1.5 60",
+     "x.lens:6:21: no glass 'N-BK7' is defined above this line"},
+    /* surfaces */
+    {6, "surface", "x.lens:6:8: radius is missing"},
+    {6, "surface 50 6 12",
+     "x.lens:6:16: medium is missing: air, ND VD or a "
+     "glass"},
+    {6, "surface 0 6 12 N-BK7",
+     "x.lens:6:9: radius must not be 0; a plane is flat"},
+    {6, "surface plane 6 12 N-BK7",
+     "x.lens:6:9: radius 'plane' is not a number"},
+    {6, "surface 1e-9 6 12 N-BK7",
+     "x.lens:6:9: radius must be 0.01 .. 1000000000, not 1e-09"},
+    {6, "surface 50 -6 12 N-BK7",
+     "x.lens:6:12: thickness must be 0 .. 100000, not -6"},
+    {6, "surface 50 6 0 N-BK7",
+     "x.lens:6:14: semi-diameter must be 0.01 .. 10000, not 0"},
+    {6, "surface 50 6 50 N-BK7",
+     "x.lens:6:14: semi-diameter 50 must be less than the radius 50"},
+    {6, "surface -50 6 51 N-BK7",
+     "x.lens:6:15: semi-diameter 51 must be less than the radius 50"},
+    {6, "surface 50 6 12 1.5", "x.lens:6:20: Abbe number is missing"},
+    {6, "surface 50 6 12 1 60", "x.lens:6:17: index must be 1.01 .. 4, not 1"},
+    {6, "surface 50 6 12 air",
+     "x.lens:6:17: medium is the same on both "
+     "sides"},
+    {6, "surface 50 6 12 N-BK7 1.5",
+     "x.lens:6:23: '1.5' stands where only coating may follow"},
+    {6, "surface 50 6 12 N-BK7 coating",
+     "x.lens:6:30: coating wavelength is missing"},
+    {6, "surface 50 6 12 N-BK7 coating 50",
+     "x.lens:6:31: coating wavelength must be 100 .. 5000, not 50"},
+    {6, "surface 50 6 12 N-BK7 coating 550 1",
+     "x.lens:6:35: coating index must be 1.01 .. 4, not 1"},
+    {6, "surface 50 6 12 N-BK7 coating none 1.4",
+     "x.lens:6:36: '1.4' is more than surface takes"},
+    {7, "surface -50 3 12 1.7 30 coating 550\nsurface -50 2 12 air",
+     "x.lens:7:25: a cemented surface has no coating"},
+    {10, "surface -80 40 10 1.5 60",
+     "x.lens:10:19: the last medium must be "
+     "air"},
+    /* the stop */
+    {8, "", "x.lens:11:1: there is no stop line"},
+    {8, "stop 5 8\nstop 5 8",
+     "x.lens:9:1: a second stop; the first is on line 8"},
+    {8, "stop 5", "x.lens:8:7: semi-diameter is missing"},
+    {8, "stop 5 8 9", "x.lens:8:10: '9' is more than stop takes"},
+    /* the lens as a whole */
+    {6, "surface 50 2.3 12 N-BK7",
+     "x.lens:6:12: overlaps the next element by 0.06066 mm at 10.8 mm from "
+     "the axis"},
+    {7, "surface -50 0 12 air\nsurface -40 3 12 1.6 40\nsurface -50 3 12 air",
+     "x.lens:7:13: overlaps the next element by 0.3053 mm at 10.8 mm from the "
+     "axis"},
+    {8, "surface 20 0.5 9 1.7 30\nsurface 15 1 9 air\nstop 5 8",
+     "x.lens:9:12: overlaps the next element by 0.841 mm at 7.2 mm from the "
+     "axis"},
+    {10, "surface 80 0 10 air",
+     "x.lens:10:12: the sensor must lie behind the "
+     "last element"},
+    {10, "surface 80 0.6 10 air",
+     "x.lens:10:12: the sensor must lie behind "
+     "the last element"},
+    {2, "focal-length 40",
+     "x.lens:2:14: focal-length is 38.1194 mm, not the stated 40 mm"},
+    {2, "back-focal-length 40 # mm",
+     "x.lens:2:19: back-focal-length is 29.4328 mm, not the stated 40 mm"},
+    {2, "focal-length -40",
+     "x.lens:2:14: focal length must be 0.01 .. 1000000, not -40"},
+    /* bytes */
+    {2, "source a\rb", "x.lens:2:9: byte 0x0d is not text (UTF-8)"},
+    {2, "# bell \a", "x.lens:2:8: byte 0x07 is not text (UTF-8)"},
+    {2, "# \x7f", "x.lens:2:3: byte 0x7f is not text (UTF-8)"},
+    {2, "# latin \xfc", "x.lens:2:9: byte 0xfc is not text (UTF-8)"},
+    {2, "# cut \xe2\x82", "x.lens:2:7: byte 0xe2 is not text (UTF-8)"},
+    {2, "# overlong \xc0\xaf", "x.lens:2:12: byte 0xc0 is not text (UTF-8)"},
+    {2, "# overlong \xe0\x80\xaf",
+     "x.lens:2:12: byte 0xe0 is not text (UTF-8)"},
+    {2, "# surrogate \xed\xa0\x80",
+     "x.lens:2:13: byte 0xed is not text (UTF-8)"},
+    {2, "# beyond \xf4\x90\x80\x80",
+     "x.lens:2:10: byte 0xf4 is not text (UTF-8)"},
+    {2, "# escape \xc2\x9b", "x.lens:2:10: byte 0xc2 is not text (UTF-8)"},
+};
+
+static void test_mistakes(void **state)
+{
+    char text[4096];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof(mistakes) / sizeof(mistakes[0]); i++)
+        expect_error(text,
+                     compose(text, mistakes[i].number, mistakes[i].line, "\n"),
+                     mistakes[i].error);
+}
+
+static void test_bytes(void **state)
+{
+    char text[4096], line[300];
+    size_t bytes;
+
+    (void)state;
+    expect_error(NULL, 0, "x.lens:1:1: there is no name line");
+    expect_error("\n\n", 2, "x.lens:3:1: there is no name line");
+    bytes = compose(text, 0, NULL, "\n");
+    text[5] = 0;
+    expect_error(text, bytes, "x.lens:1:6: byte 0x00 is not text (UTF-8)");
+    /* the last byte of the text begins a character */
+    bytes = compose(text, 0, NULL, "\n");
+    text[bytes - 1] = '\xe2';
+    expect_error(text, bytes, "x.lens:10:34: byte 0xe2 is not text (UTF-8)");
+    memset(line, '#', sizeof(line));
+    line[201] = 0;
+    expect_error(text, compose(text, 2, line, "\r\n"),
+                 "x.lens:2:201: line is longer than 200 bytes");
+}
+
+static void test_longest_line_and_text(void **state)
+{
+    static struct glint_prescription lens;
+    static char big[70000];
+    char text[4096], line[300] = "source ";
+
+    (void)state;
+    memset(line + 7, 'x', 193); /* 200 in all */
+    expect_good(&lens, text, compose(text, 2, line, "\r\n"));
+    assert_int_equal(strlen(lens.source), 193);
+    memset(big, '\n', sizeof(big));
+    memcpy(big, text, compose(text, 0, NULL, "\n"));
+    expect_good(&lens, big, 65536);
+    expect_error(big, 65537, "x.lens:1:1: text is longer than 65536 bytes");
+}
+
+/* Comments may say anything in UTF-8, and # inside a word is no comment. */
+static void test_utf8_and_comments(void **state)
+{
+    static struct glint_prescription lens;
+    char text[4096];
+
+    (void)state;
+    expect_good(&lens, text,
+                compose(text, 2,
+                        "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
+                        "source Voigtl\xc3\xa4nder a#1 \t # no",
+                        "\n"));
+    assert_string_equal(lens.source, "Voigtl\xc3\xa4nder a#1");
+}
+
+static void test_too_many_surfaces(void **state)
+{
+    static struct glint_prescription lens;
+    static char text[8192];
+    int n = snprintf(text, sizeof(text),
+                     "name a\nf-number 32\nfilm 36 24\nstop 1 9\n");
+
+    (void)state;
+    for (int k = 0; k < 64; k++)
+        n += snprintf(text + n, sizeof(text) - (size_t)n, "surface %s 1 9 %s\n",
+                      k % 2 ? "-900" : "900", k % 2 ? "air" : "1.5 60");
+    expect_good(&lens, text, (size_t)n);
+    assert_int_equal(lens.n_surfaces, 64);
+    n += snprintf(text + n, sizeof(text) - (size_t)n, "surface 9 1 1 1.5 60");
+    expect_error(text, (size_t)n, "x.lens:69:1: more than 64 surfaces");
+}
+
+static void expect_whole_lens_error(const char *elements, const char *expected)
+{
+    char text[4096];
+
+    snprintf(text, sizeof(text), "name a\nf-number 8\nfilm 36 24\n%s",
+             elements);
+    expect_error(text, strlen(text), expected);
+}
+
+static void test_power(void **state)
+{
+    (void)state;
+    expect_whole_lens_error("stop 1 20\nsurface flat 3 9 1.5 60\n"
+                            "surface flat 9 9 air\n",
+                            "x.lens:7:1: the lens has no power");
+    /* R1 - R2 = d (n - 1) / n: afocal; exactly so in decimals */
+    expect_whole_lens_error("stop 1 20\nsurface 40 60 9 1.5 60\n"
+                            "surface 20 9 9 air\n",
+                            "x.lens:7:1: the lens has no power");
+    expect_whole_lens_error("stop 1 20\nsurface -50 3 9 1.5 60\n"
+                            "surface 50 9 9 air\n",
+                            "x.lens:7:1: the lens has no focus behind it: "
+                            "focal length -49.505 mm, back focal length "
+                            "-50.495 mm");
+    /* the stop in the focus of a thick plano-convex rod, R n / (n - 1) long,
+     * whose image two relays pass on */
+    expect_whole_lens_error("surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
+                            "stop 100 5\n"
+                            "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
+                            "surface 50 3 9 1.5 60\nsurface -50 100 9 air\n",
+                            "x.lens:6:10: the stop lies in a focus of the "
+                            "surfaces before it");
+}
+
+/* Stated values may be 0.1 % off. */
+static void test_stated_values(void **state)
+{
+    static struct glint_prescription lens;
+    char text[4096];
+
+    (void)state;
+    expect_good(
+        &lens, text,
+        compose(text, 2, "focal-length 38.15\nback-focal-length 29.41", "\n"));
+    assert_true(lens.check_focal_mm == 38.15);
+    assert_true(lens.check_back_mm == 29.41);
+    expect_error(text, compose(text, 2, "focal-length 38.08", "\n"),
+                 "x.lens:2:14: focal-length is 38.1194 mm, not the stated "
+                 "38.08 mm");
+}
+
+/* The cause survives a file name of any length. */
+static void test_long_file_name(void **state)
+{
+    static struct glint_prescription lens;
+    static char name[2000];
+    struct glint_error error;
+
+    (void)state;
+    memset(name, 'd', sizeof(name) - 1);
+    strcpy(name + 1900, "/a.lens");
+    assert_int_equal(glint_prescription_parse(&lens, "bad", 3, name, &error),
+                     GLINT_E_LENS);
+    assert_non_null(strstr(error.text, "/a.lens:1:1: unknown word 'bad'"));
+    assert_memory_equal(error.text, "...ddd", 6);
+}
+
+static void test_set_f_number(void **state)
+{
+    static struct glint_prescription lens;
+    struct glint_error error;
+    struct glint_optics optics;
+
+    (void)state;
+    load_lens(&lens, "heliar-tronnier");
+    assert_int_equal(glint_prescription_set_f_number(&lens, 8.0, &error),
+                     GLINT_OK);
+    assert_true(lens.f_number == 8.0);
+    glint_optics_of(&lens, &optics); /* twice the 2.4868 mm at f/16 */
+    assert_near(optics.stop_radius_mm, 2.0 * 2.4868, 1e-4);
+    assert_int_equal(glint_prescription_set_f_number(&lens, 2.0, &error),
+                     GLINT_E_ARGUMENT);
+    assert_string_equal(error.text,
+                        "f/2 needs a stop of 19.89 mm radius; heliar-tronnier "
+                        "opens to 11.6 mm, f/3.43");
+    assert_int_equal(
+        glint_prescription_set_f_number(&lens, (double)NAN, &error),
+        GLINT_E_ARGUMENT);
+    assert_int_equal(glint_prescription_set_f_number(&lens, HUGE_VAL, &error),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_prescription_set_f_number(&lens, 0.0, &error),
+                     GLINT_E_ARGUMENT);
+    assert_int_equal(glint_prescription_set_f_number(&lens, -8.0, &error),
+                     GLINT_E_ARGUMENT);
+    assert_string_equal(error.text, "f-number must be 0.5 .. 1000, not -8");
+    assert_true(lens.f_number == 8.0);
+}
+
+/* The example of the manual is one. */
+static void test_manual(void **state)
+{
+    static const char fence[] = "```lens\n";
+    static struct glint_prescription lens;
+    static char text[65536];
+    const char *start, *end;
+
+    (void)state;
+    text[read_file("lenses/README.md", text, sizeof(text) - 1)] = 0;
+    start = strstr(text, fence);
+    assert_non_null(start);
+    start += strlen(fence);
+    end = strstr(start, "```");
+    assert_non_null(end);
+    expect_good(&lens, start, (size_t)(end - start));
+    assert_string_equal(lens.name, "achromat");
+}
+
+/* Seeds of the fuzzer, by name: good-* parse, bad-* do not, others may. */
+static void test_corpus(void **state)
+{
+    static struct glint_prescription lens;
+    static char text[70000];
+    DIR *folder = opendir(CORPUS);
+    const struct dirent *entry;
+    struct glint_error error;
+    int n = 0;
+
+    (void)state;
+    assert_non_null(folder);
+    while ((entry = readdir(folder))) {
+        char path[400];
+        enum glint_status status;
+
+        if (entry->d_name[0] == '.')
+            continue;
+        snprintf(path, sizeof(path), CORPUS "/%s", entry->d_name);
+        status =
+            parse(&lens, text, read_file(path, text, sizeof(text)), &error);
+        if (!strncmp(entry->d_name, status ? "good-" : "bad-", status ? 5 : 4))
+            fail_msg("%s: %s", path, status ? error.text : "accepted");
+        n++;
+    }
+    closedir(folder);
+    assert_true(n >= 20);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_good_table),
+        cmocka_unit_test(test_coatings),
+        cmocka_unit_test(test_stop_at_either_end),
+        cmocka_unit_test(test_numbers_are_exact),
+        cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_longest_line_and_text),
+        cmocka_unit_test(test_utf8_and_comments),
+        cmocka_unit_test(test_too_many_surfaces),
+        cmocka_unit_test(test_power),
+        cmocka_unit_test(test_stated_values),
+        cmocka_unit_test(test_long_file_name),
+        cmocka_unit_test(test_set_f_number),
+        cmocka_unit_test(test_manual),
+        cmocka_unit_test(test_corpus),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,630 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Integers of a model against the polynomials they stand for: what is proven of
+ * them holds for every input that was tried.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "bake/fit/quantise.h"
+#include "bake/write_model.h"
+#include "base/q.h"
+#include "support/lens_check.h"
+#include "support/shuffle.h"
+
+enum { ONE_Q30 = 1 << 30, KNOTS = 3, KINDS = GLINT_OUT_BARREL_0 + 1 };
+
+static uint32_t seed = 1;
+
+/* -1 .. 1 */
+static double random_unit(void)
+{
+    return 2.0 * shuffle_next(&seed) / UINT32_MAX - 1;
+}
+
+static int random_int(int lo, int hi)
+{
+    return lo + (int)(shuffle_next(&seed) % (uint32_t)(hi - lo + 1));
+}
+
+/* Within +-2^30; one in four is at a corner or next to one. */
+static int32_t random_q30(void)
+{
+    static const int32_t corner[] = {-ONE_Q30, 1 - ONE_Q30, -1,     0,
+                                     1,        ONE_Q30 - 1, ONE_Q30};
+
+    if (random_int(0, 3) == 0)
+        return corner[random_int(0, 6)];
+    return (int32_t)lrint(random_unit() * 0x1p30);
+}
+
+/* ------------------------------------------------------------------ systems */
+
+/* A fitted ghost of one system, its lens, and the model of it. */
+struct made {
+    struct glint_fitted_ghost fitted;
+    struct glint_quantised_system quantised;
+    struct glint_draft draft;
+    struct glint_lens lens;
+};
+
+static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
+{
+    struct glint_fitted_output *o = &s->output[s->n_outputs++];
+    const int odd = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
+    const int sets = s->n_knots ? s->n_knots : 1;
+    const int scale = random_int(-40, 20);
+    const int most = random_int(1, 40);
+
+    *o = (struct glint_fitted_output){.kind = kind, .n_terms = 0};
+    for (int k = 0; k < most; k++) {
+        uint8_t *power = o->power[o->n_terms];
+        bool twice = false;
+
+        power[0] = (uint8_t)random_int(0, GLINT_MAX_POWER);
+        power[1] = (uint8_t)(2 * random_int(0, 4) + odd);
+        power[2] = (uint8_t)random_int(0, random_int(0, 15));
+        power[3] = (uint8_t)random_int(0, random_int(0, 15));
+        for (int i = 0; i < o->n_terms; i++)
+            twice |= memcmp(o->power[i], power, sizeof o->power[i]) == 0;
+        o->n_terms += !twice;
+    }
+    o->coef = malloc((size_t)(sets * o->n_terms) * sizeof *o->coef);
+    assert_non_null(o->coef);
+    for (int k = 0; k < sets * o->n_terms; k++) {
+        const double unit = random_unit();
+
+        /* one sign for some outputs: sums that go to the bound */
+        o->coef[k] = ldexp(most % 3 ? unit : fabs(unit),
+                           scale - random_int(0, most % 5 ? 3 : 20));
+    }
+    if (kind == GLINT_OUT_ENERGY && sets == 1) {
+        o->roots = random_int(0, 2);
+        o->most = random_int(0, 2) ? ldexp(1, scale - random_int(0, 12)) : 0;
+    }
+}
+
+static void make_box(struct glint_fitted_system *s)
+{
+    const int n = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
+
+    s->box = malloc((size_t)n * sizeof *s->box);
+    assert_non_null(s->box);
+    for (int k = 0; k < n; k++)
+        s->box[k] = 0;
+    for (int k = 0; k < s->n_knots; k++) {
+        const double half = 0.01 + 0.3 * fabs(random_unit());
+
+        s->box[3 * k] = s->radius_mm * (0.99 - half) * random_unit();
+        s->box[3 * k + 1] = s->radius_mm * half;
+        s->box[3 * k + 2] = s->radius_mm * fabs(random_unit());
+    }
+    if (s->n_knots == 0) {
+        s->box[0] = 7 * random_unit();
+        s->box[1] = random_unit();
+        s->box[GLINT_BOX_TERMS] = 3 + random_unit();
+        s->box[2 * GLINT_BOX_TERMS] = 5;
+    }
+}
+
+static void make_system(struct made *m, enum glint_basis basis)
+{
+    struct glint_fitted_system *s = calloc(1, sizeof *s);
+
+    assert_non_null(s);
+    *m = (struct made){.fitted = {1, s}};
+    *s = (struct glint_fitted_system){.sine_lo = 0.125,
+                                      .sine_hi = 0.6,
+                                      .wave_lo = 1 / 0.49,
+                                      .wave_hi = 1 / 0.16};
+    if (basis == GLINT_BASIS_SPARSE) {
+        s->n_knots = KNOTS;
+        s->radius_mm = ldexp(1, random_int(-2, 6));
+        s->knot = malloc(KNOTS * sizeof *s->knot);
+        assert_non_null(s->knot);
+        for (int k = 0; k < KNOTS; k++)
+            s->knot[k] = 0.125 + 0.475 * k / (KNOTS - 1);
+    }
+    make_box(s);
+    for (int kind = 0; kind < KINDS; kind++)
+        make_output(s, (enum glint_channel)kind);
+}
+
+/* The model of M, through the loader's gate. */
+static void make_model(struct made *m, enum glint_basis basis)
+{
+    static struct glint_setup setup;
+    struct glint_quantised_system *const quantised = &m->quantised;
+    const struct glint_real one = glint_real_of(1);
+    const struct glint_model_header header = {
+        .magic = GLINT_MODEL_MAGIC,
+        .version = GLINT_MODEL_VERSION,
+        .basis = basis,
+        .name = "made up",
+        .focal_mm = one,
+        .back_focal_mm = one,
+        .entrance_radius_mm = one,
+        .stop_radius_mm = one,
+        .f_number = one,
+        .film_width_mm = one,
+        .film_height_mm = one,
+        .field_mm = one,
+        .front_mm = one,
+        .wave_lo_q24 = (int32_t)(0x1p24 / 0.49),
+        .wave_hi_q24 = (int32_t)(0x1p24 / 0.16),
+        .sine_hi_q30 = ONE_Q30,
+        .n_surfaces = 2};
+    const char *reason = "";
+
+    setup.n_ghosts = 1;
+    setup.ghost[0] = (struct glint_ghost){0, 1};
+    assert_int_equal(glint_quantise(m->fitted.system, &m->quantised), GLINT_OK);
+    assert_int_equal(
+        glint_draft_write(&m->draft, &setup, &header, &m->fitted, &quantised),
+        GLINT_OK);
+    glint_draft_close(&m->draft);
+    if (glint_lens_open(&m->lens, m->draft.data, m->draft.bytes, &reason))
+        fail_msg("%s", reason);
+}
+
+static void finish(struct made *m)
+{
+    glint_quantised_finish(&m->quantised);
+    glint_fitted_finish(&m->fitted);
+    free(m->draft.data);
+}
+
+/* -------------------------------------------------------------------- proof */
+
+static double to_one(int32_t x_q30)
+{
+    return ldexp(x_q30, -30);
+}
+
+/* -1 .. 1 as the run time has it: that far the input is rounded. */
+static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
+{
+    const int64_t twice = 2 * (int64_t)x - lo - hi;
+
+    return (int32_t)(twice * ONE_Q30 / ((int64_t)hi - lo));
+}
+
+/* The fitted polynomial; sets of coefficients PART of the way from KNOT. */
+static double polynomial(const struct glint_fitted_output *o, int knot,
+                         double part, double power[4][16])
+{
+    double sum = 0;
+
+    for (int k = 0; k < o->n_terms; k++) {
+        const double *low = o->coef + knot * o->n_terms + k;
+        double term =
+            part > 0 ? low[0] + part * (low[o->n_terms] - low[0]) : low[0];
+
+        for (int i = 0; i < 4; i++)
+            term *= power[i][o->power[k][i]];
+        sum += term;
+    }
+    return sum;
+}
+
+static void set_powers(double power[4][16], const double x[4])
+{
+    for (int i = 0; i < 4; i++) {
+        power[i][0] = 1;
+        for (int k = 1; k < 16; k++)
+            power[i][k] = power[i][k - 1] * x[i];
+    }
+}
+
+/* How much of what is allowed the worst value took. */
+struct used {
+    double bound, rounding;
+    double narrow; /* of 16-bit lanes */
+    long n;
+};
+
+/* What the run time is to make of the value of a polynomial. */
+static double energy_of(int head, int roots, double value)
+{
+    if (head || roots)
+        value = ldexp(fmin(fmax(value, 0), ldexp(1, 29 - head)), head);
+    for (int k = 0; k < roots; k++)
+        value = value * value * 0x1p-29;
+    return value;
+}
+
+/* The polynomial's variables are those of the run time, exactly. */
+static void compare(const struct made *m, const struct glint_outputs *out,
+                    int knot, double part, const double x[4], struct used *used)
+{
+    double power[4][16];
+
+    set_powers(power, x);
+    for (int k = 0; k < m->fitted.system->n_outputs; k++) {
+        const struct glint_fitted_output *o = &m->fitted.system->output[k];
+        const struct glint_quantised_output *q = &m->quantised.output[k];
+        const double truth =
+            energy_of(q->head, o->roots,
+                      ldexp(polynomial(o, knot, part, power), -q->exponent));
+        const double error = fabs(out->at[o->kind] - truth);
+        const double most = ldexp(q->rounding_q8, -8) + 1e-6;
+
+        if (q->head || o->roots) { /* beyond the bound of the polynomial */
+            assert_true(error <= most && out->at[o->kind] <= 1 << 29);
+            continue;
+        }
+        if (error > most || fabs((double)out->at[o->kind]) > q->bound)
+            fail_msg("kind %d at %.9g %.9g %.9g %.9g: %d for %.3f, proven %g "
+                     "and %lu",
+                     (int)o->kind, x[0], x[1], x[2], x[3],
+                     (int)out->at[o->kind], truth, most,
+                     (unsigned long)q->bound);
+        used->rounding = fmax(used->rounding, error / most);
+        used->bound =
+            fmax(used->bound, fabs((double)out->at[o->kind]) / q->bound);
+        used->n++;
+    }
+}
+
+/* The same ray in 16-bit lanes. */
+static void compare_narrow(const struct glint_transfer *narrow,
+                           const struct glint_outputs *out, int32_t u_q30,
+                           int32_t v_q30, struct used *used)
+{
+    struct glint_outputs coarse;
+
+    glint_transfer_ray(narrow, u_q30, v_q30, &coarse);
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        const double step = ldexp(1, narrow->shift[kind]);
+        const double error = fabs((double)coarse.at[kind] - out->at[kind]);
+
+        if (kind == GLINT_OUT_ENERGY && (narrow->head || narrow->roots))
+            continue;
+        assert_true(error <= 128 * step);
+        used->narrow = fmax(used->narrow, error / (128 * step));
+    }
+}
+
+static void compare_auto(const struct made *m, int32_t sine_q30,
+                         int32_t wave_q24, int rays, struct used *used)
+{
+    struct glint_transfer t, narrow;
+
+    assert_true(glint_transfer_init(&t, &m->lens, 0, sine_q30, wave_q24));
+    narrow = t;
+    glint_transfer_narrow(&narrow);
+    for (int k = 0; k < rays; k++) {
+        const int32_t u_q30 = random_q30(), v_q30 = random_q30();
+        const struct glint_model_system *s = t.system;
+        const double x[4] = {
+            to_one(u_q30), to_one(v_q30),
+            to_one(within_q30(sine_q30, s->sine_lo_q30, s->sine_hi_q30)),
+            to_one(within_q30(wave_q24, s->wave_lo_q24, s->wave_hi_q24))};
+        struct glint_outputs out;
+
+        glint_transfer_ray(&t, u_q30, v_q30, &out);
+        compare(m, &out, 0, 0, x, used);
+        compare_narrow(&narrow, &out, u_q30, v_q30, used);
+    }
+}
+
+static void compare_sparse(const struct made *m, int32_t sine_q30,
+                           int32_t wave_q24, int rays, struct used *used)
+{
+    const int32_t *knot_q30;
+    struct glint_transfer t;
+    int knot = 0;
+    double part;
+
+    assert_true(glint_transfer_init(&t, &m->lens, 0, sine_q30, wave_q24));
+    knot_q30 = (const void *)(m->draft.data + t.system->knot_at);
+    while (knot + 2 < KNOTS && sine_q30 >= knot_q30[knot + 1])
+        knot++;
+    part = to_one(within_q30(sine_q30, knot_q30[knot], knot_q30[knot + 1]) / 2 +
+                  ONE_Q30 / 2);
+    for (int k = 0; k < rays; k++) {
+        const int32_t u_q30 = random_q30(), v_q30 = random_q30();
+        const int32_t x_q30 = t.box[0] + q_mul(t.box[1], u_q30, 30);
+        const int32_t y_q30 = q_mul(t.box[2], v_q30, 30);
+        const int32_t r_q30 = q_clamp_sat(
+            q_root((uint64_t)((int64_t)x_q30 * x_q30 + (int64_t)y_q30 * y_q30)),
+            0, ONE_Q30);
+        const double x[4] = {to_one(x_q30), to_one(y_q30), to_one(r_q30),
+                             1 - to_one(r_q30)};
+        struct glint_outputs out;
+
+        glint_transfer_ray(&t, u_q30, v_q30, &out);
+        compare(m, &out, knot, part, x, used);
+    }
+}
+
+static struct used check_proofs(enum glint_basis basis, int systems)
+{
+    enum { BUNDLES = 8, RAYS = 50 };
+    struct used used = {0, 0, 0, 0};
+
+    for (int k = 0; k < systems; k++) {
+        const struct glint_model_system *s;
+        struct made m;
+
+        seed = 100 * (uint32_t)k + 1 + basis;
+        make_system(&m, basis);
+        make_model(&m, basis);
+        s = m.lens.system;
+        for (int i = 0; i < BUNDLES; i++) {
+            const double a = 0.5 + 0.5 * to_one(random_q30());
+            const double b = 0.5 + 0.5 * to_one(random_q30());
+            const int32_t sine_q30 =
+                s->sine_lo_q30 +
+                (int32_t)(a * (s->sine_hi_q30 - s->sine_lo_q30));
+            const int32_t wave_q24 =
+                s->wave_lo_q24 +
+                (int32_t)(b * (s->wave_hi_q24 - s->wave_lo_q24));
+
+            (basis == GLINT_BASIS_SPARSE ? compare_sparse : compare_auto)(
+                &m, sine_q30, wave_q24, RAYS, &used);
+        }
+        finish(&m);
+    }
+    return used;
+}
+
+/* Some input comes near to the bound, and rounding is no empty promise. */
+static void test_proof_auto(void **state)
+{
+    const struct used used = check_proofs(GLINT_BASIS_AUTO, 240);
+
+    (void)state;
+    assert_true(used.n > 300000);
+    assert_in_range((long)(1000 * used.bound), 800, 1000);
+    assert_in_range((long)(1000 * used.rounding), 20, 1000);
+    assert_in_range((long)(1000 * used.narrow), 50, 1000);
+}
+
+static void test_proof_sparse(void **state)
+{
+    const struct used used = check_proofs(GLINT_BASIS_SPARSE, 240);
+
+    (void)state;
+    assert_true(used.n > 300000);
+    assert_in_range((long)(1000 * used.bound), 300, 1000); /* r < 1 mostly */
+    assert_in_range((long)(1000 * used.rounding), 20, 1000);
+}
+
+/* One coefficient off by a thousandth shows. */
+static void test_proof_can_fail(void **state)
+{
+    struct glint_outputs out;
+    struct glint_transfer t;
+    struct glint_fitted_output *o;
+    double power[4][16], truth;
+    struct made m;
+    int largest = 0;
+
+    (void)state;
+    seed = 5;
+    make_system(&m, GLINT_BASIS_AUTO);
+    m.fitted.system->output[GLINT_OUT_ENERGY].roots = 0;
+    m.fitted.system->output[GLINT_OUT_ENERGY].most = 0;
+    make_model(&m, GLINT_BASIS_AUTO);
+    o = &m.fitted.system->output[GLINT_OUT_ENERGY];
+    for (int k = 1; k < o->n_terms; k++)
+        largest = fabs(o->coef[k]) > fabs(o->coef[largest]) ? k : largest;
+    o->coef[largest] *= 1.001;
+    assert_true(glint_transfer_init(&t, &m.lens, 0, m.lens.system->sine_hi_q30,
+                                    m.lens.system->wave_hi_q24));
+    glint_transfer_ray(&t, ONE_Q30, ONE_Q30, &out);
+    set_powers(power, (const double[4]){1, 1, 1, 1});
+    truth = ldexp(polynomial(o, 0, 0, power),
+                  -m.quantised.output[GLINT_OUT_ENERGY].exponent);
+    assert_true(fabs(out.at[GLINT_OUT_ENERGY] - truth) >
+                ldexp(m.quantised.output[GLINT_OUT_ENERGY].rounding_q8, -8));
+    finish(&m);
+}
+
+/* ------------------------------------------------------------------ numbers */
+
+static void test_reals(void **state)
+{
+    static const double exact[] = {
+        1, -1, 0.5, 3, -0.1875, 0x1.fffffffcp+40, 0x1p-150, 123456789};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof exact / sizeof *exact; k++)
+        assert_true(glint_real_value(glint_real_of(exact[k])) == exact[k]);
+    assert_int_equal(glint_real_of(1).mantissa, ONE_Q30);
+    assert_int_equal(glint_real_of(1).exponent, -30);
+    assert_int_equal(glint_real_of(-6).mantissa, -3 * (ONE_Q30 / 2));
+    assert_int_equal(glint_real_of(-6).exponent, -28);
+    for (int k = 0; k < 100000; k++) {
+        const double x = ldexp(random_unit(), random_int(-150, 150));
+        const struct glint_real real = glint_real_of(x);
+
+        assert_near(glint_real_value(real), x, 0x1p-30 * fabs(x));
+        assert_true(x == 0 || abs(real.mantissa) >= ONE_Q30);
+    }
+}
+
+static void test_odd_reals(void **state)
+{
+    static const double odd[] = {0, -0.0, HUGE_VAL, -HUGE_VAL, (double)NAN};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
+        assert_int_equal(glint_real_of(odd[k]).mantissa, 0);
+        assert_int_equal(glint_real_of(odd[k]).exponent, 0);
+    }
+    /* all but the next power of two */
+    assert_int_equal(glint_real_of(nextafter(2, 0)).mantissa, INT32_MAX);
+}
+
+/* ---------------------------------------------------------------- exponents */
+
+/* The largest sum of magnitudes that sets of coefficients can be turned into.
+ */
+static int64_t hull(const struct glint_fitted_output *o,
+                    const struct glint_quantised_output *q, int sets)
+{
+    int64_t sum = 0;
+
+    for (int t = 0; t < o->n_terms; t++) {
+        long most = 0;
+
+        for (int set = 0; set < sets; set++) {
+            const int at = set * o->n_terms + t;
+
+            most = labs(q->coef[at]) > most ? labs(q->coef[at]) : most;
+            assert_near(q->coef[at], ldexp(o->coef[at], -q->exponent), 0.5);
+        }
+        sum += most;
+    }
+    return sum;
+}
+
+/* Sums use the room there is, at least half of it, whatever the sets are. */
+static void test_exponents(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 1000; k++) {
+        struct made m;
+
+        seed = 7 + (uint32_t)k;
+        make_system(&m, k % 2 ? GLINT_BASIS_SPARSE : GLINT_BASIS_AUTO);
+        assert_int_equal(glint_quantise(m.fitted.system, &m.quantised),
+                         GLINT_OK);
+        for (int i = 0; i < KINDS; i++) {
+            const struct glint_quantised_output *q = &m.quantised.output[i];
+            const int64_t sum = hull(&m.fitted.system->output[i], q,
+                                     m.fitted.system->n_knots ? KNOTS : 1);
+
+            assert_true(sum <= GLINT_COEF_LIMIT);
+            assert_true(q->bound < ONE_Q30);
+            if (i >= GLINT_OUT_ENERGY && q->exponent > -80)
+                assert_true(sum >= GLINT_COEF_LIMIT / 2 - 64);
+        }
+        for (int i = 0; i < GLINT_OUT_ENERGY; i += 2)
+            assert_int_equal(m.quantised.output[i].exponent,
+                             m.quantised.output[i + 1].exponent);
+        finish(&m);
+    }
+}
+
+/* Energies are not cut where light gets through, nor a little above. */
+static void test_head(void **state)
+{
+    int cut = 0;
+
+    (void)state;
+    for (int k = 0; k < 1000; k++) {
+        const struct glint_fitted_output *o;
+        const struct glint_quantised_output *q;
+        struct made m;
+
+        seed = 11 + (uint32_t)k;
+        make_system(&m, GLINT_BASIS_AUTO);
+        assert_int_equal(glint_quantise(m.fitted.system, &m.quantised),
+                         GLINT_OK);
+        o = &m.fitted.system->output[GLINT_OUT_ENERGY];
+        q = &m.quantised.output[GLINT_OUT_ENERGY];
+        if (q->head > 0)
+            assert_true(ldexp(1.2 * o->most, q->head - q->exponent) < 0x1p29);
+        cut += q->head > 0;
+        finish(&m);
+    }
+    assert_in_range(cut, 300, 900);
+}
+
+/* Too small for any exponent of the file: steps of the least one do. */
+static void test_least_exponent(void **state)
+{
+    struct made m;
+
+    (void)state;
+    seed = 3;
+    make_system(&m, GLINT_BASIS_AUTO);
+    for (int k = 0; k < KINDS; k++)
+        for (int t = 0; t < m.fitted.system->output[k].n_terms; t++)
+            m.fitted.system->output[k].coef[t] = k % 2 ? 0 : 0x1p-200;
+    make_model(&m, GLINT_BASIS_AUTO); /* opens */
+    assert_int_equal(m.quantised.output[GLINT_OUT_ENERGY].exponent, -80);
+    finish(&m);
+}
+
+/* ----------------------------------------------------------------- refusals */
+
+static void refused(struct made *m)
+{
+    assert_int_equal(glint_quantise(m->fitted.system, &m->quantised),
+                     GLINT_E_LENS);
+    finish(m);
+}
+
+static void test_not_finite(void **state)
+{
+    static const double odd[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
+
+    (void)state;
+    for (int k = 0; k < 6 * KINDS; k++) {
+        const enum glint_basis basis =
+            k % 2 ? GLINT_BASIS_SPARSE : GLINT_BASIS_AUTO;
+        struct glint_fitted_output *o;
+        struct made m;
+
+        make_system(&m, basis);
+        o = &m.fitted.system->output[k / 6];
+        o->coef[o->n_terms - 1] = odd[k % 3];
+        refused(&m);
+        make_system(&m, basis);
+        m.fitted.system->box[k % 9] = odd[k % 3];
+        refused(&m);
+    }
+}
+
+static void test_no_terms(void **state)
+{
+    struct made m;
+
+    (void)state;
+    make_system(&m, GLINT_BASIS_AUTO);
+    m.fitted.system->output[GLINT_OUT_STOP_Y].n_terms = 0;
+    refused(&m);
+}
+
+static void test_box_of_no_power_of_two(void **state)
+{
+    static const double odd[] = {3, 1.0000001, 0, -2, (double)NAN, HUGE_VAL};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; k++) {
+        struct made m;
+
+        make_system(&m, GLINT_BASIS_SPARSE);
+        m.fitted.system->radius_mm = odd[k];
+        refused(&m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reals),
+        cmocka_unit_test(test_odd_reals),
+        cmocka_unit_test(test_exponents),
+        cmocka_unit_test(test_head),
+        cmocka_unit_test(test_least_exponent),
+        cmocka_unit_test(test_proof_auto),
+        cmocka_unit_test(test_proof_sparse),
+        cmocka_unit_test(test_proof_can_fail),
+        cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_no_terms),
+        cmocka_unit_test(test_box_of_no_power_of_two),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

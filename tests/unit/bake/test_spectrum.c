@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Few wavelengths for all: where they are, that a flat spectrum is white, and
+ * how near smooth ones come to the colour that 31 wavelengths give.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "bake/trace/spectrum.h"
+#include "glint/bake.h"
+
+enum { ALL = 31 };
+
+static double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS];
+static double rgb[GLINT_MAX_WAVELENGTHS][3];
+
+/* The observer over 400 .. 700 nm, each channel's sum 1. */
+static void observe(double all[ALL][3])
+{
+    double sum[3] = {0, 0, 0};
+
+    for (int j = 0; j < ALL; j++) {
+        glint_observer_rgb(400 + 10 * j, all[j]);
+        for (int c = 0; c < 3; c++)
+            sum[c] += all[j][c];
+    }
+    for (int j = 0; j < ALL; j++)
+        for (int c = 0; c < 3; c++)
+            all[j][c] /= sum[c];
+}
+
+static void test_places(void **state)
+{
+    (void)state;
+    for (int n = 1; n <= GLINT_MAX_WAVELENGTHS; n++) {
+        glint_spectrum(n, nm, rgb, share);
+        for (int i = 0; i < n; i++) {
+            assert_true(nm[i] >= 400 && nm[i] <= 700);
+            assert_true(i == 0 || nm[i] > nm[i - 1] + 2);
+            for (int c = 0; c < 3; c++)
+                assert_true(fabs(rgb[i][c]) < 2);
+        }
+    }
+    glint_spectrum(3, nm, rgb, share); /* blue, green and orange */
+    assert_true(nm[0] > 430 && nm[0] < 460 && nm[1] > 520 && nm[1] < 560 &&
+                nm[2] > 590 && nm[2] < 630);
+}
+
+static void test_flat_is_white(void **state)
+{
+    (void)state;
+    for (int n = 1; n <= GLINT_MAX_WAVELENGTHS; n++) {
+        double sum[4] = {0, 0, 0, 0};
+
+        glint_spectrum(n, nm, rgb, share);
+        for (int i = 0; i < n; i++) {
+            for (int c = 0; c < 3; c++)
+                sum[c] += rgb[i][c];
+            sum[3] += share[i];
+        }
+        for (int c = 0; c < 4; c++)
+            assert_true(fabs(sum[c] - 1) < 1e-9);
+    }
+}
+
+/* A product of what two coated glasses reflect, as a ghost's is. */
+static double ghost(double first_nm, double second_nm, double index, double at)
+{
+    const double pi = 3.14159265358979323846;
+
+    return glint_reflectance(1, index, 1, 1.38, pi * first_nm / at) *
+           glint_reflectance(1, index, 1, 1.38, pi * second_nm / at);
+}
+
+/* The largest difference of a channel, over the largest channel. */
+static double colour_error(int n, double first_nm, double second_nm,
+                           double index)
+{
+    double all[ALL][3], few[3] = {0, 0, 0}, true_rgb[3] = {0, 0, 0};
+    double most = 0, wrong = 0;
+
+    observe(all);
+    glint_spectrum(n, nm, rgb, share);
+    for (int c = 0; c < 3; c++) {
+        for (int j = 0; j < ALL; j++)
+            true_rgb[c] +=
+                all[j][c] * ghost(first_nm, second_nm, index, 400 + 10 * j);
+        for (int i = 0; i < n; i++)
+            few[c] += rgb[i][c] * ghost(first_nm, second_nm, index, nm[i]);
+        most = fmax(most, true_rgb[c]);
+        wrong = fmax(wrong, fabs(few[c] - true_rgb[c]));
+    }
+    return wrong / most;
+}
+
+/* Quarter waves and half waves, as tables have them. */
+static void test_smooth_colours(void **state)
+{
+    static const double film[] = {430, 460, 520, 560, 640, 680, 1080};
+    static const struct {
+        int n;
+        double mean, worst;
+    } bound[] = {{3, 0.06, 0.25},  {4, 0.03, 0.1},    {6, 0.03, 0.1},
+                 {10, 0.01, 0.06}, {17, 0.004, 0.03}, {28, 0.002, 0.01}};
+    enum { FILMS = sizeof film / sizeof *film };
+
+    (void)state;
+    for (size_t b = 0; b < sizeof bound / sizeof *bound; b++) {
+        double sum = 0, worst = 0;
+        int count = 0;
+
+        for (int i = 0; i < FILMS; i++)
+            for (int j = i; j < FILMS; j++)
+                for (double index = 1.5; index < 1.8; index += 0.12) {
+                    const double e =
+                        colour_error(bound[b].n, film[i], film[j], index);
+
+                    sum += e;
+                    worst = fmax(worst, e);
+                    count++;
+                }
+        print_message("%d wavelengths: colours off by %.4f, at most %.4f\n",
+                      bound[b].n, sum / count, worst);
+        assert_true(sum / count < bound[b].mean);
+        assert_true(worst < bound[b].worst);
+    }
+}
+
+/* Steps of an edge that moves with 1 / wavelength^2: the largest difference to
+ * what very many would give, in the channel where it is largest. */
+static double stairs(int n)
+{
+    enum { FINE = 3000 };
+    double edge[3] = {0, 0, 0}, total[3] = {0, 0, 0}, step[3] = {0, 0, 0};
+    double worst = 0;
+    int next = 0;
+
+    glint_spectrum(n, nm, rgb, share);
+    for (int i = 0; i <= FINE; i++) {
+        double at[3];
+
+        glint_observer_rgb(400 + 0.1 * i, at);
+        for (int c = 0; c < 3; c++)
+            total[c] += at[c];
+    }
+    for (int i = 0; i <= FINE; i++) {
+        const double here = 400 + 0.1 * i;
+        double at[3];
+
+        glint_observer_rgb(here, at);
+        for (; next < n && nm[next] <= here; next++)
+            for (int c = 0; c < 3; c++)
+                step[c] += rgb[next][c];
+        for (int c = 0; c < 3; c++) {
+            edge[c] += at[c] / total[c];
+            worst = fmax(worst, fabs(edge[c] - step[c]));
+        }
+    }
+    return worst;
+}
+
+static void test_steps(void **state)
+{
+    (void)state;
+    assert_true(stairs(3) < 0.8);
+    assert_true(stairs(5) < 0.5);
+    assert_true(stairs(9) < 0.3);
+    assert_true(stairs(17) < 0.22);
+    assert_true(stairs(31) < 0.15);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_places), cmocka_unit_test(test_flat_is_white),
+        cmocka_unit_test(test_smooth_colours), cmocka_unit_test(test_steps)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Points of a lamp of some extent: power, place and RMS extent are the lamp's,
+ * nothing jumps as it grows, and there are never too many.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "engine/area.h"
+
+static const double degree = 3.14159265358979323846 / 180;
+
+enum { MOST = 61, PIXELS = 1000 };
+
+static struct glint_lamp lamp_of(double major_px, double minor_px)
+{
+    return (struct glint_lamp){.theta_deg = 9,
+                               .phi_deg = 200,
+                               .power = 5,
+                               .rgb = {1, 1, 1},
+                               .axis = {major_px / PIXELS, minor_px / PIXELS},
+                               .turn_deg = 30};
+}
+
+static void place_of(const struct glint_lamp *lamp, double *u, double *v)
+{
+    *u = PIXELS * tan(lamp->theta_deg * degree) * cos(lamp->phi_deg * degree);
+    *v = PIXELS * tan(lamp->theta_deg * degree) * sin(lamp->phi_deg * degree);
+}
+
+/* Sums over its points: power, place about the lamp, squares along its axes. */
+static int sums_of(const struct glint_lamp *lamp, double thinning,
+                   double sum[5])
+{
+    struct area area;
+    const struct area_rule rule = {PIXELS, MOST, lamp->power, thinning};
+    const int n = area_plan(&area, lamp, &rule);
+    double u0, v0, u, v;
+
+    place_of(lamp, &u0, &v0);
+    for (int i = 0; i < 5; i++)
+        sum[i] = 0;
+    for (int i = 0; i < n; i++) {
+        const struct glint_lamp p = area_point(&area, i);
+        const double c = cos(lamp->turn_deg * degree);
+        const double s = sin(lamp->turn_deg * degree);
+
+        place_of(&p, &u, &v);
+        u -= u0;
+        v -= v0;
+        assert_true(p.axis[0] == 0 && p.axis[1] == 0);
+        sum[0] += p.power;
+        sum[1] += p.power * u;
+        sum[2] += p.power * v;
+        sum[3] += p.power * (c * u + s * v) * (c * u + s * v);
+        sum[4] += p.power * (c * v - s * u) * (c * v - s * u);
+    }
+    return n;
+}
+
+static void test_a_point_stays_one(void **state)
+{
+    const struct glint_lamp lamp = lamp_of(0, 0);
+    struct area area;
+    struct glint_lamp point;
+    int total;
+    const struct area_rule rule =
+        area_rule_of(&lamp, 1, PIXELS, MOST, 100, &total);
+
+    (void)state;
+    assert_int_equal(area_plan(&area, &lamp, &rule), 1);
+    point = area_point(&area, 0);
+    assert_true(point.theta_deg == lamp.theta_deg); /* to the bit */
+    assert_true(point.phi_deg == lamp.phi_deg);
+    assert_true(point.power == lamp.power);
+}
+
+static void test_sums_are_the_lamps(void **state)
+{
+    const struct glint_lamp lamp = lamp_of(30, 10);
+    double sum[5];
+
+    (void)state;
+    assert_int_equal(sums_of(&lamp, 1, sum), MOST);
+    assert_true(fabs(sum[0] - 5) < 1e-9);
+    assert_true(fabs(sum[1] - 0) < 1e-6);
+    assert_true(fabs(sum[2] - 0) < 1e-6);
+    assert_true(fabs(sqrt(sum[3] / 5) - 30) < 30 * 0.05);
+    assert_true(fabs(sqrt(sum[4] / 5) - 10) < 10 * 0.05);
+}
+
+/* Squares of the spread and single points move by little at any step. */
+static void test_it_grows_without_jumps(void **state)
+{
+    double last[5], sum[5];
+
+    (void)state;
+    sums_of(&(struct glint_lamp){.power = 0}, 1, last);
+    for (int step = 0; step <= 4000; step++) {
+        const struct glint_lamp lamp = lamp_of(step * 0.005, step * 0.005);
+
+        sums_of(&lamp, 1, sum);
+        assert_true(fabs(sum[1] - 0) < 1e-6);
+        assert_true(fabs(sum[2] - 0) < 1e-6);
+        if (step > 0)
+            for (int k = 3; k < 5; k++)
+                assert_true(fabs(sum[k] - last[k]) <
+                            0.05 + 5 * 0.06 * step * 0.005);
+        for (int k = 0; k < 5; k++)
+            last[k] = sum[k];
+    }
+}
+
+static void test_all_have_room(void **state)
+{
+    struct glint_lamp lamps[10];
+    int total;
+
+    (void)state;
+    for (int i = 0; i < 10; i++)
+        lamps[i] = lamp_of(3 * i, 2 * i);
+    for (int room = 1; room < 700; room++) {
+        const struct area_rule rule =
+            area_rule_of(lamps, 10, PIXELS, MOST, room, &total);
+        int n = 0;
+
+        for (int i = 0; i < 10; i++) {
+            struct area area;
+
+            n += area_plan(&area, &lamps[i], &rule);
+        }
+        assert_true(n <= total);
+        assert_true(total <= (room > 10 ? room : 10));
+    }
+    assert_true(area_rule_of(lamps, 1, PIXELS, MOST, 0, &total).thinning == 1);
+    assert_int_equal(total, 1);
+}
+
+/* Steps between points of a faint lamp show less. */
+static void test_faint_lamps_get_fewer(void **state)
+{
+    struct glint_lamp lamps[2] = {lamp_of(30, 30), lamp_of(30, 30)};
+    struct area area;
+    struct area_rule rule;
+    int total;
+
+    (void)state;
+    lamps[1].power = lamps[0].power / 16;
+    rule = area_rule_of(lamps, 2, PIXELS, MOST, 1000, &total);
+    assert_int_equal(area_plan(&area, &lamps[0], &rule), MOST);
+    assert_int_equal(area_plan(&area, &lamps[1], &rule), 1 + (MOST - 1) / 4);
+    assert_true(total >= MOST + 1 + (MOST - 1) / 4);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_point_stays_one),
+        cmocka_unit_test(test_sums_are_the_lamps),
+        cmocka_unit_test(test_it_grows_without_jumps),
+        cmocka_unit_test(test_all_have_room),
+        cmocka_unit_test(test_faint_lamps_get_fewer),
+    };
+
+    return cmocka_run_group_tests_name("area", tests, NULL, NULL);
+}

@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is said of a frame is so: its counts are those of the frame that is
+ * drawn, parts add up to it, reasons occur where they must, and the picture
+ * shows the tiles that were touched.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/explain.h"
+#include "options/scene.h"
+#include "options/tool.h"
+
+enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 16 };
+
+static struct scene scene;
+static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
+static uint8_t rgb[BYTES];
+static const struct glint_image image = {.format = GLINT_RGB24,
+                                         .width = WIDTH,
+                                         .height = HEIGHT,
+                                         .plane = {rgb},
+                                         .stride_bytes = {3 * WIDTH}};
+
+static const struct glint_lamp lamps[] = {{12, 20, 3e6, {1, 1, 1}, {0, 0}, 0},
+                                          {8, 140, 2e5, {1, .5, .2}, {0, 0}, 0},
+                                          {75, 250, 4e9, {1, 1, 1}, {0, 0}, 0}};
+
+enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
+
+static void make(struct frame *frame)
+{
+    const struct glint_view view = scene_view(&scene, WIDTH, HEIGHT);
+
+    assert_int_equal(scene_frame(&tool, &scene, view, frame), EXIT_OK);
+    frame->cfg.tile_log2 = 4;
+}
+
+static void draw(struct frame *frame, const struct glint_lamp *lamp, int n,
+                 struct frame_report *report)
+{
+    memset(rgb, 0, sizeof rgb);
+    assert_int_equal(frame_draw(frame, lamp, n, 1, &image, report), GLINT_OK);
+}
+
+static double sum(const struct explain_part *part, int n, int cost)
+{
+    double s = 0;
+
+    for (int i = 0; i < n; i++)
+        s += cost ? part[i].cost : part[i].share;
+    return s;
+}
+
+static int ghosts_drawn(const struct explain *e)
+{
+    int n = 0;
+
+    for (int i = 0; i < e->n_ghosts; i++)
+        n += explain_drawn(&e->ghost[i]) > 0;
+    return n;
+}
+
+/* All that must be so whatever the frame. */
+static void assert_agrees(const struct explain *e,
+                          const struct frame_report *report)
+{
+    const double pixels = e->stage[EXPLAIN_PIXELS] / e->all.work;
+    const struct explain_part *parts[3] = {e->ghost, e->beam, e->wave};
+    const int n[3] = {e->n_ghosts, e->n_beams, e->n_waves};
+
+    assert_int_equal(e->all.edges, report->stats.primitives);
+    assert_int_equal(e->all.refs, report->stats.refs);
+    assert_int_equal(explain_drawn(&e->all), report->stats.bundles);
+    assert_int_equal(e->all.of[GLINT_FATE_NO_ROOM],
+                     report->stats.dropped_bundles);
+    assert_int_equal(e->all.tiles, report->tiles);
+    assert_int_equal(ghosts_drawn(e), report->ghosts);
+    for (int by = 0; by < 3; by++) {
+        long long edges = 0, vertices = 0;
+        int bundles = 0;
+
+        assert_true(fabs(sum(parts[by], n[by], 0) - 1) < 0.002);
+        assert_true(fabs(sum(parts[by], n[by], 1) + pixels - 1) < 1e-9);
+        for (int i = 0; i < n[by]; i++) {
+            edges += parts[by][i].edges;
+            vertices += parts[by][i].vertices;
+            bundles += explain_bundles(&parts[by][i]);
+            assert_true(parts[by][i].lit <= e->all.lit);
+            assert_true(parts[by][i].brightest <= e->all.brightest);
+        }
+        assert_int_equal(edges, e->all.edges);
+        assert_int_equal(vertices, e->all.vertices);
+        assert_int_equal(bundles, explain_bundles(&e->all));
+    }
+}
+
+/* ---------------------------------------------------------------------- tests
+ */
+
+/* One light is beyond the model, two are drawn; of each something is missing.
+ */
+static void test_frame(void **state)
+{
+    struct frame_report report;
+    struct frame frame;
+    struct explain e;
+
+    (void)state;
+    make(&frame);
+    draw(&frame, lamps, N_LAMPS, &report);
+    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    assert_agrees(&e, &report);
+    assert_int_equal(e.n_beams, 2);
+    assert_int_equal(explain_bundles(&e.all), 2 * 13 * 3);
+    for (int i = 0; i < N_LAMPS; i++)
+        assert_int_equal(frame_is_beyond(&frame, &lamps[i]), i == 2);
+    /* 5 and 7 let nothing through at 12 degrees; at 8 they do, but 5 beside
+     * the picture */
+    assert_int_equal(e.beam[0].of[GLINT_FATE_CLOSED], 2 * 3);
+    assert_int_equal(e.ghost[5].of[GLINT_FATE_CLOSED], 3);
+    assert_int_equal(e.ghost[5].of[GLINT_FATE_OUTSIDE], 3);
+    assert_int_equal(e.ghost[7].of[GLINT_FATE_CLOSED], 3);
+    explain_close(&e);
+    frame_finish(&frame);
+}
+
+/* The brightest pixel is what codes say it is, and light is linear in UNIT. */
+static void test_light(void **state)
+{
+    struct frame_report report;
+    struct explain e, twice;
+    struct frame frame;
+    int most = 0;
+
+    (void)state;
+    make(&frame);
+    frame.only_ghost = 11;
+    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+         &report);
+    for (int i = 0; i < BYTES; i += 3)
+        most = rgb[i] + rgb[i + 1] + rgb[i + 2] > most
+                   ? rgb[i] + rgb[i + 1] + rgb[i + 2]
+                   : most;
+    assert_true(most > 60);
+    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(explain_open(&twice, &frame, 2), GLINT_OK);
+    assert_true(e.all.brightest > 0.001 && e.all.brightest < 0.2);
+    assert_true(fabs(twice.all.brightest - 2 * e.all.brightest) < 1e-12);
+    assert_true(fabs(twice.all.flux - 2 * e.all.flux) < 1e-6 * e.all.flux);
+    assert_true(e.ghost[11].share == 1);
+    assert_int_equal(e.all.of[GLINT_FATE_OTHER], 12 * 3);
+    explain_close(&e);
+    explain_close(&twice);
+    frame_finish(&frame);
+}
+
+/* Each reason but beyond and room, in a frame of its own; then a frame for
+ * which there was no room, and one without light. */
+static void test_reasons(void **state)
+{
+    static const struct {
+        struct glint_lamp lamp;
+        int only_ghost;
+        enum glint_fate fate;
+    } cases[] = {
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_DRAWN},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_CLOSED},
+        {{12, 20, 1e7, {1, 1, 0}, {0, 0}, 0}, -1, GLINT_FATE_DARK},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, 3, GLINT_FATE_OTHER},
+        {{12, 20, 1e5, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_FAINT},
+        {{25, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_OUTSIDE},
+    };
+    struct frame_report report;
+    struct frame frame;
+    struct explain e;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        make(&frame);
+        frame.only_ghost = cases[i].only_ghost;
+        draw(&frame, &cases[i].lamp, 1, &report);
+        assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+        assert_true(e.all.of[cases[i].fate] > 0);
+        if (e.all.edges)
+            assert_agrees(&e, &report);
+        explain_close(&e);
+        frame_finish(&frame);
+    }
+    make(&frame);
+    draw(&frame, &lamps[2], 1, &report);
+    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(explain_bundles(&e.all), 0);
+    assert_true(e.all.flux == 0);
+    explain_close(&e);
+    frame_finish(&frame);
+}
+
+static void test_room(void **state)
+{
+    struct frame_report report;
+    struct frame frame;
+    struct explain e;
+    size_t need;
+
+    (void)state;
+    make(&frame);
+    draw(&frame, lamps, N_LAMPS, &report);
+    need = report.peak_bytes;
+    frame_finish(&frame);
+    make(&frame);
+    assert_int_equal(frame_reserve(&frame, need * 9 / 10, N_LAMPS, N_LAMPS),
+                     GLINT_OK);
+    draw(&frame, lamps, N_LAMPS, &report);
+    assert_true(report.stats.dropped_bundles > 0);
+    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    assert_agrees(&e, &report);
+    explain_close(&e);
+    frame_finish(&frame);
+}
+
+static void test_order(void **state)
+{
+    int at[3][GLINT_MAX_GHOSTS];
+    struct frame_report report;
+    struct frame frame;
+    struct explain e;
+
+    (void)state;
+    make(&frame);
+    draw(&frame, lamps, N_LAMPS, &report);
+    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    explain_sort(&e, EXPLAIN_LIGHT, at[0]);
+    explain_sort(&e, EXPLAIN_WORK, at[1]);
+    explain_sort(&e, EXPLAIN_NUMBER, at[2]);
+    for (int i = 1; i < e.n_ghosts; i++) {
+        assert_true(e.ghost[at[0][i]].flux <= e.ghost[at[0][i - 1]].flux);
+        assert_true(e.ghost[at[1][i]].work <= e.ghost[at[1][i - 1]].work);
+        assert_int_equal(at[2][i], i);
+    }
+    explain_close(&e);
+    frame_finish(&frame);
+}
+
+/* Whether most of the tile at (X, Y) is the shade of a touched one, black. */
+static int is_shaded(const struct glint_image *marked, int x0, int y0)
+{
+    static const uint8_t shade[3] = {6, 12, 34};
+    int n = 0, all = 0;
+
+    for (int y = y0 + 1; y < y0 + SIDE && y < HEIGHT; y++)
+        for (int x = x0 + 1; x < x0 + SIDE && x < WIDTH; x++, all++)
+            n += memcmp(marked->plane[0] + y * marked->stride_bytes[0] + 3 * x,
+                        shade, 3) == 0;
+    return 2 * n > all;
+}
+
+/* One ghost of a light on the other side leaves tiles alone. */
+static void test_picture(void **state)
+{
+    struct explain_title title = {.lens = "heliar", .top = 20};
+    struct glint_image marked, unmarked;
+    struct frame_report report;
+    struct frame frame;
+    struct explain e;
+    int n = 0, outlined = 0;
+
+    (void)state;
+    make(&frame);
+    frame.only_ghost = 4;
+    draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
+         &report);
+    assert_true(report.tiles > 10 && report.tiles < 200);
+    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    memset(rgb, 0, sizeof rgb);
+    assert_int_equal(explain_mark(&e, &title, &image, &marked), GLINT_OK);
+    assert_int_equal(marked.width, WIDTH);
+    assert_int_equal(marked.height, HEIGHT + 8 * 2 + 3);
+    for (int y = 0; y < HEIGHT; y += SIDE)
+        for (int x = 0; x < WIDTH; x += SIDE)
+            n += is_shaded(&marked, x, y);
+    /* what label and outline cover most of is not counted */
+    assert_true(n <= report.tiles && n >= report.tiles - 2);
+    title.top = 0;
+    assert_int_equal(explain_mark(&e, &title, &image, &unmarked), GLINT_OK);
+    assert_int_equal(unmarked.height, HEIGHT + 8 + 3);
+    for (int i = 0; i < BYTES; i += 3)
+        outlined += memcmp(marked.plane[0] + i, unmarked.plane[0] + i, 3) != 0;
+    assert_true(outlined > 100 && outlined < WIDTH * HEIGHT / 8);
+    free(marked.plane[0]);
+    free(unmarked.plane[0]);
+    explain_close(&e);
+    frame_finish(&frame);
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    scene_defaults(&scene);
+    if (tool_start(&tool) != EXIT_OK)
+        return 1;
+    return scene_open(&tool, &scene, "lenses/heliar-tronnier.lens");
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    scene_close(&scene);
+    tool_finish(&tool);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_frame),   cmocka_unit_test(test_light),
+        cmocka_unit_test(test_reasons), cmocka_unit_test(test_room),
+        cmocka_unit_test(test_order),   cmocka_unit_test(test_picture),
+    };
+
+    return cmocka_run_group_tests_name("explain", tests, enter, leave);
+}

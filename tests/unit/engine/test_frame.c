@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame whose memory is reserved: the picture of one that grows where it
+ * fits, something left out and counted where not, and no call for memory.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame.h"
+#include "options/scene.h"
+#include "options/tool.h"
+
+enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
+
+static struct scene scene, exact_scene;
+static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
+static int n_asked; /* for memory, since it was set to 0 */
+static int fail_at; /* the one that is refused, from 1; 0: none */
+
+void *__real_malloc(size_t bytes);
+void *__wrap_malloc(size_t bytes);
+void *__real_calloc(size_t n, size_t bytes);
+void *__wrap_calloc(size_t n, size_t bytes);
+void *__real_realloc(void *old, size_t bytes);
+void *__wrap_realloc(void *old, size_t bytes);
+int __real_posix_memalign(void **mem, size_t align, size_t bytes);
+int __wrap_posix_memalign(void **mem, size_t align, size_t bytes);
+
+static bool is_refused(void)
+{
+    return ++n_asked == fail_at;
+}
+
+void *__wrap_malloc(size_t bytes)
+{
+    if (is_refused())
+        return NULL;
+    return __real_malloc(bytes);
+}
+
+void *__wrap_calloc(size_t n, size_t bytes)
+{
+    if (is_refused())
+        return NULL;
+    return __real_calloc(n, bytes);
+}
+
+void *__wrap_realloc(void *old, size_t bytes)
+{
+    if (is_refused())
+        return NULL;
+    return __real_realloc(old, bytes);
+}
+
+int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
+{
+    if (is_refused())
+        return ENOMEM;
+    return __real_posix_memalign(mem, align, bytes);
+}
+
+static const struct glint_lamp lamps[] = {
+    {3, 20, 3e3, {1, 1, 1}, {0, 0}, 0},
+    {8, 140, 2e3, {1, .5, .2}, {0, 0}, 0},
+    {12, 250, 4e3, {.3, 1, 1}, {0, 0}, 0},
+    {6, 300, 1e3, {1, 1, .4}, {0, 0}, 0},
+    {10, 80, 3e3, {1, .2, 1}, {0, 0}, 0},
+};
+
+enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
+
+static void make_of(const struct scene *of, struct frame *frame)
+{
+    const struct glint_view view = scene_view(of, WIDTH, HEIGHT);
+
+    assert_int_equal(scene_frame(&tool, of, view, frame), EXIT_OK);
+    frame->max_cells = 16;
+}
+
+static void make(struct frame *frame)
+{
+    make_of(&scene, frame);
+}
+
+static void draw(struct frame *frame, int n, uint8_t rgb[BYTES],
+                 struct frame_report *report)
+{
+    struct glint_image image = {.format = GLINT_RGB24,
+                                .width = WIDTH,
+                                .height = HEIGHT,
+                                .range = GLINT_RANGE_FULL};
+
+    memset(rgb, 20, BYTES);
+    glint_image_place(&image, rgb);
+    assert_int_equal(frame_draw(frame, lamps, n, 1, &image, report), GLINT_OK);
+}
+
+static int n_different(const uint8_t *a, const uint8_t *b)
+{
+    int n = 0;
+
+    for (int i = 0; i < BYTES; i++)
+        n += a[i] != b[i];
+    return n;
+}
+
+static int n_brighter(const uint8_t *a, const uint8_t *b)
+{
+    int n = 0;
+
+    for (int i = 0; i < BYTES; i++)
+        n += b[i] > a[i];
+    return n;
+}
+
+/* Frames of more lamps and fewer, each as a frame of its own draws it. */
+static void test_same_as_grown(void **state)
+{
+    static const int n_of[] = {1, 5, 0, 2, 5, 3};
+    static uint8_t want[BYTES], got[BYTES];
+    struct frame reserved, grown;
+    struct frame_report report, other;
+
+    (void)state;
+    make(&reserved);
+    assert_int_equal(frame_reserve(&reserved, 8 << 20, N_LAMPS, N_LAMPS),
+                     GLINT_OK);
+    assert_true(reserved.bytes <= 8 << 20);
+    for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
+        n_asked = 0;
+        draw(&reserved, n_of[i], got, &report);
+        assert_int_equal(n_asked, 0);
+        make(&grown);
+        draw(&grown, n_of[i], want, &other);
+        assert_true(n_of[i] == 0 || n_asked > 0); /* it is seen */
+        assert_int_equal(n_different(want, got), 0);
+        assert_int_equal(report.stats.dropped_bundles, 0);
+        assert_int_equal(report.stats.dropped_cells, 0);
+        assert_int_equal(report.ghosts, other.ghosts);
+        if (n_of[i])
+            assert_true(report.peak_bytes <= reserved.bytes);
+        frame_finish(&grown);
+    }
+    draw(&reserved, 0, want, &report);
+    assert_int_not_equal(n_different(want, got), 0);
+    frame_finish(&reserved);
+}
+
+/* With ever less memory ever less is drawn, all of it counted; and what is left
+ * out leaves the picture darker, never brighter. */
+static void test_too_little(void **state)
+{
+    static uint8_t full[BYTES], got[BYTES];
+    struct frame frame;
+    struct frame_report report;
+    size_t bytes;
+    int n_lost = 0, n_darker = 0;
+
+    (void)state;
+    make(&frame);
+    draw(&frame, N_LAMPS, full, &report);
+    bytes = report.peak_bytes;
+    frame_finish(&frame);
+    for (; bytes > 50000; bytes -= bytes / 32) {
+        int lost;
+
+        make(&frame);
+        if (frame_reserve(&frame, bytes, N_LAMPS, N_LAMPS) != GLINT_OK) {
+            frame_finish(&frame);
+            break;
+        }
+        assert_true(frame.bytes <= bytes);
+        n_asked = 0;
+        draw(&frame, N_LAMPS, got, &report);
+        assert_int_equal(n_asked, 0);
+        lost = report.stats.dropped_bundles + report.stats.dropped_cells;
+        assert_true(n_different(full, got) == 0 || lost > 0);
+        assert_int_equal(n_brighter(full, got), 0);
+        n_darker += n_different(full, got) > 0;
+        n_lost += lost > 0;
+        frame_finish(&frame);
+    }
+    assert_true(n_lost >= 5);
+    assert_true(n_darker >= 5);
+    make(&frame);
+    assert_int_equal(frame_reserve(&frame, 1000, N_LAMPS, N_LAMPS),
+                     GLINT_E_MEMORY);
+    frame_finish(&frame);
+}
+
+/* More lamps than were reserved for: merged as ever, no more memory. */
+static void test_more_lamps(void **state)
+{
+    static uint8_t got[BYTES];
+    struct frame frame;
+    struct frame_report report;
+
+    (void)state;
+    make(&frame);
+    frame.max_lights = 2;
+    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS, N_LAMPS),
+                     GLINT_OK);
+    n_asked = 0;
+    draw(&frame, N_LAMPS, got, &report);
+    assert_int_equal(n_asked, 0);
+    assert_int_equal(report.drawn_lights, 2);
+    assert_int_equal(report.stats.dropped_bundles, 0);
+    frame_finish(&frame);
+}
+
+/* Settings that changed on the way give the picture of a frame that had them
+ * from the start. */
+static void test_retune(void **state)
+{
+    static const struct {
+        int cells, steps, lights;
+        double codes;
+    } setting[] = {{16, 69, 128, .125},
+                   {8, 10, 3, .5},
+                   {8, 4, 1, 4},
+                   {16, 0, 5, 0},
+                   {16, 69, 128, .125}};
+    static uint8_t want[BYTES], got[BYTES];
+    struct frame_report report;
+    struct frame frame, fresh;
+    int n_changed = 0;
+
+    (void)state;
+    make(&frame);
+    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS, N_LAMPS),
+                     GLINT_OK);
+    for (size_t i = 0; i < sizeof setting / sizeof *setting; i++) {
+        struct frame *const both[2] = {&frame, &fresh};
+
+        make(&fresh);
+        for (int k = 0; k < 2; k++) {
+            both[k]->max_cells = setting[i].cells;
+            both[k]->cfg.irradiance_steps = setting[i].steps;
+            both[k]->max_lights = setting[i].lights;
+            both[k]->faintest_codes = setting[i].codes;
+        }
+        n_asked = 0;
+        frame_retune(&frame);
+        memcpy(want, got, BYTES); /* of the settings before */
+        draw(&frame, N_LAMPS, got, &report);
+        assert_int_equal(n_asked, 0);
+        n_changed += i > 0 && n_different(want, got) > 0;
+        draw(&fresh, N_LAMPS, want, &report);
+        assert_int_equal(n_different(want, got), 0);
+        frame_finish(&fresh);
+    }
+    assert_int_equal(n_changed, 4);
+    frame_finish(&frame);
+}
+
+/* Whichever allocation fails, a flare alone is whole or refused, never drawn as
+ * if there were no light: of a model and of exact rays. */
+static void test_no_memory(void **state)
+{
+    static float want[BYTES], got[BYTES];
+    (void)state;
+    for (int exact = 0; exact < 2; exact++) {
+        struct frame_report report;
+        struct frame frame;
+        int n_refused = 0;
+
+        for (int nth = 0; nth < 100; nth++) {
+            enum glint_status status;
+
+            make_of(exact ? &exact_scene : &scene, &frame);
+            frame.only_ghost = 0;
+            frame.max_lights = 2; /* so that some merge */
+            n_asked = 0;
+            fail_at = nth;
+            status = frame_draw_alone(&frame, lamps, 3, 1, nth ? got : want,
+                                      &report);
+            fail_at = 0;
+            frame_finish(&frame);
+            n_refused += status == GLINT_E_MEMORY;
+            assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
+            if (status == GLINT_OK)
+                assert_memory_equal(want, nth ? got : want, sizeof want);
+            if (n_asked < nth) /* there is no such one */
+                break;
+        }
+        assert_true(n_refused >= 5);
+    }
+}
+
+/* More lamps, ghosts and wavelengths than an int counts are refused before any
+ * of them is written down. */
+static void test_too_many_feeds(void **state)
+{
+    enum { N = 66577 };
+    struct glint_lamp *many = malloc(N * sizeof *many);
+    static float rgb[BYTES];
+    struct glint_setup crowd;
+    struct frame_report report;
+    struct frame frame;
+
+    (void)state;
+    assert_non_null(many);
+    for (int i = 0; i < N; i++)
+        many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
+                                      {1, 1, 1},    {0, 0},       0};
+    make_of(&exact_scene, &frame);
+    crowd = exact_scene.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
+    crowd.n_ghosts = 2016;
+    crowd.n_wavelengths = 32;
+    frame.setup = &crowd;
+    frame.max_lights = N;
+    frame.apart_px = 0;
+    assert_int_equal(frame_draw_alone(&frame, many, N, 1, rgb, &report),
+                     GLINT_E_MEMORY);
+    frame_finish(&frame);
+    free(many);
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    scene_defaults(&scene);
+    scene.max_deg = 15;
+    scene_defaults(&exact_scene);
+    exact_scene.rays = SCENE_RAYS_EXACT;
+    if (tool_start(&tool) != EXIT_OK ||
+        scene_open(&tool, &exact_scene, "lenses/heliar-tronnier.lens"))
+        return 1;
+    return scene_open(&tool, &scene, "lenses/heliar-tronnier.lens");
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    scene_close(&scene);
+    scene_close(&exact_scene);
+    tool_finish(&tool);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_as_grown),
+        cmocka_unit_test(test_too_little),
+        cmocka_unit_test(test_more_lamps),
+        cmocka_unit_test(test_retune),
+        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_too_many_feeds),
+    };
+
+    return cmocka_run_group_tests_name("frame", tests, enter, leave);
+}

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From lamps in a picture or a list to lights at infinity: place and power.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/lamps.h"
+#include "support/lens_check.h"
+
+enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
+
+/* A white square of 10 x 10 pixels on black: its middle is at (225, 45), its
+ * flux 100, and each pixel stands for 2^3 times white. */
+static void test_found_lamp(void **state)
+{
+    static uint8_t rgb[3 * WIDTH * HEIGHT];
+    const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
+    struct glint_image image = {.format = GLINT_RGB24,
+                                .width = WIDTH,
+                                .height = HEIGHT,
+                                .range = GLINT_RANGE_FULL};
+    struct lamp_finder finder = {.headroom_ev = 3, .max = 8};
+    struct glint_lights_config cfg;
+    static struct glint_lamp lamp[LAMP_FINDER_MAX];
+    double x, y;
+
+    (void)state;
+    glint_image_place(&image, rgb);
+    for (int i = 0; i < SIDE; i++)
+        memset(rgb + 3 * ((Y0 + i) * WIDTH + X0), 255, 3 * SIDE);
+    glint_lights_defaults(&cfg, WIDTH, HEIGHT);
+    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    assert_int_equal(lamp_finder_frame(&finder, &image, 0, &view, 50, lamp), 1);
+    lamp_finder_close(&finder);
+    glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
+    assert_near(x, 225, 0.02);
+    assert_near(y, 45, 0.02);
+    assert_near(lamp[0].power, 800, 1);
+    /* right of the middle and above it; film 36 mm wide, 65 and 55 pixels off
+     */
+    assert_near(lamp[0].phi_deg, 40.236, 0.01);
+    assert_near(lamp[0].theta_deg, 10.845, 0.01);
+}
+
+enum { W = 320, H = 200 };
+
+static void draw_square(struct glint_image *image, int x0, int y0, int side)
+{
+    for (int y = y0; y < y0 + side; y++)
+        memset(image->plane[0] + y * W + x0, 255, (size_t)side);
+}
+
+/* Videos: what stands still has the same lamps as a picture by itself, to the
+ * last bit; what comes on rises; what is of no use before does not count after
+ * a restart. */
+static void test_tracked_lamps(void **state)
+{
+    static uint8_t grey[W * H];
+    static struct glint_lamp lamp[LAMP_FINDER_MAX], still[LAMP_FINDER_MAX];
+    const struct glint_view view = glint_view_fit(W, H, 36, 24);
+    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct lamp_finder finder = {.headroom_ev = 12, .max = 8};
+    struct glint_lights_config cfg;
+
+    (void)state;
+    glint_image_place(&image, grey);
+    draw_square(&image, 50, 60, 9);
+    glint_lights_defaults(&cfg, W, H);
+    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    for (int frame = 0; frame < 5; frame++)
+        assert_int_equal(
+            lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp), 1);
+    assert_int_equal(lamp_finder_frame(&finder, &image, 0, &view, 50, still),
+                     1);
+    assert_memory_equal(lamp, still, sizeof *lamp);
+
+    draw_square(&image, 200, 100, 9);
+    assert_int_equal(lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp),
+                     2);
+    assert_int_equal(finder.n_tracks, 2);
+    assert_near(lamp[1].power, still[0].power / 5, 10); /* 40 of 200 ms */
+    assert_int_equal(finder.track[1].state, GLINT_TRACK_RISING);
+
+    lamp_finder_restart(&finder);
+    lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp);
+    assert_true(lamp[1].power == still[0].power);
+    lamp_finder_close(&finder);
+    lamp_finder_close(&finder);
+}
+
+/* Twelve lamps and four wanted, tracked and not: the four largest. */
+static void test_most_lamps(void **state)
+{
+    static uint8_t grey[W * H];
+    static struct glint_lamp lamp[LAMP_FINDER_MAX];
+    const struct glint_view view = glint_view_fit(W, H, 36, 24);
+    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct lamp_finder finder = {.headroom_ev = 0, .max = 4};
+    struct glint_lights_config cfg;
+
+    (void)state;
+    glint_image_place(&image, grey);
+    for (int i = 0; i < 12; i++)
+        draw_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
+                    3 + i * 5 % 12);
+    glint_lights_defaults(&cfg, W, H);
+    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    for (int us = 0; us <= 40000; us += 40000) {
+        assert_int_equal(
+            lamp_finder_frame(&finder, &image, us, &view, 50, lamp), 4);
+        for (int i = 0; i < 4; i++)
+            assert_true(lamp[i].power == (14 - i) * (14 - i));
+    }
+    lamp_finder_close(&finder);
+}
+
+static void read_text(struct lamp_list *list, const char *text)
+{
+    char path[] = "/tmp/glint-lamps-XXXXXX";
+    struct glint_error error;
+    FILE *file = fdopen(mkstemp(path), "w");
+
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    assert_int_equal(lamp_list_read(list, path, &error), GLINT_OK);
+    remove(path);
+}
+
+/* CSV and JSON lines say the same; rows belong to their frame or to all. */
+static void test_lists(void **state)
+{
+    static const char *const texts[2] = {
+        "frame,x,y,power\n# a lamp\n0,10,20,5\r\n\n*,-30,40,6,1,0.5,0.25\n"
+        "2,1,2,3,1,1,1,4\n",
+        "{\"frame\": 0, \"x\": 10, \"y\": 20, \"power\": 5}\n"
+        "{\"x\":-30,\"y\":40,\"power\":6,\"r\":1,\"g\":0.5,\"b\":0.25}\n"
+        "{\"frame\":2,\"x\":1,\"y\":2,\"power\":3,\"size\":4}\n"};
+    const struct glint_view view = {WIDTH, HEIGHT, 36};
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct lamp_list list;
+        struct glint_lamp lamp[4];
+        double x, y;
+
+        read_text(&list, texts[k]);
+        assert_int_equal(list.n, 3);
+        assert_int_equal(lamp_list_frame(&list, 1, &view, 50, lamp, NULL, 4),
+                         1);
+        glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
+        assert_near(x, -30, 1e-9);
+        assert_near(y, 40, 1e-9);
+        assert_true(lamp[0].power == 6 && lamp[0].rgb[1] == 0.5);
+        assert_int_equal(lamp_list_frame(&list, 2, &view, 50, lamp, NULL, 4),
+                         2);
+        assert_true(lamp[1].power == 3 && list.row[2].size == 4);
+        assert_true(lamp[1].axis[0] > 0 && lamp[1].axis[0] == lamp[1].axis[1]);
+        assert_true(lamp[0].axis[0] == 0);
+        lamp_list_free(&list);
+    }
+}
+
+/* What is no list is refused, with its line; the third is where power times
+ * colour is not finite in a picture any more. */
+static void test_refused_lists(void **state)
+{
+    static const char *const text_and_error[][2] = {
+        {"0,1,2,nan\n", "list: 1: expected 4, 7 or 8 numbers"},
+        {"*,1,2,3\n0,1,2,-3\n", "list: 2: power, also times r, g or b"},
+        {"0,1,2,1e20,1,2e10,1\n", "list: 1: power, also times r, g or b"},
+        {"0,1,2,0,1,1e31,1\n", "list: 1: power, also times r, g or b"},
+        {"0,1,2,3,1,-1,1\n", "list: 1: r, g and b must not be negative"},
+        {"0,1,2,3,1,1,1,-1\n", "list: 1: size must be 0 to a million pixels"},
+        {"0,1,2,3,1,1,1,1e308\n", "list: 1: size must be 0 to a million"},
+        {"{\"x\":1,\"y\":2}\n", "list: 1: x, y and power are needed"}};
+    struct lamp_list list;
+    struct glint_error error;
+
+    (void)state;
+    for (size_t k = 0; k < sizeof text_and_error / sizeof *text_and_error;
+         k++) {
+        const char *const text = text_and_error[k][0];
+        const char *const wanted = text_and_error[k][1];
+
+        assert_int_equal(
+            lamp_list_parse(&list, text, strlen(text), "list", &error),
+            GLINT_E_FORMAT);
+        assert_memory_equal(error.text, wanted, strlen(wanted));
+        assert_null(list.row);
+    }
+    assert_int_equal(lamp_list_parse(&list, "0,1,2,3\0", 8, "list", &error),
+                     GLINT_E_FORMAT);
+    assert_string_equal(error.text, "list: not a text file");
+    assert_int_equal(lamp_list_parse(&list, NULL, 0, "list", &error), GLINT_OK);
+    assert_int_equal(list.n, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_found_lamp),
+        cmocka_unit_test(test_tracked_lamps),
+        cmocka_unit_test(test_most_lamps),
+        cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_refused_lists),
+    };
+
+    return cmocka_run_group_tests_name("lamps", tests, NULL, NULL);
+}

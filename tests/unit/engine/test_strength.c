@@ -1,0 +1,423 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The automatic exposure: where it brings the flare of one lamp and of many,
+ * what it does from frame to frame, and a lens's response.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/strength.h"
+
+static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
+
+enum { PIXELS = 1000000, FRAME_US = 40000 };
+
+/* Of a lamp that is as bright as is common, with the responses below. */
+static const double common = PIXELS / 8.0;
+
+/* A lens whose flare falls by SLOPE stops from the axis to 20 degrees; its
+ * mean is MEAN stops below its peak. */
+static struct response response_of(double slope, double mean)
+{
+    struct response r = {.n = 3, .theta_deg = {0, 10, 20}};
+
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < 3; c++) {
+            r.log2_of[i].peak[c] = -2 - slope * i / 2;
+            r.log2_of[i].mean[c] = r.log2_of[i].peak[c] - mean;
+        }
+    return r;
+}
+
+static struct glint_lamp lamp_of(double theta_deg, double power)
+{
+    return (struct glint_lamp){theta_deg, 30, power, {1, 1, 1}, {0, 0}, 0};
+}
+
+/* The peak that N lamps are brought to, each at its LEVEL. */
+static double peak_of(struct strength *s, const struct response *r,
+                      struct glint_lamp *lamps, const double *level, int n,
+                      int us)
+{
+    const struct strength_lamps all = {lamps, level, n, PIXELS};
+
+    strength_expose(s, r, &all, us);
+    return strength_largest(s->light.peak);
+}
+
+static double still(double asked, const struct response *r, double theta,
+                    double power)
+{
+    struct glint_lamp lamp = lamp_of(theta, power);
+    struct strength s;
+
+    strength_defaults(&s);
+    s.asked = asked;
+    return peak_of(&s, r, &lamp, NULL, 1, 0);
+}
+
+/* ------------------------------------------------------------------- stills */
+
+static void test_a_quarter_of_white_by_default(void **state)
+{
+    const struct response r = response_of(0, 7);
+
+    (void)state;
+    assert_true(fabs(still(0.5, &r, 5, common) - 0.25) < 1e-4);
+    assert_true(fabs(still(1, &r, 5, common) - 1) < 1e-3);
+    assert_true(fabs(still(0.25, &r, 5, common) - 0.0625) < 1e-4);
+    assert_true(still(0, &r, 5, common) == 0);
+}
+
+static void test_rises_with_strength(void **state)
+{
+    const struct response r = response_of(3, 4);
+    double last = 0;
+
+    (void)state;
+    for (double asked = 0.01; asked < 4; asked *= 1.1) {
+        const double peak = still(asked, &r, 12, 1e5);
+
+        assert_true(peak > last);
+        last = peak;
+    }
+}
+
+/* Whatever its power: within a stop of a quarter of white, and more for more.
+ */
+static void test_any_power_is_seen(void **state)
+{
+    const struct response r = response_of(8, 7);
+    double last = 0;
+
+    (void)state;
+    for (double stops = -4; stops <= 40; stops++) {
+        const double peak = still(0.5, &r, 12, exp2(stops));
+
+        assert_true(peak >= 0.124 && peak <= 0.501);
+        assert_true(peak > last);
+        last = peak;
+    }
+}
+
+static void test_a_veil_is_held_by_its_mean(void **state)
+{
+    const struct response r = response_of(0, 0.5);
+    struct glint_lamp lamp = lamp_of(5, PIXELS);
+    const struct strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    struct strength s;
+
+    (void)state;
+    strength_defaults(&s);
+    strength_expose(&s, &r, &all, 0);
+    assert_true(strength_largest(s.light.mean) < 0.081);
+    assert_true(strength_largest(s.light.peak) > 1 / 16.0);
+}
+
+static void test_ratios_between_lamps_stay(void **state)
+{
+    const struct response r = response_of(5, 7);
+    struct glint_lamp lamps[2] = {lamp_of(5, 1e6), lamp_of(9, 1e3)};
+    const struct strength_lamps all = {lamps, NULL, 2, PIXELS};
+    struct strength s;
+
+    (void)state;
+    strength_defaults(&s);
+    strength_expose(&s, &r, &all, 0);
+    assert_true(lamps[0].power == 1e6 && lamps[1].power == 1e3);
+}
+
+static void test_many_equal_lamps_share(void **state)
+{
+    const struct response r = response_of(0, 9);
+    struct glint_lamp lamps[16];
+    struct strength s;
+    double one, each;
+
+    (void)state;
+    for (int i = 0; i < 16; i++)
+        lamps[i] = lamp_of(i, 1e4);
+    strength_defaults(&s);
+    one = still(0.5, &r, 1, 1e4);
+    each = peak_of(&s, &r, lamps, NULL, 16, 0) / 2; /* 16^(1/4) */
+    assert_true(each > one / 2.2 && each < one);
+}
+
+static void test_by_hand(void **state)
+{
+    const struct response r = response_of(0, 7);
+    struct glint_lamp lamp = lamp_of(5, common);
+    const struct strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    struct strength s;
+
+    (void)state;
+    strength_defaults(&s);
+    s.is_physical = true;
+    s.exposure_ev = 3;
+    s.gain = 0.5;
+    strength_expose(&s, &r, &all, 0);
+    assert_true(s.scale == 4);
+    assert_true(fabs(strength_largest(s.light.peak) - 0.125) < 1e-9);
+    s.gain = 0;
+    strength_expose(&s, &r, &all, 0);
+    assert_true(s.scale == 0);
+    s = (struct strength){.asked = 0.5, .gain = 2};
+    strength_expose(&s, &r, &all, 0);
+    assert_true(fabs(strength_largest(s.light.peak) - 0.5) < 1e-3);
+}
+
+static void test_lamps_without_light(void **state)
+{
+    const struct response r = response_of(0, 7);
+    struct glint_lamp lamp = lamp_of(5, 0);
+    const struct strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    const struct strength_lamps none = {NULL, NULL, 0, PIXELS};
+    struct strength s;
+
+    (void)state;
+    strength_defaults(&s);
+    strength_expose(&s, &r, &all, 0);
+    assert_true(isfinite(s.scale));
+    assert_true(strength_largest(s.light.peak) == 0);
+    strength_expose(&s, &r, &none, 0);
+    assert_true(s.scale == 0);
+}
+
+/* ------------------------------------------------------------------- videos */
+
+/* A lamp that crosses the picture in 200 frames: what is drawn of it changes by
+ * no more than its own response and a frame's step of the factor. */
+static void test_a_lamp_that_crosses(void **state)
+{
+    const struct response r = response_of(7, 7);
+    struct strength s;
+    double last = 0;
+
+    (void)state;
+    strength_defaults(&s);
+    for (int i = 0; i <= 200; i++) {
+        struct glint_lamp lamp = lamp_of(fabs(20 - i * 0.2), 1e5);
+        const double peak = peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
+
+        assert_true(peak > 0.1 && peak < 0.5);
+        if (i > 0)
+            assert_true(fabs(log2(peak / last)) < 0.07 + 0.125);
+        last = peak;
+    }
+}
+
+/* A sun comes among lamps: their factor falls gently, the sun is held. */
+static void test_a_lamp_that_rises(void **state)
+{
+    const struct response r = response_of(0, 7);
+    struct strength s;
+    double scale = 0;
+
+    (void)state;
+    strength_defaults(&s);
+    for (int i = 0; i < 250; i++) {
+        struct glint_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
+        const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
+        const double peak =
+            peak_of(&s, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
+
+        assert_true(peak > 0.1 && peak < 0.8);
+        if (i > 0)
+            assert_true(fabs(log2(s.scale / scale)) < 0.126);
+        scale = s.scale;
+        if (i == 50) /* held to little more than by itself, at its level */
+            assert_true(lamps[1].power < 1e6 / 100);
+        if (i == 249)
+            assert_true(lamps[1].power > 0.99e6);
+    }
+}
+
+/* And leaves: the others come back, slower. */
+static void test_a_lamp_that_leaves(void **state)
+{
+    const struct response r = response_of(0, 7);
+    struct strength s;
+    double scale, first;
+
+    (void)state;
+    strength_defaults(&s);
+    {
+        struct glint_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
+
+        peak_of(&s, &r, lamps, NULL, 2, 0);
+        first = scale = s.scale;
+    }
+    for (int i = 0; i < 250; i++) {
+        struct glint_lamp lamp = lamp_of(5, 1e3);
+
+        peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
+        assert_true(s.scale >= scale && s.scale / scale < exp2(0.081));
+        scale = s.scale;
+    }
+    assert_true(scale > 300 * first);
+}
+
+/* The level of a lamp alone is what its flare has: no gain makes up for it. */
+static void test_rising_alone(void **state)
+{
+    const struct response r = response_of(0, 7);
+    struct strength s;
+    double last = 0;
+
+    (void)state;
+    strength_defaults(&s);
+    for (int i = 1; i <= 8; i++) {
+        const double level = i / 8.0;
+        struct glint_lamp lamp = lamp_of(5, level * common);
+        const double peak = peak_of(&s, &r, &lamp, &level, 1, FRAME_US);
+
+        assert_true(fabs(peak - 0.25 * level) < 0.01);
+        assert_true(peak > last);
+        last = peak;
+    }
+}
+
+/* After a cut, and where no lamp was, at once. */
+static void test_begins_anew(void **state)
+{
+    const struct response r = response_of(0, 7);
+    struct glint_lamp faint = lamp_of(5, 10), bright = lamp_of(5, common);
+    struct strength s;
+
+    (void)state;
+    strength_defaults(&s);
+    peak_of(&s, &r, &faint, NULL, 1, FRAME_US);
+    assert_true(peak_of(&s, &r, &bright, NULL, 1, FRAME_US) > 0.3);
+    assert_true(bright.power < common);
+    bright = lamp_of(5, common);
+    assert_true(fabs(peak_of(&s, &r, &bright, NULL, 1, 0) - 0.25) < 1e-4);
+    peak_of(&s, &r, &faint, NULL, 0, FRAME_US);
+    assert_true(peak_of(&s, &r, &faint, NULL, 1, FRAME_US) > 0.1);
+}
+
+/* ------------------------------------------------------------------- lenses */
+
+/* Draws one lamp as the exposure says and looks at it: LENS's response holds
+ * for every angle and power. */
+static void check_lens(const char *lens, double corner_deg)
+{
+    struct scene scene;
+    struct response r;
+    struct glint_view view;
+
+    scene_defaults(&scene);
+    assert_int_equal(scene_open(&tool, &scene, lens), EXIT_OK);
+    view = scene_view(&scene, 640, 360);
+    assert_int_equal(response_measure(&tool, &scene, view, 0, &r), EXIT_OK);
+    assert_true(r.n == RESPONSE_ANGLES);
+    for (int i = 0; i < 6; i++) {
+        struct glint_lamp lamp =
+            lamp_of(corner_deg * i / 6, exp2(5 * i - 4) * 100);
+        const struct strength_lamps all = {&lamp, NULL, 1, 640 * 360};
+        struct response_light drawn;
+        struct strength s;
+
+        lamp.phi_deg = 29 + 180 * (i % 2); /* within the picture */
+        strength_defaults(&s);
+        strength_expose(&s, &r, &all, 0);
+        assert_int_equal(response_draw(&tool, &scene, view, &lamp, 1, &drawn),
+                         GLINT_OK);
+        assert_true(s.scale * strength_largest(drawn.peak) > 1 / 16.0);
+        assert_true(s.scale * strength_largest(drawn.peak) < 1);
+        assert_true(s.scale * strength_largest(drawn.mean) < 0.1);
+    }
+    scene_close(&scene);
+}
+
+static void test_lenses(void **state)
+{
+    (void)state;
+    check_lens("lenses/heliar-tronnier.lens", 11.8);
+    check_lens("lenses/double-gauss-angenieux.lens", 22.4);
+    check_lens("lenses/nikon-zoom-mid.lens", 12.5);
+}
+
+/* Within the limits of memory that live has, too. */
+static void test_little_memory(void **state)
+{
+    struct scene scene;
+    struct response r, free;
+    struct glint_view view;
+
+    (void)state;
+    scene_defaults(&scene);
+    assert_int_equal(scene_open(&tool, &scene, "lenses/heliar-tronnier.lens"),
+                     EXIT_OK);
+    view = scene_view(&scene, 640, 360);
+    assert_int_equal(response_measure(&tool, &scene, view, 2 << 20, &r),
+                     EXIT_OK);
+    assert_int_equal(response_measure(&tool, &scene, view, 0, &free), EXIT_OK);
+    for (int i = 0; i < r.n; i++)
+        assert_memory_equal(&r.log2_of[i], &free.log2_of[i],
+                            sizeof r.log2_of[i]);
+    scene_close(&scene);
+}
+
+static void test_interpolates(void **state)
+{
+    const struct response r = response_of(4, 6);
+    struct response_light light;
+
+    (void)state;
+    response_at(&r, 10, &light);
+    assert_true(fabs(log2(light.peak[0]) + 4) < 1e-9);
+    response_at(&r, 15, &light);
+    assert_true(fabs(log2(light.peak[1]) + 5) < 1e-9);
+    assert_true(fabs(log2(light.mean[1]) + 11) < 1e-9);
+    response_at(&r, 60, &light);
+    assert_true(fabs(log2(light.peak[2]) + 6) < 1e-9);
+}
+
+static void test_looks(void **state)
+{
+    float rgb[3 * 4000];
+    struct response_light light;
+
+    (void)state;
+    for (int i = 0; i < 4000; i++) {
+        rgb[3 * i] = (float)i;
+        rgb[3 * i + 1] = i == 7 ? 8 : 0;
+        rgb[3 * i + 2] = 2;
+    }
+    response_look(rgb, 4000, &light); /* the brightest four */
+    assert_true(light.peak[0] == 3997.5 && light.mean[0] == 1999.5);
+    assert_true(light.peak[1] == 2 && light.mean[1] == 0.002);
+    assert_true(light.peak[2] == 2 && light.mean[2] == 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_quarter_of_white_by_default),
+        cmocka_unit_test(test_rises_with_strength),
+        cmocka_unit_test(test_any_power_is_seen),
+        cmocka_unit_test(test_a_veil_is_held_by_its_mean),
+        cmocka_unit_test(test_ratios_between_lamps_stay),
+        cmocka_unit_test(test_many_equal_lamps_share),
+        cmocka_unit_test(test_by_hand),
+        cmocka_unit_test(test_lamps_without_light),
+        cmocka_unit_test(test_a_lamp_that_crosses),
+        cmocka_unit_test(test_a_lamp_that_rises),
+        cmocka_unit_test(test_a_lamp_that_leaves),
+        cmocka_unit_test(test_rising_alone),
+        cmocka_unit_test(test_begins_anew),
+        cmocka_unit_test(test_lenses),
+        cmocka_unit_test(test_little_memory),
+        cmocka_unit_test(test_interpolates),
+        cmocka_unit_test(test_looks),
+    };
+
+    tool_start(&tool);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

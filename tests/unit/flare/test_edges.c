@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The area to the right of an edge, worked out by hand: for pictures in codes
+ * in 256ths of a pixel to the nearest, for linear ones in 65536ths.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "kernels/kernels.h"
+#include "flare/edges.h"
+
+enum { LOG2 = 3, SIDE = 1 << LOG2, STRIDE = GLINT_EDGE_STRIDE(LOG2) };
+
+static struct glint_edge_sums sums_of(int linear)
+{
+    static uint64_t wide[3 * SIDE * STRIDE];
+    static uint32_t narrow_q24[3 * SIDE * STRIDE];
+    static int64_t carry[3 * SIDE];
+    static uint64_t touched[3];
+
+    memset(wide, 0, sizeof wide);
+    memset(narrow_q24, 0, sizeof narrow_q24);
+    memset(carry, 0, sizeof carry);
+    memset(touched, 0, sizeof touched);
+    return (struct glint_edge_sums){.tile = {0, 0, SIDE, SIDE},
+                                    .tile_log2 = LOG2,
+                                    .stride = STRIDE,
+                                    .linear = linear,
+                                    .wide = wide,
+                                    .narrow_q24 = narrow_q24,
+                                    .carry = carry,
+                                    .touched = touched};
+}
+
+/* An edge from A to B, of red light to its right. */
+static void add(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
+                int y1_q8, int64_t light_q20)
+{
+    static const struct glint_bundle red = {.rgb_q14 = {1 << 14, 0, 0}};
+    const int32_t a[2] = {x0_q8, y0_q8}, b[2] = {x1_q8, y1_q8}, first = 0;
+    struct glint_edge edge;
+
+    assert_int_equal(
+        glint_edge_set(&edge, a, b, 0, glint_light_pack(light_q20)), 1);
+    edge.bundle = 0;
+    glint_edge_add(s, &edge, &red, &first, 1);
+}
+
+/* Red of pixel X of row Y, in codes' light; half white is 128 for each 256th of
+ * the pixel. */
+static int code_light(struct glint_edge_sums *s, int x, int y)
+{
+    uint16_t light_q16[STRIDE];
+
+    glint_edge_light(s, 0, y, glint_kernels_of(0), light_q16);
+    return light_q16[x];
+}
+
+/* Upright, so many 256ths from the pixel's left side, and so many high. */
+static void test_upright(void **state)
+{
+    (void)state;
+    for (int from_q8 = 0; from_q8 < 256; from_q8 += 5)
+        for (int height_q8 = 1; height_q8 <= 256; height_q8 += 3) {
+            const int area_q16 = height_q8 * (256 - from_q8);
+            struct glint_edge_sums s = sums_of(0);
+            int32_t linear_q20[STRIDE];
+
+            add(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8, 512 + height_q8,
+                1 << 19);
+            assert_int_equal(code_light(&s, 3, 2),
+                             (area_q16 + 128) / 256 * 128);
+            s = sums_of(1);
+            add(&s, 3 * 256 + from_q8, 512, 3 * 256 + from_q8, 512 + height_q8,
+                1 << 19);
+            glint_edge_linear(&s, 0, 2, linear_q20);
+            assert_int_equal(linear_q20[2], 0);
+            assert_int_equal(linear_q20[3], 8 * area_q16);
+            assert_int_equal(linear_q20[4], 2048 * height_q8);
+        }
+}
+
+/* From the upper right corner of pixel 3 to the lower left one of pixel 2: to
+ * its right lie a quarter of pixel 2 and three of pixel 3. */
+static void test_slanted(void **state)
+{
+    struct glint_edge_sums s = sums_of(0);
+    uint16_t light_q16[STRIDE];
+
+    (void)state;
+    add(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
+    glint_edge_light(&s, 0, 0, glint_kernels_of(0), light_q16);
+    assert_int_equal(light_q16[1], 0);
+    assert_int_equal(light_q16[2], 32768 / 4);
+    assert_int_equal(light_q16[3], 32768 * 3 / 4);
+    assert_int_equal(light_q16[4], 32768);
+}
+
+static int draw_below(int n)
+{
+    static uint32_t seed = 1;
+
+    seed = seed * 1664525U + 1013904223U;
+    return (int)((uint64_t)seed * (uint32_t)n >> 32);
+}
+
+/* Random edges, in a whole tile and in its halves, which go other ways through
+ * them: the same light to the last bit; none to their left, and all of their
+ * height to their right. */
+static void test_parts_of_tiles(void **state)
+{
+    enum { FROM = 4 };
+
+    (void)state;
+    for (int i = 0; i < 20000; i++) {
+        const int wide = i % 2 ? 256 * (SIDE + 4) : 600;
+        const int x0 = draw_below(wide) - 512, x1 = draw_below(wide) - 512;
+        const int y0 = draw_below(256 * SIDE - 1), up = i / 2 % 2;
+        const int high = 1 + draw_below(i % 3 ? 256 * SIDE - y0 - 1 : 4);
+        const int32_t left_q8 = x0 < x1 ? x0 : x1, right_q8 = x0 < x1 ? x1 : x0;
+        int32_t all_q20[SIDE][STRIDE], part_q20[STRIDE];
+        struct glint_edge_sums s = sums_of(1);
+
+        add(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+        for (int y = 0; y < SIDE; y++) {
+            const int from = y0 > 256 * y ? y0 : 256 * y;
+            const int end =
+                y0 + high < 256 * (y + 1) ? y0 + high : 256 * (y + 1);
+
+            glint_edge_linear(&s, 0, y, all_q20[y]);
+            for (int x = 0; x < SIDE; x++) {
+                const int most = end > from ? 1024 * (end - from) : 0;
+
+                assert_in_range(all_q20[y][x], 0, most);
+                if (256 * (x + 1) <= left_q8)
+                    assert_int_equal(all_q20[y][x], 0);
+                if (256 * x >= right_q8)
+                    assert_int_equal(all_q20[y][x], most);
+            }
+        }
+        s = sums_of(1);
+        for (int part = 0; part < 2;
+             part++) { /* the one carries to the other */
+            s.tile.x0 = part ? FROM : 0;
+            s.tile.x1 = part ? SIDE : FROM;
+            add(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
+            for (int y = 0; y < SIDE; y++) {
+                glint_edge_linear(&s, 0, y, part_q20);
+                assert_memory_equal(part_q20, all_q20[y] + s.tile.x0,
+                                    FROM * sizeof *part_q20);
+            }
+        }
+    }
+}
+
+/* Light is held to 25 bits and no worse, up to 2^40. */
+static void test_packing(void **state)
+{
+    (void)state;
+    for (int bit = 0; bit < 40; bit++)
+        for (int k = 0; k < 64; k++) {
+            const int64_t light =
+                (INT64_C(1) << bit) + (((INT64_C(1) << bit) - 1) * k / 63);
+            const int64_t step = bit < 25 ? 1 : INT64_C(1) << (bit - 24);
+
+            assert_true(llabs(glint_light_q20(glint_light_pack(light)) -
+                              light) <= step / 2);
+            assert_true(glint_light_q20(glint_light_pack(-light)) < 0);
+        }
+    assert_int_equal(glint_light_q20(glint_light_pack(0)), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_upright),
+        cmocka_unit_test(test_slanted),
+        cmocka_unit_test(test_parts_of_tiles),
+        cmocka_unit_test(test_packing),
+    };
+
+    return cmocka_run_group_tests_name("edges", tests, NULL, NULL);
+}

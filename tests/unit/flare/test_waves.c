@@ -1,0 +1,426 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Which wavelengths ghosts are drawn with: as many as their dispersion and
+ * their light ask for, no step that 31 would not have, and lists as they are.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/frame.h"
+#include "options/scene_waves.h"
+
+enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
+
+static struct tool tool = {.name = "test", .quiet = true, .n_threads = 2};
+static struct scene chosen, three, all;
+static const struct glint_lamp lamp = {
+    .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
+
+static struct frame_report drawn(struct frame *frame, const struct scene *scene,
+                                 int width, double power, uint8_t *rgb)
+{
+    struct glint_lamp light = lamp;
+    struct glint_image image = {.format = GLINT_RGB24,
+                                .width = width,
+                                .height = width * 9 / 16,
+                                .range = GLINT_RANGE_FULL};
+    struct frame_report report;
+
+    light.power *= power;
+    assert_int_equal(scene_frame(&tool, scene,
+                                 scene_view(scene, width, width * 9 / 16),
+                                 frame),
+                     EXIT_OK);
+    memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
+    glint_image_place(&image, rgb);
+    assert_int_equal(frame_draw(frame, &light, 1, 1, &image, &report),
+                     GLINT_OK);
+    return report;
+}
+
+/* Waves that GHOST takes in FRAME, and how many of these are drawn. */
+static int waves_of(struct frame *frame, int ghost, int *n_drawn)
+{
+    int n = 0;
+
+    *n_drawn = 0;
+    for (int wave = 0; wave < frame->rays.n_waves; wave++) {
+        struct glint_account a;
+
+        glint_flare_account(frame->flare, ghost, 0, wave, &a);
+        n += a.fate != GLINT_FATE_OTHER_SET;
+        *n_drawn += a.fate == GLINT_FATE_DRAWN || a.fate == GLINT_FATE_EMPTY;
+    }
+    return n;
+}
+
+/* Counts ghosts by the number of their waves. */
+static void count(struct frame *frame, int ghosts[GLINT_MAX_WAVELENGTHS + 1],
+                  int *bundles)
+{
+    memset(ghosts, 0, (GLINT_MAX_WAVELENGTHS + 1) * sizeof *ghosts);
+    *bundles = 0;
+    for (int ghost = 0; ghost < frame->setup->n_ghosts; ghost++) {
+        int n_drawn;
+        const int n = waves_of(frame, ghost, &n_drawn);
+
+        assert_true(n == 4 || n == 6 || n == 10 || n == 17 || n == 28);
+        assert_true(n_drawn <= n);
+        ghosts[n] += n_drawn > 0;
+        *bundles += n_drawn;
+    }
+}
+
+/* ---------------------------------------------------------------- the choice
+ */
+
+static uint8_t picture[SAMPLES], other[SAMPLES], truth[SAMPLES];
+
+static void test_small_picture(void **state)
+{
+    int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles;
+    struct frame frame;
+    struct frame_report report;
+
+    (void)state; /* of 32 pixels no outline moves by one */
+    report = drawn(&frame, &chosen, 32, 1, picture);
+    count(&frame, ghosts, &bundles);
+    assert_true(ghosts[4] > 0);
+    assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
+    assert_int_equal(bundles, report.stats.bundles);
+    frame_finish(&frame);
+}
+
+static void test_large_picture(void **state)
+{
+    int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, more;
+    struct frame frame;
+    struct frame_report report;
+
+    (void)state;
+    report = drawn(&frame, &chosen, WIDTH, 100, picture);
+    count(&frame, ghosts, &bundles);
+    more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
+    assert_true(ghosts[4] > 0 && more > 0); /* each its own */
+    assert_int_equal(bundles, report.stats.bundles);
+    assert_int_equal(report.stats.dropped_bundles, 0);
+    frame_finish(&frame);
+    /* faint ones need no more */
+    drawn(&frame, &chosen, WIDTH, 0.01, other);
+    count(&frame, ghosts, &bundles);
+    assert_true(ghosts[4] > 0);
+    assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
+    frame_finish(&frame);
+}
+
+static void test_dial(void **state)
+{
+    int ghosts[GLINT_MAX_WAVELENGTHS + 1], least, bundles, before = 0;
+    struct scene scene = chosen;
+    struct frame frame;
+
+    (void)state;
+    scene.setup.lens = &chosen.lens;
+    for (double px = 8; px > 0.1; px /= 2) {
+        scene.dispersion_px = px;
+        drawn(&frame, &scene, WIDTH, 100, picture);
+        count(&frame, ghosts, &bundles);
+        assert_true(bundles >= before);
+        least = before ? least : bundles;
+        before = bundles;
+        frame_finish(&frame);
+    }
+    assert_true(before > 2 * least);
+}
+
+/* 0 is the three that there are by default, bit for bit. */
+static void test_off(void **state)
+{
+    struct scene scene = chosen;
+    struct frame frame;
+
+    (void)state;
+    scene.dispersion_px = 0;
+    drawn(&frame, &scene, WIDTH, 1, picture);
+    frame_finish(&frame);
+    drawn(&frame, &three, WIDTH, 1, other);
+    frame_finish(&frame);
+    assert_memory_equal(picture, other, SAMPLES);
+}
+
+/* One set alone is the list of its waves. */
+static void test_one_set(void **state)
+{
+    struct scene scene = chosen, list = three;
+    struct frame frame;
+
+    (void)state;
+    scene.setup.n_sets = 1;
+    scene.cull = list.cull = 0;
+    assert_true(scene_take_waves(&list, "4"));
+    scene_choose_waves(&list);
+    assert_int_equal(list.n_wavelengths, 4);
+    list.setup.n_wavelengths = 4;
+    for (int i = 0; i < 4; i++) {
+        list.setup.wavelength_nm[i] = list.wavelength_nm[i];
+        memcpy(list.setup.rgb[i], scene.setup.set_wave[i].rgb,
+               sizeof list.setup.rgb[i]);
+        list.setup.unit_flux[i] = scene.setup.set_wave[i].unit_flux;
+    }
+    drawn(&frame, &scene, WIDTH, 10, picture);
+    frame_finish(&frame);
+    drawn(&frame, &list, WIDTH, 10, other);
+    frame_finish(&frame);
+    assert_memory_equal(picture, other, SAMPLES);
+}
+
+/* What finds no room takes the first set, and nothing is dropped. */
+static void test_little_room(void **state)
+{
+    int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
+    struct glint_flare_stats stats;
+    struct scene scene = chosen;
+    struct frame frame;
+    size_t bytes;
+    void *mem;
+
+    (void)state;
+    scene.dispersion_px = 0.25;
+    drawn(&frame, &scene, WIDTH, 100, picture);
+    most = frame.cfg.max_bundles;
+    frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
+    assert_true(most > frame.cfg.max_bundles); /* it has grown */
+    bytes = glint_flare_bytes(&frame.cfg);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    free(frame.mem);
+    frame.mem = mem;
+    frame.bytes = bytes;
+    assert_int_equal(glint_flare_init(&frame.flare, &frame.cfg, mem, bytes),
+                     GLINT_OK);
+    glint_flare_plan(frame.flare, &frame.rays, frame.beam, frame.n_beams);
+    glint_flare_bin(frame.flare, &stats);
+    assert_int_equal(stats.need_bundles, most);
+    assert_int_equal(stats.dropped_bundles, 0);
+    assert_true(stats.bundles <= 4 * frame.setup->n_ghosts);
+    count(&frame, ghosts, &bundles);
+    assert_int_equal(bundles, stats.bundles);
+    assert_true(ghosts[4] > 0);
+    frame_finish(&frame);
+}
+
+/* Whoever plans them, and however many lamps there are. */
+static void test_same_bits(void **state)
+{
+    const struct glint_lamp lamps[3] = {
+        lamp,
+        {.theta_deg = 5, .phi_deg = 200, .power = 2e6, .rgb = {1, 0.8, 0.5}},
+        {.theta_deg = 15, .phi_deg = 120, .power = 5e6, .rgb = {0.5, 0.8, 1}}};
+    struct glint_workers *pool = tool.workers;
+    uint8_t *rgb[2] = {picture, other};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct glint_image image = {.format = GLINT_RGB24,
+                                    .width = WIDTH,
+                                    .height = HEIGHT,
+                                    .range = GLINT_RANGE_FULL};
+        struct frame_report report;
+        struct frame frame;
+
+        tool.workers = i ? NULL : pool;
+        assert_int_equal(scene_frame(&tool, &chosen,
+                                     scene_view(&chosen, WIDTH, HEIGHT),
+                                     &frame),
+                         EXIT_OK);
+        memset(rgb[i], 0, SAMPLES);
+        glint_image_place(&image, rgb[i]);
+        assert_int_equal(frame_draw(&frame, lamps, 3, 1, &image, &report),
+                         GLINT_OK);
+        frame_finish(&frame);
+    }
+    tool.workers = pool;
+    assert_memory_equal(picture, other, SAMPLES);
+}
+
+/* ---------------------------------------------------------------- the picture
+ */
+
+static int compare(const void *a, const void *b)
+{
+    return *(const int *)b - *(const int *)a;
+}
+
+/* Of two neighbours, by how many codes the step of R - G or B - G is another
+ * one in PICTURE than in truth: what a thousandth of all places exceed. */
+static int hue_step(const uint8_t *rgb)
+{
+    static int step[WIDTH * HEIGHT];
+    int n = 0;
+
+    for (int i = 0; i + 1 < WIDTH * HEIGHT; i++) {
+        int e[2][3], most = 0;
+
+        if (i % WIDTH == WIDTH - 1)
+            continue;
+        for (int k = 0; k < 2; k++)
+            for (int c = 0; c < 3; c++)
+                e[k][c] = rgb[3 * (i + k) + c] - truth[3 * (i + k) + c];
+        for (int c = 0; c < 3; c += 2) {
+            const int d = e[1][c] - e[1][1] - e[0][c] + e[0][1];
+
+            most = abs(d) > most ? abs(d) : most;
+        }
+        step[n++] = most;
+    }
+    qsort(step, (size_t)n, sizeof *step, compare);
+    return step[n / 1000];
+}
+
+static double psnr(const uint8_t *rgb)
+{
+    double squares = 0;
+
+    for (int i = 0; i < SAMPLES; i++) {
+        const double e = rgb[i] - truth[i];
+
+        squares += e * e;
+    }
+    return 10 * log10(255. * 255 * SAMPLES / squares);
+}
+
+static void test_outlines(void **state)
+{
+    static uint8_t few[SAMPLES];
+    struct frame frame;
+    double db[2];
+    int step[2];
+
+    (void)state;
+    drawn(&frame, &all, WIDTH, 20, truth);
+    frame_finish(&frame);
+    drawn(&frame, &three, WIDTH, 20, few);
+    frame_finish(&frame);
+    drawn(&frame, &chosen, WIDTH, 20, picture);
+    frame_finish(&frame);
+    db[0] = psnr(few), db[1] = psnr(picture);
+    step[0] = hue_step(few), step[1] = hue_step(picture);
+    print_message("three: %.1f dB, step %d; chosen: %.1f dB, step %d\n", db[0],
+                  step[0], db[1], step[1]);
+    assert_true(db[1] > 44 && db[1] > db[0] + 10);
+    assert_true(step[1] <= 9 && 3 * step[1] < 2 * step[0]);
+}
+
+/* ---------------------------------------------------------------------- words
+ */
+
+static void test_words(void **state)
+{
+    struct scene s;
+
+    (void)state;
+    scene_defaults(&s);
+    assert_true(s.waves == SCENE_WAVES_LIST && s.n_wavelengths == 3);
+    assert_true(scene_take_waves(&s, "auto") && s.waves == SCENE_WAVES_AUTO);
+    assert_true(scene_take_waves(&s, "9") && s.waves == SCENE_WAVES_COUNT &&
+                s.n_wavelengths == 9);
+    scene_choose_waves(&s);
+    assert_true(s.wavelength_nm[0] > 400 && s.wavelength_nm[8] < 700);
+    assert_true(scene_take_waves(&s, "532") && s.waves == SCENE_WAVES_LIST &&
+                s.n_wavelengths == 1 && s.wavelength_nm[0] == 532);
+    assert_true(scene_take_waves(&s, "300,1100") && s.n_wavelengths == 2);
+    assert_false(scene_take_waves(&s, "0"));
+    assert_false(scene_take_waves(&s, "33"));
+    assert_false(scene_take_waves(&s, "2.5"));
+    assert_false(scene_take_waves(&s, "0.55"));
+    assert_false(scene_take_waves(&s, "650,532,1101"));
+    assert_false(scene_take_waves(&s, "9,17"));
+    assert_false(scene_take_waves(&s, ""));
+    s.waves = SCENE_WAVES_AUTO;
+    s.rays = SCENE_RAYS_EXACT; /* which choose nothing */
+    scene_choose_waves(&s);
+    assert_true(s.waves == SCENE_WAVES_COUNT && s.n_wavelengths == 9);
+}
+
+/* Behind an uncoated lens ghosts of a white lamp are white together. */
+static void test_white(void **state)
+{
+    static float rgb[SAMPLES];
+    static struct scene bare;
+    double sum[3] = {0, 0, 0};
+    struct frame_report report;
+    struct frame frame;
+
+    (void)state;
+    scene_defaults(&bare);
+    bare.waves = SCENE_WAVES_AUTO;
+    assert_int_equal(coating_take(&tool, &bare.coating, "none"), -1);
+    assert_int_equal(scene_open(&tool, &bare, "lenses/heliar-tronnier.lens"),
+                     EXIT_OK);
+    assert_int_equal(
+        scene_frame(&tool, &bare, scene_view(&bare, WIDTH, HEIGHT), &frame),
+        EXIT_OK);
+    assert_int_equal(frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report),
+                     GLINT_OK);
+    for (int i = 0; i < SAMPLES; i++)
+        sum[i % 3] += (double)rgb[i];
+    print_message("uncoated: %.3f 1 %.3f\n", sum[0] / sum[1], sum[2] / sum[1]);
+    assert_true(fabs(sum[0] / sum[1] - 1) < 0.06);
+    assert_true(fabs(sum[2] / sum[1] - 1) < 0.06);
+    frame_finish(&frame);
+    scene_close(&bare);
+}
+
+static int open_scene(struct scene *scene, const char *waves)
+{
+    scene_defaults(scene);
+    return scene_take_waves(scene, waves)
+               ? scene_open(&tool, scene, "lenses/heliar-tronnier.lens")
+               : 1;
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    if (tool_start(&tool) != EXIT_OK || open_scene(&chosen, "auto") ||
+        open_scene(&three, "650,532,450") ||
+        open_scene(&all,
+                   "400,410,420,430,440,450,460,470,480,490,500,510,520,530,"
+                   "540,550,560,570,580,590,600,610,620,630,640,650,660,670,"
+                   "680,690,700"))
+        return 1;
+    all.cull = 0;
+    return 0;
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    scene_close(&chosen);
+    scene_close(&three);
+    scene_close(&all);
+    tool_finish(&tool);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_small_picture),
+                                       cmocka_unit_test(test_large_picture),
+                                       cmocka_unit_test(test_dial),
+                                       cmocka_unit_test(test_off),
+                                       cmocka_unit_test(test_one_set),
+                                       cmocka_unit_test(test_little_room),
+                                       cmocka_unit_test(test_same_bits),
+                                       cmocka_unit_test(test_outlines),
+                                       cmocka_unit_test(test_words),
+                                       cmocka_unit_test(test_white)};
+
+    return cmocka_run_group_tests_name("waves", tests, enter, leave);
+}

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lights and spots paired: the nearest first, against a search of all pairs.
+ */
+#include "follow/match.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/arena.h"
+
+enum { MAX = 1024 };
+
+static struct glint_spot spot[MAX];
+static struct glint_match match;
+static void *mem;
+static uint32_t seed = 1;
+
+static int draw_random(int n)
+{
+    seed = seed * 1664525 + 1013904223;
+    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
+}
+
+static int set_up(void **state)
+{
+    struct glint_arena arena = glint_arena_measure();
+
+    (void)state;
+    glint_match_carve(&match, &arena, MAX, MAX);
+    if (posix_memalign(&mem, 64, arena.used) != 0)
+        return -1;
+    arena = glint_arena_over(mem, arena.used);
+    glint_match_carve(&match, &arena, MAX, MAX);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    free(mem);
+    return 0;
+}
+
+static void scatter(int n_seekers, int n_spots, int side_q8)
+{
+    match.n_seekers = n_seekers;
+    for (int i = 0; i < n_seekers; i++)
+        match.seeker[i] =
+            (struct glint_seeker){.id = (uint32_t)(i * 7919 % 1021) + 1,
+                                  .x_q8 = draw_random(side_q8),
+                                  .y_q8 = draw_random(side_q8),
+                                  .reach_q8 = draw_random(side_q8 / 4),
+                                  .max_faint_area = draw_random(200),
+                                  .is_lost = draw_random(4) == 0};
+    for (int i = 0; i < n_spots; i++)
+        spot[i] = (struct glint_spot){.x_q8 = draw_random(side_q8),
+                                      .y_q8 = draw_random(side_q8),
+                                      .area = draw_random(200),
+                                      .faint = draw_random(4) == 0};
+}
+
+/* As the header says it; -1: out of reach. */
+static int64_t cost_of(const struct glint_seeker *s, const struct glint_spot *p)
+{
+    const int64_t dx = p->x_q8 - s->x_q8, dy = p->y_q8 - s->y_q8;
+    const int64_t d2 = dx * dx + dy * dy;
+
+    if (d2 > (int64_t)s->reach_q8 * s->reach_q8 ||
+        (p->faint && p->area > s->max_faint_area))
+        return -1;
+    if (p->faint && s->is_lost)
+        return 16 * (d2 + 65536);
+    return p->faint || s->is_lost ? 4 * (d2 + 65536) : d2;
+}
+
+/* The cheapest pair of all that are left, again and again. */
+static int match_slowly(int n_spots, int32_t *partner)
+{
+    static uint8_t taken[MAX];
+    int n = 0;
+
+    memset(taken, 0, sizeof taken);
+    for (int i = 0; i < match.n_seekers; i++)
+        partner[i] = -1;
+    for (;; n++) {
+        int64_t best = INT64_MAX;
+        int seeker = -1, at = -1;
+
+        for (int i = 0; i < match.n_seekers; i++)
+            for (int j = 0; j < n_spots && partner[i] < 0; j++) {
+                const int64_t cost = cost_of(&match.seeker[i], &spot[j]);
+
+                if (!taken[j] && cost >= 0 && cost < best)
+                    best = cost, seeker = i, at = j;
+            }
+        if (seeker < 0)
+            return n;
+        partner[seeker] = at;
+        taken[at] = 1;
+    }
+}
+
+/* No two costs are the same here, so there is one right answer. */
+static void test_against_all_pairs(void **state)
+{
+    static int32_t partner[MAX];
+    int n_matched = 0;
+
+    (void)state;
+    for (int round = 0; round < 300; round++) {
+        const int is_near = round % 3 == 0; /* eight that want the same */
+        const int n_seekers = draw_random(is_near ? 9 : 40);
+        const int n_spots = draw_random(40);
+
+        scatter(n_seekers, n_spots, 300 << 8);
+        for (int i = 0; is_near && i < n_seekers; i++) {
+            match.seeker[i].x_q8 = match.seeker[i].x_q8 / 8 + (130 << 8);
+            match.seeker[i].y_q8 = match.seeker[i].y_q8 / 8 + (130 << 8);
+            match.seeker[i].reach_q8 = 600 << 8;
+        }
+        glint_match_find(&match, spot, n_spots);
+        n_matched += match_slowly(n_spots, partner);
+        for (int i = 0; i < n_seekers; i++)
+            assert_int_equal(match.seeker[i].spot, partner[i]);
+    }
+    assert_true(n_matched > 1000);
+}
+
+/* Spots that are nearer to S than spot AT. */
+static int count_nearer(const struct glint_seeker *s, int at)
+{
+    int n = 0;
+
+    for (int j = 0; j < MAX; j++) {
+        const int64_t cost = cost_of(s, &spot[j]);
+
+        n += cost >= 0 && cost < cost_of(s, &spot[at]);
+    }
+    return n;
+}
+
+/* The most there can be, all in reach of each other: no spot is given twice,
+ * and each is one of the eight nearest. */
+static void test_crowd(void **state)
+{
+    static uint8_t seen[MAX];
+    int n = 0;
+
+    (void)state;
+    scatter(MAX, MAX, 30 << 8);
+    for (int i = 0; i < MAX; i++)
+        match.seeker[i].reach_q8 = 1 << 23;
+    glint_match_find(&match, spot, MAX);
+    memset(seen, 0, sizeof seen);
+    for (int i = 0; i < MAX; i++) {
+        const int32_t at = match.seeker[i].spot;
+
+        if (at < 0)
+            continue;
+        assert_in_range(at, 0, MAX - 1);
+        assert_int_equal(seen[at]++, 0);
+        assert_int_equal(match.taken[at], 1);
+        assert_true(count_nearer(&match.seeker[i], at) < 8);
+        n++;
+    }
+    assert_in_range(n, MAX / 2, MAX);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_against_all_pairs),
+        cmocka_unit_test(test_crowd),
+    };
+
+    return cmocka_run_group_tests_name("match", tests, set_up, tear_down);
+}

@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Curves, and codes under light, against libm; matrices against the colours
+ * that the standards give.
+ */
+#include "image/curve.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "kernels/kernels.h"
+#include "image/mix.h"
+
+static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB, GLINT_TONE_BT709};
+
+/* Standards: IEC 61966-2-1 and ITU-R BT.709, inverse. */
+static double light_of(enum glint_tone transfer, double v)
+{
+    if (transfer == GLINT_TONE_SRGB)
+        return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
+}
+
+static double code_of(enum glint_tone transfer, double light)
+{
+    if (transfer == GLINT_TONE_SRGB)
+        return light <= 0.04045 / 12.92 ? 12.92 * light
+                                        : 1.055 * pow(light, 1 / 2.4) - 0.055;
+    return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
+}
+
+static void test_codes_by_hand(void **state)
+{
+    struct glint_curve curve;
+
+    (void)state;
+    glint_curve_init(&curve, GLINT_TONE_SRGB);
+    assert_int_equal(curve.decode_q20[0], 0);
+    assert_int_equal(curve.decode_q20[10], 3183);    /* 10 / 255 / 12.92 */
+    assert_int_equal(curve.decode_q20[128], 226346); /* 0.2158605 */
+    assert_int_equal(curve.decode_q20[255], 1 << 20);
+    glint_curve_init(&curve, GLINT_TONE_BT709);
+    assert_int_equal(curve.decode_q20[0], 0);
+    assert_int_equal(curve.decode_q20[20], 18276); /* 20 / 255 / 4.5 */
+    assert_int_equal(curve.decode_q20[255], 1 << 20);
+}
+
+static void test_decode_is_the_standard_at_codes(void **state)
+{
+    (void)state;
+    for (int t = 0; t < 2; t++) {
+        struct glint_curve curve;
+
+        glint_curve_init(&curve, transfers[t]);
+        for (int i = 0; i < 256; i++) {
+            const double want = light_of(transfers[t], i / 255.0) * 0x1p20;
+
+            assert_true(fabs(curve.decode_q20[i] - want) <= 0.51);
+            assert_true(i == 0 ||
+                        curve.decode_q20[i] - curve.decode_q20[i - 1] >= 318);
+        }
+    }
+}
+
+static void test_decode_rises(void **state)
+{
+    (void)state;
+    for (int t = 0; t < 2; t++) {
+        struct glint_curve curve;
+
+        glint_curve_init(&curve, transfers[t]);
+        for (int32_t v = 0; v < CODE_WHITE_Q7; v++)
+            assert_true(curve_decode(&curve, v) < curve_decode(&curve, v + 1));
+    }
+}
+
+/* Errors of the codes that light makes of all codes, against exact ones that
+ * are not rounded. */
+struct errors {
+    double worst, squares;
+    int n;
+};
+
+static struct errors errors_of(enum glint_tone transfer)
+{
+    const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};
+    struct errors e = {0, 0, 0};
+
+    for (int code = 0; code < 256; code++)
+        for (int first = 1; first < 65536; first += 7 * GLINT_LANES) {
+            uint8_t lit[GLINT_LANES];
+            uint16_t light[GLINT_LANES];
+
+            for (int i = 0; i < GLINT_LANES; i++) {
+                light[i] = (uint16_t)(first + i < 65535 ? first + i : 65535);
+                lit[i] = (uint8_t)code;
+            }
+            glint_add_code_c(lit, light, GLINT_LANES, glint_tone16_of(transfer),
+                             round);
+            for (int i = 0; i < GLINT_LANES; i++) {
+                const double sum =
+                    light_of(transfer, code / 255.0) + light[i] / 65535.0;
+                const double want = 255 * code_of(transfer, fmin(1, sum));
+                const double error = fabs(lit[i] - want);
+
+                e.worst = fmax(e.worst, error);
+                if (sum < 1) {
+                    e.squares += error * error;
+                    e.n++;
+                }
+            }
+        }
+    return e;
+}
+
+/* Rounding alone is 0.5 at most, 0.289 root mean square. */
+static void test_added_light(void **state)
+{
+    (void)state;
+    for (int t = 0; t < 2; t++) {
+        const struct errors e = errors_of(transfers[t]);
+        const double rms = sqrt(e.squares / e.n);
+
+        print_message("codes under light are within %.3f, %.4f RMS\n", e.worst,
+                      rms);
+        assert_true(e.worst <= 0.62);
+        assert_true(rms <= 0.3);
+    }
+}
+
+static void assert_rgb(const struct glint_ycc *ycc, int y, int cb, int cr,
+                       int r, int g, int b, int within)
+{
+    int32_t rgb_q7[3];
+
+    ycc_to_rgb(ycc, y, cb, cr, rgb_q7);
+    assert_true(abs(rgb_q7[0] - r * 128) <= within);
+    assert_true(abs(rgb_q7[1] - g * 128) <= within);
+    assert_true(abs(rgb_q7[2] - b * 128) <= within);
+}
+
+/* 100 % bars of the standards, rounded there to whole codes. */
+static void test_ycc_bars(void **state)
+{
+    struct glint_ycc ycc;
+
+    (void)state;
+    glint_ycc_init(&ycc, GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
+    assert_rgb(&ycc, 16, 128, 128, 0, 0, 0, 0);
+    assert_rgb(&ycc, 235, 128, 128, 255, 255, 255, 0);
+    assert_rgb(&ycc, 81, 90, 240, 255, 0, 0, 192);
+    assert_rgb(&ycc, 145, 54, 34, 0, 255, 0, 192);
+    assert_rgb(&ycc, 41, 240, 110, 0, 0, 255, 192);
+    glint_ycc_init(&ycc, GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
+    assert_rgb(&ycc, 235, 128, 128, 255, 255, 255, 0);
+    assert_rgb(&ycc, 63, 102, 240, 255, 0, 0, 192);
+    assert_rgb(&ycc, 173, 42, 26, 0, 255, 0, 192);
+    assert_rgb(&ycc, 32, 240, 118, 0, 0, 255, 192);
+    glint_ycc_init(&ycc, GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
+    assert_rgb(&ycc, 0, 128, 128, 0, 0, 0, 0);
+    assert_rgb(&ycc, 255, 128, 128, 255, 255, 255, 0);
+    assert_rgb(&ycc, 76, 85, 255, 255, 0, 0, 192);
+}
+
+/* Row sums, and both matrices multiplied. */
+static void check_inverse(const struct glint_ycc *ycc, int y_q15)
+{
+    for (int i = 0; i < 3; i++) {
+        const int32_t *row = ycc->to_ycc_q15[i];
+
+        assert_int_equal(row[0] + row[1] + row[2], i == 0 ? y_q15 : 0);
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+
+            for (int k = 0; k < 3; k++)
+                sum += row[k] * 0x1p-15 * ycc->to_rgb_q16[k][j] * 0x1p-16;
+            assert_true(fabs(sum - (i == j)) < 1e-4);
+        }
+    }
+}
+
+static void test_ycc_matrices_are_inverse(void **state)
+{
+    struct glint_ycc ycc;
+
+    (void)state;
+    for (int m = 0; m < 2; m++) {
+        const enum glint_matrix matrix =
+            m ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
+
+        glint_ycc_init(&ycc, matrix, GLINT_RANGE_FULL);
+        check_inverse(&ycc, 1 << 15);
+        glint_ycc_init(&ycc, matrix, GLINT_RANGE_LIMITED);
+        check_inverse(&ycc, 28142); /* 219 / 255 */
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_codes_by_hand),
+        cmocka_unit_test(test_decode_is_the_standard_at_codes),
+        cmocka_unit_test(test_decode_rises),
+        cmocka_unit_test(test_added_light),
+        cmocka_unit_test(test_ycc_bars),
+        cmocka_unit_test(test_ycc_matrices_are_inverse),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,914 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Light added to pictures of every coding, against the same in double: through
+ * the standards' own curves and matrices, not the tables.
+ */
+#include "image/quads.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/kernels.h"
+#include "linux/sets.h"
+
+enum {
+    MAX_SIDE = 40,
+    TILE_LOG2 = 3,
+    TILE = 1 << TILE_LOG2,
+    PLANE_BYTES = 3 * (MAX_SIDE + 8) * (MAX_SIDE + 8),
+    GUARD = 0xa5
+};
+
+#define WHITE_Q20 INT64_C(1048576)
+
+/* A picture with guard bytes around and between its rows, what it was before,
+ * and the light to add. */
+struct fixture {
+    struct glint_image image;
+    uint8_t plane[3][PLANE_BYTES], before[3][PLANE_BYTES];
+    int32_t light_q20[3][MAX_SIDE * MAX_SIDE];
+};
+
+static struct fixture fixture;
+static struct glint_resolve resolve;
+static uint32_t seed = 1;
+
+static int draw_random(int n)
+{
+    seed = seed * 1664525 + 1013904223;
+    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
+}
+
+/* Strides of 5 bytes more than the row; UPSIDE_DOWN: negative ones. */
+static void set_up(enum glint_pixel_format format, int width, int height,
+                   int upside_down)
+{
+    struct glint_image *image = &fixture.image;
+
+    memset(fixture.plane, GUARD, sizeof fixture.plane);
+    memset(fixture.light_q20, 0, sizeof fixture.light_q20);
+    *image = (struct glint_image){
+        .format = format, .width = width, .height = height};
+    for (int i = 0; i < glint_image_planes(format); i++) {
+        const int across = (int)glint_image_row_bytes(format, i, width);
+        const int down = glint_image_plane_height(format, i, height);
+        const ptrdiff_t stride = across + 5;
+
+        image->plane[i] = fixture.plane[i] + 64;
+        image->stride_bytes[i] = stride;
+        if (upside_down) {
+            image->plane[i] += (down - 1) * stride;
+            image->stride_bytes[i] = -stride;
+        }
+    }
+}
+
+static uint8_t *sample(int plane, int x, int y)
+{
+    return fixture.image.plane[plane] + y * fixture.image.stride_bytes[plane] +
+           x;
+}
+
+/* Samples of plane PLANE in a row. */
+static int across(int plane)
+{
+    const struct glint_image *image = &fixture.image;
+
+    return (int)glint_image_row_bytes(image->format, plane, image->width);
+}
+
+static int down(int plane)
+{
+    const struct glint_image *image = &fixture.image;
+
+    return glint_image_plane_height(image->format, plane, image->height);
+}
+
+static void fill(int plane, int low, int high)
+{
+    for (int y = 0; y < down(plane); y++)
+        for (int x = 0; x < across(plane); x++)
+            *sample(plane, x, y) = (uint8_t)(low + draw_random(high - low + 1));
+}
+
+/* What the kernels see of light _q20. */
+static uint16_t light_q16(int32_t light_q20)
+{
+    const int32_t l = (light_q20 >> 4) + (light_q20 >> 3 & 1);
+
+    return (uint16_t)(l < 0 ? 0 : l > 65535 ? 65535 : l);
+}
+
+static double lit(int i, int at)
+{
+    return light_q16(fixture.light_q20[i][at]) / 65535.0;
+}
+
+/* Adds the light to IMAGE, stretch by stretch, the last one first. */
+static void add_light_to(const struct glint_image *image, int dither,
+                         unsigned sets)
+{
+    static struct glint_light_rows light;
+    static struct glint_resolve_rows rows;
+
+    glint_resolve_init(&resolve, image, dither, sets);
+    for (int y0 = (image->height - 1) / 2 * 2; y0 >= 0; y0 -= 2)
+        for (int x0 = (image->width - 1) / TILE * TILE; x0 >= 0; x0 -= TILE) {
+            const int x1 = x0 + TILE < image->width ? x0 + TILE : image->width;
+            const int y1 = y0 + 2 < image->height ? y0 + 2 : image->height;
+
+            memset(&light, 0x55, sizeof light); /* much where unused */
+            for (int i = 0; i < 3; i++)
+                for (int y = y0; y < y1; y++)
+                    for (int x = x0; x < x1; x++)
+                        light.rgb_q16[i][y - y0][x - x0] = light_q16(
+                            fixture.light_q20[i][y * image->width + x]);
+            glint_resolve_stretch(&resolve, image, x0, y0, x1 - x0, y1 - y0,
+                                  &light, &rows);
+        }
+}
+
+static void add_light(int dither)
+{
+    memcpy(fixture.before, fixture.plane, sizeof fixture.before);
+    add_light_to(&fixture.image, dither, 0);
+}
+
+static int before(int plane, int x, int y)
+{
+    return fixture.before[plane][sample(plane, x, y) - fixture.plane[plane]];
+}
+
+static void assert_guards_whole(void)
+{
+    for (int i = 0; i < 3; i++) {
+        static uint8_t inside[PLANE_BYTES];
+
+        memset(inside, 0, sizeof inside);
+        if (i < glint_image_planes(fixture.image.format))
+            for (int y = 0; y < down(i); y++)
+                for (int x = 0; x < across(i); x++)
+                    inside[sample(i, x, y) - fixture.plane[i]] = 1;
+        for (int k = 0; k < PLANE_BYTES; k++)
+            assert_true(inside[k] || fixture.plane[i][k] == GUARD);
+    }
+}
+
+/* --------------------------------------------------------------- reference */
+
+static double light_of(double v)
+{
+    if (v < 0)
+        return -light_of(-v);
+    if (fixture.image.transfer == GLINT_TONE_SRGB)
+        return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
+}
+
+static double code_of(double light)
+{
+    if (light < 0)
+        return -code_of(-light);
+    if (light > 1)
+        return 1;
+    if (fixture.image.transfer == GLINT_TONE_SRGB)
+        return light <= 0.0031308 ? 12.92 * light
+                                  : 1.055 * pow(light, 1 / 2.4) - 0.055;
+    return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
+}
+
+/* Change of V, 1 = white, under LIGHT. */
+static double change(double v, double light)
+{
+    const double held = fmax(0, fmin(v, 1));
+
+    return light > 0 ? code_of(light_of(held) + light) - held : 0;
+}
+
+struct coding {
+    double kr, kg, kb, black, y_steps, c_steps;
+};
+
+static struct coding coding(void)
+{
+    const int bt601 = fixture.image.matrix == GLINT_MATRIX_BT601;
+    const int full = fixture.image.range == GLINT_RANGE_FULL;
+    struct coding c = {.kr = bt601 ? 0.299 : 0.2126,
+                       .kb = bt601 ? 0.114 : 0.0722,
+                       .black = full ? 0 : 16,
+                       .y_steps = full ? 255 : 219,
+                       .c_steps = full ? 255 : 224};
+
+    c.kg = 1 - c.kr - c.kb;
+    return c;
+}
+
+/* Change of R'G'B' of pixel (X, Y) of a Y'CbCr picture. */
+static void ycc_pixel_change(const struct coding *c, int x, int y, int cx,
+                             int cy, double rgb[3])
+{
+    const double luma = (before(0, x, y) - c->black) / c->y_steps;
+    const double cb = (before(1, cx, cy) - 128) / c->c_steps;
+    const double cr = (before(2, cx, cy) - 128) / c->c_steps;
+    const int at = y * fixture.image.width + x;
+
+    rgb[0] = luma + 2 * (1 - c->kr) * cr;
+    rgb[2] = luma + 2 * (1 - c->kb) * cb;
+    rgb[1] = (luma - c->kr * rgb[0] - c->kb * rgb[2]) / c->kg;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = change(rgb[i], lit(i, at));
+}
+
+static void assert_code(double want, int got, double within)
+{
+    want = want < 0 ? 0 : want > 255 ? 255 : want;
+    if (fabs(want - got) > within)
+        fail_msg("code %d where %.3f is right", got, want);
+}
+
+/* Checks the pixels that share the sample (CX, CY), and it. */
+static void check_block(int cx, int cy, double within)
+{
+    const enum glint_pixel_format format = fixture.image.format;
+    const struct coding c = coding();
+    const int nx = format == GLINT_I444 ? 1 : 2;
+    const int ny = format == GLINT_I420 ? 2 : 1;
+    double total[3] = {0, 0, 0};
+    int n = 0;
+
+    for (int y = cy * ny; y < cy * ny + ny && y < down(0); y++)
+        for (int x = cx * nx; x < cx * nx + nx && x < across(0); x++, n++) {
+            double rgb[3];
+
+            ycc_pixel_change(&c, x, y, cx, cy, rgb);
+            for (int i = 0; i < 3; i++)
+                total[i] += rgb[i];
+            assert_code(before(0, x, y) +
+                            c.y_steps *
+                                (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
+                        *sample(0, x, y), within);
+        }
+    for (int i = 0; i < 3; i++)
+        total[i] /= n;
+    {
+        const double luma = c.kr * total[0] + c.kg * total[1] + c.kb * total[2];
+
+        assert_code(before(1, cx, cy) +
+                        c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
+                    *sample(1, cx, cy), within);
+        assert_code(before(2, cx, cy) +
+                        c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
+                    *sample(2, cx, cy), within);
+    }
+}
+
+static void check_ycc(double within)
+{
+    for (int cy = 0; cy < down(1); cy++)
+        for (int cx = 0; cx < across(1); cx++)
+            check_block(cx, cy, within);
+}
+
+static void check_rgb24(double within)
+{
+    for (int y = 0; y < down(0); y++)
+        for (int x = 0; x < across(0); x++) {
+            const double light = lit(x % 3, y * fixture.image.width + x / 3);
+            const int code = before(0, x, y);
+
+            assert_code(code + 255 * change(code / 255.0, light),
+                        *sample(0, x, y), within);
+        }
+}
+
+static void check_grey(double within)
+{
+    const struct coding c = coding();
+
+    for (int y = 0; y < down(0); y++)
+        for (int x = 0; x < across(0); x++) {
+            const double weight[3] = {0.2126, 0.7152, 0.0722};
+            const double v = (before(0, x, y) - c.black) / c.y_steps;
+            double light = 0;
+
+            for (int i = 0; i < 3; i++)
+                light += weight[i] * lit(i, y * fixture.image.width + x);
+            assert_code(before(0, x, y) + c.y_steps * change(v, light),
+                        *sample(0, x, y), within);
+        }
+}
+
+static void check_picture(double within)
+{
+    if (fixture.image.format == GLINT_RGB24)
+        check_rgb24(within);
+    else if (fixture.image.format == GLINT_GREY)
+        check_grey(within);
+    else
+        check_ycc(within);
+    assert_guards_whole();
+}
+
+/* -------------------------------------------------------------------- cases */
+
+static const enum glint_pixel_format formats[5] = {
+    GLINT_RGB24, GLINT_GREY, GLINT_I420, GLINT_I422, GLINT_I444};
+static const int sizes[][2] = {{1, 1}, {3, 1}, {1, 3}, {7, 5}, {33, 18}};
+
+enum { N_SIZES = sizeof sizes / sizeof *sizes };
+
+/* Light of all magnitudes, and none or less than none for a third. */
+static void fill_light(void)
+{
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < MAX_SIDE * MAX_SIDE; k++) {
+            const int32_t size_q20 = draw_random(1 << draw_random(23));
+
+            fixture.light_q20[i][k] = draw_random(3) ? size_q20 : -size_q20;
+        }
+}
+
+/* Sets one of the 16 codings of a format. */
+static void set_coding(int k)
+{
+    fixture.image.transfer = k & 1 ? GLINT_TONE_BT709 : GLINT_TONE_SRGB;
+    fixture.image.range = k & 2 ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
+    fixture.image.matrix = k & 4 ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
+}
+
+/* CHROMA: how far from neutral. */
+static void check_random(int chroma, double within)
+{
+    for (int f = 0; f < 5; f++)
+        for (int s = 0; s < N_SIZES; s++)
+            for (int k = 0; k < 16; k++) {
+                set_up(formats[f], sizes[s][0], sizes[s][1], k & 8);
+                set_coding(k);
+                if (formats[f] == GLINT_RGB24)
+                    fixture.image.range = GLINT_RANGE_FULL;
+                fill(0, 0, 255);
+                if (glint_image_planes(formats[f]) == 3) {
+                    fill(1, 128 - chroma, 127 + chroma);
+                    fill(2, 128 - chroma, 127 + chroma);
+                }
+                fill_light();
+                add_light(0);
+                check_picture(within);
+            }
+}
+
+static void test_light_adds_up(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 4; round++)
+        check_random(40, 0.65);
+}
+
+/* Any codes at all: far outside the cube, too. */
+static void test_wild_codes(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 4; round++)
+        check_random(128, 0.65);
+}
+
+static void check_untouched(int dither)
+{
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 16; k++) {
+            set_up(formats[f], 33, 18, k & 8);
+            set_coding(k);
+            for (int i = 0; i < glint_image_planes(formats[f]); i++)
+                fill(i, 0, 255);
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 33 * 18; j++)
+                    fixture.light_q20[i][j] = -draw_random(3);
+            add_light(dither);
+            assert_memory_equal(fixture.plane, fixture.before,
+                                sizeof fixture.plane);
+        }
+}
+
+static void test_untouched_pixels_stay(void **state)
+{
+    (void)state;
+    check_untouched(0);
+    check_untouched(1);
+}
+
+/* Light too faint to move a code by half, on one pixel in four. */
+static void test_faint_light_changes_nothing(void **state)
+{
+    (void)state;
+    for (int f = 0; f < 5; f++) {
+        set_up(formats[f], 33, 18, 0);
+        for (int i = 0; i < glint_image_planes(formats[f]); i++)
+            fill(i, 128, 128);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 33 * 18; k += 4)
+                fixture.light_q20[i][k] = 1500; /* 0.4 code at 128 */
+        add_light(0);
+        assert_memory_equal(fixture.plane, fixture.before,
+                            sizeof fixture.plane);
+    }
+}
+
+static void test_white_saturates(void **state)
+{
+    (void)state;
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 16; k++) {
+            set_up(formats[f], 7, 5, k & 8);
+            set_coding(k);
+            fill(0, 20, 230);
+            for (int i = 1; i < glint_image_planes(formats[f]); i++)
+                fill(i, 128, 128);
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 7 * 5; j++)
+                    fixture.light_q20[i][j] = INT32_MAX >> (j / 4);
+            add_light(0);
+            for (int i = 0; i < glint_image_planes(formats[f]); i++)
+                for (int y = 0; y < down(i); y++)
+                    for (int x = 0; x < across(i); x++)
+                        assert_int_equal(*sample(i, x, y), i > 0 ? 128
+                                                           : (k & 2) && f > 0
+                                                               ? 235
+                                                               : 255);
+        }
+}
+
+/* sRGB by hand: code 128 is 226346 steps of light; two and a half times that is
+ * code 194.0, four times 239.0, and a quarter of white is 137.0. */
+static void test_codes_by_hand(void **state)
+{
+    (void)state;
+    set_up(GLINT_RGB24, 1, 1, 0);
+    memset(sample(0, 0, 0), 128, 3);
+    fixture.light_q20[0][0] = 3 * 226346 / 2;
+    fixture.light_q20[1][0] = 3 * 226346;
+    fixture.light_q20[2][0] = WHITE_Q20 / 4 - 226346;
+    add_light(0);
+    assert_int_equal(*sample(0, 0, 0), 194);
+    assert_int_equal(*sample(0, 1, 0), 239);
+    assert_int_equal(*sample(0, 2, 0), 137);
+}
+
+/* One lit pixel of four moves the shared sample by a quarter of what four do;
+ * alone in the corner of an odd picture, by all of it. */
+static void test_chroma_is_the_mean_of_those_that_exist(void **state)
+{
+    (void)state;
+    set_up(GLINT_I420, 3, 3, 0);
+    for (int i = 0; i < 3; i++)
+        fill(i, i ? 128 : 0, i ? 128 : 0);
+    fixture.light_q20[2][0] = WHITE_Q20;
+    fixture.light_q20[2][8] = WHITE_Q20;
+    add_light(0);
+    assert_int_equal(*sample(0, 0, 0), 29); /* 0.114 * 255 */
+    assert_int_equal(*sample(0, 1, 0), 0);
+    assert_int_equal(*sample(0, 2, 2), 29);
+    assert_int_equal(*sample(1, 0, 0), 160); /* 128 + 127.5 / 4 */
+    assert_int_equal(*sample(1, 1, 0), 128);
+    assert_int_equal(*sample(1, 1, 1), 255); /* 128 + 127.5 */
+    assert_int_equal(*sample(2, 1, 1), 107); /* 128 - 0.114 * 127.5 / 0.701 */
+}
+
+/* An even picture, at each of many levels between two codes: 64 thresholds
+ * give the level to 1/64. */
+static void test_dither_has_the_right_mean(void **state)
+{
+    (void)state;
+    for (int light = 0; light < 9000; light += 97) {
+        int total = 0;
+        double want;
+
+        set_up(GLINT_RGB24, 8, 8, 0);
+        fill(0, 200, 200);
+        for (int k = 0; k < 64; k++)
+            fixture.light_q20[0][k] = light;
+        add_light(1);
+        for (int k = 0; k < 64; k++) {
+            total += *sample(0, 3 * (k % 8), k / 8);
+            assert_int_equal(*sample(0, 3 * (k % 8) + 1, k / 8), 200);
+        }
+        want = 200 + 255 * change(200 / 255.0, lit(0, 0));
+        assert_true(fabs(total / 64.0 - want) <= 0.1);
+    }
+}
+
+/* Each of 64 thresholds once, so that neighbours differ. */
+static void test_dither_pattern(void **state)
+{
+    int seen[64] = {0};
+
+    (void)state;
+    set_up(GLINT_GREY, 8, 8, 0);
+    glint_resolve_init(&resolve, &fixture.image, 1, 0);
+    for (int k = 0; k < 64; k++)
+        seen[(resolve.round_q7[k / 8][k % 8] - 1) / 2]++;
+    for (int k = 0; k < 64; k++)
+        assert_int_equal(seen[k], 1);
+    assert_int_equal(resolve.round_q7[0][0], 1);
+    assert_int_equal(resolve.round_q7[1][1], 33);
+    assert_int_equal(resolve.round_q7[0][1], 65);
+    assert_int_equal(resolve.round_q7[1][0], 97);
+}
+
+static void test_dither_in_ycc_stays_within_a_code(void **state)
+{
+    (void)state;
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 16; k++) {
+            set_up(formats[f], 33, 18, k & 8);
+            set_coding(k);
+            if (formats[f] == GLINT_RGB24)
+                fixture.image.range = GLINT_RANGE_FULL;
+            fill(0, 0, 255);
+            for (int i = 1; i < glint_image_planes(formats[f]); i++)
+                fill(i, 100, 156);
+            fill_light();
+            add_light(1);
+            check_picture(1.15);
+        }
+}
+
+static void test_linear_adds_and_saturates(void **state)
+{
+    static int32_t px_q20[2][9]; /* two rows of three pixels, one unused */
+    const int32_t light_q20[3][2][2] = {{{5, INT32_MAX}, {-7, 1}},
+                                        {{-9, INT32_MIN}, {1 << 20, 2}},
+                                        {{0, INT32_MAX}, {INT32_MAX - 9, 3}}};
+    const int32_t want_q20[2][9] = {
+        {15, 1, 10, INT32_MAX, INT32_MIN + 10, INT32_MAX, 10, 10, 10},
+        {3, 1048586, INT32_MAX, 11, 12, 13, 10, 10, 10}};
+    const struct glint_image image = {.format = GLINT_LINEAR_Q20,
+                                      .width = 2,
+                                      .height = 2,
+                                      .plane = {(uint8_t *)px_q20},
+                                      .stride_bytes = {sizeof px_q20[0]}};
+
+    (void)state;
+    for (int k = 0; k < 18; k++)
+        px_q20[k / 9][k % 9] = 10;
+    for (int y = 0; y < 2; y++)
+        glint_resolve_linear(&image, 0, y, 2,
+                             (const int32_t *const[]){light_q20[0][y],
+                                                      light_q20[1][y],
+                                                      light_q20[2][y]});
+    assert_memory_equal(px_q20, want_q20, sizeof px_q20);
+}
+
+/* Two formats that hold the same codes, and where each has its samples. */
+static const enum glint_pixel_format twins[][2] = {
+    {GLINT_I420, GLINT_NV12},   {GLINT_I420, GLINT_NV21},
+    {GLINT_I422, GLINT_YUYV},   {GLINT_I422, GLINT_UYVY},
+    {GLINT_RGB24, GLINT_BGR24}, {GLINT_RGB24, GLINT_XRGB8888}};
+
+static void copy_codes(const struct glint_image *to,
+                       const struct glint_image *from)
+{
+    const struct glint_layout *lt = glint_layout_of(to->format);
+    const struct glint_layout *lf = glint_layout_of(from->format);
+
+    for (int i = 0; i < 3; i++)
+        for (int y = 0; y < to->height; y++)
+            for (int x = 0; x < to->width; x++)
+                *glint_layout_at(lt, to, i, x, y) =
+                    *glint_layout_at(lf, from, i, x, y);
+}
+
+static void test_layouts_agree(void **state)
+{
+    static uint8_t twin_mem[4 * 34 * 18], back_mem[4 * 34 * 18];
+
+    (void)state;
+    for (size_t t = 0; t < sizeof twins / sizeof *twins; t++)
+        for (int s = 0; s < N_SIZES; s++) {
+            struct glint_image twin, back;
+
+            set_up(twins[t][0], sizes[s][0], sizes[s][1], 0);
+            for (int i = 0; i < glint_image_planes(twins[t][0]); i++)
+                fill(i, 0, 255);
+            fill_light();
+            twin = back = fixture.image;
+            twin.format = twins[t][1];
+            memset(twin_mem, 0x99, sizeof twin_mem);
+            glint_image_place(&twin, twin_mem);
+            glint_image_place(&back, back_mem);
+            copy_codes(&twin, &fixture.image);
+            add_light(0);
+            add_light_to(&twin, 0, 0);
+            copy_codes(&back, &twin);
+            copy_codes(&twin, &fixture.image);
+            for (int i = 0; i < 3; i++)
+                for (int y = 0; y < back.height; y++)
+                    for (int x = 0; x < back.width; x++)
+                        assert_int_equal(
+                            *glint_layout_at(glint_layout_of(back.format),
+                                             &back, i, x, y),
+                            *glint_layout_at(
+                                glint_layout_of(fixture.image.format),
+                                &fixture.image, i, x, y));
+            if (twin.format == GLINT_XRGB8888)
+                for (int k = 3; k < 4 * twin.width * twin.height; k += 4)
+                    assert_int_equal(twin_mem[k], 0x99);
+        }
+}
+
+/* A row of packed pixels in one stretch and in stretches of eight: vectors end
+ * anywhere in the long one. */
+static void test_long_stretches_are_short_ones(void **state)
+{
+    static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
+    static struct glint_light_rows light, part;
+    static struct glint_resolve_rows rows;
+    uint8_t want[2 * 64], got[2 * 64];
+
+    (void)state;
+    for (int n = 2; n <= 64; n += 2)
+        for (int k = 0; k < 4; k++) {
+            struct glint_image image = {
+                .format = packed[k & 1], .width = n, .height = 1};
+
+            for (int i = 0; i < 2 * n; i++)
+                want[i] = got[i] = (uint8_t)draw_random(256);
+            for (int i = 0; i < 3 * 64; i++)
+                light.rgb_q16[i / 64][0][i % 64] = (uint16_t)draw_random(9000);
+            glint_resolve_init(&resolve, &image, 0,
+                               k & 2 ? glint_system_sets() : 0u);
+            glint_image_place(&image, got);
+            glint_resolve_stretch(&resolve, &image, 0, 0, n, 1, &light, &rows);
+            glint_image_place(&image, want);
+            for (int x = 0; x < n; x += 8) {
+                for (int i = 0; i < 3 * 8; i++)
+                    part.rgb_q16[i / 8][0][i % 8] =
+                        light.rgb_q16[i / 8][0][x + i % 8];
+                glint_resolve_stretch(&resolve, &image, x, 0,
+                                      n - x < 8 ? n - x : 8, 1, &part, &rows);
+            }
+            assert_memory_equal(got, want, 2 * (size_t)n);
+        }
+}
+
+/* Of a picture that is even over 2 x 2 pixels, light of as many pixels does
+ * what it does to each. */
+static void make_even(void)
+{
+    const struct glint_image *image = &fixture.image;
+    const struct glint_layout *l = glint_layout_of(image->format);
+    const int n_channels = l->kind == GLINT_LAYOUT_GREY ? 1 : 3;
+
+    for (int i = 0; i < n_channels; i++)
+        for (int y = 0; y < image->height; y++)
+            for (int x = 0; x < image->width; x++)
+                *glint_layout_at(l, image, i, x, y) =
+                    *glint_layout_at(l, image, i, x & ~1, y & ~1);
+}
+
+static void add_quads(const struct glint_image *image, int dither,
+                      unsigned sets)
+{
+    static struct glint_quads_rows rows;
+    static struct glint_light_rows light;
+    const uint16_t *const rgb[3] = {light.rgb_q16[0][0], light.rgb_q16[1][0],
+                                    light.rgb_q16[2][0]};
+
+    glint_resolve_init(&resolve, image, dither, sets);
+    memset(&light, 0x55, sizeof light);
+    for (int y = 0; y < image->height; y += 2) {
+        for (int x = 0; x < image->width; x += 2)
+            for (int i = 0; i < 3; i++)
+                light.rgb_q16[i][0][x / 2] =
+                    light_q16(fixture.light_q20[i][y * image->width + x]);
+        glint_resolve_quads(&resolve, image, 0, y, image->width,
+                            y + 2 < image->height ? 2 : image->height - y, rgb,
+                            &rows);
+    }
+}
+
+static void test_quads_of_even_pictures(void **state)
+{
+    static const enum glint_pixel_format every[] = {
+        GLINT_YUYV, GLINT_UYVY,  GLINT_I420,     GLINT_NV12,
+        GLINT_I422, GLINT_RGB24, GLINT_XRGB8888, GLINT_GREY};
+    static uint8_t even[3][PLANE_BYTES], want[3][PLANE_BYTES];
+
+    (void)state;
+    for (size_t f = 0; f < sizeof every / sizeof *every; f++)
+        for (int size = 0; size < 40; size++) {
+            set_up(every[f], 1 + size, 1 + (size * 7) % 40, 0);
+            for (int i = 0; i < glint_image_planes(every[f]); i++)
+                fill(i, 0, 255);
+            make_even();
+            fill_light();
+            for (int i = 0; i < 3; i++)
+                for (int y = 0; y < fixture.image.height; y++)
+                    for (int x = 0; x < fixture.image.width; x++)
+                        fixture.light_q20[i][y * fixture.image.width + x] =
+                            fixture
+                                .light_q20[i][(y & ~1) * fixture.image.width +
+                                              (x & ~1)];
+            memcpy(even, fixture.plane, sizeof even);
+            add_light_to(&fixture.image, 1, 0);
+            memcpy(want, fixture.plane, sizeof want);
+            for (int k = 0; k < 2; k++) {
+                memcpy(fixture.plane, even, sizeof even);
+                add_quads(&fixture.image, 1, k ? glint_system_sets() : 0u);
+                assert_memory_equal(fixture.plane, want, sizeof want);
+            }
+        }
+}
+
+/* Of others change falls towards white: light of any strength makes nothing
+ * darker or whiter than white, orders stay, and much of it leaves all four
+ * white. */
+static void test_quads_of_edges(void **state)
+{
+    static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
+
+    (void)state;
+    for (int strength = 0; strength <= 24; strength++) {
+        set_up(GLINT_YUYV, 32, 2, 0);
+        fixture.image.range = GLINT_RANGE_LIMITED;
+        for (int x = 0; x < 64; x++)
+            for (int y = 0; y < 2; y++)
+                *sample(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
+        for (int i = 0; i < 3 * 64; i++)
+            fixture.light_q20[i / 64][i % 64] = 1 << strength >> 4;
+        add_quads(&fixture.image, 0, 0);
+        for (int x = 0; x < 64; x += 2)
+            for (int y = 0; y < 2; y++) {
+                assert_in_range(*sample(0, x, y), luma[y][x / 2 % 2], 235);
+                assert_int_equal(*sample(0, x + 1, y), 128);
+                if (strength == 24)
+                    assert_int_equal(*sample(0, x, y), 235);
+            }
+        assert_true(*sample(0, 0, 0) <= *sample(0, 0, 1));
+    }
+}
+
+/* How far quads are from pixel by pixel, codes: the root mean square over
+ * pictures whose pixels differ by up to DIFFER codes. */
+static double quads_off(int differ)
+{
+    static uint8_t want[PLANE_BYTES];
+    double sum2 = 0;
+    int n = 0;
+
+    for (int turn = 0; turn < 50; turn++) {
+        set_up(GLINT_YUYV, 32, 2, 0);
+        fill(0, 0, differ);
+        for (int x = 0; x < 64; x++)
+            for (int y = 0; y < 2; y++)
+                *sample(0, x, y) =
+                    (uint8_t)(*sample(0, x, y) + (x % 2 ? 120 : 20 + 3 * turn));
+        for (int i = 0; i < 3 * 64; i++)
+            fixture.light_q20[i / 64][i % 64] = 3000 << turn % 8;
+        memcpy(fixture.before, fixture.plane, sizeof fixture.before);
+        add_light_to(&fixture.image, 0, 0);
+        memcpy(want, fixture.plane[0], sizeof want);
+        memcpy(fixture.plane, fixture.before, sizeof fixture.before);
+        add_quads(&fixture.image, 0, 0);
+        for (int x = 0; x < 64; x += 2)
+            for (int y = 0; y < 2; y++, n++) {
+                const int off =
+                    *sample(0, x, y) - want[sample(0, x, y) - fixture.plane[0]];
+
+                sum2 += off * off;
+            }
+    }
+    return sqrt(sum2 / n);
+}
+
+static void test_quads_are_near(void **state)
+{
+    (void)state;
+    assert_true(quads_off(0) < 1e-9);
+    assert_true(quads_off(8) < 0.5);
+    assert_true(quads_off(40) < 1.5);
+}
+
+/* One stretch is as many short ones, whatever is left of whole steps. */
+static void test_long_quads_are_short_ones(void **state)
+{
+    static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
+                                                   GLINT_I420};
+    static struct glint_light_rows light, part;
+    static struct glint_quads_rows rows;
+    static uint8_t want[PLANE_BYTES], got[PLANE_BYTES];
+
+    (void)state;
+    for (int n = 1; n <= 64; n++)
+        for (int k = 0; k < 6; k++) {
+            struct glint_image image = {
+                .format = some[k % 3], .width = n, .height = 2};
+            const size_t bytes = glint_image_bytes(image.format, n, 2);
+            const uint16_t *const whole[3] = {
+                light.rgb_q16[0][0], light.rgb_q16[1][0], light.rgb_q16[2][0]};
+
+            for (size_t i = 0; i < bytes; i++)
+                want[i] = got[i] = (uint8_t)draw_random(256);
+            for (int i = 0; i < 3 * 64; i++)
+                light.rgb_q16[i / 64][0][i % 64] = (uint16_t)draw_random(9000);
+            glint_resolve_init(&resolve, &image, 0,
+                               k > 2 ? glint_system_sets() : 0u);
+            glint_image_place(&image, got);
+            glint_resolve_quads(&resolve, &image, 0, 0, n, 2, whole, &rows);
+            glint_image_place(&image, want);
+            for (int x = 0; x < n; x += 8) {
+                const uint16_t *const rgb[3] = {
+                    part.rgb_q16[0][0], part.rgb_q16[1][0], part.rgb_q16[2][0]};
+
+                for (int i = 0; i < 3 * 4; i++)
+                    part.rgb_q16[i / 4][0][i % 4] =
+                        light.rgb_q16[i / 4][0][x / 2 + i % 4];
+                glint_resolve_quads(&resolve, &image, x, 0,
+                                    n - x < 8 ? n - x : 8, 2, rgb, &rows);
+            }
+            assert_memory_equal(got, want, bytes);
+        }
+}
+
+/* All codes of 16 bits come back without light, and turn white with much. */
+static void test_565(void **state)
+{
+    static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
+    struct glint_image image = {
+        .format = GLINT_RGB565, .width = 32, .height = 32};
+
+    (void)state;
+    glint_image_place(&image, mem);
+    for (int block = 0; block < 64; block++) {
+        for (int k = 0; k < 1024; k++) {
+            mem[2 * k] = (uint8_t)k;
+            mem[2 * k + 1] = (uint8_t)(block * 4 + k / 256);
+        }
+        memcpy(before_mem, mem, sizeof mem);
+        memset(fixture.light_q20, 0, sizeof fixture.light_q20);
+        add_light_to(&image, 0, 0);
+        assert_memory_equal(mem, before_mem, sizeof mem);
+        for (int k = 0; k < 1024; k++)
+            fixture.light_q20[1][k] = WHITE_Q20;
+        add_light_to(&image, 0, 0);
+        for (int k = 0; k < 1024; k++) {
+            assert_int_equal(mem[2 * k], before_mem[2 * k] | 0xe0);
+            assert_int_equal(mem[2 * k + 1], before_mem[2 * k + 1] | 0x07);
+        }
+    }
+}
+
+/* The bytes of a fixed picture, so that they are the same everywhere. */
+static void test_same_on_every_machine(void **state)
+{
+    uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */
+
+    (void)state;
+    seed = 12345;
+    for (int f = 0; f < 5; f++)
+        for (int k = 0; k < 8; k++) {
+            set_up(formats[f], 33, 18, 0);
+            set_coding(k);
+            for (int i = 0; i < glint_image_planes(formats[f]); i++)
+                fill(i, 0, 255);
+            fill_light();
+            add_light(k & 1);
+            for (size_t i = 0; i < sizeof fixture.plane; i++)
+                hash = (hash ^ ((uint8_t *)fixture.plane)[i]) *
+                       UINT64_C(1099511628211);
+        }
+    if (hash != UINT64_C(0x771b307552988e33))
+        fail_msg("the bytes are %llx", (unsigned long long)hash);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_light_adds_up),
+        cmocka_unit_test(test_wild_codes),
+        cmocka_unit_test(test_untouched_pixels_stay),
+        cmocka_unit_test(test_faint_light_changes_nothing),
+        cmocka_unit_test(test_white_saturates),
+        cmocka_unit_test(test_codes_by_hand),
+        cmocka_unit_test(test_chroma_is_the_mean_of_those_that_exist),
+        cmocka_unit_test(test_dither_has_the_right_mean),
+        cmocka_unit_test(test_dither_pattern),
+        cmocka_unit_test(test_dither_in_ycc_stays_within_a_code),
+        cmocka_unit_test(test_linear_adds_and_saturates),
+        cmocka_unit_test(test_layouts_agree),
+        cmocka_unit_test(test_long_stretches_are_short_ones),
+        cmocka_unit_test(test_quads_of_even_pictures),
+        cmocka_unit_test(test_quads_of_edges),
+        cmocka_unit_test(test_quads_are_near),
+        cmocka_unit_test(test_long_quads_are_short_ones),
+        cmocka_unit_test(test_565),
+        cmocka_unit_test(test_same_on_every_machine),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is bright in random pictures of every format and threshold, against
+ * pixel by pixel; and how far pixels are the same.
+ */
+#include "lamps/bright.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/arena.h"
+
+enum { HEIGHT = 6 };
+
+static const enum glint_pixel_format formats[] = {
+    GLINT_RGB24, GLINT_GREY,  GLINT_I420,     GLINT_I422,
+    GLINT_I444,  GLINT_NV12,  GLINT_NV21,     GLINT_YUYV,
+    GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
+enum { N_FORMATS = sizeof formats / sizeof *formats };
+
+static uint32_t seed = 1;
+
+static int draw_random(int n)
+{
+    seed = seed * 1664525 + 1013904223;
+    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
+}
+
+static struct glint_image new_image(enum glint_pixel_format format, int width)
+{
+    struct glint_image image = {
+        .format = format, .width = width, .height = HEIGHT};
+    void *mem = malloc(glint_image_bytes(format, width, HEIGHT));
+
+    assert_non_null(mem);
+    glint_image_place(&image, mem);
+    return image;
+}
+
+/* Random bytes, most of them low. */
+static void fill(const struct glint_image *image, int rare)
+{
+    const size_t bytes =
+        glint_image_bytes(image->format, image->width, image->height);
+
+    for (size_t i = 0; i < bytes; i++)
+        image->plane[0][i] =
+            (uint8_t)(draw_random(rare) ? draw_random(64) : draw_random(256));
+}
+
+static struct glint_bright *new_bright(int width, void **mem)
+{
+    struct glint_arena arena = glint_arena_measure();
+    struct glint_bright *b = malloc(sizeof *b);
+
+    assert_non_null(b);
+    glint_bright_carve(b, &arena, width);
+    assert_int_equal(posix_memalign(mem, 64, arena.used), 0);
+    memset(*mem, 0x5a, arena.used);
+    arena = glint_arena_over(*mem, arena.used);
+    glint_bright_carve(b, &arena, width);
+    glint_bright_init(b, width);
+    return b;
+}
+
+static int weigh(int r, int g, int b)
+{
+    return (54 * r + 183 * g + 19 * b + 128) / 256;
+}
+
+static int widen(int v, int bits)
+{
+    return v << (8 - bits) | v >> (2 * bits - 8);
+}
+
+/* Largest channel, and luma, by the definition of YCbCr. */
+static void judge_ycc(const struct glint_image *image, const int code[3],
+                      double *largest, int *luma)
+{
+    const int limited = image->range == GLINT_RANGE_LIMITED;
+    const int is_709 = image->matrix == GLINT_MATRIX_BT709;
+    const double kr = is_709 ? 0.2126 : 0.299, kb = is_709 ? 0.0722 : 0.114;
+    const double y = limited ? (code[0] - 16) * 255 / 219.0 : code[0];
+    const double scale = limited ? 255 / 224.0 : 1;
+    const double cb = (code[1] - 128) * scale, cr = (code[2] - 128) * scale;
+    const double red = y + 2 * (1 - kr) * cr, blue = y + 2 * (1 - kb) * cb;
+    const double green = (y - kr * red - kb * blue) / (1 - kr - kb);
+
+    *largest = fmax(red, fmax(green, blue));
+    *luma = (int)fmax(0, fmin(255, floor(y + 0.5)));
+}
+
+static const uint8_t *at(const struct glint_image *image, int plane, int x,
+                         int y)
+{
+    return image->plane[plane] + y * image->stride_bytes[plane] + x;
+}
+
+/* Y, Cb, Cr of a pixel. */
+static void codes_at(const struct glint_image *image, int x, int y, int code[3])
+{
+    const int cx = x / 2, cy = y / 2;
+    const uint8_t *row = at(image, 0, 0, y);
+
+    code[0] = row[x];
+    code[1] = code[2] = 128;
+    if (image->format == GLINT_YUYV)
+        code[0] = row[2 * x], code[1] = row[4 * cx + 1],
+        code[2] = row[4 * cx + 3];
+    if (image->format == GLINT_UYVY)
+        code[0] = row[2 * x + 1], code[1] = row[4 * cx],
+        code[2] = row[4 * cx + 2];
+    for (int i = 1; i < 3; i++) {
+        if (image->format == GLINT_I420)
+            code[i] = *at(image, i, cx, cy);
+        if (image->format == GLINT_I422)
+            code[i] = *at(image, i, cx, y);
+        if (image->format == GLINT_I444)
+            code[i] = *at(image, i, x, y);
+        if (image->format == GLINT_NV12)
+            code[i] = *at(image, 1, 2 * cx + i - 1, cy);
+        if (image->format == GLINT_NV21)
+            code[i] = *at(image, 1, 2 * cx + 2 - i, cy);
+    }
+}
+
+static int clipped_value(int luma)
+{
+    return 250 + (luma > 177 ? (luma - 177) / 15 : 0);
+}
+
+static int value_of_rgb(int r, int g, int b)
+{
+    const int largest = r > g ? r > b ? r : b : g > b ? g : b;
+
+    return largest < 250 ? largest : clipped_value(weigh(r, g, b));
+}
+
+/* Brightness by the definition of each format. It is between LEAST and MOST
+ * where chroma makes a code so nearly a half that rounding may fall either way.
+ */
+static void value_at(const struct glint_image *image, int x, int y, int *least,
+                     int *most)
+{
+    const uint8_t *row = at(image, 0, 0, y);
+    int code[3], bits, luma, rounded[2];
+    double largest;
+
+    switch (image->format) {
+    case GLINT_RGB24:
+        *least = *most =
+            value_of_rgb(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
+        return;
+    case GLINT_BGR24:
+        *least = *most =
+            value_of_rgb(row[3 * x + 2], row[3 * x + 1], row[3 * x]);
+        return;
+    case GLINT_XRGB8888:
+        *least = *most =
+            value_of_rgb(row[4 * x + 2], row[4 * x + 1], row[4 * x]);
+        return;
+    case GLINT_RGB565:
+        bits = row[2 * x] | row[2 * x + 1] << 8;
+        *least = *most =
+            value_of_rgb(widen(bits >> 11, 5), widen(bits >> 5 & 63, 6),
+                         widen(bits & 31, 5));
+        return;
+    default:
+        codes_at(image, x, y, code);
+        judge_ycc(image, code, &largest, &luma);
+    }
+    for (int i = 0; i < 2; i++) {
+        rounded[i] = (int)floor(largest + 0.3 + 0.4 * i);
+        rounded[i] = rounded[i] < 0      ? 0
+                     : rounded[i] >= 250 ? clipped_value(luma)
+                                         : rounded[i];
+    }
+    *least = rounded[0];
+    *most = rounded[1];
+}
+
+static void check_scan(struct glint_bright *b, const struct glint_image *image,
+                       int low)
+{
+    int n_bright = 0, n_marked = 0;
+
+    glint_bright_begin(b, image);
+    glint_bright_set_low(b, low);
+    for (int y = 0; y < HEIGHT; y++) {
+        const int any = glint_bright_scan(b, y);
+
+        for (int x = 0; x < image->width; x++) {
+            const int is_marked = any && b->block[x / BRIGHT_BLOCK];
+            int least, most;
+
+            value_at(image, x, y, &least, &most);
+            n_bright += most >= low;
+            n_marked += is_marked;
+            if (is_marked)
+                assert_in_range(b->value[x], least, most);
+            else
+                assert_true(least < low);
+            if (is_marked)
+                assert_in_range(b->block[x / BRIGHT_BLOCK], b->value[x], 255);
+            assert_in_range(glint_bright_value_at(b, x), least, most);
+        }
+    }
+    if (n_bright == 0)
+        assert_int_equal(n_marked, 0);
+}
+
+static void test_scan_against_every_pixel(void **state)
+{
+    static const int widths[] = {1, 2, 31, 32, 33, 64, 97, 160};
+    static const int rares[] = {2, 50, 2000};
+
+    (void)state;
+    for (int round = 0; round < N_FORMATS * 8 * 3 * 2; round++) {
+        struct glint_image image = new_image(formats[round % N_FORMATS],
+                                             widths[round / N_FORMATS % 8]);
+        struct glint_bright *b;
+        void *mem;
+
+        b = new_bright(image.width, &mem);
+        image.range =
+            round / (N_FORMATS * 24) ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
+        image.matrix = (enum glint_matrix)(round % 2);
+        fill(&image, rares[round / (N_FORMATS * 8) % 3]);
+        for (int low = 1; low <= 255; low++)
+            check_scan(b, &image, low);
+        free(b);
+        free(mem);
+        free(image.plane[0]);
+    }
+}
+
+/* One pixel of exactly the threshold, anywhere, and one of a code less. */
+static void test_no_pixel_is_missed(void **state)
+{
+    struct glint_image image = new_image(GLINT_GREY, 96);
+    struct glint_bright *b;
+    void *mem;
+
+    (void)state;
+    b = new_bright(image.width, &mem);
+    for (int low = 1; low <= 250; low++)
+        for (int x = 0; x < 96; x++) {
+            const int value = low < 250 ? low : 254;
+
+            glint_bright_begin(b, &image);
+            glint_bright_set_low(b, low);
+            memset(image.plane[0], 0, 96);
+            image.plane[0][x] = (uint8_t)low;
+            assert_int_equal(glint_bright_scan(b, 0), value);
+            for (int i = 0; i < 3; i++)
+                assert_int_equal(b->block[i],
+                                 i == x / BRIGHT_BLOCK ? value : 0);
+            image.plane[0][x] = (uint8_t)(low - 1);
+            assert_int_equal(glint_bright_scan(b, 0), 0);
+        }
+    free(b);
+    free(mem);
+    free(image.plane[0]);
+}
+
+/* Spans of the same codes end where the light changes, or sooner where other
+ * codes have the same light. */
+static void test_same_pixels(void **state)
+{
+    (void)state;
+    for (int round = 0; round < N_FORMATS * 20; round++) {
+        struct glint_image image = new_image(formats[round % N_FORMATS], 70);
+        struct glint_bright *b;
+        int n_long = 0;
+        void *mem;
+
+        b = new_bright(image.width, &mem);
+        memset(image.plane[0], 255,
+               glint_image_bytes(image.format, image.width, HEIGHT));
+        for (int i = 0; i < 8; i++)
+            image.plane[0][draw_random((int)glint_image_bytes(
+                image.format, image.width, HEIGHT))] = 77;
+        glint_bright_begin(b, &image);
+        glint_bright_set_low(b, 1);
+        for (int y = 0; y < HEIGHT; y++) {
+            glint_bright_scan(b, y);
+            for (int x = 0, end; x < 70; x = end) {
+                int32_t here[3], there[3];
+
+                end = glint_bright_same(b, x, 70);
+                assert_in_range(end, x + 1, 70);
+                n_long += end > x + 20;
+                glint_bright_read(b, x, here);
+                for (int i = x; i < end; i++) {
+                    glint_bright_read(b, i, there);
+                    assert_memory_equal(here, there, sizeof here);
+                }
+            }
+        }
+        assert_true(n_long > 0);
+        free(b);
+        free(mem);
+        free(image.plane[0]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_scan_against_every_pixel),
+        cmocka_unit_test(test_no_pixel_is_missed),
+        cmocka_unit_test(test_same_pixels),
+    };
+
+    return cmocka_run_group_tests_name("bright", tests, NULL, NULL);
+}

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Short cuts of the finder of lights against the long way: the light of runs as
+ * differences of sums against pixel by pixel, and scores without a look around
+ * against scores with one.
+ */
+#include "lamps/row_light.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/arena.h"
+#include "lamps/score.h"
+
+enum { WIDTH = 70, HEIGHT = 4, ROUNDS = 300, CANDIDATES = 400 };
+
+static const enum glint_pixel_format formats[] = {
+    GLINT_RGB24, GLINT_GREY,  GLINT_I420,     GLINT_I422,
+    GLINT_I444,  GLINT_NV12,  GLINT_NV21,     GLINT_YUYV,
+    GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
+enum { N_FORMATS = sizeof formats / sizeof *formats };
+
+static uint32_t seed = 1;
+
+static int draw_random(int n)
+{
+    seed = seed * 1664525 + 1013904223;
+    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
+}
+
+struct fixture {
+    struct glint_image image;
+    struct glint_bright bright;
+    struct glint_row_light row;
+    void *mem;
+};
+
+/* A picture of random codes, of which many are as the one before. */
+static void set_up(struct fixture *f, enum glint_pixel_format format)
+{
+    struct glint_arena arena = glint_arena_measure();
+    const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
+    const int dark =
+        4 * draw_random(2); /* as around lamps, every second time */
+    uint8_t *codes = malloc(bytes);
+
+    assert_non_null(codes);
+    for (size_t i = 0; i < bytes; i++)
+        codes[i] =
+            (uint8_t)(i > 4 && draw_random(2) ? codes[i - 4]
+                                              : draw_random(256) >> dark);
+    *f = (struct fixture){
+        .image = {.format = format, .width = WIDTH, .height = HEIGHT}};
+    glint_image_place(&f->image, codes);
+    for (int pass = 0; pass < 2; pass++) {
+        glint_bright_carve(&f->bright, &arena, WIDTH);
+        glint_row_light_carve(&f->row, &arena, WIDTH);
+        if (pass == 0) {
+            assert_int_equal(posix_memalign(&f->mem, 64, arena.used), 0);
+            memset(f->mem, 0x5a, arena.used);
+            arena = glint_arena_over(f->mem, arena.used);
+        }
+    }
+    glint_bright_init(&f->bright, WIDTH);
+    glint_bright_begin(&f->bright, &f->image);
+}
+
+static void tear_down(struct fixture *f)
+{
+    free(f->image.plane[0]);
+    free(f->mem);
+}
+
+/* The same as glint_row_light_add, pixel by pixel. */
+static void add_plainly(const struct fixture *f, struct glint_region *region,
+                        int x0, int x1, int y)
+{
+    const int32_t clipped_q20 = f->bright.curve->decode_q20[BRIGHT_CLIPPED];
+
+    for (int x = x0 - ROW_LIGHT_RIM; x < x1 + ROW_LIGHT_RIM; x++) {
+        struct glint_region_light light;
+        int32_t rgb_q20[3];
+        int is_clipped = 0;
+
+        if (x < 0 || x >= WIDTH)
+            continue;
+        glint_bright_read(&f->bright, x, rgb_q20);
+        light = region_light_of(rgb_q20);
+        if (x >= x0 && x < x1)
+            glint_region_add_pixels(region, &light, x, x + 1, y);
+        for (int i = 0; i < 3; i++)
+            is_clipped |= rgb_q20[i] >= clipped_q20;
+        for (int i = 0; i < 3 && !is_clipped; i++)
+            region->rim_rgb_q14[i] += light.rgb_q14[i];
+    }
+}
+
+/* Some runs in one or two stretches of a row, which may overlap. */
+static void check_row(struct fixture *f, int y)
+{
+    const int from = draw_random(20), to = from + draw_random(20);
+    const int next = to - draw_random(5) + 2;
+    const int ends[2][2] = {{from, to}, {next < from ? from : next, WIDTH}};
+    struct glint_region sum, plain;
+
+    memset(&sum, 0, sizeof sum);
+    memset(&plain, 0, sizeof plain);
+    glint_bright_go(&f->bright, y);
+    glint_row_light_begin(&f->row);
+    for (int i = 0; i < 2; i++)
+        glint_row_light_extend(&f->row, &f->bright, ends[i][0], ends[i][1]);
+    for (int i = 0; i < 2; i++) {
+        const int x0 = ends[i][0] > 0 ? ends[i][0] + ROW_LIGHT_RIM : ends[i][0];
+        const int x1 =
+            ends[i][1] < WIDTH ? ends[i][1] - ROW_LIGHT_RIM : ends[i][1];
+
+        if (x0 >= x1)
+            continue;
+        glint_row_light_add(&f->row, &sum, x0, x1, WIDTH, y + 1000);
+        add_plainly(f, &plain, x0, x1, y + 1000);
+    }
+    assert_memory_equal(&sum, &plain, sizeof sum);
+}
+
+static void test_light_of_runs(void **state)
+{
+    (void)state;
+    for (int round = 0; round < ROUNDS; round++) {
+        struct fixture f;
+
+        set_up(&f, formats[round % N_FORMATS]);
+        for (int y = 0; y < HEIGHT; y++)
+            check_row(&f, y);
+        tear_down(&f);
+    }
+}
+
+/* A region anywhere in the picture, of any light, that fills its box or not. */
+static struct glint_candidate draw_candidate(void)
+{
+    const int x0 = draw_random(WIDTH - 1), y0 = draw_random(HEIGHT - 1);
+    const int x1 = x0 + 1 + draw_random(WIDTH - x0);
+    const int y1 = y0 + 1 + draw_random(HEIGHT - y0);
+    struct glint_candidate c = {.sum = {.x0 = x0, .y0 = y0}};
+    const int hidden = 10 + draw_random(11); /* bits below white */
+    const int32_t rgb_q20[3] = {(1 << 20) - draw_random(1 << hidden),
+                                (1 << 20) - draw_random(1 << hidden),
+                                (1 << 20) - draw_random(1 << hidden)};
+    const struct glint_region_light light = region_light_of(rgb_q20);
+
+    for (int y = y0; y < y1; y++) {
+        glint_region_add_run(&c.sum, x0, x1, y);
+        glint_region_add_pixels(&c.sum, &light, x0, x1, y);
+    }
+    if (draw_random(2)) { /* what a lamp may be */
+        c.sum.area -= draw_random(c.sum.area) / 8;
+        c.sum.n_clipped = c.sum.area - draw_random(c.sum.area);
+    } else
+        c.sum.area = 1 + draw_random(c.sum.area);
+    return c;
+}
+
+/* Scores from -SCORE_DOUBT on are the same; others stay below that. */
+static void test_brief_scores(void **state)
+{
+    int n_kept = 0, n_brief = 0;
+
+    (void)state;
+    for (int round = 0; round < CANDIDATES; round++) {
+        static const struct glint_level level = {200, 230, 250, 0};
+        struct glint_candidate c[2];
+        struct glint_white white;
+        const int32_t order = 0;
+        struct fixture f;
+
+        set_up(&f, formats[round % N_FORMATS]);
+        glint_white_measure(&white, &f.bright, HEIGHT);
+        c[0] = c[1] = draw_candidate();
+        for (int brief = 0; brief < 2; brief++) {
+            const struct glint_score score = {&f.bright, &white, WIDTH,
+                                              HEIGHT,    &level, brief};
+
+            glint_score_all(&score, &c[brief], &order, 1);
+        }
+        if (c[0].score_q8 >= -SCORE_DOUBT)
+            assert_int_equal(c[1].score_q8, c[0].score_q8);
+        else
+            assert_in_range(-c[1].score_q8, SCORE_DOUBT + 1, -c[0].score_q8);
+        n_kept += c[0].score_q8 >= -SCORE_DOUBT;
+        n_brief += c[0].score_q8 != c[1].score_q8;
+        tear_down(&f);
+    }
+    print_message("%d of %d kept, %d brief\n", n_kept, CANDIDATES, n_brief);
+    assert_true(n_kept > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_light_of_runs),
+        cmocka_unit_test(test_brief_scores),
+    };
+
+    return cmocka_run_group_tests_name("light_rows", tests, NULL, NULL);
+}

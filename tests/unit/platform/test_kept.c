@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Picture files that are opened, lit and written with all that they hold: PNM
+ * and PFM, which need no plug-in.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "formats/kept.h"
+
+#define BYTES(text) text, sizeof text - 1
+
+static char dir[] = "/tmp/glint-test-kept-XXXXXX";
+static struct glint_error error;
+
+static int enter(void **state)
+{
+    (void)state;
+    return mkdtemp(dir) ? 0 : -1;
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return rmdir(dir);
+}
+
+static const char *in_dir(const char *name)
+{
+    static char path[2][80];
+    static int turn;
+
+    turn = !turn;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", dir, name);
+    return path[turn];
+}
+
+static void put_file(const char *name, const char *data, size_t bytes)
+{
+    FILE *const f = fopen(in_dir(name), "wb");
+
+    assert_non_null(f);
+    assert_int_equal(fwrite(data, 1, bytes, f), bytes);
+    fclose(f);
+}
+
+static void expect_file(const char *name, const char *data, size_t bytes)
+{
+    char got[400];
+    FILE *const f = fopen(in_dir(name), "rb");
+    const size_t n = f ? fread(got, 1, sizeof got, f) : 0;
+
+    assert_non_null(f);
+    fclose(f);
+    unlink(in_dir(name));
+    assert_int_equal(n, bytes);
+    assert_memory_equal(got, data, bytes);
+}
+
+/* Opens, adds LIGHT to all of it, and writes it as NAME again. */
+static void light_up(const char *name, const char *to, float light)
+{
+    struct glint_kept kept;
+    struct glint_kept_options options = {.quality = 0};
+    float layer[36];
+
+    for (int i = 0; i < 36; i++)
+        layer[i] = light;
+    assert_int_equal(glint_kept_open(&kept, in_dir(name), &error), GLINT_OK);
+    glint_samples_add(&kept.samples, layer);
+    if (glint_kept_save(&kept, in_dir(to), NULL, &options, &error))
+        fail_msg("%s", error.text);
+    glint_kept_close(&kept);
+    glint_kept_close(&kept);
+    unlink(in_dir(name));
+}
+
+static void check_same(const char *name, const char *data, size_t bytes)
+{
+    put_file(name, data, bytes);
+    light_up(name,
+             name[0] == 'a'   ? "b.pfm"
+             : name[0] == 'c' ? "b.pgm"
+                              : "b.ppm",
+             0);
+    expect_file(name[0] == 'a'   ? "b.pfm"
+                : name[0] == 'c' ? "b.pgm"
+                                 : "b.ppm",
+                data, bytes);
+}
+
+/* Comments, depth, byte order and what follows the picture stay. */
+static void test_stays(void **state)
+{
+    (void)state;
+    check_same("x.ppm", BYTES("P6 #hello\n2 1 #x\n255\nabcdef"));
+    check_same("x.ppm", BYTES("P6 1 1 1023\n\x03\xff\x01\x02\x00\x01P6 tail"));
+    check_same("x.ppm", BYTES("P6 1 1 100\nabc"));
+    check_same("c.pgm", BYTES("P5 1 2 65535\n\x12\x34\xab\xcd"));
+    check_same("a.pfm", BYTES("PF\n1 2\n-2.5\nabcdefghijklABCDEFGHIJKL"));
+    check_same("a.pfm", BYTES("Pf 1 1 1 abcd"));
+    check_same("a.pfm", BYTES("PF 1 1 1 \x7f\xc0\0\1\x80\0\0\0\xff\x80\0\0"));
+}
+
+static void test_light(void **state)
+{
+    (void)state;
+    put_file("x.pfm", BYTES("Pf 1 2 1 \x40\0\0\0\xbf\x80\0\0"));
+    light_up("x.pfm", "y.pfm", 1);
+    expect_file("y.pfm", BYTES("Pf 1 2 1 \x40\x40\0\0\0\0\0\0"));
+    put_file("x.ppm", BYTES("P6 1 1 65535\n\0\0\0\0\xff\xff"));
+    light_up("x.ppm", "y.ppm", 0.5F);
+    expect_file("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
+}
+
+/* Another type has the depth that it takes, and says what it does not. */
+static void test_converts(void **state)
+{
+    struct glint_kept kept;
+    struct glint_kept_options options = {.quality = 0};
+
+    (void)state;
+    put_file("x.pfm", BYTES("PF 1 1 1 \x40\0\0\0\x3f\x80\0\0\0\0\0\0"));
+    assert_int_equal(glint_kept_open(&kept, in_dir("x.pfm"), &error), GLINT_OK);
+    assert_true(kept.is_float);
+    assert_false(glint_kept_is_same_type(&kept, "x.ppm"));
+    assert_true(glint_kept_is_same_type(&kept, "y.pfm"));
+    assert_int_equal(
+        glint_kept_save(&kept, in_dir("y.ppm"), NULL, &options, &error),
+        GLINT_OK);
+    assert_non_null(strstr(options.said, "clipped"));
+    glint_kept_close(&kept);
+    unlink(in_dir("x.pfm"));
+    expect_file("y.ppm", BYTES("P6\n1 1\n65535\n\xff\xff\xff\xff\0\0"));
+    put_file("x.pgm", BYTES("P5 1 1 255\n\xbc"));
+    light_up("x.pgm", "y.ppm", 0);
+    expect_file("y.ppm", BYTES("P6\n1 1\n255\n\xbc\xbc\xbc"));
+}
+
+static void test_copy(void **state)
+{
+    struct glint_kept kept;
+
+    (void)state;
+    put_file("x.ppm", BYTES("P6 1 1 255\nabc and more"));
+    assert_int_equal(glint_kept_open(&kept, in_dir("x.ppm"), &error), GLINT_OK);
+    assert_int_equal(glint_kept_copy(&kept, in_dir("y.ppm"), &error), GLINT_OK);
+    glint_kept_close(&kept);
+    unlink(in_dir("x.ppm"));
+    expect_file("y.ppm", BYTES("P6 1 1 255\nabc and more"));
+}
+
+static void refuse(enum glint_status status, const char *data, size_t bytes,
+                   const char *cause)
+{
+    struct glint_kept kept;
+
+    put_file("x", data, bytes);
+    assert_int_equal(glint_kept_open(&kept, in_dir("x"), &error), status);
+    if (!strstr(error.text, cause))
+        fail_msg("%s", error.text);
+    unlink(in_dir("x"));
+}
+
+static void test_refuses(void **state)
+{
+    struct glint_kept kept;
+    char *const stated = getenv("GLINT_OIIO");
+
+    (void)state;
+    refuse(GLINT_E_FORMAT, BYTES(""), "is empty");
+    refuse(GLINT_E_FORMAT, BYTES("P6 2 2 65535 abcdef"), "ends after");
+    refuse(GLINT_E_FORMAT, BYTES("PF 2 2 x abc"), "malformed");
+    refuse(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"), "is a video");
+    assert_int_equal(glint_kept_open(&kept, "/nowhere/x", &error), GLINT_E_IO);
+    assert_int_equal(glint_kept_check("a.y4m", &error), GLINT_E_UNSUPPORTED);
+    if (!stated) { /* once loaded it stays */
+        setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
+        refuse(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"), "plug-in");
+        unsetenv("GLINT_OIIO");
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_stays),    cmocka_unit_test(test_light),
+        cmocka_unit_test(test_converts), cmocka_unit_test(test_copy),
+        cmocka_unit_test(test_refuses),
+    };
+
+    return cmocka_run_group_tests(tests, enter, leave);
+}

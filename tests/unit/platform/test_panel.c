@@ -1,0 +1,645 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Pictures on panels of every layout: colours, places, sizes.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "panel/panel.h"
+
+static const struct glint_pixel_layout xrgb8888 = {
+    4, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
+
+/* ------------------------------------------------------------------ colours */
+
+/* The standards' own constants, 6 digits: R' per Cr, G' per Cb and Cr, B' per
+ * Cb; codes of full range. */
+static const double constants[2][4] = {
+    [GLINT_MATRIX_BT601] = {1.402, -.344136, -.714136, 1.772},
+    [GLINT_MATRIX_BT709] = {1.5748, -.187324, -.468124, 1.8556},
+};
+
+static int rounded(double code)
+{
+    return (int)floor(fmin(fmax(code, 0), 255) + .5);
+}
+
+static void reference(int rgb[3], const struct glint_image *image, double luma,
+                      double cb, double cr)
+{
+    const bool full = image->range == GLINT_RANGE_FULL;
+    const double *const k = constants[image->matrix];
+    const double y = full ? luma : (luma - 16) * 255 / 219;
+    const double u = full ? cb - 128 : (cb - 128) * 255 / 224;
+    const double v = full ? cr - 128 : (cr - 128) * 255 / 224;
+
+    rgb[0] = rounded(y + k[0] * v);
+    rgb[1] = rounded(y + k[1] * u + k[2] * v);
+    rgb[2] = rounded(y + k[3] * u);
+}
+
+struct tally {
+    long n, n_equal;
+    int worst;
+};
+
+/* One row of all luma codes with this chroma. */
+static void tally_row(struct tally *t, struct glint_row_rgb *row,
+                      struct glint_image *image, int cb, int cr)
+{
+    memset(image->plane[1], cb, 256);
+    memset(image->plane[2], cr, 256);
+    glint_row_rgb_read(row, image, 0, 0, 256);
+    for (int y = 0; y < 256; y++) {
+        int want[3];
+
+        reference(want, image, y, cb, cr);
+        for (int i = 0; i < 3; i++) {
+            const int off = abs(row->channel[i][y] - want[i]);
+
+            t->n++;
+            t->n_equal += off == 0;
+            t->worst = off > t->worst ? off : t->worst;
+            if (cb == 128 && cr == 128)
+                assert_int_equal(off, 0); /* greys are exact */
+        }
+    }
+}
+
+static void check_mix(enum glint_matrix matrix, enum glint_range range)
+{
+#ifdef GLINT_SANITIZED
+    enum { STEP = 4 };
+#else
+    enum { STEP = 1 };
+#endif
+    static uint8_t mem[8192], codes[3 * 256];
+    struct glint_image image = {.format = GLINT_I444,
+                                .width = 256,
+                                .height = 1,
+                                .range = range,
+                                .matrix = matrix};
+    struct glint_row_rgb row;
+    struct tally t = {0, 0, 0};
+
+    assert_true(glint_row_rgb_bytes(256) <= sizeof mem);
+    glint_row_rgb_init(&row, mem, 256);
+    glint_image_place(&image, codes);
+    for (int i = 0; i < 256; i++)
+        codes[i] = (uint8_t)i;
+    for (int cb = 0; cb < 256; cb += STEP)
+        for (int cr = 0; cr < 256; cr += STEP)
+            tally_row(&t, &row, &image, cb, cr);
+    print_message("matrix %d range %d: %.3f %% equal, worst %d\n", matrix,
+                  range, 100. * (double)t.n_equal / (double)t.n, t.worst);
+    assert_int_equal(t.worst, 1);
+    assert_true(t.n_equal > t.n / 1000 * 996);
+}
+
+static void test_every_colour(void **state)
+{
+    (void)state;
+    check_mix(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
+    check_mix(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
+    check_mix(GLINT_MATRIX_BT709, GLINT_RANGE_FULL);
+    check_mix(GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
+}
+
+/* ------------------------------------------------------------------- bars */
+
+/* Red, green, blue, white, black, mid grey as pixels, by hand. */
+static const struct layout_case {
+    const char *name;
+    struct glint_pixel_layout layout;
+    uint32_t word[6];
+} layouts[] = {
+    {"xrgb8888",
+     {4, {16, 8}, {8, 8}, {0, 8}, {0, 0}},
+     {0xff0000, 0xff00, 0xff, 0xffffff, 0, 0x808080}},
+    {"argb8888",
+     {4, {16, 8}, {8, 8}, {0, 8}, {24, 8}},
+     {0xffff0000, 0xff00ff00, 0xff0000ff, 0xffffffff, 0xff000000, 0xff808080}},
+    {"abgr8888",
+     {4, {0, 8}, {8, 8}, {16, 8}, {24, 8}},
+     {0xff0000ff, 0xff00ff00, 0xffff0000, 0xffffffff, 0xff000000, 0xff808080}},
+    {"rgba8888",
+     {4, {24, 8}, {16, 8}, {8, 8}, {0, 8}},
+     {0xff0000ff, 0xff00ff, 0xffff, 0xffffffff, 0xff, 0x808080ff}},
+    {"rgba with one bit of alpha",
+     {4, {24, 8}, {16, 8}, {8, 8}, {7, 1}},
+     {0xff000080, 0xff0080, 0xff80, 0xffffff80, 0x80, 0x80808080}},
+    {"rgb888",
+     {3, {16, 8}, {8, 8}, {0, 8}, {0, 0}},
+     {0xff0000, 0xff00, 0xff, 0xffffff, 0, 0x808080}},
+    {"bgr888",
+     {3, {0, 8}, {8, 8}, {16, 8}, {0, 0}},
+     {0xff, 0xff00, 0xff0000, 0xffffff, 0, 0x808080}},
+    {"rgb565",
+     {2, {11, 5}, {5, 6}, {0, 5}, {0, 0}},
+     {0xf800, 0x07e0, 0x001f, 0xffff, 0, 0x8410}},
+    {"bgr565",
+     {2, {0, 5}, {5, 6}, {11, 5}, {0, 0}},
+     {0x001f, 0x07e0, 0xf800, 0xffff, 0, 0x8410}},
+    {"xrgb1555",
+     {2, {10, 5}, {5, 5}, {0, 5}, {0, 0}},
+     {0x7c00, 0x03e0, 0x001f, 0x7fff, 0, 0x4210}},
+    {"argb1555",
+     {2, {10, 5}, {5, 5}, {0, 5}, {15, 1}},
+     {0xfc00, 0x83e0, 0x801f, 0xffff, 0x8000, 0xc210}},
+    {"argb4444",
+     {2, {8, 4}, {4, 4}, {0, 4}, {12, 4}},
+     {0xff00, 0xf0f0, 0xf00f, 0xffff, 0xf000, 0xf888}},
+    {"xrgb2101010",
+     {4, {20, 10}, {10, 10}, {0, 10}, {30, 2}},
+     {0xfff00000, 0xc00ffc00, 0xc00003ff, 0xffffffff, 0xc0000000, 0xe0280a02}},
+    {"18 bits in 24",
+     {3, {12, 6}, {6, 6}, {0, 6}, {0, 0}},
+     {0x3f000, 0xfc0, 0x3f, 0x3ffff, 0, 0x20820}},
+};
+
+static uint32_t word_at(const uint8_t *px, int bytes)
+{
+    uint32_t word = 0;
+
+    for (int i = 0; i < bytes; i++)
+        word |= (uint32_t)px[i] << 8 * i;
+    return word;
+}
+
+static void expect_words(const struct layout_case *c, const uint8_t *mem)
+{
+    static const uint32_t beyond = 0xa5a5a5a5;
+    const int bytes = c->layout.bytes;
+
+    for (int i = 0; i < 6; i++)
+        if (word_at(mem + i * bytes, bytes) != c->word[i])
+            fail_msg("%s: bar %d is %08x", c->name, i,
+                     (unsigned)word_at(mem + i * bytes, bytes));
+    assert_memory_equal(mem + 6 * bytes, &beyond, 4);
+}
+
+static void test_layouts(void **state)
+{
+    static uint8_t bars[] = {255, 0,   0,   0, 255, 0, 0,   0,   255,
+                             255, 255, 255, 0, 0,   0, 128, 128, 128};
+    struct glint_image image = {.format = GLINT_RGB24, .width = 6, .height = 1};
+    struct glint_panel_config cfg = {
+        .width = 6, .height = 1, .image_width = 6, .image_height = 1};
+
+    (void)state;
+    glint_image_place(&image, bars);
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
+        struct glint_error error;
+        struct glint_panel panel;
+        uint8_t mem[28];
+
+        cfg.layout = layouts[i].layout;
+        assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+        memset(mem, 0xa5, sizeof mem);
+        glint_panel_draw(&panel, &image, mem, 6 * cfg.layout.bytes);
+        expect_words(&layouts[i], mem);
+        glint_panel_clear(&panel, mem, 6 * cfg.layout.bytes);
+        assert_int_equal(word_at(mem + 5 * cfg.layout.bytes, cfg.layout.bytes),
+                         layouts[i].word[4]);
+        glint_panel_close(&panel);
+    }
+}
+
+/* As the core writes 16 bits: what was widened comes back. */
+static void test_565_there_and_back(void **state)
+{
+    static uint8_t codes[2 * 65536], mem[2 * 65536];
+    const struct glint_panel_config cfg = {
+        .width = 256,
+        .height = 256,
+        .layout = {2, {11, 5}, {5, 6}, {0, 5}, {0, 0}},
+        .image_width = 256,
+        .image_height = 256};
+    struct glint_image image = {
+        .format = GLINT_RGB565, .width = 256, .height = 256};
+    struct glint_error error;
+    struct glint_panel panel;
+
+    (void)state;
+    glint_image_place(&image, codes);
+    for (int i = 0; i < 65536; i++) {
+        codes[2 * i] = (uint8_t)(i & 255);
+        codes[2 * i + 1] = (uint8_t)(i >> 8);
+    }
+    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    glint_panel_draw(&panel, &image, mem, 512);
+    assert_memory_equal(mem, codes, sizeof mem);
+    glint_panel_close(&panel);
+}
+
+/* Every code in every number of bits up to 8 is rounded to the nearest. */
+static void test_fewer_bits(void **state)
+{
+    uint8_t ramp[256], mem[2 * 256];
+
+    (void)state;
+    for (int i = 0; i < 256; i++)
+        ramp[i] = (uint8_t)i;
+    for (int n = 1; n <= 8; n++) {
+        const struct glint_pixel_layout layout = {
+            2, {0, n}, {n, 4}, {15, 1}, {0, 0}};
+        const uint8_t *const channel[] = {ramp, ramp, ramp};
+        uint8_t work[8 * 256 + 4096];
+        struct glint_row_pack pack;
+
+        assert_true(glint_pixel_layout_is_valid(&layout));
+        assert_true(glint_row_pack_bytes(256) <= sizeof work);
+        glint_row_pack_init(&pack, &layout, false, work, 256);
+        glint_row_pack_write(&pack, mem, channel, 0, 256);
+        for (int i = 0; i < 256; i++) {
+            const int most = (1 << n) - 1;
+            const int got = (int)word_at(mem + 2 * i, 2) & most;
+
+            assert_int_equal(got, (int)floor(i * most / 255. + .5));
+        }
+    }
+}
+
+static void test_refuses_layouts(void **state)
+{
+    static const struct glint_pixel_layout bad[] = {
+        {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits */
+        {5, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* 40 */
+        {2, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* beyond the word */
+        {4, {16, 8}, {12, 8}, {0, 8}, {0, 0}},    /* overlap */
+        {4, {16, 8}, {8, 8}, {0, 8}, {20, 8}},    /* alpha overlaps */
+        {4, {16, 8}, {8, 8}, {0, 0}, {0, 0}},     /* no blue */
+        {4, {-1, 8}, {8, 8}, {16, 8}, {0, 0}},    /* before the word */
+        {4, {16, 8}, {8, 8}, {0, 8}, {28, 8}},    /* alpha beyond */
+        {4, {16, 2000}, {8, 8}, {0, 8}, {28, 8}}, /* nonsense */
+    };
+    struct glint_panel_config cfg = {.width = 8,
+                                     .height = 8,
+                                     .layout = xrgb8888,
+                                     .image_width = 8,
+                                     .image_height = 8};
+    struct glint_error error;
+    struct glint_panel panel;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        cfg.layout = bad[i];
+        assert_int_equal(glint_panel_open(&panel, &cfg, &error),
+                         GLINT_E_UNSUPPORTED);
+        assert_null(panel.mem);
+    }
+    cfg.layout = xrgb8888;
+    cfg.width = 0;
+    assert_int_equal(glint_panel_open(&panel, &cfg, &error),
+                     GLINT_E_UNSUPPORTED);
+    cfg.width = 8;
+    cfg.image_height = GLINT_MAX_SIDE + 1;
+    assert_int_equal(glint_panel_open(&panel, &cfg, &error),
+                     GLINT_E_UNSUPPORTED);
+    glint_panel_close(&panel);
+}
+
+/* ------------------------------------------------------------------ formats */
+
+static uint32_t next_random(uint32_t *seed)
+{
+    *seed = *seed * 1664525 + 1013904223;
+    return *seed >> 8;
+}
+
+/* A picture in FORMAT of random codes, rows apart by PAD bytes more than they
+ * need, upside down in memory where PAD is negative; malloc'ed. */
+static uint8_t *make_picture(struct glint_image *image,
+                             enum glint_pixel_format format, int width,
+                             int height, int pad)
+{
+    const size_t bytes = glint_image_bytes(format, width, height) +
+                         3 * (size_t)(abs(pad) * height);
+    uint8_t *const mem = malloc(bytes);
+    uint8_t *at = mem;
+    uint32_t seed = 5;
+
+    assert_non_null(mem);
+    for (size_t i = 0; i < bytes; i++)
+        mem[i] = (uint8_t)next_random(&seed);
+    *image = (struct glint_image){.format = format,
+                                  .width = width,
+                                  .height = height,
+                                  .range = GLINT_RANGE_LIMITED,
+                                  .matrix = GLINT_MATRIX_BT709};
+    for (int i = 0; i < glint_image_planes(format); i++) {
+        const ptrdiff_t stride =
+            (ptrdiff_t)glint_image_row_bytes(format, i, width) + abs(pad);
+        const int rows = glint_image_plane_height(format, i, height);
+
+        image->plane[i] = pad < 0 ? at + (rows - 1) * stride : at;
+        image->stride_bytes[i] = pad < 0 ? -stride : stride;
+        at += rows * stride;
+    }
+    return mem;
+}
+
+/* The sample I of a pixel, by each format's own definition. */
+static int sample_of(const struct glint_image *im, int i, int x, int y)
+{
+    const uint8_t *row[3];
+
+    for (int k = 0; k < glint_image_planes(im->format); k++)
+        row[k] =
+            im->plane[k] +
+            (k && glint_image_plane_height(im->format, 1, 4) == 2 ? y / 2 : y) *
+                im->stride_bytes[k];
+    switch (im->format) {
+    case GLINT_YUYV:
+        return row[0][i == 0 ? 2 * x : 4 * (x / 2) + (i == 1 ? 1 : 3)];
+    case GLINT_UYVY:
+        return row[0][i == 0 ? 2 * x + 1 : 4 * (x / 2) + (i == 1 ? 0 : 2)];
+    case GLINT_NV12:
+        return i == 0 ? row[0][x] : row[1][x / 2 * 2 + (i == 1 ? 0 : 1)];
+    case GLINT_NV21:
+        return i == 0 ? row[0][x] : row[1][x / 2 * 2 + (i == 1 ? 1 : 0)];
+    case GLINT_I420:
+    case GLINT_I422:
+        return row[i][i ? x / 2 : x];
+    case GLINT_I444:
+        return row[i][x];
+    case GLINT_GREY:
+        return i ? 128 : row[0][x];
+    default:
+        fail();
+        return 0;
+    }
+}
+
+static void pixel_of(int rgb[3], const struct glint_image *im, int x, int y)
+{
+    const uint8_t *const row = im->plane[0] + y * im->stride_bytes[0];
+
+    switch (im->format) {
+    case GLINT_RGB24:
+        for (int i = 0; i < 3; i++)
+            rgb[i] = row[3 * x + i];
+        return;
+    case GLINT_BGR24:
+        for (int i = 0; i < 3; i++)
+            rgb[i] = row[3 * x + 2 - i];
+        return;
+    case GLINT_XRGB8888:
+        for (int i = 0; i < 3; i++)
+            rgb[i] = row[4 * x + 2 - i];
+        return;
+    case GLINT_RGB565: {
+        const int word = row[2 * x] | row[2 * x + 1] << 8;
+
+        rgb[0] = (word >> 11) * 255 / 31; /* the same as repeating bits, or 1 */
+        rgb[1] = (word >> 5 & 63) * 255 / 63;
+        rgb[2] = (word & 31) * 255 / 31;
+        return;
+    }
+    default:
+        reference(rgb, im, sample_of(im, 0, x, y), sample_of(im, 1, x, y),
+                  sample_of(im, 2, x, y));
+    }
+}
+
+static void expect_pixel(const struct glint_image *im, int from_x, int from_y,
+                         const uint8_t *px)
+{
+    int want[3];
+
+    pixel_of(want, im, from_x, from_y);
+    for (int i = 0; i < 3; i++)
+        if (abs(px[2 - i] - want[i]) > 1)
+            fail_msg("format %d, %d x %d, pixel %d %d, channel %d: %d, not %d",
+                     im->format, im->width, im->height, from_x, from_y, i,
+                     px[2 - i], want[i]);
+}
+
+static void check_format(enum glint_pixel_format format, int width, int height,
+                         int pad, int panel_width)
+{
+    const struct glint_panel_config cfg = {.width = panel_width,
+                                           .height = height,
+                                           .layout = xrgb8888,
+                                           .image_width = width,
+                                           .image_height = height,
+                                           .fit = GLINT_PANEL_CENTRE};
+    const int stride = 4 * panel_width;
+    uint8_t *const mem = malloc((size_t)(stride * height));
+    struct glint_error error;
+    struct glint_image image;
+    struct glint_panel panel;
+    uint8_t *const codes = make_picture(&image, format, width, height, pad);
+
+    assert_non_null(mem);
+    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    glint_panel_clear(&panel, mem, stride);
+    glint_panel_draw(&panel, &image, mem, stride);
+    for (int y = 0; y < panel.shown.height; y++)
+        for (int x = 0; x < panel.shown.width; x++)
+            expect_pixel(&image, panel.seen.x + x, panel.seen.y + y,
+                         mem + y * stride + 4 * (panel.shown.x + x));
+    glint_panel_close(&panel);
+    free(codes);
+    free(mem);
+}
+
+/* Blocks from malloc end where the picture ends, so that a sanitizer sees what
+ * is read beyond it. */
+static void test_formats(void **state)
+{
+    (void)state;
+    for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
+        const enum glint_pixel_format format = (enum glint_pixel_format)f;
+
+        if (format == GLINT_LINEAR_Q20)
+            continue;
+        check_format(format, 64, 4, 0, 64);
+        check_format(format, 101, 3, 0, 101); /* odd sides */
+        check_format(format, 1, 1, 0, 1);
+        check_format(format, 37, 5, 11, 37);
+        check_format(format, 37, 5, -3, 37);
+        check_format(format, 66, 3, 0, 63); /* cut, from an odd pixel */
+        check_format(format, 33, 3, 0, 70); /* centred */
+    }
+}
+
+/* ----------------------------------------------------------------- geometry */
+
+static void expect_area(int panel_width, int panel_height, int width,
+                        int height, enum glint_panel_fit fit, int x, int y,
+                        int shown_width, int shown_height)
+{
+    const struct glint_panel_config cfg = {.width = panel_width,
+                                           .height = panel_height,
+                                           .layout = xrgb8888,
+                                           .image_width = width,
+                                           .image_height = height,
+                                           .fit = fit};
+    struct glint_error error;
+    struct glint_panel p;
+
+    assert_int_equal(glint_panel_open(&p, &cfg, &error), GLINT_OK);
+    assert_int_equal(p.shown.x, x);
+    assert_int_equal(p.shown.y, y);
+    assert_int_equal(p.shown.width, shown_width);
+    assert_int_equal(p.shown.height, shown_height);
+    glint_panel_close(&p);
+}
+
+static void test_areas(void **state)
+{
+    (void)state;
+    expect_area(640, 480, 640, 480, GLINT_PANEL_FIT, 0, 0, 640, 480);
+    expect_area(480, 320, 640, 360, GLINT_PANEL_FIT, 0, 25, 480, 270);
+    expect_area(800, 480, 640, 480, GLINT_PANEL_FIT, 80, 0, 640, 480);
+    expect_area(1366, 768, 640, 480, GLINT_PANEL_FIT, 171, 0, 1024, 768);
+    expect_area(320, 240, 1, 8192, GLINT_PANEL_FIT, 159, 0, 1, 240);
+    expect_area(1, 240, 8192, 1, GLINT_PANEL_FIT, 0, 119, 1, 1);
+    expect_area(800, 480, 640, 360, GLINT_PANEL_CENTRE, 80, 60, 640, 360);
+    expect_area(480, 320, 640, 360, GLINT_PANEL_CENTRE, 0, 0, 480, 320);
+}
+
+/* Draws the grey ramp 0 1 2 .. 8 as 9 x 1 or 1 x 9 and gives what each pixel of
+ * the panel shows. */
+static void draw_ramp(uint8_t *shown, bool down, int panel_width,
+                      int panel_height, int bytes)
+{
+    static uint8_t ramp[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    const struct glint_panel_config cfg = {
+        .width = panel_width,
+        .height = panel_height,
+        .layout = {bytes, {0, 8}, {8, 4}, {12, 4}, {0, 0}},
+        .image_width = down ? 3 : 9,
+        .image_height = down ? 3 : 1};
+    struct glint_image image = {.format = GLINT_GREY,
+                                .width = cfg.image_width,
+                                .height = cfg.image_height};
+    const int stride = bytes * panel_width;
+    uint8_t mem[4 * 256];
+    struct glint_error error;
+    struct glint_panel panel;
+
+    glint_image_place(&image, ramp);
+    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    memset(mem, 99, sizeof mem);
+    glint_panel_draw(&panel, &image, mem, stride);
+    for (int i = 0; i < panel_width * panel_height; i++)
+        shown[i] = mem[i * bytes];
+    glint_panel_close(&panel);
+}
+
+static void test_nearest(void **state)
+{
+    static const uint8_t third[] = {1, 4, 7},
+                         twice[] = {0, 0, 1, 1, 2, 2, 3, 3, 4,
+                                    4, 5, 5, 6, 6, 7, 7, 8, 8},
+                         square[] = {0, 0, 1, 1, 2, 2, 0, 0, 1, 1, 2, 2,
+                                     3, 3, 4, 4, 5, 5, 3, 3, 4, 4, 5, 5,
+                                     6, 6, 7, 7, 8, 8, 6, 6, 7, 7, 8, 8};
+    uint8_t shown[36];
+
+    (void)state;
+    for (int bytes = 2; bytes <= 4; bytes++) {
+        draw_ramp(shown, false, 3, 1, bytes);
+        assert_memory_equal(shown, third, sizeof third);
+        draw_ramp(shown, false, 18, 2, bytes);
+        assert_memory_equal(shown, twice, sizeof twice);
+        assert_memory_equal(shown + 18, twice, sizeof twice);
+        draw_ramp(shown, true, 6, 6, bytes);
+        assert_memory_equal(shown, square, sizeof square);
+    }
+}
+
+/* Around the picture, and behind the rows, nothing is touched. */
+static void test_borders(void **state)
+{
+    enum { STRIDE = 53, ROWS = 12 };
+    const struct glint_panel_config cfg = {
+        .width = 16,
+        .height = ROWS,
+        .layout = {3, {16, 8}, {8, 8}, {0, 8}, {0, 0}},
+        .image_width = 5,
+        .image_height = 3,
+        .fit = GLINT_PANEL_CENTRE};
+    uint8_t codes[15], mem[STRIDE * ROWS];
+    struct glint_image image = {.format = GLINT_GREY, .width = 5, .height = 3};
+    struct glint_error error;
+    struct glint_panel panel;
+
+    (void)state;
+    glint_image_place(&image, codes);
+    memset(codes, 77, sizeof codes);
+    memset(mem, 200, sizeof mem);
+    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    glint_panel_draw(&panel, &image, mem, STRIDE);
+    for (int i = 0; i < STRIDE * ROWS; i++) {
+        const int x = i % STRIDE / 3, y = i / STRIDE;
+        const bool inside = x >= 5 && x < 10 && y >= 4 && y < 7;
+
+        assert_int_equal(mem[i], inside ? 77 : 200);
+    }
+    glint_panel_clear(&panel, mem, STRIDE);
+    for (int i = 0; i < STRIDE * ROWS; i++)
+        assert_int_equal(mem[i], i % STRIDE < 48 ? 0 : 200);
+    glint_panel_close(&panel);
+}
+
+/* ------------------------------------------------------------------- dither */
+
+/* Over 8 x 8 pixels of one code, the mean in 5 bits is the code to 1/64. */
+static void test_dither(void **state)
+{
+    struct glint_panel_config cfg = {
+        .width = 8,
+        .height = 8,
+        .layout = {2, {11, 5}, {5, 6}, {0, 5}, {0, 0}},
+        .image_width = 8,
+        .image_height = 8,
+        .dither = true};
+    uint8_t codes[64], mem[128];
+    struct glint_image image = {.format = GLINT_GREY, .width = 8, .height = 8};
+    struct glint_error error;
+    struct glint_panel panel;
+
+    (void)state;
+    glint_image_place(&image, codes);
+    assert_int_equal(glint_panel_open(&panel, &cfg, &error), GLINT_OK);
+    for (int code = 0; code < 256; code++) {
+        int sum = 0;
+
+        memset(codes, code, sizeof codes);
+        glint_panel_draw(&panel, &image, mem, 16);
+        for (int i = 0; i < 64; i++)
+            sum += (int)word_at(mem + 2 * i, 2) >> 11;
+        if (fabs(sum / 64. - code * 31 / 255.) > 1 / 64.)
+            fail_msg("code %d: %d / 64", code, sum);
+    }
+    glint_panel_close(&panel);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_colour),
+        cmocka_unit_test(test_layouts),
+        cmocka_unit_test(test_565_there_and_back),
+        cmocka_unit_test(test_fewer_bits),
+        cmocka_unit_test(test_refuses_layouts),
+        cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_nearest),
+        cmocka_unit_test(test_borders),
+        cmocka_unit_test(test_dither),
+    };
+
+    return cmocka_run_group_tests_name("panel", tests, NULL, NULL);
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Picture files: told apart by content, saved by extension. What needs the
+ * image plug-in is skipped where $GLINT_OIIO does not name it.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "formats/picture.h"
+
+#define BYTES(text) text, sizeof text - 1
+
+static char dir[] = "/tmp/glint-test-picture-XXXXXX";
+static struct glint_error error;
+
+static int enter(void **state)
+{
+    (void)state;
+    return mkdtemp(dir) ? 0 : -1;
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return rmdir(dir); /* fails if anything is left behind */
+}
+
+static const char *in_dir(const char *name)
+{
+    static char path[2][80];
+    static int turn;
+
+    turn = !turn;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", dir, name);
+    return path[turn];
+}
+
+static void put_file(const char *name, const char *data, size_t bytes)
+{
+    FILE *const f = fopen(in_dir(name), "wb");
+
+    assert_non_null(f);
+    assert_int_equal(fwrite(data, 1, bytes, f), bytes);
+    fclose(f);
+}
+
+static void expect_load(const char *name, const char *data, size_t bytes,
+                        const char *rgb)
+{
+    struct glint_image image;
+
+    put_file(name, data, bytes);
+    assert_int_equal(glint_picture_load(in_dir(name), &image, &error),
+                     GLINT_OK);
+    assert_int_equal(image.format, GLINT_RGB24);
+    assert_int_equal(image.stride_bytes[0], 3 * image.width);
+    assert_memory_equal(image.plane[0], rgb,
+                        (size_t)(3 * image.width * image.height));
+    glint_picture_free(&image);
+    glint_picture_free(&image);
+    unlink(in_dir(name));
+}
+
+static void test_by_content(void **state)
+{
+    (void)state;
+    expect_load("a.png", BYTES("P6 2 1 255 abcdef"), "abcdef");
+    expect_load("a", BYTES("P5 2 1 255 ab"), "aaabbb");
+    /* linear 0, 0.5 and 1; then below, above, and not a number */
+    expect_load("a.ppm",
+                BYTES("PF 2 1 1 \0\0\0\0\x3f\0\0\0\x3f\x80\0\0"
+                      "\xbf\x80\0\0\x40\0\0\0\x7f\xc0\0\0"),
+                "\x00\xbc\xff\x00\xff\x00");
+}
+
+static void refuse_load(enum glint_status status, const char *data,
+                        size_t bytes, const char *cause)
+{
+    struct glint_image image;
+
+    put_file("a.x", data, bytes);
+    assert_int_equal(glint_picture_load(in_dir("a.x"), &image, &error), status);
+    assert_memory_equal(error.text, dir, strlen(dir));
+    if (!strstr(error.text, cause))
+        fail_msg("%s", error.text);
+    unlink(in_dir("a.x"));
+}
+
+static void test_refuses_to_load(void **state)
+{
+    struct glint_image image;
+
+    (void)state;
+    refuse_load(GLINT_E_FORMAT, BYTES(""), "is empty");
+    refuse_load(GLINT_E_FORMAT, BYTES("P6 2 2 255 abc"), "ends after");
+    refuse_load(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"), "is a video");
+    assert_int_equal(glint_picture_load("/nowhere/a.ppm", &image, &error),
+                     GLINT_E_IO);
+    assert_int_equal(glint_picture_load(dir, &image, &error), GLINT_E_IO);
+}
+
+static void test_load_float(void **state)
+{
+    struct glint_float_image floats;
+
+    (void)state;
+    put_file("a", BYTES("Pf 1 1 -1 \0\0\x40\x40"));
+    assert_int_equal(glint_picture_load_float(in_dir("a"), &floats, &error),
+                     GLINT_OK);
+    assert_true(floats.rgb[2] > 2.999F && floats.rgb[2] < 3.001F);
+    free(floats.rgb);
+    put_file("a", BYTES("P5 3 1 255 \0\xbc\xff"));
+    assert_int_equal(glint_picture_load_float(in_dir("a"), &floats, &error),
+                     GLINT_OK);
+    assert_int_equal(floats.width, 3);
+    assert_true(floats.rgb[0] <= 0 && floats.rgb[8] >= 1);
+    assert_true(floats.rgb[4] > 0.502F && floats.rgb[4] < 0.504F);
+    free(floats.rgb);
+    unlink(in_dir("a"));
+}
+
+static void refuse_save(const char *path, enum glint_picture_kind kind,
+                        const char *cause)
+{
+    assert_int_equal(glint_picture_check(path, kind, &error),
+                     GLINT_E_UNSUPPORTED);
+    if (!strstr(error.text, cause))
+        fail_msg("%s", error.text);
+}
+
+static void test_extensions(void **state)
+{
+    (void)state;
+    refuse_save("a", GLINT_PICTURE_8BIT, "unknown extension");
+    refuse_save("a.b/c", GLINT_PICTURE_8BIT, "unknown extension");
+    refuse_save("a.y4m", GLINT_PICTURE_FLOAT, "unknown extension");
+    refuse_save("a.pfm", GLINT_PICTURE_8BIT, ".pfm holds linear light");
+    refuse_save("a.EXR", GLINT_PICTURE_8BIT, ".exr holds linear light");
+    refuse_save("a.png", GLINT_PICTURE_FLOAT, ".png holds 8-bit codes");
+    refuse_save("a.ppm", GLINT_PICTURE_FLOAT, ".ppm holds 8-bit codes");
+    assert_int_equal(glint_picture_check("-", GLINT_PICTURE_8BIT, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_picture_check("-", GLINT_PICTURE_FLOAT, &error),
+                     GLINT_OK);
+    assert_true(glint_picture_is_float("x/a.PFM"));
+    assert_true(glint_picture_is_float("a.exr"));
+    assert_false(glint_picture_is_float("a.tif"));
+    assert_false(glint_picture_is_float("a.ppm"));
+    assert_false(glint_picture_is_float("-"));
+    assert_false(glint_picture_is_float("a"));
+}
+
+static uint8_t codes[] = "abcdefghijklmnopqr";
+static struct glint_image picture = {.format = GLINT_RGB24,
+                                     .width = 3,
+                                     .height = 2,
+                                     .plane = {codes, NULL, NULL},
+                                     .stride_bytes = {9, 0, 0}};
+
+static void check_8bit(const char *name)
+{
+    struct glint_image again;
+
+    assert_int_equal(glint_picture_save(in_dir(name), &picture, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_picture_load(in_dir(name), &again, &error),
+                     GLINT_OK);
+    assert_int_equal(again.width, 3);
+    assert_int_equal(again.height, 2);
+    assert_memory_equal(again.plane[0], codes, 18);
+    glint_picture_free(&again);
+    unlink(in_dir(name));
+}
+
+/* EXR and PFM keep floats exactly; values here suit HDR's 8 bits too. */
+static void check_float(const char *name)
+{
+    float values[] = {0, 0.5F, 1, 1000, 500, 250};
+    const struct glint_float_image floats = {2, 1, values};
+    struct glint_float_image again;
+
+    assert_int_equal(glint_picture_save_float(in_dir(name), &floats, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_picture_load_float(in_dir(name), &again, &error),
+                     GLINT_OK);
+    assert_int_equal(again.width, 2);
+    assert_int_equal(again.height, 1);
+    for (int i = 0; i < 6; i++)
+        assert_true(again.rgb[i] > values[i] * 0.99F - 1e-6F &&
+                    again.rgb[i] < values[i] * 1.01F + 1e-6F);
+    free(again.rgb);
+    unlink(in_dir(name));
+}
+
+static void test_native_round_trips(void **state)
+{
+    (void)state;
+    check_8bit("a.ppm");
+    check_8bit("a.PNM");
+    check_float("a.pfm");
+}
+
+static void test_full_device(void **state)
+{
+    (void)state;
+    assert_int_equal(symlink("/dev/full", in_dir("a.ppm")), 0);
+    assert_int_equal(glint_picture_save(in_dir("a.ppm"), &picture, &error),
+                     GLINT_E_OUTPUT);
+    unlink(in_dir("a.ppm"));
+}
+
+static void test_plugin_missing(void **state)
+{
+    char *const stated = getenv("GLINT_OIIO");
+    char *const kept = stated ? strdup(stated) : NULL;
+
+    (void)state;
+    setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
+    refuse_save("a.png", GLINT_PICTURE_8BIT,
+                "a.png: .png needs glint's image plug-in: ");
+    refuse_load(GLINT_E_UNSUPPORTED, BYTES("\x89PNG\r\n\x1a\n"),
+                "PNG needs glint's image plug-in: ");
+    refuse_load(GLINT_E_UNSUPPORTED, BYTES("hello"),
+                "any file but PPM, PGM and PFM needs glint's image plug-in: ");
+    unsetenv("GLINT_OIIO");
+    if (kept)
+        setenv("GLINT_OIIO", kept, 1);
+    free(kept);
+}
+
+static void test_plugin(void **state)
+{
+    (void)state;
+    if (!getenv("GLINT_OIIO"))
+        skip();
+    check_8bit("a.png");
+    check_8bit("a.bmp");
+    check_8bit("a.tif");
+    check_8bit("a.tga");
+    check_float("a.exr");
+    check_float("a.hdr");
+    check_float("a.tif");
+    refuse_load(GLINT_E_FORMAT, BYTES("\x89PNG\r\n\x1a\n"), ": ");
+    refuse_load(GLINT_E_FORMAT, BYTES("hello"), ": ");
+    assert_int_equal(symlink("/dev/full", in_dir("a.png")), 0);
+    assert_int_equal(glint_picture_save(in_dir("a.png"), &picture, &error),
+                     GLINT_E_OUTPUT);
+    unlink(in_dir("a.png"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_by_content),
+        cmocka_unit_test(test_refuses_to_load),
+        cmocka_unit_test(test_load_float),
+        cmocka_unit_test(test_extensions),
+        cmocka_unit_test(test_native_round_trips),
+        cmocka_unit_test(test_full_device),
+        cmocka_unit_test(test_plugin_missing),
+        cmocka_unit_test(test_plugin),
+    };
+
+    return cmocka_run_group_tests_name("picture", tests, enter, leave);
+}

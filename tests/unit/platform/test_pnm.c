@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * PPM, PGM and PFM: bytes by hand, hostile headers, every truncation.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "formats/pfm.h"
+#include "formats/pnm.h"
+#include "posix/input.h"
+
+#define BYTES(text) text, sizeof text - 1
+
+static struct glint_error error;
+
+/* A copy without its terminating zero, so that overruns are seen by ASan. */
+static void *copy_of(const void *data, size_t bytes)
+{
+    void *const copy = malloc(bytes ? bytes : 1);
+
+    assert_non_null(copy);
+    memcpy(copy, data, bytes);
+    return copy;
+}
+
+static enum glint_status read_pnm(struct glint_image *image, const char *data,
+                                  size_t bytes)
+{
+    void *const copy = copy_of(data, bytes);
+    const enum glint_status status =
+        glint_pnm_read(image, copy, bytes, "x.ppm", &error);
+
+    free(copy);
+    return status;
+}
+
+static enum glint_status read_pfm(struct glint_float_image *floats,
+                                  const char *data, size_t bytes)
+{
+    void *const copy = copy_of(data, bytes);
+    const enum glint_status status =
+        glint_pfm_read(floats, copy, bytes, "x.pfm", &error);
+
+    free(copy);
+    return status;
+}
+
+/* --------------------------------------------------------------------- PNM */
+
+static void expect_pnm(const char *data, size_t bytes,
+                       enum glint_pixel_format format, int width, int height,
+                       const char *samples)
+{
+    struct glint_image image;
+
+    assert_int_equal(read_pnm(&image, data, bytes), GLINT_OK);
+    assert_int_equal(image.format, format);
+    assert_int_equal(image.width, width);
+    assert_int_equal(image.height, height);
+    assert_int_equal(image.range, GLINT_RANGE_FULL);
+    assert_int_equal(image.transfer, GLINT_TONE_SRGB);
+    assert_memory_equal(image.plane[0], samples,
+                        glint_image_bytes(format, width, height));
+    free(image.plane[0]);
+}
+
+static void test_kinds(void **state)
+{
+    (void)state;
+    expect_pnm(BYTES("P6\n2 1\n255\nabcdef"), GLINT_RGB24, 2, 1, "abcdef");
+    expect_pnm(BYTES("P5\n2 3\n255\nabcdef"), GLINT_GREY, 2, 3, "abcdef");
+    /* what follows is another picture */
+    expect_pnm(BYTES("P5 1 1 255 aP5 1 1 255 b"), GLINT_GREY, 1, 1, "a");
+    /* samples may look like white space */
+    expect_pnm(BYTES("P5\n3 1\n255\n\n #"), GLINT_GREY, 3, 1, "\n #");
+}
+
+static void test_comments(void **state)
+{
+    (void)state;
+    expect_pnm(BYTES("P5#made by\n# GIMP\n 2\t\r\n#x\n1#y\n255\nab"),
+               GLINT_GREY, 2, 1, "ab");
+    /* a comment may end the header; its line feed is the white space */
+    expect_pnm(BYTES("P5 2 1 255#end\nab"), GLINT_GREY, 2, 1, "ab");
+    expect_pnm(BYTES("P5 0002 01 00255 ab"), GLINT_GREY, 2, 1, "ab");
+}
+
+static void test_maxima(void **state)
+{
+    (void)state;
+    /* 1 of 2 is 127.5, which rounds up; 3 counts as 2 */
+    expect_pnm(BYTES("P5 4 1 2 \x00\x01\x02\x03"), GLINT_GREY, 4, 1,
+               "\x00\x80\xff\xff");
+    expect_pnm(BYTES("P5 2 1 1 \x00\x01"), GLINT_GREY, 2, 1, "\x00\xff");
+    /* 16 bits: 128 is 0.498 and rounds down, 129 is 0.502 and rounds up */
+    expect_pnm(BYTES("P5 5 1 65535 \x00\x80\x00\x81\xff\xff\x80\x80\x00\x00"),
+               GLINT_GREY, 5, 1, "\x00\x01\xff\x80\x00");
+    /* 10 bits, and a sample above the maximum */
+    expect_pnm(BYTES("P6 1 1 1023 \x03\xff\x02\x00\xff\xff"), GLINT_RGB24, 1, 1,
+               "\xff\x80\xff");
+}
+
+static void refuse_pnm(enum glint_status status, const char *data, size_t bytes)
+{
+    struct glint_image image = {.width = 77};
+
+    if (read_pnm(&image, data, bytes) != status)
+        fail_msg("%s", data);
+    assert_memory_equal(error.text, "x.ppm: ", 7);
+    assert_int_equal(image.width, 77);
+}
+
+static void test_hostile_headers(void **state)
+{
+    (void)state;
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES(""));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P"));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6"));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P61 1 255 abc"));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P3 1 1 255 1 2 3"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 0 1 255 abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 0 255 abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 -1 1 255 abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1.5 1 255 abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 0 abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 65536 abcdef"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 255"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 255abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 255#abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 1 1 # 255 abc"));
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 \0001 1 255 abc"));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 32769 1 255 abc"));
+    refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
+    refuse_pnm(GLINT_E_UNSUPPORTED,
+               BYTES("P6 99999999999999999999 4294967297 255 abc"));
+    /* sizes are believed only when the samples are there */
+    refuse_pnm(GLINT_E_FORMAT, BYTES("P6 8192 8192 65535 abc"));
+    assert_string_equal(
+        error.text,
+        "x.ppm: ends after 3 of 402653184 bytes of a 8192 x 8192 picture");
+}
+
+static void test_truncated_pnm(void **state)
+{
+    static const char ppm[] =
+        "P6\n# x\n2 1\n65535\n\0\1\2\3\4\5\6\7\10\11\12\13";
+    struct glint_image image;
+
+    (void)state;
+    for (size_t n = 0; n < sizeof ppm - 1; n++)
+        refuse_pnm(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, ppm, n);
+    assert_int_equal(read_pnm(&image, ppm, sizeof ppm - 1), GLINT_OK);
+    free(image.plane[0]);
+}
+
+/* --------------------------------------------------------------------- PFM */
+
+/* 1, -2, 0.5; 0, 3, 4: the bottom row comes first. */
+#define ONE   "\x00\x00\x80\x3f"
+#define TWO   "\x00\x00\x00\xc0"
+#define HALF  "\x00\x00\x00\x3f"
+#define ZERO  "\x00\x00\x00\x00"
+#define THREE "\x00\x00\x40\x40"
+#define FOUR  "\x00\x00\x80\x40"
+
+static const float two_pixels[6] = {1, -2, 0.5F, 0, 3, 4};
+
+static void expect_pfm(const char *data, size_t bytes, int width, int height,
+                       const float *values)
+{
+    struct glint_float_image floats;
+
+    assert_int_equal(read_pfm(&floats, data, bytes), GLINT_OK);
+    assert_int_equal(floats.width, width);
+    assert_int_equal(floats.height, height);
+    assert_memory_equal(floats.rgb, values,
+                        (size_t)(width * height) * 3 * sizeof(float));
+    free(floats.rgb);
+}
+
+static void test_floats(void **state)
+{
+    static const float grey[6] = {3, 3, 3, 4, 4, 4};
+
+    (void)state;
+    expect_pfm(BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF), 1, 2,
+               two_pixels);
+    expect_pfm(BYTES("PF\n2 1\n-1.0\n" ONE TWO HALF ZERO THREE FOUR), 2, 1,
+               two_pixels);
+    expect_pfm(BYTES("Pf 2 1 -0.5 " THREE FOUR), 2, 1, grey);
+    expect_pfm(BYTES("Pf\n2 1\n1\n\x40\x40\x00\x00\x40\x80\x00\x00"), 2, 1,
+               grey);
+}
+
+static void test_special_floats(void **state)
+{
+    struct glint_float_image floats;
+
+    (void)state;
+    assert_int_equal(read_pfm(&floats, BYTES("PF 1 1 -1 \x00\x00\xc0\x7f"
+                                             "\x00\x00\x80\x7f"
+                                             "\x01\x00\x00\x00")),
+                     GLINT_OK);
+    assert_true(isnan(floats.rgb[0]));
+    assert_true(isinf(floats.rgb[1]));
+    assert_true(floats.rgb[2] > 0 && floats.rgb[2] < 1e-44F);
+    free(floats.rgb);
+}
+
+static void refuse_pfm(enum glint_status status, const char *data, size_t bytes)
+{
+    struct glint_float_image floats = {77, 0, NULL};
+
+    if (read_pfm(&floats, data, bytes) != status)
+        fail_msg("%s", data);
+    assert_memory_equal(error.text, "x.pfm: ", 7);
+    assert_int_equal(floats.width, 77);
+}
+
+static void test_hostile_pfm(void **state)
+{
+    (void)state;
+    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES(""));
+    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("PF"));
+    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("PG\n1 1\n-1\n"));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 0 1 -1 " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 0 -1 " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 -1 -1 " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 0 " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 nan " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 -inf " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 -1x " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1x 1 -1 " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("Pf 1 1 -1\0 " ONE));
+    refuse_pfm(GLINT_E_FORMAT,
+               BYTES("Pf 1 1 -1.0000000000000000000000000000000000000 " ONE));
+    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("Pf 32769 1 -1 " ONE));
+    refuse_pfm(GLINT_E_UNSUPPORTED, BYTES("Pf 1 9999999999999999 -1 " ONE));
+    refuse_pfm(GLINT_E_FORMAT, BYTES("PF 8192 8192 -1 " ONE));
+}
+
+static void test_truncated_pfm(void **state)
+{
+    static const char pfm[] = "PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF;
+
+    (void)state;
+    for (size_t n = 0; n < sizeof pfm - 1; n++)
+        refuse_pfm(n < 3 ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT, pfm, n);
+}
+
+/* ----------------------------------------------------------------- writing */
+
+static char path[] = "/tmp/glint-test-pnm-XXXXXX";
+
+static int enter(void **state)
+{
+    (void)state;
+    const int fd = mkstemp(path);
+
+    return fd < 0 ? -1 : close(fd);
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return unlink(path);
+}
+
+static void open_path(struct glint_output *out)
+{
+    assert_int_equal(glint_output_open(out, path, GLINT_OUTPUT_BINARY, &error),
+                     GLINT_OK);
+}
+
+static void expect_path(struct glint_output *out, const char *want,
+                        size_t want_bytes)
+{
+    uint8_t *data;
+    size_t bytes;
+
+    assert_int_equal(glint_output_commit(out, &error), GLINT_OK);
+    assert_int_equal(glint_input_slurp(&data, &bytes, path, 10000, &error),
+                     GLINT_OK);
+    assert_int_equal(bytes, want_bytes);
+    assert_memory_equal(data, want, bytes);
+    free(data);
+}
+
+static void test_write_ppm(void **state)
+{
+    uint8_t padded[] = "abcdef--ghijkl--";
+    struct glint_image image = {.format = GLINT_RGB24,
+                                .width = 2,
+                                .height = 2,
+                                .plane = {padded, NULL, NULL},
+                                .stride_bytes = {8, 0, 0}};
+    struct glint_output out;
+
+    (void)state;
+    open_path(&out);
+    assert_int_equal(glint_pnm_write(&out, &image, &error), GLINT_OK);
+    expect_path(&out, BYTES("P6\n2 2\n255\nabcdefghijkl"));
+
+    image.plane[0] = padded + 8; /* upside down */
+    image.stride_bytes[0] = -8;
+    open_path(&out);
+    assert_int_equal(glint_pnm_write(&out, &image, &error), GLINT_OK);
+    expect_path(&out, BYTES("P6\n2 2\n255\nghijklabcdef"));
+}
+
+static void test_write_pfm(void **state)
+{
+    float values[6];
+    const struct glint_float_image floats = {1, 2, values};
+    struct glint_output out;
+
+    (void)state;
+    memcpy(values, two_pixels, sizeof values);
+    open_path(&out);
+    assert_int_equal(glint_pfm_write(&out, &floats, &error), GLINT_OK);
+    expect_path(&out, BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
+}
+
+/* Longer than what is encoded at a time, and of odd width. */
+static void test_pfm_round_trip(void **state)
+{
+    enum { W = 333, H = 3, N = W * H * 3 };
+    static float values[N];
+    const struct glint_float_image floats = {W, H, values};
+    struct glint_float_image again;
+    struct glint_output out;
+    uint8_t *data;
+    size_t bytes;
+
+    (void)state;
+    for (int i = 0; i < N; i++)
+        values[i] = (float)i * 0.37F - 100;
+    open_path(&out);
+    assert_int_equal(glint_pfm_write(&out, &floats, &error), GLINT_OK);
+    assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
+    assert_int_equal(glint_input_slurp(&data, &bytes, path, 100000, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_pfm_read(&again, data, bytes, path, &error),
+                     GLINT_OK);
+    assert_memory_equal(again.rgb, values, sizeof values);
+    free(again.rgb);
+    free(data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kinds),
+        cmocka_unit_test(test_comments),
+        cmocka_unit_test(test_maxima),
+        cmocka_unit_test(test_hostile_headers),
+        cmocka_unit_test(test_truncated_pnm),
+        cmocka_unit_test(test_floats),
+        cmocka_unit_test(test_special_floats),
+        cmocka_unit_test(test_hostile_pfm),
+        cmocka_unit_test(test_truncated_pfm),
+        cmocka_unit_test(test_write_ppm),
+        cmocka_unit_test(test_write_pfm),
+        cmocka_unit_test(test_pfm_round_trip),
+    };
+
+    return cmocka_run_group_tests_name("pnm", tests, enter, leave);
+}

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Pixels as files hold them: what is seen, what light changes, what stays.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "formats/half.h"
+#include "formats/samples.h"
+
+/* WIDTH x HEIGHT of three channels of SAMPLE over MEM, or four with alpha. */
+static struct glint_samples samples_of(int width, int height,
+                                       enum glint_sample sample, bool has_alpha,
+                                       void *mem)
+{
+    const size_t bytes = glint_sample_bytes(sample);
+    struct glint_samples s = {.width = width,
+                              .height = height,
+                              .window_width = width,
+                              .window_height = height,
+                              .orientation = 1,
+                              .pixel_bytes = bytes * (has_alpha ? 4 : 3),
+                              .n_colours = 3,
+                              .has_alpha = has_alpha,
+                              .alpha = {sample, 3 * bytes},
+                              .maximum = bytes == 1 ? 255 : 65535,
+                              .mem = mem};
+
+    for (size_t c = 0; c < 3; c++)
+        s.colour[c] = (struct glint_sample_place){sample, c * bytes};
+    glint_colours_set(&s.colours,
+                      glint_sample_is_float(sample) ? GLINT_TONE_IS_LINEAR
+                                                    : GLINT_TONE_IS_SRGB,
+                      0, "");
+    return s;
+}
+
+static void test_half(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i < 65536; i++) {
+        const float value = glint_half_decode((uint16_t)i);
+
+        if (!isnan(value))
+            assert_int_equal(glint_half_encode(value), i);
+    }
+    assert_int_equal(glint_half_encode(1), 0x3c00);
+    assert_int_equal(glint_half_encode(65520), 0x7c00);
+    assert_int_equal(glint_half_encode(1.00048828125F), 0x3c00); /* to even */
+    assert_int_equal(glint_half_encode(-0x1p-25F), 0x8000);
+    assert_true(isnan(glint_half_decode(glint_half_encode(NAN))));
+}
+
+/* By hand: sRGB of 0.5 is 0.21404, BT.709 of 0.5 is 0.25959. */
+static void test_curves(void **state)
+{
+    struct glint_tone_curve t;
+
+    (void)state;
+    glint_tone_curve_set(&t, GLINT_TONE_IS_SRGB, 0);
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.21404) < 1e-5);
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.02) - 0.001548) < 1e-6);
+    assert_true(fabs(glint_tone_curve_encode(&t, 0.21404) - 0.5) < 1e-5);
+    glint_tone_curve_set(&t, GLINT_TONE_IS_BT709, 0);
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.25959) < 1e-5);
+    glint_tone_curve_set(&t, GLINT_TONE_IS_GAMMA, 2);
+    assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-9);
+}
+
+/* Big-endian words of a profile. */
+static void put32(uint8_t *at, uint32_t v)
+{
+    for (int i = 0; i < 4; i++)
+        at[i] = (uint8_t)(v >> (24 - 8 * i));
+}
+
+/* A profile of one gamma in 8.8 fixed point and Adobe RGB's primaries. */
+static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
+{
+    static const char *const names[] = {"rXYZ", "gXYZ", "bXYZ",
+                                        "rTRC", "gTRC", "bTRC"};
+    static const int xyz_q16[3][3] = {
+        {39965, 20399, 1275}, {13447, 41003, 3989}, {9781, 4134, 48787}};
+
+    memset(p, 0, 400);
+    memcpy(p + 16, "RGB XYZ ", 8);
+    memcpy(p + 36, "acsp", 4);
+    put32(p + 128, 6);
+    for (int i = 0; i < 6; i++) {
+        const int at = i < 3 ? 204 + 20 * i : 264;
+
+        memcpy(p + 132 + 12 * i, names[i], 4);
+        put32(p + 136 + 12 * i, (uint32_t)at);
+        put32(p + 140 + 12 * i, i < 3 ? 20 : 14);
+        memcpy(p + at, i < 3 ? "XYZ " : "curv", 4);
+        for (int k = 0; k < 3 && i < 3; k++)
+            put32(p + at + 8 + 4 * k, (uint32_t)xyz_q16[i][k]);
+    }
+    put32(p + 272, 1);
+    p[276] = (uint8_t)(gamma_q8 >> 8);
+    p[277] = (uint8_t)gamma_q8;
+    return 400;
+}
+
+/* Adobe RGB: half is 0.5^2.19922 = 0.21776, its green is -0.3981 of sRGB red.
+ */
+static void test_profile(void **state)
+{
+    struct glint_colours c;
+    uint8_t p[400];
+
+    (void)state;
+    make_profile(p, 563);
+    assert_true(glint_icc_read(&c, p, sizeof p));
+    assert_false(c.is_srgb);
+    assert_true(fabs(glint_tone_curve_decode(&c.transfer[1], 0.5) - 0.21776) <
+                1e-4);
+    assert_true(fabs(c.to_bt709[0][1] + 0.3983) < 2e-3);
+    assert_true(fabs(c.to_bt709[0][0] + c.to_bt709[0][1] + c.to_bt709[0][2] -
+                     1) < 2e-3);
+    assert_false(glint_icc_read(&c, p, 100));
+    memcpy(p + 16, "CMYK", 4);
+    assert_false(glint_icc_read(&c, p, sizeof p));
+    for (size_t n = 0; n < 400; n++) { /* cut off anywhere */
+        make_profile(p, 563);
+        uint8_t *const exact = malloc(n + 1);
+
+        memcpy(exact, p, n);
+        (void)glint_icc_read(&c, exact, n);
+        free(exact);
+    }
+}
+
+/* Floats may hold what is no place in a table. */
+static void test_tables_of_any_float(void **state)
+{
+    struct glint_tone_curve t = {
+        .gamma = 1, .a = 1, .n_entries = 3, .entry = {0, 16384, 65535}};
+
+    (void)state;
+    assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.25) < 1e-4);
+    assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-4);
+    assert_true(glint_tone_curve_decode(&t, 1) == 1);
+    assert_true(glint_tone_curve_decode(&t, 2) > 1);
+    assert_true(isinf(glint_tone_curve_decode(&t, HUGE_VAL)));
+    assert_true(isnan(glint_tone_curve_decode(&t, (double)NAN)));
+}
+
+static void test_light_is_added(void **state)
+{
+    uint16_t mem[] = {0, 1000, 65535, 32768, 32768, 32768};
+    uint16_t before[6];
+    struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_U16, false, mem);
+    float layer[6] = {0};
+
+    (void)state;
+    memcpy(before, mem, sizeof mem);
+    glint_samples_add(&s, layer);
+    assert_memory_equal(mem, before, sizeof mem);
+    layer[0] = layer[2] = 0.5F;
+    glint_samples_add(&s, layer);
+    assert_int_equal(mem[0], 48192); /* 65535 * 0.735358 */
+    assert_int_equal(mem[1], 1000);
+    assert_int_equal(mem[2], 65535);
+    assert_memory_equal(mem + 3, before + 3, 6);
+}
+
+/* Floats go beyond white; what is no number stays. */
+static void test_floats(void **state)
+{
+    float mem[] = {2, -0.25F, NAN};
+    struct glint_samples s = samples_of(1, 1, GLINT_SAMPLE_FLOAT, false, mem);
+    const float layer[] = {0.5F, 0.5F, 0.5F};
+    struct glint_image proxy;
+    double white;
+
+    (void)state;
+    assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+    assert_true(white >= 2); /* a hundredth of it is all of it */
+    assert_int_equal(proxy.plane[0][1], 0);
+    assert_int_equal(proxy.plane[0][2], 0);
+    free(proxy.plane[0]);
+    glint_samples_add(&s, layer);
+    assert_true(mem[0] >= 2.5F && mem[0] <= 2.5F);
+    assert_true(mem[1] >= 0.25F && mem[1] <= 0.25F);
+    assert_true(isnan(mem[2]));
+}
+
+/* Transparent pixels hold no lamps, and alpha does not change. */
+static void test_alpha(void **state)
+{
+    uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
+    struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_U8, true, mem);
+    const float layer[] = {1, 1, 1, 0.01F, 0.01F, 0.01F};
+    struct glint_image proxy;
+    double white;
+
+    (void)state;
+    assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+    assert_int_equal(proxy.plane[0][0], 0);
+    assert_int_equal(proxy.plane[0][3], 200);
+    free(proxy.plane[0]);
+    s.is_premultiplied = true;
+    assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+    assert_int_equal(proxy.plane[0][0], 255);
+    free(proxy.plane[0]);
+    glint_samples_add(&s, layer);
+    assert_int_equal(mem[3], 0);
+    assert_int_equal(mem[7], 255);
+    assert_in_range(mem[4], 201, 203);
+}
+
+/* 2 x 3 stored, as EXIF numbers it; the letter of each upright pixel. */
+static void test_orientations(void **state)
+{
+    static const char *const upright[] = {"abcdef", "badcfe", "fedcba",
+                                          "efcdab", "acebdf", "ecafdb",
+                                          "fdbeca", "bdface"};
+    uint8_t mem[18];
+
+    (void)state;
+    for (int i = 0; i < 18; i++)
+        mem[i] = (uint8_t)("abcdef"[i / 3]);
+    for (int o = 1; o <= 8; o++) {
+        struct glint_samples s = samples_of(2, 3, GLINT_SAMPLE_U8, false, mem);
+        struct glint_image proxy;
+        double white;
+
+        s.orientation = o;
+        assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
+        assert_int_equal(proxy.width, o < 5 ? 2 : 3);
+        for (int i = 0; i < 6; i++)
+            assert_int_equal(proxy.plane[0][3 * i], upright[o - 1][i]);
+        free(proxy.plane[0]);
+    }
+}
+
+/* A data window that is smaller than what is seen, and beyond it. */
+static void test_windows(void **state)
+{
+    float mem[] = {1, 1, 1, 0.5F, 0.5F, 0.5F};
+    struct glint_samples s = samples_of(2, 1, GLINT_SAMPLE_FLOAT, false, mem);
+    const float layer[] = {4, 4, 4, 4, 4, 4};
+    struct glint_image image;
+    float rgb[3];
+
+    (void)state;
+    s.x = -1; /* the second pixel is the first that is seen */
+    s.window_width = 1;
+    s.window_height = 2;
+    glint_samples_light(&s, 0, 0, rgb);
+    assert_true(rgb[0] >= 0.5F && rgb[0] <= 0.5F);
+    glint_samples_light(&s, 0, 1, rgb);
+    assert_true(rgb[0] <= 0);
+    assert_false(glint_samples_image(&s, &image));
+    glint_samples_add(&s, layer);
+    assert_true(mem[0] <= 1 && mem[3] >= 4.5F);
+}
+
+/* Straight 8 bits to premultiplied floats and back, and over black. */
+static void test_convert(void **state)
+{
+    uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];
+    float floats[4];
+    struct glint_samples from = samples_of(1, 1, GLINT_SAMPLE_U8, true, mem);
+    struct glint_samples to =
+        samples_of(1, 1, GLINT_SAMPLE_FLOAT, true, floats);
+    struct glint_samples again = samples_of(1, 1, GLINT_SAMPLE_U8, true, back);
+    struct glint_samples opaque =
+        samples_of(1, 1, GLINT_SAMPLE_U8, false, flat);
+
+    (void)state;
+    to.is_premultiplied = true;
+    glint_samples_convert(&to, &from);
+    assert_true(fabsf(floats[0] - 0.50289F * 0.50196F) < 1e-4F);
+    assert_true(fabsf(floats[3] - 0.50196F) < 1e-4F);
+    glint_samples_convert(&again, &to);
+    assert_memory_equal(back, mem, 4);
+    glint_samples_convert(&opaque, &from);
+    assert_int_equal(flat[2], 188); /* half of white */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_half),
+        cmocka_unit_test(test_curves),
+        cmocka_unit_test(test_tables_of_any_float),
+        cmocka_unit_test(test_profile),
+        cmocka_unit_test(test_light_is_added),
+        cmocka_unit_test(test_floats),
+        cmocka_unit_test(test_alpha),
+        cmocka_unit_test(test_orientations),
+        cmocka_unit_test(test_windows),
+        cmocka_unit_test(test_convert),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,584 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Sinks that write: planes, Y4M, V4L2 outputs.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <linux/videodev2.h>
+
+#include "linux/fourcc.h"
+#include "linux/v4l2_sink.h"
+#include "panel/null.h"
+#include "panel/planar.h"
+#include "panel/y4m_sink.h"
+
+static char path[] = "/tmp/glint-test-sink-XXXXXX";
+
+/* An image over MEM. */
+static struct glint_image image_of(enum glint_pixel_format format, int width,
+                                   int height, void *mem)
+{
+    struct glint_image image = {.format = format,
+                                .width = width,
+                                .height = height,
+                                .range = GLINT_RANGE_LIMITED,
+                                .matrix = GLINT_MATRIX_BT601};
+
+    glint_image_place(&image, mem);
+    return image;
+}
+
+/* ------------------------------------------------------------------ planes */
+
+/* FROM of 3 x 3 becomes WANT, whose planes lie one after the other. */
+static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
+                          enum glint_pixel_format planar, const char *want)
+{
+    const struct glint_image image =
+        image_of(format, 3, 3, (uint8_t *)(uintptr_t)from);
+    struct glint_image to;
+    struct glint_row_rgb row;
+    uint8_t mem[64], work[64];
+    const size_t n = glint_image_bytes(planar, 3, 3);
+
+    assert_int_equal(glint_planar_format(format), planar);
+    assert_int_equal(strlen(want), n);
+    memset(mem, '-', sizeof mem);
+    to = image_of(planar, 3, 3, mem);
+    assert_true(glint_row_rgb_bytes(3) <= sizeof work);
+    glint_row_rgb_init(&row, work, 3);
+    glint_planar_write(&to, &image, &row);
+    mem[sizeof mem - 1] = 0;
+    if (memcmp(mem, want, n) != 0)
+        fail_msg("format %d: %s", format, (char *)mem);
+    assert_int_equal(mem[n], '-');
+}
+
+/* Letters: luma a.., Cb A.., Cr 1.. */
+static void test_planes(void **state)
+{
+    (void)state;
+    expect_planes(GLINT_YUYV, (const uint8_t *)"aAb1cB.2dCe3fD.4gEh5iF.6",
+                  GLINT_I422, "abcdefghiABCDEF123456");
+    expect_planes(GLINT_UYVY, (const uint8_t *)"Aa1bBc2.Cd3eDf4.Eg5hFi6.",
+                  GLINT_I422, "abcdefghiABCDEF123456");
+    expect_planes(GLINT_NV12, (const uint8_t *)"abcdefghiA1B2C3D4", GLINT_I420,
+                  "abcdefghiABCD1234");
+    expect_planes(GLINT_NV21, (const uint8_t *)"abcdefghi1A2B3C4D", GLINT_I420,
+                  "abcdefghiABCD1234");
+    expect_planes(GLINT_I420, (const uint8_t *)"abcdefghiABCD1234", GLINT_I420,
+                  "abcdefghiABCD1234");
+    expect_planes(GLINT_GREY, (const uint8_t *)"abcdefghi", GLINT_GREY,
+                  "abcdefghi");
+}
+
+/* Y', Cb, Cr of one colour, by the standards' weights of red and blue. */
+static void reference(int ycc[3], const int rgb[3],
+                      const struct glint_image *as)
+{
+    const bool full = as->range == GLINT_RANGE_FULL;
+    const double kr = as->matrix == GLINT_MATRIX_BT601 ? .299 : .2126;
+    const double kb = as->matrix == GLINT_MATRIX_BT601 ? .114 : .0722;
+    const double y = kr * rgb[0] + (1 - kr - kb) * rgb[1] + kb * rgb[2];
+    const double cb = (rgb[2] - y) / (2 - 2 * kb),
+                 cr = (rgb[0] - y) / (2 - 2 * kr);
+
+    ycc[0] = (int)floor((full ? y : 16 + y * 219 / 255) + .5);
+    ycc[1] = (int)fmin(255, floor(128 + (full ? cb : cb * 224 / 255) + .5));
+    ycc[2] = (int)fmin(255, floor(128 + (full ? cr : cr * 224 / 255) + .5));
+}
+
+static void check_colours(enum glint_matrix matrix, enum glint_range range)
+{
+    uint8_t rgb[3 * 256], ycc[3 * 256], work[2048];
+    const struct glint_image from = image_of(GLINT_RGB24, 256, 1, rgb);
+    struct glint_image to = image_of(GLINT_I444, 256, 1, ycc);
+    struct glint_row_rgb row;
+    long n_off = 0;
+
+    to.matrix = matrix;
+    to.range = range;
+    glint_row_rgb_init(&row, work, 256);
+    for (int i = 0; i < 256; i++) {
+        for (int x = 0; x < 256; x++) {
+            rgb[3 * x] = (uint8_t)x;
+            rgb[3 * x + 1] = (uint8_t)i;
+            rgb[3 * x + 2] = (uint8_t)(7 * i + 13 * x);
+        }
+        glint_planar_write(&to, &from, &row);
+        for (int x = 0; x < 256; x++) {
+            const int px[] = {rgb[3 * x], rgb[3 * x + 1], rgb[3 * x + 2]};
+            int want[3];
+
+            reference(want, px, &to);
+            for (int k = 0; k < 3; k++) {
+                assert_true(abs(ycc[256 * k + x] - want[k]) <= 1);
+                n_off += ycc[256 * k + x] != want[k];
+            }
+        }
+    }
+    assert_true(n_off < 256 * 256 * 3 / 500); /* at ties */
+}
+
+/* Pure blue and red of full range: 255.5, which is no code. */
+static void check_last_codes(void)
+{
+    uint8_t rgb[] = {0, 0, 255, 255, 0, 0}, ycc[6], work[64];
+    const struct glint_image from = image_of(GLINT_RGB24, 2, 1, rgb);
+    struct glint_image to = image_of(GLINT_I444, 2, 1, ycc);
+    struct glint_row_rgb row;
+
+    to.range = GLINT_RANGE_FULL;
+    glint_row_rgb_init(&row, work, 2);
+    glint_planar_write(&to, &from, &row);
+    assert_int_equal(ycc[2], 255);
+    assert_int_equal(ycc[5], 255);
+}
+
+static void test_from_rgb(void **state)
+{
+    static const uint8_t colours[] = {255, 255, 255, 0, 0, 0,   255, 0,   0,
+                                      0,   255, 0,   0, 0, 255, 128, 128, 128,
+                                      0,   0,   0,   0, 0, 0,   0,   0,   0};
+    /* white, black, red, green, blue, grey of BT.601 as everybody writes them
+     */
+    static const char want[] = "\xeb\x10\x51\x91\x29\x7e\x10\x10\x10"
+                               "\x80\x80\x5a\x36\xf0\x80\x80\x80\x80"
+                               "\x80\x80\xf0\x22\x6e\x80\x80\x80\x80";
+
+    (void)state;
+    expect_planes(GLINT_RGB24, colours, GLINT_I444, want);
+    check_last_codes();
+    check_colours(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
+    check_colours(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
+    check_colours(GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
+    check_colours(GLINT_MATRIX_BT709, GLINT_RANGE_FULL);
+}
+
+/* --------------------------------------------------------------------- Y4M */
+
+static void expect_file(const char *want, size_t bytes)
+{
+    char got[512];
+    const int fd = open(path, O_RDONLY);
+    const ssize_t n = read(fd, got, sizeof got);
+
+    close(fd);
+    assert_int_equal(n, bytes);
+    assert_memory_equal(got, want, bytes);
+}
+
+static void test_y4m(void **state)
+{
+    static const char want[] =
+        "YUV4MPEG2 W4 H2 F25:1 Ip A1:1 C422 XCOLORRANGE=FULL\n"
+        "FRAME\nabcdefghABCD1234FRAME\nabcdefghABCD1234";
+    struct glint_image image =
+        image_of(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
+    struct glint_y4m_sink y4m;
+    struct glint_error error;
+
+    (void)state;
+    image.range = GLINT_RANGE_FULL;
+    glint_y4m_sink_open(&y4m, path, 25, 1);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_int_equal(y4m.n_frames, 2);
+    image.width = 2;
+    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
+    assert_int_equal(glint_y4m_sink_finish(&y4m, &error), GLINT_OK);
+    assert_int_equal(glint_y4m_sink_finish(&y4m, &error), GLINT_OK);
+    expect_file(want, sizeof want - 1);
+}
+
+/* What Y4M knows is not copied first; RGB is said to be limited. */
+static void test_y4m_formats(void **state)
+{
+    static const char planes[] = "YUV4MPEG2 W2 H2 F0:0 Ip A1:1 C420jpeg "
+                                 "XCOLORRANGE=LIMITED\nFRAME\nabcdA1";
+    static const char white[] = "YUV4MPEG2 W1 H1 F30:1 Ip A1:1 C444 "
+                                "XCOLORRANGE=LIMITED\nFRAME\n\xeb\x80\x80";
+    struct glint_image image = image_of(GLINT_I420, 2, 2, (void *)"abcdA1");
+    struct glint_y4m_sink y4m;
+    struct glint_error error;
+
+    (void)state;
+    glint_y4m_sink_open(&y4m, path, 0, 0);
+    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_null(y4m.mem);
+    y4m.sink.close(&y4m.sink);
+    y4m.sink.close(&y4m.sink);
+    expect_file(planes, sizeof planes - 1);
+    image = image_of(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
+    image.range = GLINT_RANGE_FULL;
+    glint_y4m_sink_open(&y4m, path, 30, 1);
+    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    y4m.sink.close(&y4m.sink);
+    expect_file(white, sizeof white - 1);
+}
+
+/* A pipe of 64 KiB that nobody reads: frames are dropped, not waited for. */
+static void test_y4m_slow_reader(void **state)
+{
+    static uint8_t mem[4096 * 3], sink_hole[65536];
+    const struct glint_image image = image_of(GLINT_GREY, 96, 128, mem);
+    struct glint_y4m_sink y4m;
+    struct glint_error error;
+    char name[32];
+    int fd[2];
+
+    (void)state;
+    assert_int_equal(pipe(fd), 0);
+    snprintf(name, sizeof name, "/dev/fd/%d", fd[1]);
+    glint_y4m_sink_open(&y4m, name, 25, 1);
+    for (int i = 0; i < 4; i++) /* fill it: 12288 and a line each */
+        assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_int_equal(y4m.n_dropped, 0);
+    assert_int_equal(fcntl(fd[1], F_SETFL, O_NONBLOCK), 0);
+    while (write(fd[1], mem, 100) > 0)
+        ;
+    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_int_equal(y4m.n_dropped, 1);
+    assert_int_equal(y4m.n_frames, 4);
+    while (read(fd[0], sink_hole, sizeof sink_hole) == sizeof sink_hole)
+        ;
+    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
+    assert_int_equal(y4m.n_frames, 5);
+    close(fd[0]);
+    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_CLOSED);
+    y4m.sink.close(&y4m.sink);
+    close(fd[1]);
+}
+
+static void test_y4m_refused(void **state)
+{
+    const struct glint_image image = image_of(GLINT_YUYV, 2, 1, (void *)"aAb1");
+    struct glint_y4m_sink y4m;
+    struct glint_error error;
+
+    (void)state;
+    glint_y4m_sink_open(&y4m, "/nowhere/x.y4m", 25, 1);
+    assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
+    assert_null(y4m.mem);
+    y4m.sink.close(&y4m.sink);
+}
+
+static void test_null(void **state)
+{
+    const struct glint_image image = image_of(GLINT_YUYV, 2, 1, (void *)"aAb1");
+    struct glint_null_sink null;
+    struct glint_error error;
+
+    (void)state;
+    glint_null_sink_open(&null);
+    assert_int_equal(null.sink.put(&null.sink, &image, &error), GLINT_OK);
+    assert_int_equal(null.n_frames, 1);
+    null.sink.close(&null.sink);
+}
+
+/* ------------------------------------------------------------- V4L2 output */
+
+static struct {
+    uint32_t caps, stride, size, fourcc; /* 0: as asked */
+    unsigned long fail_request;          /* that ioctl, with this: */
+    int fail_errno, write_errno;
+    int n_streaming;
+    ssize_t most; /* bytes that a write takes; 0: all */
+    struct v4l2_format set;
+    struct v4l2_streamparm parm;
+} node;
+
+int __real_ioctl(int fd, unsigned long request, ...);
+int __wrap_ioctl(int fd, unsigned long request, ...);
+ssize_t __real_write(int fd, const void *data, size_t bytes);
+ssize_t __wrap_write(int fd, const void *data, size_t bytes);
+
+static bool is_node(int fd)
+{
+    struct stat a, b;
+
+    return fstat(fd, &a) == 0 && stat(path, &b) == 0 && a.st_ino == b.st_ino;
+}
+
+static void answer_format(struct v4l2_format *f)
+{
+    struct v4l2_pix_format *const px = &f->fmt.pix;
+
+    assert_int_equal(f->type, V4L2_BUF_TYPE_VIDEO_OUTPUT);
+    px->bytesperline = node.stride;
+    px->sizeimage = node.size;
+    if (node.fourcc)
+        px->pixelformat = node.fourcc;
+    node.set = *f;
+}
+
+int __wrap_ioctl(int fd, unsigned long request, ...)
+{
+    va_list args;
+    void *arg;
+
+    va_start(args, request);
+    arg = va_arg(args, void *);
+    va_end(args);
+    if (!is_node(fd) || !node.caps)
+        return __real_ioctl(fd, request, arg);
+    if (node.fail_errno && request == node.fail_request) {
+        errno = node.fail_errno;
+        return -1;
+    }
+    if (request == VIDIOC_QUERYCAP)
+        *(struct v4l2_capability *)arg =
+            (struct v4l2_capability){.card = "fake",
+                                     .capabilities = V4L2_CAP_DEVICE_CAPS,
+                                     .device_caps = node.caps};
+    else if (request == VIDIOC_S_FMT)
+        answer_format(arg);
+    else if (request == VIDIOC_S_PARM)
+        memcpy(&node.parm, arg, sizeof node.parm);
+    else if (request == VIDIOC_STREAMON)
+        node.n_streaming++;
+    else
+        fail_msg("ioctl %lx", request);
+    return 0;
+}
+
+ssize_t __wrap_write(int fd, const void *data, size_t bytes)
+{
+    if (!node.caps || !is_node(fd))
+        return __real_write(fd, data, bytes);
+    if (node.write_errno) {
+        errno = node.write_errno;
+        return -1;
+    }
+    if (node.most && bytes > (size_t)node.most)
+        bytes = (size_t)node.most;
+    return __real_write(fd, data, bytes);
+}
+
+static void reset_node(void)
+{
+    memset(&node, 0, sizeof node);
+    node.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_READWRITE;
+    assert_int_equal(truncate(path, 0), 0);
+}
+
+static void must_open(struct glint_v4l2_sink *out,
+                      const struct glint_image *like)
+{
+    struct glint_error error;
+
+    if (glint_v4l2_sink_open(out, path, like, 30, 1, &error))
+        fail_msg("%s", error.text);
+}
+
+static void test_v4l2(void **state)
+{
+    struct glint_image image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_v4l2_sink out;
+    struct glint_error error;
+
+    (void)state;
+    reset_node();
+    image.matrix = GLINT_MATRIX_BT709;
+    must_open(&out, &image);
+    assert_string_equal(out.card, "fake");
+    assert_int_equal(node.set.fmt.pix.pixelformat, V4L2_PIX_FMT_YUYV);
+    assert_int_equal(node.set.fmt.pix.ycbcr_enc, V4L2_YCBCR_ENC_709);
+    assert_int_equal(node.set.fmt.pix.quantization,
+                     V4L2_QUANTIZATION_LIM_RANGE);
+    assert_int_equal(node.set.fmt.pix.priv, V4L2_PIX_FMT_PRIV_MAGIC);
+    assert_int_equal(node.parm.parm.output.timeperframe.denominator, 30);
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    expect_file("aAb1cBd2", 8);
+    assert_int_equal(out.n_frames, 1);
+    assert_int_equal(node.n_streaming, 1);
+    out.sink.close(&out.sink);
+    out.sink.close(&out.sink);
+    assert_int_equal(out.fd, -1);
+}
+
+/* Rows longer than they need, of the device or of the picture. */
+static void test_v4l2_strides(void **state)
+{
+    static const uint8_t zero;
+    struct glint_image image =
+        image_of(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
+    struct glint_v4l2_sink out;
+    struct glint_error error;
+    char want[] = "abcd..efgh..AB.CD.";
+
+    (void)state;
+    for (char *c = want; *c; c++)
+        if (*c == '.')
+            *c = (char)zero;
+    reset_node();
+    node.stride = 6;
+    node.size = 100;
+    must_open(&out, &image);
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    expect_file(want, 18);
+    out.sink.close(&out.sink);
+
+    reset_node();
+    image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
+    image.stride_bytes[0] = 6;
+    must_open(&out, &image);
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    expect_file("aAb1cBd2", 8);
+    out.sink.close(&out.sink);
+
+    reset_node();
+    image = image_of(GLINT_NV12, 2, 2, (void *)"abcdA1");
+    node.stride = 3;
+    must_open(&out, &image);
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    expect_file("ab\0cd\0A1", 9);
+    out.sink.close(&out.sink);
+
+    reset_node(); /* planes that do not follow each other */
+    image = image_of(GLINT_NV12, 2, 2, (void *)"abcd..A1");
+    image.plane[1] += 2;
+    must_open(&out, &image);
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    expect_file("abcdA1", 6);
+    out.sink.close(&out.sink);
+}
+
+static void test_v4l2_no_room(void **state)
+{
+    const struct glint_image image = image_of(GLINT_GREY, 4, 1, (void *)"abcd");
+    struct glint_v4l2_sink out;
+    struct glint_error error;
+
+    (void)state;
+    reset_node();
+    must_open(&out, &image);
+    node.write_errno = EAGAIN;
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_OK);
+    assert_int_equal(out.n_dropped, 1);
+    node.write_errno = ENODEV;
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_E_DEVICE);
+    assert_non_null(strstr(error.text, ": write: "));
+    assert_non_null(strstr(error.text, "went away"));
+    node.write_errno = 0;
+    node.most = 3;
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_E_DEVICE);
+    assert_non_null(strstr(error.text, "took 3 of 4 bytes"));
+    assert_int_equal(out.n_frames, 0);
+    out.sink.close(&out.sink);
+}
+
+static void expect_refused(enum glint_status status, const char *part)
+{
+    const struct glint_image image =
+        image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_v4l2_sink out;
+    struct glint_error error;
+
+    assert_int_equal(glint_v4l2_sink_open(&out, path, &image, 30, 1, &error),
+                     status);
+    if (!strstr(error.text, part))
+        fail_msg("\"%s\" is not in \"%s\"", part, error.text);
+    assert_int_equal(out.fd, -1);
+    assert_null(out.mem);
+}
+
+static void test_v4l2_refuses(void **state)
+{
+    struct glint_image image = image_of(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_v4l2_sink out;
+    struct glint_error error;
+
+    (void)state;
+    reset_node();
+    node.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
+    expect_refused(GLINT_E_DEVICE, "fake is no video output");
+    node.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
+    expect_refused(GLINT_E_DEVICE, "takes no frames by write()");
+    reset_node();
+    node.fourcc = V4L2_PIX_FMT_MJPEG;
+    expect_refused(GLINT_E_DEVICE, "takes MJPG 2 x 2, not YUYV 2 x 2");
+    reset_node();
+    node.fail_request = VIDIOC_S_FMT;
+    node.fail_errno = EBUSY;
+    expect_refused(GLINT_E_DEVICE, "VIDIOC_S_FMT: Device or resource busy; "
+                                   "another program");
+    reset_node();
+    node.stride = 8;
+    node.size = 15;
+    expect_refused(GLINT_E_DEVICE, "frames of 15 bytes, rows of 8");
+    reset_node();
+    node.fail_request = VIDIOC_QUERYCAP;
+    node.fail_errno = ENODEV;
+    expect_refused(GLINT_E_DEVICE, "VIDIOC_QUERYCAP: No such device");
+    node.caps = 0; /* a file */
+    expect_refused(GLINT_E_DEVICE, "is not a video device");
+    image.format = GLINT_I444;
+    assert_int_equal(glint_v4l2_sink_open(&out, path, &image, 0, 0, &error),
+                     GLINT_E_UNSUPPORTED);
+    image.format = GLINT_YUYV;
+    assert_int_equal(
+        glint_v4l2_sink_open(&out, "/dev/video-none", &image, 0, 0, &error),
+        GLINT_E_DEVICE);
+    assert_non_null(strstr(error.text, "modprobe v4l2loopback"));
+    /* another word for the same */
+    reset_node();
+    node.fourcc = V4L2_PIX_FMT_BGR32;
+    image.format = GLINT_XRGB8888;
+    must_open(&out, &image);
+    out.sink.close(&out.sink);
+    image.format = GLINT_YUYV;
+    /* a rate that the driver does not want to know */
+    reset_node();
+    node.fail_request = VIDIOC_S_PARM;
+    node.fail_errno = ENOTTY;
+    must_open(&out, &image);
+    image.width = 1;
+    assert_int_equal(out.sink.put(&out.sink, &image, &error), GLINT_E_DEVICE);
+    out.sink.close(&out.sink);
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    return close(mkstemp(path));
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return unlink(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_planes),
+        cmocka_unit_test(test_from_rgb),
+        cmocka_unit_test(test_y4m),
+        cmocka_unit_test(test_y4m_formats),
+        cmocka_unit_test(test_y4m_slow_reader),
+        cmocka_unit_test(test_y4m_refused),
+        cmocka_unit_test(test_null),
+        cmocka_unit_test(test_v4l2),
+        cmocka_unit_test(test_v4l2_strides),
+        cmocka_unit_test(test_v4l2_no_room),
+        cmocka_unit_test(test_v4l2_refuses),
+    };
+
+    return cmocka_run_group_tests_name("sinks", tests, enter, leave);
+}

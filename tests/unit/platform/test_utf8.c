@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Text from files: what reaches a terminal, and what stands in JSON.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <string.h>
+
+#include "posix/error.h"
+#include "posix/utf8.h"
+#include "options/tool.h"
+
+static const struct {
+    const char *text, *clean, *json;
+} cases[] = {
+    {"plain", "plain", "\"plain\""},
+    {"a\033[2Jb\x7f", "a?[2Jb?", "\"a\\u001b[2Jb\\u007f\""},
+    {"K\xc3\xb6ln \xe2\x98\x85 \xf0\x9f\x94\xa6",
+     "K\xc3\xb6ln \xe2\x98\x85 \xf0\x9f\x94\xa6",
+     "\"K\xc3\xb6ln \xe2\x98\x85 \xf0\x9f\x94\xa6\""},
+    {"\xc2\x9b"
+     "31m",
+     "??31m", "\"\\ufffd\\ufffd31m\""}, /* CSI */
+    {"\x9b"
+     "31m",
+     "?31m", "\"\\ufffd31m\""},
+    {"\xc0\xaf \xed\xa0\x80 \xf4\x90\x80\x80", "?? ??? ????",
+     "\"\\ufffd\\ufffd \\ufffd\\ufffd\\ufffd \\ufffd\\ufffd\\ufffd\\ufffd\""},
+    {"cut \xe2\x98", "cut ??", "\"cut \\ufffd\\ufffd\""},
+    {"\"\\", "\"\\", "\"\\\"\\\\\""},
+};
+
+static void test_clean(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[64];
+
+        snprintf(text, sizeof text, "%s", cases[k].text);
+        glint_utf8_clean(text);
+        assert_string_equal(text, cases[k].clean);
+    }
+}
+
+static void test_errors(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct glint_error error;
+        char want[80];
+
+        glint_error_report(&error, GLINT_E_IO, "x", "%s", cases[k].text);
+        snprintf(want, sizeof want, "x: %s", cases[k].clean);
+        assert_string_equal(error.text, want);
+    }
+}
+
+static void test_json(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        FILE *file = tmpfile();
+        char got[128];
+
+        assert_non_null(file);
+        tool_json_string(file, cases[k].text);
+        rewind(file);
+        got[fread(got, 1, sizeof got - 1, file)] = '\0';
+        assert_string_equal(got, cases[k].json);
+        fclose(file);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_clean),
+        cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_json),
+    };
+
+    return cmocka_run_group_tests_name("utf8", tests, NULL, NULL);
+}

@@ -1,0 +1,641 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * YUV4MPEG2: headers, odd sizes, every truncation, round trips.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "formats/y4m.h"
+#include "formats/y4m_light.h"
+
+#define BYTES(text) text, sizeof text - 1
+
+/* Luma 9 bytes, chroma 4 and 4: 17 a frame. */
+#define SMALL                  \
+    "YUV4MPEG2 W3 H3 F25:1\n"  \
+    "FRAME\nabcdefghiCDEFcdef" \
+    "FRAME Ip Xq=1\nABCDEFGHI01234567"
+
+static struct glint_error error;
+
+/* Bytes that arrive CHUNK at a time, then fail or end. */
+struct memory {
+    const char *data;
+    size_t bytes, at, chunk;
+    bool fails;
+};
+
+static ptrdiff_t pull(void *ctx, void *dst, size_t bytes)
+{
+    struct memory *const m = ctx;
+    size_t n = m->bytes - m->at;
+
+    if (n == 0 && m->fails) {
+        errno = EIO;
+        return -1;
+    }
+    n = n < m->chunk ? n : m->chunk;
+    n = n < bytes ? n : bytes;
+    memcpy(dst, m->data + m->at, n);
+    m->at += n;
+    return (ptrdiff_t)n;
+}
+
+static enum glint_status parse(struct glint_y4m_header *header,
+                               const char *line)
+{
+    return glint_y4m_header_parse(header, line, "x.y4m", &error);
+}
+
+/* ------------------------------------------------------------------ header */
+
+static void test_ffmpeg_header(void **state)
+{
+    static const char line[] = "YUV4MPEG2 W720 H405 F25:1 Ip A1:1 C420mpeg2 "
+                               "XYSCSS=420MPEG2 XCOLORRANGE=LIMITED";
+    struct glint_y4m_header h;
+    char printed[GLINT_Y4M_PRINTED];
+    size_t len;
+
+    (void)state;
+    assert_int_equal(parse(&h, line), GLINT_OK);
+    assert_int_equal(h.width, 720);
+    assert_int_equal(h.height, 405);
+    assert_int_equal(h.format, GLINT_I420);
+    assert_int_equal(h.range, GLINT_RANGE_LIMITED);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
+    assert_int_equal(h.fps_num, 25);
+    assert_int_equal(h.fps_den, 1);
+    assert_int_equal(h.interlace, 'p');
+    assert_string_equal(h.extra, " XYSCSS=420MPEG2");
+    len = glint_y4m_header_print(printed, &h);
+    assert_int_equal(len, sizeof line);
+    assert_memory_equal(printed, line, sizeof line - 1);
+    assert_int_equal(printed[len - 1], '\n');
+
+    h.range = GLINT_RANGE_FULL; /* overruled: the output says so */
+    glint_y4m_header_print(printed, &h);
+    assert_non_null(strstr(printed, " XCOLORRANGE=FULL\n"));
+    assert_null(strstr(printed, "LIMITED"));
+}
+
+static void expect_format(const char *tag, enum glint_pixel_format format)
+{
+    struct glint_y4m_header h;
+    char line[100], printed[GLINT_Y4M_PRINTED];
+
+    snprintf(line, sizeof line, "YUV4MPEG2 W5 H3 F30000:1001%s\n", tag);
+    line[strlen(line) - 1] = 0;
+    assert_int_equal(parse(&h, line), GLINT_OK);
+    assert_int_equal(h.format, format);
+    assert_int_equal(h.range, GLINT_RANGE_LIMITED);
+    assert_int_equal(h.fps_num, 30000);
+    assert_int_equal(h.fps_den, 1001);
+    glint_y4m_header_print(printed, &h);
+    assert_memory_equal(printed, line, strlen(line));
+    assert_string_equal(printed + strlen(line), "\n");
+}
+
+static void test_formats(void **state)
+{
+    (void)state;
+    expect_format("", GLINT_I420);
+    expect_format(" C420", GLINT_I420);
+    expect_format(" C420jpeg", GLINT_I420);
+    expect_format(" C420mpeg2", GLINT_I420);
+    expect_format(" C420paldv", GLINT_I420);
+    expect_format(" It C422", GLINT_I422);
+    expect_format(" I? A0:0 C444", GLINT_I444);
+    expect_format(" Im A10:11 Cmono", GLINT_GREY);
+    expect_format(" Ib C420 Zwhat XANY=thing", GLINT_I420);
+    expect_format(" C420p10 XANY=thing Ip", GLINT_I420);
+    expect_format(" C422p12", GLINT_I422);
+    expect_format(" C444p16", GLINT_I444);
+    expect_format(" Cmono9", GLINT_GREY);
+    expect_format(" C411", GLINT_I422);
+    expect_format(" C444alpha", GLINT_I444);
+}
+
+static void test_range_and_matrix(void **state)
+{
+    struct glint_y4m_header h;
+
+    (void)state;
+    assert_int_equal(
+        parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
+    assert_int_equal(h.range, GLINT_RANGE_FULL);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
+    assert_int_equal(h.fps_num, 0);
+    assert_int_equal(h.fps_den, 0);
+    assert_int_equal(parse(&h, "YUV4MPEG2 W1280 H719 XCOLORRANGE=OTHER"),
+                     GLINT_OK);
+    assert_int_equal(h.range, GLINT_RANGE_LIMITED);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
+    assert_string_equal(h.extra, " XCOLORRANGE=OTHER");
+    /* what JPEG pictures become is BT.601 of any size */
+    assert_int_equal(
+        parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
+    assert_int_equal(
+        parse(&h, "YUV4MPEG2 W1280 H720 C420mpeg2 XCOLORRANGE=FULL"), GLINT_OK);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
+    assert_int_equal(parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg"), GLINT_OK);
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
+}
+
+static void refuse(enum glint_status status, const char *line)
+{
+    struct glint_y4m_header h = {.width = 77};
+
+    if (parse(&h, line) != status)
+        fail_msg("%s", line);
+    assert_memory_equal(error.text, "x.y4m: ", 7);
+    assert_int_equal(h.width, 77);
+}
+
+static void test_hostile_headers(void **state)
+{
+    static const char *const malformed[] = {
+        "",
+        "YUV4MPEG",
+        "YUV4MPEG2",
+        "YUV4MPEG22 W3 H3",
+        "YUV4MPEG2 W3",
+        "YUV4MPEG2 H3",
+        "YUV4MPEG2 W0 H3",
+        "YUV4MPEG2 W3 H-3",
+        "YUV4MPEG2 W3 H3.0",
+        "YUV4MPEG2 W H3",
+        "YUV4MPEG2 W3 H3 F",
+        "YUV4MPEG2 W3 H3 F25",
+        "YUV4MPEG2 W3 H3 F25:",
+        "YUV4MPEG2 W3 H3 F25:0",
+        "YUV4MPEG2 W3 H3 F25:1:1",
+        "YUV4MPEG2 W3 H3 F-1:1",
+        "YUV4MPEG2 W3 H3 I",
+        "YUV4MPEG2 W3 H3 Ix",
+        "YUV4MPEG2 W3 H3 Ipp",
+        "YUV4MPEG2 W3 H3 A1",
+        "YUV4MPEG2 W3 H3 A1:1234567890123456789012345",
+        "YUV4MPEG2 W3 H3 C",
+        "YUV4MPEG2 W3 H3 C420jpegjpegjpegjpeg",
+        "YUV4MPEG2 W3 H3 X\tY",
+        "YUV4MPEG2 W3 H3\r",
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof malformed / sizeof *malformed; i++)
+        refuse(GLINT_E_FORMAT, malformed[i]);
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W32769 H3");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H32769");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W4294967299 H3");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C440");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C444alphap10");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420jpegp10");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 Cmono8");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p11");
+    refuse(GLINT_E_UNSUPPORTED, "YUV4MPEG2 W3 H3 C420p100");
+    assert_string_equal(error.text,
+                        "x.y4m: C420p100 is none of 420, 422, 444 (to p16), "
+                        "411, 444alpha and mono (to mono16)");
+}
+
+static void test_own_header(void **state)
+{
+    struct glint_y4m_header h;
+    char printed[GLINT_Y4M_PRINTED];
+
+    (void)state;
+    glint_y4m_header_init(&h, 640, 480, GLINT_I420, 30, 1);
+    glint_y4m_header_print(printed, &h);
+    assert_string_equal(printed,
+                        "YUV4MPEG2 W640 H480 F30:1 Ip A1:1 C420jpeg\n");
+    glint_y4m_header_init(&h, 5, 1080, GLINT_GREY, 0, 0);
+    h.range = GLINT_RANGE_FULL;
+    assert_int_equal(h.matrix, GLINT_MATRIX_BT709);
+    glint_y4m_header_print(printed, &h);
+    assert_string_equal(
+        printed, "YUV4MPEG2 W5 H1080 F0:0 Ip A1:1 Cmono XCOLORRANGE=FULL\n");
+}
+
+/* ----------------------------------------------------------------- reading */
+
+static void test_frames(void **state)
+{
+    (void)state;
+    for (size_t chunk = 1; chunk < 90; chunk++) {
+        struct memory memory = {BYTES(SMALL), 0, chunk, false};
+        struct glint_y4m_reader reader;
+        const struct glint_image *frame;
+
+        assert_int_equal(
+            glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error),
+            GLINT_OK);
+        assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error),
+                         GLINT_OK);
+        assert_int_equal(frame->format, GLINT_I420);
+        assert_int_equal(frame->transfer, GLINT_TONE_BT709);
+        assert_int_equal(frame->stride_bytes[0], 3);
+        assert_int_equal(frame->stride_bytes[1], 2);
+        assert_memory_equal(frame->plane[0], "abcdefghi", 9);
+        assert_memory_equal(frame->plane[1], "CDEF", 4);
+        assert_memory_equal(frame->plane[2], "cdef", 4);
+        assert_string_equal(reader.frame_tags, "");
+        assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error),
+                         GLINT_OK);
+        assert_memory_equal(frame->plane[2], "4567", 4);
+        assert_string_equal(reader.frame_tags, " Ip Xq=1");
+        assert_int_equal(reader.n_frames, 2);
+        assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error),
+                         GLINT_OK);
+        assert_null(frame);
+        glint_y4m_reader_close(&reader);
+        glint_y4m_reader_close(&reader);
+    }
+}
+
+/* Reads DATA to its end or its first error; FRAMES: how many came whole. */
+static enum glint_status read_all(const char *data, size_t bytes, long *frames,
+                                  bool fails)
+{
+    struct memory memory = {data, bytes, 0, 7, fails};
+    struct glint_y4m_reader reader;
+    const struct glint_image *frame = NULL;
+    enum glint_status status =
+        glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error);
+
+    while (!status &&
+           !(status = glint_y4m_reader_next(&reader, &frame, &error)) && frame)
+        ;
+    *frames = reader.n_frames;
+    glint_y4m_reader_close(&reader);
+    return status;
+}
+
+/* Header 22 bytes, first frame 6 + 17, second 14 + 17. */
+static void test_every_truncation(void **state)
+{
+    long frames;
+
+    (void)state;
+    for (size_t n = 0; n < sizeof SMALL; n++) {
+        const int whole = n == 22 || n == 45 || n == 76;
+
+        assert_int_equal(read_all(SMALL, n, &frames, false),
+                         whole ? GLINT_OK : GLINT_E_FORMAT);
+        assert_int_equal(frames, n < 45 ? 0 : n < 76 ? 1 : 2);
+        assert_int_equal(read_all(SMALL, n, &frames, true), GLINT_E_IO);
+    }
+    read_all(SMALL, 75, &frames, false);
+    assert_string_equal(error.text, "x.y4m: frame 1: ends after 16 of 17 "
+                                    "bytes");
+    read_all(SMALL, 47, &frames, false);
+    assert_string_equal(error.text, "x.y4m: frame 1: malformed FRAME line");
+    read_all(SMALL, 21, &frames, false);
+    assert_string_equal(error.text, "x.y4m: ends inside the Y4M header");
+    read_all(SMALL, 0, &frames, false);
+    assert_string_equal(error.text, "x.y4m: is empty");
+    read_all("RIFFxxxxAVI \n", 13, &frames, false);
+    assert_string_equal(error.text, "x.y4m: is not a YUV4MPEG2 stream");
+}
+
+static void test_long_lines(void **state)
+{
+    static char text[2000];
+    const size_t magic = strlen("YUV4MPEG2 W1 H1 C444 X");
+    long frames;
+
+    (void)state;
+    memset(text, 'x', sizeof text);
+    memcpy(text, "YUV4MPEG2 W1 H1 C444 X", magic);
+    assert_int_equal(read_all(text, sizeof text, &frames, false),
+                     GLINT_E_FORMAT);
+    assert_string_equal(error.text, "x.y4m: has a Y4M header that is too long");
+    text[GLINT_Y4M_LINE] = '\n';
+    assert_int_equal(read_all(text, sizeof text, &frames, false),
+                     GLINT_E_FORMAT);
+    text[GLINT_Y4M_LINE - 1] = '\n';
+    memcpy(text + GLINT_Y4M_LINE, "FRAME ", 6);
+    assert_int_equal(read_all(text, sizeof text, &frames, false),
+                     GLINT_E_FORMAT);
+    assert_string_equal(error.text, "x.y4m: frame 0: malformed FRAME line");
+    text[GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS - 1] = '\n';
+    assert_int_equal(read_all(text,
+                              GLINT_Y4M_LINE + 5 + GLINT_Y4M_FRAME_TAGS + 3,
+                              &frames, false),
+                     GLINT_OK);
+    assert_int_equal(frames, 1);
+}
+
+static void test_hostile_frames(void **state)
+{
+    static const struct {
+        const char *text;
+        size_t bytes;
+    } bad[] = {
+        {BYTES("YUV4MPEG2 W1 H1 Cmono\nFRAMEaFRAME\nb")},
+        {BYTES("YUV4MPEG2 W1 H1 Cmono\nFRAME\nab")},
+        {BYTES("YUV4MPEG2 W1 H1 Cmono\nframe\na")},
+        {BYTES("YUV4MPEG2 W1 H1 Cmono\n\nFRAME\na")},
+        {BYTES("YUV4MPEG2 W1 H1 Cmono\nFRAME \0\na")},
+        {BYTES("YUV4MPEG2 W1 H1 Cmono\nFRAME\r\na")},
+        {BYTES("YUV4MPEG2 W1 H1 \0Cmono\nFRAME\na")},
+        {BYTES("YUV4MPEG2 W8192 H8192 C444\nFRAME\na")},
+    };
+    long frames;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        if (read_all(bad[i].text, bad[i].bytes, &frames, false) !=
+            GLINT_E_FORMAT)
+            fail_msg("%s", bad[i].text);
+}
+
+/* -------------------------------------------------------------- round trips */
+
+static char path[] = "/tmp/glint-test-y4m-XXXXXX";
+
+static int enter(void **state)
+{
+    (void)state;
+    const int fd = mkstemp(path);
+
+    return fd < 0 ? -1 : close(fd);
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return unlink(path);
+}
+
+static void expect_path(const char *want, size_t want_bytes)
+{
+    uint8_t *data;
+    size_t bytes;
+
+    assert_int_equal(glint_input_slurp(&data, &bytes, path, 1 << 24, &error),
+                     GLINT_OK);
+    assert_int_equal(bytes, want_bytes);
+    assert_memory_equal(data, want, bytes);
+    free(data);
+}
+
+/* Copies DATA to PATH frame by frame; the copy is DATA again. */
+static void check_copy(const char *data, size_t bytes)
+{
+    struct memory memory = {data, bytes, 0, 5000, false};
+    struct glint_y4m_reader reader;
+    struct glint_y4m_writer writer;
+    const struct glint_image *frame;
+
+    assert_int_equal(
+        glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error),
+        GLINT_OK);
+    assert_int_equal(
+        glint_y4m_writer_open(&writer, path, &reader.header, &error), GLINT_OK);
+    while (!glint_y4m_reader_next(&reader, &frame, &error) && frame)
+        assert_int_equal(
+            glint_y4m_writer_put(&writer, frame, reader.frame_tags, &error),
+            GLINT_OK);
+    assert_int_equal(writer.n_frames, reader.n_frames);
+    assert_int_equal(glint_y4m_writer_commit(&writer, &error), GLINT_OK);
+    glint_y4m_reader_close(&reader);
+    expect_path(data, bytes);
+}
+
+static void test_copies(void **state)
+{
+    (void)state;
+    check_copy(BYTES(SMALL));
+    check_copy(BYTES("YUV4MPEG2 W3 H1 F0:0 It A1:1 C422 XYSCSS=422\n"
+                     "FRAME\nabcBCbc"));
+    check_copy(BYTES("YUV4MPEG2 W2 H1 F5:1 C444\nFRAME\nabBCbc"));
+    check_copy(BYTES("YUV4MPEG2 W2 H1 F5:1 Cmono XCOLORRANGE=FULL\n"
+                     "FRAME\nab"));
+    check_copy(BYTES("YUV4MPEG2 W1 H1 F5:1\nFRAME\nabc"));
+    check_copy(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n")); /* no frames at all */
+}
+
+/* --------------------------------------------------------- depth and layout */
+
+/* Frames as they are stored, and what is seen of them. */
+static void check_planes(const char *data, size_t bytes, const char *seen,
+                         size_t n_seen)
+{
+    const struct glint_image *frame;
+    struct memory m = {data, bytes, 0, 7, false};
+    struct glint_y4m_reader reader;
+
+    assert_int_equal(glint_y4m_reader_start(&reader, pull, &m, "x.y4m", &error),
+                     GLINT_OK);
+    assert_int_equal(glint_y4m_reader_next(&reader, &frame, &error), GLINT_OK);
+    assert_non_null(frame);
+    assert_memory_equal(frame->plane[0], seen, n_seen);
+    glint_y4m_reader_close(&reader);
+}
+
+static void test_deep_frames(void **state)
+{
+    (void)state;
+    /* 3 x 3 of 10 bits: luma 9, chroma 4 and 4 samples of two bytes */
+    check_planes(BYTES("YUV4MPEG2 W3 H1 C420p10\nFRAME\n"
+                       "\x40\x00\xac\x03\xff\x03"
+                       "\x00\x02\x04\x02"
+                       "\xff\x01\x00\x00"),
+                 BYTES("\x10\xeb\xff"
+                       "\x80\x81"
+                       "\x7f\x00"));
+    check_planes(BYTES("YUV4MPEG2 W2 H1 Cmono16\nFRAME\n\xff\x12\x00\xab"),
+                 BYTES("\x12\xab"));
+    check_planes(BYTES("YUV4MPEG2 W6 H1 C411\nFRAME\nabcdefuvUV"),
+                 BYTES("abcdefuuvUUV"));
+    check_planes(BYTES("YUV4MPEG2 W1 H1 C444alpha\nFRAME\nabcd"), BYTES("abc"));
+}
+
+/* Light on one frame of 3 x 3 of TAG, all samples CODE but chroma. */
+static void light_up(const char *tag, int code, int middle, const float *layer,
+                     uint8_t planes[72])
+{
+    static struct glint_y4m_light light;
+    struct glint_y4m_header h;
+    char line[80];
+    bool wide;
+    size_t n;
+
+    snprintf(line, sizeof line, "YUV4MPEG2 W3 H3 %s", tag);
+    assert_int_equal(parse(&h, line), GLINT_OK);
+    wide = h.layout.bits > 8;
+    n = glint_y4m_layout_bytes(&h.layout, 3, 3) / (wide ? 2 : 1);
+    for (size_t i = 0; i < n; i++) {
+        const int value = i < 9 ? code : middle;
+
+        planes[wide ? 2 * i : i] = (uint8_t)value;
+        if (wide)
+            planes[2 * i + 1] = (uint8_t)(value >> 8);
+    }
+    glint_y4m_light_init(&light, &h);
+    glint_y4m_light_add(&light, planes, layer);
+}
+
+static int wide_at(const uint8_t *planes, int i)
+{
+    return planes[2 * i] | planes[2 * i + 1] << 8;
+}
+
+/* White light of 0.18: BT.709 makes 0.409 of it (by hand: 1.099 * 0.18^0.45 -
+ * 0.099 = 0.4090), 64 + 876 * 0.4090 = 422.3 of 10 bits. */
+static void test_light(void **state)
+{
+    float layer[27] = {0};
+    uint8_t planes[72];
+
+    (void)state;
+    light_up("C420p10", 500, 512, layer, planes);
+    for (int i = 0; i < 9; i++)
+        assert_int_equal(wide_at(planes, i), 500);
+    layer[3 * 4] = layer[3 * 4 + 1] = layer[3 * 4 + 2] = 0.18F;
+    light_up("C420p10", 64, 512, layer, planes);
+    for (int i = 0; i < 17; i++)
+        assert_int_equal(wide_at(planes, i), i == 4 ? 422 : i < 9 ? 64 : 512);
+    light_up("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
+    assert_int_equal(wide_at(planes, 4), 1675); /* 4095 * 0.40901 */
+    layer[3 * 8] = 9; /* red alone, beyond white, at the odd corner */
+    light_up("C420p10", 64, 512, layer, planes);
+    assert_int_equal(wide_at(planes, 8), 326);  /* 64 + 876 * 0.299 */
+    assert_int_equal(wide_at(planes, 12), 361); /* 512 - 896 * 0.1687 */
+    assert_int_equal(wide_at(planes, 16), 960); /* 512 + 896 * 0.5 */
+    assert_int_equal(wide_at(planes, 9), 512);
+}
+
+/* A code that is white stays; one that is beyond does, too; alpha is not
+ * touched. */
+static void test_light_stays(void **state)
+{
+    float layer[27];
+    uint8_t planes[72];
+
+    (void)state;
+    for (int i = 0; i < 27; i++)
+        layer[i] = 0.5F;
+    light_up("C444p12 XCOLORRANGE=LIMITED", 3760, 2048, layer, planes);
+    for (int i = 0; i < 27; i++)
+        assert_int_equal(wide_at(planes, i), i < 9 ? 3760 : 2048);
+    light_up("C444p12", 4000, 2048, layer, planes);
+    assert_int_equal(wide_at(planes, 0), 4000);
+    light_up("C444alpha", 16, 128, layer, planes);
+    assert_int_equal(planes[35], 128);
+    assert_in_range(planes[0], 170, 176);
+}
+
+/* 720 x 405 as ffmpeg writes it: chroma has 203 rows. */
+static void test_odd_video(void **state)
+{
+    enum { FRAME = 720 * 405 + 2 * 360 * 203, HEADER = 80 };
+    const size_t bytes = HEADER + 2 * (6 + FRAME);
+    char *const data = malloc(bytes + 1);
+
+    (void)state;
+    assert_non_null(data);
+    assert_int_equal(snprintf(data, bytes, "%s%s\n",
+                              "YUV4MPEG2 W720 H405 F25:1 Ip A1:1 C420mpeg2 ",
+                              "XYSCSS=420MPEG2 XCOLORRANGE=LIMITED"),
+                     HEADER);
+    for (size_t i = 0; i < bytes; i++)
+        if (i >= HEADER)
+            data[i] = (char)(i * 7);
+    memcpy(data + HEADER, "FRAME\n", 6);
+    memcpy(data + HEADER + 6 + FRAME, "FRAME\n", 6);
+    check_copy(data, HEADER + 2 * (6 + FRAME));
+    free(data);
+}
+
+/* Rows with padding, and rows upside down. */
+static void test_strides(void **state)
+{
+    uint8_t luma[] = "ab--cd--ef--", cb[] = "y-z-", cr[] = "Y-Z-";
+    const struct glint_image frame = {.format = GLINT_I420,
+                                      .width = 2,
+                                      .height = 3,
+                                      .plane = {luma + 8, cb, cr},
+                                      .stride_bytes = {-4, 2, 2}};
+    struct glint_y4m_header header;
+    struct glint_y4m_writer writer;
+
+    (void)state;
+    glint_y4m_header_init(&header, 2, 3, GLINT_I420, 1, 1);
+    assert_int_equal(glint_y4m_writer_open(&writer, path, &header, &error),
+                     GLINT_OK);
+    assert_int_equal(glint_y4m_writer_put(&writer, &frame, "", &error),
+                     GLINT_OK);
+    assert_int_equal(glint_y4m_writer_commit(&writer, &error), GLINT_OK);
+    expect_path(BYTES("YUV4MPEG2 W2 H3 F1:1 Ip A1:1 C420jpeg\n"
+                      "FRAME\nefcdabyzYZ"));
+}
+
+static void test_full_device(void **state)
+{
+    struct glint_y4m_header header;
+    struct glint_y4m_writer writer;
+    uint8_t sample = 0;
+    const struct glint_image frame = {.format = GLINT_GREY,
+                                      .width = 1,
+                                      .height = 1,
+                                      .plane = {&sample, NULL, NULL},
+                                      .stride_bytes = {1, 0, 0}};
+
+    (void)state;
+    glint_y4m_header_init(&header, 1, 1, GLINT_GREY, 1, 1);
+    assert_int_equal(
+        glint_y4m_writer_open(&writer, "/dev/full", &header, &error), GLINT_OK);
+    assert_int_equal(glint_y4m_writer_put(&writer, &frame, "", &error),
+                     GLINT_E_OUTPUT);
+    assert_int_equal(writer.n_frames, 0);
+    glint_y4m_writer_abort(&writer);
+}
+
+static void test_missing_file(void **state)
+{
+    struct glint_y4m_reader reader;
+
+    (void)state;
+    assert_int_equal(glint_y4m_reader_open(&reader, "/nowhere/x.y4m", &error),
+                     GLINT_E_IO);
+    assert_string_equal(error.text,
+                        "/nowhere/x.y4m: No such file or directory");
+    glint_y4m_reader_close(&reader);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ffmpeg_header),
+        cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_range_and_matrix),
+        cmocka_unit_test(test_hostile_headers),
+        cmocka_unit_test(test_own_header),
+        cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_every_truncation),
+        cmocka_unit_test(test_long_lines),
+        cmocka_unit_test(test_hostile_frames),
+        cmocka_unit_test(test_copies),
+        cmocka_unit_test(test_deep_frames),
+        cmocka_unit_test(test_light),
+        cmocka_unit_test(test_light_stays),
+        cmocka_unit_test(test_odd_video),
+        cmocka_unit_test(test_strides),
+        cmocka_unit_test(test_full_device),
+        cmocka_unit_test(test_missing_file),
+    };
+
+    return cmocka_run_group_tests_name("y4m", tests, enter, leave);
+}

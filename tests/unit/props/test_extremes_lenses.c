@@ -1,0 +1,501 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Extreme lenses: f-numbers up to 1000, stops of 3 to 64 blades, sensors of 1
+ * to 100 mm, focal lengths of 1 mm to 10 m, the same lens a thousand times
+ * smaller and larger, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and
+ * two thousand. Pictures of models against exact ones.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/extreme.h"
+#include "support/stage.h"
+
+/* So small that each takes a tenth of a second. 40 dB is what a draft
+ * (tolerance 4: errors of 0.12 pixel, for faint ghosts of a pixel and of 2.4 %
+ * of energy) keeps of ghosts that are some ten pixels wide; most have 50. Flux
+ * within 3 %: these 2.4 %, and an outline a tenth of a pixel off. */
+enum { W = 144, H = 96 };
+
+#define LEAST_DB  40.0
+#define MOST_FLUX 0.03
+
+static struct stage stage;
+static float test[3 * W * H], exact[3 * W * H];
+
+struct worst {
+    double db, flux;
+};
+
+static struct worst fresh(void)
+{
+    return (struct worst){999, 0};
+}
+
+static void compare(struct worst *worst, const struct glint_lamp *lamp,
+                    const char *what, double value)
+{
+    struct measure m;
+
+    assert_true(stage_linear(&stage, lamp, 1, test));
+    assert_true(stage_exact(&stage, lamp, 1, 128, exact));
+    m = stage_compare(&stage, exact, test);
+    if (m.psnr_db < LEAST_DB || fabs(m.flux - 1) > MOST_FLUX)
+        print_message("  %s %g: %.1f dB, flux x %.4f\n", what, value, m.psnr_db,
+                      m.flux);
+    worst->db = fmin(worst->db, m.psnr_db);
+    worst->flux = fmax(worst->flux, fabs(m.flux - 1));
+}
+
+static bool report(const char *what, struct worst worst)
+{
+    char name[100];
+    bool ok;
+
+    snprintf(name, sizeof name, "lenses: %s, against exact", what);
+    ok = extreme_at_least(name, worst.db, LEAST_DB, "dB");
+    snprintf(name, sizeof name, "lenses: %s, flux", what);
+    return extreme_at_most(name, worst.flux, MOST_FLUX, "") && ok;
+}
+
+/* Two cemented surfaces, one free one, a stop behind: three ghosts. */
+static const char doublet[] = "name doublet\nf-number 5.6\nfilm 36 24\n"
+                              "surface 61.47 6 13 1.5168 64.17\n"
+                              "surface -44.64 2.5 13 1.6727 32.21\n"
+                              "surface -129.94 2 13 air\n"
+                              "stop 93 10\n";
+
+static void open_text(const char *text, int n_blades)
+{
+    stage_close(&stage);
+    assert_true(stage_parse(&stage, text));
+    assert_true(stage_prepare(&stage, n_blades));
+}
+
+static void bake(double max_deg)
+{
+    assert_true(stage_model(&stage, 4, max_deg));
+    stage_view(&stage, W, H, 0);
+}
+
+/* -------------------------------------------------------------------- the stop
+ */
+
+static void test_f_numbers(void **state)
+{
+    static const double f[] = {5.1, 8, 16, 45, 128, 1000};
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    struct worst worst = fresh();
+
+    (void)state;
+    for (int k = 0; k < 6; k++) {
+        struct glint_error error;
+
+        stage_close(&stage);
+        assert_true(stage_parse(&stage, doublet));
+        if (glint_prescription_set_f_number(&stage.lens, f[k], &error))
+            fail_msg("%s", error.text);
+        assert_true(stage_prepare(&stage, 8));
+        bake(8);
+        compare(&worst, &lamp, "f/", f[k]);
+    }
+    assert_true(report("f/5.1 (open) to f/1000", worst));
+}
+
+static void test_blades(void **state)
+{
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    struct worst worst = fresh();
+
+    (void)state;
+    open_text(doublet, 0);
+    bake(8);
+    for (int n = 0; n <= 64; n += n == 0 ? 3 : n < 12 ? 1 : 13) {
+        assert_true(stage_prepare(&stage, n));
+        assert_true(stage_model(&stage, 4, 8));
+        stage_view(&stage, W, H, 0);
+        compare(&worst, &lamp, "blades", n);
+    }
+    assert_true(report("stops of 3 to 64 blades and a circle", worst));
+}
+
+/* The image of a round stop 300 pixels wide, of which hardly anything but the
+ * outline bends: its chords must not show. 50 dB: 44.4 is what 8 cells across
+ * have, 54.5 what is planned for it. */
+static void test_round_stop(void **state)
+{
+    enum { WIDE = 432, HIGH = 288 };
+    const size_t bytes = sizeof(float) * 3 * WIDE * HIGH;
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    float *drawn = malloc(bytes), *want = malloc(bytes);
+    struct glint_error error;
+    double db;
+
+    (void)state;
+    assert_true(drawn && want);
+    stage_close(&stage);
+    assert_true(stage_parse(&stage, doublet));
+    assert_int_equal(glint_prescription_set_f_number(&stage.lens, 64, &error),
+                     GLINT_OK);
+    assert_true(stage_prepare(&stage, 0) && stage_model(&stage, 2, 8));
+    stage_view(&stage, WIDE, HIGH, 0);
+    assert_true(stage_linear(&stage, &lamp, 1, drawn));
+    assert_true(stage_exact(&stage, &lamp, 1, 128, want));
+    db = stage_compare(&stage, want, drawn).psnr_db;
+    free(drawn);
+    free(want);
+    assert_true(extreme_at_least("lenses: outline of a round stop, 300 pixels",
+                                 db, 50, "dB"));
+}
+
+/* Barrels that cut half of the light away, by 8 cells across and by 128: the
+ * outline's chords lie on both sides of it, not all within. 48 dB: 46.0 is what
+ * chords within have, 49.9 those about it. */
+static void test_barrels(void **state)
+{
+    static const char narrow[] = "name narrow\nf-number 5.6\nfilm 36 24\n"
+                                 "surface 61.47 6 7 1.5168 64.17\n"
+                                 "surface -44.64 2.5 7 1.6727 32.21\n"
+                                 "surface -129.94 2 7 air\n"
+                                 "stop 93 10\n";
+    enum { WIDE = 432, HIGH = 288 };
+    const size_t bytes = sizeof(float) * 3 * WIDE * HIGH;
+    const struct glint_lamp lamp = stage_lamp(7, 25, 1);
+    float *drawn = malloc(bytes), *want = malloc(bytes);
+    double db;
+
+    (void)state;
+    assert_true(drawn && want);
+    open_text(narrow, 8);
+    assert_true(stage_model(&stage, 1, 8));
+    stage_view(&stage, WIDE, HIGH, 0);
+    stage.frame.uniform = true;
+    stage.frame.max_cells = 128;
+    assert_true(stage_linear(&stage, &lamp, 1, want));
+    stage.frame.max_cells = 8;
+    assert_true(stage_linear(&stage, &lamp, 1, drawn));
+    db = stage_compare(&stage, want, drawn).psnr_db;
+    free(drawn);
+    free(want);
+    assert_true(extreme_at_least("lenses: outline of barrels, 8 cells against "
+                                 "128",
+                                 db, 48, "dB"));
+}
+
+/* --------------------------------------------------------------------- lengths
+ */
+
+/* A model is good for its film and a tenth more; larger sensors need another,
+ * as tools/options/scene.c bakes it. */
+static void test_sensors(void **state)
+{
+    static const double mm[] = {1, 2.5, 6.4, 36, 100};
+    const struct glint_lamp lamp = stage_lamp(4, 25, 1);
+    struct worst worst = fresh();
+
+    (void)state;
+    for (int k = 0; k < 5; k++) {
+        stage_close(&stage);
+        assert_true(stage_parse(&stage, doublet));
+        stage.lens.film_width_mm = mm[k];
+        stage.lens.film_height_mm = mm[k] * H / W;
+        assert_true(stage_prepare(&stage, 8));
+        bake(6);
+        compare(&worst, &lamp, "sensor", mm[k]);
+    }
+    assert_true(report("sensors of 1 to 100 mm", worst));
+}
+
+/* All lengths of the lens times FACTOR; films are not wavelengths and stay. */
+static void scale(struct glint_prescription *l, double factor)
+{
+    for (int k = 0; k < l->n_surfaces; k++) {
+        l->surface[k].radius_mm *= factor;
+        l->surface[k].thickness_mm *= factor;
+        l->surface[k].semi_mm *= factor;
+    }
+    l->stop_thickness_mm *= factor;
+    l->stop_semi_mm *= factor;
+    l->film_width_mm *= factor;
+    l->film_height_mm *= factor;
+    l->check_focal_mm = l->check_back_mm = 0;
+}
+
+static void open_scaled(double factor, double max_deg)
+{
+    stage_close(&stage);
+    assert_true(stage_load(&stage, "heliar-tronnier"));
+    scale(&stage.lens, factor);
+    assert_true(stage_prepare(&stage, 8));
+    assert_true(stage_model(&stage, 4, max_deg));
+    stage_view(&stage, W, H, 0);
+}
+
+/* Angles are all there is to optics without diffraction: a lens a thousand
+ * times smaller or larger throws the same picture on a film that went with it.
+ * With a factor of a power of two not even a rounding of double differs, so the
+ * exact picture has the same bits; with 1000 rays differ by 1e-15, and what
+ * they decide by a threshold may fall the other way for single rays. Models are
+ * held to 50 dB, as they are fitted anew: tighter than any bound on accuracy,
+ * so that a length in mm hidden in the bake shows. */
+static void test_scaled(void **state)
+{
+    static const double factor[] = {0x1p-10, 0x1p10, 1e-3, 1e3};
+    static float exact_one[3 * W * H], test_one[3 * W * H];
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    double bits = 0, db_exact = 999, db_model = 999, db_bits = 999;
+
+    (void)state;
+    open_scaled(1, 8);
+    assert_true(stage_linear(&stage, &lamp, 1, test_one));
+    assert_true(stage_exact(&stage, &lamp, 1, 128, exact_one));
+    for (int k = 0; k < 4; k++) {
+        double exact_db, model_db;
+
+        open_scaled(factor[k], 8);
+        assert_true(stage_linear(&stage, &lamp, 1, test));
+        assert_true(stage_exact(&stage, &lamp, 1, 128, exact));
+        exact_db = stage_compare(&stage, exact_one, exact).psnr_db;
+        model_db = stage_compare(&stage, test_one, test).psnr_db;
+        print_message("  x %g: exact %.1f dB, model %.1f dB\n", factor[k],
+                      exact_db, model_db);
+        if (k < 2) {
+            for (int i = 0; i < 3 * W * H; i++)
+                bits += exact[i] != exact_one[i];
+            db_bits = fmin(db_bits, model_db);
+        } else
+            db_exact = fmin(db_exact, exact_db);
+        db_model = fmin(db_model, model_db);
+    }
+    assert_true(extreme_at_most("lenses: scaled by 2^-10 and 2^10, samples of "
+                                "the exact picture that differ",
+                                bits, 0, "samples"));
+    assert_true(extreme_at_least("lenses: scaled by 1e-3 and 1e3, exact "
+                                 "pictures of both",
+                                 db_exact, 70, "dB"));
+    assert_true(extreme_at_least("lenses: scaled by 1e-3 and 1e3, models of "
+                                 "both",
+                                 db_model, 50, "dB"));
+}
+
+static void test_focal_lengths(void **state)
+{
+    static const double focal[] = {1, 10, 1000, 10000};
+    struct worst worst = fresh();
+    struct glint_optics o;
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+
+        stage_close(&stage);
+        assert_true(stage_parse(&stage, doublet));
+        glint_optics_of(&stage.lens, &o);
+        scale(&stage.lens, focal[k] / o.focal_mm);
+        assert_true(stage_prepare(&stage, 8));
+        bake(8);
+        compare(&worst, &lamp, "focal length", focal[k]);
+    }
+    assert_true(report("focal lengths of 1 mm to 10 m", worst));
+}
+
+/* ----------------------------------------------------------------------- radii
+ */
+
+static void test_smallest_ball(void **state)
+{
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    struct worst worst = fresh();
+
+    (void)state;
+    stage_close(&stage);
+    /* as small as the table takes: radii of 1/100 mm, scaled from 1.1 */
+    assert_true(stage_parse(&stage, "name ball\nf-number 4\nfilm 1 0.7\n"
+                                    "surface 1.1 1.1 1 1.5168 64.17\n"
+                                    "stop 1.1 0.3\n"
+                                    "surface -1.1 0.6 1 1.62 36.4\n"
+                                    "surface -1.6 0.5 1.5 air\n"));
+    scale(&stage.lens, 0.01 / 1.1);
+    assert_true(stage_prepare(&stage, 8));
+    bake(8);
+    compare(&worst, &lamp, "ball of mm", 0.01);
+    assert_true(report("radii of 1e-2 mm", worst));
+}
+
+/* A radius of 1e7 mm is a plane but for 1e-6 of a wavelength: its picture is
+ * the plane's. */
+static void test_nearly_planes(void **state)
+{
+    static const char *const radius[] = {"flat", "1e7", "-1e7", "1e9"};
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    static float plane[3 * W * H];
+    struct worst worst = fresh();
+    double db = 999;
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        char text[400];
+
+        snprintf(text, sizeof text,
+                 "name plate\nf-number 8\nfilm 36 24\n"
+                 "surface %s 3 14 1.62 36.4\n"
+                 "surface %s 1 14 air\n"
+                 "surface 51.68 5 12 1.5168 64.17\n"
+                 "surface %s 2 12 air\nstop 92 10\n",
+                 radius[k], radius[k], radius[k]);
+        open_text(text, 8);
+        bake(8);
+        compare(&worst, &lamp, "radius", k);
+        if (k == 0)
+            memcpy(plane, exact, sizeof plane);
+        db = fmin(db, stage_compare(&stage, plane, exact).psnr_db);
+    }
+    assert_true(report("planes and radii of 1e7 mm", worst));
+    assert_true(extreme_at_least("lenses: radii of 1e7 mm against planes", db,
+                                 70, "dB"));
+}
+
+/* -------------------------------------------------------------------- surfaces
+ */
+
+/* N surfaces of 100 mm together, the stop behind SPLIT of them; its sensor
+ * where the light comes to a focus. */
+static void open_many(int n, int split)
+{
+    struct glint_prescription *l = &stage.lens;
+    struct glint_optics o;
+
+    stage_close(&stage);
+    assert_true(stage_parse(&stage, doublet));
+    l->n_surfaces = n;
+    l->stop_after = split;
+    for (int k = 0; k < n; k++) /* planes behind, so that all have one power */
+        l->surface[k] = (struct glint_surface){
+            .radius_mm = k % 2 ? -3000.0 - 100 * k : 52.0 * n / 2,
+            .thickness_mm = k % 2 ? 0.6 : 1.5,
+            .semi_mm = 7,
+            .nd = k % 2 ? 1 : 1.5168,
+            .vd = k % 2 ? 0 : 64.17,
+            .coating_nm = 550,
+            .coating_n = 1.38};
+    l->stop_thickness_mm = 0.5;
+    l->stop_semi_mm = 6;
+    l->f_number = 12;
+    l->film_width_mm = 12;
+    l->film_height_mm = 8;
+    glint_optics_of(l, &o);
+    if (split == n)
+        l->stop_thickness_mm = o.back_focal_mm - l->surface[n - 1].thickness_mm;
+    else
+        l->surface[n - 1].thickness_mm = o.back_focal_mm;
+    assert_true(o.stop_radius_mm > 1 && o.stop_radius_mm < 6);
+    assert_true(stage_prepare(&stage, 8));
+}
+
+/* One surface alone is no lens: it has the same medium on both sides, and the
+ * table is refused. A stop between two leaves no pair on either side. */
+static void test_surfaces(void **state)
+{
+    static const int n[] = {2, 4, 8, 16, 32, 64};
+    const struct glint_lamp lamp = stage_lamp(2, 25, 1);
+    struct worst worst = fresh();
+    struct glint_error error;
+    struct glint_prescription lens;
+    static const char one[] = "name one\nf-number 8\nfilm 36 24\n"
+                              "surface 50 100 5 air\nstop 5 5\n";
+
+    (void)state;
+    assert_int_equal(
+        glint_prescription_parse(&lens, one, sizeof one - 1, "one", &error),
+        GLINT_E_LENS);
+    for (int k = 0; k < (extreme_long() ? 6 : 4); k++) {
+        open_many(n[k], n[k] / 2);
+        if (n[k] == 2)
+            assert_int_equal(stage.setup.n_ghosts, 0);
+        bake(3);
+        compare(&worst, &lamp, "surfaces", n[k]);
+    }
+    assert_true(report(extreme_long() ? "2 to 64 surfaces" : "2 to 16 surfaces",
+                       worst));
+}
+
+/* No ghosts: the model is empty, and the picture stays as it was. */
+static void test_no_ghosts(void **state)
+{
+    const struct glint_lamp lamp = stage_lamp(2, 25, 1e9);
+    static uint8_t codes[3 * W * H];
+    int changed = 0;
+
+    (void)state;
+    open_many(2, 1);
+    bake(3);
+    memset(codes, 77, sizeof codes);
+    assert_true(stage_codes(&stage, &lamp, 1, codes));
+    for (int i = 0; i < 3 * W * H; i++)
+        changed += codes[i] != 77;
+    assert_true(extreme_at_most("lenses: no ghosts, samples changed", changed,
+                                0, "samples"));
+}
+
+/* 64 surfaces before the stop: 2016 pairs. Rays are exact here, as the bake of
+ * so many takes an hour; what they ask of plan, bins and sums is the same. */
+static void test_two_thousand_ghosts(void **state)
+{
+    const struct glint_lamp lamp = stage_lamp(2, 25, 1);
+    struct worst worst = fresh();
+
+    (void)state;
+    if (!extreme_long()) {
+        skip();
+        return;
+    }
+    open_many(64, 64);
+    assert_int_equal(stage.setup.n_ghosts, 2016);
+    stage_view(&stage, W, H, 0);
+    stage.frame.max_cells = 32;
+    assert_true(stage_linear(&stage, &lamp, 1, test));
+    assert_true(stage_exact(&stage, &lamp, 1, 48, exact));
+    {
+        const struct measure m = stage_compare(&stage, exact, test);
+
+        worst = (struct worst){m.psnr_db, fabs(m.flux - 1)};
+        assert_int_equal(stage.drawn.stats.dropped_bundles, 0);
+        print_message("  %d of 2016 ghosts drawn\n", stage.drawn.ghosts);
+    }
+    assert_true(report("2016 ghosts, exact rays", worst));
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&stage);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_f_numbers),
+        cmocka_unit_test(test_blades),
+        cmocka_unit_test(test_round_stop),
+        cmocka_unit_test(test_barrels),
+        cmocka_unit_test(test_sensors),
+        cmocka_unit_test(test_scaled),
+        cmocka_unit_test(test_focal_lengths),
+        cmocka_unit_test(test_smallest_ball),
+        cmocka_unit_test(test_nearly_planes),
+        cmocka_unit_test(test_surfaces),
+        cmocka_unit_test(test_no_ghosts),
+        cmocka_unit_test(test_two_thousand_ghosts),
+    };
+
+    return cmocka_run_group_tests_name("extremes: lenses", tests, NULL,
+                                       close_stage);
+}

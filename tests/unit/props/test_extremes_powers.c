@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Extreme powers: a millionth of white to a thousand suns, none at all, and
+ * what files may say instead of a number.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "engine/lamps.h"
+#include "support/extreme.h"
+#include "support/stage.h"
+
+enum { W = 240, H = 160, N = 3 * W * H };
+
+static struct stage heliar;
+static float test[N], one[N];
+static uint8_t codes[2][N];
+
+static int open_stage(void **state)
+{
+    (void)state;
+    if (!stage_load(&heliar, "heliar-tronnier") || !stage_prepare(&heliar, 8) ||
+        !stage_model(&heliar, 1, 60))
+        return 1;
+    stage_view(&heliar, W, H, 0);
+    return 0;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&heliar);
+    return 0;
+}
+
+/* ----------------------------------------------------------------- linear
+ * light
+ */
+
+/* Linear pictures are drawn at a scale of a power of two, so that of powers
+ * that are powers of two each picture is the one of power 1 to the last bit of
+ * a float. Of decades, irradiance falls on other steps of a percent: half of
+ * one on each side, and the sum is far better. */
+static void test_linear_in_power(void **state)
+{
+    const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
+    double apart = 0, flux = 0, of_one;
+
+    (void)state;
+    assert_true(stage_linear(&heliar, &lamp, 1, one));
+    of_one = stage_flux(&heliar, one);
+    assert_true(of_one > 0);
+    for (int k = -20; k <= 30; k += 5) {
+        const struct glint_lamp other = stage_lamp(7.5, 33, exp2(k));
+
+        assert_true(stage_linear(&heliar, &other, 1, test));
+        for (int i = 0; i < N; i++)
+            apart =
+                fmax(apart, fabs((double)test[i] * exp2(-k) - (double)one[i]));
+    }
+    for (int k = -6; k <= 9; k++) {
+        const struct glint_lamp other = stage_lamp(7.5, 33, pow(10, k));
+
+        assert_true(stage_linear(&heliar, &other, 1, test));
+        flux = fmax(flux,
+                    fabs(stage_flux(&heliar, test) / pow(10, k) / of_one - 1));
+    }
+    assert_true(extreme_at_most("powers: 2^-20 to 2^30 in linear light, bits",
+                                apart, 0, ""));
+    assert_true(extreme_at_most("powers: 1e-6 to 1e9 in linear light, flux",
+                                flux, 0.001, ""));
+}
+
+/* ----------------------------------------------------------------------- codes
+ */
+
+/* From what no code shows to what saturates all, in factors of 4: no sample is
+ * darker than the ground (a sum that wraps would make it so) nor than with a
+ * quarter of the power, which is far more than steps of irradiance and grids
+ * move. The brightest light leaves white what it reaches. */
+static void test_codes_never_fall(void **state)
+{
+    uint64_t r = 5;
+    int fallen = 0, white = 0, lit = 0;
+    static uint8_t ground[N], last[N];
+
+    (void)state;
+    for (int i = 0; i < N; i++)
+        last[i] = ground[i] = (uint8_t)stage_random(&r);
+    for (double power = 1e-6; power < 1e31; power *= power < 1e9 ? 4 : 1e4) {
+        const struct glint_lamp lamp = stage_lamp(7.5, 33, power);
+
+        memcpy(codes[0], ground, N);
+        assert_true(stage_codes(&heliar, &lamp, 1, codes[0]));
+        for (int i = 0; i < N; i++) {
+            fallen += codes[0][i] < ground[i] || codes[0][i] < last[i];
+            last[i] = codes[0][i];
+        }
+    }
+    /* at 1e28 all that was ever reached is white, but for edges of pixels */
+    for (int i = 0; i < N; i++) {
+        lit += last[i] != ground[i];
+        white += last[i] == 255 && ground[i] != 255;
+    }
+    print_message("%d of %d samples lit\n", lit, N);
+    assert_true(lit > N / 4);
+    assert_true(extreme_at_most("powers: 1e-6 to 1e30, codes that fell", fallen,
+                                0, "samples"));
+    assert_true(extreme_at_least("powers: 1e30, lit samples that are white",
+                                 (double)white / lit, 0.999, ""));
+}
+
+/* Nothing, less than nothing and no number at all draw nothing, alone and
+ * beside a light, in codes and in linear light. */
+static void test_no_power(void **state)
+{
+    const double none[] = {
+        0, -1, -1e9, (double)NAN, (double)INFINITY, -(double)INFINITY, 1e-300};
+    struct glint_lamp pair[2] = {stage_lamp(7.5, 33, 100)};
+    int changed = 0;
+
+    (void)state;
+    memset(codes[1], 0, N);
+    assert_true(stage_codes(&heliar, pair, 1, codes[1]));
+    for (int k = 0; k < 7; k++) {
+        pair[1] = stage_lamp(4, -80, none[k]);
+        memset(codes[0], 0, N);
+        assert_true(stage_codes(&heliar, pair + 1, 1, codes[0]));
+        for (int i = 0; i < N; i++)
+            changed += codes[0][i] != 0;
+        assert_true(stage_codes(&heliar, pair, 2, codes[0]));
+        for (int i = 0; i < N; i++)
+            changed += codes[0][i] != codes[1][i];
+        assert_true(stage_linear(&heliar, pair + 1, 1, test));
+        for (int i = 0; i < N; i++)
+            changed += test[i] != 0;
+    }
+    assert_true(extreme_at_most("powers: 0, negative, NaN, infinite: samples "
+                                "changed",
+                                changed, 0, "samples"));
+}
+
+/* ----------------------------------------------------------------------- files
+ */
+
+static enum glint_status read_text(const char *text, struct lamp_list *list,
+                                   struct glint_error *error)
+{
+    char path[] = "/tmp/glint-powers-XXXXXX";
+    const int fd = mkstemp(path);
+    enum glint_status status;
+
+    assert_true(fd >= 0);
+    assert_int_equal(write(fd, text, strlen(text)), (int)strlen(text));
+    close(fd);
+    status = lamp_list_read(list, path, error);
+    remove(path);
+    return status;
+}
+
+/* What a file says is either a power that can be drawn, or refused by line. */
+static void test_files(void **state)
+{
+    static const char *const bad[] = {"nan",       "inf",   "-inf", "-1",
+                                      "1e999",     "1e400", "",     "x",
+                                      "0x10p9999", "1e31"};
+    static const char *const good[] = {
+        "0", "1e-6", "1e9", "1e30", "1e-320", "0.000000000000000001"};
+    char text[200];
+    struct lamp_list list;
+    struct glint_error error;
+    int wrong = 0;
+
+    (void)state;
+    for (int k = 0; k < 10; k++)
+        for (int json = 0; json < 2; json++) {
+            snprintf(text, sizeof text,
+                     json ? "{\"x\":1,\"y\":2,\"power\":1}\n"
+                            "{\"x\":1,\"y\":2,\"power\":%s}\n"
+                          : "0,1,2,1\n0,1,2,%s\n",
+                     bad[k]);
+            memset(&error, 0, sizeof error);
+            if (read_text(text, &list, &error) == GLINT_OK) {
+                print_message("taken: %s", text);
+                lamp_list_free(&list);
+                wrong++;
+            } else if (!strstr(error.text, ": 2: ")) {
+                print_message("no line: %s\n", error.text);
+                wrong++;
+            }
+        }
+    for (int k = 0; k < 6; k++) {
+        snprintf(text, sizeof text, "0,1,2,%s\n", good[k]);
+        if (read_text(text, &list, &error) != GLINT_OK) {
+            print_message("refused: %s: %s\n", text, error.text);
+            wrong++;
+        } else {
+            wrong += !isfinite(list.row[0].power);
+            lamp_list_free(&list);
+        }
+    }
+    assert_true(extreme_at_most("powers: in files, wrongly taken or refused",
+                                wrong, 0, "texts"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_linear_in_power),
+        cmocka_unit_test(test_codes_never_fall),
+        cmocka_unit_test(test_no_power),
+        cmocka_unit_test(test_files),
+    };
+
+    return cmocka_run_group_tests_name("extremes: powers", tests, open_stage,
+                                       close_stage);
+}

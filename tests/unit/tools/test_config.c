@@ -1,0 +1,416 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Options from files: what is taken, in which order, and that every mistake is
+ * named with its line and takes nothing along.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "options/config.h"
+
+#define BYTES(text) text, sizeof text - 1
+
+static const struct option options[] = {
+    {"lens", required_argument, NULL, 'L'},
+    {"light", required_argument, NULL, 'l'},
+    {"grid", required_argument, NULL, 'g'},
+    {"dither", no_argument, NULL, 'd'},
+    {"balance", no_argument, NULL, 'b'},
+    {"tint", optional_argument, NULL, 'T'},
+    {"list-devices", no_argument, NULL, 'D'},
+    {"config", required_argument, NULL, 'C'},
+    TOOL_COMMON_OPTIONS};
+
+/* What a command makes of its options; its own words for a bad grid. */
+struct command {
+    struct tool tool;
+    char log[1024]; /* "name=value;" for each, in order */
+    const char *lens;
+    int grid;
+};
+
+static int take(void *ctx, const struct option *option, const char *value)
+{
+    struct command *const c = ctx;
+    const size_t used = strlen(c->log);
+
+    snprintf(c->log + used, sizeof c->log - used, "%s=%s;", option->name,
+             value ? value : "(none)");
+    if (option->val == 'L')
+        c->lens = value;
+    if (option->val == 'D')
+        return EXIT_OK;
+    if (option->val == 'g' && !tool_integer(value, 4, 1024, &c->grid))
+        return tool_usage(&c->tool, "--%s: '%s' is not something it takes",
+                          option->name, value);
+    return -1;
+}
+
+static struct command command;
+static struct glint_error error;
+
+static struct config start(void)
+{
+    command = (struct command){.tool = {.name = "live"}};
+    return (struct config){&command.tool, options, take, &command, NULL};
+}
+
+/* ------------------------------------------------------- what was printed */
+
+static FILE *said;
+static int kept_stderr;
+
+static void listen_to_stderr(void)
+{
+    fflush(stderr);
+    said = tmpfile();
+    kept_stderr = dup(STDERR_FILENO);
+    assert_true(said && kept_stderr >= 0 &&
+                dup2(fileno(said), STDERR_FILENO) >= 0);
+}
+
+static void expect_said(const char *want)
+{
+    char text[1024];
+    size_t n;
+
+    fflush(stderr);
+    assert_true(dup2(kept_stderr, STDERR_FILENO) >= 0);
+    close(kept_stderr);
+    rewind(said);
+    n = fread(text, 1, sizeof text - 1, said);
+    text[n] = '\0';
+    fclose(said);
+    assert_string_equal(text, want);
+}
+
+/* ----------------------------------------------------------------- taking */
+
+static void expect_taken(const char *text, size_t bytes, const char *log)
+{
+    struct config config = start();
+    char *const exact = malloc(bytes + 1);
+
+    assert_non_null(exact);
+    memcpy(exact, text, bytes);
+    listen_to_stderr();
+    assert_int_equal(config_parse(&config, "x.ini", exact, bytes, &error),
+                     EXIT_OK);
+    expect_said("");
+    assert_string_equal(command.log, log);
+    assert_string_equal(error.text, "");
+    assert_null(command.tool.where);
+    free(exact);
+    config_free(&config);
+    config_free(&config);
+}
+
+static void test_entries(void **state)
+{
+    (void)state;
+    expect_taken(BYTES(""), "");
+    expect_taken(BYTES("\n\n"), "");
+    expect_taken(BYTES("grid=64"), "grid=64;");
+    expect_taken(BYTES("[lens]\nlens = heliar tronnier \n[light]\n"
+                       "light = 1,2\nlight = 3,4\nlens=other\n"
+                       "[flare]\ndither = yes\nbalance = no\ngrid: 8\n"),
+                 "lens=heliar tronnier;light=1,2;light=3,4;lens=other;"
+                 "dither=(none);grid=8;");
+    expect_taken(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
+                 "threads=2;quiet=(none);");
+    expect_taken(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
+    expect_taken(BYTES("lens = stop = polygon:6\nlens: a:b\n"),
+                 "lens=stop = polygon:6;lens=a:b;");
+}
+
+static void test_layout(void **state)
+{
+    (void)state;
+    expect_taken(BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
+                 "grid=64;lens=a b;");
+    expect_taken(BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"),
+                 "grid=5;");
+    expect_taken(BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
+                 "grid=7;lens=a;b;lens=c # d;");
+    /* an indented line is one of its own, not more of the one before */
+    expect_taken(BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
+                 "lens=a;grid=9;light=1,2;");
+    expect_taken(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
+                 "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
+}
+
+/* The longest line, and a comment that is longer. */
+static void test_long_lines(void **state)
+{
+    char text[1000], log[1000];
+
+    (void)state;
+    for (int n = CONFIG_LINE - 2; n <= CONFIG_LINE + 300; n++) {
+        struct config config = start();
+        const int used =
+            snprintf(text, sizeof text, "grid=4\nlens=%0*d\n", n - 5, 1);
+
+        if (n <= CONFIG_LINE) {
+            snprintf(log, sizeof log, "grid=4;lens=%0*d;", n - 5, 1);
+            expect_taken(text, (size_t)used, log);
+            continue;
+        }
+        assert_int_equal(
+            config_parse(&config, "x.ini", text, (size_t)used, &error),
+            EXIT_INPUT);
+        assert_string_equal(error.text, "x.ini:2: is too long a line");
+        assert_string_equal(command.log, "");
+        text[7] = ';';
+        expect_taken(text, (size_t)used, "grid=4;");
+    }
+}
+
+/* Values outlive the text and the parser. */
+static void test_values_stay(void **state)
+{
+    struct config config = start();
+    char text[] = "lens=first\ngrid=16\ndither=yes\nlens=second";
+
+    (void)state;
+    assert_int_equal(
+        config_parse(&config, "x.ini", text, sizeof text - 1, &error), EXIT_OK);
+    memset(text, 'z', sizeof text);
+    assert_string_equal(command.lens, "second");
+    assert_int_equal(command.grid, 16);
+    config_free(&config);
+}
+
+/* --------------------------------------------------------------- mistakes */
+
+static void expect_mistake(const char *text, size_t bytes, const char *want)
+{
+    struct config config = start();
+
+    assert_int_equal(config_parse(&config, "x.ini", text, bytes, &error),
+                     EXIT_INPUT);
+    assert_string_equal(error.text, want);
+    assert_string_equal(command.log, "");
+    config_free(&config);
+}
+
+static void test_mistakes(void **state)
+{
+    (void)state;
+    expect_mistake(BYTES("grid=64\n\n[lens]\ngrdi=5\n"),
+                   "x.ini:4: there is no option grdi for a file");
+    expect_mistake(BYTES("--grid=64\n"),
+                   "x.ini:1: there is no option --grid for a file");
+    expect_mistake(BYTES("gri=64\n"),
+                   "x.ini:1: there is no option gri for a file");
+    expect_mistake(BYTES("config=y.ini\n"),
+                   "x.ini:1: there is no option config for a file");
+    expect_mistake(BYTES("help=yes"),
+                   "x.ini:1: there is no option help for a file");
+    expect_mistake(BYTES("grid=64\nversion=yes"),
+                   "x.ini:2: there is no option version for a file");
+    expect_mistake(BYTES("grid=64\nlens\n"),
+                   "x.ini:2: is neither [section] nor name = value");
+    expect_mistake(BYTES("[lens\ngrid=64\n"),
+                   "x.ini:1: is neither [section] nor name = value");
+    expect_mistake(BYTES("lens ; = x\ngrid=64\nfoo=1\n"),
+                   "x.ini:1: is neither [section] nor name = value");
+    expect_mistake(BYTES("foo=1\nlens\n"),
+                   "x.ini:1: there is no option foo for a file");
+    expect_mistake(BYTES("=5\n"), "x.ini:1: there is no option  for a file");
+    expect_mistake(BYTES("grid=\n"), "x.ini:1: grid needs a value");
+    expect_mistake(BYTES("grid= ; 64\n"), "x.ini:1: grid needs a value");
+    expect_mistake(BYTES("dither=maybe\n"), "x.ini:1: dither takes yes or no");
+    expect_mistake(BYTES("dither=\n"), "x.ini:1: dither takes yes or no");
+    expect_mistake(BYTES("grid=4\ndither=yes\n\ndither=no\n"),
+                   "x.ini:4: dither is stated twice");
+    expect_mistake(BYTES("grid=4\nlens=a\0b\n"),
+                   "x.ini:2: holds a control character");
+    expect_mistake(BYTES("lens=a\x1b[2J\n"),
+                   "x.ini:1: holds a control character");
+    expect_mistake(BYTES("lens=a\rgrid=5\n"),
+                   "x.ini:1: holds a control character");
+}
+
+/* The command's own refusal, in its words, with the line; the entries before
+ * have been taken, those after are not. */
+static void test_bad_value(void **state)
+{
+    struct config config = start();
+
+    (void)state;
+    listen_to_stderr();
+    assert_int_equal(config_parse(&config, "x.ini",
+                                  BYTES("lens=a\ngrid=3\nlens=b\n"), &error),
+                     EXIT_INPUT);
+    expect_said("glint live: x.ini:2: --grid: '3' is not something it takes\n");
+    assert_string_equal(error.text, "");
+    assert_string_equal(command.log, "lens=a;grid=3;");
+    assert_null(command.tool.where);
+    config_free(&config);
+    config = start();
+    assert_int_equal(config_parse(&config, "x.ini",
+                                  BYTES("list-devices=yes\nlens=b\n"), &error),
+                     EXIT_INPUT);
+    assert_string_equal(error.text,
+                        "x.ini:1: list-devices is for the command line");
+    config_free(&config);
+}
+
+static void test_long_name(void **state)
+{
+    char name[300];
+    struct config config = start();
+
+    (void)state;
+    memset(name, 'n', sizeof name);
+    strcpy(name + sizeof name - 7, "/x.ini");
+    config_parse(&config, name, BYTES("foo=1"), &error);
+    assert_non_null(
+        strstr(error.text, "nnn/x.ini:1: there is no option foo for a file"));
+}
+
+static void test_unknown_section(void **state)
+{
+    static const char text[] = "[lens]\nlens=a\n\n[camra]\n\ngrid=5\n"
+                               "light=1,2\n[output]\nlens=b\n[]\nlens=c\n";
+    struct config config = start();
+
+    (void)state;
+    listen_to_stderr();
+    assert_int_equal(config_parse(&config, "x.ini", BYTES(text), &error),
+                     EXIT_OK);
+    expect_said("glint live: x.ini:4: no section is called [camra]; its lines "
+                "count all the same\n");
+    assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
+    config_free(&config);
+    config = start();
+    command.tool.quiet = true;
+    listen_to_stderr();
+    assert_int_equal(config_parse(&config, "x.ini", BYTES(text), &error),
+                     EXIT_OK);
+    expect_said("");
+    config_free(&config);
+}
+
+/* -------------------------------------------------------------------- files */
+
+static char path[] = "/tmp/glint-test-config-XXXXXX";
+
+static int enter(void **state)
+{
+    (void)state;
+    const int fd = mkstemp(path);
+
+    return fd < 0 ? -1 : close(fd);
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return unlink(path);
+}
+
+static void write_file(const char *text)
+{
+    FILE *const file = fopen(path, "w");
+
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The order a command goes by: its file first, its line later. */
+static void test_line_wins(void **state)
+{
+    char *line[] = {"live",     "--grid", "32", "in", "--conf",
+                    "/nowhere", "--con",  path, "-q", NULL};
+    struct config config = start();
+    const char *found;
+    int c, index;
+
+    (void)state;
+    write_file("lens=a\ngrid=16\n");
+    found = tool_value_of(9, line, TOOL_COMMON_SHORT, options, 'C');
+    assert_string_equal(found, path);
+    assert_int_equal(config_read(&config, found), EXIT_OK);
+    assert_int_equal(command.grid, 16);
+    while ((c = getopt_long(9, line, TOOL_COMMON_SHORT, options, &index)) >= 0)
+        if (c != 'C' && c != 'q')
+            assert_int_equal(take(&command, &options[index], optarg), -1);
+    assert_int_equal(command.grid, 32);
+    assert_string_equal(command.log, "lens=a;grid=16;grid=32;");
+    assert_string_equal(line[optind], "in");
+    assert_null(tool_value_of(3, line, TOOL_COMMON_SHORT, options, 'C'));
+    config_free(&config);
+}
+
+/* As on SIGHUP: what was read before stays while the new file is bad. */
+static void test_reload(void **state)
+{
+    struct config first = start(), second;
+    const char *lens;
+    char want[200];
+
+    (void)state;
+    write_file("lens=a\n");
+    assert_int_equal(config_read(&first, path), EXIT_OK);
+    lens = command.lens;
+    write_file("lens=b\ngrid=x\n");
+    second = start();
+    listen_to_stderr();
+    assert_int_equal(config_read(&second, path), EXIT_INPUT);
+    snprintf(want, sizeof want,
+             "glint live: %s:2: --grid: 'x' is not something it takes\n", path);
+    expect_said(want);
+    assert_null(second.values);
+    assert_string_equal(lens, "a");
+    config_free(&first);
+}
+
+static void test_files(void **state)
+{
+    struct config config = start();
+    char want[200];
+
+    (void)state;
+    write_file("grid=64\nfoo=1\n");
+    listen_to_stderr();
+    assert_int_equal(config_read(&config, path), EXIT_INPUT);
+    snprintf(want, sizeof want,
+             "glint live: %s:2: there is no option foo for a file\n", path);
+    expect_said(want);
+    listen_to_stderr();
+    assert_int_equal(config_read(&config, "/nowhere/x.ini"), EXIT_INPUT);
+    expect_said("glint live: /nowhere/x.ini: No such file or directory\n");
+    listen_to_stderr();
+    assert_int_equal(config_read(&config, "/dev/zero"), EXIT_INPUT);
+    expect_said("glint live: /dev/zero: larger than 1048576 bytes\n");
+    assert_null(config.values);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_entries),
+        cmocka_unit_test(test_layout),
+        cmocka_unit_test(test_long_lines),
+        cmocka_unit_test(test_values_stay),
+        cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_bad_value),
+        cmocka_unit_test(test_long_name),
+        cmocka_unit_test(test_unknown_section),
+        cmocka_unit_test(test_line_wins),
+        cmocka_unit_test(test_reload),
+        cmocka_unit_test(test_files),
+    };
+
+    return cmocka_run_group_tests_name("config", tests, enter, leave);
+}

@@ -1,0 +1,434 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint live from its command line to its exit code, with a camera that is
+ * answered by the test: what it leaves behind, what a frame costs it, what
+ * signals and lost cameras do.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "support/fake_camera.h"
+#include "options/tool.h"
+
+#define LENS "lenses/heliar-tronnier.lens"
+
+static char config_path[] = "/tmp/glint-test-live-XXXXXX";
+static char said_path[] = "/tmp/glint-test-said-XXXXXX";
+static char shot_dir[] = "/tmp/glint-test-shot-XXXXXX";
+
+static int n_waits, n_unwaited;
+static void (*script)(int wait); /* what happens at wait number WAIT */
+
+/* A frame comes at each wait, unless the script takes it away again. */
+int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
+                 const sigset_t *mask);
+int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
+                 const sigset_t *mask)
+{
+    (void)p;
+    (void)n;
+    (void)timeout;
+    (void)mask;
+    n_waits++;
+    n_unwaited = 0;
+    fake_camera_pass(33333);
+    if (camera.n_frames < 100)
+        fake_camera_deliver((uint32_t)n_waits, n_waits % 2 ? 0x80 : 0x7f);
+    if (script)
+        script(n_waits);
+    return 1;
+}
+
+/* Who asks again and again without waiting would do so for ever here. */
+static void on_dequeue(void)
+{
+    if (++n_unwaited == 1000)
+        raise(SIGTERM);
+}
+
+static void must_wait(void)
+{
+    assert_true(n_unwaited < 1000);
+}
+
+static void write_config(const char *text)
+{
+    FILE *const f = fopen(config_path, "w");
+
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+}
+
+/* Runs `glint live -d FAKE -o null -q LINE`, with what it says in a file. */
+static int live(const char *line)
+{
+    static char words[1024];
+    char *argv[64] = {NULL};
+    int argc = 0, code, err;
+
+    snprintf(words, sizeof words,
+             "live -d " FAKE_PATH " -o null --stats none --lens " LENS
+             " -j 1 --light 8,20,1e4 --memory 4 %s",
+             line);
+    for (char *w = strtok(words, " "); w; w = strtok(NULL, " "))
+        argv[argc++] = w;
+    n_waits = n_unwaited = 0;
+    camera.on_dequeue = on_dequeue;
+    fflush(stderr);
+    err = dup(STDERR_FILENO);
+    assert_non_null(freopen(said_path, "w", stderr));
+    code = cmd_live(argc, argv);
+    fflush(stderr);
+    dup2(err, STDERR_FILENO);
+    close(err);
+    return code;
+}
+
+/* How often it said TEXT. */
+static int n_said(const char *text)
+{
+    static char all[100000];
+    FILE *const f = fopen(said_path, "r");
+    int n = 0;
+
+    assert_non_null(f);
+    all[fread(all, 1, sizeof all - 1, f)] = '\0';
+    fclose(f);
+    for (const char *at = all; (at = strstr(at, text)) != NULL; at++)
+        n++;
+    return n;
+}
+
+static void must_leave_nothing(void)
+{
+    must_wait();
+    assert_int_equal(camera.fd, -1);
+    assert_int_equal(camera.n_maps, 0);
+    assert_int_equal(camera.breaches, 0);
+    assert_int_equal(fake_camera_blocks(), 0);
+}
+
+/* -------------------------------------------------------------------- frames
+ */
+
+static int asked[200], blocks[200];
+
+static void count(int wait)
+{
+    if (wait < 200) {
+        asked[wait] = fake_camera_asked();
+        blocks[wait] = fake_camera_blocks();
+    }
+}
+
+static void test_frames(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    script = count;
+    assert_int_equal(live("--count 150"), EXIT_OK);
+    must_leave_nothing();
+    assert_int_equal(n_waits, 150);
+    assert_true(asked[2] >= 5);
+    assert_int_equal(asked[149] - asked[2], 0); /* a frame takes no memory */
+}
+
+static void test_skip(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    script = NULL;
+    assert_int_equal(live("--count 5 --skip 20"), EXIT_OK);
+    assert_int_equal(n_waits, 25);
+    must_leave_nothing();
+}
+
+static void stop_at_30(int wait)
+{
+    if (wait == 30)
+        raise(SIGTERM);
+}
+
+static void test_stops(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    script = stop_at_30;
+    assert_int_equal(live(""), EXIT_OK);
+    must_leave_nothing();
+    assert_int_equal(n_waits, 30);
+}
+
+/* -------------------------------------------------------------------- reload
+ */
+
+static void reload_often(int wait)
+{
+    if (wait == 3 || wait == 149) /* frames of one code */
+        raise(SIGUSR2);
+    if (wait % 10 == 5)
+        raise(SIGHUP);
+    count(wait);
+}
+
+static const char *snapshot(int number)
+{
+    static char mem[2][20000], path[64];
+    char *const into = mem[number % 2];
+    FILE *f;
+
+    snprintf(path, sizeof path, "%s/%02d.ppm", shot_dir, number);
+    f = fopen(path, "rb");
+    assert_non_null(f);
+    memset(into, 0, sizeof mem[0]);
+    assert_true(fread(into, 1, sizeof mem[0], f) > 3 * 64 * 48);
+    fclose(f);
+    unlink(path);
+    return into;
+}
+
+/* Nothing piles up, and the picture stays what it was. */
+static void test_reloads(void **state)
+{
+    char line[200];
+
+    (void)state;
+    snprintf(line, sizeof line,
+             "lens = " LENS "\nlight = 5,60,1e4\nmemory = 4\n"
+             "snapshot = %s/%%02d.ppm\n",
+             shot_dir);
+    write_config(line);
+    for (int exact = 0; exact < 2; exact++) {
+        fake_camera_reset();
+        script = reload_often;
+        snprintf(line, sizeof line, "--count 150 --config %s%s", config_path,
+                 exact ? " --rays exact --grid 8" : "");
+        assert_int_equal(live(line), EXIT_OK);
+        must_leave_nothing();
+        assert_int_equal(n_said("glint live: reloaded"), 15);
+        assert_int_equal(blocks[148], blocks[28]);
+        assert_memory_equal(snapshot(1), snapshot(2), 3 * 64 * 48);
+    }
+}
+
+static void spoil_config(int wait)
+{
+    if (wait == 20)
+        write_config("lens = " LENS "\nno-such-thing = 1\n");
+    if (wait == 60)
+        write_config("lens = " LENS "\nlights = /nowhere/lights.csv\n");
+    if (wait == 80)
+        write_config("lens = " LENS "\nlight = 5,60,1e4\n");
+    if (wait >= 20)
+        reload_often(wait);
+}
+
+static void test_bad_reloads(void **state)
+{
+    char line[200];
+
+    (void)state;
+    write_config("lens = " LENS "\n");
+    fake_camera_reset();
+    script = spoil_config;
+    snprintf(line, sizeof line, "--count 100 --config %s", config_path);
+    assert_int_equal(live(line), EXIT_OK);
+    must_leave_nothing();
+    assert_int_equal(n_said("not reloaded: all stays as it was"), 6);
+    assert_int_equal(n_said("live: reloaded"), 2);
+    assert_int_equal(n_said(":2: there is no option no-such-thing"), 4);
+}
+
+/* ------------------------------------------------------------------ snapshot
+ */
+
+static void silence_and_snapshot(int wait)
+{
+    if (wait > 10 && wait < 40)
+        camera.n_frames = 0;
+    if (wait == 12)
+        raise(SIGUSR2);
+}
+
+static void snapshot_at_2(int wait)
+{
+    if (wait == 2)
+        raise(SIGUSR2);
+}
+
+/* The flare alone is on black, in every kind of codes. */
+static void test_black(void **state)
+{
+    static const uint32_t kind[] = {V4L2_PIX_FMT_YUYV,  V4L2_PIX_FMT_UYVY,
+                                    V4L2_PIX_FMT_NV12,  V4L2_PIX_FMT_BGR24,
+                                    V4L2_PIX_FMT_RGB24, V4L2_PIX_FMT_RGB565,
+                                    V4L2_PIX_FMT_GREY};
+
+    (void)state;
+    for (size_t i = 0; i < 2 * sizeof kind / sizeof *kind; i++) {
+        const char *rgb;
+        char line[200];
+
+        fake_camera_reset();
+        camera.mode[0].fourcc = camera.now.fourcc = kind[i / 2];
+        script = snapshot_at_2;
+        snprintf(line, sizeof line,
+                 "--count 3 --layer flare --exposure -60 --range %s --snapshot "
+                 "%s/%%02d.ppm",
+                 i % 2 ? "full" : "limited", shot_dir);
+        assert_int_equal(live(line), EXIT_OK);
+        must_leave_nothing();
+        rgb = snapshot(1) + strlen("P6\n64 48\n255\n");
+        for (int k = 0; k < 3 * 64 * 48; k++)
+            if (rgb[k] != 0)
+                fail_msg("%.4s: byte %d is %d", (const char *)&kind[i / 2], k,
+                         rgb[k]);
+    }
+}
+
+/* It waits for the next frame, and so does the program. */
+static void test_snapshot_waits(void **state)
+{
+    char line[100], path[60], said[80];
+
+    (void)state;
+    snprintf(path, sizeof path, "%s/01.ppm", shot_dir);
+    snprintf(said, sizeof said, "snapshot %s", path);
+    snprintf(line, sizeof line, "--count 20 --snapshot %s/%%02d.ppm", shot_dir);
+    unlink(path);
+    fake_camera_reset();
+    script = silence_and_snapshot;
+    assert_int_equal(live(line), EXIT_OK);
+    must_leave_nothing();
+    assert_int_equal(n_said(said), 1);
+    assert_int_equal(unlink(path), 0);
+}
+
+/* ----------------------------------------------------------------- lost again
+ */
+
+static void unplug(int wait)
+{
+    camera.is_gone = wait >= 20 && wait < 30;
+}
+
+static void test_unplugged(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    script = unplug;
+    assert_int_equal(live("--count 100"), EXIT_DEVICE);
+    must_leave_nothing();
+    assert_int_equal(n_said("the camera is gone\n"), 1);
+    assert_true(n_waits <= 21);
+}
+
+static void test_comes_back(void **state)
+{
+    (void)state;
+    {
+        fake_camera_reset();
+        script = unplug;
+        assert_int_equal(live("--count 100 --reconnect"), EXIT_OK);
+        must_leave_nothing();
+        assert_int_equal(n_said("waiting for the camera"), 1);
+        assert_int_equal(n_said("(Fake): YUYV 64x48 at 30 fps"), 2);
+    }
+}
+
+static void change_size(int wait)
+{
+    if (wait % 10 == 5) {
+        camera.now.width = wait % 20 == 5 ? 128 : 64;
+        camera.n_events = 1;
+        camera.n_frames = 0;
+    }
+    count(wait);
+}
+
+static void test_other_sizes(void **state)
+{
+    (void)state;
+    fake_camera_reset();
+    script = change_size;
+    assert_int_equal(live("--count 150"), EXIT_OK);
+    must_leave_nothing();
+    assert_true(n_said("YUYV 128x48") >= 7);
+    assert_int_equal(blocks[149], blocks[29]);
+}
+
+/* -------------------------------------------------------------------- failures
+ */
+
+/* Each call in turn fails, once: frames go on or there is an exit code and a
+ * line that says why. */
+static void test_every_failure(void **state)
+{
+    int n = 0, n_failed = 0, n_calls;
+
+    (void)state;
+    script = NULL;
+    do {
+        int code;
+
+        n += n < 60 ? 1 : 7;
+        fake_camera_reset();
+        fake_camera_fail_at(n, ENOMEM, false);
+        code = live("--count 6");
+        n_calls = fake_camera_fail_at(0, 0, false);
+        must_leave_nothing();
+        if (code != EXIT_OK) {
+            n_failed++;
+            assert_true(n_said("glint live: ") >= 1);
+        }
+    } while (n <= n_calls);
+    assert_true(n_failed >= 10);
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    close(mkstemp(config_path));
+    if (!mkdtemp(shot_dir))
+        return -1;
+    close(mkstemp(said_path));
+    return 0;
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    return unlink(config_path) | unlink(said_path) | rmdir(shot_dir);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_skip),
+        cmocka_unit_test(test_reloads),
+        cmocka_unit_test(test_bad_reloads),
+        cmocka_unit_test(test_black),
+        cmocka_unit_test(test_snapshot_waits),
+        cmocka_unit_test(test_unplugged),
+        cmocka_unit_test(test_comes_back),
+        cmocka_unit_test(test_other_sizes),
+        cmocka_unit_test(test_every_failure),
+        /* the last: a stop stays */
+        cmocka_unit_test(test_stops),
+    };
+
+    return cmocka_run_group_tests_name("live", tests, enter, leave);
+}

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What holds the frame rate, against machines that are a cost for each step.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <string.h>
+
+#include "live/live_adapt.h"
+
+#define PERIOD_MS (1000. / 30)
+
+static struct live_adapt adapt;
+
+/* What a run of frames saw. */
+static struct seen {
+    int n_frames, n_missed;
+    int n_down, n_up;
+    double first_down_s, last_change_s;
+} seen;
+
+/* Runs a machine that takes COST_MS[step] for a frame, for SECONDS. What takes
+ * longer than a period misses the frames that come meanwhile. */
+static void run(const double *cost_ms, double seconds)
+{
+    double now_s = 0;
+
+    seen = (struct seen){.first_down_s = -1, .last_change_s = -1};
+    while (now_s < seconds) {
+        const int before = adapt.step;
+        const double cost = cost_ms[before];
+        const int n_missed = cost > PERIOD_MS ? (int)(cost / PERIOD_MS) : 0;
+        const bool changed = live_adapt_note(&adapt, cost, PERIOD_MS, n_missed);
+
+        now_s += 1e-3 * PERIOD_MS * (1 + n_missed);
+        seen.n_frames++;
+        seen.n_missed += n_missed;
+        assert_in_range(adapt.step, 0, LIVE_MAX_STEP);
+        assert_int_equal(changed, adapt.step != before);
+        if (!changed)
+            continue;
+        assert_int_equal(
+            adapt.step > before ? adapt.step - before : before - adapt.step, 1);
+        seen.n_down += adapt.step > before;
+        seen.n_up += adapt.step < before;
+        seen.last_change_s = now_s;
+        if (seen.first_down_s < 0 && adapt.step > before)
+            seen.first_down_s = now_s;
+    }
+}
+
+static void test_easy(void **state)
+{
+    static const double cost[8] = {25, 20, 15, 10, 8, 6, 5, 4};
+
+    (void)state;
+    live_adapt_init(&adapt);
+    run(cost, 600);
+    assert_int_equal(adapt.step, 0);
+    assert_true(seen.last_change_s < 0); /* none */
+}
+
+/* Half a second of misses is what it takes, and a step at a time. */
+static void test_overload(void **state)
+{
+    static const double cost[8] = {80, 60, 45, 26, 20, 15, 10, 5};
+
+    (void)state;
+    live_adapt_init(&adapt);
+    run(cost, 3);
+    assert_int_equal(adapt.step, 3);
+    assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
+    assert_true(seen.last_change_s < 1.5);
+    run(cost, 600); /* where it stays: there is no time to spare */
+    assert_int_equal(adapt.step, 3);
+    assert_int_equal(seen.n_down, 0);
+    assert_int_equal(seen.n_missed, 0);
+}
+
+static void test_worst(void **state)
+{
+    static const double cost[8] = {900, 900, 900, 900, 900, 900, 900, 900};
+    static const double none[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+
+    (void)state;
+    live_adapt_init(&adapt);
+    run(cost, 600);
+    assert_int_equal(adapt.step, LIVE_MAX_STEP);
+    assert_int_equal(seen.n_down, LIVE_MAX_STEP);
+    run(none, 600);
+    assert_int_equal(adapt.step, 0);
+    assert_int_equal(seen.n_up, LIVE_MAX_STEP);
+}
+
+/* One slow frame is no reason, as when a picture is saved. */
+static void test_hiccup(void **state)
+{
+    static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
+
+    (void)state;
+    live_adapt_init(&adapt);
+    run(cost, 0.2);
+    assert_false(live_adapt_note(&adapt, 30, PERIOD_MS, 0));
+    run(cost, 10);
+    assert_int_equal(adapt.step, 0);
+    assert_int_equal(seen.n_down, 0);
+}
+
+/* A burst of many lights passes: back within some seconds a step, however many
+ * steps it took down. */
+static void test_recovers(void **state)
+{
+    static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
+    static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
+
+    (void)state;
+    live_adapt_init(&adapt);
+    run(heavy, 4);
+    assert_int_equal(adapt.step, 5);
+    run(light, 15);
+    assert_int_equal(adapt.step, 0);
+    assert_int_equal(seen.n_down, 0);
+}
+
+/* Where the next step up is too much it is tried ever more rarely. */
+static void test_does_not_oscillate(void **state)
+{
+    static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
+    int n_early;
+
+    (void)state;
+    live_adapt_init(&adapt);
+    run(cost, 60);
+    n_early = seen.n_up;
+    assert_int_equal(adapt.step, 3);
+    assert_in_range(n_early, 1, 6);
+    run(cost, 600);
+    assert_in_range(seen.n_up, 5, 12); /* each minute */
+    assert_true(seen.n_missed < seen.n_frames / 100);
+}
+
+/* What was too much once is not for ever. */
+static void test_forgets(void **state)
+{
+    static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
+    static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
+
+    (void)state;
+    live_adapt_init(&adapt);
+    run(heavy, 300);
+    run(light, 75); /* a minute at most, and then on as at first */
+    assert_int_equal(adapt.step, 0);
+}
+
+static void apply(const struct frame *asked, int step, struct frame *frame)
+{
+    *frame = *asked; /* nothing drawn yet: no memory to make anew */
+    adapt.step = step;
+    live_adapt_apply(&adapt, frame, asked);
+}
+
+/* Step 0 is what was asked for, and no step is finer than the one before. */
+static void test_steps(void **state)
+{
+    static const struct {
+        int cells, steps, lights;
+        double codes;
+    } ask[] = {{64, 69, 128, 0.125}, {8, 1, 1, 0},      {4, 2, 2, 40},
+               {1024, 4096, 9, 1},   {64, 0, 128, 0.5}, {17, 3, 64, 0.2}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof ask / sizeof *ask; i++) {
+        struct frame asked, frame, last;
+
+        memset(&asked, 0, sizeof asked);
+        asked.max_cells = ask[i].cells;
+        asked.cfg.irradiance_steps = ask[i].steps;
+        asked.max_lights = ask[i].lights;
+        asked.faintest_codes = ask[i].codes;
+        last = asked;
+        for (int s = 0; s <= LIVE_MAX_STEP; s++, last = frame) {
+            apply(&asked, s, &frame);
+            if (s == 0) {
+                assert_int_equal(frame.max_cells, ask[i].cells);
+                assert_int_equal(frame.cfg.irradiance_steps, ask[i].steps);
+                assert_int_equal(frame.max_lights, ask[i].lights);
+                assert_true(frame.faintest_codes == ask[i].codes);
+            }
+            assert_true(frame.half == (s > 3)); /* of quality 0 */
+            assert_true(frame.max_cells >= 1);
+            assert_true(frame.max_lights >= 1);
+            assert_true(frame.max_cells <= last.max_cells);
+            assert_true(frame.max_lights <= last.max_lights);
+            assert_true(frame.faintest_codes >= last.faintest_codes);
+            assert_true(frame.cfg.irradiance_steps <=
+                        last.cfg.irradiance_steps);
+            assert_int_equal(frame.cfg.irradiance_steps == 0,
+                             ask[i].steps == 0);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_easy),
+        cmocka_unit_test(test_overload),
+        cmocka_unit_test(test_worst),
+        cmocka_unit_test(test_hiccup),
+        cmocka_unit_test(test_recovers),
+        cmocka_unit_test(test_does_not_oscillate),
+        cmocka_unit_test(test_forgets),
+        cmocka_unit_test(test_steps),
+    };
+
+    return cmocka_run_group_tests_name("live_adapt", tests, NULL, NULL);
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Statistics of a live run: percentiles against all latencies sorted, sums
+ * against ones made by hand, lines to the letter, counts beyond 32 bits.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "live/live_stats.h"
+
+static struct live_stats stats;
+static char text[LIVE_STATS_TEXT];
+
+static void add_latency(int64_t us)
+{
+    const struct live_frame_times t = {.shown = true, .shown_us = us};
+
+    live_stats_add(&stats, &t);
+}
+
+static uint32_t next_random(uint32_t *seed)
+{
+    return *seed = *seed * 1664525U + 1013904223U, *seed >> 8;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+
+    return (x > y) - (x < y);
+}
+
+/* --------------------------------------------------------------- percentiles
+ */
+
+static void check_percentiles(int n, int64_t low_us, int64_t span_us)
+{
+    static int64_t us[1000];
+    uint32_t seed = (uint32_t)n;
+
+    live_stats_start(&stats, 0);
+    for (int i = 0; i < n; i++) {
+        const int64_t r = next_random(&seed) % span_us;
+
+        us[i] = low_us + r * r / span_us; /* more short ones than long */
+        add_latency(us[i]);
+    }
+    qsort(us, (size_t)n, sizeof *us, compare);
+    for (int percent = 1; percent <= 100; percent++) {
+        const int rank = (n * percent + 99) / 100; /* the nearest, from 1 */
+        const double want = 1e-3 * (double)us[rank - 1];
+        const double is = live_stats_latency_ms(&stats.second, percent);
+
+        if (is < want - 0.0501 || is > want + 0.0501)
+            fail_msg("%d of %d: %g is not %g", percent, n, is, want);
+    }
+}
+
+static void test_percentiles(void **state)
+{
+    (void)state;
+    for (int n = 1; n <= 1000; n = n < 120 ? n + 1 : n + 97) {
+        check_percentiles(n, 0, 1000);
+        check_percentiles(n, 12345, 50000);
+        check_percentiles(n, 0, 999999);
+    }
+}
+
+static void test_extreme_latencies(void **state)
+{
+    (void)state;
+    live_stats_start(&stats, 0);
+    assert_true(live_stats_latency_ms(&stats.second, 50) == -1);
+    add_latency(-5000);
+    assert_true(live_stats_latency_ms(&stats.second, 50) == 0.05);
+    add_latency(999999);
+    assert_true(live_stats_latency_ms(&stats.second, 50) == 0.05);
+    assert_true(live_stats_latency_ms(&stats.second, 51) == 999.95);
+    for (int i = 0; i < 98; i++)
+        add_latency(0);
+    assert_true(live_stats_latency_ms(&stats.second, 99) == 0.05);
+    assert_true(live_stats_latency_ms(&stats.second, 100) == 999.95);
+    add_latency(INT64_C(3000000000000));
+    assert_true(live_stats_latency_ms(&stats.second, 98) == 0.05);
+    assert_true(live_stats_latency_ms(&stats.second, 99) == 999.95);
+    assert_true(live_stats_latency_ms(&stats.second, 100) == 3e9);
+}
+
+/* A full bin halves them all; shares and the rare ones stay. */
+static void test_full_bin(void **state)
+{
+    (void)state;
+    live_stats_start(&stats, 0);
+    stats.total.bin[50] = UINT32_MAX;
+    stats.total.bin[60] = UINT32_MAX - 1;
+    stats.total.bin[70] = 1;
+    add_latency(5050);
+    assert_int_equal(stats.total.bin[50], 0x80000001);
+    assert_int_equal(stats.total.bin[60], 0x7fffffff);
+    assert_int_equal(stats.total.bin[70], 1);
+    assert_true(live_stats_latency_ms(&stats.total, 50) == 5.05);
+    assert_true(live_stats_latency_ms(&stats.total, 51) == 6.05);
+    assert_int_equal(stats.second.bin[50], 1);
+    /* and their sum passes 32 bits */
+    add_latency(2000000);
+    stats.total.bin[50] = stats.total.bin[60] = UINT32_MAX;
+    stats.total.bin[LIVE_BINS] = UINT32_MAX;
+    assert_true(live_stats_latency_ms(&stats.total, 33) == 5.05);
+    assert_true(live_stats_latency_ms(&stats.total, 34) == 6.05);
+    assert_true(live_stats_latency_ms(&stats.total, 66) == 6.05);
+    assert_true(live_stats_latency_ms(&stats.total, 67) == 2000);
+}
+
+/* ---------------------------------------------------------------------- sums
+ */
+
+static const struct live_frame_times frames[] = {
+    {.shown = true,
+     .n_dropped = 2,
+     .captured_us = 5000000,
+     .shown_us = 5012340,
+     .stage_us = {100, 1200, 300, 4000, 5000, 600},
+     .lights = 3,
+     .ghosts = 39,
+     .bytes = 1000,
+     .quality = 0.5},
+    {.shown = true,
+     .n_late = 1,
+     .captured_us = 5033000,
+     .shown_us = 5053000,
+     .stage_us = {200, 1400, 500, 4002, 5003, -7},
+     .lights = 2,
+     .ghosts = 26,
+     .bytes = 3000,
+     .quality = 0.25},
+    {.shown = false, .n_corrupt = 4, .stage_us = {99, 99, 99, 99, 99, 99}},
+};
+
+static void add_frames(void)
+{
+    live_stats_start(&stats, 5000000);
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++)
+        live_stats_add(&stats, &frames[i]);
+}
+
+static void test_json(void **state)
+{
+    (void)state;
+    add_frames();
+    assert_string_equal(
+        live_stats_json(&stats, 6000000, false, text),
+        "{\"t\":1.000,\"fps\":2.00,\"frames\":2,\"drops\":2,\"late\":1,"
+        "\"corrupt\":4,\"latency_ms_p50\":12.35,\"latency_ms_p99\":20.05,"
+        "\"ms\":{\"convert\":0.150,\"find\":1.300,\"plan\":0.400,"
+        "\"bin\":4.001,\"draw\":5.002,\"show\":0.300},\"lights\":3,"
+        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.375}");
+}
+
+/* The second starts anew, the total goes on. */
+static void test_seconds(void **state)
+{
+    (void)state;
+    add_frames();
+    assert_false(live_stats_due(&stats, 5999999));
+    assert_true(live_stats_due(&stats, 6000000));
+    live_stats_next(&stats, 6000250);
+    assert_false(live_stats_due(&stats, 7000000));
+    live_stats_add(&stats, &frames[1]);
+    assert_string_equal(
+        live_stats_json(&stats, 6500250, false, text),
+        "{\"t\":1.500,\"fps\":2.00,\"frames\":1,\"drops\":0,\"late\":1,"
+        "\"corrupt\":0,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
+        "\"ms\":{\"convert\":0.200,\"find\":1.400,\"plan\":0.500,"
+        "\"bin\":4.002,\"draw\":5.003,\"show\":0.000},\"lights\":2,"
+        "\"ghosts\":26,\"bytes\":3000,\"quality\":0.250}");
+    assert_string_equal(
+        live_stats_json(&stats, 9000000, true, text),
+        "{\"t\":4.000,\"fps\":0.75,\"frames\":3,\"drops\":2,\"late\":2,"
+        "\"corrupt\":4,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
+        "\"ms\":{\"convert\":0.167,\"find\":1.333,\"plan\":0.433,"
+        "\"bin\":4.001,\"draw\":5.002,\"show\":0.200},\"lights\":3,"
+        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.333,\"total\":true}");
+}
+
+static void test_no_frames(void **state)
+{
+    (void)state;
+    live_stats_start(&stats, 7);
+    live_stats_add(&stats, &frames[2]);
+    assert_string_equal(
+        live_stats_json(&stats, 7, true, text),
+        "{\"t\":0.000,\"fps\":0.00,\"frames\":0,\"drops\":0,\"late\":0,"
+        "\"corrupt\":4,\"latency_ms_p50\":null,\"latency_ms_p99\":null,"
+        "\"ms\":{\"convert\":null,\"find\":null,\"plan\":null,\"bin\":null,"
+        "\"draw\":null,\"show\":null},\"lights\":0,\"ghosts\":0,\"bytes\":0,"
+        "\"quality\":null,\"total\":true}");
+    assert_string_equal(live_stats_line(&stats, 1000007, true, text),
+                        "\r0.0 fps  0 dropped 0 late 4 bad  0 lights 0 ghosts"
+                        "\033[K");
+}
+
+static void test_lines(void **state)
+{
+    (void)state;
+    add_frames();
+    assert_string_equal(live_stats_line(&stats, 6000000, true, text),
+                        "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 bad"
+                        "  3 lights 39 ghosts  q 0.38\033[K");
+    live_stats_next(&stats, 6000000);
+    live_stats_add(&stats, &frames[1]);
+    assert_string_equal(
+        live_stats_line(&stats, 6250000, false, text),
+        "4.0 fps  20.1 ms, p99 20.1  2 dropped 2 late 4 bad  2 lights 26 "
+        "ghosts  q 0.25  ms: convert 0.20 find 1.40 plan 0.50 bin 4.00 draw "
+        "5.00 show 0.00  3000 bytes\n");
+}
+
+/* Everything as large as it gets. */
+static void test_large_counts(void **state)
+{
+    struct live_frame_times t = {.shown = true,
+                                 .n_dropped = INT_MAX,
+                                 .n_late = INT_MAX,
+                                 .n_corrupt = INT_MAX,
+                                 .shown_us = INT64_C(4000000000000000),
+                                 .lights = INT_MAX,
+                                 .ghosts = INT_MAX,
+                                 .bytes = SIZE_MAX,
+                                 .quality = 1};
+    size_t n;
+
+    (void)state;
+    for (int i = 0; i < LIVE_N_STAGES; i++)
+        t.stage_us[i] = INT64_C(1) << 60;
+    live_stats_start(&stats, 0);
+    for (int i = 0; i < 5; i++)
+        live_stats_add(&stats, &t);
+    live_stats_json(&stats, 1, true, text);
+    assert_non_null(strstr(text, "\"drops\":10737418235,"));
+    assert_non_null(strstr(text, "\"late\":10737418235,"));
+    assert_non_null(strstr(text, "\"corrupt\":10737418235,"));
+    assert_non_null(strstr(text, "\"find\":1152921504606847."));
+    assert_int_equal(text[strlen(text) - 1], '}');
+    live_stats_line(&stats, 1, true, text);
+    assert_int_equal(strlen(text), 1 + 79 + 3);
+    assert_string_equal(text + 80, "\033[K");
+    live_stats_line(&stats, 1, false, text);
+    n = strlen(text);
+    assert_true(n < sizeof text - 1 && text[n - 1] == '\n');
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_percentiles),
+        cmocka_unit_test(test_extreme_latencies),
+        cmocka_unit_test(test_full_bin),
+        cmocka_unit_test(test_json),
+        cmocka_unit_test(test_seconds),
+        cmocka_unit_test(test_no_frames),
+        cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_large_counts),
+    };
+
+    return cmocka_run_group_tests_name("live_stats", tests, NULL, NULL);
+}

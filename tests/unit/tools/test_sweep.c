@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The parts of glint sweep that measure nothing: fronts, PNG, the ladder.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lab/sweep.h"
+
+/* Cheaper and no worse, or better and no dearer. */
+static int dominates(const double *cost, const double *quality, int a, int b)
+{
+    return cost[a] <= cost[b] && quality[a] >= quality[b] &&
+           (cost[a] < cost[b] || quality[a] > quality[b]);
+}
+
+static void test_front_by_hand(void **state)
+{
+    static const double cost[] = {5, 1, 3, 2, 4, 3, 0, 2};
+    static const double quality[] = {50, 20, 40, 10, 40, 30, (double)NAN, 35};
+    int front[8];
+
+    (void)state;
+    assert_int_equal(sweep_front(cost, quality, 8, front), 4);
+    assert_int_equal(front[0], 1);
+    assert_int_equal(front[1], 7);
+    assert_int_equal(front[2], 2);
+    assert_int_equal(front[3], 0);
+    assert_int_equal(sweep_front(cost, quality, 0, front), 0);
+}
+
+/* A dial on the line between two rungs, above it, dearer than its like, cheaper
+ * than all, and between rungs of which one draws half of the pixels. */
+static void test_above_the_ladder(void **state)
+{
+    struct sweep_setting rung = {.kind = SWEEP_LADDER}, halves = rung;
+    const struct sweep_setting dial = {.kind = SWEEP_ALONE};
+    struct sweep_mean mean[] = {
+        {&dial, 0.2, 30, 30, 0, false}, {&halves, 0.5, 40, 40, 0, false},
+        {&dial, 0.7, 42, 42, 0, false}, {&rung, 1, 50, 50, 0, false},
+        {&dial, 1.9, 55, 55, 0, false}, {&dial, 2, 56.5, 57, 0, false},
+        {&rung, 4, 60, 60, 0, false},   {&dial, 4.05, 60.2, 60, 0, false},
+        {&dial, 9, 58, 58, 0, false},
+    };
+    const int n = sizeof mean / sizeof *mean;
+
+    (void)state;
+    for (int d = 0; d < n_dials; d++)
+        halves.value[d] = strcmp(dials[d].name, "half") == 0;
+    assert_true(isinf(sweep_above(mean, n, 0)));
+    assert_true(fabs(sweep_above(mean, n, 2) - 2) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 4) -
+                     (5 - 10 * log(1.02 * 1.9) / log(4))) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 5) -
+                     (6.5 - 10 * log(1.02 * 2) / log(4))) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 7) - 0.2) < 1e-9);
+    assert_true(fabs(sweep_above(mean, n, 8) + 2) < 1e-9);
+}
+
+/* Nothing dominates what is on it, and something on it whatever is not. Few
+ * values, so that many are equal. */
+static void test_front_of_many(void **state)
+{
+    enum { N = 60 };
+    double cost[N], quality[N];
+    int front[N];
+    uint32_t seed = 1;
+
+    (void)state;
+    for (int round = 0; round < 200; round++) {
+        int on[N] = {0}, n;
+
+        for (int i = 0; i < N; i++) {
+            seed = seed * 1664525U + 1013904223U;
+            cost[i] = seed >> 24 & 31;
+            quality[i] = seed >> 16 & 31;
+        }
+        n = sweep_front(cost, quality, N, front);
+        for (int i = 0; i < n; i++)
+            on[front[i]] = 1;
+        for (int i = 0; i < N; i++) {
+            int is_beaten = 0, is_met = 0;
+
+            for (int k = 0; k < N; k++) {
+                is_beaten |= dominates(cost, quality, k, i);
+                is_met |=
+                    on[k] && cost[k] == cost[i] && quality[k] == quality[i];
+            }
+            assert_true(is_beaten ? !on[i] : is_met);
+        }
+    }
+}
+
+/* The smallest PNG: its checksums are those of zlib. */
+static void test_png(void **state)
+{
+    static const uint8_t red[] = {255, 0, 0};
+    static const char want[] =
+        "data:image/"
+        "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAAD0"
+        "lEQVR4AQEEAPv/AP8AAAMBAQCNHeWCAAAAAElFTkSuQmCC";
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *file = open_memstream(&text, &bytes);
+
+    (void)state;
+    assert_non_null(file);
+    sweep_png(file, red, 1, 1);
+    fclose(file);
+    assert_string_equal(text, want);
+    free(text);
+}
+
+static void test_dials(void **state)
+{
+    struct scene scene, other;
+
+    (void)state;
+    for (int d = 0; d < n_dials; d++) {
+        int has_standard = 0;
+
+        scene_defaults(&scene);
+        other = scene;
+        for (int i = 0; i < dials[d].n_values; i++) {
+            has_standard |= dials[d].value[i] == dials[d].standard;
+            dial_set(&other, &dials[d], dials[d].value[i]);
+            assert_true(dial_get(&other, &dials[d]) == dials[d].value[i]);
+        }
+        assert_true(has_standard);
+        for (int e = 0; e < n_dials; e++) /* and no other moved */
+            if (e != d)
+                assert_true(dial_get(&other, &dials[e]) ==
+                            dial_get(&scene, &dials[e]));
+    }
+}
+
+/* Better is never coarser, among rungs that draw all pixels and among those
+ * that do not; the middle is what a scene has anyway. */
+static void test_ladder(void **state)
+{
+    struct scene last, scene, plain;
+
+    (void)state;
+    scene_defaults(&plain);
+    scene_defaults(&scene);
+    ladder_set(&scene, 0.5);
+    assert_int_equal(scene.grid, 64);
+    assert_true(scene.quantum == plain.quantum && scene.cull == plain.cull &&
+                scene.tolerance == plain.tolerance &&
+                scene.narrow == plain.narrow && scene.rays == plain.rays);
+    scene_defaults(&last);
+    ladder_set(&last, 0);
+    for (int i = 1; i <= 100; i++) {
+        ladder_set(&scene, i / 100.);
+        if (scene.half == last.half) { /* else pixels are what is finer */
+            assert_in_range(scene.grid, last.grid, GLINT_MAX_CELLS);
+            assert_true(scene.quantum <= last.quantum);
+        }
+        assert_true(scene.cull <= last.cull);
+        assert_true(scene.tolerance <= last.tolerance);
+        assert_true(scene.half <= last.half);
+        last = scene;
+    }
+    assert_true(ladder_take(&scene, "0.25") && ladder_take(&last, "draft"));
+    assert_int_equal(scene.grid, last.grid);
+    assert_true(ladder_take(&scene, "exact"));
+    assert_int_equal(scene.rays, SCENE_RAYS_EXACT);
+    assert_false(ladder_take(&scene, "1.01"));
+    assert_false(ladder_take(&scene, "best"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_front_by_hand),
+        cmocka_unit_test(test_above_the_ladder),
+        cmocka_unit_test(test_front_of_many),
+        cmocka_unit_test(test_png),
+        cmocka_unit_test(test_dials),
+        cmocka_unit_test(test_ladder),
+    };
+
+    return cmocka_run_group_tests_name("sweep", tests, NULL, NULL);
+}

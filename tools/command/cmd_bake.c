@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint bake: a lens table becomes a model.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options/coating.h"
+#include "model/model_report.h"
+#include "posix/output.h"
+#include "options/tool.h"
+#include "options/takes.h"
+
+static const char help[] =
+    "glint bake LENS -o MODEL [options]\n"
+    "\n"
+    "Fits polynomials to the rays of every ghost of LENS, turns them into\n"
+    "integers, proves that these cannot overflow, measures the errors with "
+    "the\n"
+    "run-time arithmetic, and writes one file for render, overlay and trace.\n"
+    "The same lens and options give the same bytes.\n"
+    "\n"
+    "  -o, --output MODEL\n"
+    "                    - is standard output; no report then\n"
+    "  --f-number N      stop the lens to f/N first\n" COATING_HELP
+    "  --basis B         auto: place in the ghost's own box, zones of angles "
+    "as\n"
+    "                    needed (default)\n"
+    "                    sparse: as published, 241 angles to 60 degrees\n"
+    "  --band LO,HI      wavelengths, nm (default 400,700)\n"
+    "  --max-angle DEG   of a light (default 60)\n"
+    "  --field MM        radius on the sensor within which light counts\n"
+    "                    (default: a tenth more than the film's corners)\n"
+    "  --tolerance T     scale of the errors aimed at (default 1)\n"
+    "  -j, --threads N   default: all processors; never changes the model\n"
+    "  --json   -q   -v   --help   --version\n";
+
+struct bake {
+    const char *output;
+    struct coating coating;
+    double f_number;
+    struct glint_bake_options options;
+};
+
+static int take(struct tool *tool, struct bake *b, int c, const char *name)
+{
+    static const char *const bases[] = {"auto", "sparse", NULL};
+    struct glint_bake_options *o = &b->options;
+    bool ok = true;
+
+    switch (c) {
+    case 'o':
+        b->output = optarg;
+        break;
+    case 'c':
+        return coating_take(tool, &b->coating, optarg);
+    case 'f':
+        ok = tool_number(optarg, &b->f_number) && b->f_number > 0;
+        break;
+    case 'b':
+        o->basis = tool_word(optarg, bases);
+        ok = o->basis >= 0;
+        break;
+    case 'w':
+        ok = tool_numbers(optarg, o->band_nm, 2) == 2;
+        break;
+    case 'a':
+        ok = tool_number(optarg, &o->max_deg);
+        break;
+    case 'm':
+        ok = tool_number(optarg, &o->field_mm) && o->field_mm > 0;
+        break;
+    case 't':
+        ok = tool_number(optarg, &o->tolerance);
+        break;
+    default:
+        return tool_option(tool, c, optarg);
+    }
+    return ok ? -1 : tool_refuse(tool, name, optarg);
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct bake *b)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"coating", required_argument, NULL, 'c'},
+        {"f-number", required_argument, NULL, 'f'},
+        {"basis", required_argument, NULL, 'b'},
+        {"band", required_argument, NULL, 'w'},
+        {"max-angle", required_argument, NULL, 'a'},
+        {"field", required_argument, NULL, 'm'},
+        {"tolerance", required_argument, NULL, 't'},
+        TOOL_COMMON_OPTIONS};
+    int c, code, index = 0;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &index)) >= 0)
+        if ((code = take(tool, b, c, options[index].name)) >= 0)
+            return code;
+    if (optind + 1 != argc)
+        return tool_usage(tool, "takes one lens");
+    if (!b->output)
+        return tool_usage(tool, "needs -o MODEL");
+    return -1;
+}
+
+static int report(const struct tool *tool, const void *model, size_t bytes,
+                  double seconds, const struct glint_bake_report *r)
+{
+    const char *reason;
+    struct glint_lens lens;
+
+    if (glint_lens_open(&lens, model, bytes, &reason) != GLINT_OK)
+        return tool_fail(tool, GLINT_E_LENS, reason);
+    model_report_bake(tool, &lens, seconds, r);
+    return EXIT_OK;
+}
+
+/* Bakes LENS into OUT, which is finished or aborted. */
+static int bake_into(struct glint_output *out, struct tool *tool,
+                     struct bake *b, const struct glint_prescription *lens)
+{
+    struct glint_error error = {""};
+    struct tool_progress progress;
+    struct glint_bake_report r;
+    unsigned char *model = NULL;
+    const double start = tool_seconds();
+    size_t bytes = 0;
+    enum glint_status status;
+    int code = EXIT_OK;
+
+    b->options.workers = tool->workers;
+    b->options.progress = tool_progress_show;
+    b->options.progress_ctx = &progress;
+    tool_progress_start(&progress, tool, "bake");
+    status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
+    tool_progress_end(&progress);
+    if (status == GLINT_OK)
+        status = glint_output_finish(out, model, bytes, &error);
+    else
+        glint_output_abort(out);
+    if (status != GLINT_OK)
+        code = tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    else if (strcmp(b->output, "-") != 0)
+        code = report(tool, model, bytes, tool_seconds() - start, &r);
+    free(model);
+    return code;
+}
+
+/* The output is opened first: a bake can take minutes. */
+static int run(struct tool *tool, struct bake *b, const char *name)
+{
+    struct glint_prescription *lens = malloc(sizeof *lens);
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    struct glint_output out;
+    int code;
+
+    if (!lens)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = tool_lens(tool, name, lens);
+    if (code == EXIT_OK)
+        coating_apply(&b->coating, lens);
+    if (code == EXIT_OK && b->f_number > 0)
+        status = glint_prescription_set_f_number(lens, b->f_number, &error);
+    if (code == EXIT_OK && status == GLINT_OK)
+        status =
+            glint_output_open(&out, b->output, GLINT_OUTPUT_BINARY, &error);
+    if (status != GLINT_OK)
+        code = tool_fail(tool, status, error.text);
+    if (code == EXIT_OK)
+        code = bake_into(&out, tool, b, lens);
+    free(lens);
+    return code;
+}
+
+int cmd_bake(int argc, char **argv)
+{
+    struct tool tool = {.name = "bake", .help = help};
+    struct bake b = {.output = NULL};
+    int code;
+
+    glint_bake_defaults(&b.options);
+    code = parse(&tool, argc, argv, &b);
+    if (code >= 0)
+        return code;
+    code = tool_start(&tool);
+    if (code == EXIT_OK)
+        code = run(&tool, &b, argv[optind]);
+    tool_finish(&tool);
+    return code;
+}

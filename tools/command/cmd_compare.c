@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint compare: how far two pictures are apart.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/measure.h"
+#include "formats/picture.h"
+#include "options/scene.h"
+#include "options/takes.h"
+
+static const char help[] =
+    "glint compare REFERENCE TEST [options]\n"
+    "\n"
+    "How far two pictures of one size are apart: PSNR, SSIM of luma (8 x 8\n"
+    "blocks), the 99th percentile of the absolute difference in codes, and "
+    "the\n"
+    "ratio of the flux. Two pictures in codes (.ppm .png .jpg ...) are "
+    "compared\n"
+    "code by code. Where one of them has floats (.pfm .exr .hdr), both are\n"
+    "taken as linear light, exposed so that the 99.9th percentile of the\n"
+    "reference's luminance is 1, clipped, and encoded to 8-bit sRGB first.\n"
+    "Equal pictures are said to be identical; their PSNR is inf, null in "
+    "JSON.\n"
+    "\n"
+    "  --exposure EV   stops, of both; auto: by the reference's percentile;\n"
+    "                  default: 0 for two pictures in codes, else auto\n"
+    "  --fit           multiply TEST by the factor that fits best first\n"
+    "  --exposed       TEST was drawn at that exposure, as a .ppm with\n"
+    "                  --exposure of its logarithm to the base 2\n";
+
+static const char help_end[] = COMMON_HELP;
+
+struct asked {
+    const char *name[2];
+    bool fit, exposed;
+    bool has_ev, is_auto; /* what --exposure said; neither: by the pictures */
+    double ev;
+};
+
+/* ------------------------------------------------------------------- result */
+
+static bool is_identical(const struct glint_float_image image[2])
+{
+    const size_t n = 3 * (size_t)image[0].width * (size_t)image[0].height;
+
+    return memcmp(image[0].rgb, image[1].rgb, n * sizeof(float)) == 0;
+}
+
+static void print_json(const struct measure *m, bool identical)
+{
+    if (m->psnr_db == 999)
+        printf("{\"psnr_db\": null, ");
+    else
+        printf("{\"psnr_db\": %.3f, ", m->psnr_db);
+    printf("\"ssim\": %.6f, \"p99\": %g, \"flux\": %.6f, \"factor\": %.9g, "
+           "\"exposure\": %.9g, \"identical\": %s}\n",
+           m->ssim, m->p99, m->flux, m->factor, m->exposure,
+           identical ? "true" : "false");
+}
+
+static void print(const struct measure *m, bool identical)
+{
+    const char *words = identical           ? "identical: "
+                        : m->psnr_db == 999 ? "differ in nothing that can be "
+                                              "seen at this exposure: "
+                        : m->same_codes     ? "the same codes: "
+                                            : "";
+
+    if (m->psnr_db == 999)
+        printf("%sPSNR inf dB", words);
+    else
+        printf("%sPSNR %.2f dB", words, m->psnr_db);
+    printf("  SSIM %.5f  p99 %g codes  flux %.4f  factor %.6g  exposure %.6g\n",
+           m->ssim, m->p99, m->flux, m->factor, m->exposure);
+}
+
+/* ---------------------------------------------------------------- comparing */
+
+/* Takes back that IMAGE was exposed so. */
+static void unexpose(struct glint_float_image *image, double exposure)
+{
+    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
+
+    for (size_t i = 0; i < n; i++)
+        image->rgb[i] /= (float)exposure;
+}
+
+/* What comes through a pipe is told by nothing. */
+static bool has_floats(const char *name)
+{
+    return glint_picture_is_float(name) || strcmp(name, "-") == 0;
+}
+
+static double exposure_for(const struct asked *a,
+                           const struct glint_float_image *reference)
+{
+    const bool codes = !has_floats(a->name[0]) && !has_floats(a->name[1]);
+
+    if (a->has_ev)
+        return exp2(a->ev);
+    return codes && !a->is_auto ? 1 : measure_exposure(reference);
+}
+
+static int measure(const struct tool *tool, const struct asked *a,
+                   struct glint_float_image image[2])
+{
+    const double exposure = exposure_for(a, &image[0]);
+    const bool identical = is_identical(image);
+    struct measure m;
+
+    if (a->exposed)
+        unexpose(&image[1], exposure);
+    if (!measure_at(&image[0], &image[1], a->fit, exposure, &m))
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    if (tool->json)
+        print_json(&m, identical);
+    else
+        print(&m, identical);
+    return EXIT_OK;
+}
+
+static int compare(const struct tool *tool, const struct asked *a)
+{
+    struct glint_float_image image[2] = {{0, 0, NULL}, {0, 0, NULL}};
+    struct glint_error error = {""};
+    int code = EXIT_OK;
+
+    for (int i = 0; i < 2 && code == EXIT_OK; i++) {
+        const enum glint_status status =
+            glint_picture_load_float(a->name[i], &image[i], &error);
+
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, error.text);
+    }
+    if (code == EXIT_OK && (image[0].width != image[1].width ||
+                            image[0].height != image[1].height)) {
+        fprintf(stderr, "glint compare: %s is %dx%d, %s is %dx%d\n", a->name[0],
+                image[0].width, image[0].height, a->name[1], image[1].width,
+                image[1].height);
+        code = EXIT_INPUT;
+    }
+    if (code == EXIT_OK)
+        code = measure(tool, a, image);
+    free(image[0].rgb);
+    free(image[1].rgb);
+    return code;
+}
+
+/* ------------------------------------------------------------------ options */
+
+static bool take_exposure(struct asked *a, const char *text)
+{
+    a->is_auto = strcmp(text, "auto") == 0;
+    a->has_ev = !a->is_auto;
+    return a->is_auto || (tool_number(text, &a->ev) && fabs(a->ev) <= 100);
+}
+
+int cmd_compare(int argc, char **argv)
+{
+    static const struct option options[] = {
+        {"fit", no_argument, NULL, 'f'},
+        {"exposed", no_argument, NULL, 'e'},
+        {"exposure", required_argument, NULL, 'x'},
+        TOOL_COMMON_OPTIONS};
+    struct tool tool = {.name = "compare", .help = help, .help_end = help_end};
+    struct asked a = {{NULL, NULL}, false, false, false, false, 0};
+    int c, code;
+
+    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+           0) {
+        a.fit |= c == 'f';
+        a.exposed |= c == 'e';
+        if (c == 'x' && !take_exposure(&a, optarg))
+            return tool_refuse(&tool, "exposure", optarg);
+        if (c == 'f' || c == 'e' || c == 'x')
+            continue;
+        code = tool_option(&tool, c, optarg);
+        if (code >= 0)
+            return code;
+    }
+    if (a.fit && a.exposed)
+        return tool_usage(&tool, "--fit and --exposed do not go together");
+    if (optind + 2 != argc)
+        return tool_usage(&tool, "takes two pictures");
+    a.name[0] = argv[optind];
+    a.name[1] = argv[optind + 1];
+    return compare(&tool, &a);
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint info: what a lens is.
+ */
+#include <stdlib.h>
+
+#include "options/coating.h"
+#include "model/model_file.h"
+#include "model/model_report.h"
+#include "options/tool.h"
+
+static const char help[] =
+    "glint info LENS|MODEL [--json] [-v] [--f-number N] [--coating C]\n"
+    "\n"
+    "Prints focal length, back focal length, entrance pupil, stop radius at\n"
+    "the f-number, surfaces and ghosts with their pairs of surfaces (counted\n"
+    "from 0 at the front, without the stop). First-order values are for the\n"
+    "d line, 587.56 nm.\n"
+    "\n"
+    "Of a baked model also: band of wavelengths, angles, what each ghost\n"
+    "takes, and how far its integers are from exact rays: rms and p50 are\n"
+    "means over the zones (rms of squares), p99, max, bound and rounding\n"
+    "the worst zone's. Sensor in pixels of a film 1920 wide.\n"
+    "\n"
+    "  --f-number N        stop the lens to f/N first; not of a "
+    "model\n" COATING_HELP
+    "  -v                  of a table: what is on each surface; of a model: "
+    "each\n"
+    "                      zone\n"
+    "  --json              one JSON object\n";
+
+struct info {
+    struct glint_prescription lens;
+    struct glint_optics optics;
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    int n_ghosts;
+};
+
+static void print_json(const struct info *info)
+{
+    printf("{\"name\": ");
+    tool_json_string(stdout, info->lens.name);
+    printf(", \"source\": ");
+    tool_json_string(stdout, info->lens.source);
+    printf(", \"focal_length_mm\": %.6f, \"back_focal_length_mm\": %.6f, "
+           "\"entrance_pupil_radius_mm\": %.6f, \"entrance_pupil_z_mm\": %.6f, "
+           "\"stop_radius_mm\": %.6f, \"f_number\": %g, \"length_mm\": %.6f, "
+           "\"film_mm\": [%g, %g], \"surfaces\": %d, "
+           "\"surfaces_before_stop\": %d, \"ghosts\": %d, \"ghost_pairs\": [",
+           info->optics.focal_mm, info->optics.back_focal_mm,
+           info->optics.entrance_radius_mm, info->optics.entrance_z_mm,
+           info->optics.stop_radius_mm, info->lens.f_number,
+           info->optics.length_mm, info->lens.film_width_mm,
+           info->lens.film_height_mm, info->lens.n_surfaces,
+           info->lens.stop_after, info->n_ghosts);
+    for (int k = 0; k < info->n_ghosts; k++)
+        printf("%s[%d, %d]", k ? ", " : "", info->ghost[k].i, info->ghost[k].j);
+    printf("]}\n");
+}
+
+static void print_text(const struct info *info)
+{
+    const struct glint_prescription *l = &info->lens;
+    const struct glint_optics *o = &info->optics;
+
+    printf("%s\n%s\n\n", l->name, l->source);
+    printf("focal length        %10.3f mm\n", o->focal_mm);
+    printf("back focal length   %10.3f mm\n", o->back_focal_mm);
+    printf("entrance pupil      %10.3f mm radius, %.3f mm behind the front\n",
+           o->entrance_radius_mm, o->entrance_z_mm);
+    printf("stop                %10.4f mm radius at f/%g\n", o->stop_radius_mm,
+           l->f_number);
+    printf("front to sensor     %10.3f mm\n", o->length_mm);
+    printf("film                %6gx%g mm\n", l->film_width_mm,
+           l->film_height_mm);
+    printf("surfaces            %6d before the stop, %d after\n", l->stop_after,
+           l->n_surfaces - l->stop_after);
+    printf("ghosts              %6d: ", info->n_ghosts);
+    for (int k = 0; k < info->n_ghosts; k++)
+        printf("%s%d:%d-%d",
+               k == 0  ? ""
+               : k % 8 ? "  "
+                       : "\n"
+                         "        ",
+               k, info->ghost[k].i, info->ghost[k].j);
+    printf("\n");
+}
+
+static void print_coatings(const struct glint_prescription *l)
+{
+    printf("\nsurface  reflects of 450, 550, 650 nm    film\n");
+    for (int k = 0; k < l->n_surfaces; k++) {
+        static const double nm[3] = {450, 550, 650};
+        const struct glint_surface *s = &l->surface[k], *before = s - 1;
+
+        printf("%7d ", k);
+        for (int i = 0; i < 3; i++)
+            printf(" %6.2f %%",
+                   100 * glint_reflectance(
+                             k ? glint_index(before->nd, before->vd, nm[i]) : 1,
+                             glint_index(s->nd, s->vd, nm[i]), 1, s->coating_n,
+                             3.14159265358979323846 * s->coating_nm / nm[i]));
+        if (s->coating_nm > 0)
+            printf("    %g nm, index %g\n", s->coating_nm, s->coating_n);
+        else
+            printf("    none\n");
+    }
+}
+
+static int info_of_model(const struct tool *tool, const char *path)
+{
+    struct model_file model;
+    const int code = tool_model(tool, path, &model);
+
+    if (code != EXIT_OK)
+        return code;
+    model_report_info(tool, &model);
+    model_file_close(&model);
+    return EXIT_OK;
+}
+
+static int parse(struct tool *tool, int argc, char **argv, double *f_number,
+                 struct coating *coating)
+{
+    static const struct option options[] = {
+        {"f-number", required_argument, NULL, 'f'},
+        {"coating", required_argument, NULL, 'c'},
+        TOOL_COMMON_OPTIONS};
+    int c, code;
+
+    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
+           0) {
+        if (c == 'f') {
+            if (!tool_number(optarg, f_number))
+                return tool_usage(tool, "--f-number takes a number, not '%s'",
+                                  optarg);
+            continue;
+        }
+        code = c == 'c' ? coating_take(tool, coating, optarg)
+                        : tool_option(tool, c, optarg);
+        if (code >= 0)
+            return code;
+    }
+    if (optind + 1 != argc)
+        return tool_usage(tool, "takes one lens");
+    return -1;
+}
+
+int cmd_info(int argc, char **argv)
+{
+    struct tool tool = {.name = "info", .help = help};
+    struct glint_error error;
+    struct info *info;
+    struct coating coating = {.kind = COATING_TABLE};
+    double f_number = 0;
+    int code = parse(&tool, argc, argv, &f_number, &coating);
+
+    if (code >= 0)
+        return code;
+    if (tool_is_model(argv[optind]) &&
+        coating_of_model(&tool, &coating, argv[optind]) != EXIT_OK)
+        return EXIT_USAGE;
+    if (tool_is_model(argv[optind]))
+        return f_number != 0 ? tool_usage(&tool, "the f-number of a model was "
+                                                 "chosen when it was baked")
+                             : info_of_model(&tool, argv[optind]);
+    info = calloc(1, sizeof *info);
+    if (!info)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    code = tool_lens(&tool, argv[optind], &info->lens);
+    if (code == EXIT_OK)
+        coating_apply(&coating, &info->lens);
+    if (code == EXIT_OK && f_number != 0) {
+        const enum glint_status status =
+            glint_prescription_set_f_number(&info->lens, f_number, &error);
+
+        if (status != GLINT_OK)
+            code = tool_fail(&tool, status, error.text);
+    }
+    if (code == EXIT_OK) {
+        glint_optics_of(&info->lens, &info->optics);
+        info->n_ghosts =
+            glint_ghost_list(&info->lens, info->ghost, GLINT_MAX_GHOSTS);
+        (tool.json ? print_json : print_text)(info);
+        if (!tool.json && tool.verbose)
+            print_coatings(&info->lens);
+    }
+    free(info);
+    return code;
+}

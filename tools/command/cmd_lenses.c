@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint lenses: what there is to choose from, and their models all at once.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "model/lens_files.h"
+#include "overlay/look.h"
+#include "model/model_cache.h"
+#include "posix/output.h"
+#include "options/scene_table.h"
+#include "options/takes.h"
+
+static const char help[] =
+    "glint lenses [--json] [--models FOLDER]\n"
+    "\n"
+    "The lenses that come with glint: the name that --lens takes, focal "
+    "length\n"
+    "and widest angle to a corner of the film, f-number, film, ghosts, and\n"
+    "whether a model is baked already, which else is done when a lens is "
+    "first\n"
+    "drawn and takes seconds to minutes. A lens of your own is a .lens file\n"
+    "(lenses/README.md); those in the folder $GLINT_LENSES are listed, too.\n"
+    "\n"
+    "  --models FOLDER   bake what is missing and put all models there, of\n"
+    "                    overlay and of render, as make install does\n"
+    "  -o, --only NAME   this lens; repeatable\n";
+
+static const char help_end[] = COMMON_HELP;
+
+enum { MAX_ONLY = 64 };
+
+struct lenses {
+    struct tool *tool;
+    const char *folder; /* for models, or NULL */
+    const char *only[MAX_ONLY];
+    int n_only, n, code;
+};
+
+struct entry {
+    struct scene scene; /* by default */
+    struct glint_optics optics;
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    int n_ghosts;
+    struct glint_bake_options options;
+    bool is_baked;
+};
+
+/* The scene that overlay, live and explain have without options, or PLAIN that
+ * of render. */
+static int set_scene(struct scene *scene, bool plain)
+{
+    struct look *look = plain ? NULL : calloc(1, sizeof *look);
+
+    if (plain) {
+        scene_defaults(scene);
+        return EXIT_OK;
+    }
+    if (!look)
+        return EXIT_RUNTIME;
+    look_defaults(look);
+    *scene = look->scene;
+    free(look);
+    return EXIT_OK;
+}
+
+static int look_at(const struct tool *tool, const char *name, struct entry *e,
+                   bool plain)
+{
+    int code = set_scene(&e->scene, plain);
+
+    if (code != EXIT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = tool_lens(tool, name, &e->scene.lens);
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&e->scene.coating, &e->scene.lens);
+    glint_optics_of(&e->scene.lens, &e->optics);
+    e->n_ghosts = glint_ghost_list(&e->scene.lens, e->ghost, GLINT_MAX_GHOSTS);
+    e->options = scene_bake_options(&e->scene);
+    e->is_baked = model_is_cached(&e->scene.lens, &e->options);
+    return EXIT_OK;
+}
+
+/* -------------------------------------------------------------------- tables
+ */
+
+static double corner_deg(const struct entry *e)
+{
+    const struct glint_prescription *l = &e->scene.lens;
+
+    return 45 / atan(1) *
+           atan(0.5 * hypot(l->film_width_mm, l->film_height_mm) /
+                e->optics.focal_mm);
+}
+
+static void print_json(struct lenses *l, const char *name,
+                       const struct entry *e)
+{
+    printf("%s{\"name\": ", l->n++ ? ",\n " : "{\"lenses\": [\n ");
+    tool_json_string(stdout, name);
+    printf(", \"source\": ");
+    tool_json_string(stdout, e->scene.lens.source);
+    printf(", \"focal_length_mm\": %.3f, \"f_number\": %g, "
+           "\"film_mm\": [%g, %g], \"corner_deg\": %.2f, \"ghosts\": %d, "
+           "\"baked\": %s}",
+           e->optics.focal_mm, e->scene.lens.f_number,
+           e->scene.lens.film_width_mm, e->scene.lens.film_height_mm,
+           corner_deg(e), e->n_ghosts, e->is_baked ? "true" : "false");
+}
+
+static void print_text(struct lenses *l, const char *name,
+                       const struct entry *e)
+{
+    char film[32];
+
+    if (l->n++ == 0)
+        printf("%-24s %9s %7s %6s  %-9s %6s  %s\n", "lens", "focal mm",
+               "corner", "f/", "film mm", "ghosts", "model");
+    snprintf(film, sizeof film, "%gx%g", e->scene.lens.film_width_mm,
+             e->scene.lens.film_height_mm);
+    printf("%-24s %9.1f %4.0f deg %5g  %-9s %6d  %s\n", name,
+           e->optics.focal_mm, corner_deg(e), e->scene.lens.f_number, film,
+           e->n_ghosts, e->is_baked ? "baked" : "not yet");
+}
+
+/* -------------------------------------------------------------------- models
+ */
+
+static int save_model(const struct tool *tool, const char *path,
+                      const struct model_file *model)
+{
+    struct glint_error error = {""};
+    struct glint_output out;
+    enum glint_status status =
+        glint_output_open(&out, path, GLINT_OUTPUT_BINARY, &error);
+
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, model->data, model->bytes, &error);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* Bakes it, unless it lies there already or where models are kept. */
+static int put_model(const struct lenses *l, const struct entry *e)
+{
+    const uint64_t key = glint_bake_key(&e->scene.lens, &e->options);
+    struct model_file model = {.data = NULL};
+    char path[1024];
+    struct stat st;
+    int code;
+
+    if ((size_t)snprintf(path, sizeof path, "%s", l->folder) >= sizeof path ||
+        !model_cache_name(path, sizeof path, e->scene.lens.name, key))
+        return tool_usage(l->tool, "%s: the name is too long", l->folder);
+    if (stat(path, &st) == 0)
+        return EXIT_OK;
+    code = model_cached(l->tool, &e->scene.lens, e->options, &model);
+    if (code == EXIT_OK)
+        code = save_model(l->tool, path, &model);
+    if (code == EXIT_OK && !l->tool->quiet)
+        fprintf(stderr, "%s: %zu bytes\n", path, model.bytes);
+    model_file_close(&model);
+    return code;
+}
+
+/* ------------------------------------------------------------------- command
+ */
+
+static bool is_wanted(const struct lenses *l, const char *name)
+{
+    for (int i = 0; i < l->n_only; i++)
+        if (strcmp(l->only[i], name) == 0)
+            return true;
+    return l->n_only == 0;
+}
+
+/* A table with a mistake is said and passed over. */
+static bool one(void *ctx, const char *name)
+{
+    struct lenses *l = ctx;
+    struct entry *e;
+    int code;
+
+    if (!is_wanted(l, name))
+        return true;
+    e = calloc(1, sizeof *e);
+    if (!e) {
+        l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+        return true;
+    }
+    code = look_at(l->tool, name, e, false);
+    if (code == EXIT_OK && l->folder) {
+        code = put_model(l, e);
+        if (code == EXIT_OK)
+            code = look_at(l->tool, name, e, true);
+        if (code == EXIT_OK)
+            code = put_model(l, e);
+        l->n++;
+    } else if (code == EXIT_OK)
+        (l->tool->json ? print_json : print_text)(l, name, e);
+    free(e);
+    if (code != EXIT_OK)
+        l->code = code;
+    return code == EXIT_OK || code == EXIT_LENS;
+}
+
+static int run(struct lenses *l)
+{
+    if (l->folder && mkdir(l->folder, 0777) != 0 && errno != EEXIST) {
+        fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
+        return EXIT_OUTPUT;
+    }
+    if (lens_files_each(one, l) < 0)
+        return tool_fail(l->tool, GLINT_E_MEMORY, NULL);
+    if (l->n == 0 && l->code == EXIT_OK) {
+        fprintf(stderr, "glint lenses: there are none; $GLINT_LENSES names "
+                        "a folder of them\n");
+        return EXIT_LENS;
+    }
+    if (l->tool->json && !l->folder && l->n > 0)
+        printf("\n]}\n");
+    return l->code;
+}
+
+static int parse(struct lenses *l, int argc, char **argv)
+{
+    static const struct option options[] = {
+        {"models", required_argument, NULL, 'm'},
+        {"only", required_argument, NULL, 'o'},
+        TOOL_COMMON_OPTIONS};
+    int c, code;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            NULL)) >= 0) {
+        if (c == 'm')
+            l->folder = optarg;
+        else if (c == 'o' && l->n_only == MAX_ONLY)
+            return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
+        else if (c == 'o')
+            l->only[l->n_only++] = optarg;
+        else if ((code = tool_option(l->tool, c, optarg)) >= 0)
+            return code;
+    }
+    return optind == argc
+               ? -1
+               : tool_usage(l->tool,
+                            "takes no lens but by --only; glint info "
+                            "%s tells of it",
+                            argv[optind]);
+}
+
+int cmd_lenses(int argc, char **argv)
+{
+    struct tool tool = {.name = "lenses", .help = help, .help_end = help_end};
+    struct lenses l = {.tool = &tool};
+    int code = parse(&l, argc, argv);
+
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&l);
+        tool_finish(&tool);
+    }
+    return code;
+}

@@ -1,0 +1,370 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint render: the flare alone, in linear light.
+ */
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/area.h"
+#include "engine/lamps.h"
+#include "engine/measure.h"
+#include "formats/picture.h"
+#include "posix/error.h"
+#include "options/scene.h"
+#include "options/takes.h"
+
+static const char help[] =
+    "glint render LENS|MODEL -o OUT --light "
+    "THETA,PHI[,POWER[,R,G,B[,SIZE]]]... "
+    "[options]\n"
+    "glint render LENS|MODEL -o OUT --lights FILE [options]\n"
+    "\n"
+    "Draws the ghosts of a lens alone, from its table or its baked model; a\n"
+    "table is baked when it is first drawn (see 'glint bake'). Values are\n"
+    "linear: 1 is what a light of POWER 1 would give if its in-focus image\n"
+    "fell on one pixel. OUT is .pfm,\n"
+    "or with the image plug-in .exr, .hdr: linear as it stands. A .ppm, .png\n"
+    "or .jpg is for the eye: sRGB, the 99.9th percentile of luminance at 1\n"
+    "unless --exposure says otherwise.\n"
+    "\n"
+    "  -o, --output OUT\n"
+    "  --size WxH          default 960x540\n"
+    "  --light LIST        degrees off the axis, degrees about it (0 = right,\n"
+    "                      90 = up), power (default 1), colour; repeatable\n"
+    "  --lights FILE       those of frame 0 of a list as of glint overlay, up "
+    "to a\n"
+    "                      million\n"
+    "  --engine E          model: the integer run time (default)\n"
+    "                      exact: the reference, every ray in "
+    "double\n";
+
+static const char help_end[] = SCENE_MEMORY_HELP SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
+
+struct render {
+    struct scene scene;
+    const char *output;
+    bool linear; /* the output takes floats */
+    int width, height;
+    bool exact;
+    size_t reserve_bytes; /* unless 0: all the memory that the flare takes */
+    const char *lights_file;
+    int n_lamps;
+    struct glint_lamp *lamp; /* room for SCENE_MAX_LAMPS by hand */
+    struct glint_float_image image;
+    double ms;
+};
+
+static int take(struct tool *tool, struct render *r, int c)
+{
+    static const char *const engines[] = {"model", "exact", NULL};
+    int word;
+
+    switch (c) {
+    case 'o':
+        r->output = optarg;
+        return -1;
+    case 's':
+        if (tool_size(optarg, &r->width, &r->height))
+            return -1;
+        return tool_usage(tool, "--size takes WxH of 1 to %d pixels, not '%s'",
+                          GLINT_MAX_SIDE, optarg);
+    case 'l':
+        if (r->n_lamps == SCENE_MAX_LAMPS)
+            return tool_usage(tool, "more than %d lights", SCENE_MAX_LAMPS);
+        if (scene_lamp(optarg, &r->lamp[r->n_lamps++])) {
+            r->scene.max_deg =
+                fmax(r->scene.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
+            return -1;
+        }
+        return tool_usage(
+            tool,
+            "--light takes THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA "
+            "0 to 89.9, not '%s'",
+            optarg);
+    case 'f':
+        r->lights_file = optarg;
+        return -1;
+    case 'm':
+        return scene_memory(optarg, &r->reserve_bytes)
+                   ? -1
+                   : tool_refuse(tool, "memory", optarg);
+    case 'e':
+        word = tool_word(optarg, engines);
+        r->exact = word == 1;
+        if (r->exact)
+            r->scene.rays = SCENE_RAYS_EXACT;
+        return word >= 0 ? -1 : tool_refuse(tool, "engine", optarg);
+    default:
+        return tool_option(tool, c, optarg);
+    }
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct render *r)
+{
+    static const struct option options[] = {
+        {"output", required_argument, NULL, 'o'},
+        {"size", required_argument, NULL, 's'},
+        {"light", required_argument, NULL, 'l'},
+        {"lights", required_argument, NULL, 'f'},
+        {"engine", required_argument, NULL, 'e'},
+        {"memory", required_argument, NULL, 'm'},
+        SCENE_OPTIONS,
+        TOOL_COMMON_OPTIONS};
+    int c, code;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            NULL)) >= 0) {
+        code = scene_option(tool, &r->scene, c, optarg);
+        if (code == -2)
+            code = take(tool, r, c);
+        if (code >= 0)
+            return code;
+    }
+    if (optind + 1 != argc)
+        return tool_usage(tool, "takes one lens");
+    if (!r->output)
+        return tool_usage(tool, "needs -o OUT");
+    if (r->n_lamps == 0 && !r->lights_file)
+        return tool_usage(tool, "needs a --light or --lights");
+    if (r->reserve_bytes && r->scene.rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "--memory is for models, not for exact rays");
+    return -1;
+}
+
+/* ------------------------------------------------------------------ engines */
+
+/* All points of all lamps, N of them. NULL: no memory. */
+static struct glint_lamp *points_of(const struct render *r, int *n)
+{
+    const struct glint_view view = scene_view(&r->scene, r->width, r->height);
+    const double pixels = fabs(r->scene.setup.optics.focal_mm) * view.width /
+                          view.sensor_width_mm;
+    struct glint_lamp *points;
+    struct area area;
+    int total;
+    const struct area_rule rule =
+        area_rule_of(r->lamp, r->n_lamps, pixels,
+                     r->scene.area_samples_asked ? r->scene.area_samples_asked
+                                                 : r->scene.area_samples,
+                     INT_MAX, &total);
+
+    *n = 0;
+    points = malloc(((size_t)total + 1) * sizeof *points);
+    for (int lamp = 0; points && lamp < r->n_lamps; lamp++) {
+        const int more = area_plan(&area, &r->lamp[lamp], &rule);
+
+        for (int i = 0; i < more; i++)
+            points[(*n)++] = area_point(&area, i);
+    }
+    return points;
+}
+
+static int render_exact(struct tool *tool, struct render *r)
+{
+    const size_t n = 3 * (size_t)r->width * (size_t)r->height;
+    struct tool_progress progress;
+    int n_points = 0;
+    struct glint_lamp *points = points_of(r, &n_points);
+    struct glint_exact_config cfg = {
+        .setup = &r->scene.setup,
+        .view = scene_view(&r->scene, r->width, r->height),
+        .lamps = points,
+        .n_lamps = n_points,
+        .grid = r->scene.grid ? (r->scene.grid + 1) / 2 * 2 : 512,
+        .only_ghost = r->scene.only_ghost,
+        .workers = tool->workers,
+        .progress = tool_progress_show,
+        .progress_ctx = &progress};
+    const int n_ghosts = r->scene.only_ghost < 0 ? r->scene.setup.n_ghosts : 1;
+    double *rgb = malloc(n * sizeof *rgb);
+    enum glint_status status = GLINT_E_MEMORY;
+
+    tool_progress_start(&progress, tool, "exact");
+    if (rgb && points)
+        status = glint_exact_render(&cfg, rgb);
+    tool_progress_end(&progress);
+    for (size_t i = 0; status == GLINT_OK && i < n; i++)
+        r->image.rgb[i] = (float)(rgb[i] * scene_scale(&r->scene));
+    free(rgb);
+    free(points);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (tool->json)
+        printf("{\"engine\": \"exact\", \"grid\": %d, \"lights\": %d, "
+               "\"ghosts\": %d, \"bundles\": %" PRId64 ", \"primitives\": 0, "
+               "\"tiles\": 0, \"arena_bytes\": 0, ",
+               cfg.grid, r->n_lamps, n_ghosts,
+               (int64_t)r->n_lamps * n_ghosts * r->scene.n_wavelengths);
+    return EXIT_OK;
+}
+
+static void say_lights(const struct tool *tool,
+                       const struct frame_report *report)
+{
+    char lights[64];
+
+    scene_warn_lights(tool, report);
+    if (!tool->verbose || tool->quiet)
+        return;
+    scene_lights_text(report, lights);
+    fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
+            lights, report->ghosts, report->stats.primitives,
+            report->arena_bytes);
+}
+
+static int render_model(struct tool *tool, struct render *r)
+{
+    struct frame_report report = {.lights = 0};
+    enum glint_status status;
+    struct frame frame;
+    int code = scene_frame(tool, &r->scene,
+                           scene_view(&r->scene, r->width, r->height), &frame);
+
+    if (code == EXIT_OK) {
+        status = r->reserve_bytes && r->n_lamps > 0
+                     ? frame_reserve(&frame, r->reserve_bytes, r->n_lamps,
+                                     frame.max_lights)
+                     : GLINT_OK;
+        if (status == GLINT_OK)
+            status =
+                frame_draw_alone(&frame, r->lamp, r->n_lamps,
+                                 scene_scale(&r->scene), r->image.rgb, &report);
+        if (status != GLINT_OK)
+            code = tool_fail(tool, status, NULL);
+    }
+    if (code == EXIT_OK && tool->json) {
+        printf("{\"engine\": \"model\", ");
+        scene_json(&report);
+        printf(", ");
+    }
+    if (code == EXIT_OK)
+        say_lights(tool, &report);
+    frame_finish(&frame);
+    return code;
+}
+
+/* ------------------------------------------------------------------- output */
+
+static int save(struct tool *tool, struct render *r)
+{
+    struct glint_image codes = {
+        .format = GLINT_RGB24, .width = r->width, .height = r->height};
+    struct glint_error error = {""};
+    enum glint_status status;
+    uint8_t *mem;
+
+    if (r->linear)
+        status = glint_picture_save_float(r->output, &r->image, &error);
+    else {
+        mem = measure_encode(
+            &r->image, r->scene.has_exposure ? 1 : measure_exposure(&r->image));
+        if (!mem)
+            return tool_fail(tool, GLINT_E_MEMORY, NULL);
+        glint_image_place(&codes, mem);
+        status = glint_picture_save(r->output, &codes, &error);
+        free(mem);
+    }
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+/* Refuses an output that cannot be written before there is much work. */
+static int check_output(struct tool *tool, struct render *r)
+{
+    struct glint_error error = {""};
+    enum glint_status status =
+        glint_picture_check(r->output, GLINT_PICTURE_FLOAT, &error);
+
+    if (tool_check_output(tool, r->output) != EXIT_OK)
+        return EXIT_OUTPUT;
+    r->linear = status == GLINT_OK;
+    if (!r->linear)
+        status = glint_picture_check(r->output, GLINT_PICTURE_8BIT, &error);
+    if (status == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, status, error.text);
+    return EXIT_OUTPUT;
+}
+
+/* Adds the lamps of the file to those by hand. */
+static int read_lamps(struct tool *tool, struct render *r)
+{
+    const struct glint_view view = scene_view(&r->scene, r->width, r->height);
+    struct glint_error error = {""};
+    struct lamp_list list;
+    const enum glint_status status =
+        lamp_list_read(&list, r->lights_file, &error);
+    struct glint_lamp *all;
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    all = realloc(r->lamp,
+                  ((size_t)r->n_lamps + (size_t)list.n + 1) * sizeof *all);
+    if (all) {
+        r->lamp = all;
+        r->n_lamps +=
+            lamp_list_frame(&list, 0, &view, r->scene.setup.optics.focal_mm,
+                            all + r->n_lamps, NULL, list.n);
+    }
+    lamp_list_free(&list);
+    return all ? EXIT_OK : tool_fail(tool, GLINT_E_MEMORY, NULL);
+}
+
+static int run(struct tool *tool, struct render *r, const char *lens)
+{
+    int code = check_output(tool, r);
+    double start;
+
+    if (code == EXIT_OK)
+        code = scene_open(tool, &r->scene, lens);
+    if (code == EXIT_OK && r->lights_file)
+        code = read_lamps(tool, r);
+    if (code != EXIT_OK)
+        return code;
+    start = tool_seconds();
+    r->image.width = r->width;
+    r->image.height = r->height;
+    r->image.rgb =
+        calloc(3 * (size_t)r->width * (size_t)r->height, sizeof(float));
+    if (!r->image.rgb)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = r->exact ? render_exact(tool, r) : render_model(tool, r);
+    if (code == EXIT_OK)
+        code = save(tool, r);
+    if (code == EXIT_OK && tool->json)
+        printf("\"ms\": %.3f}\n", 1e3 * (tool_seconds() - start));
+    free(r->image.rgb);
+    return code;
+}
+
+int cmd_render(int argc, char **argv)
+{
+    struct tool tool = {.name = "render",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
+    struct render *r = calloc(1, sizeof *r);
+    int code;
+
+    if (!r || !(r->lamp = malloc(SCENE_MAX_LAMPS * sizeof *r->lamp))) {
+        free(r);
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    }
+    scene_defaults(&r->scene);
+    r->width = 960;
+    r->height = 540;
+    code = parse(&tool, argc, argv, r);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, r, argv[optind]);
+        tool_finish(&tool);
+    }
+    scene_close(&r->scene);
+    free(r->lamp);
+    free(r);
+    return code;
+}

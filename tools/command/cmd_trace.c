@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint trace: rays as a table, exact or by a model.
+ */
+#include <stdlib.h>
+#include <string.h>
+#include <math.h>
+
+#include "options/coating.h"
+#include "model/model_file.h"
+#include "options/takes.h"
+#include "options/tool.h"
+
+static const char help[] =
+    "glint trace LENS --ghost K --angle DEG --wavelength NM --grid N [--csv]\n"
+    "            [--model MODEL] [--coating C]\n"
+    "\n"
+    "Prints one line a ray, over an N x N grid that spans the clear square of\n"
+    "the front element, x fastest:\n"
+    "  px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n"
+    "in mm. Status 0 ok, 1 missed a surface, 2 total reflection; the columns\n"
+    "after it are empty then. The light lies in the x-z plane.\n"
+    "\n"
+    "  --ghost K        number of the ghost as 'glint info' counts; -1 is the\n"
+    "                   direct path\n"
+    "  --angle DEG      off the axis, below 90 (default 0)\n"
+    "  --wavelength NM  default 532\n"
+    "  --grid N         1 to 4096 rays a side (default 17)\n"
+    "  --model MODEL    the same rays by a model that was baked from LENS: "
+    "its\n"
+    "                   integers as render and overlay use them. Status 1\n"
+    "                   outside of the box and of the angles of the ghost;\n"
+    "                   rel_radius is that of the barrels that limit it, 0\n"
+    "                   where none does\n" COATING_HELP
+    "  --csv            the format above; there is no other\n";
+
+#define PI 3.14159265358979323846
+
+struct options {
+    const char *model;
+    struct coating coating;
+    int ghost, grid;
+    double angle_deg, wavelength_nm;
+};
+
+static int parse(struct tool *tool, int argc, char **argv, struct options *o)
+{
+    static const struct option options[] = {
+        {"ghost", required_argument, NULL, 'g'},
+        {"angle", required_argument, NULL, 'a'},
+        {"wavelength", required_argument, NULL, 'w'},
+        {"grid", required_argument, NULL, 'n'},
+        {"model", required_argument, NULL, 'm'},
+        {"csv", no_argument, NULL, 'c'},
+        {"coating", required_argument, NULL, 'C'},
+        TOOL_COMMON_OPTIONS};
+    int c, code = -1, index = 0;
+
+    while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
+           0) {
+        bool ok = true;
+
+        if (c == 'g')
+            ok = tool_integer(optarg, -1, GLINT_MAX_GHOSTS, &o->ghost);
+        else if (c == 'a')
+            ok = tool_number(optarg, &o->angle_deg) && fabs(o->angle_deg) < 90;
+        else if (c == 'w')
+            ok = tool_number(optarg, &o->wavelength_nm) &&
+                 o->wavelength_nm >= 300 && o->wavelength_nm <= 1100;
+        else if (c == 'n')
+            ok = tool_integer(optarg, 1, 4096, &o->grid);
+        else if (c == 'm')
+            o->model = optarg;
+        else if (c != 'c')
+            code = c == 'C' ? coating_take(tool, &o->coating, optarg)
+                            : tool_option(tool, c, optarg);
+        if (code >= 0)
+            return code;
+        if (!ok)
+            return tool_refuse(tool, options[index].name, optarg);
+    }
+    if (optind + 1 != argc)
+        return tool_usage(tool, "takes one lens");
+    return -1;
+}
+
+/* ----------------------------------------------------------------- by rays */
+
+/* What takes a ray from (PX, PY) on the front's vertex plane to the sensor. */
+struct tracer {
+    enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
+                                   double py_mm, struct glint_ray *ray);
+    double angle_deg;
+    struct glint_path path;      /* exact */
+    struct glint_transfer *part; /* of the pupil that the model has of the
+                                    ghost at this angle; owned */
+    int n_parts;
+    double stop_radius_mm;
+};
+
+static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
+                                        double py_mm, struct glint_ray *ray)
+{
+    const double angle = t->angle_deg * PI / 180;
+    const double direction[3] = {sin(angle), 0, cos(angle)};
+
+    return glint_trace(&t->path, px_mm, py_mm, direction, ray, NULL);
+}
+
+/* ---------------------------------------------------------------- by a model
+ */
+
+static double output(const struct glint_transfer *t,
+                     const struct glint_outputs *out, int kind)
+{
+    return ldexp(out->at[kind], t->exponent[kind]);
+}
+
+static double rel_radius(const struct glint_transfer *t,
+                         const struct glint_outputs *out)
+{
+    double most = output(t, out, GLINT_OUT_RADIUS);
+
+    for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++)
+        if (t->outputs >> kind & 1)
+            most = fmax(most, sqrt(fmax(0, 2 * output(t, out, kind) - 1)));
+    return most;
+}
+
+/* U and V of a ray in the box of a part. Returns whether it is the part's. */
+static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
+                  double *u, double *v)
+{
+    const double unit = ldexp(1, t->box_exponent);
+
+    *u = (px_mm / unit - t->box[0]) / t->box[1];
+    *v = py_mm / unit / t->box[2];
+    return fabs(*u) <= 1 && fabs(*v) <= 1 &&
+           fabs(*v) >= ldexp(glint_transfer_v(t, 0, 1), -30);
+}
+
+/* Lights on the other side of the axis and rays on the other side of its plane
+ * are mirrored. */
+static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
+                                         double py_mm, struct glint_ray *ray)
+{
+    const double side_x = t->angle_deg < 0 ? -1 : 1,
+                 side_y = py_mm < 0 ? -1 : 1;
+    const double stop = t->stop_radius_mm;
+    const struct glint_transfer *p = t->part;
+    struct glint_outputs out;
+    double u = 0, v = 0;
+
+    while (p < t->part + t->n_parts &&
+           !is_in(p, side_x * px_mm, fabs(py_mm), &u, &v))
+        p++;
+    if (p == t->part + t->n_parts)
+        return GLINT_RAY_MISSED;
+    glint_transfer_ray(p, (int32_t)lrint(ldexp(u, 30)),
+                       (int32_t)lrint(ldexp(v, 30)), &out);
+    *ray = (struct glint_ray){
+        .stop_x_mm = side_x * stop * output(p, &out, GLINT_OUT_STOP_X),
+        .stop_y_mm = side_y * stop * output(p, &out, GLINT_OUT_STOP_Y),
+        .sensor_x_mm = side_x * output(p, &out, GLINT_OUT_SENSOR_X),
+        .sensor_y_mm = side_y * output(p, &out, GLINT_OUT_SENSOR_Y),
+        .energy = output(p, &out, GLINT_OUT_ENERGY),
+        .rel_radius = rel_radius(p, &out)};
+    return GLINT_RAY_OK;
+}
+
+/* The number of a model, which has 31 bits of it, is that of the lens. */
+static bool agrees(struct glint_real a, double b)
+{
+    return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);
+}
+
+static bool is_part(const struct glint_lens *model, uint32_t entry,
+                    uint32_t ghost)
+{
+    return model->ghost[entry].i == model->ghost[ghost].i &&
+           model->ghost[entry].j == model->ghost[ghost].j;
+}
+
+/* The parts of GHOST that there are at this angle. */
+static enum glint_status prepare_parts(const struct glint_lens *model,
+                                       uint32_t ghost, int32_t sine_q30,
+                                       int32_t wave_q24, struct tracer *tracer)
+{
+    const uint32_t end = model->header->n_ghosts;
+    size_t n = 0;
+
+    for (uint32_t k = ghost; k < end; k++)
+        n += is_part(model, k, ghost);
+    tracer->part = calloc(n, sizeof *tracer->part);
+    if (!tracer->part)
+        return GLINT_E_MEMORY;
+    for (uint32_t k = ghost; k < end; k++)
+        if (is_part(model, k, ghost))
+            tracer->n_parts +=
+                glint_transfer_init(&tracer->part[tracer->n_parts], model,
+                                    (int)k, sine_q30, wave_q24);
+    return GLINT_OK;
+}
+
+static int prepare_model(const struct tool *tool, const struct options *o,
+                         const struct glint_prescription *lens, int n_ghosts,
+                         const struct glint_lens *model, struct tracer *tracer)
+{
+    const struct glint_model_header *h = model->header;
+    const int32_t wave_q24 =
+        (int32_t)lrint(ldexp(1e6 / (o->wavelength_nm * o->wavelength_nm), 24));
+    struct glint_optics optics;
+
+    glint_optics_of(lens, &optics);
+    if (!agrees(h->focal_mm, optics.focal_mm) ||
+        h->n_ghosts - h->n_parts != (uint32_t)n_ghosts)
+        return tool_fail(tool, GLINT_E_LENS,
+                         "the model was baked from another lens");
+    if (o->ghost < 0)
+        return tool_usage(tool, "a model has no direct path");
+    if (wave_q24 < h->wave_lo_q24 || wave_q24 > h->wave_hi_q24)
+        return tool_usage(tool, "%g nm is outside of the model's band",
+                          o->wavelength_nm);
+    tracer->trace = trace_model;
+    tracer->stop_radius_mm = model_real_of(h->stop_radius_mm);
+    if (prepare_parts(
+            model, (uint32_t)o->ghost,
+            (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * PI / 180), 30)),
+            wave_q24, tracer) != GLINT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    return EXIT_OK;
+}
+
+/* --------------------------------------------------------------------- both */
+
+static void print_rays(const struct options *o, double semi,
+                       const struct tracer *tracer)
+{
+    const int last = o->grid - 1;
+
+    printf("px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n");
+    for (int k = 0; k < o->grid * o->grid && !ferror(stdout); k++) {
+        const int i = k % o->grid, j = k / o->grid;
+        const double x = last ? semi * (2.0 * i - last) / last : 0;
+        const double y = last ? semi * (2.0 * j - last) / last : 0;
+        struct glint_ray ray;
+        const enum glint_ray_status status = tracer->trace(tracer, x, y, &ray);
+
+        printf("%.12g,%.12g,%d,", x, y, (int)status);
+        if (status == GLINT_RAY_OK)
+            printf("%.12g,%.12g,%.12g,%.12g,%.12g,%.12g\n", ray.stop_x_mm,
+                   ray.stop_y_mm, ray.sensor_x_mm, ray.sensor_y_mm, ray.energy,
+                   ray.rel_radius);
+        else
+            printf(",,,,,\n");
+    }
+}
+
+static int trace(const struct tool *tool, const struct options *o,
+                 const struct glint_prescription *lens)
+{
+    static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
+    static struct tracer tracer;
+    const int n = glint_ghost_list(lens, ghosts, GLINT_MAX_GHOSTS);
+    struct model_file model = {.data = NULL};
+    int code = EXIT_OK;
+
+    if (o->ghost >= n)
+        return tool_usage(tool, "%s has %d ghosts, there is no %d", lens->name,
+                          n, o->ghost);
+    tracer.angle_deg = o->angle_deg;
+    tracer.trace = trace_path;
+    glint_path_init(&tracer.path, lens, o->ghost < 0 ? NULL : &ghosts[o->ghost],
+                    o->wavelength_nm);
+    if (o->model)
+        code = tool_model(tool, o->model, &model);
+    if (o->model && code == EXIT_OK)
+        code = prepare_model(tool, o, lens, n, &model.lens, &tracer);
+    if (code == EXIT_OK)
+        print_rays(o, lens->surface[0].semi_mm, &tracer);
+    free(tracer.part);
+    model_file_close(&model);
+    return code;
+}
+
+int cmd_trace(int argc, char **argv)
+{
+    static struct glint_prescription lens;
+    struct tool tool = {.name = "trace", .help = help};
+    struct options o = {.grid = 17, .wavelength_nm = 532};
+    int code = parse(&tool, argc, argv, &o);
+
+    if (code >= 0)
+        return code;
+    code = o.model ? coating_of_model(&tool, &o.coating, o.model) : EXIT_OK;
+    if (code == EXIT_OK)
+        code = tool_lens(&tool, argv[optind], &lens);
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&o.coating, &lens);
+    return trace(&tool, &o, &lens);
+}

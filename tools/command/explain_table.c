@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Explained as a table of at most 100 columns, and as JSON.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/explain.h"
+#include "options/tool.h"
+
+enum { WIDE = 100 };
+
+static const struct {
+    const char *word, *reason;
+} fates[GLINT_FATES] = {
+    [GLINT_FATE_DRAWN] = {"drawn", "drawn"},
+    [GLINT_FATE_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
+    [GLINT_FATE_OTHER] = {"other", "not the ghost asked for"},
+    [GLINT_FATE_BEYOND] = {"beyond", "light beyond the model's angles"},
+    [GLINT_FATE_CLOSED] = {"closed", "no light gets through at this angle"},
+    [GLINT_FATE_BLOCKED] = {"blocked", "stop and barrels take all of it"},
+    [GLINT_FATE_DARK] = {"dark", "the light has no such colour"},
+    [GLINT_FATE_OUTSIDE] = {"outside", "outside the picture"},
+    [GLINT_FATE_FAINT] = {"faint", "too faint for any code"},
+    [GLINT_FATE_NO_ROOM] = {"no_room", "no room left in the arena"},
+    [GLINT_FATE_OTHER_SET] = {"other_set", "another set of wavelengths"},
+};
+
+const char *explain_reason(enum glint_fate fate)
+{
+    return fates[fate].reason;
+}
+
+const char *explain_word(enum glint_fate fate)
+{
+    return fates[fate].word;
+}
+
+static double degrees(double y, double x)
+{
+    return atan2(y, x) * 180 / 3.14159265358979323846;
+}
+
+static double model_degrees(const struct explain *e)
+{
+    return asin(e->frame->lens->header->sine_hi_q30 * 0x1p-30) * 180 /
+           3.14159265358979323846;
+}
+
+/* Ghosts of which something is drawn. */
+static int ghosts_drawn(const struct explain *e)
+{
+    int n = 0;
+
+    for (int i = 0; i < e->n_ghosts; i++)
+        n += explain_drawn(&e->ghost[i]) > 0;
+    return n;
+}
+
+/* ----------------------------------------------------------------------- table
+ */
+
+static void print_percent(double x)
+{
+    if (x != 0 && fabs(x) < 0.0005)
+        printf("%8s", "<0.05");
+    else
+        printf("%8.1f", 100 * x);
+}
+
+/* What each row of all tables ends with. */
+static void print_costs(const struct explain_part *p)
+{
+    printf(" %9lld %8lld %9lld %8d %5d", p->vertices, p->edges, p->rows, p->lit,
+           p->tiles);
+    print_percent(p->share);
+    printf(" %9.3g", p->brightest);
+    print_percent(p->cost);
+    printf("\n");
+}
+
+static void print_head(const char *what)
+{
+    printf("\n%-30s %9s %8s %9s %8s %5s %7s %9s %7s\n", what, "vertices",
+           "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
+}
+
+static void print_title(const struct explain *e, const struct explain_title *t)
+{
+    static const char *const stages[EXPLAIN_STAGES] = {
+        "looking", "vertices", "edges", "rows", "lit pixels"};
+    const struct explain_part *all = &e->all;
+
+    printf("%s, %dx%d, %s\n", t->lens, e->frame->view.width,
+           e->frame->view.height, t->linear ? "linear light" : "codes");
+    /* a lamp of visible extent is drawn as several points */
+    printf(e->n_beams > t->n_lamps ? "drawn: %d points of %d lights"
+                                   : "drawn: lights %d of %d",
+           e->n_beams, t->n_lamps);
+    printf(", ghosts %d of %d, bundles %d of %d, tiles %d of %d\n",
+           ghosts_drawn(e), e->n_ghosts, explain_drawn(all),
+           explain_bundles(all), all->tiles, e->n_tiles);
+    printf("barrels that cut: ");
+    for (int k = 0, some = 0; k < EXPLAIN_BARRELS; k++)
+        if (e->barrels[k])
+            printf("%s%d in %d bundles", some++ ? ", " : "", k, e->barrels[k]);
+    printf("\nterms of a ray: %.1f in the mean\n",
+           all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
+    printf("work: about %.1f M instructions\n     ", 1e-6 * all->work);
+    for (int i = 0; i < EXPLAIN_STAGES && all->work > 0; i++)
+        printf("%s %s %.1f %%", i ? "," : "", stages[i],
+               100 * e->stage[i] / all->work);
+    printf("\n");
+}
+
+static void print_lights(const struct explain *e, const struct explain_title *t)
+{
+    print_head("light    angle azimuth bundles");
+    for (int i = 0; i < e->n_beams && i < t->top; i++) {
+        const struct glint_beam *b = &e->frame->beam[i];
+
+        printf("%5d %8.3f %7.1f %7d", i + 1,
+               degrees(b->sine_q30, b->cosine_q30),
+               degrees(b->sin_q30, b->cos_q30), explain_drawn(&e->beam[i]));
+        print_costs(&e->beam[i]);
+    }
+    if (e->n_beams > t->top)
+        printf("      and %d more (--top)\n", e->n_beams - t->top);
+}
+
+static void print_waves(const struct explain *e)
+{
+    print_head("wavelength             bundles");
+    for (int i = 0; i < e->n_waves; i++) {
+        if (e->frame->rays.sets)
+            printf("%-3d for a ghost %14d", e->frame->rays.sets->size[i],
+                   explain_drawn(&e->wave[i]));
+        else
+            printf("%7.1f nm %19d", e->frame->setup->wavelength_nm[i],
+                   explain_drawn(&e->wave[i]));
+        print_costs(&e->wave[i]);
+    }
+}
+
+static void print_ghosts(const struct explain *e, const struct explain_title *t,
+                         const int *ghosts)
+{
+    int n = 0;
+
+    print_head("ghost   pair bundles terms cut");
+    for (int i = 0; i < e->n_ghosts; i++) {
+        const struct explain_part *p = &e->ghost[ghosts[i]];
+        const struct glint_ghost *g = &e->frame->setup->ghost[ghosts[i]];
+        char pair[32], bundles[32];
+
+        if (explain_drawn(p) == 0 || n++ >= t->top)
+            continue;
+        snprintf(pair, sizeof pair, "%d-%d", g->i, g->j);
+        snprintf(bundles, sizeof bundles, "%d/%d", explain_drawn(p),
+                 explain_bundles(p));
+        printf("%5d %6s %7s %5d %3d", ghosts[i], pair, bundles, p->terms,
+               p->barrels);
+        print_costs(p);
+    }
+    if (n > t->top)
+        printf("      and %d more (--top)\n", n - t->top);
+}
+
+/* The numbers of ghosts that FATE befell, as many as the line has room for. */
+static void print_numbers(const struct explain *e, enum glint_fate fate,
+                          int room)
+{
+    for (int i = 0; i < e->n_ghosts; i++) {
+        char number[16];
+        const int n = snprintf(number, sizeof number, " %d", i);
+
+        if (e->ghost[i].of[fate] == 0)
+            continue;
+        if (n + 4 > room) {
+            printf(" ...");
+            break;
+        }
+        fputs(number, stdout);
+        room -= n;
+    }
+    printf("\n");
+}
+
+static void print_left_out(const struct explain *e)
+{
+    printf("\n%-41s %7s %7s\n", "left out", "bundles", "ghosts");
+    for (int fate = GLINT_FATE_EMPTY; fate < GLINT_FATES; fate++) {
+        int n = 0;
+
+        for (int i = 0; i < e->n_ghosts; i++)
+            n += e->ghost[i].of[fate] > 0;
+        if (e->all.of[fate] == 0)
+            continue;
+        printf("%-41s %7d %7d ", fates[fate].reason, e->all.of[fate], n);
+        print_numbers(e, (enum glint_fate)fate, WIDE - 58);
+    }
+}
+
+static void print_lost_lights(const struct explain *e,
+                              const struct explain_title *t)
+{
+    const struct frame_report *r = t->report;
+    const double most = model_degrees(e);
+    int n = 0, dark = 0;
+
+    for (int i = 0; i < t->n_lamps; i++) {
+        if (frame_is_beyond(e->frame, &t->lamp[i])) {
+            if (n++ < t->top)
+                printf("light at %.3f degrees: beyond the model, which ends at "
+                       "%.1f (bake --max-angle)\n",
+                       t->lamp[i].theta_deg, most);
+        } else
+            dark += !(t->lamp[i].power > 0);
+    }
+    if (n > t->top)
+        printf("and %d more beyond the model (--top)\n", n - t->top);
+    if (dark)
+        printf("%d light%s no power\n", dark, dark == 1 ? " has" : "s have");
+    n = t->n_lamps - r->beyond_lights - dark;
+    if (t->n_lamps && r->apart_lights < n)
+        printf("%d lights are %d as they cannot be told apart (--apart)\n", n,
+               r->apart_lights);
+    if (r->stats.held_cells)
+        printf("%d cells are so bright that they were cut down to what one may "
+               "give a pixel\n",
+               r->stats.held_cells);
+    if (r->drawn_lights < r->apart_lights)
+        printf("%d lights were merged into %d (--max-lights)\n",
+               r->apart_lights, r->drawn_lights);
+}
+
+void explain_print(const struct explain *e, const struct explain_title *t)
+{
+    int ghosts[GLINT_MAX_GHOSTS];
+
+    explain_sort(e, t->order, ghosts);
+    print_title(e, t);
+    if (e->n_beams) {
+        print_lights(e, t);
+        print_waves(e);
+        print_ghosts(e, t, ghosts);
+        print_left_out(e);
+    }
+    print_lost_lights(e, t);
+}
+
+/* ------------------------------------------------------------------------ JSON
+ */
+
+static void json_part(const struct explain_part *p)
+{
+    printf("\"bundles\": %d, \"drawn\": %d, \"left_out\": {",
+           explain_bundles(p), explain_drawn(p));
+    for (int fate = GLINT_FATE_EMPTY, n = 0; fate < GLINT_FATES; fate++)
+        if (p->of[fate])
+            printf("%s\"%s\": %d", n++ ? ", " : "", fates[fate].word,
+                   p->of[fate]);
+    printf("}, \"cells\": %d, \"terms\": %d, \"barrels\": %d, "
+           "\"vertices\": %lld, \"edges\": %lld, \"rows\": %lld, \"refs\": "
+           "%lld, \"lit_pixels\": %d, \"tiles\": %d, \"flux\": %.6g, "
+           "\"light_share\": %.6g, \"brightest\": %.6g, \"work_share\": %.6g",
+           p->cells, p->terms, p->barrels, p->vertices, p->edges, p->rows,
+           p->refs, p->lit, p->tiles, p->flux, p->share, p->brightest, p->cost);
+}
+
+static void json_lights(const struct explain *e, const struct explain_title *t)
+{
+    int n = 0;
+
+    printf("\"lights\": [");
+    for (int i = 0; i < e->n_beams; i++) {
+        const struct glint_beam *b = &e->frame->beam[i];
+
+        printf("%s{\"angle_deg\": %.6g, \"azimuth_deg\": %.6g, ", i ? ", " : "",
+               degrees(b->sine_q30, b->cosine_q30),
+               degrees(b->sin_q30, b->cos_q30));
+        json_part(&e->beam[i]);
+        printf("}");
+    }
+    printf("], \"beyond_model_deg\": [");
+    for (int i = 0; i < t->n_lamps; i++)
+        if (frame_is_beyond(e->frame, &t->lamp[i]))
+            printf("%s%.6g", n++ ? ", " : "", t->lamp[i].theta_deg);
+    printf("], \"model_max_deg\": %.6g", model_degrees(e));
+}
+
+void explain_json(const struct explain *e, const struct explain_title *t)
+{
+    static const char *const stages[EXPLAIN_STAGES] = {
+        "looking", "vertices", "edges", "rows", "pixels"};
+    int ghosts[GLINT_MAX_GHOSTS];
+
+    explain_sort(e, t->order, ghosts);
+    printf("{\"lens\": ");
+    tool_json_string(stdout, t->lens);
+    printf(", \"width\": %d, \"height\": %d, \"picture\": \"%s\", "
+           "\"lights_given\": %d, \"lights_apart\": %d, \"all_tiles\": %d, "
+           "\"held_cells\": %d, \"held_samples\": %d, "
+           "\"frame\": {",
+           e->frame->view.width, e->frame->view.height,
+           t->linear ? "linear" : "codes", t->n_lamps, t->report->apart_lights,
+           e->n_tiles, t->report->stats.held_cells, t->report->held_samples);
+    json_part(&e->all);
+    printf("}, \"work\": {\"instructions\": %.0f", e->all.work);
+    for (int i = 0; i < EXPLAIN_STAGES; i++)
+        printf(", \"%s\": %.6g", stages[i],
+               e->all.work > 0 ? e->stage[i] / e->all.work : 0);
+    printf("}, \"barrels\": [");
+    for (int n = 0; n < EXPLAIN_BARRELS; n++)
+        printf("%s%d", n ? ", " : "", e->barrels[n]);
+    printf("], ");
+    json_lights(e, t);
+    printf(", \"wavelengths\": [");
+    for (int i = 0; i < e->n_waves; i++) {
+        if (e->frame->rays.sets)
+            printf("%s{\"of\": %d, ", i ? ", " : "",
+                   e->frame->rays.sets->size[i]);
+        else
+            printf("%s{\"nm\": %g, ", i ? ", " : "",
+                   e->frame->setup->wavelength_nm[i]);
+        json_part(&e->wave[i]);
+        printf("}");
+    }
+    printf("], \"ghosts\": [");
+    for (int i = 0; i < e->n_ghosts; i++) {
+        const struct glint_ghost *g = &e->frame->setup->ghost[ghosts[i]];
+
+        printf("%s{\"ghost\": %d, \"pair\": [%d, %d], ", i ? ", " : "",
+               ghosts[i], g->i, g->j);
+        json_part(&e->ghost[ghosts[i]]);
+        printf("}");
+    }
+    printf("]}\n");
+}

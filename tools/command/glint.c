@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint - the command: finds the subcommand and runs it.
+ */
+#include <stdio.h>
+#include <string.h>
+
+#include "posix/process.h"
+#include "posix/workers.h"
+#include "options/suggest.h"
+#include "options/tool.h"
+
+static const char help[] =
+    "glint: lens flare of real lenses, on pictures and video, without a GPU\n"
+    "\n"
+    "  glint lenses                    the lenses that come with glint\n"
+    "  glint info LENS|MODEL           what a lens is: focal length, ghosts\n"
+    "  glint bake LENS -o MODEL        polynomials of its ghosts, in integers\n"
+    "  glint trace LENS --ghost K ...  rays as a table\n"
+    "  glint render LENS|MODEL -o OUT  the flare alone\n"
+    "  glint overlay IN -o OUT ...     the flare of the lamps in a picture or\n"
+    "                                  video, on top of it\n"
+    "  glint explain IN | --size WxH   what a frame models, what not, and why\n"
+    "  glint live                      the same, from a camera to the panel\n"
+    "  glint compare A B               how far two pictures are apart\n"
+    "  glint bench                     what a frame costs\n"
+    "  glint sweep -o FOLDER           what accuracy costs: plots, pictures\n"
+    "\n"
+    "  glint help COMMAND              all options of a command, as does\n"
+    "                                  glint COMMAND --help\n"
+    "  glint --version\n"
+    "\n"
+    "LENS is a .lens file or the name of one that comes with glint, such as\n"
+    "nikon-zoom-short. Exit codes: 0 ok, 1 run-time failure, 2 usage, 3 input\n"
+    "or format, 4 device, 5 lens or model data, 6 output.\n";
+
+struct command {
+    const char *name;
+    int (*run)(int argc, char **argv);
+};
+
+static const struct command commands[] = {
+    {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
+    {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
+    {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
+    {"sweep", cmd_sweep},     {"lenses", cmd_lenses},
+};
+
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+/* As getopt says ARGV[0] in what it complains of. */
+static int run_command(const struct command *command, int argc, char **argv)
+{
+    char name[32];
+
+    snprintf(name, sizeof name, "glint %s", command->name);
+    argv[0] = name;
+    suggest_line(argv);
+    return command->run(argc, argv);
+}
+
+static const struct command *find(const char *name)
+{
+    for (int i = 0; i < N_COMMANDS; i++)
+        if (strcmp(name, commands[i].name) == 0)
+            return &commands[i];
+    return NULL;
+}
+
+static int no_command(const char *name)
+{
+    struct suggest s;
+
+    suggest_begin(&s, name);
+    for (int i = 0; i < N_COMMANDS; i++)
+        suggest_try(&s, commands[i].name, strlen(commands[i].name));
+    fprintf(stderr, "glint: no command '%s'\n", name);
+    if (suggest_best(&s))
+        fprintf(stderr, "Did you mean 'glint %s'? ", s.best);
+    fputs("Try 'glint --help'.\n", stderr);
+    return EXIT_USAGE;
+}
+
+/* glint help [COMMAND] */
+static int help_of(const char *name)
+{
+    char argument[] = "--help", *argv[] = {NULL, argument, NULL};
+    const struct command *command;
+
+    if (!name) {
+        fputs(help, stdout);
+        return EXIT_OK;
+    }
+    command = find(name);
+    return command ? run_command(command, 2, argv) : no_command(name);
+}
+
+static int run(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "";
+    const struct command *command = find(name);
+
+    if (command)
+        return run_command(command, argc - 1, argv + 1);
+    if (strcmp(name, "help") == 0)
+        return help_of(argc > 2 ? argv[2] : NULL);
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
+        return help_of(NULL);
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0 ||
+        strcmp(name, "version") == 0) {
+        struct tool tool = {.name = "version", .help = help};
+
+        return tool_option(&tool, 'V', NULL);
+    }
+    if (*name)
+        return no_command(name);
+    fputs(help, stderr);
+    return EXIT_USAGE;
+}
+
+struct words {
+    int argc;
+    char **argv;
+};
+
+static int run_words(void *ctx)
+{
+    const struct words *words = ctx;
+
+    return run(words->argc, words->argv);
+}
+
+/* Baking takes more stack than some systems give. */
+int main(int argc, char **argv)
+{
+    struct words words = {argc, argv};
+
+    glint_process_hold_streams();
+    tool_watch_reader();
+    return tool_end(
+        glint_process_on_stack(GLINT_WORKER_STACK_BYTES, run_words, &words));
+}

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/area.h"
+
+#include <math.h>
+
+static const double degree = 3.14159265358979323846 / 180;
+
+static double power_of(const struct glint_lamp *lamp)
+{
+    return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
+}
+
+/* Before thinning. A uniform ellipse has twice its RMS semi-axes for semi-axes.
+ */
+static double points_of(const struct glint_lamp *lamp,
+                        const struct area_rule *rule)
+{
+    const double spacing = AREA_SPACING_PX / rule->pixels_per_tangent;
+    const double area = 180 * degree * 4 * lamp->axis[0] * lamp->axis[1];
+    const double share =
+        rule->brightest > 0 ? power_of(lamp) / rule->brightest : 1;
+
+    return 1 + fmin(area / (spacing * spacing),
+                    fmax(rule->most - 1, 0) * sqrt(fmin(share, 1)));
+}
+
+struct area_rule area_rule_of(const struct glint_lamp *lamps, int n,
+                              double pixels_per_tangent, double most, int room,
+                              int *total)
+{
+    struct area_rule rule = {pixels_per_tangent, most, 0, 1};
+    double more = 0;
+    int n_wide = 0;
+
+    for (int i = 0; i < n; i++)
+        rule.brightest = fmax(rule.brightest, power_of(&lamps[i]));
+    for (int i = 0; i < n; i++) {
+        const double points = points_of(&lamps[i], &rule);
+
+        more += points - 1;
+        n_wide += points > 1; /* which are rounded up */
+    }
+    if (n_wide && more > room - n - n_wide)
+        rule.thinning = fmax(room - n - n_wide, 0) / more;
+    if (rule.thinning <= 0)
+        n_wide = 0;
+    *total = n + n_wide + (int)(rule.thinning * more);
+    return rule;
+}
+
+/* Point I of the sunflower within a circle of radius 1. */
+static double at(const struct area *a, int i, double place[2])
+{
+    const double golden = 2.39996322972865332;
+    const double weight = fmin(a->points - i, 1);
+    const double r = sqrt((i + 0.5 * weight) / a->points);
+
+    place[0] = r * cos(golden * i);
+    place[1] = r * sin(golden * i);
+    return weight / a->points;
+}
+
+/* Few points lie beside the middle and too close together; one cannot be
+ * spread, and two to four are so by and by. */
+static void set_pattern(struct area *a, int n)
+{
+    const double part = fmin((a->points - 1) / 3, 1);
+    double square = 0, place[2];
+
+    for (int i = 0; i < n; i++) {
+        const double weight = at(a, i, place);
+
+        a->centre[0] += weight * place[0];
+        a->centre[1] += weight * place[1];
+        square += weight * (place[0] * place[0] + place[1] * place[1]);
+    }
+    square -= a->centre[0] * a->centre[0] + a->centre[1] * a->centre[1];
+    a->spread = 1;
+    if (square > 0 && part > 0)
+        a->spread += part * (sqrt(0.5 / square) - 1);
+}
+
+int area_plan(struct area *area, const struct glint_lamp *lamp,
+              const struct area_rule *rule)
+{
+    const double t = tan(lamp->theta_deg * degree);
+    const double c = cos(lamp->turn_deg * degree);
+    const double s = sin(lamp->turn_deg * degree);
+    int n;
+
+    *area = (struct area){.lamp = *lamp, .points = 1};
+    area->points += rule->thinning * (points_of(lamp, rule) - 1);
+    n = (int)ceil(area->points);
+    if (n == 1)
+        return 1;
+    set_pattern(area, n);
+    area->u = t * cos(lamp->phi_deg * degree);
+    area->v = t * sin(lamp->phi_deg * degree);
+    area->major[0] = 2 * lamp->axis[0] * c;
+    area->major[1] = 2 * lamp->axis[0] * s;
+    area->minor[0] = -2 * lamp->axis[1] * s;
+    area->minor[1] = 2 * lamp->axis[1] * c;
+    return n;
+}
+
+struct glint_lamp area_point(const struct area *area, int i)
+{
+    struct glint_lamp point = area->lamp;
+    double place[2], u, v;
+
+    point.axis[0] = point.axis[1] = 0;
+    if (area->points <= 1)
+        return point;
+    point.power *= at(area, i, place);
+    for (int k = 0; k < 2; k++)
+        place[k] = (place[k] - area->centre[k]) * area->spread;
+    u = area->u + place[0] * area->major[0] + place[1] * area->minor[0];
+    v = area->v + place[0] * area->major[1] + place[1] * area->minor[1];
+    point.theta_deg = atan(hypot(u, v)) / degree;
+    point.phi_deg = atan2(v, u) / degree;
+    return point;
+}
+
+void area_set_round(struct glint_lamp *lamp, double tangent)
+{
+    lamp->axis[0] = lamp->axis[1] = tangent / sqrt(2);
+    lamp->turn_deg = 0;
+}

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/budget.h"
+
+#include <math.h>
+
+#include "engine/cost.h"
+#include "engine/ladder.h"
+
+#define FIRST      1    /* octaves that a first frame takes more, for memory */
+#define ROOM       0.98 /* of the budget that is planned for */
+#define SPARE      0.9  /* less than so much of it: finer */
+#define TRY        1.15 /* what some frames may be told to take, to learn more */
+#define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
+#define MOST_WRONG 0.8  /* octaves that one frame can say */
+#define SPREAD     0.1  /* of that for other qualities, too, at least */
+#define FORGETTING 0.01 /* of what those learned before, frame by frame */
+
+/* Plans of one frame; of fineness far from the one that is chosen they tell
+ * little, so one more may be needed. */
+enum { MAX_TRIES = 3 };
+
+enum { TRIALS = 4 }; /* frames of a quality that is told to take too long */
+
+void budget_init(struct budget *b, double ms)
+{
+    *b = (struct budget){
+        .ms = ms, .ms_per_minsn = 0.1, .step = BUDGET_STEPS / 2};
+}
+
+double budget_quality(const struct budget *b)
+{
+    return (double)b->step / BUDGET_STEPS;
+}
+
+void budget_begin(struct budget *b)
+{
+    b->n_tries = 0;
+    b->n_frames += b->n_frames < 2;
+}
+
+typedef char budget_has_rungs[(int)BUDGET_RUNGS == (int)LADDER_RUNGS ? 1 : -1];
+
+static double place_of(int step)
+{
+    return ladder_place((double)step / BUDGET_STEPS);
+}
+
+static double octaves_at(const struct budget *b, int step)
+{
+    const double at = place_of(step);
+    const int below = at < BUDGET_RUNGS - 1 ? (int)at : BUDGET_RUNGS - 2;
+
+    return b->octaves[below] +
+           (at - below) * (b->octaves[below + 1] - b->octaves[below]);
+}
+
+/* Of FRAME, planned as it is, at another quality. */
+static double predict(const struct budget *b, const struct frame *frame,
+                      int step)
+{
+    struct frame then = *frame;
+    struct cost cost;
+
+    ladder_frame(&then, (double)step / BUDGET_STEPS);
+    cost = cost_of(frame, &then);
+    return b->ms_per_minsn * cost_minsn(&cost) *
+           exp2(octaves_at(b, step) + (b->n_frames > 1 ? 0 : FIRST));
+}
+
+/* The best within the budget, or the coarsest. */
+static int best_step(const struct budget *b, const struct frame *frame)
+{
+    int low = 0, high = BUDGET_STEPS;
+
+    while (low < high) {
+        const int middle = (low + high + 1) / 2;
+
+        if (predict(b, frame, middle) <= ROOM * b->ms)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+/* Where no rung lies between STEP, which leaves much of the budget, and the
+ * next, which is told to miss it by little, the latter for a few frames in all:
+ * it may have been told too much. */
+static int try_next(struct budget *b, const struct frame *frame, int step)
+{
+    const int is_gap = place_of(step + 1) - place_of(step) >= 1;
+
+    if (step == BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
+        predict(b, frame, step) >= SPARE * b->ms ||
+        predict(b, frame, step + 1) > TRY * b->ms)
+        return step;
+    b->n_trials++;
+    b->n_tries = MAX_TRIES; /* as it is told, it would not do */
+    return step + 1;
+}
+
+bool budget_choose(struct budget *b, struct frame *frame)
+{
+    int step;
+
+    b->predicted_ms = predict(b, frame, b->step);
+    if (++b->n_tries >= MAX_TRIES ||
+        (b->predicted_ms <= b->ms &&
+         (b->predicted_ms >= SPARE * b->ms || b->step == BUDGET_STEPS)))
+        return false;
+    step = try_next(b, frame, best_step(b, frame));
+    if (step == b->step)
+        return false;
+    b->step = step;
+    ladder_frame(frame, budget_quality(b));
+    frame_retune(frame);
+    return true;
+}
+
+/* What was learned of a quality holds for the rungs beside it, so that the same
+ * prediction would be less wrong by LEARNING; the more it was wrong, the more
+ * of that holds for all, as when the machine has become slower. What was
+ * learned of others long ago is forgotten, lest one slow frame keeps a rung
+ * from ever being tried again. */
+void budget_note(struct budget *b, double ms)
+{
+    const double at = place_of(b->step);
+    const double part = at - floor(at);
+    const double both = part * part + (1 - part) * (1 - part);
+    /* a frame that waited for other programs says little */
+    const double wrong =
+        fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
+    const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
+    const double here = octaves_at(b, b->step);
+
+    for (int i = 0; i < BUDGET_RUNGS && ms > 0 && b->n_frames > 1; i++) {
+        const double near = fmax(0, 1 - fabs(at - i)) / both;
+
+        if (near <= 0)
+            b->octaves[i] += FORGETTING * (here - b->octaves[i]);
+        b->octaves[i] += LEARNING * wrong * fmax(spread, near);
+    }
+}

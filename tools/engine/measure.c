@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t samples(const struct glint_float_image *image)
+{
+    return 3 * (size_t)image->width * (size_t)image->height;
+}
+
+/* A pixel's luminance as a number that grows with it, below 0, too. */
+static uint32_t key_of(const float rgb[3])
+{
+    const float y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+    uint32_t bits;
+
+    memcpy(&bits, &y, sizeof bits);
+    return bits >> 31 ? ~bits : bits | UINT32_C(1) << 31;
+}
+
+static double value_of(uint32_t key)
+{
+    const uint32_t bits = key >> 31 ? key & INT32_MAX : ~key;
+    float y;
+
+    memcpy(&y, &bits, sizeof y);
+    return (double)y;
+}
+
+/* The luminance that RANK pixels stay below or at, of 0 .. pixels - 1: its bits
+ * are found a byte at a time, so that no memory is needed that might be short.
+ */
+static double luminance_at(const struct glint_float_image *image, size_t rank)
+{
+    const size_t n = samples(image) / 3;
+    uint32_t key = 0, known = 0;
+
+    for (int shift = 24; shift >= 0; shift -= 8) {
+        size_t count[256] = {0};
+        uint32_t byte = 0;
+
+        for (size_t i = 0; i < n; i++) {
+            const uint32_t k = key_of(image->rgb + 3 * i);
+
+            count[k >> shift & 255] += (k & known) == key;
+        }
+        for (; byte < 255 && rank >= count[byte]; byte++)
+            rank -= count[byte];
+        key |= byte << shift;
+        known |= UINT32_C(255) << shift;
+    }
+    return value_of(key);
+}
+
+double measure_exposure(const struct glint_float_image *image)
+{
+    const size_t n = samples(image) / 3;
+    const double at = luminance_at(image, (size_t)((double)(n - 1) * 0.999));
+
+    return at > 0 ? 1 / at : 1;
+}
+
+/* The sRGB code of X, 0 .. 255, not rounded. */
+static double encode(double x)
+{
+    const double v = fmin(1, fmax(0, x));
+
+    return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055);
+}
+
+uint8_t *measure_encode(const struct glint_float_image *image, double exposure)
+{
+    const size_t n = samples(image);
+    uint8_t *codes = calloc(n, 1);
+
+    for (size_t i = 0; codes && i < n; i++)
+        codes[i] = (uint8_t)lrint(encode((double)image->rgb[i] * exposure));
+    return codes;
+}
+
+static double best_factor(const struct glint_float_image *a,
+                          const struct glint_float_image *b)
+{
+    double ab = 0, bb = 0;
+
+    for (size_t i = 0; i < samples(a); i++) {
+        ab += (double)a->rgb[i] * (double)b->rgb[i];
+        bb += (double)b->rgb[i] * (double)b->rgb[i];
+    }
+    return bb > 0 ? ab / bb : 1;
+}
+
+static double sum(const struct glint_float_image *image)
+{
+    double s = 0;
+
+    for (size_t i = 0; i < samples(image); i++)
+        s += (double)image->rgb[i];
+    return s;
+}
+
+static void difference(const uint8_t *a, const uint8_t *b, size_t n,
+                       struct measure *m)
+{
+    size_t count[256] = {0}, seen = 0;
+    double squares = 0;
+    int d = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        const int e = abs(a[i] - b[i]);
+
+        count[e]++;
+        squares += (double)e * e;
+    }
+    m->psnr_db =
+        squares > 0 ? 10 * log10(255.0 * 255.0 * (double)n / squares) : 999;
+    for (; d < 255; d++) {
+        seen += count[d];
+        if ((double)seen >= 0.99 * (double)n)
+            break;
+    }
+    m->p99 = d;
+}
+
+static double luma(const uint8_t *p)
+{
+    /* NOLINTNEXTLINE: a picture has pixels */
+    return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
+}
+
+/* One 8 x 8 block. [Wang04] with a flat window. */
+static double block_ssim(const uint8_t *a, const uint8_t *b, int stride)
+{
+    double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, va, vb, ab;
+    const double c1 = 6.5025, c2 = 58.5225, n = 64;
+
+    for (int k = 0; k < 64; k++) {
+        const int at = (k / 8 * stride + k % 8) * 3;
+        const double x = luma(a + at), y = luma(b + at);
+
+        sa += x, sb += y, saa += x * x, sbb += y * y, sab += x * y;
+    }
+    sa /= n, sb /= n;
+    va = saa / n - sa * sa, vb = sbb / n - sb * sb, ab = sab / n - sa * sb;
+    return (2 * sa * sb + c1) * (2 * ab + c2) /
+           ((sa * sa + sb * sb + c1) * (va + vb + c2));
+}
+
+static double ssim(const uint8_t *a, const uint8_t *b, int width, int height)
+{
+    double total = 0;
+    int n = 0;
+
+    for (int y = 0; y + 8 <= height; y += 4)
+        for (int x = 0; x + 8 <= width; x += 4, n++) {
+            const size_t at = ((size_t)y * (size_t)width + (size_t)x) * 3;
+
+            total += block_ssim(a + at, b + at, width);
+        }
+    return n ? total / n : 1;
+}
+
+void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
+                   int height, struct measure *result)
+{
+    difference(reference, test, 3 * (size_t)width * (size_t)height, result);
+    result->ssim = ssim(reference, test, width, height);
+}
+
+/* What rounding to codes hides. */
+static double fine_db(const struct glint_float_image *reference,
+                      const struct glint_float_image *test,
+                      const struct measure *m)
+{
+    const size_t n = samples(reference);
+    double squares = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        const double e = encode((double)reference->rgb[i] * m->exposure) -
+                         encode((double)test->rgb[i] * m->exposure * m->factor);
+
+        squares += e * e;
+    }
+    return squares > 0 ? 10 * log10(255.0 * 255.0 * (double)n / squares) : 999;
+}
+
+bool measure_at(const struct glint_float_image *reference,
+                const struct glint_float_image *test, bool fit, double exposure,
+                struct measure *result)
+{
+    const double total = sum(reference);
+    uint8_t *a, *b;
+
+    result->exposure = exposure;
+    result->factor = fit ? best_factor(reference, test) : 1;
+    result->flux = total > 0 ? result->factor * sum(test) / total : 1;
+    a = measure_encode(reference, result->exposure);
+    b = measure_encode(test, result->exposure * result->factor);
+    if (a && b)
+        measure_codes(a, b, reference->width, reference->height, result);
+    result->same_codes = a && b && result->psnr_db == 999;
+    if (result->same_codes)
+        result->psnr_db = fine_db(reference, test, result);
+    free(a);
+    free(b);
+    return a && b;
+}
+
+bool measure_compare(const struct glint_float_image *reference,
+                     const struct glint_float_image *test, bool fit,
+                     struct measure *result)
+{
+    return measure_at(reference, test, fit, measure_exposure(reference),
+                      result);
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How far two pictures in linear light are apart.
+ *
+ * Both are exposed by the reference (its 99.9th percentile of luminance over
+ * all pixels becomes 1) or as is said, clipped, sRGB-encoded and rounded to 8
+ * bits; metrics are taken on the codes, PSNR of equal codes on what they were
+ * before rounding. Flux is compared before clipping.
+ */
+#ifndef GLINT_TOOLS_ENGINE_MEASURE_H
+#define GLINT_TOOLS_ENGINE_MEASURE_H
+
+#include <stdint.h>
+
+#include "formats/pfm.h"
+
+struct measure {
+    double psnr_db;  /* over the three channels; 999 where nothing that can be
+                        seen differs */
+    double ssim;     /* of luma, 8 x 8 blocks every 4 pixels */
+    double p99;      /* 99th percentile of |difference|, codes */
+    double flux;     /* sum of the test's light over the reference's */
+    double factor;   /* what the test was multiplied by */
+    double exposure; /* what the reference was multiplied by */
+    bool same_codes; /* of measure_at: all codes are equal */
+};
+
+/* What makes the 99.9th percentile of luminance 1; 1 for a black picture. */
+double measure_exposure(const struct glint_float_image *image);
+
+/* LINEAR times EXPOSURE as sRGB codes, [height][width][3]; NULL: no memory. */
+uint8_t *measure_encode(const struct glint_float_image *image, double exposure);
+
+/* The PSNR, SSIM and p99 of codes, [height][width][3]; else RESULT stays. */
+void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
+                   int height, struct measure *result);
+
+/* Compares TEST with REFERENCE, of one size. FIT: times the factor that fits
+ * best in the squares first. False: no memory. */
+bool measure_compare(const struct glint_float_image *reference,
+                     const struct glint_float_image *test, bool fit,
+                     struct measure *result);
+
+/* The same at EXPOSURE. */
+bool measure_at(const struct glint_float_image *reference,
+                const struct glint_float_image *test, bool fit, double exposure,
+                struct measure *result);
+
+#endif

@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/response.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/area.h"
+
+/* The pictures that are drawn: so many pixels are enough for a thousandth of
+ * them, and cost little. */
+enum { PROXY_PIXELS = 192 * 108, TOP_MAX = PROXY_PIXELS / 500 };
+
+static const double none_log2 = -100;
+
+/* Tracing every ray takes fifty times as long as a model does. */
+enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
+
+/* Where the brightest pixels are brought to, display white: far from where
+ * samples saturate, with as many steps below for what is faint. */
+enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
+
+/* ------------------------------------------------------------------- looking
+ */
+
+/* Puts VALUE among the N largest, which fall; returns the least of them. */
+static float insert(float *top, int n, float value)
+{
+    int i = n - 1;
+
+    for (; i > 0 && top[i - 1] < value; i--)
+        top[i] = top[i - 1];
+    top[i] = value;
+    return top[n - 1];
+}
+
+/* The mean of the largest thousandth of one channel. */
+static double peak_of(const float *rgb, size_t n, int channel)
+{
+    float top[TOP_MAX] = {0}, least = 0;
+    int n_top = (int)fmin(fmax(floor((double)n / 1000), 1), TOP_MAX);
+    double sum = 0;
+
+    for (size_t i = 0; i < n; i++)
+        if (rgb[3 * i + (size_t)channel] > least)
+            least = insert(top, n_top, rgb[3 * i + (size_t)channel]);
+    for (int i = 0; i < n_top; i++)
+        sum += (double)top[i];
+    return sum / n_top;
+}
+
+void response_look(const float *rgb, size_t n, struct response_light *light)
+{
+    for (int c = 0; c < 3; c++) {
+        double sum = 0;
+
+        for (size_t i = 0; i < n; i++)
+            sum += (double)rgb[3 * i + (size_t)c];
+        light->mean[c] = fmax(sum / (double)n, 0);
+        light->peak[c] = peak_of(rgb, n, c);
+    }
+}
+
+/* ------------------------------------------------------------------- drawing
+ */
+
+static struct glint_view proxy_of(struct glint_view view)
+{
+    const double by =
+        sqrt((double)PROXY_PIXELS / ((double)view.width * view.height));
+
+    view.width = (int)fmax(8, rint(view.width * by));
+    view.height = (int)fmax(8, rint(view.height * by));
+    return view;
+}
+
+/* SCENE as far as brightness goes. */
+static struct scene plain_of(const struct scene *scene)
+{
+    struct scene plain = *scene;
+
+    plain.budget_ms = 0;
+    plain.mask_nodes = 0;
+    plain.only_ghost = -1;
+    plain.raster = 0;
+    plain.uniform = false;
+    plain.grid = scene->model.data ? GRID : EXACT_GRID;
+    return plain;
+}
+
+/* A frame for proxies of VIEW and its picture; it has to be closed either way.
+ */
+struct proxy {
+    struct scene plain;
+    struct glint_view view;
+    struct frame frame;
+    int32_t *linear_q20;
+    float *rgb;
+};
+
+static int open_proxy(const struct tool *tool, const struct scene *scene,
+                      struct glint_view view, size_t bytes, struct proxy *p)
+{
+    size_t samples;
+    int code;
+
+    *p = (struct proxy){.plain = plain_of(scene), .view = proxy_of(view)};
+    samples = 3 * (size_t)p->view.width * (size_t)p->view.height;
+    p->rgb = malloc(samples * sizeof *p->rgb);
+    p->linear_q20 = malloc(samples * sizeof *p->linear_q20);
+    if (!p->rgb || !p->linear_q20)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    code = scene_frame(tool, &p->plain, p->view, &p->frame);
+    p->frame.for_codes = true;
+    if (code == EXIT_OK && bytes &&
+        frame_reserve(&p->frame, bytes, 1, AREA_SAMPLES) != GLINT_OK)
+        code = tool_fail(tool, GLINT_E_MEMORY, NULL);
+    return code;
+}
+
+static void close_proxy(struct proxy *p)
+{
+    frame_finish(&p->frame);
+    free(p->linear_q20);
+    free(p->rgb);
+}
+
+static double largest(const double rgb[3])
+{
+    return fmax(rgb[0], fmax(rgb[1], rgb[2]));
+}
+
+/* Draws and looks once, all times 2^BY. */
+static enum glint_status draw_once(struct proxy *p,
+                                   const struct glint_lamp *lamps, int n,
+                                   double by, struct response_light *light)
+{
+    const size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
+    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
+                                .width = p->view.width,
+                                .height = p->view.height};
+    const double unit = exp2(-20 - by);
+    struct frame_report report;
+    enum glint_status status;
+
+    glint_image_place(&layer, p->linear_q20);
+    memset(p->linear_q20, 0, 3 * pixels * sizeof *p->linear_q20);
+    status = frame_draw(&p->frame, lamps, n, exp2(by), &layer, &report);
+    for (size_t i = 0; i < 3 * pixels; i++)
+        p->rgb[i] = (float)(p->linear_q20[i] * unit);
+    response_look(p->rgb, pixels, light);
+    return status;
+}
+
+/* *PEAK_LOG2 is what the brightest should come to, and what it came to. */
+static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
+                              int n, double *peak_log2,
+                              struct response_light *light)
+{
+    enum glint_status status = GLINT_OK;
+
+    for (int i = 0; i < 12 && status == GLINT_OK; i++) {
+        const double by = AIM_LOG2 - *peak_log2;
+
+        status = draw_once(p, lamps, n, by, light);
+        *peak_log2 = largest(light->peak) > 0 ? log2(largest(light->peak))
+                                              : *peak_log2 - 2 * AIM_SPAN;
+        if (fabs(*peak_log2 + by - AIM_LOG2) <= AIM_SPAN)
+            break;
+    }
+    return status;
+}
+
+/* ----------------------------------------------------------------- measuring
+ */
+
+static double corner_deg(struct glint_view view, double focal_mm)
+{
+    const double half =
+        0.5 * view.sensor_width_mm * hypot(1, (double)view.height / view.width);
+
+    return atan(half / fabs(focal_mm)) * 180 / 3.14159265358979323846;
+}
+
+/* The angles that are looked at, denser near the axis, where ghosts lie on top
+ * of each other; none where the model has ended. */
+static void set_angles(struct response *r, int n, double corner, double end)
+{
+    r->n = 0;
+    for (int i = 0; i < n; i++) {
+        const double theta = corner * pow(i / (n - 1.0), 1.5);
+
+        if (theta > end && r->n > 0)
+            break;
+        r->theta_deg[r->n++] = theta;
+    }
+}
+
+static double log2_or_none(double value)
+{
+    return value > 0 ? fmax(log2(value), none_log2) : none_log2;
+}
+
+static void take_logs(struct response_light *light)
+{
+    for (int c = 0; c < 3; c++) {
+        light->peak[c] = log2_or_none(light->peak[c]);
+        light->mean[c] = log2_or_none(light->mean[c]);
+    }
+}
+
+static double model_end_deg(const struct frame *frame)
+{
+    const double degree = 3.14159265358979323846 / 180;
+
+    return frame->lens ? asin(frame->lens->header->sine_hi_q30 * 0x1p-30) /
+                             degree * (1 - 1e-6)
+                       : 89;
+}
+
+/* Lamps as LAMP, of up to an eighth of the picture's diagonal. */
+static enum glint_status measure_extents(struct proxy *p, struct response *r,
+                                         struct glint_lamp lamp)
+{
+    const double diagonal =
+        2 * tan(corner_deg(p->view, p->plain.setup.optics.focal_mm) *
+                3.14159265358979323846 / 180);
+    double point_log2 = 0, peak_log2 = 0;
+
+    for (int i = 0; i < RESPONSE_EXTENTS; i++) {
+        struct response_light light;
+        enum glint_status status;
+
+        r->extent[i] = i ? diagonal / (1 << (RESPONSE_EXTENTS + 2 - i)) : 0;
+        area_set_round(&lamp, r->extent[i]);
+        status = draw(p, &lamp, 1, &peak_log2, &light);
+        if (status != GLINT_OK)
+            return status;
+        if (i == 0)
+            point_log2 = peak_log2;
+        r->softened_log2[i] = fmin(peak_log2 - point_log2, 0);
+    }
+    return GLINT_OK;
+}
+
+static enum glint_status measure(struct proxy *p, struct response *r)
+{
+    const double azimuth = /* from the middle into the corner */
+        atan2(p->view.height, p->view.width) * 180 / 3.14159265358979323846;
+    const double all = (double)p->view.width * p->view.height;
+    struct glint_lamp lamp = {
+        .phi_deg = azimuth, .power = all, .rgb = {1, 1, 1}};
+    double peak_log2 = 0;
+
+    set_angles(r, p->frame.lens ? RESPONSE_ANGLES : EXACT_ANGLES,
+               corner_deg(p->view, p->plain.setup.optics.focal_mm),
+               model_end_deg(&p->frame));
+    for (int i = 0; i < r->n; i++) {
+        enum glint_status status;
+
+        lamp.theta_deg = r->theta_deg[i];
+        status = draw(p, &lamp, 1, &peak_log2, &r->log2_of[i]);
+        if (status != GLINT_OK)
+            return status;
+        take_logs(&r->log2_of[i]);
+    }
+    lamp.theta_deg = r->theta_deg[r->n / 2];
+    return measure_extents(p, r, lamp);
+}
+
+int response_measure(const struct tool *tool, const struct scene *scene,
+                     struct glint_view view, size_t bytes,
+                     struct response *response)
+{
+    const double start = tool_seconds();
+    struct proxy proxy;
+    int code = open_proxy(tool, scene, view, bytes, &proxy);
+
+    if (code == EXIT_OK && measure(&proxy, response) != GLINT_OK)
+        code = tool_fail(tool, GLINT_E_MEMORY, NULL);
+    response->ms = 1e3 * (tool_seconds() - start);
+    close_proxy(&proxy);
+    return code;
+}
+
+static double mix(double a, double b, double part)
+{
+    return exp2(a + part * (b - a));
+}
+
+void response_at(const struct response *r, double theta_deg,
+                 struct response_light *light)
+{
+    const double *const theta = r->theta_deg;
+    int i = 0;
+    double part = 0;
+
+    while (i + 2 < r->n && theta[i + 1] < theta_deg)
+        i++;
+    if (r->n > 1)
+        part = (theta_deg - theta[i]) / (theta[i + 1] - theta[i]);
+    part = fmin(fmax(part, 0), 1);
+    for (int c = 0; c < 3; c++) {
+        const int j = r->n > 1 ? i + 1 : i;
+
+        light->peak[c] =
+            mix(r->log2_of[i].peak[c], r->log2_of[j].peak[c], part);
+        light->mean[c] =
+            mix(r->log2_of[i].mean[c], r->log2_of[j].mean[c], part);
+    }
+}
+
+double response_softening(const struct response *r,
+                          const struct glint_lamp *lamp)
+{
+    const double extent = hypot(lamp->axis[0], lamp->axis[1]);
+    int i = 0;
+    double part;
+
+    while (i + 2 < RESPONSE_EXTENTS && r->extent[i + 1] < extent)
+        i++;
+    if (!(r->extent[i + 1] > r->extent[i]))
+        return 1; /* nothing was measured */
+    part = (extent - r->extent[i]) / (r->extent[i + 1] - r->extent[i]);
+    return mix(r->softened_log2[i], r->softened_log2[i + 1], fmin(part, 1));
+}
+
+/* ------------------------------------------------------------ what was drawn
+ */
+
+enum glint_status response_draw(const struct tool *tool,
+                                const struct scene *scene,
+                                struct glint_view view,
+                                const struct glint_lamp *lamps, int n,
+                                struct response_light *light)
+{
+    struct glint_lamp *small = malloc((size_t)(n ? n : 1) * sizeof *small);
+    struct proxy p;
+    enum glint_status status = GLINT_E_MEMORY;
+    double by, peak_log2 = 0;
+
+    *light = (struct response_light){{0}, {0}};
+    if (!small)
+        return GLINT_E_MEMORY;
+    if (n && open_proxy(tool, scene, view, 0, &p) == EXIT_OK) {
+        by = (double)p.view.width * p.view.height /
+             ((double)view.width * view.height);
+        memcpy(small, lamps, (size_t)n * sizeof *small);
+        for (int i = 0; i < n; i++)
+            small[i].power *= by;
+        status = draw(&p, small, n, &peak_log2, light);
+    }
+    if (n)
+        close_proxy(&p);
+    free(small);
+    return n ? status : GLINT_OK;
+}

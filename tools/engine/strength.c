@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/strength.h"
+
+#include <math.h>
+
+/* The sum of powers of many, as one: 4 lets sixteen equal flares, which lie
+ * side by side for the most part, count as two on top of each other. */
+static const double norm = 4;
+
+/* Display light of the mean at strength 1: a third of that of the brightest. */
+static const double mean_most = 0.32;
+
+/* Display light at --exposure 0 that is neither much nor little. */
+static const double common_log2 = -5;
+static const double compression = 0.15; /* stops a stop */
+
+/* Following. */
+static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
+static const double settle_s = 0.3;
+
+static const double overshoot = 0.5; /* of a lamp that came */
+
+void strength_defaults(struct strength *strength)
+{
+    *strength = (struct strength){.asked = 0.5, .gain = 1};
+}
+
+double strength_largest(const double rgb[3])
+{
+    return fmax(rgb[0], fmax(rgb[1], rgb[2]));
+}
+
+/* ---------------------------------------------------------------- one frame
+ */
+
+/* Light by channel of lamp I, of all its power. */
+static void light_of(const struct response *response,
+                     const struct strength_lamps *lamps, int i,
+                     struct response_light *light)
+{
+    const struct glint_lamp *l = &lamps->lamp[i];
+    const double power =
+        l->power / lamps->pixels / (lamps->level ? lamps->level[i] : 1);
+    const double softening = response_softening(response, l);
+
+    response_at(response, l->theta_deg, light);
+    for (int c = 0; c < 3; c++) {
+        light->peak[c] *= power * softening * l->rgb[c];
+        light->mean[c] *= power * l->rgb[c];
+    }
+}
+
+static void add(struct response_light *sum, const struct response_light *light,
+                double level)
+{
+    for (int c = 0; c < 3; c++) {
+        sum->peak[c] += pow(level * light->peak[c], norm);
+        sum->mean[c] += level * light->mean[c];
+    }
+}
+
+static void finish(struct response_light *sum)
+{
+    for (int c = 0; c < 3; c++)
+        sum->peak[c] = pow(sum->peak[c], 1 / norm);
+}
+
+void strength_light(const struct response *response,
+                    const struct strength_lamps *lamps,
+                    struct response_light *light)
+{
+    *light = (struct response_light){{0}, {0}};
+    for (int i = 0; i < lamps->n; i++) {
+        struct response_light one;
+
+        light_of(response, lamps, i, &one);
+        add(light, &one, lamps->level ? lamps->level[i] : 1);
+    }
+    finish(light);
+}
+
+static double together(double a, double b)
+{
+    return pow(pow(a, norm) + pow(b, norm), 1 / norm);
+}
+
+/* The factor that LIGHT asks for, in stops. */
+static double target_log2(const struct strength *s,
+                          const struct response_light *light)
+{
+    const double peak = fmax(strength_largest(light->peak), 1e-60);
+    const double mean = strength_largest(light->mean) / mean_most;
+    const double more =
+        compression * (log2(together(peak, mean)) - common_log2);
+
+    return 2 * log2(s->asked) - log2(together(peak * exp2(-tanh(more)), mean));
+}
+
+/* ---------------------------------------------------------------- over time
+ */
+
+static double step(double towards, double elapsed_s)
+{
+    const double part = 1 - exp(-elapsed_s / settle_s);
+    const double most = fmin(
+        (towards > 0 ? rise_per_s : fall_per_s) * elapsed_s, most_per_frame);
+
+    return fmin(fmax(part * towards, -most), most);
+}
+
+/* 1 up to 1, then ever slower towards 1 + overshoot. */
+static double held(double times)
+{
+    return times <= 1 ? 1
+                      : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
+}
+
+/* Holds lamp I to what it would come to by itself; LIGHT is its own. */
+static void hold(const struct strength *s, const struct strength_lamps *lamps,
+                 int i, struct response_light *light)
+{
+    const double times = exp2(s->factor_log2 - target_log2(s, light));
+    const double by = held(times);
+
+    lamps->lamp[i].power *= by;
+    for (int c = 0; c < 3; c++) {
+        light->peak[c] *= by;
+        light->mean[c] *= by;
+    }
+}
+
+static void follow(struct strength *s, double target, int32_t elapsed_us)
+{
+    if (elapsed_us > 0 && s->follows)
+        s->factor_log2 += step(target - s->factor_log2, 1e-6 * elapsed_us);
+    else
+        s->factor_log2 = target;
+    s->follows = true;
+}
+
+/* As many lamps as there are, each with all its power. */
+static double target_of(const struct strength *s,
+                        const struct response *response,
+                        const struct strength_lamps *lamps)
+{
+    struct strength_lamps full = *lamps;
+    struct response_light light = {{0}, {0}};
+
+    for (int i = 0; i < full.n; i++) {
+        struct response_light one;
+
+        light_of(response, &full, i, &one);
+        add(&light, &one, 1);
+    }
+    finish(&light);
+    return target_log2(s, &light);
+}
+
+static void expose(struct strength *s, const struct response *response,
+                   const struct strength_lamps *lamps, int32_t elapsed_us)
+{
+    follow(s, target_of(s, response, lamps), elapsed_us);
+    for (int i = 0; i < lamps->n; i++) {
+        struct response_light one;
+
+        light_of(response, lamps, i, &one);
+        hold(s, lamps, i, &one);
+        add(&s->light, &one, lamps->level ? lamps->level[i] : 1);
+    }
+    finish(&s->light);
+    s->scale = s->gain * exp2(s->factor_log2);
+}
+
+void strength_expose(struct strength *strength, const struct response *response,
+                     const struct strength_lamps *lamps, int32_t elapsed_us)
+{
+    struct strength *s = strength;
+
+    s->light = (struct response_light){{0}, {0}};
+    s->scale = 0;
+    if (lamps->n == 0) {
+        s->follows = false;
+        return;
+    }
+    if (s->is_physical) {
+        strength_light(response, lamps, &s->light);
+        s->scale = s->gain * exp2(s->exposure_ev);
+    } else if (s->asked > 0) {
+        expose(s, response, lamps, elapsed_us);
+    }
+    for (int c = 0; c < 3; c++) {
+        s->light.peak[c] *= s->scale;
+        s->light.mean[c] *= s->scale;
+    }
+}

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How much the light of lamps is multiplied by, so that a flare is seen and
+ * believed: the automatic exposure behind --strength.
+ *
+ *     strength_expose(&strength, &response, &lit, elapsed_us);  each frame
+ *
+ * From scene to code. A lamp of power P (white times pixels: what the picture
+ * shows of it, and what it would show beyond white) gives a flare of
+ * P * response(angle) at --exposure 0; the response holds what the lens lets
+ * through, its coatings, its stop and the size of the sensor. Times gain and
+ * 2^EV that is display light, 1 = white, which is added to the picture's.
+ * --exposure sets EV by hand; otherwise it is chosen here.
+ *
+ * Of lamps i with the light p_i at the brightest thousandth of the layer and
+ * m_i in its mean (largest channels), the flare would have
+ *     p = (sum p_i^4)^(1/4)    about the brightest: flares lie side by side
+ *     m = sum m_i
+ *     b = (p^4 + (m / 0.32)^4)^(1/4)
+ * and the factor is
+ *     strength^2 * ((p / t)^4 + (m / 0.32)^4)^(-1/4),
+ *     t = 2^tanh(0.15 log2(b / b0)),    b0 = 1/32
+ * so the brightest comes to strength^2, and the mean, where the lens veils the
+ * picture or lamps are many, to a third of that at most; each doubling of the
+ * strength is two stops, 0.5 a quarter of white. Lamps of ten stops more light
+ * give one and a quarter more flare: a sun shows more than a candle, within a
+ * stop either way. All lamps get the same factor, so the ratios between them
+ * stay.
+ *
+ * In a video the factor follows, by stops in proportion to the time: it falls
+ * by up to 3 stops a second and rises by up to 2, no more than an eighth of
+ * a stop a frame, so that it makes no step of 10 %. It starts anew after a cut
+ * and where no lamp was before. Lamps rise and fade by their tracks (powers
+ * without these levels decide on the factor), and a lamp that came and is too
+ * bright for the factor until that has followed is held to 1.5 times what it
+ * would be by itself.
+ */
+#ifndef GLINT_TOOLS_ENGINE_STRENGTH_H
+#define GLINT_TOOLS_ENGINE_STRENGTH_H
+
+#include "engine/response.h"
+
+/* The lamps of a frame. */
+struct strength_lamps {
+    struct glint_lamp *lamp; /* [n]; their powers are those to be drawn */
+    const double *level;     /* [n], above 0, at most 1: how far each has risen;
+                                a part of its power. NULL: all 1 */
+    int n;
+    double pixels; /* of the picture, times the light of its white */
+};
+
+struct strength {
+    /* Options. */
+    double asked;     /* 0 .. 100, 0.5 by default */
+    bool is_physical; /* the factor is 2^EV alone */
+    double exposure_ev, gain;
+
+    /* Of the last frame. */
+    double scale; /* what the powers of lamps are to be multiplied by; 0: there
+                     is nothing to draw */
+    struct response_light light; /* what the flare comes to with it */
+
+    /* Private: the factor without gain, followed. */
+    double factor_log2;
+    bool follows;
+};
+
+/* STRENGTH 0.5, gain 1. */
+void strength_defaults(struct strength *strength);
+
+/* Sets the scale and the light for LAMPS. ELAPSED_US since the frame before; 0:
+ * it has nothing to do with this one. Lowers the powers of lamps that are too
+ * bright yet. */
+void strength_expose(struct strength *strength, const struct response *response,
+                     const struct strength_lamps *lamps, int32_t elapsed_us);
+
+/* The light of the flare of N lamps behind RESPONSE, as its pixels' channels
+ * come to, at scale 1. */
+void strength_light(const struct response *response,
+                    const struct strength_lamps *lamps,
+                    struct response_light *light);
+
+/* Of the channels, the largest. */
+double strength_largest(const double rgb[3]);
+
+#endif

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What glint bench times: cases of a lens, a picture and options, that take
+ * turns.
+ */
+#ifndef GLINT_TOOLS_LAB_BENCH_H
+#define GLINT_TOOLS_LAB_BENCH_H
+
+#include "lab/yardstick.h"
+
+enum {
+    MAX_CASES = 256,
+    MAX_ROUNDS = YARDSTICK_MAX,
+    MAX_LENSES = 16,
+    MAX_BUDGETS = 16
+};
+
+/* Drawing is accumulating light, which is timed by itself, and compositing it
+ * with the picture, which is the rest. */
+enum stage { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE, STAGES };
+
+struct bench_canvas {
+    struct canvas of;
+    double floor_ms[MAX_ROUNDS];
+};
+
+struct test {
+    const struct scene *scene;
+    struct bench_canvas *canvas;
+    struct frame frame;
+    struct glint_lamp *lamp;
+    int n_lamps, threads;
+    const char *kernels;
+    double scale, psnr_db;                 /* NAN: not measured */
+    const char *series;                    /* of growth, or NULL */
+    struct glint_lens some;                /* lens with some ghosts only, */
+    struct glint_model_ghost *some_ghosts; /* unless this is NULL */
+    struct frame_report report;
+    double cpu_ms; /* of growth: of all threads, the least of a frame; or 0 */
+    double ms[STAGES][MAX_ROUNDS];
+    double wrong[MAX_ROUNDS]; /* with a budget: predicted over measured - 1 */
+};
+
+struct bench {
+    struct tool *tool;
+    struct scene base, scene[MAX_LENSES];
+    int n_scenes, n_canvases, n_tests, rounds;
+    struct bench_canvas canvas[8];
+    struct test *test;
+    struct glint_workers *one, *two;
+    enum glint_pixel_format format;
+    const char *format_word;
+    int width, height;
+    bool all, sizes, growth, psnr;
+    bool moving; /* lights: from round to round */
+    int n_budgets;
+    double budget_ms[MAX_BUDGETS];
+};
+
+/* Adds the cases of SCENE that are asked for, or the plain one. Returns an exit
+ * code, as all here that return int. */
+int bench_add(struct bench *b, const struct scene *scene);
+
+/* Adds one of this size, 0 as asked, and so many lights, if there is room. */
+int bench_add_one(struct bench *b, const struct scene *scene, int width,
+                  int height, int lights);
+
+/* Adds those of b->growth. */
+int bench_add_growth(struct bench *b, const struct scene *scene);
+
+/* Puts the light of a case where it is in round ROUND of N, if it moves. */
+void bench_move(struct test *t, int round, int n);
+
+/* Times round ROUND of a case. */
+enum glint_status bench_run(struct test *t, int round);
+
+/* Compares T with exact rays of the lens's table: t->psnr_db. */
+int bench_psnr(struct bench *b, struct test *t);
+
+/* Medians, as a table for people or for programs. */
+void bench_print(const struct bench *b);
+void bench_print_json(const struct bench *b);
+
+#endif

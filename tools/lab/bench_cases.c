@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "lab/bench.h"
+#include "linux/sets.h"
+#include "engine/measure.h"
+
+/* -------------------------------------------------------------------- canvas
+ */
+
+static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
+{
+    struct bench_canvas *c = &b->canvas[b->n_canvases];
+
+    for (int i = 0; i < b->n_canvases; i++)
+        if (b->canvas[i].of.image.width == width &&
+            b->canvas[i].of.image.height == height)
+            return &b->canvas[i];
+    if (b->n_canvases == 8 ||
+        canvas_init(&c->of, b->format, width, height) != GLINT_OK)
+        return NULL;
+    b->n_canvases++;
+    return c;
+}
+
+/* --------------------------------------------------------------------- tests
+ */
+
+/* What of a test differs from the plainest one of its lens. */
+struct variation {
+    int width, height; /* 0: as asked */
+    int lights;
+    int two_threads, by_cells; /* whatever was asked for */
+    const char *kernels;       /* NULL: as asked */
+    unsigned sets;             /* which those may use */
+    double angle;
+};
+
+static const struct variation variations[] = {
+    {0, 0, 1, 0, 0, NULL, ~0U, 12}, /* the plain one */
+    {0, 0, 1, 0, 1, NULL, ~0U, 12},
+    {0, 0, 1, 0, 0, "c", 0, 12},
+    {0, 0, 1, 0, 0, "sse41", GLINT_SET_SSE41, 12},
+    {0, 0, 1, 1, 0, NULL, ~0U, 12},
+    {0, 0, 2, 0, 0, NULL, ~0U, 12},
+    {0, 0, 8, 0, 0, NULL, ~0U, 12},
+    {0, 0, 64, 0, 0, NULL, ~0U, 12},
+    {0, 0, 588, 0, 0, NULL, ~0U, 12},
+    {0, 0, 10000, 0, 0, NULL, ~0U, 12},
+    {640, 360, 1, 0, 0, NULL, ~0U, 12},
+    {1280, 720, 1, 0, 0, NULL, ~0U, 12},
+    {3840, 2160, 1, 0, 0, NULL, ~0U, 12},
+    {0, 0, 0, 0, 0, NULL, ~0U, 12},
+    {0, 0, 1, 0, 0, NULL, ~0U, 75}, /* farther out than models go */
+};
+
+/* The exposure at which the flare is as bright as the picture's white. */
+static enum glint_status expose(struct test *t)
+{
+    const int w = t->canvas->of.image.width, h = t->canvas->of.image.height;
+    struct glint_float_image flare = {
+        w, h, malloc(3 * (size_t)w * (size_t)h * sizeof(float))};
+    enum glint_status status = GLINT_E_MEMORY;
+
+    if (flare.rgb)
+        status = frame_draw_alone(&t->frame, t->lamp, t->n_lamps, 1, flare.rgb,
+                                  &t->report);
+    if (status == GLINT_OK)
+        t->scale = measure_exposure(&flare);
+    free(flare.rgb);
+    return status;
+}
+
+static int add_test(struct bench *b, const struct scene *scene,
+                    const struct variation *v)
+{
+    struct test *t = &b->test[b->n_tests];
+    const int width = v->width ? v->width : b->width;
+    const int height = v->height ? v->height : b->height;
+    struct glint_lamp *lamp;
+    int code;
+
+    if (b->n_tests == MAX_CASES)
+        return EXIT_OK;
+    t->scene = scene;
+    t->n_lamps = v->lights;
+    t->canvas = canvas_of(b, width, height);
+    lamp = calloc((size_t)v->lights + 1, sizeof *lamp);
+    if (!t->canvas || !lamp) {
+        free(lamp);
+        return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    }
+    code = scene_frame(b->tool, scene, scene_view(scene, width, height),
+                       &t->frame);
+    if (code != EXIT_OK) {
+        free(lamp);
+        return code;
+    }
+    t->lamp = lamp;
+    t->threads = v->two_threads       ? 2
+                 : b->tool->n_threads ? b->tool->n_threads
+                                      : 1;
+    t->kernels = v->kernels ? v->kernels : b->tool->kernels;
+    t->psnr_db = (double)NAN;
+    t->frame.cfg.workers = v->two_threads       ? b->two
+                           : b->tool->n_threads ? b->tool->workers
+                                                : b->one;
+    if (v->by_cells)
+        t->frame.cfg.raster = &glint_raster_cells;
+    t->frame.cfg.sets &= v->sets;
+    yardstick_lamps(t->lamp, v->lights, v->angle);
+    b->n_tests++;
+    if (expose(t) != GLINT_OK)
+        return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    if (v->angle != 12) { /* exposed as if it were in the picture */
+        yardstick_lamps(t->lamp, v->lights, 12);
+        if (expose(t) != GLINT_OK)
+            return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+        yardstick_lamps(t->lamp, v->lights, v->angle);
+    }
+    return EXIT_OK;
+}
+
+int bench_add_one(struct bench *b, const struct scene *scene, int width,
+                  int height, int lights)
+{
+    const struct variation v = {width, height, lights, 0, 0, NULL, ~0U, 12};
+
+    return add_test(b, scene, &v);
+}
+
+/* Of a frame and its memory. */
+static int add_sizes(struct bench *b, const struct scene *scene)
+{
+    static const int size[][2] = {
+        {640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}};
+    int code = EXIT_OK;
+
+    for (size_t i = 0; i < sizeof size / sizeof *size && code == EXIT_OK; i++)
+        code = bench_add_one(b, scene, size[i][0], size[i][1], 1);
+    return code;
+}
+
+/* Frames that a budget has to settle. */
+enum { SETTLING = 12 };
+
+/* The plain case, held to each budget. */
+static int add_budgets(struct bench *b, const struct scene *scene)
+{
+    int code = EXIT_OK;
+
+    for (int i = 0; i < b->n_budgets && code == EXIT_OK; i++) {
+        struct test *t = &b->test[b->n_tests];
+        const int n = b->n_tests;
+
+        code = bench_add_one(b, scene, 0, 0, 1);
+        if (b->n_tests == n || code != EXIT_OK)
+            break;
+        budget_init(&t->frame.budget, b->budget_ms[i]);
+        code = scene_calibrate(b->tool, scene, t->frame.view, &t->frame.budget);
+        for (int k = 0; k < SETTLING && code == EXIT_OK; k++)
+            if (bench_run(t, 0) != GLINT_OK)
+                code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
+    }
+    return code;
+}
+
+int bench_add(struct bench *b, const struct scene *scene)
+{
+    const int n = b->all ? (int)(sizeof variations / sizeof *variations) : 1;
+    int code = EXIT_OK;
+
+    if (b->growth)
+        return bench_add_growth(b, scene);
+    if (b->n_budgets)
+        return add_budgets(b, scene);
+    if (b->sizes)
+        return add_sizes(b, scene);
+    for (int i = 0; i < n && code == EXIT_OK; i++)
+        if (variations[i].sets == ~0U ||
+            !(variations[i].sets & ~glint_system_sets()))
+            code = add_test(b, scene, &variations[i]);
+    return code;
+}
+
+void bench_move(struct test *t, int round, int n)
+{
+    if (t->n_lamps > 0)
+        t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / n;
+}
+
+/* What of drawing the last frame did not touch the picture. */
+static double accumulate_ms(const struct test *t)
+{
+    const double t0 = tool_seconds();
+
+    if (t->n_lamps > 0)
+        glint_flare_draw(t->frame.flare, NULL);
+    return 1e3 * (tool_seconds() - t0);
+}
+
+enum glint_status bench_run(struct test *t, int round)
+{
+    struct canvas *c = &t->canvas->of;
+    enum glint_status status;
+    clock_t cpu0 = 0;
+    double t0, cpu_ms;
+
+    canvas_fresh(c);
+    if (t->series) /* a system call would cool the caches of small frames */
+        cpu0 = clock();
+    t0 = tool_seconds();
+    status = frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale, &c->image,
+                        &t->report);
+    t->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
+    cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
+    if (t->cpu_ms == 0 || cpu_ms < t->cpu_ms)
+        t->cpu_ms = cpu_ms;
+    t->wrong[round] =
+        t->report.predicted_ms /
+            (t->report.plan_ms + t->report.bin_ms + t->report.draw_ms) -
+        1;
+    t->ms[PLAN][round] = t->report.plan_ms;
+    t->ms[TRANSFER][round] = t->report.trace_ms;
+    t->ms[BIN][round] = t->report.bin_ms;
+    t->ms[DRAW][round] = t->report.draw_ms;
+    t->ms[ACCUMULATE][round] = accumulate_ms(t);
+    t->ms[COMPOSITE][round] = t->ms[DRAW][round] - t->ms[ACCUMULATE][round];
+    return status;
+}
+
+/* PSNR of the flare alone against exact rays. */
+int bench_psnr(struct bench *b, struct test *t)
+{
+    const int w = t->canvas->of.image.width, h = t->canvas->of.image.height;
+    const size_t n = 3 * (size_t)w * (size_t)h;
+    struct glint_float_image want = {w, h, malloc(n * sizeof(float))};
+    uint8_t *want_codes = NULL, *got = malloc(n);
+    enum glint_status status = GLINT_E_MEMORY;
+    double exposure;
+    struct measure m;
+
+    if (want.rgb && got)
+        status =
+            yardstick_exact(b->tool, t->scene, t->lamp, t->n_lamps, 128, &want);
+    if (status == GLINT_OK) {
+        exposure = measure_exposure(&want);
+        want_codes = measure_encode(&want, exposure);
+        status = want_codes ? yardstick_codes(&t->frame, t->lamp, t->n_lamps,
+                                              exposure, got, &t->report)
+                            : GLINT_E_MEMORY;
+    }
+    if (status == GLINT_OK) {
+        measure_codes(want_codes, got, w, h, &m);
+        t->psnr_db = m.psnr_db;
+    }
+    free(want.rgb);
+    free(want_codes);
+    free(got);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
+}

@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint sweep: what accuracy costs, dial by dial and together.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "linux/instructions.h"
+#include "posix/output.h"
+#include "posix/workers.h"
+#include "lab/sweep.h"
+#include "options/takes.h"
+
+static const char help[] =
+    "glint sweep [LENS]... -o FOLDER [options]\n"
+    "\n"
+    "Draws the same frames with every dial that trades accuracy for time "
+    "turned "
+    "by\n"
+    "itself, with some of them together, and along --quality, and measures "
+    "each\n"
+    "against the exact picture: time (as glint bench does, all taking turns),\n"
+    "instructions where the processor counts them, memory, PSNR, SSIM, the "
+    "99th\n"
+    "percentile of the differences in codes, and flux. FOLDER gets\n"
+    "  sweep.csv     all of it\n"
+    "  front.svg     error against time, and what nothing else is better than\n"
+    "  trade.svg     the same of all lenses together, small\n"
+    "  dials.svg     each dial by itself\n"
+    "  growth.svg    time against pixels, lights and ghosts\n"
+    "  table.md      the named qualities\n"
+    "  index.html    these, tables, and pictures to judge by; one file\n"
+    "Exact pictures and models are kept where models are, so that a second "
+    "time\n"
+    "goes faster. Without lenses: one of each kind that comes with glint.\n"
+    "\n"
+    "  -o, --output FOLDER\n"
+    "  --size WxH[,...]    where dials are turned (default 1280x720; of the\n"
+    "                      first lens also 640x360, with one light and 16)\n"
+    "  --lights N[,...]    how many (default 1)\n"
+    "  --angle A[,...]     degrees off the axis of the first light (default "
+    "12)\n"
+    "  --small             one lens, one small picture, fewer values, in "
+    "seconds\n"
+    "  --no-growth         without pixels, lights and ghosts\n"
+    "  --repeat N          rounds, 1 to 100 (default 7)\n"
+    "  --exact-grid N      cells a side of the exact picture (default 128)\n"
+    "  --count             only say which points there are, drawing each once\n"
+    "  --counts FILE       instructions of points from "
+    "tools/report/sweep-insn\n"
+    "  --cost WHAT         time (default) | instructions: what fronts go by\n"
+    "  --json              prints all points on standard output, too\n";
+static const char help_end[] = COMMON_HELP;
+
+static const char *const default_lenses[] = {
+    "heliar-tronnier", "double-gauss-angenieux", "itoh-zoom-long",
+    "nikon-zoom-mid", "canon-zoom-mid"};
+
+enum { MAX_LIST = 8 };
+
+struct asked {
+    const char *folder;
+    int n_sizes, size[MAX_LIST][2];
+    int n_lights, lights[MAX_LIST];
+    int n_angles;
+    double angle[MAX_LIST];
+    bool no_growth;
+    bool plain; /* sizes, lights and angles were not said */
+};
+
+/* ---------------------------------------------------------------------- cases
+ */
+
+static void add_case(struct sweep *s, struct sweep_case c)
+{
+    if (s->n_cases < SWEEP_CASES)
+        s->scase[s->n_cases++] = c;
+}
+
+/* What differs from the first case in one thing. */
+static void add_growth(struct sweep *s, int lens)
+{
+    static const int size[][2] = {{640, 360}, {1920, 1080}, {3840, 2160}};
+    static const int lights[] = {4, 16, 64};
+    struct sweep_case c = {
+        .lens = lens, .width = 1280, .height = 720, .n_lamps = 1, .angle = 12};
+
+    c.growth = true;
+    add_case(s, c);
+    for (int i = 0; i < 3; i++) {
+        struct sweep_case other = c;
+
+        other.width = size[i][0];
+        other.height = size[i][1];
+        add_case(s, other);
+        other = c;
+        other.n_lamps = lights[i];
+        add_case(s, other);
+    }
+    for (int angle = 0; angle < 20; angle += 5) { /* other numbers of ghosts */
+        struct sweep_case other = c;
+
+        other.angle = angle;
+        add_case(s, other);
+    }
+}
+
+/* Of the first lens also a smaller picture, and lights that can merge: the
+ * exact picture takes as long as there are lights. */
+static void add_more(struct sweep *s)
+{
+    const struct sweep_case c = {
+        .width = 640, .height = 360, .n_lamps = 1, .angle = 12};
+    struct sweep_case many = c;
+
+    many.n_lamps = 16;
+    add_case(s, c);
+    add_case(s, many);
+}
+
+static void add_cases(struct sweep *s, const struct asked *a)
+{
+    for (int lens = 0; lens < s->n_lenses; lens++) {
+        for (int i = 0; i < a->n_sizes; i++)
+            for (int k = 0; k < a->n_lights; k++)
+                for (int m = 0; m < a->n_angles; m++)
+                    add_case(s, (struct sweep_case){
+                                    .lens = lens,
+                                    .width = a->size[i][0],
+                                    .height = a->size[i][1],
+                                    .n_lamps = a->lights[k],
+                                    .angle = a->angle[m],
+                                    .together = i == 0 && k == 0 && m == 0});
+        if (lens == 0 && a->plain)
+            add_more(s);
+        if (!a->no_growth)
+            add_growth(s, lens);
+    }
+}
+
+/* --------------------------------------------------------------------- output
+ */
+
+typedef void write_fn(const struct sweep *s, FILE *file);
+
+static int save(const struct sweep *s, const char *folder, const char *name,
+                write_fn *write)
+{
+    struct glint_error error = {""};
+    struct glint_output out;
+    enum glint_status status;
+    char path[1024], *text = NULL;
+    size_t bytes = 0;
+    FILE *file = open_memstream(&text, &bytes);
+
+    if (!file)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    write(s, file);
+    if (fclose(file) != 0 || (size_t)snprintf(path, sizeof path, "%s/%s",
+                                              folder, name) >= sizeof path) {
+        free(text);
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    }
+    status = glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error);
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, text, bytes, &error);
+    free(text);
+    return status == GLINT_OK ? EXIT_OK
+                              : tool_fail(s->tool, status, error.text);
+}
+
+/* One of an earlier sweep would be taken for this one's. */
+static void leave_out(const char *folder, const char *name)
+{
+    char path[1024];
+
+    if ((size_t)snprintf(path, sizeof path, "%s/%s", folder, name) <
+        sizeof path)
+        remove(path);
+}
+
+static int save_all(const struct sweep *s, const char *folder)
+{
+    static const struct {
+        const char *name;
+        write_fn *write;
+    } files[] = {
+        {"sweep.csv", sweep_csv},         {"front.svg", sweep_svg_front},
+        {"trade.svg", sweep_svg_trade},   {"dials.svg", sweep_svg_dials},
+        {"growth.svg", sweep_svg_growth}, {"table.md", sweep_names},
+        {"index.html", sweep_page}};
+    int code = EXIT_OK;
+
+    for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
+        if (files[i].write == sweep_svg_growth && !sweep_has_growth(s))
+            leave_out(folder, files[i].name);
+        else
+            code = save(s, folder, files[i].name, files[i].write);
+    if (code == EXIT_OK && s->tool->json)
+        sweep_json(s, stdout);
+    else if (code == EXIT_OK && !s->tool->quiet)
+        sweep_names(s, stdout);
+    return code;
+}
+
+/* Lines of "POINT INSTRUCTIONS". */
+static int read_counts(struct sweep *s)
+{
+    FILE *file = fopen(s->counts, "r");
+    char line[80];
+    int n = 0;
+
+    if (!file) {
+        tool_fail(s->tool, GLINT_E_IO, strerror(errno));
+        return EXIT_INPUT;
+    }
+    while (fgets(line, sizeof line, file)) {
+        double v[2];
+        char *space = strchr(line, ' ');
+
+        line[strcspn(line, "\n")] = '\0';
+        n++;
+        if (space)
+            *space = ',';
+        if (tool_numbers(line, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
+            v[0] >= s->n_points || v[1] < 0) {
+            fclose(file);
+            fprintf(stderr,
+                    "glint sweep: %s:%d: not a point of this sweep and its "
+                    "instructions\n",
+                    s->counts, n);
+            return EXIT_INPUT;
+        }
+        s->point[(int)v[0]].instructions = v[1];
+    }
+    fclose(file);
+    return EXIT_OK;
+}
+
+static bool make_folder(const char *path)
+{
+    struct stat st;
+
+    return mkdir(path, 0777) == 0 ||
+           (errno == EEXIST && stat(path, &st) == 0 && S_ISDIR(st.st_mode));
+}
+
+/* -------------------------------------------------------------------- command
+ */
+
+static void say_case(const struct sweep *s, int c)
+{
+    const struct sweep_case *k = &s->scase[c];
+
+    if (!s->tool->quiet)
+        fprintf(stderr,
+                "glint sweep: %d of %d: %s, %dx%d, %d light%s, %g "
+                "degrees: %d points\n",
+                c + 1, s->n_cases, s->lens[k->lens], k->width, k->height,
+                k->n_lamps, k->n_lamps > 1 ? "s" : "", k->angle, k->n);
+}
+
+static int measure(struct sweep *s)
+{
+    struct tool_progress progress;
+    int code = EXIT_OK;
+
+    for (int c = 0; c < s->n_cases && code == EXIT_OK; c++) {
+        say_case(s, c);
+        tool_progress_start(&progress, s->tool, "sweep");
+        code = sweep_measure(s, c, &progress);
+        tool_progress_end(&progress);
+    }
+    return code;
+}
+
+static int run(struct sweep *s, const struct asked *a)
+{
+    int code = EXIT_OK;
+
+    for (int i = 0; i < s->n_lenses; i++)
+        if (tool_is_model(s->lens[i]))
+            return tool_usage(s->tool,
+                              "%s is a model: exact pictures need the table",
+                              s->lens[i]);
+    if (!s->count_only && !make_folder(a->folder)) {
+        fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
+        return EXIT_OUTPUT;
+    }
+    add_cases(s, a);
+    if (sweep_plan(s) != GLINT_OK || glint_pool_create(&s->one, 1) != GLINT_OK)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    s->counter = glint_instructions_open();
+    code = measure(s);
+    glint_instructions_close(s->counter);
+    if (code == EXIT_OK && s->counts)
+        code = read_counts(s);
+    if (code != EXIT_OK || s->count_only)
+        return code;
+    sweep_mark_fronts(s);
+    return save_all(s, a->folder);
+}
+
+static bool take_sizes(const char *text, struct asked *a)
+{
+    char copy[128], *word, *rest = copy;
+
+    if ((size_t)snprintf(copy, sizeof copy, "%s", text) >= sizeof copy)
+        return false;
+    for (a->n_sizes = 0; (word = strtok_r(rest, ",", &rest)); a->n_sizes++)
+        if (a->n_sizes == MAX_LIST ||
+            !tool_size(word, &a->size[a->n_sizes][0], &a->size[a->n_sizes][1]))
+            return false;
+    return a->n_sizes > 0;
+}
+
+static bool take_lights(const char *text, struct asked *a)
+{
+    double v[MAX_LIST];
+
+    a->n_lights = tool_numbers(text, v, MAX_LIST);
+    for (int i = 0; i < a->n_lights; i++) {
+        if (v[i] != floor(v[i]) || v[i] < 1 || v[i] > 10000)
+            return false;
+        a->lights[i] = (int)v[i];
+    }
+    return a->n_lights > 0;
+}
+
+static bool take_angles(const char *text, struct asked *a)
+{
+    a->n_angles = tool_numbers(text, a->angle, MAX_LIST);
+    for (int i = 0; i < a->n_angles; i++)
+        if (a->angle[i] < 0 || a->angle[i] > 60)
+            return false;
+    return a->n_angles > 0;
+}
+
+static bool take_cost(const char *text, struct sweep *s)
+{
+    static const char *const words[] = {"time", "instructions", NULL};
+    const int word = tool_word(text, words);
+
+    s->by_instructions = word == 1;
+    return word >= 0;
+}
+
+enum option_code { OPT_SMALL = 1, OPT_NO_GROWTH, OPT_COUNT, OPT_COUNTS };
+
+static const struct option options[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"size", required_argument, NULL, 's'},
+    {"lights", required_argument, NULL, 'l'},
+    {"angle", required_argument, NULL, 'a'},
+    {"repeat", required_argument, NULL, 'r'},
+    {"exact-grid", required_argument, NULL, 'g'},
+    {"cost", required_argument, NULL, 'c'},
+    {"small", no_argument, NULL, OPT_SMALL},
+    {"no-growth", no_argument, NULL, OPT_NO_GROWTH},
+    {"count", no_argument, NULL, OPT_COUNT},
+    {"counts", required_argument, NULL, OPT_COUNTS},
+    TOOL_COMMON_OPTIONS};
+
+/* 1: taken; 0: not something it takes; -2: no option of these. */
+static int take(struct sweep *s, struct asked *a, int c)
+{
+    switch (c) {
+    case 'o':
+        a->folder = optarg;
+        return 1;
+    case 's':
+        return take_sizes(optarg, a);
+    case 'l':
+        return take_lights(optarg, a);
+    case 'a':
+        return take_angles(optarg, a);
+    case 'r':
+        return tool_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
+    case 'g':
+        return tool_integer(optarg, 4, 1024, &s->grid) && s->grid % 2 == 0;
+    case 'c':
+        return take_cost(optarg, s);
+    case OPT_SMALL:
+        return s->small = true;
+    case OPT_NO_GROWTH:
+        return a->no_growth = true;
+    case OPT_COUNT:
+        return s->count_only = true;
+    case OPT_COUNTS:
+        s->counts = optarg;
+        return 1;
+    default:
+        return -2;
+    }
+}
+
+static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
+                 struct asked *a)
+{
+    int c, at = 0, code;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &at)) >= 0) {
+        const int taken = take(s, a, c);
+
+        if (taken == 0)
+            return tool_refuse(tool, options[at].name, optarg);
+        if (taken == -2 && (code = tool_option(tool, c, optarg)) >= 0)
+            return code;
+    }
+    if (!a->folder && !s->count_only)
+        return tool_usage(tool, "needs -o FOLDER");
+    if (argc - optind > SWEEP_LENSES)
+        return tool_usage(tool, "takes %d lenses at most", SWEEP_LENSES);
+    for (; optind < argc; optind++)
+        s->lens[s->n_lenses++] = argv[optind];
+    return -1;
+}
+
+/* What was not said. */
+static void fill_in(struct sweep *s, struct asked *a)
+{
+    const int n =
+        s->small ? 1 : (int)(sizeof default_lenses / sizeof *default_lenses);
+
+    for (int i = 0; s->lens[0] == NULL || (i > 0 && i < n); i++)
+        s->lens[s->n_lenses++] = default_lenses[i];
+    a->plain = !s->small && a->n_sizes + a->n_lights + a->n_angles == 0;
+    if (a->n_sizes == 0) {
+        a->size[0][0] = s->small ? 160 : 1280;
+        a->size[0][1] = s->small ? 90 : 720;
+        a->n_sizes = 1;
+    }
+    if (a->n_lights == 0)
+        a->lights[a->n_lights++] = 1;
+    if (a->n_angles == 0)
+        a->angle[a->n_angles++] = 12;
+    a->no_growth |= s->small;
+    s->rounds = s->rounds ? s->rounds : s->small ? 1 : 7;
+    s->grid = s->grid ? s->grid : s->small ? 64 : 128;
+}
+
+static void close_sweep(struct sweep *s)
+{
+    for (int i = 0; i < s->n_pictures; i++) {
+        free(s->picture[i].rgb);
+        free(s->picture[i].difference);
+    }
+    glint_pool_destroy(s->one);
+    free(s->picture);
+    free(s->point);
+    free(s);
+}
+
+int cmd_sweep(int argc, char **argv)
+{
+    struct tool tool = {.name = "sweep", .help = help, .help_end = help_end};
+    struct sweep *s = calloc(1, sizeof *s);
+    struct asked asked = {.folder = NULL};
+    int code;
+
+    if (!s)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    s->tool = &tool;
+    s->counter = -1;
+    scene_defaults(&s->base);
+    code = parse(&tool, argc, argv, s, &asked);
+    if (code < 0)
+        code = tool_start(&tool);
+    if (code == EXIT_OK && tool.workers) {
+        fill_in(s, &asked);
+        code = run(s, &asked);
+    }
+    close_sweep(s);
+    tool_finish(&tool);
+    return code;
+}

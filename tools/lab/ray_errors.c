@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ray_errors [-n NM,...] [-s STEP] [-g GHOST] [-r | -w] LENS MODEL: how far a
+ * model is from exact rays, everywhere. A row of a Markdown table; with -w also
+ * the ghosts that are off by more than they should, and at which angles; with
+ * -r root mean squares instead, one output after the other.
+ *
+ *   every ghost at the angles of the accuracy table and every STEP degrees up
+ *   to the model's largest, at every wavelength: a grid over the box of what
+ *   gets through stop and barrels to the field, those rays of it that land in
+ *   the picture's circle
+ *
+ * Rays that the model has no polynomials for count as off by FAR pixels in
+ * percentiles, and not at all in root mean squares.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/model_file.h"
+#include "options/tool.h"
+
+#define PI        3.14159265358979323846
+#define FAR       1e3
+#define SENSOR_PX 0.25 /* that 99 of 100 rays should be within */
+#define STOP_RMS  8e-4
+
+enum {
+    ACROSS = 40,
+    DOWN = 20, /* of the half with y >= 0; the other mirrors it */
+    BINS = 400,
+    BINS_A_DECADE = 50,
+    MOST_ANGLES = 2000,
+    MOST_PARTS = 64
+};
+
+/* Errors by size: bin K begins at 1e-5 times 10^(K / BINS_A_DECADE). */
+struct tally {
+    double rays, lost;
+    double light, light_lost; /* energy times mm^2 of pupil */
+    double sensor[BINS], energy[BINS];
+    double sum2[GLINT_OUT_ENERGY + 1]; /* of squares; energy's times light */
+};
+
+struct task {
+    struct glint_prescription lens;
+    struct glint_optics optics;
+    struct model_file model;
+    const struct glint_model_header *header;
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    int n_ghosts, only;
+    double nm[GLINT_MAX_WAVELENGTHS];
+    int n_nm;
+    double angle[MOST_ANGLES];
+    int n_angles;
+    double picture_mm; /* half its diagonal, or the field if that is less */
+    bool worst, squares;
+};
+
+/* ------------------------------------------------------------------ tallies */
+
+static int bin_of(double error)
+{
+    const int bin = (int)(BINS_A_DECADE * log10(fmax(error, 1e-5) / 1e-5));
+
+    return bin < BINS ? bin : BINS - 1;
+}
+
+static void tally_add(struct tally *t, const double error[], double light)
+{
+    t->rays++;
+    t->light += light;
+    t->sensor[bin_of(
+        hypot(error[GLINT_OUT_SENSOR_X], error[GLINT_OUT_SENSOR_Y]))]++;
+    t->energy[bin_of(fabs(error[GLINT_OUT_ENERGY]))]++;
+    for (int kind = 0; kind <= GLINT_OUT_ENERGY; kind++)
+        t->sum2[kind] +=
+            error[kind] * error[kind] * (kind == GLINT_OUT_ENERGY ? light : 1);
+}
+
+static void tally_add_lost(struct tally *t, double light)
+{
+    t->rays++;
+    t->lost++;
+    t->light += light;
+    t->light_lost += light;
+    t->sensor[bin_of(FAR)]++;
+    t->energy[bin_of(1)]++;
+}
+
+/* Adds WEIGHT times FROM. */
+static void tally_join(struct tally *t, const struct tally *from, double weight)
+{
+    t->rays += weight * from->rays;
+    t->lost += weight * from->lost;
+    t->light += weight * from->light;
+    t->light_lost += weight * from->light_lost;
+    for (int k = 0; k < BINS; k++) {
+        t->sensor[k] += weight * from->sensor[k];
+        t->energy[k] += weight * from->energy[k];
+    }
+    for (int kind = 0; kind <= GLINT_OUT_ENERGY; kind++)
+        t->sum2[kind] += weight * from->sum2[kind];
+}
+
+/* The upper end of the bin that a hundredth of the N errors in BIN is above. */
+static double p99_of(const double bin[BINS], double n)
+{
+    double above = 0;
+    int k = BINS;
+
+    while (k > 0 && above + bin[k - 1] <= 0.01 * n)
+        above += bin[--k];
+    return n > 0 ? 1e-5 * pow(10, (double)k / BINS_A_DECADE) : 0;
+}
+
+static double sensor_p99(const struct tally *t)
+{
+    return p99_of(t->sensor, t->rays);
+}
+
+static double rms_of(const struct tally *t, int kind)
+{
+    const double n =
+        kind == GLINT_OUT_ENERGY ? t->light - t->light_lost : t->rays - t->lost;
+
+    return n > 0 ? sqrt(t->sum2[kind] / n) : 0;
+}
+
+static double stop_rms(const struct tally *t)
+{
+    return hypot(rms_of(t, GLINT_OUT_STOP_X), rms_of(t, GLINT_OUT_STOP_Y));
+}
+
+static bool misses(const struct tally *t)
+{
+    return sensor_p99(t) > SENSOR_PX || stop_rms(t) > STOP_RMS;
+}
+
+/* --------------------------------------------------------------------- rays */
+
+/* The parts of one ghost that a model has at one angle and wavelength. */
+struct parts {
+    int n;
+    struct glint_transfer part[MOST_PARTS];
+};
+
+static void find_parts(const struct task *t, int ghost, double angle_deg,
+                       double nm, struct parts *parts)
+{
+    const int32_t sine_q30 =
+        (int32_t)lrint(ldexp(sin(angle_deg * PI / 180), 30));
+    const int32_t wave_q24 = (int32_t)lrint(ldexp(1e6 / (nm * nm), 24));
+    const struct glint_lens *l = &t->model.lens;
+
+    parts->n = 0;
+    for (int k = ghost; k < (int)t->header->n_ghosts && parts->n < MOST_PARTS;
+         k++)
+        if (l->ghost[k].i == l->ghost[ghost].i &&
+            l->ghost[k].j == l->ghost[ghost].j)
+            parts->n += glint_transfer_init(&parts->part[parts->n], l, k,
+                                            sine_q30, wave_q24) != 0;
+}
+
+/* The ray from (X, Y) by the model. False: it has none. */
+static bool model_ray(const struct parts *parts, double x_mm, double y_mm,
+                      double at[GLINT_OUT_KINDS])
+{
+    for (int k = 0; k < parts->n; k++) {
+        const struct glint_transfer *p = &parts->part[k];
+        const double unit = ldexp(1, p->box_exponent);
+        const double u = (x_mm / unit - p->box[0]) / p->box[1];
+        const double v = y_mm / unit / p->box[2];
+        struct glint_outputs out;
+
+        if (fabs(u) > 1 || v > 1 || v < ldexp(glint_transfer_v(p, 0, 1), -30))
+            continue;
+        glint_transfer_ray(p, (int32_t)lrint(ldexp(u, 30)),
+                           (int32_t)lrint(ldexp(v, 30)), &out);
+        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+            at[kind] = ldexp(out.at[kind], p->exponent[kind]);
+        return true;
+    }
+    return false;
+}
+
+static bool is_seen(const struct task *t, const struct glint_ray *ray)
+{
+    return ray->rel_radius <= 1 &&
+           hypot(ray->stop_x_mm, ray->stop_y_mm) <= t->optics.stop_radius_mm &&
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= t->picture_mm;
+}
+
+static void compare_ray(const struct task *t, const struct parts *parts,
+                        double x_mm, double y_mm, const struct glint_ray *ray,
+                        double light, struct tally *tally)
+{
+    const double px = 1920 / t->lens.film_width_mm;
+    const double stop = t->optics.stop_radius_mm;
+    double at[GLINT_OUT_KINDS];
+
+    if (!model_ray(parts, x_mm, y_mm, at)) {
+        tally_add_lost(tally, light);
+        return;
+    }
+    at[GLINT_OUT_SENSOR_X] = px * (at[GLINT_OUT_SENSOR_X] - ray->sensor_x_mm);
+    at[GLINT_OUT_SENSOR_Y] = px * (at[GLINT_OUT_SENSOR_Y] - ray->sensor_y_mm);
+    at[GLINT_OUT_STOP_X] -= ray->stop_x_mm / stop;
+    at[GLINT_OUT_STOP_Y] -= ray->stop_y_mm / stop;
+    at[GLINT_OUT_ENERGY] = at[GLINT_OUT_ENERGY] / ray->energy - 1;
+    tally_add(tally, at, light);
+}
+
+static void compare_bundle(const struct task *t, int ghost, double angle_deg,
+                           double nm, struct tally *tally)
+{
+    static struct parts parts;
+    const double angle = angle_deg * PI / 180;
+    struct glint_row row = {.n = ACROSS + 1,
+                            .direction = {sin(angle), 0, cos(angle)}};
+    struct glint_ray ray[ACROSS + 1];
+    enum glint_ray_status status[ACROSS + 1];
+    struct glint_pupil box;
+    struct glint_path path;
+    double cell;
+
+    glint_path_init(&path, &t->lens, &t->ghost[ghost], nm);
+    path.places_only = true;
+    if (!glint_pupil_find_within(&box, &path, angle_deg,
+                                 t->optics.stop_radius_mm,
+                                 model_real_of(t->header->field_mm), NULL))
+        return;
+    path.places_only = false;
+    find_parts(t, ghost, angle_deg, nm, &parts);
+    row.x0_mm = box.x0_mm;
+    row.step_mm = (box.x1_mm - box.x0_mm) / ACROSS;
+    cell = row.step_mm * box.y1_mm / DOWN;
+    for (int j = 0; j <= DOWN; j++) {
+        row.y_mm = box.y1_mm * j / DOWN;
+        glint_trace_row(&path, &row, ray, status, NULL);
+        for (int i = 0; i <= ACROSS; i++)
+            if (status[i] == GLINT_RAY_OK && is_seen(t, &ray[i]))
+                compare_ray(t, &parts, row.x0_mm + i * row.step_mm, row.y_mm,
+                            &ray[i], cell * ray[i].energy, tally);
+    }
+}
+
+/* ------------------------------------------------------------------- tables */
+
+static void print_angle(double angle_deg, const struct tally *t)
+{
+    printf("    %5.1f deg: %6.0f rays, sensor p99 %.2g px, stop RMS %.2g",
+           angle_deg, t->rays, sensor_p99(t), stop_rms(t));
+    if (t->lost > 0)
+        printf(", not there %.2g (%.2g of its light)", t->lost / t->rays,
+               t->light_lost / t->light);
+    printf("\n");
+}
+
+static void print_squares(const struct tally *t)
+{
+    static const int kind[] = {GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y,
+                               GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y,
+                               GLINT_OUT_ENERGY};
+
+    for (int k = 0; k < 5; k++)
+        printf("%s%.2g", k ? " | " : "", rms_of(t, kind[k]));
+    printf("\n");
+}
+
+/* Of all ghosts at one angle. */
+struct light {
+    double all, lost;
+};
+
+/* All rays of one ghost; ANGLES counts those at which it is seen and those at
+ * which it misses. */
+static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
+                          int angles[2], struct light *light)
+{
+    static struct tally by_angle[MOST_ANGLES];
+
+    for (int k = 0; k < t->n_angles; k++) {
+        by_angle[k] = (struct tally){0};
+        for (int w = 0; w < t->n_nm; w++)
+            compare_bundle(t, ghost, t->angle[k], t->nm[w], &by_angle[k]);
+        tally_join(sum, &by_angle[k], 1);
+        angles[0] += by_angle[k].rays > 0;
+        angles[1] += misses(&by_angle[k]);
+        light[k].all += by_angle[k].light;
+        light[k].lost += by_angle[k].light_lost;
+    }
+    if (!t->worst || !misses(sum))
+        return;
+    printf("  ghost %d: sensor p99 %.2g px, stop RMS %.2g, not there %.2g\n",
+           ghost, sensor_p99(sum), stop_rms(sum), sum->lost / sum->rays);
+    for (int k = 0; k < t->n_angles; k++)
+        if (misses(&by_angle[k]))
+            print_angle(t->angle[k], &by_angle[k]);
+}
+
+static void compare_all(const struct task *t)
+{
+    static struct tally all, equally;
+    static struct light light[MOST_ANGLES];
+    double lost = 0; /* at the worst angle */
+    int ghosts = 0, missing = 0, angles[2] = {0, 0};
+
+    for (int g = 0; g < t->n_ghosts; g++) {
+        struct tally sum = {0};
+
+        if (t->only >= 0 && g != t->only)
+            continue;
+        compare_ghost(t, g, &sum, angles, light);
+        if (sum.rays == 0)
+            continue;
+        ghosts++;
+        missing += misses(&sum);
+        tally_join(&all, &sum, 1);
+        tally_join(&equally, &sum, 1 / sum.rays);
+    }
+    for (int k = 0; k < t->n_angles; k++)
+        lost = fmax(lost, light[k].lost / fmax(1e-30, light[k].all));
+    if (t->squares) {
+        print_squares(&all);
+        return;
+    }
+    printf("| %s | %.0f | %.2g, %.2g | %.2g, %.2g | %.2g, %.2g | %.1g, %.1g | "
+           "%d of %d | %d of %d |\n",
+           t->lens.name, all.rays, sensor_p99(&all), sensor_p99(&equally),
+           stop_rms(&all), stop_rms(&equally), p99_of(all.energy, all.rays),
+           p99_of(equally.energy, equally.rays), all.lost / fmax(1, all.rays),
+           lost, missing, ghosts, angles[1], angles[0]);
+}
+
+/* ------------------------------------------------------------------ options */
+
+static void add_angle(struct task *t, double angle_deg)
+{
+    const double most =
+        asin(fmin(1, ldexp(t->header->sine_hi_q30, -30))) * (180 / PI);
+
+    if (angle_deg <= most && t->n_angles < MOST_ANGLES)
+        t->angle[t->n_angles++] = angle_deg;
+}
+
+/* Whether the model is of the lens, and was baked for the wavelengths. */
+static int check_pair(const struct tool *tool, const struct task *t)
+{
+    const struct glint_model_header *h = t->header;
+
+    if (strcmp(h->name, t->lens.name) != 0 || (int)h->n_ghosts < t->n_ghosts)
+        return tool_fail(tool, GLINT_E_LENS, "the model is of another lens");
+    for (int i = 0; i < t->n_nm; i++) {
+        const double wave_q24 = ldexp(1e6 / (t->nm[i] * t->nm[i]), 24);
+
+        if (wave_q24 < h->wave_lo_q24 - 1 || wave_q24 > h->wave_hi_q24 + 1)
+            return tool_usage(tool, "%g nm is outside of the model's band",
+                              t->nm[i]);
+    }
+    return t->only < t->n_ghosts
+               ? EXIT_OK
+               : tool_usage(tool, "there are %d ghosts", t->n_ghosts);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+static void set_angles(struct task *t, double step_deg)
+{
+    static const double listed[] = {0, 2.5, 5.3, 7.6, 10, 13.7, 17.3, 20};
+
+    for (int k = 0; k < 8; k++)
+        add_angle(t, listed[k]);
+    for (int k = 1; k < MOST_ANGLES && k * step_deg < 90; k++)
+        add_angle(t, k * step_deg);
+    qsort(t->angle, (size_t)t->n_angles, sizeof *t->angle, by_size);
+}
+
+int main(int argc, char **argv)
+{
+    static struct task t = {.only = -1, .nm = {650, 532, 450}, .n_nm = 3};
+    const struct tool tool = {.name = "ray_errors"};
+    double step_deg = 0.7;
+    int c, code;
+
+    while ((c = getopt(argc, argv, "n:s:g:rw")) >= 0) {
+        bool ok;
+
+        if (c == 'n')
+            ok = (t.n_nm = tool_numbers(optarg, t.nm, GLINT_MAX_WAVELENGTHS)) >
+                 0;
+        else if (c == 's')
+            ok = tool_number(optarg, &step_deg) && step_deg > 0.01;
+        else if (c == 'g')
+            ok = tool_integer(optarg, 0, GLINT_MAX_GHOSTS, &t.only);
+        else if (c == 'r')
+            ok = t.squares = true;
+        else
+            ok = t.worst = c == 'w';
+        if (!ok)
+            return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-g GHOST] "
+                                     "[-r | -w] LENS MODEL");
+    }
+    if (argc != optind + 2 || (t.squares && t.worst))
+        return tool_usage(&tool, "takes [-n NM,...] [-s STEP] [-g GHOST] "
+                                 "[-r | -w] LENS MODEL");
+    code = tool_lens(&tool, argv[optind], &t.lens);
+    if (code == EXIT_OK)
+        code = tool_model(&tool, argv[optind + 1], &t.model);
+    if (code != EXIT_OK)
+        return code;
+    t.header = t.model.lens.header;
+    t.picture_mm =
+        fmin(model_real_of(t.header->field_mm),
+             0.5 * hypot(t.lens.film_width_mm, t.lens.film_height_mm));
+    t.n_ghosts = glint_ghost_list(&t.lens, t.ghost, GLINT_MAX_GHOSTS);
+    glint_optics_of(&t.lens, &t.optics);
+    code = check_pair(&tool, &t);
+    if (code == EXIT_OK) {
+        set_angles(&t, step_deg);
+        compare_all(&t);
+    }
+    model_file_close(&t.model);
+    return code;
+}

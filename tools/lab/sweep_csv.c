@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+
+#include "lab/sweep.h"
+
+static const char *const kinds[] = {"standard", "alone", "together", "quality",
+                                    "growth"};
+
+/* As CSV an empty field, as JSON null, where there is nothing. */
+static void number(FILE *file, double x, const char *none)
+{
+    if (isfinite(x))
+        fprintf(file, "%.7g", x);
+    else
+        fputs(none, file);
+}
+
+void sweep_csv(const struct sweep *s, FILE *file)
+{
+    fputs("lens,width,height,lights,angle,kind,dial,quality", file);
+    for (int d = 0; d < n_dials; d++)
+        fprintf(file, ",%s", dials[d].name);
+    fputs(",ms,floor_ms,ratio,instructions,arena_bytes,model_bytes,psnr_db,"
+          "ssim,p99,flux_error,ghosts,bundles,edges,tiles,"
+          "vertices,edges_told,rows_told,lit_told,minsn_told,front\n",
+          file);
+    for (int i = 0; i < s->n_points; i++) {
+        const struct sweep_point *p = &s->point[i];
+        const struct sweep_case *c = &s->scase[p->of];
+        const double measured[] = {p->ms, p->floor_ms, p->ratio,
+                                   p->instructions};
+        const double quality[] = {p->psnr_db, p->ssim, p->p99, p->flux_error};
+
+        fprintf(file, "%s,%d,%d,%d,%g,%s,%s,", s->lens[c->lens], c->width,
+                c->height, c->n_lamps, c->angle, kinds[p->set.kind],
+                p->set.dial >= 0 ? dials[p->set.dial].name : "");
+        number(file, p->set.quality >= 0 ? p->set.quality : (double)NAN, "");
+        for (int d = 0; d < n_dials; d++)
+            fprintf(file, ",%.7g", p->set.value[d]);
+        for (int k = 0; k < 4; k++)
+            fputc(',', file), number(file, measured[k], "");
+        fprintf(file, ",%zu,%zu", p->arena_bytes, p->model_bytes);
+        for (int k = 0; k < 4; k++)
+            fputc(',', file), number(file, quality[k], "");
+        fprintf(file, ",%d,%d,%d,%d", p->report.ghosts, p->report.stats.bundles,
+                p->report.stats.primitives, p->report.tiles);
+        for (int k = COST_VERTICES; k < COST_KINDS; k++)
+            fprintf(file, ",%.0f", p->cost.count[k]);
+        fprintf(file, ",%.4g,%d\n", cost_minsn(&p->cost), p->front);
+    }
+}
+
+static void member(FILE *file, const char *name, double x)
+{
+    fprintf(file, ", \"%s\": ", name);
+    number(file, x, "null");
+}
+
+static void json_point(const struct sweep *s, const struct sweep_point *p,
+                       FILE *file)
+{
+    const struct sweep_case *c = &s->scase[p->of];
+
+    fputs("{\"lens\": ", file);
+    tool_json_string(file, s->lens[c->lens]);
+    fprintf(file,
+            ", \"width\": %d, \"height\": %d, \"lights\": %d, \"angle\": %g, "
+            "\"kind\": \"%s\"",
+            c->width, c->height, c->n_lamps, c->angle, kinds[p->set.kind]);
+    member(file, "quality", p->set.quality >= 0 ? p->set.quality : (double)NAN);
+    for (int d = 0; d < n_dials; d++)
+        member(file, dials[d].name, p->set.value[d]);
+    member(file, "ms", p->ms);
+    member(file, "floor_ms", p->floor_ms);
+    member(file, "ratio", p->ratio);
+    member(file, "instructions", p->instructions);
+    member(file, "arena_bytes", (double)p->arena_bytes);
+    member(file, "model_bytes", (double)p->model_bytes);
+    member(file, "psnr_db", p->psnr_db);
+    member(file, "ssim", p->ssim);
+    member(file, "p99", p->p99);
+    member(file, "flux_error", p->flux_error);
+    fprintf(file, ", \"front\": %s}", p->front ? "true" : "false");
+}
+
+void sweep_json(const struct sweep *s, FILE *file)
+{
+    fprintf(file, "{\"rounds\": %d, \"points\": [\n", s->rounds);
+    for (int i = 0; i < s->n_points; i++) {
+        json_point(s, &s->point[i], file);
+        fputs(i + 1 < s->n_points ? ",\n" : "\n", file);
+    }
+    fputs("]}\n", file);
+}
+
+/* The points of case C with a named quality, the coarsest first. */
+static void names_row(const struct sweep *s, int c, FILE *file)
+{
+    const struct sweep_case *k = &s->scase[c];
+
+    fprintf(file, "| %s, %dx%d, %d |", s->lens[k->lens], k->width, k->height,
+            k->n_lamps);
+    for (int i = 0; i < k->n; i++) {
+        const struct sweep_point *p = &s->point[k->first + i];
+        const double at = p->set.quality * (LADDER_NAMES - 1);
+
+        if (p->set.kind == SWEEP_LADDER && at == floor(at))
+            fprintf(file, " %.1f; %.1f; %zu + %zu |", sweep_cost(s, p),
+                    p->psnr_db, p->arena_bytes / 1024, p->model_bytes / 1024);
+    }
+    fputc('\n', file);
+}
+
+/* Of the settings of one dial those that --quality does not reach. */
+static void beyond_ladder(const struct sweep *s, FILE *file)
+{
+    struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
+    const int n = mean ? sweep_means(s, mean, s->n_points) : 0;
+    int n_alone = 0, n_above = 0;
+
+    for (int i = 0; i < n; i++) {
+        const double above = sweep_above(mean, n, i);
+        char words[160];
+
+        if (mean[i].set->kind != SWEEP_ALONE ||
+            mean[i].flux_error > MAX_FLUX_ERROR)
+            continue;
+        n_alone++;
+        if (above < 0.1)
+            continue;
+        sweep_words(mean[i].set, words, sizeof words);
+        fprintf(file, "%s%s by %.1f dB",
+                n_above++ ? ", " : "\nAbove --quality: ", words, above);
+    }
+    if (n_alone > 0)
+        fprintf(file, "%s%d of %d settings of one dial lie above --quality.\n",
+                n_above ? "; " : "\n", n_above, n_alone);
+    free(mean);
+}
+
+void sweep_names(const struct sweep *s, FILE *file)
+{
+    fprintf(file,
+            "%s; PSNR, dB; KiB of arena + model\n\n| lens, size, lights |",
+            s->by_instructions ? "Million instructions" : "Times memory floor");
+    for (int i = 0; i < LADDER_NAMES; i++)
+        fprintf(file, " %s |", ladder_name[i]);
+    fputs("\n|---|---|---|---|---|---|\n", file);
+    for (int c = 0; c < s->n_cases; c++)
+        if (!s->scase[c].growth)
+            names_row(s, c, file);
+    beyond_ladder(s, file);
+}

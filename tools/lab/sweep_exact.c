@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/sweep_exact.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "model/model_cache.h"
+#include "formats/picture.h"
+
+static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
+{
+    const uint8_t *p = data;
+
+    for (size_t i = 0; i < bytes; i++)
+        hash = (hash ^ p[i]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+/* Of all that the picture follows from, but for the tracer itself. */
+static uint64_t key_of(const struct scene *s, const struct glint_lamp *lamp,
+                       int n_lamps, int grid,
+                       const struct glint_float_image *to)
+{
+    const struct glint_view view = scene_view(s, to->width, to->height);
+    struct glint_bake_options options;
+    uint64_t hash;
+
+    glint_bake_defaults(&options);
+    hash = glint_bake_key(&s->lens, &options);
+    hash = mix(hash, &to->width, sizeof to->width);
+    hash = mix(hash, &to->height, sizeof to->height);
+    hash = mix(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
+    hash = mix(hash, &s->n_blades, sizeof s->n_blades);
+    hash = mix(hash, &s->blade_rotation_deg, sizeof s->blade_rotation_deg);
+    hash = mix(hash, s->wavelength_nm,
+               (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
+    hash = mix(hash, &s->only_ghost, sizeof s->only_ghost);
+    hash = mix(hash, &s->balance, sizeof s->balance);
+    hash = mix(hash, &grid, sizeof grid);
+    return mix(hash, lamp, (size_t)n_lamps * sizeof *lamp);
+}
+
+static bool load(const char *path, struct glint_float_image *to)
+{
+    struct glint_float_image kept = {0, 0, NULL};
+    struct glint_error error = {""};
+    bool same;
+
+    if (access(path, R_OK) != 0 ||
+        glint_picture_load_float(path, &kept, &error) != GLINT_OK)
+        return false;
+    same = kept.width == to->width && kept.height == to->height;
+    if (same)
+        memcpy(to->rgb, kept.rgb,
+               3 * (size_t)to->width * (size_t)to->height * sizeof(float));
+    free(kept.rgb);
+    return same;
+}
+
+enum glint_status sweep_exact(const struct tool *tool,
+                              const struct scene *scene,
+                              const struct glint_lamp *lamp, int n_lamps,
+                              int grid, struct glint_float_image *to)
+{
+    const uint64_t key = key_of(scene, lamp, n_lamps, grid, to);
+    struct glint_error error = {""};
+    char file[64], path[1024];
+    enum glint_status status;
+    bool kept;
+
+    snprintf(file, sizeof file, "exact-%08lx%08lx.pfm",
+             (unsigned long)(key >> 32), (unsigned long)(key & 0xffffffff));
+    kept = model_cache_path(path, sizeof path, file);
+    if (kept && load(path, to))
+        return GLINT_OK;
+    status = yardstick_exact(tool, scene, lamp, n_lamps, grid, to);
+    if (status == GLINT_OK && kept &&
+        glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
+        fprintf(stderr, "glint %s: the exact picture is not kept: %s\n",
+                tool->name, error.text);
+    return status;
+}

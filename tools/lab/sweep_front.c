@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lab/sweep.h"
+
+double sweep_cost(const struct sweep *s, const struct sweep_point *p)
+{
+    return s->by_instructions ? 1e-6 * p->instructions : p->ratio;
+}
+
+/* ---------------------------------------------------------------------- front
+ */
+
+struct entry {
+    double cost, quality;
+    int number;
+};
+
+/* Cheapest first; of equal ones the best. */
+static int by_cost(const void *a, const void *b)
+{
+    const struct entry *x = a, *y = b;
+
+    if (x->cost != y->cost)
+        return x->cost < y->cost ? -1 : 1;
+    if (x->quality != y->quality)
+        return x->quality > y->quality ? -1 : 1;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+int sweep_front(const double *cost, const double *quality, int n, int *front)
+{
+    struct entry *all = malloc((size_t)(n + 1) * sizeof *all);
+    int n_all = 0, n_front = 0;
+
+    if (!all)
+        return 0;
+    for (int i = 0; i < n; i++)
+        if (isfinite(cost[i]) && isfinite(quality[i]))
+            all[n_all++] = (struct entry){cost[i], quality[i], i};
+    qsort(all, (size_t)n_all, sizeof *all, by_cost);
+    for (int i = 0; i < n_all; i++)
+        if (n_front == 0 || all[i].quality > quality[front[n_front - 1]])
+            front[n_front++] = all[i].number;
+    free(all);
+    return n_front;
+}
+
+static void mark_case(struct sweep *s, const struct sweep_case *c, double *cost,
+                      double *quality, int *front)
+{
+    int n;
+
+    for (int i = 0; i < c->n; i++) {
+        const struct sweep_point *p = &s->point[c->first + i];
+
+        cost[i] = fabs(p->flux_error) <= MAX_FLUX_ERROR ? sweep_cost(s, p)
+                                                        : (double)NAN;
+        quality[i] = p->psnr_db;
+    }
+    n = sweep_front(cost, quality, c->n, front);
+    for (int i = 0; i < n; i++)
+        s->point[c->first + front[i]].front = true;
+}
+
+void sweep_mark_fronts(struct sweep *s)
+{
+    double *cost = malloc((size_t)s->n_points * sizeof *cost);
+    double *quality = malloc((size_t)s->n_points * sizeof *quality);
+    int *front = malloc((size_t)s->n_points * sizeof *front);
+
+    for (int c = 0; c < s->n_cases && cost && quality && front; c++)
+        mark_case(s, &s->scase[c], cost, quality, front);
+    free(cost);
+    free(quality);
+    free(front);
+}
+
+/* ---------------------------------------------------------------------- means
+ */
+
+static bool is_same(const struct sweep_setting *a,
+                    const struct sweep_setting *b)
+{
+    return a->kind == b->kind && a->quality == b->quality &&
+           memcmp(a->value, b->value, (size_t)n_dials * sizeof *a->value) == 0;
+}
+
+static const struct sweep_point *find(const struct sweep *s,
+                                      const struct sweep_case *c,
+                                      const struct sweep_setting *set)
+{
+    for (int i = 0; i < c->n; i++)
+        if (is_same(&s->point[c->first + i].set, set))
+            return &s->point[c->first + i];
+    return NULL;
+}
+
+/* Of SET over all cases that have it. False: some case did not measure it. */
+static bool mean_of(const struct sweep *s, const struct sweep_setting *set,
+                    struct sweep_mean *m)
+{
+    int n = 0;
+
+    *m = (struct sweep_mean){.set = set, .least_db = 999};
+    for (int k = 0; k < s->n_cases; k++) {
+        const struct sweep_case *c = &s->scase[k];
+        const struct sweep_point *p = c->together ? find(s, c, set) : NULL;
+
+        if (!c->together)
+            continue;
+        if (!p || isnan(p->psnr_db))
+            return false;
+        m->cost += log(sweep_cost(s, p) / sweep_cost(s, &s->point[c->first]));
+        m->psnr_db += p->psnr_db;
+        m->least_db = fmin(m->least_db, p->psnr_db);
+        m->flux_error = fmax(m->flux_error, fabs(p->flux_error));
+        n++;
+    }
+    m->cost = exp(m->cost / n);
+    m->psnr_db /= n;
+    return n > 0 && isfinite(m->cost);
+}
+
+static void mark_means(struct sweep_mean *mean, int n)
+{
+    double *cost = malloc((size_t)(n + 1) * sizeof *cost);
+    double *quality = malloc((size_t)(n + 1) * sizeof *quality);
+    int *front = malloc((size_t)(n + 1) * sizeof *front), n_front = 0;
+
+    for (int i = 0; i < n && cost && quality; i++) {
+        cost[i] =
+            mean[i].flux_error <= MAX_FLUX_ERROR ? mean[i].cost : (double)NAN;
+        quality[i] = mean[i].psnr_db;
+    }
+    if (cost && quality && front)
+        n_front = sweep_front(cost, quality, n, front);
+    for (int i = 0; i < n_front; i++)
+        mean[front[i]].front = true;
+    free(cost);
+    free(quality);
+    free(front);
+}
+
+static int by_mean_cost(const void *a, const void *b)
+{
+    const struct sweep_mean *x = a, *y = b;
+
+    return (x->cost > y->cost) - (x->cost < y->cost);
+}
+
+int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max)
+{
+    int first = 0, n = 0;
+
+    while (first < s->n_cases && !s->scase[first].together)
+        first++;
+    for (int i = 0; first < s->n_cases && i < s->scase[first].n && n < max; i++)
+        if (mean_of(s, &s->point[s->scase[first].first + i].set, &mean[n]))
+            n++;
+    mark_means(mean, n);
+    qsort(mean, (size_t)n, sizeof *mean, by_mean_cost);
+    return n;
+}
+
+/* --------------------------------------------------------------------- ladder
+ */
+
+static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
+{
+    for (int d = 0; d < n_dials; d++)
+        if (strcmp(dials[d].name, "half") == 0)
+            return a->set->value[d] == b->set->value[d];
+    return true;
+}
+
+/* On the line from A to B, at COST between theirs. */
+static double between(const struct sweep_mean *a, const struct sweep_mean *b,
+                      double cost)
+{
+    return a->psnr_db + (b->psnr_db - a->psnr_db) * log(cost / a->cost) /
+                            log(b->cost / a->cost);
+}
+
+double sweep_above(const struct sweep_mean *mean, int n, int i)
+{
+    const double cost = 1.02 * mean[i].cost;
+    const struct sweep_mean *last = NULL;
+    double best = -HUGE_VAL;
+
+    for (int k = 0; k < n; k++) {
+        const struct sweep_mean *m = &mean[k];
+
+        if (m->set->kind != SWEEP_LADDER)
+            continue;
+        if (m->cost <= cost)
+            best = fmax(best, m->psnr_db);
+        else if (last && last->cost <= cost && same_pixels(last, m))
+            best = fmax(best, between(last, m, cost));
+        last = m;
+    }
+    return mean[i].psnr_db - best;
+}

@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "linux/instructions.h"
+#include "engine/measure.h"
+#include "lab/sweep.h"
+#include "lab/sweep_exact.h"
+
+#define MAX_POINT_MS 4000.0 /* in all; slow ones get fewer rounds */
+
+enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
+
+/* A point being measured. */
+struct run {
+    struct sweep_point *point;
+    const struct scene *scene;
+    struct frame frame;
+    double ms[SWEEP_ROUNDS];
+    int n;
+    double spent_ms;
+};
+
+struct bay {
+    struct sweep *s;
+    const struct sweep_case *c;
+    struct scene open[MAX_OPEN];
+    int n_open;
+    struct run *run;
+    struct canvas canvas;
+    struct glint_lamp *lamp;
+    double exposure, floor_ms[SWEEP_ROUNDS];
+    struct glint_float_image exact; /* rgb NULL: not wanted */
+    struct glint_float_image got;
+};
+
+/* --------------------------------------------------------------------- making
+ */
+
+static bool is_same(const struct scene *a, const struct scene *b)
+{
+    return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
+}
+
+/* A scene that is open for what SET asks, or NULL, said. */
+static const struct scene *scene_for(struct bay *b,
+                                     const struct sweep_setting *set, int *code)
+{
+    struct scene asked = b->s->base;
+
+    for (int d = 0; d < n_dials; d++)
+        if (dials[d].opens)
+            dial_set(&asked, &dials[d], set->value[d]);
+    for (int i = 0; i < b->n_open; i++)
+        if (is_same(&b->open[i], &asked))
+            return &b->open[i];
+    if (b->n_open == MAX_OPEN) {
+        *code = tool_usage(b->s->tool, "more than %d scenes", MAX_OPEN);
+        return NULL;
+    }
+    b->open[b->n_open] = asked;
+    *code =
+        scene_open(b->s->tool, &b->open[b->n_open++], b->s->lens[b->c->lens]);
+    return *code == EXIT_OK ? &b->open[b->n_open - 1] : NULL;
+}
+
+static int make_run(struct bay *b, struct run *r)
+{
+    const struct sweep_case *c = b->c;
+    struct scene asked;
+    int code = EXIT_OK;
+
+    r->scene = scene_for(b, &r->point->set, &code);
+    if (!r->scene)
+        return code;
+    asked = *r->scene;
+    for (int d = 0; d < n_dials; d++)
+        dial_set(&asked, &dials[d], r->point->set.value[d]);
+    code = scene_frame(b->s->tool, &asked,
+                       scene_view(&asked, c->width, c->height), &r->frame);
+    /* asked is of this function only */
+    r->frame.setup = &r->scene->setup;
+    r->frame.lens = &r->scene->model.lens;
+    r->frame.cfg.workers =
+        b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
+    r->point->model_bytes = r->scene->model.bytes;
+    return code;
+}
+
+/* The exposure at which the flare, as drawn by default, is as bright as the
+ * picture's white. */
+static enum glint_status expose(struct bay *b)
+{
+    struct frame_report report;
+    const enum glint_status status = frame_draw_alone(
+        &b->run[0].frame, b->lamp, b->c->n_lamps, 1, b->got.rgb, &report);
+
+    if (status == GLINT_OK)
+        b->exposure = measure_exposure(&b->got);
+    return status;
+}
+
+static int make_bay(struct bay *b)
+{
+    const struct sweep_case *c = b->c;
+    const size_t n = 3 * (size_t)c->width * (size_t)c->height;
+    int code = EXIT_OK;
+
+    b->run = calloc((size_t)c->n, sizeof *b->run);
+    b->lamp = calloc((size_t)c->n_lamps, sizeof *b->lamp);
+    b->got = (struct glint_float_image){c->width, c->height,
+                                        malloc(n * sizeof(float))};
+    b->exact = (struct glint_float_image){c->width, c->height, NULL};
+    if (!b->run || !b->lamp || !b->got.rgb ||
+        canvas_init(&b->canvas, GLINT_YUYV, c->width, c->height) != GLINT_OK)
+        return tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
+    yardstick_lamps(b->lamp, c->n_lamps, c->angle);
+    for (int i = 0; i < c->n && code == EXIT_OK; i++) {
+        b->run[i].point = &b->s->point[c->first + i];
+        code = make_run(b, &b->run[i]);
+    }
+    if (code == EXIT_OK && expose(b) != GLINT_OK)
+        code = tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
+    return code;
+}
+
+static void free_bay(struct bay *b)
+{
+    for (int i = 0; b->run && i < b->c->n; i++)
+        frame_finish(&b->run[i].frame);
+    for (int i = 0; i < b->n_open; i++)
+        scene_close(&b->open[i]);
+    canvas_finish(&b->canvas);
+    free(b->run);
+    free(b->lamp);
+    free(b->exact.rgb);
+    free(b->got.rgb);
+}
+
+/* --------------------------------------------------------------------- timing
+ */
+
+/* Draws R's frame; ROUND -1 only makes room for it. */
+static enum glint_status draw(struct bay *b, struct run *r, int round)
+{
+    struct sweep_point *p = r->point;
+    enum glint_status status;
+    uint64_t n0 = 0;
+    double t0, ms;
+
+    canvas_fresh(&b->canvas);
+    if (round < 0)
+        return frame_draw(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
+                          &b->canvas.image, &p->report);
+    if (b->s->counter >= 0)
+        n0 = glint_instructions_read(b->s->counter);
+    if (b->s->count_only)
+        printf("%d\n", (int)(p - b->s->point));
+    t0 = tool_seconds();
+    status = sweep_frame(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
+                         &b->canvas.image, &p->report);
+    ms = 1e3 * (tool_seconds() - t0);
+    if (b->s->counter >= 0)
+        p->instructions = (double)(glint_instructions_read(b->s->counter) - n0);
+    r->ms[r->n++] = ms;
+    r->spent_ms += ms;
+    return status;
+}
+
+/* All points take turns with the floor. */
+static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
+                                  double from, double to)
+{
+    const int n = b->s->count_only ? 1 : b->s->rounds;
+    enum glint_status status = GLINT_OK;
+
+    for (int round = -1; round < n && status == GLINT_OK; round++) {
+        b->floor_ms[round < 0 ? 0 : round] = canvas_floor_ms(&b->canvas);
+        for (int i = 0; i < b->c->n && status == GLINT_OK; i++)
+            if (round < 1 || b->run[i].spent_ms < MAX_POINT_MS)
+                status = draw(b, &b->run[i], round);
+        tool_progress_show(progress,
+                           from + (to - from) * (round + 2) / (n + 1));
+    }
+    for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
+        struct run *r = &b->run[i];
+
+        r->point->ms = yardstick_median(r->ms, r->n);
+        r->point->floor_ms = yardstick_median(b->floor_ms, n);
+        r->point->ratio = r->point->ms / r->point->floor_ms;
+        r->point->arena_bytes = r->point->report.peak_bytes;
+        r->point->cost = cost_of(&r->frame, &r->frame);
+    }
+    return status;
+}
+
+/* ------------------------------------------------------------------- pictures
+ */
+
+static double sum_of(const struct glint_float_image *image)
+{
+    double sum = 0;
+
+    for (size_t i = 0; i < 3 * (size_t)image->width * (size_t)image->height;
+         i++)
+        sum += (double)image->rgb[i];
+    return sum;
+}
+
+/* Light before it becomes codes, planned as if for codes: over the exact
+ * picture's, less 1. */
+static enum glint_status measure_flux(struct bay *b, struct run *r)
+{
+    const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
+    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
+                                .width = b->c->width,
+                                .height = b->c->height};
+    int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
+    struct frame_report report;
+    enum glint_status status = GLINT_E_MEMORY;
+    double sum = 0;
+
+    if (linear_q20) {
+        glint_image_place(&layer, linear_q20);
+        r->frame.for_codes = true;
+        status = frame_draw(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
+                            &layer, &report);
+        r->frame.for_codes = false;
+        for (size_t i = 0; i < n; i++)
+            sum += linear_q20[i] * 0x1p-20;
+    }
+    free(linear_q20);
+    r->point->flux_error = sum / (b->exposure * sum_of(&b->exact)) - 1;
+    return status;
+}
+
+static int pick_shrink(int width)
+{
+    const int by = width / PICTURE_WIDTH;
+
+    return by > 1 ? by : 1;
+}
+
+/* Mean of B x B pixels of CODES, width and height in pixels of the result. */
+static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
+                   int width, int height)
+{
+    for (int y = 0; y < height; y++)
+        for (int i = 0; i < 3 * width; i++) {
+            const int x = i / 3 * by * 3 + i % 3;
+            int sum = by * by / 2;
+
+            for (int k = 0; k < by * by; k++)
+                sum += codes[(y * by + k / by) * stride + x + k % by * 3];
+            to[y * 3 * width + i] = (uint8_t)(sum / (by * by));
+        }
+}
+
+/* Keeps the codes of B's last picture, or the exact one's for R NULL, for the
+ * page, and 16 times its difference to EXACT_CODES. */
+static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
+                         const uint8_t *exact_codes)
+{
+    struct sweep *s = b->s;
+    const int by = pick_shrink(b->c->width);
+    const int width = b->c->width / by, height = b->c->height / by;
+    const size_t bytes = 3 * (size_t)width * (size_t)height;
+    struct sweep_picture *p;
+
+    if (s->n_pictures == s->max_pictures) {
+        const int room = s->max_pictures ? 2 * s->max_pictures : 64;
+        struct sweep_picture *more =
+            realloc(s->picture, (size_t)room * sizeof *more);
+
+        if (!more)
+            return false;
+        s->picture = more;
+        s->max_pictures = room;
+    }
+    p = &s->picture[s->n_pictures];
+    *p = (struct sweep_picture){.of = (int)(b->c - s->scase),
+                                .point = r ? (int)(r->point - s->point) : -1,
+                                .width = width,
+                                .height = height};
+    s->n_pictures++;
+    p->rgb = malloc(bytes);
+    p->difference = r ? malloc(bytes) : NULL;
+    if (!p->rgb || (r && !p->difference))
+        return false;
+    shrink(codes, 3 * b->c->width, by, p->rgb, width, height);
+    if (r) {
+        const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
+        uint8_t *far = malloc(n);
+
+        for (size_t i = 0; far && i < n; i++) {
+            const int d = 128 + 16 * (codes[i] - exact_codes[i]);
+
+            far[i] = (uint8_t)(d < 0 ? 0 : d > 255 ? 255 : d);
+        }
+        if (far)
+            shrink(far, 3 * b->c->width, by, p->difference, width, height);
+        free(far);
+        r->point->picture = s->n_pictures - 1;
+        return far != NULL;
+    }
+    return true;
+}
+
+/* Those that stand for the others on the page. */
+static bool is_pictured(const struct sweep_point *p)
+{
+    const double named = p->set.quality * (LADDER_NAMES - 1);
+
+    return p->set.kind == SWEEP_LADDER && named == floor(named);
+}
+
+/* CODES is room for them. */
+static enum glint_status measure_point(struct bay *b, struct run *r,
+                                       const uint8_t *exact_codes,
+                                       double exposure, uint8_t *codes)
+{
+    struct frame_report report;
+    struct measure m;
+    const enum glint_status status = yardstick_codes(
+        &r->frame, b->lamp, b->c->n_lamps, exposure, codes, &report);
+
+    if (status != GLINT_OK)
+        return status;
+    measure_codes(exact_codes, codes, b->c->width, b->c->height, &m);
+    r->point->psnr_db = m.psnr_db;
+    r->point->ssim = m.ssim;
+    r->point->p99 = m.p99;
+    if (is_pictured(r->point) && !keep_picture(b, r, codes, exact_codes))
+        return GLINT_E_MEMORY;
+    return measure_flux(b, r);
+}
+
+static enum glint_status measure_all(struct bay *b,
+                                     struct tool_progress *progress,
+                                     double from, double to)
+{
+    const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
+    enum glint_status status = GLINT_E_MEMORY;
+    uint8_t *exact_codes = NULL, *codes = malloc(n);
+
+    b->exact.rgb = malloc(n * sizeof(float));
+    if (b->exact.rgb && codes)
+        status = sweep_exact(b->s->tool, &b->open[0], b->lamp, b->c->n_lamps,
+                             b->s->grid, &b->exact);
+    if (status == GLINT_OK) {
+        const double exposure = measure_exposure(&b->exact);
+
+        exact_codes = measure_encode(&b->exact, exposure);
+        if (!exact_codes || !keep_picture(b, NULL, exact_codes, NULL))
+            status = GLINT_E_MEMORY;
+        for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
+            status = measure_point(b, &b->run[i], exact_codes, exposure, codes);
+            tool_progress_show(progress,
+                               from + (to - from) * (i + 1) / b->c->n);
+        }
+    }
+    free(exact_codes);
+    free(codes);
+    return status;
+}
+
+static void clear(struct sweep_point *p)
+{
+    p->ms = p->floor_ms = p->ratio = p->instructions = (double)NAN;
+    p->psnr_db = p->ssim = p->p99 = p->flux_error = (double)NAN;
+}
+
+int sweep_measure(struct sweep *s, int c, struct tool_progress *progress)
+{
+    const double from = (double)s->scase[c].first / s->n_points;
+    const double to = from + (double)s->scase[c].n / s->n_points;
+    struct bay *b = calloc(1, sizeof *b);
+    enum glint_status status = GLINT_OK;
+    int code;
+
+    if (!b)
+        return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
+    b->s = s;
+    b->c = &s->scase[c];
+    for (int i = 0; i < b->c->n; i++)
+        clear(&s->point[b->c->first + i]);
+    code = make_bay(b);
+    if (code == EXIT_OK)
+        status = time_all(b, progress, from, (from + to) / 2);
+    if (code == EXIT_OK && status == GLINT_OK && !b->c->growth &&
+        !s->count_only)
+        status = measure_all(b, progress, (from + to) / 2, to);
+    if (code == EXIT_OK && status != GLINT_OK)
+        code = tool_fail(s->tool, status, NULL);
+    free_bay(b);
+    free(b);
+    return code;
+}

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One file that a person can judge by: tables, plots and pictures within.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "lab/sweep.h"
+
+static const char head[] =
+    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+    "<title>glint sweep</title>\n"
+    "<style>body{font:15px/1.45 sans-serif;max-width:1060px;margin:2em "
+    "auto;padding:0 "
+    "1em;color:#222}table{border-collapse:collapse;font-size:13px}td,th{"
+    "padding:"
+    "2px 9px;text-align:right;border-bottom:1px solid "
+    "#ddd}td:first-child,th:first-child{text-align:left}figure{display:inline-"
+    "block;margin:0 8px 14px "
+    "0;vertical-align:top;font-size:12px}figcaption{max-width:320px}img{"
+    "display:block;width:320px}"
+    "svg{max-width:100%;height:auto}.worse{color:"
+    "#b01e1e}</style></head><body>\n"
+    "<h1>What accuracy costs</h1>\n"
+    "<p>The same frames with each dial turned by itself (coloured), with some "
+    "of them together (grey), and along <code>--quality</code> (diamonds), "
+    "against the exact picture: every ray in double, each cell clipped "
+    "exactly. PSNR, SSIM and the 99th percentile of differences are of sRGB "
+    "codes, 8 bits, exposed so that the exact picture's 99.9th percentile is "
+    "white; flux is compared before it becomes codes. The line is the front: "
+    "nothing that was measured is both cheaper and better, among what keeps "
+    "its flux within 2 percent; the rest is not shown in fronts. Marks say "
+    "what they are under the "
+    "pointer.</p>\n";
+
+/* ---------------------------------------------------------------------- table
+ */
+
+static void table_of_names(const struct sweep *s, FILE *file)
+{
+    fprintf(file,
+            "<h2>Named qualities</h2>\n<table><tr><th>lens</th><th>size</th>"
+            "<th>quality</th><th>%s</th><th>PSNR dB</th><th>SSIM</th><th>p99 "
+            "codes</th><th>flux %%</th><th>arena KiB</th><th>model KiB</th>"
+            "</tr>\n",
+            s->by_instructions ? "million instructions" : "&times; floor");
+    for (int i = 0; i < s->n_points; i++) {
+        const struct sweep_point *p = &s->point[i];
+        const struct sweep_case *c = &s->scase[p->of];
+        const double at = p->set.quality * (LADDER_NAMES - 1);
+
+        if (p->set.kind != SWEEP_LADDER || at != floor(at))
+            continue;
+        fprintf(
+            file,
+            "<tr><td>%s</td><td>%dx%d, %d</td><td>%s</td><td>%.1f</td>"
+            "<td>%.1f</td><td>%.4f</td><td>%g</td><td%s>%+.2f</td>"
+            "<td>%zu</td><td>%zu</td></tr>\n",
+            s->lens[c->lens], c->width, c->height, c->n_lamps,
+            ladder_name[(int)at], sweep_cost(s, p), p->psnr_db, p->ssim, p->p99,
+            fabs(p->flux_error) > MAX_FLUX_ERROR ? " class=\"worse\"" : "",
+            100 * p->flux_error, p->arena_bytes / 1024, p->model_bytes / 1024);
+    }
+    fputs("</table>\n", file);
+}
+
+/* What --quality should follow. */
+static void table_of_front(const struct sweep *s, FILE *file)
+{
+    struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
+    const int n = mean ? sweep_means(s, mean, s->n_points) : 0;
+
+    fputs("<h2>The front of all lenses together</h2>\n<table><tr><th>setting"
+          "</th><th>cost over default</th><th>PSNR dB, mean</th><th>least</th>"
+          "<th>flux %, worst</th></tr>\n",
+          file);
+    for (int i = 0; i < n; i++) {
+        char words[160];
+
+        if (!mean[i].front)
+            continue;
+        sweep_words(mean[i].set, words, sizeof words);
+        fprintf(file,
+                "<tr><td>%s</td><td>%.3f</td><td>%.1f</td><td>%.1f</td>"
+                "<td>%.2f</td></tr>\n",
+                words, mean[i].cost, mean[i].psnr_db, mean[i].least_db,
+                100 * mean[i].flux_error);
+    }
+    fputs("</table>\n", file);
+    free(mean);
+}
+
+/* ------------------------------------------------------------------- pictures
+ */
+
+static void figure(const struct sweep *s, FILE *file,
+                   const struct sweep_picture *q, const uint8_t *rgb,
+                   const char *what)
+{
+    const struct sweep_point *p = q->point >= 0 ? &s->point[q->point] : NULL;
+    char words[160] = "exact";
+
+    if (p)
+        sweep_words(&p->set, words, sizeof words);
+    fputs("<figure><img alt=\"\" src=\"", file);
+    sweep_png(file, rgb, q->width, q->height);
+    fprintf(file, "\"><figcaption>%s%s", words, what);
+    if (p)
+        fprintf(file, "<br>%.3g, %.1f dB, flux %+.2f %%", sweep_cost(s, p),
+                p->psnr_db, 100 * p->flux_error);
+    fputs("</figcaption></figure>\n", file);
+}
+
+static void strips(const struct sweep *s, FILE *file)
+{
+    int of = -1;
+
+    fputs("<h2>Pictures</h2>\n<p>Each beside its difference from the exact "
+          "one, 16 times, about grey.</p>\n",
+          file);
+    for (int i = 0; i < s->n_pictures; i++) {
+        const struct sweep_picture *q = &s->picture[i];
+        const struct sweep_case *c = &s->scase[q->of];
+
+        if (q->of != of)
+            fprintf(file,
+                    "<h3>%s, %dx%d, %d light%s, %g degrees off the axis</h3>\n",
+                    s->lens[c->lens], c->width, c->height, c->n_lamps,
+                    c->n_lamps > 1 ? "s" : "", c->angle);
+        of = q->of;
+        fputs("<div>", file); /* two abreast */
+        figure(s, file, q, q->rgb, "");
+        if (q->difference)
+            figure(s, file, q, q->difference, ", difference");
+        fputs("</div>\n", file);
+    }
+}
+
+void sweep_page(const struct sweep *s, FILE *file)
+{
+    fputs(head, file);
+    table_of_names(s, file);
+    fputs("<h2>Error against time</h2>\n", file);
+    sweep_svg_front(s, file);
+    table_of_front(s, file);
+    fputs("<h2>Each dial by itself</h2>\n", file);
+    sweep_svg_dials(s, file);
+    if (sweep_has_growth(s)) {
+        fputs("<h2>Growth</h2>\n", file);
+        sweep_svg_growth(s, file);
+    }
+    strips(s, file);
+    fputs("</body></html>\n", file);
+}

@@ -1,0 +1,370 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint live: the options.
+ */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "options/config.h"
+#include "linux/fourcc.h"
+#include "live/live.h"
+#include "options/takes.h"
+
+static const char help[] =
+    "glint live [-d CAMERA] [-o OUTPUT] [options]\n"
+    "\n"
+    "Puts the ghosts of a lens on a camera's pictures, at its rate, and shows\n"
+    "them. The newest frame wins: what is late is left out and counted.\n"
+    "\n"
+    "  -d, --device DEV    /dev/video0 (default), a number; FILE.y4m, -, test\n"
+    "  -o, --output OUT    fb[:/dev/fb0] (default), window, y4m:FILE, y4m:-,\n"
+    "                      v4l2:/dev/videoN (v4l2loopback), null\n"
+    "  --list-devices      the cameras there are\n"
+    "  --list-formats      what the camera offers\n"
+    "Camera\n"
+    "  -s, --size WxH      (default: as the camera is set)\n"
+    "  -r, --fps N[/D]     (default: likewise)\n"
+    "  -f, --format NAME   YUYV, NV12, MJPG ...; default: the cheapest that "
+    "gives\n"
+    "                      size and rate\n"
+    "  -i, --input N       of a camera with several\n"
+    "  -n, --buffers N     2 to 32 (default 4)\n"
+    "  --io HOW            auto | mmap | userptr | read\n"
+    "  --range R           auto | full | limited: over what the camera says\n"
+    "  --matrix M          auto | 601 | 709\n"
+    "Run\n"
+    "  --count N           frames to show (default: until SIGINT or SIGTERM)\n"
+    "  --skip N            frames to let pass first\n"
+    "  --adaptive          lower the quality, in steps, to hold the rate\n"
+    "  --reconnect         wait for a camera or panel that went away, instead "
+    "of\n"
+    "                      leaving with exit code 4\n"
+    "  --stats HOW         auto | line | json | none: each second; json lines "
+    "go\n"
+    "                      to standard output. auto: a line, json with "
+    "--json\n"
+    "  --fit HOW           scale (default) | centre: a picture of another size "
+    "than\n"
+    "                      the panel\n"
+    "  --memory MIB        all that drawing may take, 1 to 1024 (default 32);\n"
+    "                      what does not fit is left out and counted\n"
+    "  --snapshot NAME     for SIGUSR2 (default glint-%03d.ppm)\n"
+    "  --config FILE       these options, without dashes: lens = zoom.glint\n"
+    "Signals: SIGHUP reads --config and the lens again, SIGUSR1 reports now,\n"
+    "SIGUSR2 saves a snapshot.\n"
+    "Lens and lights\n" LOOK_HELP;
+
+static const char help_end[] = SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
+
+enum {
+    OPT_CONFIG = OPT_LOOK_LAST,
+    OPT_LIST_DEVICES,
+    OPT_LIST_FORMATS,
+    OPT_IO,
+    OPT_RANGE,
+    OPT_MATRIX,
+    OPT_COUNT,
+    OPT_SKIP,
+    OPT_ADAPTIVE,
+    OPT_RECONNECT,
+    OPT_STATS,
+    OPT_FIT,
+    OPT_MEMORY,
+    OPT_SNAPSHOT
+};
+
+#define SHORT "d:o:s:r:f:i:n:" TOOL_COMMON_SHORT
+
+static const struct option options[] = {
+    {"device", required_argument, NULL, 'd'},
+    {"output", required_argument, NULL, 'o'},
+    {"list-devices", no_argument, NULL, OPT_LIST_DEVICES},
+    {"list-formats", no_argument, NULL, OPT_LIST_FORMATS},
+    {"size", required_argument, NULL, 's'},
+    {"fps", required_argument, NULL, 'r'},
+    {"format", required_argument, NULL, 'f'},
+    {"input", required_argument, NULL, 'i'},
+    {"buffers", required_argument, NULL, 'n'},
+    {"io", required_argument, NULL, OPT_IO},
+    {"range", required_argument, NULL, OPT_RANGE},
+    {"matrix", required_argument, NULL, OPT_MATRIX},
+    {"count", required_argument, NULL, OPT_COUNT},
+    {"skip", required_argument, NULL, OPT_SKIP},
+    {"adaptive", no_argument, NULL, OPT_ADAPTIVE},
+    {"reconnect", no_argument, NULL, OPT_RECONNECT},
+    {"stats", required_argument, NULL, OPT_STATS},
+    {"fit", required_argument, NULL, OPT_FIT},
+    {"memory", required_argument, NULL, OPT_MEMORY},
+    {"snapshot", required_argument, NULL, OPT_SNAPSHOT},
+    {"config", required_argument, NULL, OPT_CONFIG},
+    LOOK_OPTIONS,
+    TOOL_COMMON_OPTIONS};
+
+/* What a reload needs to begin again. */
+struct line {
+    struct tool *tool;
+    int argc;
+    char **argv;
+    struct config config, again; /* as read first, and by the last reload */
+    struct live_options *into;
+};
+
+static void set_defaults(struct live_options *o)
+{
+    *o = (struct live_options){.camera = {.device = "/dev/video0",
+                                          .input = -1,
+                                          .range = -1,
+                                          .matrix = -1},
+                               .n_buffers = 4,
+                               .output = "fb",
+                               .snapshot = "glint-%03d.ppm"};
+    look_defaults(&o->look);
+    o->look.reserve_bytes = 32 << 20;
+}
+
+/* "30", "30000/1001" */
+static bool take_rate(const char *text, int *num, int *den)
+{
+    char top[16];
+    const char *slash = strchr(text, '/');
+    const size_t n = slash ? (size_t)(slash - text) : strlen(text);
+
+    if (n >= sizeof top)
+        return false;
+    memcpy(top, text, n);
+    top[n] = '\0';
+    *den = 1;
+    return tool_integer(top, 1, 1000000, num) &&
+           (!slash || tool_integer(slash + 1, 1, 1000000, den));
+}
+
+/* Which of WORDS, counted from FIRST. */
+static bool take_word(const char *text, const char *const *words, int first,
+                      int *value)
+{
+    const int word = tool_word(text, words);
+
+    *value = word + first;
+    return word >= 0;
+}
+
+/* Exactly one conversion of an int, and no other. */
+static bool is_pattern(const char *text)
+{
+    const char *at = strchr(text, '%');
+    const size_t digits = at ? strspn(at + 1, "0123456789") : 0;
+
+    return at && digits < 3 && at[1 + digits] == 'd' && !strchr(at + 1, '%');
+}
+
+static bool take_camera(struct glint_v4l2_config *c, int option,
+                        const char *value)
+{
+    static const char *const ranges[] = {"auto", "full", "limited", NULL};
+    static const char *const matrices[] = {"auto", "601", "709", NULL};
+
+    switch (option) {
+    case 'd':
+        c->device = value;
+        return *value != '\0';
+    case 's':
+        return tool_size(value, &c->width, &c->height);
+    case 'r':
+        return take_rate(value, &c->fps_num, &c->fps_den);
+    case 'f':
+        return glint_fourcc_parse(value, &c->fourcc);
+    case 'i':
+        return tool_integer(value, 0, 255, &c->input);
+    case OPT_RANGE:
+        return take_word(value, ranges, -1, &c->range);
+    default:
+        return take_word(value, matrices, -1, &c->matrix);
+    }
+}
+
+static bool take_run(struct live_options *o, int option, const char *value)
+{
+    static const char *const ios[] = {"auto", "mmap", "userptr", "read", NULL};
+    static const char *const stats[] = {"auto", "line", "json", "none", NULL};
+    static const char *const fits[] = {"scale", "centre", NULL};
+    int word;
+
+    switch (option) {
+    case OPT_IO:
+        o->io = (enum glint_v4l2_io)(word = tool_word(value, ios));
+        return word >= 0;
+    case OPT_STATS:
+        o->report = (enum live_report)(word = tool_word(value, stats));
+        return word >= 0;
+    case OPT_FIT:
+        o->fit = (enum glint_panel_fit)(word = tool_word(value, fits));
+        return word >= 0;
+    case OPT_COUNT:
+        return tool_integer(value, 1, 1 << 30, &o->count);
+    case OPT_SKIP:
+        return tool_integer(value, 0, 1 << 30, &o->skip);
+    case OPT_MEMORY:
+        if (!tool_integer(value, 1, 1024, &word))
+            return false;
+        o->look.reserve_bytes = (size_t)word << 20;
+        return true;
+    case OPT_SNAPSHOT:
+        o->snapshot = value;
+        return is_pattern(value) &&
+               snprintf(NULL, 0, value, INT_MAX) < LIVE_NAME_BYTES;
+    case 'n':
+        return tool_integer(value, 2, GLINT_V4L2_MAX_BUFFERS, &o->n_buffers);
+    default: /* 'o' */
+        o->output = value;
+        return live_output_parse(&(struct live_output){.path = NULL}, value);
+    }
+}
+
+/* Options of live alone. -1: taken; -2: not one of these; -3: a bad value. */
+static int take(struct live_options *o, int option, const char *value)
+{
+    switch (option) {
+    case OPT_LIST_DEVICES:
+        o->list_devices = true;
+        return -1;
+    case OPT_LIST_FORMATS:
+        o->list_formats = true;
+        return -1;
+    case OPT_ADAPTIVE:
+        o->adaptive = true;
+        return -1;
+    case OPT_RECONNECT:
+        o->reconnect = true;
+        return -1;
+    case OPT_CONFIG:
+        return -1; /* read before the others */
+    case 'd':
+    case 's':
+    case 'r':
+    case 'f':
+    case 'i':
+    case OPT_RANGE:
+    case OPT_MATRIX:
+        return take_camera(&o->camera, option, value) ? -1 : -3;
+    case 'n':
+    case 'o':
+        return take_run(o, option, value) ? -1 : -3;
+    }
+    if (option < OPT_CONFIG || option > OPT_SNAPSHOT)
+        return -2;
+    return take_run(o, option, value) ? -1 : -3;
+}
+
+static const char *name_of(int option)
+{
+    const struct option *o = options;
+
+    while (o->val != option)
+        o++;
+    return o->name;
+}
+
+static int take_any(struct line *line, int option, const char *value)
+{
+    int code = look_option(line->tool, &line->into->look, option, value);
+
+    if (code == -2)
+        code = take(line->into, option, value);
+    if (code == -3)
+        return tool_refuse(line->tool, name_of(option), value);
+    return code == -2 ? tool_option(line->tool, option, value) : code;
+}
+
+static int take_from_file(void *ctx, const struct option *option,
+                          const char *value)
+{
+    return take_any(ctx, option->val, value);
+}
+
+static int parse_line(struct line *line)
+{
+    int c, code;
+
+    optind = 1;
+    while ((c = getopt_long(line->argc, line->argv, SHORT, options, NULL)) >= 0)
+        if ((code = take_any(line, c, optarg)) >= 0)
+            return code;
+    return optind == line->argc ? -1
+                                : tool_usage(line->tool, "'%s' is no option",
+                                             line->argv[optind]);
+}
+
+/* The file first, so that the line wins. CONFIG keeps what INTO points to. */
+static int parse(struct line *line, struct config *config,
+                 struct live_options *into)
+{
+    const char *path;
+
+    set_defaults(into);
+    line->into = into;
+    path = tool_value_of(line->argc, line->argv, SHORT, options, OPT_CONFIG);
+    if (path) {
+        const int code = config_read(config, path);
+
+        if (code != EXIT_OK)
+            return code;
+        look_options_end(&into->look);
+    }
+    return parse_line(line);
+}
+
+static int reread(void *ctx, struct tool *tool, struct live_options *into)
+{
+    struct line *line = ctx;
+
+    (void)tool;
+    config_free(&line->again); /* a look that is open needs no names */
+    return parse(line, &line->again, into);
+}
+
+static int list(struct tool *tool, const struct live_options *o)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        o->list_devices ? glint_v4l2_list_devices(stdout, tool->json)
+                        : glint_v4l2_list_formats(stdout, o->camera.device,
+                                                  tool->json, &error);
+
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+int cmd_live(int argc, char **argv)
+{
+    struct tool tool = {.name = "live",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
+    struct live_options *o = calloc(1, sizeof *o);
+    struct line line = {.tool = &tool,
+                        .argc = argc,
+                        .argv = argv,
+                        .config = {&tool, options, take_from_file, &line, NULL},
+                        .into = o};
+    int code;
+
+    if (!o)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    line.again = line.config;
+    code = parse(&line, &line.config, o);
+    if (code < 0 && (o->list_devices || o->list_formats))
+        code = list(&tool, o);
+    else if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = live_run(&tool, o, reread, &line);
+        tool_finish(&tool);
+    }
+    look_close(&o->look);
+    config_free(&line.config);
+    config_free(&line.again);
+    free(o);
+    return code;
+}

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint-live - glint live as a program of its own, for boards: a tenth of the
+ * size, as it takes baked models only (models_only.c).
+ */
+#include "posix/process.h"
+#include "options/suggest.h"
+#include "options/tool.h"
+
+int main(int argc, char **argv)
+{
+    glint_process_hold_streams();
+    suggest_line(argv);
+    tool_watch_reader();
+    return tool_end(cmd_live(argc, argv));
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint live: camera in, flares on the panel.
+ *
+ * cmd_live.c takes the options, live_loop.c runs, live_output.c opens what the
+ * frames go to.
+ */
+#ifndef GLINT_TOOLS_LIVE_LIVE_H
+#define GLINT_TOOLS_LIVE_LIVE_H
+
+#include <signal.h>
+
+#include "linux/v4l2.h"
+#include "live/live_adapt.h"
+#include "live/live_output.h"
+#include "live/live_stats.h"
+#include "overlay/look.h"
+
+enum live_report {
+    LIVE_REPORT_AUTO,
+    LIVE_REPORT_LINE,
+    LIVE_REPORT_JSON,
+    LIVE_REPORT_NONE
+};
+
+enum { LIVE_NAME_BYTES = 1024 }; /* of a snapshot */
+
+struct live_options {
+    struct look look; /* options only, until opened */
+    struct glint_v4l2_config camera;
+    enum glint_v4l2_io io;
+    int n_buffers;
+    const char *output, *snapshot;
+    enum glint_panel_fit fit;
+    int count, skip; /* frames to show, 0: no end; and to let pass before */
+    bool adaptive, reconnect, list_devices, list_formats;
+    enum live_report report;
+};
+
+/* Reads options anew, as at the start; for SIGHUP. Returns -1, or an exit code
+ * that was said. */
+typedef int live_reread_fn(void *ctx, struct tool *tool,
+                           struct live_options *options);
+
+/* Runs until told to stop. Returns an exit code. */
+int live_run(struct tool *tool, struct live_options *options,
+             live_reread_fn *reread, void *ctx);
+
+#endif

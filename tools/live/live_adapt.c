@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+#include "live/live_adapt.h"
+
+#include <math.h>
+
+#include "engine/ladder.h"
+
+#define TIGHT      0.9  /* of a period: a step down */
+#define SPARE      0.55 /* of a period: a step up, later */
+#define SETTLE_S   0.3  /* after a step, before the next one down */
+#define HOLD_S     2.0
+#define MAX_HOLD_S 60.0
+#define SMOOTHING  0.2
+
+/* Down the ladder from its middle, what was asked for if that is coarser; then
+ * lights go. */
+static const struct {
+    double quality;
+    int max_lights;
+} step_of[LIVE_MAX_STEP + 1] = {
+    {0.5, 1 << 20}, {0.375, 64}, {0.25, 32}, {0.125, 16},
+    {0, 12},        {0, 8},      {0, 4},     {0, 2},
+};
+
+void live_adapt_init(struct live_adapt *a)
+{
+    *a = (struct live_adapt){.hold_s = HOLD_S, .busy_ms = -1};
+}
+
+static bool go(struct live_adapt *a, int by)
+{
+    const int step = a->step + by;
+
+    a->below_s = 0;
+    if (step < 0 || step > LIVE_MAX_STEP)
+        return false;
+    /* down again soon after a step up: that was too early */
+    if (by > 0 && a->rose && a->since_s < 2 * HOLD_S)
+        a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
+    if (by < 0 && a->rose) /* and this one was not */
+        a->hold_s = HOLD_S;
+    a->rose = by < 0;
+    a->step = step;
+    a->since_s = 0;
+    a->busy_ms = -1;
+    return true;
+}
+
+bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
+                     int n_missed)
+{
+    const double elapsed_s = 1e-3 * period_ms * (1 + n_missed);
+
+    a->busy_ms = a->busy_ms < 0
+                     ? busy_ms
+                     : a->busy_ms + SMOOTHING * (busy_ms - a->busy_ms);
+    a->since_s += elapsed_s;
+    if (n_missed > 0 || a->busy_ms > TIGHT * period_ms)
+        return a->since_s >= SETTLE_S && go(a, 1);
+    a->below_s = a->busy_ms < SPARE * period_ms ? a->below_s + elapsed_s : 0;
+    return a->below_s >= a->hold_s && go(a, -1);
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
+                      const struct frame *asked)
+{
+    struct frame rung = *asked;
+
+    if (a->step > 0)
+        ladder_frame(&rung, step_of[a->step].quality);
+    frame->max_cells = smaller(asked->max_cells, rung.max_cells);
+    frame->cfg.irradiance_steps =
+        smaller(asked->cfg.irradiance_steps, rung.cfg.irradiance_steps);
+    frame->whole_codes = fmax(asked->whole_codes, rung.whole_codes);
+    frame->faintest_codes = fmax(asked->faintest_codes, rung.faintest_codes);
+    frame->dispersion_px = asked->dispersion_px > 0 && rung.dispersion_px > 0
+                               ? fmax(asked->dispersion_px, rung.dispersion_px)
+                               : 0;
+    frame->area_samples = fmin(asked->area_samples, rung.area_samples);
+    frame->half = asked->half || rung.half;
+    frame->max_lights = smaller(asked->max_lights, step_of[a->step].max_lights);
+    frame_retune(frame);
+}

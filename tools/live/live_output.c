@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+#include "live/live_output.h"
+
+#include <string.h>
+
+bool live_output_parse(struct live_output *o, const char *name)
+{
+    static const char *const kinds[] = {"fb", "y4m", "v4l2", "null", "window"};
+    const char *colon = strchr(name, ':');
+    const size_t length = colon ? (size_t)(colon - name) : strlen(name);
+
+    o->sink = NULL;
+    o->path = colon ? colon + 1 : NULL;
+    for (int k = 0; k < 5; k++)
+        if (strlen(kinds[k]) == length && memcmp(kinds[k], name, length) == 0) {
+            o->kind = (enum live_output_kind)k;
+            return k == LIVE_OUTPUT_NULL || k == LIVE_OUTPUT_WINDOW ? !colon
+                   : k == LIVE_OUTPUT_FB ? !colon || *o->path
+                                         : colon && *o->path;
+        }
+    return false;
+}
+
+bool live_output_is_flexible(const struct live_output *o)
+{
+    return o->kind == LIVE_OUTPUT_FB || o->kind == LIVE_OUTPUT_NULL ||
+           o->kind == LIVE_OUTPUT_WINDOW;
+}
+
+static enum glint_status open_fb(struct live_output *o,
+                                 struct glint_error *error)
+{
+    const struct glint_fbdev_options options = {
+        .fit = o->fit, .dither = o->dither, .console = true};
+    const enum glint_status status =
+        glint_fbdev_open(&o->as.fb, o->path, &options, error);
+
+    o->sink = status == GLINT_OK ? &o->as.fb.sink : NULL;
+    return status;
+}
+
+static enum glint_status open_v4l2(struct live_output *o,
+                                   const struct glint_image *image, int fps_num,
+                                   int fps_den, struct glint_error *error)
+{
+    const enum glint_status status = glint_v4l2_sink_open(
+        &o->as.v4l2, o->path, image, fps_num, fps_den, error);
+
+    o->sink = status == GLINT_OK ? &o->as.v4l2.sink : NULL;
+    return status;
+}
+
+static enum glint_status open_window(struct live_output *o,
+                                     struct glint_error *error)
+{
+    const enum glint_status status =
+        glint_window_open(&o->as.window, "glint live", error);
+
+    o->sink = status == GLINT_OK ? &o->as.window.sink : NULL;
+    return status;
+}
+
+enum glint_status live_output_open(struct live_output *o,
+                                   const struct glint_image *image, int fps_num,
+                                   int fps_den, struct glint_error *error)
+{
+    switch (o->kind) {
+    case LIVE_OUTPUT_FB:
+        return open_fb(o, error);
+    case LIVE_OUTPUT_V4L2:
+        return open_v4l2(o, image, fps_num, fps_den, error);
+    case LIVE_OUTPUT_Y4M:
+        glint_y4m_sink_open(&o->as.y4m, o->path, fps_num, fps_den);
+        o->sink = &o->as.y4m.sink;
+        return GLINT_OK;
+    case LIVE_OUTPUT_WINDOW:
+        return open_window(o, error);
+    default:
+        glint_null_sink_open(&o->as.null);
+        o->sink = &o->as.null.sink;
+        return GLINT_OK;
+    }
+}
+
+long live_output_dropped(const struct live_output *o)
+{
+    return !o->sink                      ? 0
+           : o->kind == LIVE_OUTPUT_Y4M  ? o->as.y4m.n_dropped
+           : o->kind == LIVE_OUTPUT_V4L2 ? o->as.v4l2.n_dropped
+                                         : 0;
+}
+
+enum glint_status live_output_close(struct live_output *o,
+                                    struct glint_error *error)
+{
+    enum glint_status status = GLINT_OK;
+
+    if (o->sink && o->kind == LIVE_OUTPUT_Y4M)
+        status = glint_y4m_sink_finish(&o->as.y4m, error);
+    else if (o->sink)
+        o->sink->close(o->sink);
+    o->sink = NULL;
+    return status;
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What live frames go to, by name:
+ *   fb[:/dev/fb0]     the panel of a framebuffer
+ *   y4m:FILE | y4m:-  a video file or pipe
+ *   v4l2:/dev/videoN  an output node, as of v4l2loopback
+ *   window            one on the desktop, where there is the SDL plug-in
+ *   null              nowhere
+ */
+#ifndef GLINT_TOOLS_LIVE_LIVE_OUTPUT_H
+#define GLINT_TOOLS_LIVE_LIVE_OUTPUT_H
+
+#include "linux/fbdev.h"
+#include "linux/v4l2_sink.h"
+#include "panel/null.h"
+#include "panel/y4m_sink.h"
+#include "sdl/sdl.h"
+#include "options/tool.h"
+
+enum live_output_kind {
+    LIVE_OUTPUT_FB,
+    LIVE_OUTPUT_Y4M,
+    LIVE_OUTPUT_V4L2,
+    LIVE_OUTPUT_NULL,
+    LIVE_OUTPUT_WINDOW
+};
+
+struct live_output {
+    enum live_output_kind kind;
+    const char *path; /* NULL: the default */
+    enum glint_panel_fit fit;
+    bool dither;             /* of panels with 16 bits a pixel */
+    struct glint_sink *sink; /* NULL: closed */
+    union {
+        struct glint_fbdev fb;
+        struct glint_y4m_sink y4m;
+        struct glint_v4l2_sink v4l2;
+        struct glint_null_sink null;
+        struct glint_window window;
+    } as;
+};
+
+/* Reads NAME, which is kept. False: it is none of the above. */
+bool live_output_parse(struct live_output *output, const char *name);
+
+/* Whether it can be opened before there is a picture. */
+bool live_output_is_flexible(const struct live_output *output);
+
+/* IMAGE says format and size; of no meaning to a flexible output. */
+enum glint_status live_output_open(struct live_output *output,
+                                   const struct glint_image *image, int fps_num,
+                                   int fps_den, struct glint_error *error);
+
+/* Frames it could not take because it was busy. */
+long live_output_dropped(const struct live_output *output);
+
+/* Ends it: a file is put in place. Does nothing when closed. */
+enum glint_status live_output_close(struct live_output *output,
+                                    struct glint_error *error);
+
+#endif

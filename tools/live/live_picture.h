@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Copies of live frames: for drawing, where their own memory is slow, and as
+ * files.
+ */
+#ifndef GLINT_TOOLS_LIVE_LIVE_PICTURE_H
+#define GLINT_TOOLS_LIVE_LIVE_PICTURE_H
+
+#include <stddef.h>
+
+#include "glint/image.h"
+#include "glint/status.h"
+
+struct live_copy {
+    struct glint_image image;
+    void *mem; /* NULL: none yet */
+    size_t bytes;
+};
+
+/* Copies FROM, reading each row once. NULL: no memory, which only a larger
+ * picture than before takes. */
+const struct glint_image *live_copy(struct live_copy *copy,
+                                    const struct glint_image *from);
+void live_copy_free(struct live_copy *copy);
+
+/* Saves FROM, of any 8-bit format, as plain/picture.h does. */
+enum glint_status live_save(const char *name, const struct glint_image *from,
+                            struct glint_error *error);
+
+#endif

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE /* ppoll */
+#include "live/live_signals.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <stddef.h>
+#include <time.h>
+
+#include "posix/at_death.h"
+
+static const struct {
+    int number;
+    enum live_signal meaning;
+} taken[] = {{SIGINT, LIVE_STOP},
+             {SIGTERM, LIVE_STOP},
+             {SIGHUP, LIVE_RELOAD},
+             {SIGUSR1, LIVE_REPORT_NOW},
+             {SIGUSR2, LIVE_SNAPSHOT}};
+
+enum { N_TAKEN = (int)(sizeof taken / sizeof *taken) };
+
+static volatile sig_atomic_t asked[LIVE_N_SIGNALS];
+
+/* The second signal to stop has waited long enough. */
+static void note(int number)
+{
+    for (int i = 0; i < N_TAKEN; i++)
+        if (taken[i].number == number) {
+            if (taken[i].meaning == LIVE_STOP && asked[LIVE_STOP])
+                glint_at_death_by(number);
+            asked[taken[i].meaning] = 1;
+        }
+}
+
+void live_signals_take(void)
+{
+    struct sigaction act = {.sa_handler = note};
+
+    sigemptyset(&act.sa_mask);
+    for (int i = 0; i < N_TAKEN; i++)
+        sigaction(taken[i].number, &act, NULL);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+bool live_signal(enum live_signal which)
+{
+    const bool was = asked[which];
+
+    if (was && which != LIVE_STOP) /* else one might come in between */
+        asked[which] = 0;
+    return was;
+}
+
+/* A snapshot waits for the next frame, and that may be long in coming. */
+static bool is_any_asked(void)
+{
+    for (int i = 0; i < LIVE_N_SIGNALS; i++)
+        if (asked[i] && i != LIVE_SNAPSHOT)
+            return true;
+    return false;
+}
+
+void live_signals_wait(int fd, int ms)
+{
+    struct pollfd p = {.fd = fd, .events = POLLIN | POLLPRI};
+    const struct timespec timeout = {ms / 1000, ms % 1000 * 1000000L};
+    sigset_t block, before;
+
+    sigemptyset(&block);
+    for (int i = 0; i < N_TAKEN; i++)
+        sigaddset(&block, taken[i].number);
+    sigprocmask(SIG_BLOCK, &block, &before);
+    if (!is_any_asked())
+        ppoll(&p, 1, &timeout, &before);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+}

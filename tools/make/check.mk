@@ -1,0 +1,158 @@
+# Tests, sanitizers, analysis.
+
+# Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
+EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
+unit_c := $(wildcard tests/unit/*/test_*.c)
+unit_c := $(filter-out %/test_mjpeg$(if $(filter yes,$(WITH_JPEG)),_absent).c \
+        %/test_config$(if $(filter yes,$(WITH_INIH)),_absent).c,$(unit_c))
+UNIT := $(patsubst test_%,%,$(basename $(notdir $(unit_c))))
+ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
+UNIT := $(filter bake exact flare workers output at_death frame live,$(UNIT))
+endif
+FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) $(if $(filter yes,$(WITH_INIH)),,config), \
+        $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c)))
+test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
+$(test_bins): EXTRA := $(SYSROOT:%=-L%/lib) -lcmocka
+ifdef CROSS # of which Debian has a shared library only
+$(OUT)/tests/%.o: CPPFLAGS += $(SYSROOT:%=-isystem %/include)
+$(test_bins): LDFLAGS := $(filter-out -static,$(LDFLAGS))
+endif
+# Calls that tests answer themselves, or let fail.
+$(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
+        -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
+$(OUT)/tests/unit/test_workers: LDFLAGS += -Wl,--wrap=pthread_create
+$(OUT)/tests/unit/test_sinks: LDFLAGS += -Wl,--wrap=ioctl,--wrap=write
+FAKE_CAMERA := ioctl open64 stat64 close read mmap64 munmap malloc calloc \
+        realloc posix_memalign free strdup realpath clock_gettime nanosleep glint_mjpeg_available
+fake_bins := $(patsubst %,$(OUT)/tests/unit/test_%,v4l2 v4l2_faults live)
+$(OUT)/tests/unit/test_live: LDFLAGS += -Wl,--wrap=ppoll
+$(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
+        -Wl,--wrap=realloc,--wrap=posix_memalign
+$(OUT)/tests/unit/test_budget: LDFLAGS += -Wl,--wrap=tool_seconds
+$(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
+$(fake_bins): $(OUT)/tests/support/fake_camera.o
+extreme_bins := $(EXTREMES:%=$(OUT)/tests/unit/test_extremes_%)
+$(extreme_bins): $(OUT)/tests/support/stage.o
+$(foreach c,$(unit_c),$(eval $(OUT)/tests/unit/$(notdir $(basename $(c))): $(OUT)/$(c:.c=.o)))
+$(test_bins): $(libs)
+	$(link)
+replay_bins := $(FUZZERS:%=$(OUT)/tests/fuzz/replay_%)
+$(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
+        $(OUT)/tests/fuzz/replay.o $(libs)
+	$(link)
+$(OUT)/hue_steps: $(OUT)/tests/support/hue_steps.o $(libs)
+	$(link)
+$(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
+	$(link)
+$(OUT)/tests/unit/test_profile: $(OUT)/tests/support/power_scene.o
+$(OUT)/power_table: $(OUT)/tests/support/power_table.o \
+        $(OUT)/tests/support/power_scene.o $(libs)
+	$(link)
+$(OUT)/steady: $(OUT)/tests/support/steady.o $(libs)
+	$(link)
+$(OUT)/motion: $(OUT)/tests/support/motion.o $(OUT)/tests/support/stage.o $(libs)
+	$(link)
+$(OUT)/random_lenses: $(OUT)/tests/support/random_lenses.o \
+        $(OUT)/tests/support/random_lens.o $(OUT)/tests/support/stage.o $(libs)
+	$(link)
+
+check:
+	@tools/make/deps "unit tests, lint" gcc libc6-dev binutils \
+	        libcmocka-dev clang clang-format libjpeg62-turbo-dev libinih-dev
+	@$(MAKE) --no-print-directory WERROR=-Werror run-check
+	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
+	        ! tests/vm/possible $(VM_ARCHS) || \
+	        $(MAKE) --no-print-directory DEPS=no check-vm
+run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(OUT)/ray_errors $(example_bins) \
+        $(OUT)/motion $(OUT)/random_lenses
+	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
+	        $(replay_bins)
+	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick
+# What other programs find in files that overlay has written.
+check-files:
+	@tools/make/deps "picture files as other programs see them" g++ pkg-config libopenimageio-dev \
+	        libwebp-dev openimageio-tools libimage-exiftool-perl imagemagick ffmpeg
+	@$(MAKE) --no-print-directory all oiio
+	@GLINT=build/glint GLINT_OIIO=build/glint-oiio.so tests/cli/files
+	@GLINT=build/glint tests/cli/video
+	@tests/install
+# Long cases and random lenses too:  make extremes SEED=1 COUNT=500
+extremes: $(extreme_bins) $(OUT)/random_lenses $(OUT)/motion
+	@tests/extremes $(SEED:%=--seed %) $(COUNT:%=--count %)
+# Faults planted in copies of the tree: MUTANTS=names, or all.
+mutants: $(test_bins)
+	@tests/mutants/run $(OUT) $(MUTANTS)
+# What valgrind says of memory that was never written, which no sanitizer of
+# gcc's does: the run-time half, what reads files, and the fuzzers' corpora.
+VALGRIND := $(filter arena kernels model curve resolve lights flare plan beams pnm y4m \
+        picture bright match lamps mjpeg config prescription trace,$(UNIT))
+check-valgrind:
+	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \
+	        libjpeg62-turbo-dev libinih-dev
+	@$(MAKE) --no-print-directory WERROR=-Werror run-valgrind
+run-valgrind: $(VALGRIND:%=$(OUT)/valgrind/unit/test_%) \
+        $(FUZZERS:%=$(OUT)/valgrind/fuzz/replay_%)
+$(OUT)/valgrind/%: $(OUT)/tests/% always
+	@mkdir -p $(@D)
+	$(say) VALGRIND $*
+	@GLINT_QUICK=valgrind valgrind -q --error-exitcode=9 --leak-check=full \
+	        --errors-for-leak-kinds=definite --log-file=$@.log $< \
+	        $(patsubst fuzz/replay_%,tests/fuzz/corpus/%,$(filter fuzz/%,$*)) \
+	        >$@.out 2>&1 || { cat $@.out $@.log; exit 1; }
+golden-update: $(OUT)/tests/unit/test_flare
+	@GLINT_GOLDEN_UPDATE=1 $<
+
+# Every fuzzer for SECONDS, or one:  make fuzz FUZZ=lens SECONDS=600. What they
+# come to know stays in build/fuzz; fuzz-keep takes from there into the corpora
+# what reaches code that these do not.
+FUZZ    ?= $(FUZZERS)
+SECONDS ?= 60
+ifneq ($(filter-out $(FUZZERS),$(FUZZ)),)
+$(error FUZZ is one of $(FUZZERS))
+endif
+fuzz_bins := $(FUZZ:%=$(OUT)/fuzz_%)
+$(fuzz_bins): LDFLAGS += -fsanitize=fuzzer
+$(fuzz_bins): $(OUT)/fuzz_%: $(OUT)/tests/fuzz/fuzz_%.o $(libs)
+	$(link)
+fuzz fuzz-keep:
+	@tools/make/deps "libFuzzer" clang libclang-rt-14-dev
+	@$(MAKE) --no-print-directory CC=clang CONFIG=fuzz run-$@
+run-fuzz run-fuzz-keep: $(fuzz_bins)
+	@tests/fuzz/run $(@:run-%=%) $(SECONDS) $^
+
+# Static analysis, of what has changed since the last time.
+analyze:
+	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
+	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
+run-analyze: $(core_o) $(published_o) $(bake_o) $(platform_o) $(tools_o) $(OUT)/tools/command/glint.o
+	$(say) CPPCHECK 'src platform tools'
+	@mkdir -p $(OUT)/cppcheck
+	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \
+	        --enable=warning,performance,portability,style --inline-suppr \
+	        --suppressions-list=tools/lint/cppcheck-suppressions \
+	        --cppcheck-build-dir=$(OUT)/cppcheck -Iinclude -Isrc -Iplatform -Itools \
+	        -D__x86_64__ -D__GNUC__ -D_POSIX_C_SOURCE=200809L \
+	        $(patsubst $(OUT)/%.o,%.c,$(filter %.o,$^))
+
+sources = $(shell find include src platform tools tests -name '*.[ch]' -o -name '*.inc')
+format:
+	$(Q)clang-format -i $(sources)
+libraries := $(OUT)/libglint.a $(OUT)/libglint-published.a
+lint: $(libraries) $(OUT)/libglint-bake.a
+	@tools/lint/layers && tools/lint/q
+	@tools/lint/symbols $(NM) $^
+	@[ $(CONFIG) != release ] || \
+	        $(MAKE) -s --no-print-directory purity
+	@clang-format --dry-run -Werror $(sources)
+	@for h in include/glint/*.h; do \
+	        $(CC) -Iinclude -std=c99 -fsyntax-only -x c $$h || exit 1; \
+	        ! command -v $(CXX) >/dev/null || \
+	        $(CXX) -Iinclude -fsyntax-only -x c++ $$h || exit 1; done
+
+# Of the objects alone, so for machines that cannot be run here, too.
+purity: $(libraries)
+	@tools/lint/purity $(NM) $(OBJDUMP) $^
+
+
+.PHONY: check run-check check-files extremes mutants check-valgrind run-valgrind golden-update \
+        fuzz fuzz-keep run-fuzz run-fuzz-keep analyze run-analyze format lint purity

@@ -1,0 +1,68 @@
+# Tests on machines that are emulated: ARM programs, and whole boards.
+
+# The run-time half on ARM, in an emulator that runs programs: the same tests,
+# the same hashes, with models baked here (tests/arm/check).
+ARM_TARGETS := aarch64 armv7 armv7-neon armv6-soft
+ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
+ARM_UNIT := arena divide cuts kernels model curve edges resolve composite lights flare plan account beams bright match \
+        tracks quantise pnm y4m output workers measure lamps fourcc panel frame \
+        show_lights live_stats live_adapt
+# Those that want a model bake it here first, for all.
+ARM_BAKES := $(OUT)/tests/unit/test_frame
+build/models/%.glint: lenses/%.lens $(OUT)/libglint-bake.a | $(OUT)/glint
+	@mkdir -p $(@D)
+	$(say) BAKE $@
+	$(Q)$(OUT)/glint bake $< -q -o $@
+$(OUT)/scenes: $(OUT)/tests/arm/scenes.o $(libs)
+	$(link)
+arm-tests: $(ARM_UNIT:%=$(OUT)/tests/unit/test_%)
+check-arm:
+	@tools/make/deps "ARM in an emulator" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
+	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross gcc-arm-linux-gnueabi \
+	        libc6-dev-armel-cross qemu-user-static debian-archive-keyring
+	@$(MAKE) --no-print-directory WERROR=-Werror $(OUT)/scenes $(ARM_BAKES) \
+	        $(ARM_MODELS:%=build/models/%.glint)
+	@set -e; for t in $(ARM_TARGETS); do \
+	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t purity \
+	                build/$$t/scenes; done; \
+	for t in aarch64 armv7; do s=$$(tests/arm/prepare $$t); \
+	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t \
+	                SYSROOT=$$s arm-tests glint-live build/$$t/examples/draw_flare; \
+	done
+	@XDG_CACHE_HOME=$(CURDIR)/build/cache $(ARM_BAKES) >/dev/null 2>&1
+	@tests/arm/check $(ARM_MODELS:%=build/models/%.glint) -- $(ARM_UNIT)
+# glint on Debian's kernels in an emulator: cameras, panels, ARM. One:
+# VMFILTER=aarch64/camera, as tests/vm/check says.
+VM_ARCHS ?= x86_64 aarch64 armv7
+VM_TOOLS := as bars ctl feed grab vt
+vm_cache := $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/glint/vm
+$(OUT)/vm/%: tests/vm/programs/%.c tests/vm/programs/device.h tests/vm/programs/layout.h
+	@mkdir -p $(@D)
+	$(say) CC $<
+	$(Q)$(CC) $(CPPFLAGS) -D_POSIX_C_SOURCE=200809L $(CFLAGS) $(LDFLAGS) $< -o $@
+# what makes scenes and says what must come of them
+VM_HOST := scene expected $(if $(filter yes,$(WITH_JPEG)),jpeg)
+$(OUT)/vm/jpeg: CPPFLAGS += $(JPEG_CPPFLAGS)
+$(VM_HOST:%=$(OUT)/vm/%): $(OUT)/vm/%: tests/vm/programs/%.c tests/vm/programs/layout.h $(libs)
+	@mkdir -p $(@D)
+	$(say) CC $<
+	$(Q)$(CC) $(CPPFLAGS) -Iplatform -D_POSIX_C_SOURCE=200809L $(CFLAGS) \
+	        $(LDFLAGS) $< $(libs) $(LDLIBS) -o $@
+vm-programs: $(OUT)/glint $(OUT)/glint-live $(VM_TOOLS:%=$(OUT)/vm/%) \
+        $(if $(filter x86_64,$(TARGET)),$(VM_HOST:%=$(OUT)/vm/%))
+	@:
+vm-deps:
+	@tools/make/deps "cameras, panels and ARM in an emulator" qemu-system-x86 \
+	        qemu-system-arm qemu-system-data seabios cpio kmod xz-utils \
+	        device-tree-compiler debian-archive-keyring gcc-aarch64-linux-gnu \
+	        libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross strace xxd
+	@[ "$(DEPS)" = no ] || for a in x86_64 $(VM_ARCHS); do \
+	        tests/vm/prepare $$a || exit 1; done
+check-vm: vm-deps
+	@tests/vm/possible $(VM_ARCHS) || exit 0; set -e; \
+	for a in x86_64 $(VM_ARCHS); do tests/vm/prepare $$a; \
+	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$a \
+	                SYSROOT=$(vm_cache)/$$a/sysroot vm-programs; done; \
+	tests/vm/check $(VM_ARCHS)
+
+.PHONY: arm-tests check-arm vm-programs vm-deps check-vm

@@ -1,0 +1,109 @@
+# Flags: those of all files, of rooms, and of single files with the reason.
+
+WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes \
+        -Wmissing-prototypes -Wvla -Wdouble-promotion -Wundef $(WERROR)
+CFLAGS := $(MACHINE_$(TARGET)) $(SECTIONS) -std=c99 -O2 -g -ffp-contract=off -fvisibility=hidden $(WARN)
+$(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
+$(OUT)/tests/%.o: CPPFLAGS += -Itests
+$(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
+        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
+        -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
+        -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
+$(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
+$(OUT)/tools/options/config.o: CPPFLAGS += $(INIH_CPPFLAGS)
+
+# What reads files of others is guarded against what no test has found; the
+# run-time half, which has no copies and no arrays of a length from outside, is
+# not. A sanitizer sees more by itself, and -O0 takes no _FORTIFY_SOURCE.
+LINKED := -Wl,-z,relro,-z,now
+ifeq ($(filter -static,$(LDFLAGS)),)
+CFLAGS += -fPIE
+LINKED += -pie
+endif
+ifneq ($(filter release qcheck,$(CONFIG)),)
+$(bake_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += \
+        -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2
+endif
+# On boards what is around the frames is small rather than fast, but for the rows
+# of pixels below.
+ifdef CROSS
+$(platform_o) $(tools_o) $(main_o): CFLAGS += -Os -fno-asynchronous-unwind-tables -fno-unwind-tables
+endif
+# The run-time half has no library and small stack frames; --gc-sections takes
+# out what is not called.
+$(core_o) $(published_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 \
+        -fno-asynchronous-unwind-tables
+# An instruction set is a file-name suffix; nothing else may use its flags.
+$(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
+$(OUT)/src/%_avx2.o: CFLAGS += -mavx2
+ifeq ($(ARCH),armv7)
+$(OUT)/src/%_neon.o: CFLAGS += -mfpu=neon
+endif
+
+# of FILES, FLAGS: one row of the tables below.
+of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
+
+# Run once, or once for a lamp, bundle or row: small rather than fast.
+$(call of,$(addprefix src/base/,status arena workers) src/image/image src/lens/model,-Os)
+$(call of,$(addprefix src/lamps/,lights light_list),-Os)
+$(call of,$(addprefix src/follow/,match follow record tracks),-Os)
+$(call of,$(addprefix src/flare/,beams plan wave_sets flare account),-Os)
+$(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
+$(call of,src/tile/bins $(addprefix src/image/,resolve curve mix),-Os)
+
+# Hot loops are unrolled.
+$(call of,src/kernels/%,-O3)
+$(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
+$(call of,src/flare/ghost_edges,-O3)
+$(call of,src/flare/edges,-O3 -fno-tree-vectorize)# its loops are short
+# Unrolling these buys nothing but bytes.
+$(call of,$(addprefix src/image/,codes quads) src/flare/sums src/flare/by_edges src/lens/transfer,-ftree-vectorize)
+# Every frame of a camera goes through these on its way to a panel.
+$(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)
+# The floor that frames are measured by is as fast as can be.
+$(call of,tools/lab/yardstick,-O3)
+# Sums in fours: the same bits.
+$(call of,src/bake/fit/regress,-O3)
+# Rays in eights: errno and traps are all that these give away.
+$(call of,src/bake/trace/trace,-O3 -fno-math-errno -fno-trapping-math)
+
+ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)
+# Else constants that are hoisted push out tables: a tenth more instructions.
+$(call of,src/kernels/composite_neon,-fno-move-loop-invariants)
+endif
+ifneq ($(filter armv7%,$(ARCH)),)
+# There are 16 vectors for 40 values: the rest is spilled.
+$(call of,src/kernels/composite_neon,-Wframe-larger-than=1536)
+endif
+ifneq ($(findstring clang,$(CC)),)
+# Likewise, of 32 bytes each.
+$(call of,src/kernels/composite_avx2,-Wframe-larger-than=1536)
+endif
+
+# ----------------------------------------------------------- configurations
+ifeq ($(CONFIG),asan)
+SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all
+else ifeq ($(CONFIG),tsan)
+SANITIZE := -fsanitize=thread
+else ifeq ($(CONFIG),fuzz) # what make fuzz builds; clang only
+SANITIZE := -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+else ifeq ($(CONFIG),analyze) # what make analyze builds; gcc only
+# as it is written: -O0 keeps functions and their messages apart
+ANALYZER := -O0 -fanalyzer -Wno-frame-larger-than
+# gcc 12 does not see what its own intrinsics write,
+$(OUT)/src/%_sse41.o $(OUT)/src/%_avx2.o: ANALYZER := -O0 -Wno-frame-larger-than
+# nor that a float made of a double is something,
+$(OUT)/platform/formats/samples.o: ANALYZER += -Wno-analyzer-use-of-uninitialized-value
+# nor that a picture in an array of the sweep's is the sweep's.
+$(OUT)/tools/lab/sweep_measure.o: ANALYZER += -Wno-analyzer-malloc-leak
+TIDY = $(Q)clang-tidy --quiet $< -- $(CPPFLAGS) $(filter-out $(WARN),$(CFLAGS))
+else ifeq ($(CONFIG),qcheck)
+CPPFLAGS += -DGLINT_Q_CHECK
+else ifneq ($(CONFIG),release)
+$(error CONFIG is release, asan, tsan or qcheck)
+endif
+ifdef SANITIZE
+CPPFLAGS += -DGLINT_SANITIZED
+CFLAGS += -O1 $(SANITIZE)
+$(core_o) $(published_o): CFLAGS += -Wno-frame-larger-than
+endif

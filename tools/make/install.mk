@@ -1,0 +1,47 @@
+# To install, and to take away again.
+
+# With TARGET= for a board: copy DESTDIR there, or make it a part of its image.
+# The image plug-in is built where it can be. MODELS=no: without baked models of
+# the lenses, which take minutes where there are none yet.
+program := $(if $(CROSS),$(OUT)/glint,build/glint)
+PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
+        pkg-config --exists OpenImageIO 2>/dev/null && echo yes || echo no))
+WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo yes || echo no))
+MODELS  ?= $(if $(CROSS),no,yes)
+to := $(DESTDIR)$(PREFIX)
+INSTALLED := -bake -published
+install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
+        $(if $(filter yes,$(WINDOW)),build/glint-sdl.so)
+	install -d $(to)/bin $(to)/include/glint $(to)/lib/glint \
+	        $(to)/share/glint/lenses $(to)/lib/systemd/system
+	install $(if $(CROSS),-s --strip-program=$(CROSS)strip) -m 755 \
+	        $(program) $(OUT)/glint-live $(to)/bin
+	install -m 644 include/glint/*.h $(to)/include/glint
+	install -m 644 $(patsubst %,$(OUT)/libglint%.a,$(INSTALLED)) $(OUT)/libglint.a $(to)/lib
+	install -m 644 lenses/*.lens $(to)/share/glint/lenses
+	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
+	        >$(to)/lib/systemd/system/glint-live.service
+	chmod 644 $(to)/lib/systemd/system/glint-live.service
+	$(if $(filter yes,$(PLUGIN)),install -m 755 build/glint-oiio.so $(to)/lib/glint, \
+	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM and y4m')
+	$(if $(filter yes,$(WINDOW)),install -m 755 build/glint-sdl.so $(to)/lib/glint)
+ifneq ($(MODELS),no)
+	@echo 'baking the models of all lenses, where there are none yet (MODELS=no: later)'
+	rm -rf build/models-installed # of other tables
+	build/glint lenses --models build/models-installed
+	install -d $(to)/share/glint/models
+	install -m 644 build/models-installed/*.glint $(to)/share/glint/models
+endif
+# What install put there, and folders that are empty then.
+uninstall:
+	rm -f $(to)/bin/glint $(to)/bin/glint-live $(to)/lib/libglint.a \
+	        $(patsubst %,$(to)/lib/libglint%.a,$(INSTALLED)) $(to)/lib/glint/glint-oiio.so \
+	        $(to)/lib/glint/glint-sdl.so \
+	        $(to)/lib/systemd/system/glint-live.service \
+	        $(patsubst %,$(to)/%,$(wildcard include/glint/*.h)) \
+	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens)) \
+	        $(to)/share/glint/models/*.glint
+	@for d in include/glint lib/glint share/glint/models share/glint/lenses share/glint \
+	        lib/systemd/system lib/systemd; do \
+	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done
+.PHONY: install uninstall

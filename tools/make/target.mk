@@ -1,0 +1,80 @@
+# What is built for: the machine, its compiler, and the libraries that glint can
+# do without.
+
+ifeq ($(origin CC),default)
+CC := gcc
+endif
+CXX     := g++
+AR      ?= ar
+NM      ?= nm
+SIZE    ?= size
+OBJDUMP ?= objdump
+# Static, for boards and the emulator, with the libraries of SYSROOT, if given
+# (tests/vm/prepare makes one): armv7 has NEON kernels and those in C and takes
+# what the CPU has, armv7-neon takes NEON for granted, armv6-soft has neither
+# NEON nor a float unit. DYNAMIC=1: linked with the board's libraries. STATIC=1:
+# this machine's own.
+TARGETS := x86_64 aarch64 armv7-neon armv7 armv6-soft
+ifdef STATIC
+TARGET := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
+endif
+CROSS_x86_64  := x86_64-linux-gnu-
+CROSS_aarch64 := aarch64-linux-gnu-
+CROSS_armv7   := arm-linux-gnueabihf-
+CROSS_armv7-neon := $(CROSS_armv7)
+CROSS_armv6-soft := arm-linux-gnueabi-
+PACKAGES_x86_64  := gcc-x86-64-linux-gnu libc6-dev-amd64-cross
+PACKAGES_aarch64 := gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+PACKAGES_armv7   := gcc-arm-linux-gnueabihf libc6-dev-armhf-cross
+PACKAGES_armv7-neon := $(PACKAGES_armv7)
+PACKAGES_armv6-soft := gcc-arm-linux-gnueabi libc6-dev-armel-cross
+MACHINE_armv7 := -march=armv7-a -mfpu=vfpv3-d16 -mfloat-abi=hard
+MACHINE_armv7-neon := -march=armv7-a -mfpu=neon-vfpv4 -mfloat-abi=hard
+MACHINE_armv6-soft := -march=armv6 -mfloat-abi=soft
+ifdef TARGET
+ifeq ($(filter $(TARGETS),$(TARGET)),)
+$(error TARGET is one of $(TARGETS))
+endif
+ifneq ($(CONFIG),release)
+$(error TARGET=$(TARGET) is for CONFIG=release)
+endif
+CROSS   := $(CROSS_$(TARGET))
+ifeq ($(shell command -v $(CROSS)gcc),)
+$(error $(CROSS)gcc is not there: apt-get install $(PACKAGES_$(TARGET)))
+endif
+CC      := $(CROSS)gcc
+AR      := $(CROSS)ar
+NM      := $(CROSS)nm
+SIZE    := $(CROSS)size
+OBJDUMP := $(CROSS)objdump
+ifndef DYNAMIC
+LDFLAGS += -static
+endif
+# only what a program calls is in it
+SECTIONS := -ffunction-sections -fdata-sections
+LDFLAGS += -Wl,--gc-sections
+JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
+JPEG_LIBS     := $(SYSROOT:%=-L%/lib) -ljpeg
+INIH_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
+INIH_LIBS     := $(SYSROOT:%=-L%/lib) -linih
+endif
+ARCH := $(if $(CROSS),$(TARGET),$(firstword $(subst -, ,$(shell $(CC) -dumpmachine))))
+ifeq ($(ARCH),arm) # of which there are many
+ARCH := $(shell $(CC) -dM -E -x c /dev/null | \
+        awk '$$2 == "__ARM_ARCH" { print $$3 < 7 ? "armv6" : "armv7" }')
+endif
+OUT  := build/$(if $(CROSS),$(TARGET)$(if $(DYNAMIC),-dynamic),$(ARCH)-$(notdir $(CC))-$(CONFIG))
+export DEPS OUT
+
+# Libraries that glint can do without:  WITH_JPEG=yes|no  says which are used,
+# else it is whether a program with them can be built.
+has = $(shell printf '\043include <stdio.h>\n\043include <%s>\nint main(void) { return 0; }\n' $(1) | \
+        $(CC) $(CPPFLAGS) $(2) -x c - $(LDFLAGS) $(3) -o /dev/null 2>/dev/null && echo yes || echo no)
+JPEG_LIBS ?= -ljpeg
+ifndef WITH_JPEG
+WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS),$(JPEG_LIBS))
+endif
+INIH_LIBS ?= -linih
+ifndef WITH_INIH
+WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS),$(INIH_LIBS))
+endif

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/lens_files.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "posix/process.h"
+
+#ifndef GLINT_SHARE_DIR
+#define GLINT_SHARE_DIR "/usr/local/share/glint"
+#endif
+
+enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
+
+/* The folder UP levels above the executable, 1 being its own, unless everybody
+ * may put things there. */
+static bool folder_above(int up, char *path, size_t bytes)
+{
+    const ssize_t n = readlink("/proc/self/exe", path, bytes - 1);
+    struct stat st;
+
+    if (n <= 0 || (size_t)n >= bytes - 1)
+        return false;
+    path[n] = '\0';
+    while (up-- > 0) {
+        char *slash = strrchr(path, '/');
+
+        if (!slash)
+            return false;
+        *slash = '\0';
+    }
+    return stat(path, &st) == 0 && !(st.st_mode & S_IWOTH);
+}
+
+/* "" where there is no such folder: nothing lies there. */
+bool lens_folder(int i, const char *kind, char *path, size_t bytes)
+{
+    const char *given = strcmp(kind, "lenses") == 0
+                            ? glint_process_setting("GLINT_LENSES")
+                            : NULL;
+    size_t used;
+    int n = 0;
+
+    *path = '\0';
+    if (i == 0) {
+        n = snprintf(path, bytes, "%s", given ? given : "");
+    } else if (i <= 2 * ABOVE) {
+        if (folder_above((i + 1) / 2, path, bytes)) {
+            used = strlen(path);
+            n = snprintf(path + used, bytes - used,
+                         i % 2 ? "/%s" : "/share/glint/%s", kind);
+            n += (int)used;
+        } else
+            *path = '\0';
+    } else if (i == 2 * ABOVE + 1) {
+        n = snprintf(path, bytes, GLINT_SHARE_DIR "/%s", kind);
+    } else
+        return false;
+    if ((size_t)n >= bytes)
+        *path = '\0';
+    return true;
+}
+
+bool lens_file_find(const char *name, char *path, size_t bytes)
+{
+    for (int i = 0; lens_folder(i, "lenses", path, bytes); i++) {
+        const size_t used = strlen(path);
+
+        if (used > 0 &&
+            (size_t)snprintf(path + used, bytes - used, "/%s.lens", name) <
+                bytes - used &&
+            access(path, R_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* --------------------------------------------------------------------- list */
+
+struct list {
+    char (*name)[NAME_CHARS];
+    int n, room;
+};
+
+static bool has(const struct list *l, const char *name, size_t length)
+{
+    for (int i = 0; i < l->n; i++)
+        if (strlen(l->name[i]) == length &&
+            memcmp(l->name[i], name, length) == 0)
+            return true;
+    return false;
+}
+
+static bool add(struct list *l, const char *name, size_t length)
+{
+    if (length >= NAME_CHARS || has(l, name, length))
+        return true;
+    if (l->n == l->room) {
+        const int room = l->room ? 2 * l->room : 32;
+        void *more = realloc(l->name, (size_t)room * sizeof *l->name);
+
+        if (!more)
+            return false;
+        l->name = more;
+        l->room = room;
+    }
+    memcpy(l->name[l->n], name, length);
+    l->name[l->n++][length] = '\0';
+    return true;
+}
+
+/* The .lens files of a folder. */
+static bool add_folder(struct list *l, const char *path)
+{
+    DIR *folder = *path ? opendir(path) : NULL;
+    const struct dirent *entry;
+    bool ok = true;
+
+    while (ok && folder && (entry = readdir(folder))) {
+        const size_t n = strlen(entry->d_name);
+
+        if (n > 5 && strcmp(entry->d_name + n - 5, ".lens") == 0)
+            ok = add(l, entry->d_name, n - 5);
+    }
+    if (folder)
+        closedir(folder);
+    return ok;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
+int lens_files_each(lens_files_fn *each, void *ctx)
+{
+    struct list l = {NULL, 0, 0};
+    char path[PATH_CHARS];
+    bool ok = true;
+
+    for (int i = 0; ok && lens_folder(i, "lenses", path, sizeof path); i++)
+        ok = add_folder(&l, path);
+    if (l.n > 0)
+        qsort(l.name, (size_t)l.n, sizeof *l.name, by_name);
+    for (int i = 0; ok && i < l.n && each(ctx, l.name[i]); i++)
+        ;
+    free(l.name);
+    return ok ? l.n : -1;
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Models of lens tables, baked when first needed and kept.
+ *
+ * They lie in share/glint/models, where glint was installed with them, or in
+ * $XDG_CACHE_HOME/glint, or ~/.cache/glint, under the lens's name and a key of
+ * its contents and the options, so that a change of either finds no old model.
+ * Where nothing can be kept, nothing is.
+ */
+#ifndef GLINT_TOOLS_MODEL_MODEL_CACHE_H
+#define GLINT_TOOLS_MODEL_MODEL_CACHE_H
+
+#include "model/model_file.h"
+
+/* The model of LENS by OPTIONS, whose workers and progress are set here.
+ * Returns an exit code; has printed on failure. */
+int model_cached(const struct tool *tool, const struct glint_prescription *lens,
+                 struct glint_bake_options options, struct model_file *model);
+
+/* Whether it need not be baked. */
+bool model_is_cached(const struct glint_prescription *lens,
+                     const struct glint_bake_options *options);
+
+/* Adds "/NAME-KEY.glint" to the folder in PATH. False: too long. */
+bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key);
+
+/* Where FILE is kept, whose folder is made. False: nowhere. */
+bool model_cache_path(char *path, size_t bytes, const char *file);
+
+#endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * --coating: what is on the surfaces of a lens table between air and glass.
+ */
+#ifndef GLINT_TOOLS_OPTIONS_COATING_H
+#define GLINT_TOOLS_OPTIONS_COATING_H
+
+#include "options/tool.h"
+
+enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_FILMS };
+
+struct coating {
+    enum coating_kind kind; /* by default the table's own */
+    bool given;             /* was asked for, not only what is done anyway */
+    int n_films;
+    struct glint_film film[GLINT_MAX_FILMS];
+};
+
+#define COATING_HELP                                                          \
+    "  --coating C         what is on surfaces between air and glass: table " \
+    "(default,\n"                                                             \
+    "                      but of overlay, live and explain), as the table "  \
+    "has\n"                                                                   \
+    "                      it; mixed (default of these), films that differ "  \
+    "from\n"                                                                  \
+    "                      surface to surface; none; or films "               \
+    "NM[/INDEX][,...],\n"                                                     \
+    "                      100 to 5000 nm, index 1.01 to 4 (1.38), dealt "    \
+    "out\n"                                                                   \
+    "                      from the front again and again\n"
+
+/* Takes the value of --coating. Returns -1, or an exit code, said. */
+int coating_take(const struct tool *tool, struct coating *coating,
+                 const char *text);
+
+/* Coats LENS. */
+void coating_apply(const struct coating *coating,
+                   struct glint_prescription *lens);
+
+/* A model has its films in it: a usage error if others were asked for, else
+ * EXIT_OK. */
+int coating_of_model(const struct tool *tool, const struct coating *coating,
+                     const char *path);
+
+#endif

@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lines are cut out here and handed to inih one by one: by itself it would
+ * break long ones in two and take an indented one for more of the last value.
+ */
+#include "options/config.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <ini.h>
+
+#include "posix/error.h"
+#include "posix/input.h"
+
+#define MAX_BYTES   (1 << 20) /* of a file */
+#define MAX_OPTIONS 256       /* of a command, that have no value */
+#define NAME_CHARS  100       /* of a file, in errors */
+
+/* One pass over a file: the first checks all of it, the second takes it. */
+struct pass {
+    struct config *config;
+    bool taking;
+    const char *name;
+    const char *at, *end; /* what is left of the text */
+    int line, section_line;
+    char section[64];            /* of the last entry */
+    char where[NAME_CHARS + 32]; /* "FILE:LINE" */
+    char *value;                 /* room for those to come */
+    bool stated[MAX_OPTIONS];
+    int code; /* EXIT_OK: all is well so far */
+    struct glint_error *error;
+};
+
+/* Points WHERE at LINE; of a long name its end is kept. */
+static void set_where(struct pass *p, int line)
+{
+    const size_t len = strlen(p->name);
+
+    snprintf(p->where, sizeof p->where, "%s:%d",
+             p->name + (len > NAME_CHARS ? len - NAME_CHARS : 0), line);
+}
+
+/* Ends the pass. FORMAT has one %s for ABOUT. Returns 0, inih's for failure. */
+static int fail(struct pass *p, const char *format, const char *about)
+{
+    char cause[160];
+
+    snprintf(cause, sizeof cause, format, about);
+    set_where(p, p->line);
+    glint_error_report(p->error, GLINT_E_FORMAT, p->where, "%s", cause);
+    p->code = EXIT_INPUT;
+    return 0;
+}
+
+/* -------------------------------------------------------------------- lines */
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+static bool is_text(const char *text, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (((unsigned char)text[i] < ' ' && text[i] != '\t') || text[i] == 127)
+            return false;
+    return true;
+}
+
+/* The next line without blanks around it; its length. */
+static size_t take_line(struct pass *p, const char **line)
+{
+    const char *const feed = memchr(p->at, '\n', (size_t)(p->end - p->at));
+    const char *first = p->at, *last = feed ? feed : p->end;
+
+    p->at = feed ? feed + 1 : p->end;
+    p->line++;
+    while (first < last && is_blank(*first))
+        first++;
+    while (first < last && is_blank(last[-1]))
+        last--;
+    *line = first;
+    return (size_t)(last - first);
+}
+
+/* Stands in for fgets. */
+static char *read_line(char *dst, int size, void *stream)
+{
+    struct pass *const p = stream;
+    const char *line;
+    size_t n;
+
+    if (p->code != EXIT_OK || p->at == p->end)
+        return NULL;
+    n = take_line(p, &line);
+    if (n > 0 && (*line == ';' || *line == '#'))
+        n = 0;
+    if (n > 0 && *line == '[')
+        p->section_line = p->line;
+    if (!is_text(line, n))
+        return fail(p, "holds a control character%s", ""), NULL;
+    if (n > CONFIG_LINE || n + 2 > (size_t)size)
+        return fail(p, "is too long a line%s", ""), NULL;
+    memcpy(dst, line, n);
+    memcpy(dst + n, "\n", 2);
+    return dst;
+}
+
+/* ------------------------------------------------------------------ entries */
+
+static void note_section(struct pass *p, const char *section)
+{
+    static const char *const known[] = {"",      "camera", "lens", "light",
+                                        "flare", "output", NULL};
+
+    if (strcmp(section, p->section) == 0)
+        return;
+    snprintf(p->section, sizeof p->section, "%s", section);
+    if (p->taking || p->config->tool->quiet || tool_word(section, known) >= 0)
+        return;
+    set_where(p, p->section_line);
+    fprintf(stderr,
+            "glint %s: %s: no section is called [%s]; its lines count "
+            "all the same\n",
+            p->config->tool->name, p->where, section);
+}
+
+/* Help and version are for the command line, and files do not nest. */
+static const struct option *find_option(const struct config *config,
+                                        const char *name)
+{
+    static const char *const line_only[] = {"help", "version", "config", NULL};
+    const struct option *o = config->options;
+
+    if (tool_word(name, line_only) >= 0)
+        return NULL;
+    while (o->name && strcmp(o->name, name) != 0)
+        o++;
+    return o->name ? o : NULL;
+}
+
+static int check_entry(struct pass *p, const struct option *option,
+                       const char *value)
+{
+    const ptrdiff_t index = option - p->config->options;
+
+    if (option->has_arg == required_argument && !*value)
+        return fail(p, "%s needs a value", option->name);
+    if (option->has_arg != no_argument)
+        return 1;
+    if (strcmp(value, "yes") != 0 && strcmp(value, "no") != 0)
+        return fail(p, "%s takes yes or no", option->name);
+    if (index < MAX_OPTIONS && p->stated[index])
+        return fail(p, "%s is stated twice", option->name);
+    if (index < MAX_OPTIONS)
+        p->stated[index] = true;
+    return 1;
+}
+
+/* VALUE is inih's and gone when this returns. */
+static int take_entry(struct pass *p, const struct option *option,
+                      const char *value)
+{
+    const bool plain = option->has_arg == no_argument;
+    const size_t bytes = strlen(value) + 1;
+    struct tool *const tool = p->config->tool;
+    int code = -1;
+
+    if (plain && strcmp(value, "no") == 0)
+        return 1;
+    memcpy(p->value, value, bytes);
+    set_where(p, p->line);
+    tool->where = p->where;
+    code = p->config->take(p->config->ctx, option, plain ? NULL : p->value);
+    tool->where = NULL;
+    p->value += bytes;
+    if (code == EXIT_OK) /* such as lists devices and is done */
+        return fail(p, "%s is for the command line", option->name);
+    if (code > 0)
+        p->code = code;
+    return code < 0;
+}
+
+static int on_entry(void *ctx, const char *section, const char *name,
+                    const char *value)
+{
+    struct pass *const p = ctx;
+    const struct option *option;
+
+    if (p->code != EXIT_OK)
+        return 0;
+    note_section(p, section);
+    option = find_option(p->config, name);
+    if (!option)
+        return fail(p, "there is no option %s for a file", name);
+    return p->taking ? take_entry(p, option, value)
+                     : check_entry(p, option, value);
+}
+
+/* ------------------------------------------------------------------- passes */
+
+static void run_pass(struct pass *p, const char *text, size_t bytes)
+{
+    int malformed;
+
+    p->at = text;
+    p->end = text + bytes;
+    p->line = 0;
+    p->section[0] = '\0';
+    malformed = ini_parse_stream(read_line, p, on_entry, p);
+    if (malformed > 0 && (p->code == EXIT_OK || malformed < p->line)) {
+        p->line = malformed;
+        fail(p, "is neither [section] nor name = value%s", "");
+    }
+}
+
+int config_parse(struct config *config, const char *name, const char *text,
+                 size_t bytes, struct glint_error *error)
+{
+    static const char mark[] = "\xef\xbb\xbf"; /* of UTF-8, by some editors */
+    struct pass p = {.config = config, .name = name, .error = error};
+
+    error->text[0] = '\0';
+    if (bytes >= 3 && memcmp(text, mark, 3) == 0) {
+        text += 3;
+        bytes -= 3;
+    }
+    run_pass(&p, text, bytes);
+    if (p.code != EXIT_OK)
+        return p.code;
+    /* a value is shorter than its line, which has a name and = as well */
+    p.value = config->values = malloc(bytes + 1);
+    if (!p.value) {
+        glint_error_report(error, GLINT_E_MEMORY, name, "no memory for it");
+        return EXIT_RUNTIME;
+    }
+    p.taking = true;
+    run_pass(&p, text, bytes);
+    return p.code;
+}
+
+int config_read(struct config *config, const char *path)
+{
+    struct glint_error error;
+    uint8_t *text = NULL;
+    size_t bytes = 0;
+    int code = EXIT_INPUT;
+
+    if (glint_input_slurp(&text, &bytes, path, MAX_BYTES, &error) == GLINT_OK)
+        code = config_parse(config, path, (const char *)text, bytes, &error);
+    free(text);
+    if (code != EXIT_OK && error.text[0])
+        fprintf(stderr, "glint %s: %s\n", config->tool->name, error.text);
+    if (code != EXIT_OK)
+        config_free(config);
+    return code;
+}
+
+void config_free(struct config *config)
+{
+    free(config->values);
+    config->values = NULL;
+}

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/lamp_keys.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options/tool.h"
+
+/* ------------------------------------------------------------------ columns */
+
+static char *skip_blanks(char *at)
+{
+    return at + strspn(at, " \t");
+}
+
+/* The next of the fields between commas, without blanks around it; NULL: none
+ * is left. *REST moves on. */
+static char *next_field(char **rest)
+{
+    char *field = *rest, *end;
+
+    if (!field)
+        return NULL;
+    end = strchr(field, ',');
+    *rest = end ? end + 1 : NULL;
+    end = end ? end : field + strlen(field);
+    *end = '\0';
+    field = skip_blanks(field);
+    while (end > field && strchr(" \t\r", end[-1]))
+        *--end = '\0';
+    return field;
+}
+
+const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
+{
+    static const char *const names[] = {
+        "frame", "x",  "y",     "power", "r",     "g", "b",
+        "size",  "id", "shape", "turn",  "level", NULL};
+    char copy[256], *rest = copy, *name;
+    unsigned seen = 0;
+
+    c->n = 0;
+    if ((size_t)snprintf(copy, sizeof copy, "%s", heading) >= sizeof copy)
+        return NULL; /* a remark */
+    while ((name = next_field(&rest)) && c->n < LAMP_COLUMNS) {
+        const int field = tool_word(name, names);
+
+        c->field[c->n++] = field;
+        seen |= field >= 0 ? 1u << field : 0;
+    }
+    if (!(seen >> LAMP_ID & 1)) {
+        c->n = 0;
+        return NULL;
+    }
+    for (int i = 0; i < c->n; i++)
+        if (c->field[i] < 0)
+            return "a column is none of frame x y power r g b size id shape "
+                   "turn level";
+    return (seen & 0xf) == 0xf && !name
+               ? NULL
+               : "columns frame, x, y and power are needed, each once";
+}
+
+uint32_t lamp_id_of(const char *text)
+{
+    uint32_t id = 2166136261u; /* FNV-1a */
+    uint64_t number = 0;
+    const char *digit = text;
+
+    for (; *digit >= '0' && *digit <= '9' && number <= UINT32_MAX; digit++)
+        number = 10 * number + (uint64_t)(*digit - '0');
+    if (!*digit && *text != '0' && number > 0 && number <= UINT32_MAX)
+        return (uint32_t)number;
+    for (; *text; text++)
+        id = (id ^ (unsigned char)*text) * 16777619u;
+    return id | LAMP_ID_TEXT;
+}
+
+const char *lamp_columns_row(const struct lamp_columns *c, char *row, double *v)
+{
+    char *rest = row, *text;
+    int n = 0;
+
+    for (; n < c->n && (text = next_field(&rest)); n++) {
+        const int field = c->field[n];
+
+        if (field == LAMP_ID)
+            v[field] = *text ? lamp_id_of(text) : 0;
+        else if (field == 0 && (strcmp(text, "*") == 0 || !*text))
+            v[field] = -1;
+        else if (!tool_number(text, &v[field]))
+            return "expected numbers, as many as the heading has names";
+    }
+    return n == c->n && !rest
+               ? NULL
+               : "expected as many values as the heading has names";
+}
+
+/* -------------------------------------------------------------------- links */
+
+struct key {
+    int row, frame;
+    uint64_t lamp; /* its id, or its place within the frame */
+};
+
+static int by_frame(const void *a, const void *b)
+{
+    const struct key *x = a, *y = b;
+
+    if (x->frame != y->frame)
+        return x->frame < y->frame ? -1 : 1;
+    return (x->row > y->row) - (x->row < y->row);
+}
+
+static int by_lamp(const void *a, const void *b)
+{
+    const struct key *x = a, *y = b;
+
+    if (x->lamp != y->lamp)
+        return x->lamp < y->lamp ? -1 : 1;
+    return by_frame(a, b);
+}
+
+/* In order of frames. */
+static void tell_apart(struct key *key, int n, const struct lamp_list *list)
+{
+    int place = 0;
+
+    for (int i = 0; i < n; i++) {
+        const uint32_t id = list->row[key[i].row].id;
+
+        place = i > 0 && key[i].frame == key[i - 1].frame ? place : 0;
+        key[i].lamp = id ? (uint64_t)1 << 32 | id : (uint64_t)place++;
+    }
+}
+
+enum glint_status lamp_keys_link(struct lamp_list *list)
+{
+    struct key *key = malloc(((size_t)list->n + 1) * sizeof *key);
+    int n = 0;
+
+    if (!key)
+        return GLINT_E_MEMORY;
+    for (int i = 0; i < list->n; i++)
+        if (list->row[i].frame >= 0)
+            key[n++] = (struct key){i, list->row[i].frame, 0};
+    qsort(key, (size_t)n, sizeof *key, by_frame);
+    tell_apart(key, n, list);
+    qsort(key, (size_t)n, sizeof *key, by_lamp);
+    for (int i = 0; i + 1 < n; i++)
+        if (key[i].lamp == key[i + 1].lamp)
+            list->row[key[i].row].next = key[i + 1].row;
+    free(key);
+    return GLINT_OK;
+}
+
+static double between(double a, double b, double t)
+{
+    return a + (b - a) * t;
+}
+
+bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
+                  struct lamp_row *row)
+{
+    const struct lamp_row *a = &list->row[i];
+    const struct lamp_row *b = a->next >= 0 ? &list->row[a->next] : NULL;
+    double t;
+
+    *row = *a;
+    if (a->frame == -1 || a->frame == frame)
+        return true;
+    if (!b || a->frame > frame || b->frame <= frame)
+        return false;
+    t = (double)(frame - a->frame) / (b->frame - a->frame);
+    row->x = between(a->x, b->x, t);
+    row->y = between(a->y, b->y, t);
+    row->size = between(a->size, b->size, t);
+    row->shape = between(a->shape, b->shape, t);
+    row->turn = a->turn + t * remainder(b->turn - a->turn, 180);
+    row->level = between(a->level, b->level, t);
+    row->power = a->power > 0 && b->power > 0
+                     ? exp2(between(log2(a->power), log2(b->power), t))
+                     : between(a->power, b->power, t);
+    for (int c = 0; c < 3; c++)
+        row->rgb[c] = between(a->rgb[c], b->rgb[c], t);
+    return true;
+}
+
+/* The ids of FRAME; returns how many. */
+static int ids_of(const struct lamp_list *list, int frame,
+                  uint32_t id[LAMP_FINDER_MAX])
+{
+    struct lamp_row row;
+    int n = 0;
+
+    for (int i = 0; i < list->n && n < LAMP_FINDER_MAX; i++)
+        if (list->row[i].id && lamp_keys_at(list, i, frame, &row))
+            id[n++] = row.id;
+    return n;
+}
+
+void lamp_keys_ids(const struct lamp_list *list, int frame, uint32_t *id)
+{
+    struct lamp_row row;
+    uint32_t largest = 0;
+    int n = 0;
+
+    for (int i = 0; i < list->n; i++)
+        if (list->row[i].id < LAMP_ID_TEXT && list->row[i].id > largest)
+            largest = list->row[i].id;
+    for (int i = 0; i < list->n; i++)
+        if (lamp_keys_at(list, i, frame, &row)) {
+            id[n] = row.id ? row.id : largest + 1 + (uint32_t)n;
+            n++;
+        }
+}
+
+bool lamp_keys_is_cut(const struct lamp_list *list, int frame)
+{
+    uint32_t now[LAMP_FINDER_MAX], before[LAMP_FINDER_MAX];
+    const int n = ids_of(list, frame, now);
+    const int m = n && frame > 0 ? ids_of(list, frame - 1, before) : 0;
+
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < m; k++)
+            if (now[i] == before[k])
+                return false;
+    return n > 0 && m > 0;
+}

@@ -1,0 +1,522 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/area.h"
+#include "engine/lamps.h"
+#include "engine/cost.h"
+#include "engine/ladder.h"
+#include "options/scene_table.h"
+#include "options/scene_waves.h"
+#include "options/takes.h"
+
+void scene_defaults(struct scene *scene)
+{
+    *scene = (struct scene){.n_blades = 8,
+                            .wavelength_nm = {650, 532, 450},
+                            .n_wavelengths = 3,
+                            .gain = 1,
+                            .tolerance = 1,
+                            .only_ghost = -1,
+                            .apart_px = FRAME_APART_PX,
+                            .area_samples = AREA_SAMPLES,
+                            .tile_log2 = 6,
+                            .weights = GLINT_WEIGHTS_WACHSPRESS,
+                            .quantum = 1,
+                            .whole_codes = FRAME_WHOLE_CODES,
+                            .quality = 0.5,
+                            .dispersion_px = FRAME_DISPERSION_PX,
+                            .cull = FRAME_CULL_CODES,
+                            .antialias = true};
+}
+
+/* "circle" or "polygon:N[,ROT]" */
+static bool parse_stop(const char *text, struct scene *scene)
+{
+    double v[2] = {0, 0};
+
+    if (strcmp(text, "circle") == 0) {
+        scene->n_blades = 0;
+        return true;
+    }
+    if (strncmp(text, "polygon:", 8) != 0 ||
+        tool_numbers(text + 8, v, 2) == 0 || v[0] != floor(v[0]) || v[0] < 3 ||
+        v[0] > GLINT_MAX_BLADES)
+        return false;
+    scene->n_blades = (int)v[0];
+    scene->blade_rotation_deg = v[1];
+    return true;
+}
+
+static bool parse_sensor(const char *text, double mm[2])
+{
+    char *end;
+
+    mm[0] = strtod(text, &end);
+    return end != text && *end == 'x' && tool_number(end + 1, &mm[1]) &&
+           mm[0] >= 0.1 && mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
+}
+
+static bool parse_merge(const char *text, struct scene *scene)
+{
+    double v[2];
+
+    if (tool_numbers(text, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
+        v[0] > 4 || v[1] < 0 || v[1] > 1)
+        return false;
+    scene->merge_steps = (int)v[0];
+    scene->merge_gamma = v[1];
+    return true;
+}
+
+/* A power of two out of a short list, as its logarithm. */
+static bool parse_side(const char *text, int low, int high, int *log2)
+{
+    int side;
+
+    if (!tool_integer(text, 0, 1 << high, &side))
+        return false;
+    for (*log2 = low; *log2 <= high; ++*log2)
+        if (side == 1 << *log2)
+            return true;
+    *log2 = 0;
+    return side == 0 && low > 3;
+}
+
+static bool take_error(const char *text, struct scene *s)
+{
+    double px;
+
+    if (!tool_number(text, &px) || px <= 0)
+        return false;
+    ladder_set(s, ladder_for_error(px));
+    return true;
+}
+
+static bool take(struct scene *s, int option, const char *value)
+{
+    static const char *const weights[] = {"loop-derose", "wachspress", NULL};
+    static const char *const rasters[] = {"edges", "cells", NULL};
+    static const char *const parts[] = {"ghosts", "all", NULL};
+    static const char *const lanes[] = {"16", "32", NULL};
+    static const char *const rays[] = {"model", "exact", NULL};
+    int word;
+
+    switch (option) {
+    case OPT_F_NUMBER:
+        return tool_number(value, &s->f_number) && s->f_number > 0;
+    case OPT_STOP:
+        return parse_stop(value, s);
+    case OPT_WAVELENGTHS:
+        return scene_take_waves(s, value);
+    case OPT_DISPERSION:
+        return tool_number(value, &s->dispersion_px) &&
+               (s->dispersion_px == 0 ||
+                (s->dispersion_px >= 0.1 && s->dispersion_px <= 100));
+    case OPT_SENSOR:
+        return parse_sensor(value, s->sensor_mm);
+    case OPT_EXPOSURE:
+        s->has_exposure = true;
+        return tool_number(value, &s->exposure_ev) &&
+               fabs(s->exposure_ev) <= 100;
+    case OPT_GAIN:
+        return tool_number(value, &s->gain) && s->gain >= 0;
+    case OPT_GHOST:
+        return tool_integer(value, 0, GLINT_MAX_GHOSTS, &s->only_ghost);
+    case OPT_GRID:
+        return tool_integer(value, 4, GLINT_MAX_CELLS, &s->grid);
+    case OPT_UNIFORM:
+        return s->uniform = true;
+    case OPT_MERGE:
+        return parse_merge(value, s);
+    case OPT_TILE:
+        return parse_side(value, 3, 6, &s->tile_log2);
+    case OPT_COARSE:
+        return parse_side(value, 6, 8, &s->coarse_log2);
+    case OPT_WEIGHTS:
+        word = tool_word(value, weights);
+        s->weights =
+            word == 0 ? GLINT_WEIGHTS_LOOP_DEROSE : GLINT_WEIGHTS_WACHSPRESS;
+        return word >= 0;
+    case OPT_RASTER:
+        word = tool_word(value, rasters);
+        s->raster = word;
+        s->by_edges = word == 0;
+        return word >= 0;
+    case OPT_MASK:
+        return tool_integer(value, 2, 4096, &s->mask_nodes);
+    case OPT_NO_ANTIALIAS:
+        s->antialias = false;
+        return true;
+    case OPT_DITHER:
+        return s->dither = true;
+    case OPT_QUANTUM:
+        return tool_number(value, &s->quantum) && s->quantum >= 0 &&
+               s->quantum <= 50;
+    case OPT_WHOLE:
+        return tool_number(value, &s->whole_codes) && s->whole_codes >= 0 &&
+               s->whole_codes <= 100;
+    case OPT_HALF:
+        return s->always_half = true;
+    case OPT_QUALITY:
+        return ladder_take(s, value);
+    case OPT_ERROR:
+        return take_error(value, s);
+    case OPT_BUDGET:
+        return tool_number(value, &s->budget_ms) && s->budget_ms > 0 &&
+               s->budget_ms <= 1e6;
+    case OPT_RAYS:
+        word = tool_word(value, rays);
+        s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
+        return word >= 0;
+    case OPT_LANES:
+        word = tool_word(value, lanes);
+        s->narrow = word == 0;
+        return word >= 0;
+    case OPT_CULL:
+        return tool_number(value, &s->cull) && s->cull >= 0 && s->cull <= 16;
+    case OPT_BALANCE:
+        return s->balance = true;
+    case OPT_MAX_LIGHTS:
+        return tool_integer(value, 1, 1 << 20, &s->max_lights);
+    case OPT_AREA_SAMPLES:
+        return tool_integer(value, 1, AREA_MOST_SAMPLES,
+                            &s->area_samples_asked);
+    case OPT_APART:
+        return tool_number(value, &s->apart_px) && s->apart_px >= 0 &&
+               s->apart_px <= 1000;
+    default:
+        return tool_word(value, parts) >= 0;
+    }
+}
+
+int scene_option(const struct tool *tool, struct scene *scene, int option,
+                 const char *value)
+{
+    static const struct option names[] = {SCENE_OPTIONS};
+
+    if (option < OPT_F_NUMBER || option >= OPT_LAST)
+        return -2;
+    if (option == OPT_COATING)
+        return coating_take(tool, &scene->coating, value);
+    if (take(scene, option, value))
+        return -1;
+    if (option == OPT_ONLY && strcmp(value, "starburst") == 0)
+        return tool_usage(tool, "there is no starburst yet; ghosts are all "
+                                "that is drawn");
+    return tool_refuse(tool, names[option - OPT_F_NUMBER].name, value);
+}
+
+bool scene_lamp(const char *text, struct glint_lamp *lamp)
+{
+    double v[7] = {0, 0, 1, 1, 1, 1, 0};
+    const int n = tool_numbers(text, v, 7);
+
+    if ((n != 2 && n != 3 && n < 6) || v[6] < 0 || v[6] > 45 || v[0] < 0 ||
+        v[0] > 89.9 || v[3] < 0 || v[4] < 0 || v[5] < 0 ||
+        !lamp_power_ok(v[2], v + 3))
+        return false;
+    *lamp = (struct glint_lamp){.theta_deg = v[0],
+                                .phi_deg = v[1],
+                                .power = v[2],
+                                .rgb = {v[3], v[4], v[5]}};
+    area_set_round(lamp, tan(v[6] * 3.14159265358979323846 / 180));
+    return true;
+}
+
+/* ------------------------------------------------------------------ opening */
+
+static int check_band(const struct tool *tool, const struct scene *scene)
+{
+    const struct glint_model_header *h = scene->model.lens.header;
+    const double lo = 1e3 / sqrt(h->wave_hi_q24 * 0x1p-24);
+    const double hi = 1e3 / sqrt(h->wave_lo_q24 * 0x1p-24);
+
+    for (int i = 0; i < scene->n_wavelengths; i++)
+        if (scene->wavelength_nm[i] < lo - 0.5 ||
+            scene->wavelength_nm[i] > hi + 0.5)
+            return tool_usage(tool,
+                              "%g nm lies outside of the %.0f to %.0f nm that "
+                              "the model of %s was baked for (bake --band)",
+                              scene->wavelength_nm[i], lo, hi, h->name);
+    return EXIT_OK;
+}
+
+/* Says what the picture asks of the model that it was not baked for. */
+static void warn_field(const struct tool *tool, const struct scene *scene)
+{
+    const double field = model_real_of(scene->model.lens.header->field_mm);
+    const double *mm = scene->sensor_mm;
+
+    if (!tool->quiet && 0.5 * hypot(mm[0], mm[1]) > field)
+        fprintf(stderr,
+                "glint %s: the model was baked for a field of %.1f mm around "
+                "the middle; corners beyond are left to chance (bake --field)"
+                "\n",
+                tool->name, field);
+}
+
+static int open_model(const struct tool *tool, struct scene *scene,
+                      const char *path)
+{
+    const struct glint_model_header *h;
+    int code;
+
+    if (scene->rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "%s is a model: exact rays need the lens table",
+                          path);
+    if (scene->f_number > 0)
+        return tool_usage(tool,
+                          "%s is a model, baked for one f-number: "
+                          "--f-number needs the lens table",
+                          path);
+    code = coating_of_model(tool, &scene->coating, path);
+    if (code == EXIT_OK)
+        code = tool_model(tool, path, &scene->model);
+    if (code != EXIT_OK)
+        return code;
+    h = scene->model.lens.header;
+    snprintf(scene->lens.name, sizeof scene->lens.name, "%s", h->name);
+    scene->lens.film_width_mm = model_real_of(h->film_width_mm);
+    scene->lens.film_height_mm = model_real_of(h->film_height_mm);
+    warn_field(tool, scene);
+    return EXIT_OK;
+}
+
+static int set_up(const struct tool *tool, struct scene *s)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        s->model.data
+            ? glint_setup_from_model(&s->setup, &s->model.lens, s->n_blades,
+                                     s->blade_rotation_deg, s->wavelength_nm,
+                                     s->n_wavelengths, &error)
+            : scene_table_setup(s, &error);
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    scene_weigh(s);
+    if (s->balance)
+        glint_setup_balance(&s->setup);
+    if (s->only_ghost >= s->setup.n_ghosts - s->setup.n_parts)
+        return tool_usage(tool, "%s has %d ghosts, there is no %d",
+                          s->lens.name, s->setup.n_ghosts - s->setup.n_parts,
+                          s->only_ghost);
+    return EXIT_OK;
+}
+
+/* What only cells have is not left out in silence. */
+static int check_raster(const struct tool *tool, const struct scene *s)
+{
+    if (s->mask_nodes && s->by_edges)
+        return tool_usage(tool, "--mask is drawn by cells, not --raster edges");
+    if (s->merge_steps && !s->raster && !s->mask_nodes)
+        return tool_usage(tool, "--merge is for --raster cells");
+    if (s->always_half && (s->raster || s->mask_nodes))
+        return tool_usage(tool, "--half is drawn by edges, not by cells");
+    if (s->always_half && s->rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "--half is not for exact rays");
+    return EXIT_OK;
+}
+
+int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
+{
+    int code = check_raster(tool, scene);
+
+    if (code != EXIT_OK)
+        return code;
+    scene_choose_waves(scene);
+    code = tool_is_model(lens) ? open_model(tool, scene, lens)
+                               : scene_open_table(tool, scene, lens);
+
+    if (code == EXIT_OK && scene->model.data &&
+        scene->waves == SCENE_WAVES_LIST)
+        code = check_band(tool, scene);
+    return code == EXIT_OK ? set_up(tool, scene) : code;
+}
+
+void scene_close(struct scene *scene)
+{
+    model_file_close(&scene->model);
+}
+
+struct glint_view scene_view(const struct scene *scene, int width, int height)
+{
+    const double *mm = scene->sensor_mm;
+
+    return glint_view_fit(width, height,
+                          mm[0] > 0 ? mm[0] : scene->lens.film_width_mm,
+                          mm[0] > 0 ? mm[1] : scene->lens.film_height_mm);
+}
+
+int scene_frame(const struct tool *tool, const struct scene *scene,
+                struct glint_view view, struct frame *frame)
+{
+    frame_init(frame, &scene->setup, view, tool->workers);
+    frame->cfg.sets = tool_sets(tool);
+    frame->lens = scene->model.data ? &scene->model.lens : NULL;
+    frame->max_cells = scene->grid ? scene->grid : 64;
+    frame->uniform = scene->uniform;
+    frame->narrow = scene->narrow;
+    frame->only_ghost = scene->only_ghost;
+    frame->apart_px = scene->apart_px;
+    frame->area_samples = scene->area_samples_asked ? scene->area_samples_asked
+                                                    : scene->area_samples;
+    frame->faintest_codes = scene->cull;
+    if (scene->max_lights)
+        frame->max_lights = scene->max_lights;
+    frame->cfg.tile_log2 = scene->tile_log2;
+    /* no larger than the small ones: one level, and the same picture */
+    frame->cfg.coarse_log2 =
+        scene->coarse_log2 > scene->tile_log2 ? scene->coarse_log2 : 0;
+    frame->cfg.raster = scene->raster ? &glint_raster_cells : NULL;
+    frame->cfg.weights = scene->weights;
+    frame->cfg.irradiance_steps = scene_steps(scene->quantum);
+    frame->whole_codes = scene->whole_codes;
+    frame->dispersion_px = scene->dispersion_px;
+    frame->half = scene->half || scene->always_half;
+    frame->always_half = scene->always_half;
+    frame->cfg.merge_steps = scene->merge_steps;
+    frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
+    frame->cfg.antialias = scene->antialias;
+    frame->cfg.dither = scene->dither;
+    if (scene->mask_nodes &&
+        frame_use_mask(frame, scene->mask_nodes) != GLINT_OK)
+        return tool_fail(tool, GLINT_E_MEMORY, NULL);
+    if (scene->budget_ms > 0 && frame->lens) {
+        budget_init(&frame->budget, scene->budget_ms);
+        ladder_frame(frame, budget_quality(&frame->budget));
+        return scene_calibrate(tool, scene, view, &frame->budget);
+    }
+    return EXIT_OK;
+}
+
+/* The angle that a model ends at, without asin(): that is 25 KB of glint-live.
+ */
+static double widest_deg(const struct glint_model_header *h)
+{
+    const double sine = h->sine_hi_q30 * 0x1p-30;
+
+    return 22.5 / atan(1) * atan2(sine, sqrt(1 - sine * sine));
+}
+
+int scene_calibrate(const struct tool *tool, const struct scene *scene,
+                    struct glint_view view, struct budget *budget)
+{
+    struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}, {0, 0}, 0};
+    struct glint_image image = {
+        .format = GLINT_YUYV, .width = view.width, .height = view.height};
+    struct scene plain = *scene;
+    struct frame_report report = {0};
+    struct frame frame;
+    void *mem =
+        calloc(1, glint_image_bytes(GLINT_YUYV, view.width, view.height));
+    double least_ms = 1e9;
+    struct cost cost;
+    int code;
+
+    plain.budget_ms = plain.dispersion_px = 0;
+    plain.mask_nodes = 0;
+    plain.only_ghost = -1;
+    code = scene_frame(tool, &plain, view, &frame);
+    if (frame.lens) /* whose model may end before */
+        lamp.theta_deg = fmin(lamp.theta_deg, widest_deg(frame.lens->header));
+    for (int i = 0; i < 4 && mem && code == EXIT_OK; i++) {
+        glint_image_place(&image, mem);
+        if (frame_draw(&frame, &lamp, 1, 1, &image, &report) != GLINT_OK)
+            code = tool_fail(tool, GLINT_E_MEMORY, NULL);
+        /* the first one takes memory */
+        if (i > 0)
+            least_ms =
+                fmin(least_ms, report.plan_ms + report.bin_ms + report.draw_ms);
+    }
+    if (mem && code == EXIT_OK && report.stats.bundles > 0) {
+        cost = cost_of(&frame, &frame);
+        budget->calibrated_minsn = cost_minsn(&cost);
+        budget->ms_per_minsn = least_ms / budget->calibrated_minsn;
+    }
+    frame_finish(&frame);
+    free(mem);
+    return code;
+}
+
+/* The mean step, as steps are even within an octave. */
+int scene_steps(double quantum)
+{
+    return quantum > 0 ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / quantum)))
+                       : 0;
+}
+
+double scene_scale(const struct scene *scene)
+{
+    return scene->gain * exp2(scene->exposure_ev);
+}
+
+void scene_json(const struct frame_report *r)
+{
+    printf("\"lights\": %d, \"beyond_lights\": %d, \"apart_lights\": %d, "
+           "\"drawn_lights\": %d, "
+           "\"ghosts\": %d, \"bundles\": %d, "
+           "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
+           "\"peak_bytes\": %zu, \"refs\": %d, \"merged_cells\": %d, "
+           "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
+           "\"held_cells\": %d, \"held_samples\": %d, "
+           "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
+           "\"draw_ms\": %.3f",
+           r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
+           r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
+           r->arena_bytes, r->peak_bytes, r->stats.refs, r->stats.merged_cells,
+           r->stats.dropped_bundles, r->stats.dropped_cells,
+           r->stats.held_cells, r->held_samples, r->plan_ms, r->trace_ms,
+           r->bin_ms, r->draw_ms);
+    if (r->quality >= 0)
+        printf(", \"quality\": %.4f, \"predicted_ms\": %.3f, "
+               "\"calibrated_minsn\": %.4f",
+               r->quality, r->predicted_ms, r->calibrated_minsn);
+}
+
+void scene_lights_text(const struct frame_report *r, char text[64])
+{
+    if (r->drawn_lights < r->lights - r->beyond_lights)
+        snprintf(text, 64, "%d lights, %d after merging", r->lights,
+                 r->drawn_lights);
+    else
+        snprintf(text, 64, "%d lights", r->lights);
+}
+
+bool scene_memory(const char *text, size_t *bytes)
+{
+    int mib;
+
+    if (!tool_integer(text, 1, 1024, &mib))
+        return false;
+    *bytes = (size_t)mib << 20;
+    return true;
+}
+
+void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
+{
+    if (!tool->quiet && r->beyond_lights > 0)
+        fprintf(stderr,
+                "glint %s: %d of %d lights lie beyond the angle that the model "
+                "was baked for; they give nothing (bake --max-angle)\n",
+                tool->name, r->beyond_lights, r->lights);
+    if (!tool->quiet && r->drawn_lights < r->apart_lights)
+        fprintf(stderr,
+                "glint %s: %d lights that can be told apart were merged into "
+                "%d, the faint ones first (--max-lights)\n",
+                tool->name, r->apart_lights, r->drawn_lights);
+    if (r->stats.dropped_bundles > 0)
+        fprintf(stderr,
+                "glint %s: there was no room for %d bundles of rays, which are "
+                "missing: fewer lights or a smaller --grid would fit\n",
+                tool->name, r->stats.dropped_bundles);
+    if (r->stats.dropped_cells > 0)
+        fprintf(stderr,
+                "glint %s: there was no room for %d cells of rays, whose light "
+                "is missing (--memory)\n",
+                tool->name, r->stats.dropped_cells);
+}

@@ -1,0 +1,311 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The options that say what is drawn and how, for render and overlay alike.
+ */
+#ifndef GLINT_TOOLS_OPTIONS_SCENE_H
+#define GLINT_TOOLS_OPTIONS_SCENE_H
+
+#include "options/coating.h"
+#include "engine/frame.h"
+#include "model/model_file.h"
+#include "options/tool.h"
+
+enum { SCENE_MAX_LAMPS = 1024 }; /* by hand; a file may have more */
+
+/* What the integer engine's rays come from. */
+enum scene_rays { SCENE_RAYS_MODEL, SCENE_RAYS_EXACT };
+
+/* What is drawn for light of all wavelengths. */
+enum scene_waves {
+    SCENE_WAVES_LIST,  /* wavelength_nm */
+    SCENE_WAVES_COUNT, /* n_wavelengths of glint_spectrum() */
+    SCENE_WAVES_AUTO   /* for each ghost as many as it needs */
+};
+
+struct scene {
+    struct glint_prescription lens; /* of a model: name and film only */
+    struct model_file model;        /* closed for exact rays */
+    enum scene_rays rays;
+    double max_deg;   /* of the lamps that a model is baked for */
+    double tolerance; /* it is baked with */
+    struct glint_setup setup;
+    struct coating coating;
+    double f_number; /* 0: as the table says */
+    int n_blades;
+    double blade_rotation_deg;
+    double wavelength_nm[GLINT_MAX_WAVELENGTHS];
+    int n_wavelengths;
+    enum scene_waves waves;
+    double dispersion_px; /* of each ghost its own number: see struct frame */
+    double sensor_mm[2];  /* 0: the table's film */
+    double exposure_ev, gain;
+    int only_ghost;
+    int max_lights;         /* 0: not said */
+    double apart_px;        /* lights whose images are nearer are one */
+    double area_samples;    /* points of a lamp of some extent, at most */
+    int area_samples_asked; /* the same by hand; 0: as the quality has it */
+
+    int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
+    double merge_gamma, quantum, cull;
+    double whole_codes; /* see struct frame */
+    double quality;     /* as asked for, 0.5 by default */
+    double budget_ms;   /* 0: none */
+    int raster;         /* 0: by edges, 1: by cells */
+    enum glint_weights weights;
+    bool by_edges;          /* was asked for, not only what is done anyway */
+    bool half, always_half; /* as the ladder has it, or as was asked */
+    bool uniform, narrow, antialias, dither, has_exposure, balance;
+};
+
+/* Long options of this file, for a command's array; all above 1000. */
+enum scene_option {
+    OPT_F_NUMBER = 1000,
+    OPT_COATING,
+    OPT_STOP,
+    OPT_WAVELENGTHS,
+    OPT_DISPERSION,
+    OPT_SENSOR,
+    OPT_EXPOSURE,
+    OPT_GAIN,
+    OPT_GHOST,
+    OPT_GRID,
+    OPT_UNIFORM,
+    OPT_MERGE,
+    OPT_TILE,
+    OPT_COARSE,
+    OPT_RASTER,
+    OPT_WEIGHTS,
+    OPT_MASK,
+    OPT_NO_ANTIALIAS,
+    OPT_DITHER,
+    OPT_QUANTUM,
+    OPT_WHOLE,
+    OPT_HALF,
+    OPT_QUALITY,
+    OPT_ERROR,
+    OPT_BUDGET,
+    OPT_RAYS,
+    OPT_LANES,
+    OPT_CULL,
+    OPT_BALANCE,
+    OPT_ONLY,
+    OPT_MAX_LIGHTS,
+    OPT_AREA_SAMPLES,
+    OPT_APART,
+    OPT_LAST
+};
+
+#define SCENE_OPTIONS                                                \
+    {"f-number", required_argument, NULL, OPT_F_NUMBER},             \
+        {"coating", required_argument, NULL, OPT_COATING},           \
+        {"stop", required_argument, NULL, OPT_STOP},                 \
+        {"wavelengths", required_argument, NULL, OPT_WAVELENGTHS},   \
+        {"dispersion", required_argument, NULL, OPT_DISPERSION},     \
+        {"sensor", required_argument, NULL, OPT_SENSOR},             \
+        {"exposure", required_argument, NULL, OPT_EXPOSURE},         \
+        {"gain", required_argument, NULL, OPT_GAIN},                 \
+        {"ghost", required_argument, NULL, OPT_GHOST},               \
+        {"grid", required_argument, NULL, OPT_GRID},                 \
+        {"uniform-grid", no_argument, NULL, OPT_UNIFORM},            \
+        {"merge", required_argument, NULL, OPT_MERGE},               \
+        {"tile", required_argument, NULL, OPT_TILE},                 \
+        {"coarse", required_argument, NULL, OPT_COARSE},             \
+        {"raster", required_argument, NULL, OPT_RASTER},             \
+        {"weights", required_argument, NULL, OPT_WEIGHTS},           \
+        {"mask", required_argument, NULL, OPT_MASK},                 \
+        {"no-antialias", no_argument, NULL, OPT_NO_ANTIALIAS},       \
+        {"dither", no_argument, NULL, OPT_DITHER},                   \
+        {"quantum", required_argument, NULL, OPT_QUANTUM},           \
+        {"whole", required_argument, NULL, OPT_WHOLE},               \
+        {"half", no_argument, NULL, OPT_HALF},                       \
+        {"quality", required_argument, NULL, OPT_QUALITY},           \
+        {"error", required_argument, NULL, OPT_ERROR},               \
+        {"budget", required_argument, NULL, OPT_BUDGET},             \
+        {"rays", required_argument, NULL, OPT_RAYS},                 \
+        {"lanes", required_argument, NULL, OPT_LANES},               \
+        {"cull", required_argument, NULL, OPT_CULL},                 \
+        {"balance", no_argument, NULL, OPT_BALANCE},                 \
+        {"only", required_argument, NULL, OPT_ONLY},                 \
+        {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},     \
+        {"area-samples", required_argument, NULL, OPT_AREA_SAMPLES}, \
+    {                                                                \
+        "apart", required_argument, NULL, OPT_APART                  \
+    }
+
+/* What they do, for a command's help. */
+#define SCENE_HELP                                                             \
+    "The lens\n"                                                               \
+    "  --f-number N        stop it to f/N (default: the "                      \
+    "table's)\n" COATING_HELP                                                  \
+    "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the "      \
+    "first\n"                                                                  \
+    "                      corner at ROT degrees (default polygon:8)\n"        \
+    "  --wavelengths W     auto: of each ghost as many as it needs, 4 to 28 "  \
+    "(default\n"                                                               \
+    "                      of overlay, live and explain); N: so many, 1 to "   \
+    "32,\n"                                                                    \
+    "                      weighed to give the colours of all; or a list of "  \
+    "nm,\n"                                                                    \
+    "                      300 to 1100: three become R,G,B as they stand "     \
+    "(else the\n"                                                              \
+    "                      default: 650,532,450), any other number is "        \
+    "weighted by\n"                                                            \
+    "                      the CIE 1931 observer\n"                            \
+    "  --sensor WxH        mm (default: the film of the table); the picture\n" \
+    "                      is the largest of its shape that fits\n"            \
+    "  --ghost K           this ghost alone\n"                                 \
+    "  --only WHAT         ghosts | all; ghosts are all there is yet\n"        \
+    "Brightness\n"                                                             \
+    "  --exposure EV       stops; all light times 2^EV (default 0)\n"          \
+    "  --gain G            and times G (default 1)\n"                          \
+    "  --balance           measure each wavelength by its own direct image, "  \
+    "as\n"                                                                     \
+    "                      a camera balanced to white behind this lens\n"
+
+/* And what they give up accuracy for. */
+#define SPEED_HELP                                                             \
+    "Speed and accuracy of the integer engine\n"                               \
+    "  --max-lights N      lights that are drawn (default 128): more merge, "  \
+    "the\n"                                                                    \
+    "                      faint ones first; of --lights auto the N "          \
+    "strongest\n"                                                              \
+    "                      (default 16)\n"                                     \
+    "  --area-samples N    points that a lamp of visible extent is drawn as, " \
+    "1 to\n"                                                                   \
+    "                      4096, of the brightest lamp (default by "           \
+    "--quality:\n"                                                             \
+    "                      7, of a picture by itself 19); all lamps' "         \
+    "together\n"                                                               \
+    "                      are no more than --max-lights\n"                    \
+    "  --apart PX          lights whose images are nearer are one (default "   \
+    "0.125)\n"                                                                 \
+    "  --quality Q         0 to 1, or least, draft, default, high, finest: "   \
+    "what\n"                                                                   \
+    "                      is below, along the measured front of accuracy "    \
+    "over\n"                                                                   \
+    "                      time, and how exact a model is that has to be "     \
+    "baked;\n"                                                                 \
+    "                      exact: finest, and --rays exact\n"                  \
+    "  --error PX          instead: the least of these whose outlines are "    \
+    "off by\n"                                                                 \
+    "                      about so many pixels at most (0.1 by default)\n"    \
+    "  --budget MS         instead, of each frame: the most that takes so "    \
+    "many\n"                                                                   \
+    "                      milliseconds, as its plan tells\n"                  \
+    "  --dispersion PX     with --wavelengths auto: outlines of "              \
+    "neighbouring\n"                                                           \
+    "                      wavelengths may be so far apart, 0.1 to 100 "       \
+    "pixels,\n"                                                                \
+    "                      unless their light is less than a code (default "   \
+    "1); 0:\n"                                                                 \
+    "                      650,532,450 for all, as of --quality draft and "    \
+    "with\n"                                                                   \
+    "                      --budget\n"                                         \
+    "  --rays R            model: the lens's baked polynomials (default);\n"   \
+    "                      exact: traced for every frame\n"                    \
+    "  --lanes 16|32       bits a model's rays are computed with (default "    \
+    "32): 16 "                                                                 \
+    "is\n"                                                                     \
+    "                      0.03 pixel coarser, for vectors of twice the "      \
+    "lanes\n"                                                                  \
+    "  --cull CODES        in 8 bits: what stays so many codes near black, 0 " \
+    "to 16,\n"                                                                 \
+    "                      may be left out, and faint ghosts are drawn "       \
+    "coarser\n"                                                                \
+    "                      (default 0.125)\n"                                  \
+    "  --grid N            fineness of the ray grids, 4 to 1024: ghosts get "  \
+    "as\n"                                                                     \
+    "                      many cells a side as their bending asks for, 8 "    \
+    "to\n"                                                                     \
+    "                      4 N (default 64); the exact engine: N for all "     \
+    "(512)\n"                                                                  \
+    "  --uniform-grid      N cells a side for every ghost\n"                   \
+    "  --quantum P         by edges: a cell's irradiance is rounded to steps " \
+    "of P\n"                                                                   \
+    "                      percent, 0 (not) to 50 (default 1); edges "         \
+    "between\n"                                                                \
+    "                      cells of equal irradiance cost nothing\n"           \
+    "  --whole CODES       of pictures in codes: edges across which light "    \
+    "changes\n"                                                                \
+    "                      by less lie on whole pixels (default 4)\n"          \
+    "  --half              of pictures in codes: ghosts with half as many "    \
+    "pixels\n"                                                                 \
+    "                      each way; not with exact rays\n"                    \
+    "  --merge STEPS,GAMMA blocks of 2^STEPS cells (0 to 4) may become one\n"  \
+    "                      where edges agree within GAMMA (default 0,0)\n"     \
+    "  --tile N            small tiles of 8, 16, 32 or 64 pixels (default "    \
+    "64)\n"                                                                    \
+    "  --coarse N          large tiles of 64, 128 or 256 to sort into first, " \
+    "or\n"                                                                     \
+    "                      0 for none (default)\n"                             \
+    "  --raster R          edges: exact areas (default); cells: pixel "        \
+    "centres,\n"                                                               \
+    "                      which --merge, --coarse and the next three need\n"  \
+    "  --weights W         wachspress | loop-derose (default wachspress)\n"    \
+    "  --mask N            look the stop up in N x N signed distances\n"       \
+    "  --no-antialias      a pixel's centre decides, as published\n"           \
+    "  --dither            ordered dither when writing 8 bits\n"
+
+#define COMMON_HELP                                                           \
+    "Common\n"                                                                \
+    "  -j, --threads N     default: all processors; never changes a result\n" \
+    "  --kernels K         c | sse41 | avx2 | neon | auto: never changes a "  \
+    "result\n"                                                                \
+    "  --seed N            of the noise of live -d test; nothing else is "    \
+    "random\n"                                                                \
+    "  --json   -q   -v   --help   --version\n"
+
+void scene_defaults(struct scene *scene);
+
+/* Takes a scene option. -1: taken; -2: not one of these; else an exit code. */
+int scene_option(const struct tool *tool, struct scene *scene, int option,
+                 const char *value);
+
+/* "THETA,PHI[,POWER[,R,G,B[,SIZE]]]" */
+bool scene_lamp(const char *text, struct glint_lamp *lamp);
+
+/* Reads LENS, a table or a model, and prepares it. Of a table the model is
+ * baked where there is none yet, unless rays are exact. Returns an exit code.
+ */
+int scene_open(const struct tool *tool, struct scene *scene, const char *lens);
+
+void scene_close(struct scene *scene);
+
+struct glint_view scene_view(const struct scene *scene, int width, int height);
+
+/* Makes FRAME as the options say. Returns an exit code. */
+int scene_frame(const struct tool *tool, const struct scene *scene,
+                struct glint_view view, struct frame *frame);
+
+/* Steps of irradiance an octave for a quantum in percent. */
+int scene_steps(double quantum);
+
+/* TEXT of --memory, MiB, in bytes. */
+bool scene_memory(const char *text, size_t *bytes);
+
+#define SCENE_MEMORY_HELP                                                    \
+    "  --memory MIB        all that drawing the flare may take, 1 to 1024\n" \
+    "                      (default: what it needs); what does not fit is "  \
+    "left\n"                                                                 \
+    "                      out, with a word\n"
+
+/* Draws a lamp with SCENE's lens a few times, as large as VIEW, to see what an
+ * instruction takes here. */
+int scene_calibrate(const struct tool *tool, const struct scene *scene,
+                    struct glint_view view, struct budget *budget);
+
+/* gain * 2^EV */
+double scene_scale(const struct scene *scene);
+
+/* Prints the report of a frame as JSON members, without braces. */
+void scene_json(const struct frame_report *report);
+
+/* How many lights there were and are drawn, as text. */
+void scene_lights_text(const struct frame_report *report, char text[64]);
+
+/* Says on standard error if lights merged only because they were too many, and,
+ * however quiet, if a part of the flare is missing. */
+void scene_warn_lights(const struct tool *tool,
+                       const struct frame_report *report);
+
+#endif

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Scenes of a lens table: a model is baked, or found where it is kept.
+ */
+#include <math.h>
+
+#include "model/model_cache.h"
+#include "options/scene_table.h"
+
+struct glint_bake_options scene_bake_options(const struct scene *scene)
+{
+    const struct glint_prescription *l = &scene->lens;
+    const double film = hypot(l->film_width_mm, l->film_height_mm);
+    const double sensor = hypot(scene->sensor_mm[0], scene->sensor_mm[1]);
+    struct glint_bake_options o;
+
+    glint_bake_defaults(&o);
+    o.tolerance = scene->tolerance;
+    for (int i = 0; i < scene->n_wavelengths; i++) {
+        const double nm = scene->wavelength_nm[i];
+
+        o.band_nm[0] = fmin(o.band_nm[0], fmax(300, 10 * floor(nm / 10)));
+        o.band_nm[1] = fmax(o.band_nm[1], fmin(1100, 10 * ceil(nm / 10)));
+    }
+    if (sensor > film)
+        o.field_mm = 0.55 * sensor;
+    if (scene->max_deg > o.max_deg)
+        o.max_deg = 89;
+    return o;
+}
+
+int scene_open_table(const struct tool *tool, struct scene *scene,
+                     const char *name)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    const int code = tool_lens(tool, name, &scene->lens);
+
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&scene->coating, &scene->lens);
+    if (scene->f_number > 0)
+        status = glint_prescription_set_f_number(&scene->lens, scene->f_number,
+                                                 &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    return scene->rays == SCENE_RAYS_EXACT
+               ? EXIT_OK
+               : model_cached(tool, &scene->lens, scene_bake_options(scene),
+                              &scene->model);
+}
+
+enum glint_status scene_table_setup(struct scene *s, struct glint_error *error)
+{
+    return glint_setup_init(&s->setup, &s->lens, s->n_blades,
+                            s->blade_rotation_deg, s->wavelength_nm,
+                            s->n_wavelengths, error);
+}

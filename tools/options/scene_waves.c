@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/scene_waves.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Exact rays have no plan that could choose for each ghost. */
+enum { EXACT_WAVES = 9 };
+
+bool scene_take_waves(struct scene *s, const char *text)
+{
+    double nm[GLINT_MAX_WAVELENGTHS];
+    const int n = tool_numbers(text, nm, GLINT_MAX_WAVELENGTHS);
+    const bool is_count = n == 1 && nm[0] >= 1 &&
+                          nm[0] <= GLINT_MAX_WAVELENGTHS &&
+                          nm[0] == floor(nm[0]);
+
+    if (strcmp(text, "auto") == 0) {
+        s->waves = SCENE_WAVES_AUTO;
+        return true;
+    }
+    for (int i = 0; i < n && !is_count; i++)
+        if (nm[i] < 300 || nm[i] > 1100)
+            return false;
+    if (n == 0)
+        return false;
+    s->waves = is_count ? SCENE_WAVES_COUNT : SCENE_WAVES_LIST;
+    s->n_wavelengths = is_count ? (int)nm[0] : n;
+    memcpy(s->wavelength_nm, nm, sizeof nm);
+    return true;
+}
+
+void scene_choose_waves(struct scene *s)
+{
+    double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
+
+    if (s->waves == SCENE_WAVES_AUTO && s->rays == SCENE_RAYS_EXACT) {
+        s->waves = SCENE_WAVES_COUNT;
+        s->n_wavelengths = EXACT_WAVES;
+    }
+    if (s->waves == SCENE_WAVES_COUNT)
+        glint_spectrum(s->n_wavelengths, s->wavelength_nm, rgb, share);
+}
+
+void scene_weigh(struct scene *s)
+{
+    if (s->waves == SCENE_WAVES_COUNT)
+        glint_setup_weigh(&s->setup);
+    /* A model of the sparse basis holds its three wavelengths and no others. */
+    else if (s->waves == SCENE_WAVES_AUTO && s->model.data &&
+             s->model.lens.header->basis != GLINT_BASIS_SPARSE)
+        glint_setup_spread(&s->setup, &s->model.lens);
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/suggest.h"
+
+#include <string.h>
+
+static int least(int a, int b, int c)
+{
+    const int ab = a < b ? a : b;
+
+    return ab < c ? ab : c;
+}
+
+int suggest_distance(const char *a, const char *b)
+{
+    const int n = (int)strlen(a), m = (int)strlen(b);
+    int rows[3][SUGGEST_CHARS]; /* of i - 2, i - 1 and i */
+
+    if (n >= SUGGEST_CHARS || m >= SUGGEST_CHARS)
+        return SUGGEST_CHARS;
+    for (int k = 0; k <= m; k++)
+        rows[0][k] = k;
+    for (int i = 1; i <= n; i++) {
+        const int *before = rows[(i + 1) % 3], *last = rows[(i - 1) % 3];
+        int *row = rows[i % 3];
+
+        row[0] = i;
+        for (int k = 1; k <= m; k++) {
+            row[k] = least(last[k] + 1, row[k - 1] + 1,
+                           last[k - 1] + (a[i - 1] != b[k - 1]));
+            if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
+                row[k] = least(row[k], before[k - 2] + 1, row[k]);
+        }
+    }
+    return rows[n % 3][m];
+}
+
+void suggest_begin(struct suggest *s, const char *word)
+{
+    *s = (struct suggest){.word = word, .distance = SUGGEST_CHARS};
+}
+
+void suggest_try(struct suggest *s, const char *candidate, size_t n)
+{
+    char text[SUGGEST_CHARS];
+    int distance;
+
+    if (n == 0 || n >= sizeof text)
+        return;
+    memcpy(text, candidate, n);
+    text[n] = '\0';
+    distance = suggest_distance(s->word, text);
+    if (distance > 1 && strlen(s->word) >= 3 && strstr(text, s->word))
+        distance = 1;
+    if (distance >= s->distance)
+        return;
+    s->distance = distance;
+    memcpy(s->best, text, n + 1);
+}
+
+const char *suggest_best(const struct suggest *s)
+{
+    const int allowed = (int)strlen(s->best) / 3;
+
+    return s->distance <= (allowed > 1 ? allowed : 1) ? s->best : NULL;
+}
+
+/* ------------------------------------------------------------------ options */
+
+static char **line;
+
+void suggest_line(char **argv)
+{
+    line = argv;
+}
+
+/* Offers every --word of a help text. */
+static void try_options(struct suggest *s, const char *help)
+{
+    const char *at = help;
+
+    while (at && (at = strstr(at, "--"))) {
+        const size_t n = strspn(at + 2, "abcdefghijklmnopqrstuvwxyz-");
+
+        suggest_try(s, at + 2, n);
+        at += 2 + n;
+    }
+}
+
+/* The name of the long option that getopt_long took last, without a value. */
+static bool last_option(char name[SUGGEST_CHARS])
+{
+    const char *text = line && optind > 0 ? line[optind - 1] : NULL;
+    size_t n;
+
+    if (!text || strncmp(text, "--", 2) != 0)
+        return false;
+    n = strcspn(text + 2, "=");
+    if (n == 0 || n >= SUGGEST_CHARS)
+        return false;
+    memcpy(name, text + 2, n);
+    name[n] = '\0';
+    return true;
+}
+
+void suggest_option(const struct tool *tool)
+{
+    struct suggest s;
+    char name[SUGGEST_CHARS];
+
+    if (last_option(name)) {
+        suggest_begin(&s, name);
+        try_options(&s, tool->help);
+        try_options(&s, tool->help_end);
+        try_options(&s, tool->help_last);
+        if (suggest_best(&s) && s.distance > 0)
+            fprintf(stderr, "Did you mean --%s? ", s.best);
+    }
+    fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
+}

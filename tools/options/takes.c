@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/takes.h"
+
+#include <string.h>
+
+static const struct {
+    const char *command; /* NULL: any */
+    const char *option, *takes;
+} table[] = {
+    /* An option that takes something else in one command comes before the row
+     * for any command, as the first row that fits is taken. */
+    {"bake", "max-angle", "degrees, 1 to 89"},
+    {"bench", "format", "yuyv, i420, nv12, rgb24, xrgb8888 or rgb565"},
+    {"explain", "top", "a whole number, from 0"},
+    {"live", "count", "frames, from 1"},
+    {"live", "device",
+     "/dev/videoN, a number, the name of a .y4m file, - or test"},
+    {"live", "fit", "scale or centre"},
+    {"live", "format", "a FOURCC such as YUYV, NV12 or MJPG"},
+    {"live", "output",
+     "fb[:/dev/fb0], window, y4m:FILE, y4m:-, v4l2:/dev/videoN or null"},
+    {"render", "light",
+     "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
+    {"sweep", "angle", "up to 8 angles of 0 to 60 degrees, with commas"},
+    {"sweep", "lights", "up to 8 whole numbers of 1 to 10000, with commas"},
+    {"sweep", "repeat", "rounds, from 1"},
+    {"sweep", "size", "up to 8 sizes WxH, with commas"},
+    {"trace", "angle", "degrees, between -90 and 90"},
+    {"trace", "ghost", "a ghost's number, or -1 for the direct path"},
+    {"trace", "grid", "a whole number, 1 to 4096"},
+
+    {NULL, "apart", "pixels, 0 to 1000"},
+    {NULL, "area-samples", "a whole number, 1 to 4096"},
+    {NULL, "band", "two wavelengths LO,HI in nm, within 300 to 1100"},
+    {NULL, "basis", "auto or sparse"},
+    {NULL, "budget", "milliseconds, above 0 and up to 1000000"},
+    {NULL, "budgets", "numbers of milliseconds above 0, with commas"},
+    {NULL, "buffers", "a whole number, 2 to 32"},
+    {NULL, "coarse", "0, 64, 128 or 256 pixels"},
+    {NULL, "cost", "time or instructions"},
+    {NULL, "cull", "codes, 0 to 16"},
+    {NULL, "dispersion", "0, or 0.1 to 100 pixels"},
+    {NULL, "engine", "model or exact"},
+    {NULL, "error", "pixels, above 0"},
+    {NULL, "exact-grid", "an even number, 4 to 1024"},
+    {NULL, "exposure", "stops, -100 to 100, or of compare also auto"},
+    {NULL, "f-number", "a number above 0"},
+    {NULL, "field", "millimetres, above 0"},
+    {NULL, "fps", "N or N/D, frames a second, from 1"},
+    {NULL, "gain", "a factor, from 0"},
+    {NULL, "ghost", "a ghost's number, from 0 (glint info lists them)"},
+    {NULL, "grid", "a whole number, 4 to 1024"},
+    {NULL, "headroom", "stops, 0 to 40"},
+    {NULL, "input", "a number, 0 to 255"},
+    {NULL, "io", "auto, mmap, userptr or read"},
+    {NULL, "kernels", "c, sse41, avx2, neon or auto, as this processor has it"},
+    {NULL, "lanes", "16 or 32"},
+    {NULL, "jpeg-quality", "a whole number, 1 to 100"},
+    {NULL, "layer", "composite, flare or flare-alpha"},
+    {NULL, "light",
+     "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},
+    {NULL, "light-at",
+     "X,Y[,EV]: pixels from the top left corner, within a million, and stops "
+     "over white, -40 to 90"},
+    {NULL, "mask", "a whole number, 2 to 4096"},
+    {NULL, "matrix", "auto, 601 or 709"},
+    {NULL, "max-lights", "a whole number, 1 to 1048576"},
+    {NULL, "memory", "MiB, 1 to 1024"},
+    {NULL, "merge", "STEPS,GAMMA: 0 to 4 and 0 to 1"},
+    {NULL, "only", "ghosts or all"},
+    {NULL, "picture", "codes or linear"},
+    {NULL, "quality", "0 to 1, or least, draft, default, high, finest, exact"},
+    {NULL, "quantum", "percent, 0 to 50"},
+    {NULL, "range", "auto, full or limited"},
+    {NULL, "raster", "edges or cells"},
+    {NULL, "rays", "model or exact"},
+    {NULL, "repeat", "a whole number, from 1"},
+    {NULL, "seed", "a whole number, 0 to 2147483647"},
+    {NULL, "sensor", "WxH in mm, 0.1 to 1000 each"},
+    {NULL, "show", "lights"},
+    {NULL, "size", "WxH in pixels, each from 1"},
+    {NULL, "skip", "frames, from 0"},
+    {NULL, "snapshot", "a file name with one %d, such as shot-%03d.ppm"},
+    {NULL, "sort", "light, work or number"},
+    {NULL, "start-number", "a whole number, 0 to 1000000000"},
+    {NULL, "stats", "auto, line, json or none"},
+    {NULL, "stop", "circle, or polygon:N[,DEGREES] with N 3 to 64"},
+    {NULL, "threads", "a whole number, from 1"},
+    {NULL, "strength", "0 to 100"},
+    {NULL, "threshold",
+     "EV[,EV]: stops from white, each -20 to 0, the second no higher"},
+    {NULL, "tile", "8, 16, 32 or 64 pixels"},
+    {NULL, "tolerance", "a factor, 0.1 to 100"},
+    {NULL, "wavelength", "nm, 300 to 1100; 0.55 micrometres are 550"},
+    {NULL, "wavelengths",
+     "auto, a number of 1 to 32, or wavelengths of 300 to 1100 nm; 0.55 "
+     "micrometres are 550"},
+    {NULL, "weights", "wachspress or loop-derose"},
+    {NULL, "whole", "codes, 0 to 100"},
+};
+
+const char *takes_of(const char *command, const char *option)
+{
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (strcmp(table[i].option, option) == 0 &&
+            (!table[i].command || strcmp(table[i].command, command) == 0))
+            return table[i].takes;
+    return NULL;
+}
+
+int tool_refuse(const struct tool *tool, const char *option, const char *value)
+{
+    const char *takes = takes_of(tool->name, option);
+
+    return tool_usage(tool, "--%s: '%s' is not something it takes%s%s", option,
+                      value, takes ? ": " : "", takes ? takes : "");
+}

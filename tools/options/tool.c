@@ -1,0 +1,429 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/tool.h"
+
+#include "model/lens_files.h"
+#include "model/model_file.h"
+#include "options/suggest.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "linux/sets.h"
+#include "posix/error.h"
+#include "posix/input.h"
+#include "posix/output.h"
+#include "posix/utf8.h"
+#include "posix/workers.h"
+
+int tool_usage(const struct tool *tool, const char *format, ...)
+{
+    va_list args;
+
+    fprintf(stderr, "glint %s: ", tool->name);
+    if (tool->where)
+        fprintf(stderr, "%s: ", tool->where);
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    if (tool->where) {
+        fputc('\n', stderr);
+        return EXIT_INPUT;
+    }
+    fprintf(stderr, "\nTry 'glint %s --help'.\n", tool->name);
+    return EXIT_USAGE;
+}
+
+int tool_fail(const struct tool *tool, enum glint_status status,
+              const char *text)
+{
+    static const int code[] = {[GLINT_OK] = EXIT_OK,
+                               [GLINT_E_ARGUMENT] = EXIT_USAGE,
+                               [GLINT_E_MEMORY] = EXIT_RUNTIME,
+                               [GLINT_E_FORMAT] = EXIT_INPUT,
+                               [GLINT_E_UNSUPPORTED] = EXIT_INPUT,
+                               [GLINT_E_LENS] = EXIT_LENS,
+                               [GLINT_E_IO] = EXIT_INPUT,
+                               [GLINT_E_OUTPUT] = EXIT_OUTPUT,
+                               [GLINT_E_CLOSED] = EXIT_OK,
+                               [GLINT_E_DEVICE] = EXIT_DEVICE};
+
+    if (status == GLINT_E_CLOSED) /* the reader had enough: no failure */
+        return EXIT_OK;
+    fprintf(stderr, "glint %s: %s\n", tool->name,
+            text && *text ? text : glint_status_text(status));
+    return code[status];
+}
+
+static int show_version(void)
+{
+    const unsigned sets = glint_system_sets();
+
+    printf("glint %s (kernels: c%s%s%s; MIT licence)\n", GLINT_VERSION,
+           sets & GLINT_SET_SSE41 ? " sse41" : "",
+           sets & GLINT_SET_AVX2 ? " avx2" : "",
+           sets & GLINT_SET_NEON ? " neon" : "");
+    return EXIT_OK;
+}
+
+/* The instruction sets that a word allows. */
+static bool take_sets(struct tool *tool, const char *value)
+{
+    static const char *const words[] = {"c",    "sse41", "avx2",
+                                        "neon", "auto",  NULL};
+    static const unsigned sets[] = {0, GLINT_SET_SSE41,
+                                    GLINT_SET_SSE41 | GLINT_SET_AVX2,
+                                    GLINT_SET_NEON, ~0U};
+    const int word = tool_word(value, words);
+
+    if (word < 0 || (word < 4 && (sets[word] & ~glint_system_sets())))
+        return false;
+    tool->sets_off = ~sets[word];
+    tool->kernels = words[word];
+    return true;
+}
+
+int tool_option(struct tool *tool, int option, const char *value)
+{
+    switch (option) {
+    case 'h':
+        fputs(tool->help, stdout);
+        if (tool->help_end)
+            fputs(tool->help_end, stdout);
+        if (tool->help_last)
+            fputs(tool->help_last, stdout);
+        return EXIT_OK;
+    case 'V':
+        return show_version();
+    case 'q':
+        tool->quiet = true;
+        return -1;
+    case 'v':
+        tool->verbose++;
+        return -1;
+    case 'J':
+        tool->json = true;
+        return -1;
+    case 'j':
+        if (tool_integer(value, 1, GLINT_MAX_WORKERS, &tool->n_threads))
+            return -1;
+        return tool_usage(tool, "--threads takes 1 to %d, not '%s'",
+                          GLINT_MAX_WORKERS, value);
+    case 'K':
+        if (take_sets(tool, value))
+            return -1;
+        return tool_usage(tool,
+                          "--kernels takes c, auto or what this CPU has "
+                          "(glint --version), not '%s'",
+                          value);
+    case 'S':
+        if (tool_integer(value, 0, INT_MAX, &tool->seed))
+            return -1;
+        return tool_usage(tool, "--seed takes a whole number, not '%s'", value);
+    default: /* getopt_long has said what is wrong */
+        suggest_option(tool);
+        return EXIT_USAGE;
+    }
+}
+
+const char *tool_value_of(int argc, char **argv, const char *shorts,
+                          const struct option *options, int option)
+{
+    const char *value = NULL;
+    int c;
+
+    opterr = 0;
+    optind = 0; /* glibc and musl: from the start, with nothing remembered */
+    while ((c = getopt_long(argc, argv, shorts, options, NULL)) >= 0)
+        if (c == option)
+            value = optarg;
+    opterr = 1;
+    optind = 0;
+    return value;
+}
+
+int tool_start(struct tool *tool)
+{
+    const int n = tool->n_threads ? tool->n_threads : glint_cpu_count();
+    const enum glint_status status = glint_pool_create(&tool->workers, n);
+
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    if (tool->n_threads > tool->workers->n && !tool->quiet)
+        fprintf(stderr,
+                "glint %s: %d of %d threads, as the system gives no more\n",
+                tool->name, tool->workers->n, n);
+    return EXIT_OK;
+}
+
+void tool_finish(struct tool *tool)
+{
+    glint_pool_destroy(tool->workers);
+    tool->workers = NULL;
+}
+
+static volatile sig_atomic_t reader_gone;
+
+static void note_reader(int signal_number)
+{
+    (void)signal_number;
+    reader_gone = 1;
+}
+
+void tool_watch_reader(void)
+{
+    struct sigaction note = {.sa_handler = note_reader};
+
+    sigaction(SIGPIPE, &note, NULL); /* the write fails, too */
+}
+
+int tool_end(int code)
+{
+    errno = 0;
+    if ((fflush(stdout) == 0 && !ferror(stdout)) || reader_gone)
+        return code;
+    fprintf(stderr, "glint: standard output: %s\n",
+            errno ? strerror(errno) : "write failed");
+    return code == EXIT_OK ? EXIT_OUTPUT : code;
+}
+
+unsigned tool_sets(const struct tool *tool)
+{
+    return glint_system_sets() & ~tool->sets_off;
+}
+
+/* ------------------------------------------------------------------ numbers */
+
+bool tool_number(const char *text, double *value)
+{
+    char *end;
+
+    *value = strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*value);
+}
+
+int tool_numbers(const char *text, double *values, int max)
+{
+    for (int n = 0; n < max;) {
+        char *end;
+
+        values[n] = strtod(text, &end);
+        if (end == text || !isfinite(values[n]))
+            return 0;
+        n++;
+        if (*end == '\0')
+            return n;
+        if (*end != ',')
+            return 0;
+        text = end + 1;
+    }
+    return 0;
+}
+
+bool tool_integer(const char *text, int low, int high, int *value)
+{
+    char *end;
+    long n;
+
+    errno = 0;
+    n = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || errno || n < low || n > high)
+        return false;
+    *value = (int)n;
+    return true;
+}
+
+bool tool_size(const char *text, int *width, int *height)
+{
+    char first[12];
+    const char *x = strchr(text, 'x');
+
+    if (!x || x - text >= (ptrdiff_t)sizeof first)
+        return false;
+    memcpy(first, text, (size_t)(x - text));
+    first[x - text] = '\0';
+    return tool_integer(first, 1, GLINT_MAX_SIDE, width) &&
+           tool_integer(x + 1, 1, GLINT_MAX_SIDE, height);
+}
+
+int tool_word(const char *text, const char *const *words)
+{
+    for (int i = 0; words[i]; i++)
+        if (strcmp(text, words[i]) == 0)
+            return i;
+    return -1;
+}
+
+double tool_seconds(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+int tool_check_output(const struct tool *tool, const char *path)
+{
+    struct glint_error error = {""};
+    const char *const slash = strrchr(path, '/'), *pattern = strchr(path, '%');
+
+    if (slash && pattern && pattern < slash) /* folders by number */
+        return EXIT_OK;
+    if (glint_output_check(path, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+/* -------------------------------------------------------------------- lens */
+
+static bool offer(void *suggest, const char *name)
+{
+    suggest_try(suggest, name, strlen(name));
+    return true;
+}
+
+static int no_lens(const struct tool *tool, const char *name)
+{
+    struct suggest s;
+
+    if (access(name, F_OK) == 0) {
+        fprintf(stderr,
+                "glint %s: %s: no lens that comes with glint has this name; "
+                "the file is ./%s\n",
+                tool->name, name, name);
+        return EXIT_LENS;
+    }
+    suggest_begin(&s, name);
+    lens_files_each(offer, &s);
+    fprintf(stderr,
+            "glint %s: %s: neither a file nor a lens that comes with glint "
+            "(%s%s)\n",
+            tool->name, name,
+            suggest_best(&s) ? "did you mean " : "glint lenses lists them",
+            suggest_best(&s) ? s.best : "");
+    return EXIT_LENS;
+}
+
+/* Pictures and the like are no tables, which a line and column of one would
+ * not say. */
+static enum glint_status parse_table(const char *file,
+                                     struct glint_prescription *lens,
+                                     struct glint_error *error)
+{
+    enum glint_status status;
+    uint8_t *text = NULL;
+    size_t bytes = 0;
+
+    status = glint_input_slurp(&text, &bytes, file, 1 << 20, error);
+    if (status == GLINT_E_UNSUPPORTED ||
+        (status == GLINT_OK && bytes > 0 && memchr(text, 0, bytes)))
+        status = glint_error_report(error, GLINT_E_FORMAT, file,
+                                    "is no lens table; glint lenses lists "
+                                    "those that come with glint");
+    else if (status == GLINT_OK)
+        status = glint_prescription_parse(lens, (const char *)text, bytes, file,
+                                          error);
+    free(text);
+    return status;
+}
+
+int tool_lens(const struct tool *tool, const char *argument,
+              struct glint_prescription *lens)
+{
+    struct glint_error error = {""};
+    char path[1024];
+    const char *file = argument;
+    enum glint_status status;
+
+    if (!tool_is_file_name(argument)) {
+        if (!lens_file_find(argument, path, sizeof path))
+            return no_lens(tool, argument);
+        file = path;
+    }
+    if (tool_is_model(file)) {
+        fprintf(stderr,
+                "glint %s: %s: a baked model; this needs the lens table\n",
+                tool->name, file);
+        return EXIT_LENS;
+    }
+    status = parse_table(file, lens, &error);
+    if (status == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, status, error.text);
+    return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
+}
+
+/* ----------------------------------------------------------------- progress */
+
+void tool_progress_start(struct tool_progress *p, const struct tool *tool,
+                         const char *what)
+{
+    p->what = what;
+    p->started = tool_seconds();
+    p->last = 0;
+    p->shown = !tool->quiet;
+    p->is_terminal = isatty(STDERR_FILENO);
+}
+
+/* A line now and then, where there is no terminal to draw a bar on. */
+static void show_line(struct tool_progress *p, double now, double done)
+{
+    const double spent = now - p->started;
+
+    if (spent < 10 || now - p->last < 10 || done <= 0 || done >= 1)
+        return;
+    p->last = now;
+    fprintf(stderr, "%s: %.0f %% in %.0f s, about %.0f s left\n", p->what,
+            100 * done, spent, spent * (1 - done) / done);
+}
+
+void tool_progress_show(void *progress, double done)
+{
+    struct tool_progress *p = progress;
+    const double now = tool_seconds(), spent = now - p->started;
+    const int width = 30, filled = (int)(done * width);
+    char bar[32];
+
+    if (p->shown && !p->is_terminal)
+        show_line(p, now, done);
+    if (!p->shown || !p->is_terminal || (now - p->last < 0.1 && done < 1))
+        return;
+    p->last = now;
+    for (int i = 0; i < width; i++)
+        bar[i] = i < filled ? '#' : '.';
+    bar[width] = '\0';
+    fprintf(stderr, "\r%s [%s] %3.0f %%  %.0f s left \033[K", p->what, bar,
+            100 * done, done > 0.01 ? spent * (1 - done) / done : 0);
+    fflush(stderr);
+}
+
+void tool_progress_end(struct tool_progress *p)
+{
+    if (p->shown && p->is_terminal && p->last > 0)
+        fputs("\r\033[K", stderr);
+}
+
+void tool_json_string(FILE *file, const char *text)
+{
+    fputc('"', file);
+    while (*text) {
+        const unsigned char c = (unsigned char)*text;
+        const size_t length = glint_utf8_length(text);
+
+        if (c == '"' || c == '\\')
+            fputc('\\', file);
+        if (length)
+            fwrite(text, 1, length, file);
+        else
+            fprintf(file, "\\u%04x", c < 0x80 ? c : 0xfffdu);
+        text += length ? length : 1;
+    }
+    fputc('"', file);
+}

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What all commands share: common options, exit codes, errors, progress, and
+ * the reading of numbers and lens files.
+ */
+#ifndef GLINT_TOOLS_OPTIONS_TOOL_H
+#define GLINT_TOOLS_OPTIONS_TOOL_H
+
+#include <getopt.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "glint/glint.h"
+
+enum exit_code {
+    EXIT_OK = 0,
+    EXIT_RUNTIME = 1,
+    EXIT_USAGE = 2,
+    EXIT_INPUT = 3,
+    EXIT_DEVICE = 4,
+    EXIT_LENS = 5,
+    EXIT_OUTPUT = 6
+};
+
+struct tool {
+    const char *name;      /* of the command */
+    const char *help;      /* its text, */
+    const char *help_end;  /* more of it, or NULL, */
+    const char *help_last; /* and more: strings of C99 end at 4095 bytes */
+    bool json, quiet;
+    int verbose;
+    int n_threads;
+    int seed;            /* of all that is random: the noise of live -d test */
+    unsigned sets_off;   /* instruction sets not to use */
+    const char *kernels; /* what --kernels said, or NULL */
+    struct glint_workers *workers; /* made by tool_start */
+    const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
+                          command line */
+};
+
+/* Options that every command takes, for its struct option array. */
+#define TOOL_COMMON_SHORT "hVqvj:"
+#define TOOL_COMMON_OPTIONS                                                    \
+    {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'V'},     \
+        {"quiet", no_argument, NULL, 'q'},                                     \
+        {"verbose", no_argument, NULL, 'v'}, {"json", no_argument, NULL, 'J'}, \
+        {"threads", required_argument, NULL, 'j'},                             \
+        {"kernels", required_argument, NULL, 'K'},                             \
+        {"seed", required_argument, NULL, 'S'},                                \
+    {                                                                          \
+        NULL, 0, NULL, 0                                                       \
+    }
+
+/* Takes a common option. Returns -1 to go on, else the exit code to leave with
+ * (EXIT_OK after --help). An unknown option is a usage error. */
+int tool_option(struct tool *tool, int option, const char *value);
+
+/* Makes the workers. */
+int tool_start(struct tool *tool);
+void tool_finish(struct tool *tool);
+
+/* At the start and the end of a program: what was printed must have arrived,
+ * unless the reader has had enough. CODE, or EXIT_OUTPUT. */
+void tool_watch_reader(void);
+int tool_end(int code);
+
+/* Instruction sets for the kernels. */
+unsigned tool_sets(const struct tool *tool);
+
+/* The value of the last option in ARGV that getopt_long would return as OPTION,
+ * or NULL, before any is taken: getopt_long starts afresh afterwards. */
+const char *tool_value_of(int argc, char **argv, const char *shorts,
+                          const struct option *options, int option);
+
+/* Prints "glint COMMAND: ..." and returns the code: of usage EXIT_USAGE, or
+ * EXIT_INPUT where the option comes from a file. */
+int tool_usage(const struct tool *tool, const char *format, ...);
+int tool_fail(const struct tool *tool, enum glint_status status,
+              const char *text);
+
+/* ------------------------------------------------------------------ numbers */
+
+/* All of TEXT is a finite number, or N of them with commas (at most MAX);
+ * return how many there were, 0 on failure. */
+bool tool_number(const char *text, double *value);
+int tool_numbers(const char *text, double *values, int max);
+
+/* All of TEXT is an integer within LOW .. HIGH. */
+bool tool_integer(const char *text, int low, int high, int *value);
+
+/* "WxH" */
+bool tool_size(const char *text, int *width, int *height);
+
+/* Which of the NULL-terminated WORDS it is, or -1. */
+int tool_word(const char *text, const char *const *words);
+
+/* Seconds since some moment. */
+double tool_seconds(void);
+
+/* -------------------------------------------------------------------- lens */
+
+/* Refuses PATH, where no file can be created, before a lens is baked: EXIT_OK
+ * or EXIT_OUTPUT, said. The last part of it may be a pattern. */
+int tool_check_output(const struct tool *tool, const char *path);
+
+/* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
+ * Returns an exit code; has printed on failure. */
+int tool_lens(const struct tool *tool, const char *argument,
+              struct glint_prescription *lens);
+
+/* ----------------------------------------------------------------- progress */
+
+/* A bar on a terminal's standard error, elsewhere a line every ten seconds. CTX
+ * is a struct tool_progress. */
+struct tool_progress {
+    const char *what;
+    bool shown, is_terminal;
+    double started, last;
+};
+
+void tool_progress_start(struct tool_progress *p, const struct tool *tool,
+                         const char *what);
+void tool_progress_show(void *progress, double done);
+void tool_progress_end(struct tool_progress *p);
+
+/* Writes TEXT as a JSON string. */
+void tool_json_string(FILE *file, const char *text);
+
+/* Commands. ARGV[0] is the command's name. Return the exit code. */
+int cmd_info(int argc, char **argv);
+int cmd_trace(int argc, char **argv);
+int cmd_render(int argc, char **argv);
+int cmd_overlay(int argc, char **argv);
+int cmd_explain(int argc, char **argv);
+int cmd_compare(int argc, char **argv);
+int cmd_live(int argc, char **argv);
+int cmd_bake(int argc, char **argv);
+int cmd_bench(int argc, char **argv);
+int cmd_sweep(int argc, char **argv);
+int cmd_lenses(int argc, char **argv);
+
+#endif

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * child.h - programs that glint runs beside itself, at the end of a pipe.
+ *
+ *     child_start(&child, argv, CHILD_WRITES, &error);     child.fd is read
+ *     ...
+ *     child_end(&child);                                   its exit status
+ *
+ * No shell takes part, so names need no quotes. What the program says on
+ * standard error goes where ours goes. It is killed when glint dies or gives
+ * it up, and its status is always taken.
+ */
+#ifndef GLINT_TOOLS_OVERLAY_CHILD_H
+#define GLINT_TOOLS_OVERLAY_CHILD_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+#include "glint/status.h"
+
+enum child_pipe {
+    CHILD_WRITES, /* its standard output is our FD, its input is empty */
+    CHILD_READS   /* its standard input is our FD, its output goes nowhere */
+};
+
+struct child {
+    pid_t pid; /* 0: none */
+    int fd;    /* our end of the pipe; -1: closed */
+};
+
+/* Whether NAME is a program of $PATH. */
+bool child_exists(const char *name);
+
+/* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:
+ * it is not there. GLINT_E_IO: no processes or descriptors to be had. */
+enum glint_status child_start(struct child *child, const char *const *argv,
+                              enum child_pipe kind, struct glint_error *error);
+
+/* Closes the pipe and waits for the end. Returns the exit status, or 128 and
+ * the signal that killed it; 0 of none. */
+int child_end(struct child *child);
+
+/* Kills it, if there is one, and takes its status. */
+void child_kill(struct child *child);
+
+#endif

@@ -1,0 +1,369 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint overlay: the flare of the lamps in a picture or video, on top of it.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "overlay/overlay_line.h"
+#include "overlay/overlay_y4m.h"
+#include "options/takes.h"
+#include "formats/kept.h"
+#include "posix/error.h"
+#include "posix/target.h"
+
+static const char help[] =
+    "glint overlay IN -o OUT [options]\n"
+    "\n"
+    "Puts the ghosts of a lens on top of IN, in linear light:\n"
+    "  a picture         .ppm; with the image plug-in .png .jpg and more\n"
+    "  a sequence        frames/%04d.ppm -> out/%04d.ppm, all that are there;\n"
+    "                    numbers that are missing are said\n"
+    "  a video           .y4m, or - for standard input and output, by itself;\n"
+    "                    .mp4 .mkv .mov .webm .avi .mpg, animated .gif and "
+    "more\n"
+    "                    through the ffmpeg that is installed: sound is "
+    "copied,\n"
+    "                    rate and colours are kept\n"
+    "\n"
+    "  -o, --output OUT\n" LOOK_HELP
+    "  --range R           auto | full | limited codes of a video\n"
+    "  --matrix M          auto | 601 | 709\n"
+    "  --encode OPTIONS    of ffmpeg for the pictures it writes, in place of\n"
+    "                      glint's (H.264: -crf 18): '-c:v libx265 -crf 20'\n"
+    "  --start-number N    first of a sequence (default: 0 or 1, as "
+    "found)\n"
+    "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
+    "input's,\n"
+    "                      else 95)\n" SCENE_MEMORY_HELP;
+
+static const char help_end[] = SCENE_HELP;
+static const char help_last[] = SPEED_HELP COMMON_HELP;
+
+/* ------------------------------------------------------------------ options */
+
+static bool take_word(const char *text, const char *const *words, int *value)
+{
+    *value = tool_word(text, words);
+    return *value >= 0;
+}
+
+static bool take(struct overlay *o, int option, const char *value)
+{
+    static const char *const ranges[] = {"auto", "full", "limited", NULL};
+    static const char *const matrices[] = {"auto", "601", "709", NULL};
+
+    switch (option) {
+    case 'r':
+        return take_word(value, ranges, &o->range);
+    case 'x':
+        return take_word(value, matrices, &o->matrix);
+    case 'Q':
+        return tool_integer(value, 1, 100, &o->quality);
+    case 'm':
+        return scene_memory(value, &o->look.reserve_bytes);
+    default: /* 'n' */
+        return tool_integer(value, 0, 1000000000, &o->start_number);
+    }
+}
+
+static const struct option options[] = {
+    {"output", required_argument, NULL, 'o'},
+    {"range", required_argument, NULL, 'r'},
+    {"matrix", required_argument, NULL, 'x'},
+    {"start-number", required_argument, NULL, 'n'},
+    {"jpeg-quality", required_argument, NULL, 'Q'},
+    {"encode", required_argument, NULL, 'e'},
+    {"memory", required_argument, NULL, 'm'},
+    LOOK_OPTIONS,
+    TOOL_COMMON_OPTIONS};
+
+static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
+{
+    int c, code, index = 0;
+
+    while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
+                            &index)) >= 0) {
+        code = look_option(tool, &o->look, c, optarg);
+        if (code >= 0)
+            return code;
+        if (code == -1)
+            continue;
+        if (c == 'o')
+            o->output = optarg;
+        else if (c == 'e')
+            o->encode = optarg;
+        else if (strchr("rxnQm", c)) {
+            if (!take(o, c, optarg))
+                return tool_refuse(tool, options[index].name, optarg);
+        } else if ((code = tool_option(tool, c, optarg)) >= 0)
+            return code;
+    }
+    if (optind == argc)
+        return tool_usage(tool, "needs a picture, a sequence or a video");
+    if (optind + 1 != argc)
+        return tool_usage(tool,
+                          o->output ? "takes one input; '%s' is too much"
+                                    : "takes one input; where that goes "
+                                      "follows -o: -o '%s'",
+                          argv[argc - 1]);
+    if (!o->output)
+        return tool_usage(tool, "needs -o OUT");
+    o->input = argv[optind];
+    if (o->look.reserve_bytes && o->look.scene.rays == SCENE_RAYS_EXACT)
+        return tool_usage(tool, "--memory is for models, not for exact rays");
+    return -1;
+}
+
+/* -------------------------------------------------------------------- frame */
+
+static void say_frame(const struct overlay *o)
+{
+    char lights[64];
+
+    scene_lights_text(&o->look.report, lights);
+    fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
+            o->look.n_frames - 1, lights, o->look.report.ghosts,
+            o->look.report.stats.primitives);
+}
+
+static void note_worst(struct frame_report *worst,
+                       const struct frame_report *report)
+{
+    const int dropped =
+        worst->stats.dropped_bundles > report->stats.dropped_bundles
+            ? worst->stats.dropped_bundles
+            : report->stats.dropped_bundles;
+    const int cells = worst->stats.dropped_cells > report->stats.dropped_cells
+                          ? worst->stats.dropped_cells
+                          : report->stats.dropped_cells;
+    const int beyond = worst->beyond_lights > report->beyond_lights
+                           ? worst->beyond_lights
+                           : report->beyond_lights;
+    const int lights =
+        worst->lights > report->lights ? worst->lights : report->lights;
+
+    if (report->apart_lights - report->drawn_lights >
+        worst->apart_lights - worst->drawn_lights)
+        *worst = *report;
+    worst->stats.dropped_bundles = dropped;
+    worst->stats.dropped_cells = cells;
+    worst->lights = lights;
+    worst->beyond_lights = beyond;
+}
+
+static enum glint_status draw_in_place(void *ctx, struct look *look,
+                                       const struct glint_image *image,
+                                       int32_t elapsed_us)
+{
+    (void)ctx;
+    return look_draw(look, image, elapsed_us);
+}
+
+int overlay_draw(struct tool *tool, struct overlay *o,
+                 const struct glint_image *image)
+{
+    return overlay_draw_by(tool, o, image, draw_in_place, NULL);
+}
+
+int overlay_draw_by(struct tool *tool, struct overlay *o,
+                    const struct glint_image *image, overlay_draw_fn *draw,
+                    void *ctx)
+{
+    struct look *look = &o->look;
+    enum glint_status status;
+    int code = EXIT_OK;
+
+    if (!look->sized)
+        code = look_size(tool, look, image->width, image->height);
+    if (code != EXIT_OK)
+        return code;
+    status = draw(ctx, look, image, o->elapsed_us);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, NULL);
+    o->find_ms += look->find_ms;
+    o->flare_ms += look->flare_ms;
+    o->peak = fmax(o->peak, strength_largest(look->strength.light.peak));
+    o->mean_sum += strength_largest(look->strength.light.mean);
+    if (look->n_lamps > o->most_lights)
+        o->most_lights = look->n_lamps;
+    if (look->report.peak_bytes > o->peak_bytes)
+        o->peak_bytes = look->report.peak_bytes;
+    note_worst(&o->worst, &look->report);
+    if (tool->verbose && !tool->quiet)
+        say_frame(o);
+    return EXIT_OK;
+}
+
+void overlay_progress(const struct tool *tool, struct overlay *o)
+{
+    const double now = tool_seconds(), spent = now - o->started;
+    const bool is_terminal = isatty(STDERR_FILENO);
+
+    if (tool->quiet || tool->verbose)
+        return;
+    if (!is_terminal && now - fmax(o->started, o->told) < 5)
+        return;
+    o->told = now;
+    fprintf(stderr,
+            is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
+                        : "glint overlay: frame %d, %.1f fps, %d "
+                          "lights\n",
+            o->look.n_frames, o->look.n_frames / spent, o->look.report.lights);
+    fflush(stderr);
+}
+
+/* ------------------------------------------------------------------- result */
+
+static void print_figures(const struct overlay *o)
+{
+    const int n = o->look.n_frames ? o->look.n_frames : 1;
+
+    fprintf(stderr,
+            "%dx%d (find %.1f ms, flare %.1f ms), %d ghosts; flare memory %zu "
+            "bytes, peak %zu\n",
+            o->look.view.width, o->look.view.height, o->find_ms / n,
+            o->flare_ms / n, o->look.report.ghosts, o->look.report.arena_bytes,
+            o->peak_bytes);
+}
+
+static void print_json(const struct overlay *o,
+                       const struct overlay_light *light)
+{
+    const double seconds = tool_seconds() - o->started;
+    const int n = o->look.n_frames ? o->look.n_frames : 1;
+
+    printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
+           "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
+           o->look.n_frames, 1e3 * seconds, o->look.n_frames / seconds,
+           o->find_ms / n, o->flare_ms / n, o->most_lights);
+    overlay_json(o, light, stdout);
+    scene_json(&o->look.report);
+    printf("}\n");
+}
+
+static void print_result(const struct tool *tool, const struct overlay *o)
+{
+    const bool json = tool->json && strcmp(o->output, "-") != 0;
+    struct overlay_light light;
+
+    if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
+        fputs("\r\033[K", stderr);
+    scene_warn_lights(tool, &o->worst);
+    if (tool->quiet && !json)
+        return;
+    light = overlay_light(tool, o);
+    if (json)
+        print_json(o, &light);
+    else
+        overlay_say(o, &light, stderr);
+    if (tool->verbose && !tool->quiet)
+        print_figures(o);
+}
+
+int overlay_check_apart(const struct tool *tool, const char *from,
+                        const char *to)
+{
+    if (!glint_target_is_input(from, to))
+        return EXIT_OK;
+    return tool_usage(tool,
+                      "%s is the input, which would be lost; name another file",
+                      strcmp(to, "-") ? to : "standard output");
+}
+
+/* Refuses an output that does not go with the input before there is work. */
+static int check_output(struct tool *tool, struct overlay *o)
+{
+    struct glint_error error = {""};
+    bool frames;
+    const int code = overlay_check_gif(tool, o, &frames);
+
+    o->is_video = frames || overlay_is_video(o->input);
+    if (code != EXIT_OK)
+        return code;
+    if (!frames && o->is_video != overlay_is_video(o->output))
+        return tool_usage(tool, "a video becomes a video (.y4m, - or one of "
+                                "ffmpeg's), a picture a picture");
+    if (tool_check_output(tool, o->output) != EXIT_OK)
+        return EXIT_OUTPUT;
+    if (o->is_video || glint_kept_check(o->output, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
+/* Refuses an input that is not there, or empty, before a lens is baked. */
+static int check_input(struct tool *tool, const struct overlay *o)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    struct stat file;
+
+    if (strcmp(o->input, "-") == 0 || strchr(o->input, '%'))
+        return EXIT_OK;
+    if (stat(o->input, &file) != 0 ||
+        (S_ISREG(file.st_mode) && access(o->input, R_OK) != 0))
+        status = glint_error_report(&error, GLINT_E_IO, o->input, "%s",
+                                    strerror(errno));
+    else if (S_ISREG(file.st_mode) && file.st_size == 0)
+        status =
+            glint_error_report(&error, GLINT_E_FORMAT, o->input, "is empty");
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+static int run(struct tool *tool, struct overlay *o)
+{
+    int code = check_output(tool, o);
+
+    if (code == EXIT_OK)
+        code = check_input(tool, o);
+
+    if (code == EXIT_OK)
+        code = overlay_check_apart(tool, o->input, o->output);
+    if (code == EXIT_OK)
+        code = look_open(tool, &o->look);
+    if (code != EXIT_OK)
+        return code;
+    o->started = tool_seconds();
+    if (o->is_video)
+        code = overlay_video(tool, o);
+    else if (strchr(o->input, '%') && access(o->input, F_OK) != 0)
+        code = overlay_sequence(tool, o);
+    else
+        code = overlay_numbered(tool, o);
+    if (code == EXIT_OK)
+        code = look_finish(tool, &o->look);
+    if (code == EXIT_OK)
+        print_result(tool, o);
+    return code;
+}
+
+int cmd_overlay(int argc, char **argv)
+{
+    struct tool tool = {.name = "overlay",
+                        .help = help,
+                        .help_end = help_end,
+                        .help_last = help_last};
+    struct overlay *o = calloc(1, sizeof *o);
+    int code;
+
+    if (!o)
+        return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    look_defaults(&o->look);
+    o->start_number = -1;
+    code = parse(&tool, argc, argv, o);
+    if (code < 0) {
+        code = tool_start(&tool);
+        if (code == EXIT_OK)
+            code = run(&tool, o);
+        tool_finish(&tool);
+    }
+    overlay_y4m_close(o);
+    look_close(&o->look);
+    free(o);
+    return code;
+}

@@ -1,0 +1,493 @@
+/* SPDX-License-Identifier: MIT */
+#include "overlay/ffmpeg.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "posix/error.h"
+#include "posix/input.h"
+
+enum { MAX_WORDS = 96, FILE_NAME = 4096, PROBE_BYTES = 1 << 14 };
+
+static const char *extension(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+
+    return dot && !strchr(dot, '/') ? dot + 1 : "";
+}
+
+static bool is_one_of(const char *word, const char *const *words)
+{
+    for (; *words; words++)
+        if (strcasecmp(word, *words) == 0)
+            return true;
+    return false;
+}
+
+bool ffmpeg_is_video(const char *name)
+{
+    static const char *const extensions[] = {
+        "mp4", "m4v",  "mkv", "mov", "webm", "avi", "mpg", "mpeg", "ts",
+        "mts", "m2ts", "wmv", "flv", "ogv",  "3gp", "mxf", NULL};
+
+    return is_one_of(extension(name), extensions);
+}
+
+/* A name is a file's, whatever it looks like to ffmpeg. False: too long. */
+static bool file_url(char url[FILE_NAME], const char *name)
+{
+    return (size_t)snprintf(url, FILE_NAME, "file:%s", name) < FILE_NAME;
+}
+
+/* ---------------------------------------------------------------------- GIF */
+
+/* What of sub-blocks begins at AT: where they end, or the end of the data. */
+static size_t skip_blocks(const uint8_t *d, size_t n, size_t at)
+{
+    while (at < n && d[at] != 0)
+        at += (size_t)d[at] + 1;
+    return at < n ? at + 1 : n;
+}
+
+static size_t colours(uint8_t packed)
+{
+    return packed & 0x80 ? (size_t)3 << ((packed & 7) + 1) : 0;
+}
+
+static int count_frames(const uint8_t *d, size_t n)
+{
+    int frames = 0;
+    size_t at;
+
+    if (n < 13 || memcmp(d, "GIF8", 4) != 0)
+        return 0;
+    at = 13 + colours(d[10]);
+    while (at < n && d[at] != 0x3b) {
+        if (d[at] == 0x21 && at + 2 < n) {
+            at = skip_blocks(d, n, at + 2);
+        } else if (d[at] == 0x2c && at + 11 < n) {
+            frames++;
+            at = skip_blocks(d, n, at + 11 + colours(d[at + 9]));
+        } else
+            break;
+    }
+    return frames;
+}
+
+int ffmpeg_gif_frames(const char *name)
+{
+    struct glint_error error;
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    int n = 0;
+
+    if (strcasecmp(extension(name), "gif") != 0)
+        return 0;
+    if (glint_input_slurp(&data, &bytes, name, 1 << 28, &error) == GLINT_OK)
+        n = count_frames(data, bytes);
+    free(data);
+    return n;
+}
+
+/* -------------------------------------------------------------------- probe */
+
+/* Takes the value of a line "name=value", unless it says nothing. */
+static void take_word(const char *line, const char *name, char *word)
+{
+    const size_t n = strlen(name);
+
+    if (*word || strncmp(line, name, n) != 0 || line[n] != '=' ||
+        strcmp(line + n + 1, "unknown") == 0 ||
+        strcmp(line + n + 1, "N/A") == 0 ||
+        strcmp(line + n + 1, "reserved") == 0)
+        return;
+    snprintf(word, FFMPEG_WORD, "%s", line + n + 1);
+}
+
+static void take_line(struct ffmpeg_video *v, const char *line)
+{
+    char width[FFMPEG_WORD] = "", height[FFMPEG_WORD] = "";
+
+    take_word(line, "pix_fmt", v->pixels);
+    take_word(line, "color_range", v->range);
+    take_word(line, "color_space", v->space);
+    take_word(line, "color_transfer", v->transfer);
+    take_word(line, "color_primaries", v->primaries);
+    take_word(line, "width", width);
+    take_word(line, "height", height);
+    if (*width)
+        tool_integer(width, 1, GLINT_MAX_SIDE, &v->width);
+    if (*height)
+        tool_integer(height, 1, GLINT_MAX_SIDE, &v->height);
+}
+
+/* All that CHILD prints, up to a limit, as a string. */
+static void read_all(struct child *child, char text[PROBE_BYTES])
+{
+    size_t used = 0;
+    ssize_t n;
+
+    while (used < PROBE_BYTES - 1 &&
+           ((n = read(child->fd, text + used, PROBE_BYTES - 1 - used)) > 0 ||
+            (n < 0 && errno == EINTR)))
+        used += n > 0 ? (size_t)n : 0;
+    text[used] = '\0';
+}
+
+/* Lines of what ffprobe says of the streams KIND of URL. */
+static void ask(const char *url, const char *kind, const char *entries,
+                char text[PROBE_BYTES])
+{
+    const char *const argv[] = {"ffprobe",
+                                "-v",
+                                "quiet",
+                                "-select_streams",
+                                kind,
+                                "-show_entries",
+                                entries,
+                                "-of",
+                                "default=nw=1",
+                                url,
+                                NULL};
+    struct glint_error error;
+    struct child child;
+
+    *text = '\0';
+    if (child_start(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+        return;
+    read_all(&child, text);
+    child_end(&child);
+}
+
+void ffmpeg_probe(struct ffmpeg_video *video, const char *name)
+{
+    char url[FILE_NAME], text[PROBE_BYTES], *line, *rest = text;
+
+    *video = (struct ffmpeg_video){.width = 0};
+    if (!file_url(url, name))
+        return;
+    ask(url, "v:0",
+        "stream=width,height,pix_fmt,color_range,color_space,color_transfer,"
+        "color_primaries",
+        text);
+    while ((line = strtok_r(rest, "\r\n", &rest)))
+        take_line(video, line);
+    rest = text;
+    ask(url, "a:0", "stream=codec_name", text);
+    while ((line = strtok_r(rest, "\r\n", &rest)))
+        take_word(line, "codec_name", video->sound);
+}
+
+bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix)
+{
+    static const char *const sd[] = {"smpte170m", "bt470bg", "fcc", NULL};
+    const bool is_sd = is_one_of(video->space, sd);
+
+    if (!is_sd && strcmp(video->space, "bt709") != 0)
+        return false;
+    *matrix = is_sd ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
+    return true;
+}
+
+/* --------------------------------------------------------------------- words
+ */
+
+/* A command line as it grows; what does not fit is seen at the end. */
+struct words {
+    const char *word[MAX_WORDS + 1];
+    int n;
+};
+
+static void add(struct words *w, const char *word)
+{
+    if (w->n < MAX_WORDS)
+        w->word[w->n] = word;
+    w->n++;
+}
+
+static void add_two(struct words *w, const char *a, const char *b)
+{
+    add(w, a);
+    add(w, b);
+}
+
+static void begin(struct words *w)
+{
+    static const char *const first[] = {"ffmpeg",    "-nostdin", "-hide_banner",
+                                        "-loglevel", "error",    NULL};
+
+    w->n = 0;
+    for (int i = 0; first[i]; i++)
+        add(w, first[i]);
+}
+
+static enum glint_status run(struct child *child, struct words *w,
+                             enum child_pipe pipe, struct glint_error *error)
+{
+    if (w->n > MAX_WORDS)
+        return glint_error_report(error, GLINT_E_ARGUMENT, "ffmpeg",
+                                  "more than %d words of options", MAX_WORDS);
+    w->word[w->n] = NULL;
+    return child_start(child, w->word, pipe, error);
+}
+
+static enum glint_status too_long(const char *name, struct glint_error *error)
+{
+    return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
+                              "the name is too long");
+}
+
+/* ------------------------------------------------------------------ decoding
+ */
+
+static bool has_one_of(const char *text, const char *const *words)
+{
+    for (; *words; words++)
+        if (strstr(text, *words))
+            return true;
+    return false;
+}
+
+/* The bits of a sample of PIXELS, ffmpeg's word: 8, 10, 12 or 16. In some words
+ * a number is that of the layout, or of all samples of a pixel. */
+static int bits_of(const char *pixels)
+{
+    static const char *const of_8[] = {"nv12", "nv16", "yuv410p", NULL};
+    static const char *const of_16[] = {"16", "14", "48", "64", "f32", NULL};
+    static const char *const of_10[] = {"10", "p9", NULL};
+
+    return has_one_of(pixels, of_8)    ? 8
+           : has_one_of(pixels, of_16) ? 16
+           : strstr(pixels, "12")      ? 12
+           : has_one_of(pixels, of_10) ? 10
+                                       : 8;
+}
+
+/* Words for chroma of CHROMA and BITS. */
+static const char *planes_of(const char *chroma, int bits)
+{
+    static const char *const table[][5] = {
+        {"420", "yuv420p", "yuv420p10le", "yuv420p12le", "yuv420p16le"},
+        {"422", "yuv422p", "yuv422p10le", "yuv422p12le", "yuv422p16le"},
+        {"444", "yuv444p", "yuv444p10le", "yuv444p12le", "yuv444p16le"},
+        {"gray", "gray", "gray10le", "gray12le", "gray16le"}};
+    const int column = bits == 8 ? 1 : bits == 10 ? 2 : bits == 12 ? 3 : 4;
+    size_t i = 0;
+
+    while (i < 3 && strcmp(table[i][0], chroma) != 0)
+        i++;
+    return table[i][column];
+}
+
+static bool is_rgb(const struct ffmpeg_video *v)
+{
+    return *v->pixels && strncmp(v->pixels, "yuv", 3) != 0 &&
+           strncmp(v->pixels, "gray", 4) != 0 &&
+           strncmp(v->pixels, "nv", 2) != 0 && strncmp(v->pixels, "p0", 2) != 0;
+}
+
+/* The format of y4m that takes all of what V has. */
+static const char *planes_for(const struct ffmpeg_video *v)
+{
+    static const char *const of_422[] = {"422", "nv16", "nv20", NULL};
+    const char *chroma = strstr(v->pixels, "444") || is_rgb(v) ? "444"
+                         : has_one_of(v->pixels, of_422)       ? "422"
+                                                               : "420";
+
+    if (strncmp(v->pixels, "yuvj", 4) == 0) /* of full range by their name */
+        return chroma[2] == '4'   ? "yuvj444p"
+               : chroma[2] == '2' ? "yuvj422p"
+                                  : "yuvj420p";
+    if (strncmp(v->pixels, "gray", 4) == 0)
+        chroma = "gray";
+    return planes_of(chroma, bits_of(v->pixels));
+}
+
+enum glint_status ffmpeg_read(struct child *child, const char *name,
+                              const struct ffmpeg_video *video,
+                              struct glint_error *error)
+{
+    char url[FILE_NAME];
+    struct words w;
+
+    *child = (struct child){0, -1};
+    if (!file_url(url, name))
+        return too_long(name, error);
+    begin(&w);
+    add_two(&w, "-i", url);
+    add_two(&w, "-map", "0:v:0");
+    add_two(&w, "-pix_fmt", planes_for(video));
+    add_two(&w, "-strict", "-1");
+    add_two(&w, "-f", "yuv4mpegpipe");
+    add(&w, "-");
+    return run(child, &w, CHILD_WRITES, error);
+}
+
+/* ------------------------------------------------------------------ encoding
+ */
+
+/* Whether a file of this extension takes sound of CODEC as it is. */
+static bool takes_sound(const char *ext, const char *codec)
+{
+    static const char *const webm[] = {"opus", "vorbis", NULL};
+    static const char *const mp4[] = {"aac",  "mp3",  "ac3", "eac3", "alac",
+                                      "opus", "flac", "mp2", "dts",  NULL};
+    static const char *const mov[] = {
+        "aac",       "mp3", "ac3",       "eac3",      "alac", "pcm_s16le",
+        "pcm_s16be", "mp2", "pcm_s24le", "pcm_f32le", NULL};
+    static const char *const avi[] = {"aac", "mp3",       "ac3",
+                                      "mp2", "pcm_s16le", NULL};
+    static const char *const mpeg[] = {"mp2", "mp3", "ac3", "mp1", NULL};
+    static const char *const ogg[] = {"opus", "vorbis", "flac", NULL};
+    static const struct {
+        const char *ext;
+        const char *const *codecs;
+    } table[] = {{"webm", webm}, {"mp4", mp4},  {"m4v", mp4},
+                 {"3gp", mp4},   {"mpg", mpeg}, {"mpeg", mpeg},
+                 {"ogv", ogg},   {"mov", mov},  {"avi", avi}};
+
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (strcasecmp(ext, table[i].ext) == 0)
+            return is_one_of(codec, table[i].codecs);
+    return true; /* .mkv and .ts take nearly all */
+}
+
+static void add_sound(struct words *w, const struct ffmpeg_target *t,
+                      const char *codec, const char *url)
+{
+    if (!t->sound)
+        return;
+    add_two(w, "-i", url);
+    add_two(w, "-map", "0:v:0");
+    add_two(w, "-map", "1:a?");
+    add_two(w, "-map_metadata", "1");
+    add_two(w, "-map_chapters", "1");
+    if (takes_sound(extension(t->name), codec))
+        add_two(w, "-c:a", "copy");
+    else if (*codec && !t->quiet)
+        fprintf(stderr,
+                "glint overlay: %s: sound is encoded anew, as .%s does not "
+                "take %s\n",
+                t->name, extension(t->name), codec);
+}
+
+/* What codes mean, both of what comes in and of what is written, so that
+ * nothing is turned into anything else. */
+static void add_tags(struct words *w, const struct ffmpeg_target *t,
+                     const struct ffmpeg_video *v)
+{
+    add_two(w, "-color_range", t->range == GLINT_RANGE_FULL ? "pc" : "tv");
+    if (*v->space && strcmp(v->space, "gbr") != 0 &&
+        strcmp(v->space, "rgb") != 0)
+        add_two(w, "-colorspace", v->space);
+    if (*v->transfer)
+        add_two(w, "-color_trc", v->transfer);
+    if (*v->primaries)
+        add_two(w, "-color_primaries", v->primaries);
+}
+
+/* Files whose pictures are H.264 unless somebody says otherwise: where two
+ * pixels share their colour, odd sides grow by one. */
+static void add_h264(struct words *w, const struct ffmpeg_target *t,
+                     const struct ffmpeg_video *v)
+{
+    add_two(w, "-crf", "18");
+    if (is_rgb(v))
+        add_two(w, "-pix_fmt", planes_of("420", bits_of(v->pixels)));
+    if ((t->width % 2 == 0 && t->height % 2 == 0) || (t->is_444 && !is_rgb(v)))
+        return;
+    add_two(w, "-vf",
+            t->width % 2 && t->height % 2
+                ? "pad=iw+1:ih+1,fillborders=right=1:bottom=1:mode=smear"
+            : t->width % 2 ? "pad=iw+1:ih,fillborders=right=1:mode=smear"
+                           : "pad=iw:ih+1,fillborders=bottom=1:mode=smear");
+    if (!t->quiet)
+        fprintf(stderr,
+                "glint overlay: %s: %dx%d, as H.264 has even sides only\n",
+                t->name, t->width + t->width % 2, t->height + t->height % 2);
+}
+
+static void add_pictures(struct words *w, const struct ffmpeg_target *t,
+                         const struct ffmpeg_video *v)
+{
+    static const char *const h264[] = {"mp4", "m4v", "mkv", "mov", "flv",
+                                       "ts",  "mts", "3gp", NULL};
+    const char *ext = extension(t->name);
+
+    if (strcasecmp(ext, "gif") == 0) {
+        add_two(w, "-filter_complex",
+                "[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse");
+    } else if (strcasecmp(ext, "webm") == 0) {
+        add_two(w, "-crf", "24");
+        add_two(w, "-b:v", "0");
+        add_two(w, "-row-mt", "1");
+        add_two(w, "-cpu-used", "4");
+    } else if (is_one_of(ext, h264)) {
+        if (strcasecmp(ext, "ts") == 0 || strcasecmp(ext, "mts") == 0)
+            add_two(w, "-c:v", "libx264");
+        add_h264(w, t, v);
+    } else
+        add_two(w, "-q:v", "2");
+}
+
+/* The words of OPTIONS, which is cut at its blanks. */
+static void add_options(struct words *w, char *options)
+{
+    char *word, *rest = options;
+
+    while ((word = strtok_r(rest, " ", &rest)))
+        add(w, word);
+}
+
+enum glint_status ffmpeg_write(struct child *child,
+                               const struct ffmpeg_target *target,
+                               const struct ffmpeg_video *video,
+                               struct glint_error *error)
+{
+    const struct ffmpeg_target *t = target;
+    char out[FILE_NAME], sound[FILE_NAME] = "", options[1024];
+    struct words w;
+
+    *child = (struct child){0, -1};
+    if (!file_url(out, t->file) || (t->sound && !file_url(sound, t->sound)) ||
+        (t->options && strlen(t->options) >= sizeof options))
+        return too_long(t->name, error);
+    begin(&w);
+    add(&w, "-y");
+    add_two(&w, "-f", "yuv4mpegpipe");
+    add_tags(&w, t, video);
+    add_two(&w, "-i", "-");
+    add_sound(&w, t, video->sound, sound);
+    add_tags(&w, t, video);
+    if (t->options) {
+        snprintf(options, sizeof options, "%s", t->options);
+        add_options(&w, options);
+    } else
+        add_pictures(&w, t, video);
+    add(&w, out);
+    return run(child, &w, CHILD_READS, error);
+}
+
+void ffmpeg_by_hand(const struct tool *tool, const char *in, const char *out)
+{
+    const bool coded = ffmpeg_is_video(in);
+
+    fprintf(stderr,
+            "glint %s: ffmpeg is not installed, which reads and writes videos "
+            "other than .y4m (apt-get install ffmpeg). By hand, where it is:\n"
+            "  ",
+            tool->name);
+    if (coded)
+        fprintf(stderr, "ffmpeg -i '%s' -f yuv4mpegpipe -strict -1 - | ", in);
+    fprintf(stderr, "glint overlay %s -o %s", coded ? "-" : in,
+            ffmpeg_is_video(out) ? "-" : out);
+    if (ffmpeg_is_video(out))
+        fprintf(stderr, " | ffmpeg -i -%s%s%s '%s'", coded ? " -i '" : "",
+                coded ? in : "", coded ? "' -map 0:v -map 1:a? -c:a copy" : "",
+                out);
+    fputc('\n', stderr);
+}

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What overlay and live put on a picture: the flare of a lens, for lamps that
+ * are found in it, listed, or given by hand.
+ *
+ *     look_defaults(&look);               then look_option() for each
+ *     look_open(&tool, &look);            lens and lists; no picture yet
+ *     look_size(&tool, &look, w, h);      once, and when the size changes
+ *     look_draw(&look, &image, us);       each frame
+ *     look_close(&look);
+ */
+#ifndef GLINT_TOOLS_OVERLAY_LOOK_H
+#define GLINT_TOOLS_OVERLAY_LOOK_H
+
+#include "options/lamp_save.h"
+#include "engine/lamps.h"
+#include "options/scene.h"
+#include "engine/strength.h"
+
+struct look {
+    struct scene scene;
+    const char *lens, *lights_file; /* NULL: lamps are found */
+    const char *save_file;          /* for lamps, or NULL */
+    bool interpolate;               /* lamps of a file */
+    struct lamp_list at;            /* by hand, by pixel */
+    double threshold_ev[2];         /* that seeds a lamp, that it extends to */
+    double headroom_ev;
+    bool flare_only, no_tracking, show_lights;
+    bool flare_alpha;     /* with flare_only, of files */
+    size_t reserve_bytes; /* unless 0: all the memory that frames will take */
+    int n_hand;
+    struct glint_lamp hand[SCENE_MAX_LAMPS];
+    struct strength strength; /* how bright, and the scale of each frame */
+    int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
+
+    /* Made by open and size. */
+    bool is_listed; /* lights come from a file; its name is not needed more */
+    struct lamp_list list; /* with those by pixel */
+    struct lamp_save save;
+    struct lamp_finder finder;
+    struct glint_lamp *lamp; /* room for those by hand and all found or read */
+    double *level;           /* of each, its share in its power: struct
+                                strength_lamps */
+    uint32_t *id;            /* of each, as it is saved */
+    struct response response;
+    double white; /* light of the picture's white, 1 by default */
+    struct glint_view view;
+    struct frame frame;
+    bool sized;
+
+    /* Of the last frame. */
+    bool is_followed; /* as a frame of a video */
+    int n_frames, n_lamps;
+    double find_ms, flare_ms;
+    struct frame_report report;
+};
+
+enum look_option_code {
+    OPT_LENS = OPT_LAST,
+    OPT_LIGHTS,
+    OPT_LIGHT,
+    OPT_THRESHOLD,
+    OPT_HEADROOM,
+    OPT_LAYER,
+    OPT_NO_TRACKING,
+    OPT_SHOW,
+    OPT_STRENGTH,
+    OPT_LIGHT_AT,
+    OPT_SAVE_LIGHTS,
+    OPT_INTERPOLATE,
+    OPT_LOOK_LAST
+};
+
+#define LOOK_OPTIONS                                               \
+    {"lens", required_argument, NULL, OPT_LENS},                   \
+        {"lights", required_argument, NULL, OPT_LIGHTS},           \
+        {"light", required_argument, NULL, OPT_LIGHT},             \
+        {"threshold", required_argument, NULL, OPT_THRESHOLD},     \
+        {"headroom", required_argument, NULL, OPT_HEADROOM},       \
+        {"layer", required_argument, NULL, OPT_LAYER},             \
+        {"no-tracking", no_argument, NULL, OPT_NO_TRACKING},       \
+        {"show", required_argument, NULL, OPT_SHOW},               \
+        {"strength", required_argument, NULL, OPT_STRENGTH},       \
+        {"light-at", required_argument, NULL, OPT_LIGHT_AT},       \
+        {"save-lights", required_argument, NULL, OPT_SAVE_LIGHTS}, \
+        {"interpolate", no_argument, NULL, OPT_INTERPOLATE}, SCENE_OPTIONS
+
+#define LOOK_HELP                                                              \
+    "  --lens LENS         table or baked model (default nikon-zoom-short)\n"  \
+    "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"   \
+    "                      frame,x,y,power[,r,g,b[,size]] or JSON lines "      \
+    "with\n"                                                                   \
+    "                      these keys, and id; x, y in pixels from the top\n"  \
+    "                      left, also outside; frames count from 0, * is\n"    \
+    "                      every frame; size is its RMS radius, pixels: "      \
+    "0.71\n"                                                                   \
+    "                      of a disc's\n"                                      \
+    "  --interpolate       of a FILE: lamps go from one row to their next, "   \
+    "in\n"                                                                     \
+    "                      frames that have none; the same id (a column of "   \
+    "a\n"                                                                      \
+    "                      heading), else the same place in the frame\n"       \
+    "  --light-at X,Y[,EV] a lamp at a pixel, for all frames, of EV stops\n"   \
+    "                      over a white pixel (default 16); repeatable; "      \
+    "replaces\n"                                                               \
+    "                      auto, adds to a FILE\n"                             \
+    "  --save-lights FILE  writes the lamps of each frame as --lights FILE "   \
+    "takes\n"                                                                  \
+    "                      them\n"                                             \
+    "  --light LIST        one by hand, as of glint render, for all frames;\n" \
+    "                      repeatable; replaces auto, adds to a FILE\n"        \
+    "  --threshold EV[,EV] how bright a lamp must be, and down to what it "    \
+    "extends,\n"                                                               \
+    "                      in stops from the picture's white (default "        \
+    "-0.1,-0.15)\n"                                                            \
+    "  --no-tracking       --lights auto takes each frame of a video by "      \
+    "itself,\n"                                                                \
+    "                      rather than following lamps from frame to frame\n"  \
+    "  --show lights       draws a box, number and stops over a white pixel "  \
+    "of\n"                                                                     \
+    "                      each light on top\n"                                \
+    "  --headroom EV       stops by which clipped pixels really exceed "       \
+    "white, 0 to\n"                                                            \
+    "                      40 (default: told for each lamp from its halo)\n"   \
+    "  --layer WHAT        composite | flare: the flare alone on black |\n"    \
+    "                      flare-alpha: a picture of it with alpha, to be\n"   \
+    "                      laid over others in linear light\n"                 \
+    "  --strength S        how bright the flare comes out, whatever the "      \
+    "lamps\n"                                                                  \
+    "                      and the lens: 0 none, 0.5 (default) a quarter of\n" \
+    "                      white at its brightest, 1 white; twice S is two\n"  \
+    "                      stops. Follows the lamps of a video. --exposure "   \
+    "EV\n"                                                                     \
+    "                      instead sets it by hand\n"
+
+void look_defaults(struct look *look);
+
+/* Takes an option of LOOK_OPTIONS. -1: taken; -2: not one of these; else an
+ * exit code, said. VALUE is kept. */
+int look_option(const struct tool *tool, struct look *look, int option,
+                const char *value);
+
+/* Reads the lens, baking it if need be, and the list. Returns an exit code. */
+int look_open(const struct tool *tool, struct look *look);
+
+/* Makes ready for pictures of WIDTH x HEIGHT. Returns an exit code. */
+int look_size(const struct tool *tool, struct look *look, int width,
+              int height);
+
+/* The options so far came from a file: those to come may say otherwise. */
+void look_options_end(struct look *look);
+
+/* Sets the lamps of IMAGE, as look_draw does; returns how many there are. */
+int look_lamps(struct look *look, const struct glint_image *image,
+               int32_t elapsed_us);
+
+/* Adds the flare to IMAGE, of that size and ELAPSED_US after the one before; 0:
+ * a picture by itself. GLINT_E_MEMORY. */
+enum glint_status look_draw(struct look *look, const struct glint_image *image,
+                            int32_t elapsed_us);
+
+/* The parts of look_draw, for tools/overlay/look_layer.h: sets the lamps of
+ * IMAGE and their number; saves them, which may have been measured in between,
+ * and sets what their light is multiplied by; and draws over IMAGE where they
+ * are. */
+void look_find(struct look *look, const struct glint_image *image,
+               int32_t elapsed_us);
+void look_expose(struct look *look, int32_t elapsed_us);
+double look_scale(const struct look *look);
+void look_mark(const struct look *look, const struct glint_image *image);
+
+/* Closes LOOK and moves FRESH there, which is open and not yet sized. */
+void look_replace(struct look *look, const struct look *fresh);
+
+/* After a run that went well: what was to be kept is put in place. Returns an
+ * exit code. */
+int look_finish(const struct tool *tool, struct look *look);
+
+void look_close(struct look *look);
+
+#endif

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT */
+#include "overlay/look_layer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ----------------------------------------------------------------- measuring
+ */
+
+/* Pixels about a lamp whose light beyond white is its own. */
+struct reach {
+    double x, y, radius;
+    int left, top, right, bottom;
+};
+
+static int within(double v, int most)
+{
+    return (int)fmin(fmax(v, 0), most);
+}
+
+static struct reach reach_of(const struct glint_track *track, int width,
+                             int height)
+{
+    struct reach r = {.x = track->x_q8 / 256.0, .y = track->y_q8 / 256.0};
+
+    r.radius = 3 * track->size_q8 / 256.0 + 4;
+    r.left = within(floor(r.x - r.radius), width);
+    r.right = within(ceil(r.x + r.radius), width);
+    r.top = within(floor(r.y - r.radius), height);
+    r.bottom = within(ceil(r.y + r.radius), height);
+    return r;
+}
+
+static double distance(const struct reach *r, int x, int y)
+{
+    return hypot(x + 0.5 - r->x, y + 0.5 - r->y);
+}
+
+/* Whether no other of the N lamps reaches the pixel and is nearer. */
+static bool is_nearest(const struct reach *all, int n, int own, int x, int y)
+{
+    const double d = distance(&all[own], x, y);
+
+    if (d > all[own].radius)
+        return false;
+    for (int i = 0; i < n; i++) {
+        const struct reach *r = &all[i];
+
+        if (i != own && x >= r->left && x < r->right && y >= r->top &&
+            y < r->bottom && distance(r, x, y) < d + (i < own ? 1e-9 : 0))
+            return false;
+    }
+    return true;
+}
+
+struct sum {
+    double rgb[3], luminance, x, y;
+};
+
+static void add_light(struct sum *sum, const double rgb[3], double x, double y)
+{
+    const double l = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+
+    for (int c = 0; c < 3; c++)
+        sum->rgb[c] += rgb[c];
+    sum->luminance += l;
+    sum->x += l * x;
+    sum->y += l * y;
+}
+
+/* Adds what pixels of reach OWN have above WHITE. */
+static void add_excess(struct sum *sum, const struct glint_samples *samples,
+                       const struct reach *all, int n, int own, double white)
+{
+    const struct reach *r = &all[own];
+
+    for (int y = r->top; y < r->bottom; y++)
+        for (int x = r->left; x < r->right; x++) {
+            double over[3];
+            float rgb[3];
+
+            glint_samples_light(samples, x, y, rgb);
+            for (int c = 0; c < 3; c++)
+                over[c] = fmax((double)rgb[c] - white, 0);
+            if ((over[0] > 0 || over[1] > 0 || over[2] > 0) &&
+                is_nearest(all, n, own, x, y))
+                add_light(sum, over, x + 0.5, y + 0.5);
+        }
+}
+
+/* What the finder saw of TRACK, in the picture's light. */
+static struct sum seen_of(const struct glint_track *track, double white)
+{
+    const double flux = (double)track->flux_q16 / 65536 * white;
+    struct sum sum = {.luminance = 0};
+    double rgb[3];
+
+    for (int c = 0; c < 3; c++)
+        rgb[c] = flux * track->rgb_q15[c] / 32768;
+    add_light(&sum, rgb, track->x_q8 / 256.0, track->y_q8 / 256.0);
+    return sum;
+}
+
+static void set_lamp(struct look *look, int i, const struct sum *sum)
+{
+    struct glint_lamp *const lamp = &look->lamp[i];
+    struct glint_track *const track = &look->finder.track[i];
+    const double focal = look->scene.setup.optics.focal_mm;
+
+    if (!(sum->luminance > 0))
+        return;
+    track->x_q8 = (int32_t)lrint(256 * sum->x / sum->luminance);
+    track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
+    glint_view_to_angles(&look->view, focal, track->x_q8 / 256.0,
+                         track->y_q8 / 256.0, lamp);
+    lamp->power =
+        fmin(sum->luminance, LAMP_MAX_POWER) * track->level_q15 / 32768;
+    for (int c = 0; c < 3; c++)
+        lamp->rgb[c] = sum->rgb[c] / sum->luminance;
+}
+
+void look_measure(struct look *look, const struct glint_samples *samples,
+                  double white)
+{
+    const int n = look->n_lamps;
+    struct reach *all;
+
+    if (look->is_listed || look->n_hand || n == 0)
+        return;
+    all = malloc((size_t)n * sizeof *all);
+    for (int i = 0; i < n && all; i++)
+        all[i] = reach_of(&look->finder.track[i], look->view.width,
+                          look->view.height);
+    for (int i = 0; i < n && all; i++) {
+        struct sum sum = seen_of(&look->finder.track[i], white);
+
+        add_excess(&sum, samples, all, n, i, white);
+        set_lamp(look, i, &sum);
+    }
+    free(all);
+}
+
+/* ------------------------------------------------------------------ drawing */
+
+static enum glint_status draw_as_for_codes(struct look *look, float *rgb)
+{
+    const size_t n = 3 * (size_t)look->view.width * (size_t)look->view.height;
+    struct glint_image layer = {.format = GLINT_LINEAR_Q20,
+                                .width = look->view.width,
+                                .height = look->view.height};
+    enum glint_status status;
+
+    memset(rgb, 0, n * sizeof *rgb);
+    glint_image_place(&layer, rgb); /* becomes floats in place */
+    look->frame.for_codes = true;
+    status = frame_draw(&look->frame, look->lamp, look->n_lamps,
+                        look_scale(look), &layer, &look->report);
+    look->frame.for_codes = false;
+    for (size_t i = 0; i < n; i++) {
+        int32_t light_q20;
+
+        memcpy(&light_q20, &rgb[i], sizeof light_q20);
+        rgb[i] = (float)light_q20 * 0x1p-20F;
+    }
+    return status;
+}
+
+enum glint_status look_draw_layer(struct look *look, bool is_deep, float *rgb)
+{
+    const double start = tool_seconds();
+    enum glint_status status;
+
+    if (is_deep && look->n_lamps > 0)
+        status = frame_draw_alone(&look->frame, look->lamp, look->n_lamps,
+                                  look_scale(look), rgb, &look->report);
+    else
+        status = draw_as_for_codes(look, rgb);
+    look->flare_ms = 1e3 * (tool_seconds() - start);
+    return status;
+}

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT */
+#include "overlay/overlay_line.h"
+
+#include <math.h>
+
+/* Two codes of sRGB near black, in display light: less is not seen. */
+static const double least_seen = 2 / 255.0 / 12.92;
+/* What a flare is brought to that could not be seen. */
+static const double well_seen = 0.25;
+
+/* ---------------------------------------------------------------- the light
+ */
+
+struct overlay_light overlay_light(const struct tool *tool,
+                                   const struct overlay *o)
+{
+    const struct look *look = &o->look;
+    const int n = look->n_frames;
+    struct overlay_light light = {o->peak, n ? o->mean_sum / n : 0};
+    struct response_light drawn;
+
+    if (n != 1 || look->n_lamps == 0 || look->strength.scale <= 0 ||
+        response_draw(tool, &look->scene, look->view, look->lamp, look->n_lamps,
+                      &drawn) != GLINT_OK)
+        return light;
+    light.peak = look_scale(look) / look->white * strength_largest(drawn.peak);
+    light.mean = look_scale(look) / look->white * strength_largest(drawn.mean);
+    return light;
+}
+
+/* Stops over one white pixel. */
+static double stops_of(const struct glint_lamp *lamp)
+{
+    return log2(fmax(lamp->power, 1e-30));
+}
+
+static double f_number_of(const struct scene *s)
+{
+    return s->model.data ? model_real_of(s->model.lens.header->f_number)
+                         : s->lens.f_number;
+}
+
+/* ----------------------------------------------------------------- the line
+ */
+
+static const struct glint_lamp *brightest_of(const struct look *look)
+{
+    const struct glint_lamp *best = look->lamp;
+
+    for (int i = 1; i < look->n_lamps; i++)
+        if (look->lamp[i].power > best->power)
+            best = &look->lamp[i];
+    return best;
+}
+
+static void say_lights(const struct look *look, int most, FILE *to)
+{
+    const struct glint_lamp *lamp;
+    double x, y;
+
+    fprintf(to, "%s%d light%s", look->n_frames == 1 ? "" : "at most ", most,
+            most == 1 ? "" : "s");
+    if (look->n_lamps == 0 || look->n_frames > 1)
+        return;
+    lamp = brightest_of(look);
+    glint_view_to_pixel(&look->view, look->scene.setup.optics.focal_mm, lamp,
+                        &x, &y);
+    fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
+            most == 1 ? "" : "the brightest ", stops_of(lamp), x, y);
+}
+
+static void say_dial(const struct look *look, FILE *to)
+{
+    if (look->scene.has_exposure)
+        fprintf(to, "exposure %+g EV", look->scene.exposure_ev);
+    else
+        fprintf(to, "strength %g", look->strength.asked);
+    if (look->scene.gain != 1)
+        fprintf(to, ", gain %g", look->scene.gain);
+}
+
+/* What would show a flare that comes to LIGHT only. */
+static void say_faint(const struct overlay *o,
+                      const struct overlay_light *light, FILE *to)
+{
+    const struct look *look = &o->look;
+    const bool is_held = look->scene.gain <= 0 || (!look->scene.has_exposure &&
+                                                   look->strength.asked <= 0);
+
+    if (is_held)
+        fprintf(to, "%s: %s draws nothing, as it says\n", o->output,
+                look->scene.gain <= 0 ? "--gain 0" : "--strength 0");
+    else if (light->peak <= 0)
+        fprintf(to,
+                "%s: no light gets through this lens into the picture; "
+                "another one (--lens) may show a flare\n",
+                o->output);
+    else if (look->scene.has_exposure)
+        fprintf(to,
+                "%s: that is %.1f stops below what can be seen; --strength "
+                "instead of --exposure, or --exposure %+.0f, shows it\n",
+                o->output, log2(least_seen / light->peak),
+                look->scene.exposure_ev + ceil(log2(well_seen / light->peak)));
+    else
+        fprintf(to,
+                "%s: that is %.1f stops below what can be seen; --strength "
+                "%.2g shows it\n",
+                o->output, log2(least_seen / light->peak),
+                look->strength.asked * sqrt(well_seen / light->peak));
+}
+
+void overlay_say(const struct overlay *o, const struct overlay_light *light,
+                 FILE *to)
+{
+    const struct look *look = &o->look;
+    const double seconds = tool_seconds() - o->started;
+    const int n = look->n_frames;
+
+    fprintf(to, "%s: ", o->output);
+    if (n != 1)
+        fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
+    if (o->most_lights == 0) {
+        fputs("no light was found, so nothing was drawn; see --threshold, or "
+              "give one with --light-at X,Y\n",
+              to);
+        return;
+    }
+    say_lights(look, o->most_lights, to);
+    fprintf(to, ", %s f/%.3g, ", look->scene.lens.name,
+            f_number_of(&look->scene));
+    say_dial(look, to);
+    fprintf(to,
+            ": the flare peaks at %.2g %% of white, %.2g %% on average; %.0f "
+            "ms\n",
+            100 * light->peak, 100 * light->mean, 1e3 * seconds);
+    if (light->peak < least_seen)
+        say_faint(o, light, to);
+}
+
+/* --------------------------------------------------------------------- JSON
+ */
+
+void overlay_json(const struct overlay *o, const struct overlay_light *light,
+                  FILE *to)
+{
+    const struct look *look = &o->look;
+    const double focal = look->scene.setup.optics.focal_mm;
+    const double scale = look->strength.scale;
+
+    fprintf(to, "\"lens\": \"%s\", \"f_number\": %g, ", look->scene.lens.name,
+            f_number_of(&look->scene));
+    if (look->scene.has_exposure)
+        fprintf(to, "\"strength\": null, ");
+    else
+        fprintf(to, "\"strength\": %g, ", look->strength.asked);
+    if (scale > 0)
+        fprintf(to, "\"scale_ev\": %.3f, ", log2(scale));
+    else
+        fprintf(to, "\"scale_ev\": null, ");
+    fprintf(to, "\"peak\": %.6g, \"mean\": %.6g, \"found\": [", light->peak,
+            light->mean);
+    for (int i = 0; i < look->n_lamps; i++) {
+        const struct glint_lamp *l = &look->lamp[i];
+        double x, y;
+
+        glint_view_to_pixel(&look->view, focal, l, &x, &y);
+        fprintf(to,
+                "%s{\"x\": %.2f, \"y\": %.2f, \"stops\": %.2f, "
+                "\"rgb\": [%.4g, %.4g, %.4g]}",
+                i ? ", " : "", x, y, stops_of(l), l->rgb[0], l->rgb[1],
+                l->rgb[2]);
+    }
+    fputs("], ", to);
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One picture file, with all that it holds.
+ */
+#include "overlay/overlay.h"
+#include "overlay/overlay_file.h"
+
+static enum glint_status draw(void *ctx, struct look *look,
+                              const struct glint_image *image,
+                              int32_t elapsed_us)
+{
+    (void)image;
+    return overlay_file_draw(ctx, look, elapsed_us);
+}
+
+int overlay_picture(struct tool *tool, struct overlay *o, const char *from,
+                    const char *to)
+{
+    struct overlay_file file;
+    int code = overlay_file_open(tool, &file, &o->look, from, to);
+
+    if (code != EXIT_OK)
+        return code;
+    if (o->look.sized && (file.image.width != o->look.view.width ||
+                          file.image.height != o->look.view.height)) {
+        fprintf(stderr, "glint overlay: %s: is %dx%d, those before it %dx%d\n",
+                from, file.image.width, file.image.height, o->look.view.width,
+                o->look.view.height);
+        code = EXIT_INPUT;
+    }
+    if (code == EXIT_OK)
+        code = overlay_draw_by(tool, o, &file.image, draw, &file);
+    if (code == EXIT_OK)
+        code = overlay_file_save(tool, &file, &o->look, o->quality);
+    overlay_file_close(&file);
+    return code;
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Numbered pictures that are the frames of a video, those that are there: a
+ * number that is missing is said, and time goes on without it.
+ */
+#include "overlay/overlay.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { NAME_BYTES = 4096, FRAME_US = 1000000 / 25, RUNS_SAID = 8 };
+
+/* The numbers that there are, in order. */
+struct numbers {
+    int *at;
+    int n, room;
+};
+
+/* Exactly one printf conversion of an int, "%d" or "%0Nd". */
+static bool is_pattern(const char *text)
+{
+    const char *at = strchr(text, '%');
+
+    if (!at)
+        return false;
+    for (at++; isdigit((unsigned char)*at); at++)
+        ;
+    return *at == 'd' && !strchr(at, '%');
+}
+
+/* NAME of NAME_BYTES becomes that of picture NUMBER. False: it is too long. */
+static bool name_of(char *name, const char *pattern, int number)
+{
+    const char *at = strchr(pattern, '%'); /* there is one: is_pattern() */
+    const char *end = at ? strchr(at, 'd') : NULL;
+    long stated;
+    int digits, n;
+
+    if (!end)
+        return false;
+    stated = at[1] == 'd' ? 0 : strtol(at + 1, NULL, 10);
+    digits = stated >= 0 && stated < 20 ? (int)stated : 20;
+    n = snprintf(name, NAME_BYTES, "%.*s%0*d%s", (int)(at - pattern), pattern,
+                 digits, number, end + 1);
+    return n >= 0 && n < NAME_BYTES;
+}
+
+/* ----------------------------------------------------------------- numbers */
+
+static bool add(struct numbers *l, int number)
+{
+    if (l->n == l->room) {
+        const int room = l->room ? 2 * l->room : 256;
+        int *more = realloc(l->at, (size_t)room * sizeof *more);
+
+        if (!more)
+            return false;
+        l->at = more;
+        l->room = room;
+    }
+    l->at[l->n++] = number;
+    return true;
+}
+
+/* The number that makes FILE, a name in its folder, of PATTERN; -1: none. */
+static int number_of(const char *file, const char *pattern, char *name)
+{
+    const char *percent = strchr(pattern, '%');
+    const char *slash = strrchr(pattern, '/');
+    const size_t folder = slash ? (size_t)(slash + 1 - pattern) : 0;
+    const size_t before = (size_t)(percent - pattern) - folder;
+    char *end;
+    long number;
+
+    if (strncmp(file, pattern + folder, before) != 0 ||
+        !isdigit((unsigned char)file[before]))
+        return -1;
+    number = strtol(file + before, &end, 10);
+    if (number > 1000000000 || !name_of(name, pattern, (int)number))
+        return -1;
+    return strcmp(name + folder, file) == 0 ? (int)number : -1;
+}
+
+static int by_number(const void *a, const void *b)
+{
+    const int x = *(const int *)a, y = *(const int *)b;
+
+    return (x > y) - (x < y);
+}
+
+/* Fills L with the numbers from FIRST on of the files of PATTERN. */
+static bool look_for(struct numbers *l, const char *pattern, int first)
+{
+    const char *slash = strrchr(pattern, '/');
+    char folder[NAME_BYTES] = ".", name[NAME_BYTES];
+    const struct dirent *entry;
+    bool ok = true;
+    DIR *dir;
+
+    if (slash)
+        snprintf(folder, sizeof folder, "%.*s", (int)(slash + 1 - pattern),
+                 pattern);
+    dir = opendir(folder);
+    while (ok && dir && (entry = readdir(dir))) {
+        const int number = number_of(entry->d_name, pattern, name);
+
+        if (number >= 0 && number >= first)
+            ok = add(l, number);
+    }
+    if (dir)
+        closedir(dir);
+    if (ok && l->n > 0)
+        qsort(l->at, (size_t)l->n, sizeof *l->at, by_number);
+    return ok;
+}
+
+/* Where the folder is a part of the pattern: up to the first that is missing.
+ */
+static bool walk(struct numbers *l, const char *pattern, int first)
+{
+    char name[NAME_BYTES];
+    bool ok = true;
+    int number = first;
+
+    if (number < 0) {
+        name_of(name, pattern, 0);
+        number = access(name, F_OK) == 0 ? 0 : 1;
+    }
+    for (; ok && name_of(name, pattern, number) && access(name, F_OK) == 0;
+         number++)
+        ok = add(l, number);
+    return ok;
+}
+
+static void say_missing(const struct tool *tool, const struct overlay *o,
+                        const struct numbers *l)
+{
+    int runs = 0;
+
+    for (int i = 1; i < l->n && !tool->quiet; i++) {
+        const int first = l->at[i - 1] + 1, last = l->at[i] - 1;
+
+        if (first > last)
+            continue;
+        if (runs == 0)
+            fprintf(stderr,
+                    "glint overlay: %s: missing, and passed over: ", o->input);
+        if (runs < RUNS_SAID)
+            fprintf(stderr, "%s%d", runs ? ", " : "", first);
+        if (runs < RUNS_SAID && last > first)
+            fprintf(stderr, " to %d", last);
+        if (runs++ == RUNS_SAID)
+            fputs(" ...", stderr);
+    }
+    if (runs > 0)
+        fputc('\n', stderr);
+}
+
+/* --------------------------------------------------------------------- frames
+ */
+
+/* Number L->AT[I], as long after the one before as numbers say. */
+static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
+               int i)
+{
+    const int64_t gap = i > 0 ? (int64_t)l->at[i] - l->at[i - 1] : 1;
+    char from[NAME_BYTES], to[NAME_BYTES];
+    int code;
+
+    name_of(from, o->input, l->at[i]);
+    if (is_pattern(o->output))
+        name_of(to, o->output, l->at[i]);
+    else
+        snprintf(to, sizeof to, "%s", o->output);
+    o->elapsed_us = l->n == 1                     ? 0
+                    : gap > 1000000000 / FRAME_US ? 1000000000
+                                                  : (int32_t)(gap * FRAME_US);
+    o->look.n_frames += (int)(gap - 1); /* lights of a list are by number */
+    code = overlay_check_apart(tool, from, to);
+    if (code == EXIT_OK)
+        code = overlay_picture(tool, o, from, to);
+    if (code == EXIT_OK)
+        overlay_progress(tool, o);
+    return code;
+}
+
+static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
+{
+    int code = EXIT_OK;
+
+    if (l->n == 0) {
+        fprintf(stderr, "glint overlay: %s: there are no such pictures\n",
+                o->input);
+        return EXIT_INPUT;
+    }
+    if (l->n > 1 && !is_pattern(o->output))
+        return tool_usage(tool,
+                          "%s: %d pictures need a %%04d in the output, too",
+                          o->input, l->n);
+    say_missing(tool, o, l);
+    for (int i = 0; i < l->n && code == EXIT_OK; i++)
+        code = one(tool, o, l, i);
+    if (code == EXIT_OK)
+        o->look.n_frames = l->n; /* without those that are missing */
+    return code;
+}
+
+int overlay_sequence(struct tool *tool, struct overlay *o)
+{
+    const char *percent = strchr(o->input, '%');
+    struct numbers l = {NULL, 0, 0};
+    char name[NAME_BYTES];
+    int code;
+
+    if (!is_pattern(o->input))
+        return tool_usage(tool, "%s: a sequence needs one %%04d", o->input);
+    if (!name_of(name, o->input, INT_MAX) ||
+        (is_pattern(o->output) && !name_of(name, o->output, INT_MAX)))
+        return tool_usage(tool, "names of pictures have at most %d bytes",
+                          NAME_BYTES - 1);
+    if (strchr(percent, '/') ? walk(&l, o->input, o->start_number)
+                             : look_for(&l, o->input, o->start_number))
+        code = all(tool, o, &l);
+    else
+        code = tool_fail(tool, GLINT_E_MEMORY, NULL);
+    free(l.at);
+    return code;
+}
+
+int overlay_numbered(struct tool *tool, struct overlay *o)
+{
+    char to[NAME_BYTES];
+
+    if (!is_pattern(o->output))
+        return overlay_picture(tool, o, o->input, o->output);
+    if (!name_of(to, o->output, o->start_number < 0 ? 1 : o->start_number))
+        return tool_usage(tool, "names of pictures have at most %d bytes",
+                          NAME_BYTES - 1);
+    if (!tool->quiet)
+        fprintf(stderr, "glint overlay: one picture, so one %s\n", to);
+    return overlay_picture(tool, o, o->input, to);
+}

@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The frames of a video, one after the other: y4m files and pipes by
+ * ourselves, all others through ffmpeg (ffmpeg.h).
+ */
+#include "overlay/overlay.h"
+#include "overlay/overlay_y4m.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "overlay/ffmpeg.h"
+#include "formats/y4m.h"
+#include "posix/error.h"
+
+struct video {
+    struct tool *tool;
+    struct overlay *o;
+    struct glint_error error;
+    bool reads, writes; /* through ffmpeg */
+    struct ffmpeg_video about;
+    struct child reader, writer;
+    struct glint_output file; /* what ffmpeg writes, until it is whole */
+    char pipe[32];            /* its name, which OUT keeps */
+    struct glint_y4m_reader in;
+    struct glint_y4m_writer out;
+};
+
+static bool is_y4m(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+
+    return strcmp(name, "-") == 0 || (dot && strcmp(dot, ".y4m") == 0);
+}
+
+static bool is_gif(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+
+    return dot && strcmp(dot, ".gif") == 0;
+}
+
+bool overlay_is_video(const char *name)
+{
+    return is_y4m(name) || ffmpeg_is_video(name);
+}
+
+int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
+{
+    const int n = ffmpeg_gif_frames(o->input);
+    const bool moves = overlay_is_video(o->output) || is_gif(o->output);
+
+    *video = n > 1 && moves;
+    if (is_gif(o->output) && overlay_is_video(o->input))
+        *video = true;
+    else if (n == 1 && overlay_is_video(o->output))
+        return tool_usage(tool, "%s has one frame, which is no video",
+                          o->input);
+    else if (n > 1 && !moves && !tool->quiet)
+        fprintf(stderr,
+                "glint overlay: %s has %d frames, of which the first is taken; "
+                "-o NAME.gif or NAME.mp4 takes all\n",
+                o->input, n);
+    return EXIT_OK;
+}
+
+/* ------------------------------------------------------------------- opening
+ */
+
+static int fail(struct video *v, enum glint_status status)
+{
+    return tool_fail(v->tool, status, v->error.text);
+}
+
+static ptrdiff_t read_child(void *ctx, void *dst, size_t bytes)
+{
+    const struct child *child = ctx;
+    ssize_t n;
+
+    do
+        n = read(child->fd, dst, bytes);
+    while (n < 0 && errno == EINTR);
+    return n;
+}
+
+/* ffmpeg says itself what it cannot read. */
+static int open_coded(struct video *v)
+{
+    enum glint_status status;
+
+    if (access(v->o->input, R_OK) != 0)
+        return fail(v, glint_error_report(&v->error, GLINT_E_IO, v->o->input,
+                                          "%s", strerror(errno)));
+    ffmpeg_probe(&v->about, v->o->input);
+    status = ffmpeg_read(&v->reader, v->o->input, &v->about, &v->error);
+    if (status != GLINT_OK)
+        return fail(v, status);
+    status = glint_y4m_reader_start(&v->in, read_child, &v->reader, v->o->input,
+                                    &v->error);
+    if (status == GLINT_OK) {
+        ffmpeg_matrix(&v->about, &v->in.header.matrix);
+        return EXIT_OK;
+    }
+    if (child_end(&v->reader) != 0)
+        snprintf(v->error.text, sizeof v->error.text,
+                 "%.180s: ffmpeg cannot read it", v->o->input);
+    return fail(v, status == GLINT_E_MEMORY ? status : GLINT_E_FORMAT);
+}
+
+static int open_input(struct video *v)
+{
+    struct glint_y4m_header *h = &v->in.header;
+    const struct overlay *o = v->o;
+    int code = EXIT_OK;
+
+    if (v->reads) {
+        code = open_coded(v);
+    } else {
+        const enum glint_status status =
+            glint_y4m_reader_open(&v->in, o->input, &v->error);
+
+        if (status != GLINT_OK)
+            code = fail(v, status);
+    }
+    if (code == EXIT_OK && o->range)
+        h->range = o->range == 1 ? GLINT_RANGE_FULL : GLINT_RANGE_LIMITED;
+    if (code == EXIT_OK && o->matrix)
+        h->matrix = o->matrix == 1 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
+    return code;
+}
+
+/* A y4m stream into the pipe of ffmpeg, which writes beside the target. */
+static enum glint_status open_encoder(struct video *v)
+{
+    const struct overlay *o = v->o;
+    struct ffmpeg_target target = {
+        .name = o->output,
+        .sound = v->reads && !is_gif(o->output) ? o->input : NULL,
+        .options = o->encode,
+        .width = v->in.header.width,
+        .height = v->in.header.height,
+        .is_444 = v->in.header.format == GLINT_I444,
+        .range = v->in.header.range,
+        .quiet = v->tool->quiet};
+    enum glint_status status =
+        glint_output_open(&v->file, o->output, GLINT_OUTPUT_BINARY, &v->error);
+
+    if (status != GLINT_OK)
+        return status;
+    if (!v->file.tmp)
+        return glint_error_report(&v->error, GLINT_E_OUTPUT, o->output,
+                                  "is not a file, and a pipe takes .y4m only");
+    target.file = v->file.tmp;
+    status = ffmpeg_write(&v->writer, &target, &v->about, &v->error);
+    if (status != GLINT_OK)
+        return status;
+    snprintf(v->pipe, sizeof v->pipe, "/proc/self/fd/%d", v->writer.fd);
+    status = glint_y4m_writer_open(&v->out, v->pipe, &v->in.header, &v->error);
+    close(v->writer.fd); /* the other is closed with the stream */
+    v->writer.fd = -1;
+    return status;
+}
+
+static int open_output(struct video *v)
+{
+    const enum glint_status status =
+        v->writes ? open_encoder(v)
+                  : glint_y4m_writer_open(&v->out, v->o->output, &v->in.header,
+                                          &v->error);
+
+    return status == GLINT_OK ? EXIT_OK : fail(v, status);
+}
+
+/* -------------------------------------------------------------------- frames
+ */
+
+static int frames(struct video *v)
+{
+    const struct glint_image *image;
+    int code = EXIT_OK;
+
+    while (code == EXIT_OK) {
+        enum glint_status status =
+            glint_y4m_reader_next(&v->in, &image, &v->error);
+
+        if (status == GLINT_OK && !image)
+            break;
+        if (status == GLINT_OK) {
+            code = overlay_y4m_draw(v->tool, v->o, &v->in, image);
+            if (code != EXIT_OK)
+                break;
+            status = glint_y4m_writer_put_planes(&v->out, v->in.planes,
+                                                 overlay_y4m_bytes(&v->in),
+                                                 v->in.frame_tags, &v->error);
+            overlay_progress(v->tool, v->o);
+        }
+        if (status == GLINT_E_CLOSED)
+            break;
+        if (status != GLINT_OK)
+            code = fail(v, status);
+    }
+    if (code == EXIT_OK && v->o->look.n_frames == 0) {
+        fprintf(stderr, "glint overlay: %s: no frames\n", v->in.name);
+        code = EXIT_INPUT;
+    }
+    return code;
+}
+
+/* The time from frame to frame; 25 a second where that is not known. */
+static int32_t frame_us(const struct glint_y4m_header *header)
+{
+    const double us = header->fps_num > 0
+                          ? 1e6 * header->fps_den / header->fps_num
+                          : 1e6 / 25;
+
+    return (int32_t)fmin(fmax(us + 0.5, 1), 1e9);
+}
+
+/* -------------------------------------------------------------------- ending
+ */
+
+/* That the decoder came to its end, too, unless the reader of a pipe has had
+ * enough. */
+static int end_reader(struct video *v)
+{
+    const int code = child_end(&v->reader);
+
+    if (code == 0)
+        return EXIT_OK;
+    fprintf(stderr, "glint overlay: %s: ffmpeg could not read all of it\n",
+            v->o->input);
+    return EXIT_INPUT;
+}
+
+static int end_writer(struct video *v)
+{
+    enum glint_status status = glint_y4m_writer_commit(&v->out, &v->error);
+
+    if (v->writes && child_end(&v->writer) != 0) {
+        fprintf(stderr, "glint overlay: %s: ffmpeg could not write it\n",
+                v->o->output);
+        return EXIT_OUTPUT;
+    }
+    /* an encoder that has had enough, as with -frames:v, has made a file */
+    if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED))
+        status = glint_output_commit(&v->file, &v->error);
+    return status == GLINT_OK ? EXIT_OK : fail(v, status);
+}
+
+static int run(struct video *v)
+{
+    bool whole;
+    int code = open_input(v);
+
+    if (code == EXIT_OK)
+        code = open_output(v);
+    if (code != EXIT_OK)
+        return code;
+    v->o->elapsed_us = frame_us(&v->in.header);
+    code = frames(v);
+    whole = v->out.n_frames == v->in.n_frames;
+    if (code == EXIT_OK && v->reads && whole)
+        code = end_reader(v);
+    return code == EXIT_OK ? end_writer(v) : code;
+}
+
+/* Whatever is still open is given up. */
+static void close_all(struct video *v)
+{
+    child_kill(&v->reader);
+    child_kill(&v->writer);
+    if (v->out.out.fd >= 0)
+        glint_y4m_writer_abort(&v->out);
+    if (v->writes)
+        glint_output_abort(&v->file);
+    glint_y4m_reader_close(&v->in);
+}
+
+int overlay_video(struct tool *tool, struct overlay *o)
+{
+    struct video v = {.tool = tool,
+                      .o = o,
+                      .reads = !is_y4m(o->input),
+                      .writes = !is_y4m(o->output),
+                      .reader = {0, -1},
+                      .writer = {0, -1},
+                      .file = {.fd = -1},
+                      .in = {.in = {.fd = -1}},
+                      .out = {.out = {.fd = -1}}};
+    int code;
+
+    if ((v.reads || v.writes) && !child_exists("ffmpeg")) {
+        ffmpeg_by_hand(tool, o->input, o->output);
+        return EXIT_INPUT;
+    }
+    code = run(&v);
+    close_all(&v);
+    return code;
+}

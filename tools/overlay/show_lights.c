@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT */
+#include "overlay/show_lights.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "overlay/paint.h"
+
+static void set_state(struct paint *p, enum glint_track_state state)
+{
+    switch (state) {
+    case GLINT_TRACK_RISING:
+        paint_colour(p, 255, 255, 0);
+        break;
+    case GLINT_TRACK_STEADY:
+        paint_colour(p, 0, 255, 0);
+        break;
+    case GLINT_TRACK_FADING:
+        paint_colour(p, 255, 0, 0);
+        break;
+    case GLINT_TRACK_LEAVING:
+        paint_colour(p, 0, 128, 255);
+        break;
+    }
+}
+
+static void draw_cross(const struct paint *p, int x, int y)
+{
+    const int d = p->line;
+
+    paint_fill(p, x - 2 * d, y, x + 3 * d, y + d);
+    paint_fill(p, x, y - 2 * d, x + d, y + 3 * d);
+}
+
+/* The lines of letters that can be read at this size. */
+static int line_of(const struct glint_image *image)
+{
+    const int side =
+        image->width < image->height ? image->width : image->height;
+
+    return 1 + side / 540;
+}
+
+/* NUMBER and, unless "", STOPS beside the box; on the other side where that
+ * lies beyond the picture. */
+static void draw_words(const struct paint *p, int x, int y, int half,
+                       const char *number, const char *stops)
+{
+    const int gap = 3 * p->line, top = y < half ? 0 : y - half;
+    const int a = paint_text_width(p, number), b = paint_text_width(p, stops);
+    const int width = a > b ? a : b;
+    const int left = x + half + gap + width < p->image->width
+                         ? x + half + gap
+                         : x - half - gap - width;
+
+    paint_text(p, left, top, number);
+    paint_text(p, left, top + 7 * p->line, stops);
+}
+
+static void draw_all(const struct paint *p, int x, int y, int half, uint32_t id,
+                     const char *stops)
+{
+    char number[16];
+
+    snprintf(number, sizeof number, "%lu", (unsigned long)id);
+    draw_cross(p, x, y);
+    paint_box(p, x, y, half);
+    draw_words(p, x, y, half, number, stops);
+}
+
+/* A shadow first, as lamps are as bright as any line. */
+static void draw(const struct glint_image *image,
+                 const struct glint_track *track, const char *stops)
+{
+    struct paint p = {.image = image, .line = line_of(image)};
+    const int x = track->x_q8 >> 8, y = track->y_q8 >> 8;
+    const int half = 4 * p.line + (track->size_q8 >> 7);
+
+    paint_colour(&p, 0, 0, 0);
+    draw_all(&p, x + p.line, y + p.line, half, track->id, stops);
+    set_state(&p, track->state);
+    draw_all(&p, x, y, half, track->id, stops);
+}
+
+void show_light(const struct glint_image *image,
+                const struct glint_track *track)
+{
+    draw(image, track, "");
+}
+
+void show_light_of(const struct glint_image *image,
+                   const struct glint_track *track, double power)
+{
+    char stops[32] = "";
+
+    if (power > 0)
+        snprintf(stops, sizeof stops, "%+.1f EV", log2(power));
+    draw(image, track, stops);
+}
+
+/* ------------------------------------------------------------------- legend
+ */
+
+static const struct {
+    const char *word;
+    enum glint_track_state state;
+} states[] = {{"STEADY", GLINT_TRACK_STEADY},
+              {"RISING", GLINT_TRACK_RISING},
+              {"FADING", GLINT_TRACK_FADING},
+              {"LEFT THE PICTURE", GLINT_TRACK_LEAVING}};
+
+static const char words[] = "NUMBER, EV: STOPS OVER A WHITE PIXEL";
+
+void show_legend(const struct glint_image *image, bool followed)
+{
+    struct paint p = {.image = image, .line = line_of(image)};
+    const int margin = 3 * p.line, row = 8 * p.line;
+    const int width = paint_text_width(&p, words) + 2 * margin;
+    const int height = (followed ? 3 : 1) * row + margin;
+    int x = margin, y = image->height - height + margin;
+
+    if (width > image->width || 3 * height > image->height)
+        return;
+    paint_colour(&p, 0, 0, 0);
+    paint_fill(&p, 0, image->height - height, width, image->height);
+    paint_colour(&p, 255, 255, 255);
+    paint_text(&p, x, y, words);
+    for (int i = 0; followed && i < 4; i++) {
+        if (i % 3 == 0) {
+            x = margin;
+            y += row;
+        }
+        set_state(&p, states[i].state);
+        paint_text(&p, x, y, states[i].word);
+        x += paint_text_width(&p, states[i].word) + 2 * margin;
+    }
+}
