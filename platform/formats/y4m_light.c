@@ -4,6 +4,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "formats/y4m_divide.h"
+
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define WHITE_Q20 (INT32_C(1) << 20)
 
@@ -105,6 +107,11 @@ void glint_y4m_light_init(struct glint_y4m_light *light,
     l->kr_q16 = is_709 ? 13933 : 19595;
     l->kb_q16 = is_709 ? 4732 : 7471;
     l->kg_q16 = 65536 - l->kr_q16 - l->kb_q16;
+    l->y_factor = y4m_share_factor(20, l->y_span);
+    l->c_factor = y4m_share_factor(20, l->c_span);
+    l->cb_factor = y4m_share_factor(15, 65536 - l->kb_q16);
+    l->cr_factor = y4m_share_factor(15, 65536 - l->kr_q16);
+    l->g_factor = y4m_part_factor(l->kg_q16);
     fill_tables(l);
 }
 
@@ -216,11 +223,6 @@ void glint_y4m_light_blacken(const struct glint_y4m_light *light,
 
 /* ------------------------------------------------------------------- adding */
 
-static int64_t divide(int64_t n, int64_t d) /* to nearest; d > 0 */
-{
-    return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
-}
-
 static int32_t held(int64_t v, int32_t most)
 {
     return v < 0 ? 0 : v > most ? most : (int32_t)v;
@@ -230,17 +232,15 @@ static int32_t held(int64_t v, int32_t most)
 static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
                    int32_t rgb_q20[3])
 {
-    const int64_t y =
-        divide((int64_t)(ycc[0] - l->black) * WHITE_Q20, l->y_span);
-    const int64_t cb = divide((int64_t)ycc[1] * WHITE_Q20, l->c_span);
-    const int64_t cr = divide((int64_t)ycc[2] * WHITE_Q20, l->c_span);
-    const int64_t r = y + divide(2 * (65536 - l->kr_q16) * cr, 65536);
-    const int64_t b = y + divide(2 * (65536 - l->kb_q16) * cb, 65536);
+    const int64_t y = y4m_share(ycc[0] - l->black, l->y_factor);
+    const int64_t cb = y4m_share(ycc[1], l->c_factor);
+    const int64_t cr = y4m_share(ycc[2], l->c_factor);
+    const int64_t r = y + y4m_halve((65536 - l->kr_q16) * cr, 15);
+    const int64_t b = y + y4m_halve((65536 - l->kb_q16) * cb, 15);
 
     rgb_q20[0] = held(r, WHITE_Q20);
-    rgb_q20[1] =
-        held(divide(65536 * y - l->kr_q16 * r - l->kb_q16 * b, l->kg_q16),
-             WHITE_Q20);
+    rgb_q20[1] = y4m_part(65536 * y - l->kr_q16 * r - l->kb_q16 * b, l->kg_q16,
+                          l->g_factor);
     rgb_q20[2] = held(b, WHITE_Q20);
 }
 
@@ -260,15 +260,26 @@ static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
         if (d[c] < 0 || !(light > 0))
             d[c] = 0;
     }
-    y = divide(l->kr_q16 * d[0] + l->kg_q16 * d[1] + l->kb_q16 * d[2], 65536);
+    y = y4m_halve(l->kr_q16 * d[0] + l->kg_q16 * d[1] + l->kb_q16 * d[2], 16);
     change_q20[0] = y;
-    change_q20[1] = divide((d[2] - y) * 65536, 2 * (65536 - l->kb_q16));
-    change_q20[2] = divide((d[0] - y) * 65536, 2 * (65536 - l->kr_q16));
+    change_q20[1] = y4m_share((int32_t)(d[2] - y), l->cb_factor);
+    change_q20[2] = y4m_share((int32_t)(d[0] - y), l->cr_factor);
 }
 
 static bool is_lit(const float *layer)
 {
     return layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
+}
+
+/* SUM_Q20 / COUNT, 1 .. 4: three at the right edge of 4:1:1 alone. */
+static int64_t mean_of(int64_t sum_q20, int count)
+{
+    const int64_t whole = 3 * (int64_t)WHITE_Q20;
+
+    if (count != 3)
+        return y4m_halve(sum_q20, 20 + count / 2);
+    return sum_q20 < 0 ? -((2 * -sum_q20 + whole) / (2 * whole))
+                       : (2 * sum_q20 + whole) / (2 * whole);
 }
 
 /* A chroma sample's pixels: X0 .. X1, Y0 .. Y1. */
@@ -299,15 +310,13 @@ static void add_to_block(const struct glint_y4m_light *l, struct plane plane[4],
             ycc[0] = take(&plane[0], x, y);
             change_of(l, ycc, light, change);
             put(&plane[0], x, y,
-                held(ycc[0] + divide(change[0] * l->y_span, WHITE_Q20),
-                     l->most));
+                held(ycc[0] + y4m_halve(change[0] * l->y_span, 20), l->most));
             sum[0] += change[1];
             sum[1] += change[2];
         }
     for (int c = 1; c < 3 && !is_grey; c++)
         put(&plane[c], b->x, b->y,
-            held(middle + ycc[c] +
-                     divide(sum[c - 1] * l->c_span, (int64_t)count * WHITE_Q20),
+            held(middle + ycc[c] + mean_of(sum[c - 1] * l->c_span, count),
                  l->most));
 }
 

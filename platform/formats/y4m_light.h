@@ -30,6 +30,8 @@ struct glint_y4m_light {
     int32_t black, most;    /* codes of Y' = 0, and the largest there is */
     int32_t y_span, c_span; /* codes of Y' = 1, and from Cb = -1/2 to 1/2 */
     int32_t kr_q16, kg_q16, kb_q16;          /* R', G', B' in Y' */
+    int64_t y_factor, c_factor;              /* of the spans, y4m_divide.h */
+    int64_t cb_factor, cr_factor, g_factor;  /* of 1 - kb, 1 - kr and kg */
     int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of R'G'B' */
     int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];
 };

@@ -5,7 +5,7 @@
 ARM_TARGETS := aarch64 armv7 armv7-neon armv6-soft
 ARM_MODELS  := heliar-tronnier double-gauss-angenieux nikon-zoom-mid
 ARM_UNIT := arena divide cuts kernels model curve edges resolve composite lights flare plan account beams bright match \
-        tracks quantise pnm y4m output workers measure lamps fourcc panel frame \
+        tracks quantise pnm y4m y4m_divide output workers measure lamps fourcc panel frame \
         show_lights live_stats live_adapt
 # Those that want a model bake it here first, for all.
 ARM_BAKES := $(OUT)/tests/unit/test_frame

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * formats/y4m_divide.h - the divisions that light on a pixel takes, by a
+ * multiplication: a CPU of 32 bits calls a function for one of 64 bits. The
+ * results are those of the division, rounded to nearest, ties away from 0.
+ */
+#ifndef GLINT_PLATFORM_FORMATS_Y4M_DIVIDE_H
+#define GLINT_PLATFORM_FORMATS_Y4M_DIVIDE_H
+
+#include <stdint.h>
+
+enum { Y4M_SHARE_BITS = 40, Y4M_PART_BITS = 48, Y4M_PART_SKIP = 14 };
+
+/* Of y4m_share, for K 2^UP / D: UP up to 20, D from 219 to 65535. */
+static inline int64_t y4m_share_factor(int up, int32_t d)
+{
+    return ((INT64_C(1) << (up + Y4M_SHARE_BITS)) + d - 1) / d;
+}
+
+/* K 2^UP / D; |K| is at most 2^20, and the result at most 2^22. FACTOR is
+ * larger than it should be by less than 1, so the result before it is cut by
+ * less than 2^-20, and it lies no nearer than 1 / 2D below a whole number. */
+static inline int32_t y4m_share(int32_t k, int64_t factor)
+{
+    const int64_t size = k < 0 ? -(int64_t)k : k;
+    const int64_t share =
+        (size * factor + (INT64_C(1) << (Y4M_SHARE_BITS - 1))) >>
+        Y4M_SHARE_BITS;
+
+    return (int32_t)(k < 0 ? -share : share);
+}
+
+/* Of y4m_part, for D from 2^15 to 2^16. */
+static inline int64_t y4m_part_factor(int32_t d)
+{
+    return (INT64_C(1) << Y4M_PART_BITS) / d;
+}
+
+/* N / D, held within 0 and 2^20. What SKIP and the factor's cut leave out is
+ * less than 1, so the quotient is found or is one short of it. */
+static inline int32_t y4m_part(int64_t n, int32_t d, int64_t factor)
+{
+    const int64_t m = n + d / 2;
+    int64_t q;
+
+    if (n <= 0)
+        return 0;
+    if (m >= (int64_t)d << 20)
+        return INT32_C(1) << 20;
+    q = ((m >> Y4M_PART_SKIP) * factor) >> (Y4M_PART_BITS - Y4M_PART_SKIP);
+    return (int32_t)(q + (m - q * d >= d));
+}
+
+/* N / 2^S, S from 1. */
+static inline int64_t y4m_halve(int64_t n, int s)
+{
+    const int64_t half = INT64_C(1) << (s - 1);
+
+    return n < 0 ? -((-n + half) >> s) : (n + half) >> s;
+}
+
+#endif

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Multiplications in place of divisions give what the divisions do: those of
+ * y4m_share for every number, those of y4m_part at both ends of each run of
+ * numbers with one quotient, which is enough as both of them never fall.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "formats/y4m_divide.h"
+
+/* To nearest, ties away from 0; D is above 0. */
+static int64_t divide(int64_t n, int64_t d)
+{
+    return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
+}
+
+/* How many of K from -MOST to MOST have another share K 2^UP / D. */
+static long wrong_shares(int32_t most, int up, int32_t d)
+{
+    const int64_t factor = y4m_share_factor(up, d);
+    long wrong = 0;
+
+    for (int32_t k = -most; k <= most; k++)
+        wrong += y4m_share(k, factor) != divide(k * (INT64_C(1) << up), d);
+    return wrong;
+}
+
+/* Codes of all depths, of full and limited range. */
+static void test_codes(void **state)
+{
+    (void)state;
+    for (int bits = 8; bits <= 16; bits++) {
+        const int32_t most = (1 << bits) - 1;
+
+        assert_int_equal(wrong_shares(most, 20, most), 0);
+        assert_int_equal(wrong_shares(most, 20, 219 << (bits - 8)), 0);
+        assert_int_equal(wrong_shares(most, 20, 224 << (bits - 8)), 0);
+    }
+}
+
+static const int32_t kr_q16[2] = {13933, 19595}, kb_q16[2] = {4732, 7471};
+
+/* Differences of colour, of BT.709 and BT.601. */
+static void test_differences(void **state)
+{
+    (void)state;
+    for (int m = 0; m < 2; m++) {
+        assert_int_equal(wrong_shares(1 << 20, 15, 65536 - kr_q16[m]), 0);
+        assert_int_equal(wrong_shares(1 << 20, 15, 65536 - kb_q16[m]), 0);
+    }
+}
+
+static int32_t held(int64_t v)
+{
+    return v < 0 ? 0 : v > 1 << 20 ? 1 << 20 : (int32_t)v;
+}
+
+static void test_green(void **state)
+{
+    long wrong = 0;
+
+    (void)state;
+    for (int m = 0; m < 2; m++) {
+        const int32_t d = 65536 - kr_q16[m] - kb_q16[m];
+        const int64_t factor = y4m_part_factor(d);
+
+        for (int64_t q = -2; q <= (1 << 20) + 2; q++) {
+            const int64_t first = q * d - d / 2; /* of those with Q */
+
+            for (int64_t n = first - 2; n <= first + 2; n++)
+                wrong += y4m_part(n, d, factor) != held(divide(n, d));
+        }
+        wrong += y4m_part(-(INT64_C(1) << 40), d, factor) != 0;
+        wrong += y4m_part(INT64_C(1) << 40, d, factor) != 1 << 20;
+    }
+    assert_int_equal(wrong, 0);
+}
+
+static void test_halves(void **state)
+{
+    (void)state;
+    for (int s = 1; s < 24; s++)
+        for (int64_t n = -70000; n < 70000; n++)
+            assert_true(y4m_halve(16 * n, s) ==
+                        divide(16 * n, INT64_C(1) << s));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_codes),
+        cmocka_unit_test(test_differences),
+        cmocka_unit_test(test_green),
+        cmocka_unit_test(test_halves),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
