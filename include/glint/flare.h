@@ -8,7 +8,7 @@
  *     for each ghost, light and wavelength:
  *         vertices = glint_flare_add(flare, &bundle);        fill them in
  *     or for those of a baked lens at once, instead of both:
- *         glint_flare_plan(flare, &rays, beams, n_beams);
+ *         glint_flare_plan(flare, &frame, beams, n_beams);
  *     glint_flare_bin(flare, &stats);
  *     glint_flare_draw(flare, &image);
  *
@@ -113,18 +113,19 @@ struct glint_wave_sets {
     const struct glint_wave_planner *planner;
     int n_sets;                    /* 1 .. GLINT_MAX_WAVE_SETS */
     int size[GLINT_MAX_WAVE_SETS]; /* waves of each, 2 or more, rising: one set
-                                      after the other in glint_rays.wave */
+                                      after the other in glint_flare_frame.wave
+                                    */
     int32_t apart_q8;       /* pixels that neighbouring outlines may be apart */
     struct glint_real step; /* display white: what no step of light may pass
                                for outlines farther apart; 0: any is seen */
 };
 
-/* Four pixels as one; see struct glint_rays. */
+/* Four pixels as one; see struct glint_flare_frame. */
 struct glint_half;
 extern const struct glint_half glint_half;
 
-/* How a frame's rays come about. */
-struct glint_rays {
+/* What a frame is made of. */
+struct glint_flare_frame {
     const struct glint_lens *lens;
     const struct glint_wave *wave;
     int n_waves;                        /* 1 or more; of all sets together */
@@ -242,11 +243,12 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* Forgets all bundles and takes those in that the ghosts of a lens make of
  * BEAMS, as far as they can be seen; no vertices are to be filled in. All that
- * RAYS points to, and BEAMS, are kept until bin has returned. Needs room for
+ * FRAME points to, and BEAMS, are kept until bin has returned. Needs room for
  * n_beams * ghosts * n_waves bundles, or the last ones are left out; with sets
  * for as many of the first set, and for those of the sets that are chosen, or
  * the last ghosts take the first set. */
-void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
+void glint_flare_plan(struct glint_flare *flare,
+                      const struct glint_flare_frame *frame,
                       const struct glint_beam *beams, int n_beams);
 
 /* Which ghost of the lens bundle I of those planned is; I from 0 to the bundles

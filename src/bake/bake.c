@@ -132,7 +132,8 @@ static enum glint_status set_flux(const struct kitchen *k,
     static const double zero[NODES];
     double w[NODES], flux[NODES], one[NODES];
     double scratch[NODES * (GLINT_MAX_CANDIDATES + 1)];
-    const struct glint_samples samples = {NODES, {zero, zero, zero, w}, one};
+    const struct glint_regress_samples samples = {
+        NODES, {zero, zero, zero, w}, one};
     const struct glint_degrees degrees = {.most = {0, 0, 0, FLUX_POWERS - 1},
                                           .weight = {1, 1, 1, 1},
                                           .total = FLUX_POWERS - 1,

@@ -24,7 +24,7 @@ static double next(struct random *r)
 }
 
 /* A bundle and its exact counterpart. */
-struct bench {
+struct meter {
     const struct glint_hunt *hunt;
     const struct glint_fitted_system *fitted;
     struct glint_transfer transfer;
@@ -37,25 +37,25 @@ struct bench {
     struct glint_measured *out;
 };
 
-static double value(const struct bench *b, const struct glint_outputs *o,
+static double value(const struct meter *b, const struct glint_outputs *o,
                     int kind)
 {
     return ldexp(o->at[kind], b->transfer.exponent[kind]);
 }
 
-static bool has(const struct bench *b, int kind)
+static bool has(const struct meter *b, int kind)
 {
     return (b->transfer.outputs >> kind & 1) != 0;
 }
 
-static void note(struct bench *b, int kind, double error)
+static void note(struct meter *b, int kind, double error)
 {
     b->error[kind][b->n_of[kind]++] = fabs(error);
 }
 
 /* Barrels count where they cut: the error of r is that of (1 + r^2) / 2 there.
  */
-static void note_barrels(struct bench *b, const struct glint_outputs *o,
+static void note_barrels(struct meter *b, const struct glint_outputs *o,
                          double (*hits)[2])
 {
     for (int k = 0; k < b->fitted->n_outputs; k++) {
@@ -72,7 +72,7 @@ static void note_barrels(struct bench *b, const struct glint_outputs *o,
     }
 }
 
-static void note_ray(struct bench *b, const struct glint_ray *ray,
+static void note_ray(struct meter *b, const struct glint_ray *ray,
                      const struct glint_outputs *o, double (*hits)[2])
 {
     const struct glint_setup *s = b->hunt->setup;
@@ -95,7 +95,7 @@ static void note_ray(struct bench *b, const struct glint_ray *ray,
     note_barrels(b, o, hits);
 }
 
-static bool passes(const struct bench *b, const struct glint_outputs *o)
+static bool passes(const struct meter *b, const struct glint_outputs *o)
 {
     bool clear = hypot(value(b, o, GLINT_OUT_STOP_X),
                        value(b, o, GLINT_OUT_STOP_Y)) <= 1 &&
@@ -108,7 +108,7 @@ static bool passes(const struct bench *b, const struct glint_outputs *o)
 }
 
 /* Farther out than what any tolerance explains. */
-static bool well_outside(const struct bench *b, enum glint_ray_status status,
+static bool well_outside(const struct meter *b, enum glint_ray_status status,
                          const struct glint_ray *ray)
 {
     return status != GLINT_RAY_OK || ray->rel_radius > 1.03 ||
@@ -116,7 +116,7 @@ static bool well_outside(const struct bench *b, enum glint_ray_status status,
                1.03 * b->hunt->setup->optics.stop_radius_mm;
 }
 
-static void try_ray(struct bench *b, double u, double v)
+static void try_ray(struct meter *b, double u, double v)
 {
     const double scale = ldexp(1, b->transfer.box_exponent);
     double hits[GLINT_MAX_EVENTS + 1][2];
@@ -135,7 +135,7 @@ static void try_ray(struct bench *b, double u, double v)
 }
 
 /* Energy counts by its share, down to a fiftieth of the most. */
-static void divide_energy(struct bench *b)
+static void divide_energy(struct meter *b)
 {
     double most = 1e-30;
 
@@ -169,7 +169,7 @@ static struct glint_errors errors_of(double *error, int n)
 }
 
 /* A bundle at a random angle and wavelength of the system. */
-static bool set_bundle(struct bench *b, const struct glint_lens *lens,
+static bool set_bundle(struct meter *b, const struct glint_lens *lens,
                        const struct glint_model_system *s, struct random *r)
 {
     const double part = 0.5 + 0.5 * next(r), w = next(r);
@@ -201,7 +201,7 @@ void glint_measure_system(const struct glint_hunt *hunt,
     const double rim = glint_zone_rim(fitted->hollow);
     struct random random = {(uint64_t)system * 977 + 1};
     double error[GLINT_OUT_KINDS][RAYS], energy[RAYS];
-    struct bench b = {
+    struct meter b = {
         .hunt = hunt, .fitted = fitted, .energy = energy, .out = out};
 
     *out = (struct glint_measured){0};

@@ -11,7 +11,7 @@
 static int64_t number_of(const struct glint_flare *f, int ghost, int beam,
                          int wave)
 {
-    const struct glint_rays *r = f->plan.rays;
+    const struct glint_flare_frame *r = f->plan.frame;
 
     return ((int64_t)beam * (int)r->lens->header->n_ghosts + ghost) *
                r->n_waves +
@@ -26,7 +26,7 @@ static int first_from(const struct glint_flare *f, int64_t number)
 
     while (low < high) {
         const int middle = low + (high - low) / 2;
-        const struct glint_source *s = &f->source[middle];
+        const struct glint_bundle_plan *s = &f->planned[middle];
 
         if (number_of(f, s->ghost, s->beam, s->wave) < number)
             low = middle + 1;
@@ -43,8 +43,8 @@ static int find(const struct glint_flare *f, int64_t number)
 
     if (at == f->n_bundles)
         return -1;
-    return number_of(f, f->source[at].ghost, f->source[at].beam,
-                     f->source[at].wave) == number
+    return number_of(f, f->planned[at].ghost, f->planned[at].beam,
+                     f->planned[at].wave) == number
                ? at
                : -1;
 }
@@ -53,10 +53,10 @@ static int find(const struct glint_flare *f, int64_t number)
 static int set_of(const struct glint_flare *f, int ghost, int beam)
 {
     const int at = first_from(f, number_of(f, ghost, beam, 0));
-    const struct glint_source *s = &f->source[at];
+    const struct glint_bundle_plan *s = &f->planned[at];
 
     return at < f->n_bundles && s->ghost == ghost && s->beam == beam
-               ? glint_wave_sets_of(f->plan.rays->sets, s->wave)
+               ? glint_wave_sets_of(f->plan.frame->sets, s->wave)
                : 0;
 }
 
@@ -64,7 +64,7 @@ static int set_of(const struct glint_flare *f, int ghost, int beam)
 static int64_t place_of(const struct glint_flare *f, int ghost, int beam,
                         int wave)
 {
-    const struct glint_rays *r = f->plan.rays;
+    const struct glint_flare_frame *r = f->plan.frame;
     const int64_t number = number_of(f, ghost, beam, wave);
 
     return r->sets ? (number / r->n_waves + 1) * r->sets->size[0] - 1 : number;
@@ -120,13 +120,14 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
     struct glint_plan_scratch *scratch = flare->worker[0].plan;
     const int64_t number = number_of(flare, ghost, beam, wave);
     const int64_t place = place_of(flare, ghost, beam, wave);
-    const struct glint_wave_sets *sets = flare->plan.rays->sets;
+    const struct glint_wave_sets *sets = flare->plan.frame->sets;
     const int at = find(flare, number);
-    struct glint_source source = {.ghost = ghost, .beam = beam, .wave = wave};
+    struct glint_bundle_plan planned = {
+        .ghost = ghost, .beam = beam, .wave = wave};
     struct glint_bundle bundle;
 
     *account = (struct glint_account){.fate = GLINT_FATE_DRAWN};
-    account->fate = glint_plan_bundle(&flare->plan, &source, &bundle, scratch);
+    account->fate = glint_plan_bundle(&flare->plan, &planned, &bundle, scratch);
     account->surveyed = scratch->survey.n_rays;
     if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, beam)) {
         account->fate = GLINT_FATE_OTHER_SET;
@@ -142,10 +143,10 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
         account->fate = GLINT_FATE_FAINT;
     if (at < 0)
         return;
-    account->flux = flare->source[at].flux;
+    account->flux = flare->planned[at].flux;
     account->cells = flare->bundle[at].n_cells;
     account->vertices = (account->cells + 1) * (account->cells + 1);
-    glint_plan_transfer(&flare->plan, &source, &scratch->transfer);
+    glint_plan_transfer(&flare->plan, &planned, &scratch->transfer);
     count_outputs(&scratch->transfer, account);
     if (account->fate == GLINT_FATE_NO_ROOM)
         return;
@@ -154,11 +155,11 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
         account->fate = GLINT_FATE_EMPTY;
 }
 
-static int is_of(const struct glint_flare *f, const struct glint_source *s,
+static int is_of(const struct glint_flare *f, const struct glint_bundle_plan *s,
                  int ghost, int beam, int wave)
 {
-    const struct glint_model_ghost *of = f->plan.rays->lens->ghost;
-    const struct glint_wave_sets *sets = f->plan.rays->sets;
+    const struct glint_model_ghost *of = f->plan.frame->lens->ghost;
+    const struct glint_wave_sets *sets = f->plan.frame->sets;
     const struct glint_model_ghost *here = &of[s->ghost];
 
     return (ghost < 0 || (here->i == of[ghost].i && here->j == of[ghost].j)) &&
@@ -174,7 +175,7 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
         for (int i = 0; i < flare->n_drawn; i++) {
             const struct glint_bundle_slot *slot = &flare->slot[i];
 
-            if (!is_of(flare, &flare->source[i], ghost, beam, wave))
+            if (!is_of(flare, &flare->planned[i], ghost, beam, wave))
                 continue;
             for (int k = slot->first; k < slot->first + slot->n; k++)
                 if (put)

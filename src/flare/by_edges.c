@@ -149,13 +149,13 @@ static void emit_bundle(struct glint_flare *f, int bundle,
                                           f->edge + w->first_edge + w->n_edges,
                                       .max_edges = w->max_edges - w->n_edges};
 
-    if (f->plan.rays) {
-        glint_plan_transfer(&f->plan, &f->source[bundle], &w->plan->transfer);
+    if (f->plan.frame) {
+        glint_plan_transfer(&f->plan, &f->planned[bundle], &w->plan->transfer);
         ghost.transfer = &w->plan->transfer;
-        ghost.coded = f->plan.rays->faintest.mantissa != 0;
-        ghost.whole_codes_q8 = ghost.coded ? f->plan.rays->whole_codes_q8 : 0;
-        ghost.place = glint_plan_place(&f->plan, f->source[bundle].beam);
-        ghost.sag_q16 = f->source[bundle].sag_q16;
+        ghost.coded = f->plan.frame->faintest.mantissa != 0;
+        ghost.whole_codes_q8 = ghost.coded ? f->plan.frame->whole_codes_q8 : 0;
+        ghost.place = glint_plan_place(&f->plan, f->planned[bundle].beam);
+        ghost.sag_q16 = f->planned[bundle].sag_q16;
     }
     glint_ghost_edges_emit(&ghost);
     slot->first = -1;

@@ -143,7 +143,7 @@ static int lowest_bit(uint64_t x)
 void glint_cuts_part(const struct glint_stop *stop,
                      const struct glint_vertex *a, struct glint_outside at_a,
                      const struct glint_vertex *b, struct glint_outside at_b,
-                     struct glint_part *part)
+                     struct glint_edge_part *part)
 {
     struct interval in = {{0, INT64_C(1) << 30}, {NOTHING, NOTHING}};
 

@@ -33,7 +33,7 @@ int glint_cuts_count(struct glint_outside o);
 
 /* The visible part of the edge between two neighbouring nodes, from the one
  * that comes first in the grid. */
-struct glint_part {
+struct glint_edge_part {
     int32_t end_q8[2][2];
     int cut[2]; /* what ends it there, or GLINT_CUT_NOTHING: the node itself */
     int visible;
@@ -44,7 +44,7 @@ enum { GLINT_CUT_NOTHING = -1 };
 void glint_cuts_part(const struct glint_stop *stop,
                      const struct glint_vertex *a, struct glint_outside at_a,
                      const struct glint_vertex *b, struct glint_outside at_b,
-                     struct glint_part *part);
+                     struct glint_edge_part *part);
 
 /* Where the cuts A and B, as parts name them, cross within the cell with the
  * corners CORNER, in order. Returns 0 where they do not. */

@@ -46,7 +46,8 @@ static struct glint_flare *carve(struct glint_arena *a,
     f = placed ? placed : &measured.flare;
     f->bundle = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->bundle);
     f->slot = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->slot);
-    f->source = glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->source);
+    f->planned =
+        glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->planned);
     f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
     raster_of(c)->carve(f, a, c);
     f->bins.start = glint_arena_take(
@@ -141,7 +142,7 @@ void glint_flare_begin(struct glint_flare *flare)
 {
     set_size(flare, 0);
     flare->n_bundles = flare->n_vertices = flare->n_drawn = 0;
-    flare->plan.rays = NULL;
+    flare->plan.frame = NULL;
     flare->stats = (struct glint_flare_stats){0};
 }
 
@@ -184,7 +185,7 @@ static int n_within(const struct glint_lens *lens,
 static void plan_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
-    const struct glint_rays *r = f->plan.rays;
+    const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
 
     for (int wave = 0; wave < r->n_waves; wave++) {
@@ -192,9 +193,9 @@ static void plan_job(void *ctx, int job, int worker)
 
         if (at >= f->cfg.max_bundles)
             return;
-        f->source[at] = (struct glint_source){
+        f->planned[at] = (struct glint_bundle_plan){
             .ghost = job % n_ghosts, .beam = job / n_ghosts, .wave = wave};
-        glint_plan_bundle(&f->plan, &f->source[at], &f->bundle[at],
+        glint_plan_bundle(&f->plan, &f->planned[at], &f->bundle[at],
                           f->worker[worker].plan);
     }
 }
@@ -211,14 +212,14 @@ static int stored(const struct glint_flare *f, const struct glint_bundle *b)
  * out in one wave for all beams. Sums of integers: their order is no matter. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
-    const struct glint_rays *r = f->plan.rays;
+    const struct glint_flare_frame *r = f->plan.frame;
     const int64_t stride = (int64_t)r->lens->header->n_ghosts * r->n_waves;
 
     for (int first = 0; first < stride && first < n; first++) {
         int64_t sum_q20 = 0;
 
         for (int64_t i = first; i < n; i += stride)
-            sum_q20 += f->bundle[i].n_cells ? f->source[i].peak_q20 : 0;
+            sum_q20 += f->bundle[i].n_cells ? f->planned[i].peak_q20 : 0;
         for (int64_t i = first; i < n && sum_q20 < 1 << 20; i += stride)
             f->bundle[i].n_cells = 0;
     }
@@ -234,16 +235,16 @@ static void keep_seen(struct glint_flare *f, int n)
 
         if (f->bundle[i].n_cells == 0)
             continue;
-        f->flux = real_plus(f->flux, f->source[i].flux);
-        if (real_less(f->brightest, f->source[i].light))
-            f->brightest = f->source[i].light;
+        f->flux = real_plus(f->flux, f->planned[i].flux);
+        if (real_less(f->brightest, f->planned[i].light))
+            f->brightest = f->planned[i].light;
         s->need_vertices = glint_flare_add_need(s->need_vertices, vertices);
         if (vertices > f->cfg.max_vertices - f->n_vertices) {
             s->dropped_bundles++;
             continue;
         }
         f->bundle[f->n_bundles] = f->bundle[i];
-        f->source[f->n_bundles] = f->source[i];
+        f->planned[f->n_bundles] = f->planned[i];
         f->slot[f->n_bundles++] =
             (struct glint_bundle_slot){.first_vertex = f->n_vertices};
         f->n_vertices += vertices;
@@ -254,7 +255,7 @@ static void keep_seen(struct glint_flare *f, int n)
  * bundles there are. */
 static int plan_all(struct glint_flare *f, int n_jobs)
 {
-    const int n_waves = f->plan.rays->n_waves;
+    const int n_waves = f->plan.frame->n_waves;
     const int need =
         n_jobs < INT32_MAX / n_waves ? n_jobs * n_waves : INT32_MAX;
     const int n = need < f->cfg.max_bundles ? need : f->cfg.max_bundles;
@@ -268,18 +269,19 @@ static int plan_all(struct glint_flare *f, int n_jobs)
     return n;
 }
 
-void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
+void glint_flare_plan(struct glint_flare *flare,
+                      const struct glint_flare_frame *frame,
                       const struct glint_beam *beams, int n_beams)
 {
-    const int n_ghosts = (int)rays->lens->header->n_ghosts;
+    const int n_ghosts = (int)frame->lens->header->n_ghosts;
     const int64_t pairs =
-        (int64_t)n_within(rays->lens, beams, n_beams) * n_ghosts;
+        (int64_t)n_within(frame->lens, beams, n_beams) * n_ghosts;
     const int n_jobs = pairs < INT32_MAX ? (int)pairs : INT32_MAX;
 
     glint_flare_begin(flare);
-    flare->quads = rays->half;
-    set_size(flare, rays->half && flare->cfg.raster->halves);
-    flare->plan = (struct glint_plan){.rays = rays,
+    flare->quads = frame->half;
+    set_size(flare, frame->half && flare->cfg.raster->halves);
+    flare->plan = (struct glint_plan){.frame = frame,
                                       .beam = beams,
                                       .n_beams = n_beams,
                                       .width = flare->cfg.width,
@@ -288,15 +290,15 @@ void glint_flare_plan(struct glint_flare *flare, const struct glint_rays *rays,
                                       .half = flare->half,
                                       .round = flare->cfg.stop.n_blades == 0};
     flare->flux = flare->brightest = (struct glint_real){0, 0};
-    keep_seen(flare, rays->sets ? rays->sets->planner->plan(flare, n_jobs)
-                                : plan_all(flare, n_jobs));
+    keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
+                                 : plan_all(flare, n_jobs));
     if (flare->cfg.raster->fill)
         flare->cfg.raster->fill(flare);
 }
 
 int glint_flare_ghost(const struct glint_flare *flare, int i)
 {
-    return flare->source[i].ghost;
+    return flare->planned[i].ghost;
 }
 
 int glint_flare_planned(const struct glint_flare *flare, int i,
@@ -305,8 +307,8 @@ int glint_flare_planned(const struct glint_flare *flare, int i,
     if (i >= flare->n_bundles)
         return 0;
     *planned =
-        (struct glint_planned){flare->bundle[i].n_cells, flare->source[i].flux,
-                               flare->source[i].light};
+        (struct glint_planned){flare->bundle[i].n_cells, flare->planned[i].flux,
+                               flare->planned[i].light};
     return 1;
 }
 

@@ -330,7 +330,8 @@ static void add_triangles(struct glint_ghost_edges *g, const struct cell *c)
 
 /* The part of side K of a cell, in the cell's order: corner K to K + 1. */
 static void part_of_side(const struct glint_ghost_edges *g,
-                         const struct cell *c, int k, struct glint_part *part)
+                         const struct cell *c, int k,
+                         struct glint_edge_part *part)
 {
     const int reverse = k >= 2, next = (k + 1) & 3;
     const int from = reverse ? next : k, to = reverse ? k : next;
@@ -338,7 +339,7 @@ static void part_of_side(const struct glint_ghost_edges *g,
     glint_cuts_part(g->stop, c->corner[from], c->at[from], c->corner[to],
                     c->at[to], part);
     if (reverse) {
-        const struct glint_part forward = *part;
+        const struct glint_edge_part forward = *part;
 
         for (int end = 0; end < 2; end++) {
             part->end_q8[end][0] = forward.end_q8[1 - end][0];
@@ -352,7 +353,7 @@ static void part_of_side(const struct glint_ghost_edges *g,
 static void add_chords(struct glint_ghost_edges *g, const struct cell *c,
                        int32_t light)
 {
-    struct glint_part part[4];
+    struct glint_edge_part part[4];
     int n = 0;
 
     for (int k = 0; k < 4; k++) {
@@ -360,8 +361,8 @@ static void add_chords(struct glint_ghost_edges *g, const struct cell *c,
         n += part[n].visible;
     }
     for (int k = 0; k < n; k++) {
-        const struct glint_part *here = &part[k];
-        const struct glint_part *next = &part[k + 1 < n ? k + 1 : 0];
+        const struct glint_edge_part *here = &part[k];
+        const struct glint_edge_part *next = &part[k + 1 < n ? k + 1 : 0];
         point_q8 corner;
 
         if (here->cut[1] != next->cut[0] && here->cut[1] != GLINT_CUT_NOTHING &&
@@ -451,7 +452,7 @@ static void add_shared(struct glint_ghost_edges *g,
                        const struct glint_vertex *b, struct glint_outside at_b,
                        int32_t light, int32_t other)
 {
-    struct glint_part part;
+    struct glint_edge_part part;
 
     if (light == other)
         return;

@@ -56,7 +56,7 @@ struct glint_ghost_edges {
     const struct glint_vertex *vertex;
     struct glint_transfer *transfer;
     struct glint_place place;
-    const uint16_t *sag_q16; /* see struct glint_source */
+    const uint16_t *sag_q16; /* see struct glint_bundle_plan */
     const struct glint_bundle *bundle;
     uint32_t number; /* of the bundle */
     const struct glint_stop *stop;
@@ -64,7 +64,7 @@ struct glint_ghost_edges {
     int32_t limit_q8;  /* of a cell's light in a pixel, energy 1 */
     int steps;         /* per octave of irradiance; 0: not rounded */
     int coded; /* the picture has codes, which tell less apart of faint light */
-    int whole_codes_q8; /* see struct glint_rays */
+    int whole_codes_q8; /* see struct glint_flare_frame */
     struct glint_ghost_rows *rows;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;

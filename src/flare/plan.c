@@ -247,7 +247,7 @@ static int64_t round_bend(const struct glint_plan_survey *s)
 
 static struct glint_real pixels_per_mm(const struct glint_plan *p)
 {
-    struct glint_real x = p->rays->pixels_per_mm;
+    struct glint_real x = p->frame->pixels_per_mm;
 
     x.exponent -= p->half;
     return x;
@@ -286,7 +286,7 @@ static int cells_of(const struct glint_plan *p,
                     const struct glint_plan_survey *s,
                     const struct glint_transfer *t, struct glint_real light)
 {
-    const struct glint_rays *r = p->rays;
+    const struct glint_flare_frame *r = p->frame;
     const int folds = (s->n_up && s->n_down ? 4 : 2) * r->fineness;
     const int most = folds < GLINT_MAX_CELLS ? folds : GLINT_MAX_CELLS;
     int64_t bend = bend_of(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
@@ -364,7 +364,7 @@ static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
 
 /* A barrel's (1 + r^2) / 2 is a bowl. With the sag taken off, outlines lie as
  * often outside as inside. */
-static void set_sags(struct glint_source *source,
+static void set_sags(struct glint_bundle_plan *planned,
                      const struct glint_plan_survey *s,
                      const struct glint_transfer *t, int n_cells, int round)
 {
@@ -376,9 +376,9 @@ static void set_sags(struct glint_source *source,
                       INT64_C(1) << 40)
                 : 0;
 
-        source->sag_q16[k - GLINT_OUT_BARREL_0] = sag_q16(bowl_q16, n_cells);
+        planned->sag_q16[k - GLINT_OUT_BARREL_0] = sag_q16(bowl_q16, n_cells);
     }
-    source->sag_q16[2] = round ? sag_q16(round_bowl_q16(s), n_cells) : 0;
+    planned->sag_q16[2] = round ? sag_q16(round_bowl_q16(s), n_cells) : 0;
 }
 
 /* X of the sensor as pixels, q8. */
@@ -436,11 +436,11 @@ static struct glint_real colour_of(const struct glint_wave *w,
 
 /* Flux of the whole box, or of what a hollow one is, at energy 2^EXPONENT. */
 static struct glint_real flux_of(const struct glint_plan *p,
-                                 const struct glint_source *s,
+                                 const struct glint_bundle_plan *s,
                                  const struct glint_transfer *t,
                                  struct glint_real colour, int exponent)
 {
-    const struct glint_wave *w = &p->rays->wave[s->wave];
+    const struct glint_wave *w = &p->frame->wave[s->wave];
     const struct glint_beam *b = &p->beam[s->beam];
     struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
 
@@ -463,7 +463,7 @@ static int64_t peak_q20(const struct glint_plan *p,
     const int64_t most = INT64_C(1) << 40;
     struct glint_real area;
 
-    if (p->rays->faintest.mantissa == 0 || (s->n_up && s->n_down) ||
+    if (p->frame->faintest.mantissa == 0 || (s->n_up && s->n_down) ||
         s->least_area < 2 || s->least_area == UINT64_MAX)
         return most;
     area = real_times(real_of((int64_t)(s->least_area >> 1),
@@ -471,23 +471,23 @@ static int64_t peak_q20(const struct glint_plan *p,
                       real_times(pixels_per_mm(p), pixels_per_mm(p)));
     flux.exponent += 1;
     area = real_times(area, real_of(s->across * 2 * s->down, 0)); /* the box */
-    return real_integer(real_over(real_over(flux, area), p->rays->faintest), 20,
-                        most);
+    return real_integer(real_over(real_over(flux, area), p->frame->faintest),
+                        20, most);
 }
 
 void glint_plan_transfer(const struct glint_plan *plan,
-                         const struct glint_source *source,
+                         const struct glint_bundle_plan *planned,
                          struct glint_transfer *transfer)
 {
-    const struct glint_rays *r = plan->rays;
+    const struct glint_flare_frame *r = plan->frame;
 
-    glint_transfer_init(transfer, r->lens, source->ghost,
-                        plan->beam[source->beam].sine_q30,
-                        r->wave[source->wave].wave_q24);
+    glint_transfer_init(transfer, r->lens, planned->ghost,
+                        plan->beam[planned->beam].sine_q30,
+                        r->wave[planned->wave].wave_q24);
     if (r->narrow)
         r->narrow(transfer);
     transfer->sets = plan->sets;
-    transfer->energy_up = source->energy_up;
+    transfer->energy_up = planned->energy_up;
 }
 
 struct glint_place glint_plan_place(const struct glint_plan *plan, int beam)
@@ -527,7 +527,7 @@ int glint_plan_is_beyond(const struct glint_lens *lens,
 }
 
 /* Whether ghost or part GHOST is of the pair asked for. */
-static int is_wanted(const struct glint_rays *r, int ghost)
+static int is_wanted(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
     const struct glint_model_ghost *only =
@@ -537,12 +537,12 @@ static int is_wanted(const struct glint_rays *r, int ghost)
 }
 
 enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
-                                  struct glint_source *source,
+                                  struct glint_bundle_plan *planned,
                                   struct glint_bundle *bundle,
                                   struct glint_plan_scratch *scratch)
 {
-    const struct glint_rays *r = plan->rays;
-    const struct glint_beam *b = &plan->beam[source->beam];
+    const struct glint_flare_frame *r = plan->frame;
+    const struct glint_beam *b = &plan->beam[planned->beam];
     struct glint_transfer *transfer = &scratch->transfer;
     struct glint_plan_survey *s = &scratch->survey;
     struct glint_real colour;
@@ -550,15 +550,15 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     int exponent;
 
     bundle->n_cells = s->n_rays = 0;
-    if (!is_wanted(r, source->ghost))
+    if (!is_wanted(r, planned->ghost))
         return GLINT_FATE_OTHER;
     if (glint_plan_is_beyond(r->lens, b))
         return GLINT_FATE_BEYOND;
-    if (!glint_transfer_init(transfer, r->lens, source->ghost, b->sine_q30,
-                             r->wave[source->wave].wave_q24))
+    if (!glint_transfer_init(transfer, r->lens, planned->ghost, b->sine_q30,
+                             r->wave[planned->wave].wave_q24))
         return GLINT_FATE_CLOSED;
     transfer->sets = plan->sets;
-    colour = colour_of(&r->wave[source->wave], b, bundle->rgb_q14);
+    colour = colour_of(&r->wave[planned->wave], b, bundle->rgb_q14);
     if (colour.mantissa == 0 || b->power.mantissa == 0)
         return GLINT_FATE_DARK;
     run_survey(s, transfer, FEW_ACROSS, FEW_DOWN);
@@ -574,18 +574,18 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     high_q8 =
         pixels_q8(plan, transfer, s->seen.wide + q_divide(s->seen.wide, 10)) +
         256;
-    source->energy_up = (uint8_t)energy_up(s->energy);
-    exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - source->energy_up;
-    source->flux = flux_of(plan, source, transfer, colour, exponent);
-    source->peak_q20 = peak_q20(plan, s, transfer, source->flux);
-    if (plan->n_beams == 1 && !r->sets && source->peak_q20 < 1 << 20)
+    planned->energy_up = (uint8_t)energy_up(s->energy);
+    exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
+    planned->flux = flux_of(plan, planned, transfer, colour, exponent);
+    planned->peak_q20 = peak_q20(plan, s, transfer, planned->flux);
+    if (plan->n_beams == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_FATE_FAINT;
-    source->light = real_over(
-        source->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
-    bundle->n_cells = cells_of(plan, s, transfer, source->light);
+    planned->light = real_over(
+        planned->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
+    bundle->n_cells = cells_of(plan, s, transfer, planned->light);
     if (transfer->hollow) /* two rows of cells are the middle's */
         bundle->n_cells = hollow_cells(bundle->n_cells);
-    set_sags(source, s, transfer, bundle->n_cells, plan->round);
-    set_flux(bundle, transfer, source->flux);
+    set_sags(planned, s, transfer, bundle->n_cells, plan->round);
+    set_flux(bundle, transfer, planned->flux);
     return GLINT_FATE_DRAWN;
 }

@@ -18,7 +18,7 @@
 #include "glint/lens.h"
 
 /* Where the rays of a bundle come from. */
-struct glint_source {
+struct glint_bundle_plan {
     int32_t ghost, beam, wave;
     uint8_t energy_up; /* see struct glint_transfer */
     /* Of two barrels and a round stop: how far, in the mean, the grid's
@@ -32,7 +32,7 @@ struct glint_source {
 };
 
 struct glint_plan {
-    const struct glint_rays *rays;
+    const struct glint_flare_frame *frame;
     const struct glint_beam *beam;
     int n_beams, width, height; /* of the picture */
     unsigned sets;
@@ -91,13 +91,13 @@ int glint_plan_is_beyond(const struct glint_lens *lens,
 /* Plans one bundle: BUNDLE->n_cells is 0 where nothing of it can be seen, and
  * what is returned says why. SOURCE has ghost, beam and wave set. */
 enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
-                                  struct glint_source *source,
+                                  struct glint_bundle_plan *planned,
                                   struct glint_bundle *bundle,
                                   struct glint_plan_scratch *scratch);
 
 /* The polynomials of a bundle that was planned. */
 void glint_plan_transfer(const struct glint_plan *plan,
-                         const struct glint_source *source,
+                         const struct glint_bundle_plan *planned,
                          struct glint_transfer *transfer);
 
 /* Where beam BEAM's ghosts lie in the picture. */

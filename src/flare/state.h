@@ -49,12 +49,12 @@ struct glint_bundle_slot {
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    int half, width, height; /* of the frame: see struct glint_rays; what is
-                                drawn has this size */
+    int half, width, height; /* of the frame: see struct glint_flare_frame; what
+                                is drawn has this size */
     const struct glint_half *quads;    /* if half */
     int n_bundles, n_vertices;         /* taken in */
-    struct glint_plan plan;            /* of a lens, unless rays is NULL */
-    struct glint_source *source;       /* of each bundle planned */
+    struct glint_plan plan;            /* of a lens, unless frame is NULL */
+    struct glint_bundle_plan *planned; /* of each bundle planned */
     struct glint_real flux, brightest; /* of what was planned */
     int n_drawn;                       /* of these, the bundles that bin kept */
     struct glint_bundle *bundle;

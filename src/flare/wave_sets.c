@@ -10,7 +10,8 @@ enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 struct job {
     int ghost, beam;
     int set;      /* or UNSEEN */
-    int peak_q20; /* of all its waves, 2^20 at most: see struct glint_source */
+    int peak_q20; /* of all its waves, 2^20 at most: see struct
+                     glint_bundle_plan */
     int first;    /* of its bundles */
 };
 
@@ -52,10 +53,10 @@ static void trace(const struct glint_plan *plan, const struct job *job,
     const int32_t one_q30 = INT32_C(1) << 30;
     const struct glint_real scale =
         glint_plan_place(plan, job->beam).pixels_per_mm;
-    const struct glint_source source = {
+    const struct glint_bundle_plan planned = {
         .ghost = job->ghost, .beam = job->beam, .wave = wave};
 
-    glint_plan_transfer(plan, &source, t);
+    glint_plan_transfer(plan, &planned, t);
     for (int row = 0; row < ROWS; row++) {
         const int32_t v_q30 = glint_transfer_v(t, 2 * row + 1, 2 * ROWS);
         int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
@@ -81,7 +82,7 @@ static int64_t apart_q8(const struct glint_plan *plan, const struct job *job,
     uint64_t squares = 0; /* 48 of at most 2^52 */
 
     trace(plan, job, 0, t, a_q8);
-    trace(plan, job, plan->rays->sets->size[0] - 1, t, b_q8);
+    trace(plan, job, plan->frame->sets->size[0] - 1, t, b_q8);
     for (int row = 0; row < ROWS; row++)
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < GLINT_RAYS; i++) {
@@ -93,7 +94,7 @@ static int64_t apart_q8(const struct glint_plan *plan, const struct job *job,
 }
 
 /* How far set SET reaches, 1 / wavelength^2. */
-static int64_t span_of(const struct glint_rays *r, int set)
+static int64_t span_of(const struct glint_flare_frame *r, int set)
 {
     const struct glint_wave *w = r->wave + glint_wave_sets_first(r->sets, set);
     const int32_t span = w[r->sets->size[set] - 1].wave_q24 - w[0].wave_q24;
@@ -104,7 +105,7 @@ static int64_t span_of(const struct glint_rays *r, int set)
 /* Whether no step of set SET shows of a ghost of LIGHT, whose first set is
  * APART.
  */
-static int serves(const struct glint_rays *r, int set, int64_t apart,
+static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
                   struct glint_real light)
 {
     const struct glint_wave_sets *s = r->sets;
@@ -118,10 +119,10 @@ static int serves(const struct glint_rays *r, int set, int64_t apart,
 
 /* The smallest set that serves the ghost of N waves planned at SOURCE. */
 static int choose(const struct glint_plan *plan, const struct job *job,
-                  const struct glint_source *source,
+                  const struct glint_bundle_plan *planned,
                   const struct glint_bundle *bundle, struct glint_transfer *t)
 {
-    const struct glint_rays *r = plan->rays;
+    const struct glint_flare_frame *r = plan->frame;
     const int n = r->sets->size[0];
     const int both = bundle[0].n_cells && bundle[n - 1].n_cells;
     struct glint_real light = {0, 0};
@@ -129,7 +130,7 @@ static int choose(const struct glint_plan *plan, const struct job *job,
 
     for (int i = 0; i < n; i++)
         if (bundle[i].n_cells)
-            light = real_plus(light, source[i].light);
+            light = real_plus(light, planned[i].light);
     if (r->sets->n_sets > 1 && !serves(r, 0, FARTHEST_Q8, light)) {
         const int64_t apart = both ? apart_q8(plan, job, t) : FARTHEST_Q8;
 
@@ -145,13 +146,13 @@ static int choose(const struct glint_plan *plan, const struct job *job,
 static void plan_waves(struct glint_flare *f, const struct job *job, int at,
                        int set, struct glint_plan_scratch *scratch)
 {
-    const struct glint_wave_sets *sets = f->plan.rays->sets;
+    const struct glint_wave_sets *sets = f->plan.frame->sets;
     const int first = glint_wave_sets_first(sets, set);
 
     for (int i = 0; i < sets->size[set]; i++) {
-        f->source[at + i] = (struct glint_source){
+        f->planned[at + i] = (struct glint_bundle_plan){
             .ghost = job->ghost, .beam = job->beam, .wave = first + i};
-        glint_plan_bundle(&f->plan, &f->source[at + i], &f->bundle[at + i],
+        glint_plan_bundle(&f->plan, &f->planned[at + i], &f->bundle[at + i],
                           scratch);
     }
 }
@@ -161,7 +162,7 @@ static void look_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
     struct job *job = &jobs_of(f)[number];
-    const struct glint_rays *r = f->plan.rays;
+    const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
     const int n = r->sets->size[0], at = number * n;
     int64_t peak_q20 = 0;
@@ -172,11 +173,11 @@ static void look_job(void *ctx, int number, int worker)
     for (int i = 0; i < n; i++)
         if (f->bundle[at + i].n_cells) {
             job->set = 0;
-            peak_q20 += f->source[at + i].peak_q20;
+            peak_q20 += f->planned[at + i].peak_q20;
         }
     job->peak_q20 = (int)q_clamp_sat(peak_q20, 0, 1 << 20);
     if (job->set == 0)
-        job->set = choose(&f->plan, job, &f->source[at], &f->bundle[at],
+        job->set = choose(&f->plan, job, &f->planned[at], &f->bundle[at],
                           &f->worker[worker].plan->transfer);
 }
 
@@ -192,7 +193,7 @@ static void more_job(void *ctx, int number, int worker)
 /* A ghost that no pixel can show of all beams together. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
-    const int n_ghosts = (int)f->plan.rays->lens->header->n_ghosts;
+    const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
     struct job *job = jobs_of(f);
 
     for (int ghost = 0; ghost < n_ghosts && ghost < n; ghost++) {
@@ -211,7 +212,7 @@ static void move(struct glint_flare *f, int from, int to, int n)
     for (int i = 0; i < n && from != to; i++) {
         const int k = to > from ? n - 1 - i : i;
 
-        f->source[to + k] = f->source[from + k];
+        f->planned[to + k] = f->planned[from + k];
         f->bundle[to + k] = f->bundle[from + k];
     }
 }
@@ -219,7 +220,7 @@ static void move(struct glint_flare *f, int from, int to, int n)
 /* Of N jobs those that are seen, without gaps; returns how many. */
 static int keep_seen(struct glint_flare *f, int n)
 {
-    const int size = f->plan.rays->sets->size[0];
+    const int size = f->plan.frame->sets->size[0];
     struct job *job = jobs_of(f);
     int kept = 0;
 
@@ -235,7 +236,7 @@ static int keep_seen(struct glint_flare *f, int n)
  * many bundles there are; *NEED is how many there should be. */
 static int place(struct glint_flare *f, int n, int64_t *need)
 {
-    const int *size = f->plan.rays->sets->size;
+    const int *size = f->plan.frame->sets->size;
     struct job *job = jobs_of(f);
     int total = 0;
 
@@ -258,7 +259,7 @@ static int place(struct glint_flare *f, int n, int64_t *need)
 static int plan_sets(struct glint_flare *flare, int n_jobs)
 {
     struct glint_flare_stats *s = &flare->stats;
-    const int size = flare->plan.rays->sets->size[0];
+    const int size = flare->plan.frame->sets->size[0];
     const int most = flare->cfg.max_bundles / size;
     int n = n_jobs < most ? n_jobs : most, total = 0;
     int64_t need = 0, least = (int64_t)n_jobs * size;

@@ -15,7 +15,7 @@
 #include "glint/tracks.h"
 
 /* What is followed: places _q16, the rest as in a spot. */
-enum glint_channel {
+enum glint_record_channel {
     GLINT_CHANNEL_X,
     GLINT_CHANNEL_Y,
     GLINT_CHANNEL_FLUX,

@@ -181,9 +181,9 @@ static void draw_flare(const struct glint_flare_config *c,
     struct glint_wave wave[3];
     struct glint_flare_stats stats;
     struct glint_flare *flare;
-    struct glint_rays rays = {.wave = wave,
-                              .pixels_per_mm = real_of(image->width, -5),
-                              .only_ghost = -1};
+    struct glint_flare_frame rays = {.wave = wave,
+                                     .pixels_per_mm = real_of(image->width, -5),
+                                     .only_ghost = -1};
     const int n_given = 1 + number(MAX_BEAMS);
     const int most = 1 + number(MAX_BEAMS);
     const int32_t near_q30 = 1 << number(24);

@@ -122,13 +122,13 @@ static void check_frame(const struct glint_lens *lens)
     const struct glint_beam beam[2] = {
         {0, ONE, ONE, 0, {1 << 30, -20}, {16384, 16384, 16384}},
         {h->sine_hi_q30, ONE / 2, ONE / 2, -ONE, {1 << 30, 20}, {16384, 1, 0}}};
-    const struct glint_rays rays = {.lens = lens,
-                                    .wave = wave,
-                                    .n_waves = 2,
-                                    .pixels_per_mm = {1 << 30, -26},
-                                    .fineness = 8,
-                                    .faintest = {1 << 30, -42},
-                                    .only_ghost = -1};
+    const struct glint_flare_frame rays = {.lens = lens,
+                                           .wave = wave,
+                                           .n_waves = 2,
+                                           .pixels_per_mm = {1 << 30, -26},
+                                           .fineness = 8,
+                                           .faintest = {1 << 30, -42},
+                                           .only_ghost = -1};
     struct glint_image image = {
         .format = GLINT_YUYV, .width = SIDE, .height = SIDE};
     const struct glint_flare_config cfg = {.width = SIDE,

@@ -254,12 +254,12 @@ static double light_of(const struct frame *f, const struct glint_image *image,
 }
 
 /* IMAGE: NULL for a linear one. */
-static struct glint_rays rays_of(struct frame *f,
-                                 const struct glint_image *image)
+static struct glint_flare_frame rays_of(struct frame *f,
+                                        const struct glint_image *image)
 {
     set_waves(f);
     f->sets.step = glint_real_of(light_of(f, image, FRAME_STEP_CODES));
-    return (struct glint_rays){
+    return (struct glint_flare_frame){
         .lens = f->lens,
         .wave = f->wave,
         .n_waves = has_sets(f) ? all_waves(f->setup) : f->setup->n_wavelengths,
@@ -319,7 +319,8 @@ void frame_retune(struct frame *f)
 }
 
 /* Plans, with room for all bundles there can be. */
-static enum glint_status plan(struct frame *f, const struct glint_rays *rays)
+static enum glint_status plan(struct frame *f,
+                              const struct glint_flare_frame *rays)
 {
     const int bundles = bundles_of(f, f->n_beams);
 
@@ -522,7 +523,7 @@ static enum glint_status model_scale(struct frame *frame,
                                      int n_lamps, struct frame_scale *scale)
 {
     struct glint_real brightest, together;
-    struct glint_rays rays;
+    struct glint_flare_frame rays;
     enum glint_status status = set_beams(frame, lamps, n_lamps, 1);
 
     frame->can_half = false;

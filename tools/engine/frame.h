@@ -61,12 +61,12 @@ struct frame {
     struct glint_wave_sets sets;
     struct glint_beam *beam;
     int n_beams, max_beams;
-    int n_apart;            /* lights that can be told apart */
-    int n_beyond;           /* left out before: the model ends before them */
-    int n_more;             /* beams that are further points of a lamp */
-    struct glint_rays rays; /* of the last frame, with a model */
-    double scale;           /* by which its lights were multiplied */
-    bool *seen;             /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+    int n_apart;  /* lights that can be told apart */
+    int n_beyond; /* left out before: the model ends before them */
+    int n_more;   /* beams that are further points of a lamp */
+    struct glint_flare_frame rays; /* of the last frame, with a model */
+    double scale;                  /* by which its lights were multiplied */
+    bool *seen; /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
 
     /* exact rays */
     struct glint_lamp *merged; /* lamps, where some merged; [n_beams] */

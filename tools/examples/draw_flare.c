@@ -82,7 +82,7 @@ static int draw(const struct glint_lens *lens, const struct glint_image *image,
                 const struct glint_beam *beam)
 {
     struct glint_wave wave[WAVES];
-    const struct glint_rays rays = {
+    const struct glint_flare_frame rays = {
         .lens = lens,
         .wave = wave,
         .n_waves = WAVES,

@@ -41,9 +41,9 @@ struct fitter {
     struct glint_fitted_ghost *out;
     struct glint_zone_fit fit;
     glint_zone_survey survey;
-    struct glint_profile profile;
+    struct glint_visible_profile profile;
     struct glint_hunt in_band, in_part;
-    struct glint_profile band_profile;
+    struct glint_visible_profile band_profile;
     double profiled[4]; /* what it is of: angles and band */
     double wanders;     /* the box with the colour, half widths */
     int n_parts;        /* of the zone so far */
@@ -99,7 +99,7 @@ struct pending {
     double lo, hi, before;
     double w0, w1; /* the part of the band, -1 .. 1 */
     bool by_all_means;
-    struct glint_part part;
+    struct glint_zone_part part;
     int depth; /* of the part; 0: the whole zone */
 };
 
@@ -109,8 +109,8 @@ static bool is_whole_band(double w0, double w1)
 }
 
 /* The boxes for the angles and the part of the band of P. */
-static const struct glint_profile *profile_of(struct fitter *f,
-                                              const struct pending *p)
+static const struct glint_visible_profile *profile_of(struct fitter *f,
+                                                      const struct pending *p)
 {
     const double range[2] = {p->lo, p->hi};
     const double key[4] = {p->lo, p->hi, p->w0, p->w1};
@@ -129,7 +129,7 @@ static const struct glint_profile *profile_of(struct fitter *f,
 static void cut_out(struct fitter *f, const struct pending *p,
                     struct glint_zone *zone)
 {
-    const struct glint_part *part = &p->part;
+    const struct glint_zone_part *part = &p->part;
     const struct glint_hunt *band =
         is_whole_band(p->w0, p->w1) ? f->hunt : &f->in_band;
 
@@ -185,7 +185,7 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
                                   struct glint_fitted_system *system,
                                   double *left)
 {
-    const struct glint_profile *profile = profile_of(f, p);
+    const struct glint_visible_profile *profile = profile_of(f, p);
     enum glint_status status;
     struct glint_zone zone;
 
@@ -252,7 +252,7 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
     return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
 }
 
-static const struct glint_part whole = {-1, 1, 1, -1, 1, 0};
+static const struct glint_zone_part whole = {-1, 1, 1, -1, 1, 0};
 
 /* Puts the halves of P on the stack: along v first, so that what is seen
  * through the middle gets apart from what is seen through the rim. Returns how
@@ -270,7 +270,7 @@ static int push_halves(struct pending *stack, int n, struct pending p,
         a.part = b.part = whole;
     } else {
         a.depth = b.depth = p.depth + 1;
-        glint_part_halve(&p.part, p.depth % 2 == 0, &a.part, &b.part);
+        glint_zone_part_halve(&p.part, p.depth % 2 == 0, &a.part, &b.part);
     }
     stack[n] = b;
     stack[n + 1] = a;

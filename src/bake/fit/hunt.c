@@ -387,7 +387,7 @@ static void look(const struct glint_hunt *h, const double *sine,
     }
 }
 
-static void add_angle(struct glint_profile *p, double sine,
+static void add_angle(struct glint_visible_profile *p, double sine,
                       const struct glimpses *g, int k)
 {
     const int first = p->n_glimpses;
@@ -407,7 +407,7 @@ static void add_angle(struct glint_profile *p, double sine,
 }
 
 void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
-                        struct glint_profile *profile)
+                        struct glint_visible_profile *profile)
 {
     struct glimpses g = {.seen = {{false}}};
     double sine[GLINT_PROFILE];

@@ -57,7 +57,7 @@ struct glint_glimpse {
 
 /* Boxes over a range: at each angle, the one that holds what gets through
  * anywhere in the band, and those of single wavelengths, by rising angle. */
-struct glint_profile {
+struct glint_visible_profile {
     int n, n_glimpses;
     double sine[GLINT_PROFILE];
     struct glint_pupil box[GLINT_PROFILE];
@@ -65,7 +65,7 @@ struct glint_profile {
 };
 
 void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
-                        struct glint_profile *profile);
+                        struct glint_visible_profile *profile);
 
 /* Whether the stop, the barrels and the field let RAY through. */
 bool glint_hunt_visible(const struct glint_hunt *hunt,

@@ -26,7 +26,7 @@ struct column {
 };
 
 struct search {
-    const struct glint_samples *s;
+    const struct glint_regress_samples *s;
     const struct glint_degrees *degrees;
     int n_chosen, n_columns;
     int chosen[GLINT_MAX_TERMS]; /* columns, in the order they entered */
@@ -102,7 +102,7 @@ static void make_orthogonal(const struct search *s, struct column *column)
 
 static void fill(const struct search *s, struct column *column)
 {
-    const struct glint_samples *v = s->s;
+    const struct glint_regress_samples *v = s->s;
 
     memcpy(column->at, v->weight, (size_t)v->n * sizeof *column->at);
     for (int k = 0; k < GLINT_VARIABLES; k++)
@@ -236,7 +236,8 @@ static void solve(const struct search *s, const double *y,
     }
 }
 
-double glint_regress_fit(double *scratch, const struct glint_samples *samples,
+double glint_regress_fit(double *scratch,
+                         const struct glint_regress_samples *samples,
                          const double *y, const struct glint_degrees *degrees,
                          double rms, double peak, struct glint_poly *poly)
 {

@@ -40,7 +40,7 @@ struct glint_degrees {
     int patience;
 };
 
-struct glint_samples {
+struct glint_regress_samples {
     int n;
     const double *x[GLINT_VARIABLES];
     const double *weight;
@@ -53,7 +53,8 @@ size_t glint_regress_doubles(int n);
  * everywhere, or where nothing more helps; there is a term at least, unless all
  * weights are 0. Returns how much of these is left,
  * the larger ratio: up to 1 it got there. */
-double glint_regress_fit(double *scratch, const struct glint_samples *samples,
+double glint_regress_fit(double *scratch,
+                         const struct glint_regress_samples *samples,
                          const double *y, const struct glint_degrees *degrees,
                          double rms, double peak, struct glint_poly *poly);
 

@@ -51,7 +51,7 @@ static void add(struct seen *seen, double s, double w,
 }
 
 /* One angle beyond each end, too, so that the ends are covered. */
-static void gather(const struct glint_profile *p, double lo, double hi,
+static void gather(const struct glint_visible_profile *p, double lo, double hi,
                    bool by_colour, struct seen *seen)
 {
     int first = 0, last = p->n - 1;
@@ -81,7 +81,7 @@ static void follow(const struct seen *seen, const double *value, int degree,
 {
     static const double zero[ROOM];
     double scratch[ROOM * (GLINT_BOX_TERMS + 1)], weight[ROOM];
-    const struct glint_samples samples = {
+    const struct glint_regress_samples samples = {
         seen->n, {zero, zero, seen->s, seen->w}, weight};
     const int total = degree < 2 ? 2 : degree;
     const struct glint_degrees degrees = {
@@ -159,8 +159,8 @@ static void set_box(struct glint_zone *z, const struct seen *seen, int degree,
 }
 
 void glint_zone_init(struct glint_zone *zone,
-                     const struct glint_profile *profile, double lo, double hi,
-                     bool by_colour)
+                     const struct glint_visible_profile *profile, double lo,
+                     double hi, bool by_colour)
 {
     struct seen seen;
     int most;
@@ -194,8 +194,9 @@ double glint_zone_rim(int hollow)
     return hollow / (hollow + 1.0);
 }
 
-void glint_part_halve(const struct glint_part *part, bool along_v,
-                      struct glint_part *first, struct glint_part *second)
+void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
+                           struct glint_zone_part *first,
+                           struct glint_zone_part *second)
 {
     const int k = part->hollow;
 
@@ -209,7 +210,7 @@ void glint_part_halve(const struct glint_part *part, bool along_v,
     }
 }
 
-void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part)
+void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
 {
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         zone->middle[k] += 0.5 * (part->u0 + part->u1) * zone->half_x[k];
@@ -319,11 +320,12 @@ static void sight(const struct glint_hunt *h, const struct together *t,
 }
 
 double glint_zone_crop(const struct glint_zone *zone,
-                       const struct glint_hunt *hunt, struct glint_part *part)
+                       const struct glint_hunt *hunt,
+                       struct glint_zone_part *part)
 {
     enum { ANGLES = 5, COLUMNS = TOGETHER, ROWS = 12 };
     const double margin = 3.0 / COLUMNS;
-    const struct glint_part before = *part;
+    const struct glint_zone_part before = *part;
     struct sighting seen = {{9, 9, 9, 9}, {-9, -9, -9, -9}};
     struct together t;
 
@@ -442,7 +444,7 @@ static double escapes(const struct survey *s, int *chosen, int n, double *most)
 /* Takes barrels, the most useful first, until no ray gets farther past the
  * others than SHOWS. */
 static void choose_barrels(const struct survey *s, double shows,
-                           struct glint_rays *rays)
+                           struct glint_zone_rays *rays)
 {
     double most;
 
@@ -475,7 +477,7 @@ static void choose_barrels(const struct survey *s, double shows,
 static void add_ray(const struct glint_hunt *h, const struct glint_path *path,
                     const double x[GLINT_VARIABLES],
                     const struct glint_ray *ray, double (*hits)[2],
-                    struct glint_rays *rays)
+                    struct glint_zone_rays *rays)
 {
     const double stop = h->setup->optics.stop_radius_mm;
     const int i = rays->n++;
@@ -507,7 +509,7 @@ enum { SINES = 9, ACROSS = 24, DOWN = 12 };
  * seen is enough. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_hunt *hunt, int sine, int wave,
-                        int stride, struct glint_rays *rays)
+                        int stride, struct glint_zone_rays *rays)
 {
     const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
     struct together t;
@@ -538,12 +540,12 @@ static void trace_plane(const struct glint_zone *zone,
     }
 }
 
-static int count_visible(const struct glint_rays *rays)
+static int count_visible(const struct glint_zone_rays *rays)
 {
     int n = 0;
 
     for (int i = 0; i < rays->n; i++)
-        n += glint_rays_seen(rays, i);
+        n += glint_zone_rays_seen(rays, i);
     return n;
 }
 
@@ -552,7 +554,7 @@ static int count_visible(const struct glint_rays *rays)
  */
 static void trace_positions(const struct glint_zone *zone,
                             const struct glint_hunt *hunt,
-                            struct glint_rays *rays)
+                            struct glint_zone_rays *rays)
 {
     static const int shift[] = {0, 3, 5, 8};
 
@@ -567,7 +569,7 @@ static void trace_positions(const struct glint_zone *zone,
     }
 }
 
-double glint_rays_spread(const struct glint_rays *rays)
+double glint_zone_rays_spread(const struct glint_zone_rays *rays)
 {
     double least = HUGE_VAL, most = 0, spread = 1;
 
@@ -577,7 +579,7 @@ double glint_rays_spread(const struct glint_rays *rays)
             least = HUGE_VAL;
             most = 0;
         }
-        if (!glint_rays_seen(rays, i))
+        if (!glint_zone_rays_seen(rays, i))
             continue;
         least = fmin(least, rays->at[RAY_ENERGY][i]);
         most = fmax(most, rays->at[RAY_ENERGY][i]);
@@ -591,7 +593,7 @@ double glint_rays_spread(const struct glint_rays *rays)
  * each angle five wavelengths in turn. */
 static void trace_energies(const struct glint_zone *zone,
                            const struct glint_hunt *hunt, bool steep,
-                           struct glint_rays *rays)
+                           struct glint_zone_rays *rays)
 {
     static const int shift[] = {0, 2, 4, 6, 9};
 
@@ -607,7 +609,7 @@ static void trace_energies(const struct glint_zone *zone,
 void glint_zone_survey_barrels(const struct glint_zone *zone,
                                const struct glint_hunt *hunt, double shows,
                                glint_zone_survey *survey,
-                               struct glint_rays *rays)
+                               struct glint_zone_rays *rays)
 {
     struct survey s = {.radius = *survey};
 
@@ -616,16 +618,19 @@ void glint_zone_survey_barrels(const struct glint_zone *zone,
 }
 
 void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, struct glint_rays *rays,
-                      struct glint_rays *energies)
+                      const struct glint_hunt *hunt,
+                      struct glint_zone_rays *rays,
+                      struct glint_zone_rays *energies)
 {
     trace_positions(zone, hunt, rays);
     energies->n_barrels = 0;
-    trace_energies(zone, hunt, glint_rays_spread(rays) > GLINT_STEEP, energies);
+    trace_energies(zone, hunt, glint_zone_rays_spread(rays) > GLINT_STEEP,
+                   energies);
 }
 
 void glint_zone_check(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, struct glint_rays *rays)
+                      const struct glint_hunt *hunt,
+                      struct glint_zone_rays *rays)
 {
     enum { BUNDLES = 24, RAYS = 16 };
     double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];

@@ -35,7 +35,7 @@ struct glint_zone {
 
 /* A part of a zone's box and band: U0 .. U1 of its u, up to TOP of its v, W0 ..
  * W1 of its w. */
-struct glint_part {
+struct glint_zone_part {
     double u0, u1, top, w0, w1;
     int hollow;
 };
@@ -46,24 +46,27 @@ double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
 /* Sets the box for LO .. HI of PROFILE: one for all colours, or one that moves
  * with them and takes more terms. */
 void glint_zone_init(struct glint_zone *zone,
-                     const struct glint_profile *profile, double lo, double hi,
-                     bool by_colour);
+                     const struct glint_visible_profile *profile, double lo,
+                     double hi, bool by_colour);
 
 /* Where a hollow box begins, a share of its half height. */
 double glint_zone_rim(int hollow);
 
 /* The halves of PART, along v (inner and outer) or along u. */
-void glint_part_halve(const struct glint_part *part, bool along_v,
-                      struct glint_part *first, struct glint_part *second);
+void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
+                           struct glint_zone_part *first,
+                           struct glint_zone_part *second);
 
 /* Reduces the box to PART of it. */
-void glint_zone_cut(struct glint_zone *zone, const struct glint_part *part);
+void glint_zone_cut(struct glint_zone *zone,
+                    const struct glint_zone_part *part);
 
 /* Reduces PART, to which ZONE has been cut and HUNT narrowed, to what can be
  * seen of it, and a margin. Returns by how much, 1: by nothing; 0: there is
  * nothing. */
 double glint_zone_crop(const struct glint_zone *zone,
-                       const struct glint_hunt *hunt, struct glint_part *part);
+                       const struct glint_hunt *hunt,
+                       struct glint_zone_part *part);
 
 /* Node K of N over -1 .. 1, the ends among them. */
 double glint_zone_node(int k, int n);
@@ -80,7 +83,7 @@ enum {
     RAY_CHANNELS
 };
 
-struct glint_rays {
+struct glint_zone_rays {
     int n;
     double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
     double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
@@ -92,14 +95,15 @@ struct glint_rays {
                           gets at most, relative */
 };
 
-static inline bool glint_rays_seen(const struct glint_rays *r, int ray)
+static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
+                                        int ray)
 {
     return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
 }
 
 /* The most energy over the least of what is seen at one angle and wavelength,
  * and what is much: films make all of it swing with the wavelength. */
-double glint_rays_spread(const struct glint_rays *rays);
+double glint_zone_rays_spread(const struct glint_zone_rays *rays);
 #define GLINT_STEEP 8
 
 /* Room for the survey that chooses the barrels. */
@@ -111,17 +115,19 @@ typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
 void glint_zone_survey_barrels(const struct glint_zone *zone,
                                const struct glint_hunt *hunt, double shows,
                                glint_zone_survey *survey,
-                               struct glint_rays *rays);
+                               struct glint_zone_rays *rays);
 
 /* Traces the samples: RAYS for positions and barrels, ENERGIES at fewer places
  * but more wavelengths. */
 void glint_zone_trace(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, struct glint_rays *rays,
-                      struct glint_rays *energies);
+                      const struct glint_hunt *hunt,
+                      struct glint_zone_rays *rays,
+                      struct glint_zone_rays *energies);
 
 /* Random rays of the zone, at angles and wavelengths between those of the
  * samples. Barrels are not looked at. Deterministic. */
 void glint_zone_check(const struct glint_zone *zone,
-                      const struct glint_hunt *hunt, struct glint_rays *rays);
+                      const struct glint_hunt *hunt,
+                      struct glint_zone_rays *rays);
 
 #endif

@@ -62,7 +62,7 @@ struct sight {
     double energy;          /* mean */
 };
 
-static struct sight look(const struct glint_rays *r, int first)
+static struct sight look(const struct glint_zone_rays *r, int first)
 {
     struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
                       .high = {-HUGE_VAL, -HUGE_VAL}};
@@ -70,7 +70,7 @@ static struct sight look(const struct glint_rays *r, int first)
     for (int i = first; i < r->n && r->x[2][i] == r->x[2][first] &&
                         r->x[3][i] == r->x[3][first];
          i++, s.n_all++) {
-        if (!glint_rays_seen(r, i))
+        if (!glint_zone_rays_seen(r, i))
             continue;
         for (int k = 0; k < 2; k++) {
             s.low[k] = fmin(s.low[k], r->at[RAY_SENSOR_X + k][i]);
@@ -89,7 +89,7 @@ static double share_of(const struct glint_zone_fit *f,
                        const struct glint_zone *zone)
 {
     enum { FEW = 4 }; /* rays have no area to speak of */
-    const struct glint_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->rays;
     double most = 0;
 
     for (int i = 0, next; i < r->n; i = next) {
@@ -114,7 +114,7 @@ static double share_of(const struct glint_zone_fit *f,
 
 /* Sensor millimetres for a unit of the place A, B (or A alone), root mean
  * square over neighbours; of barrels only where they cut. */
-static double stretch_of(const struct glint_rays *r, const double *a,
+static double stretch_of(const struct glint_zone_rays *r, const double *a,
                          const double *b, double near)
 {
     double moved2 = 0, change2 = 0;
@@ -123,8 +123,8 @@ static double stretch_of(const struct glint_rays *r, const double *a,
         const double *x = r->at[RAY_SENSOR_X], *y = r->at[RAY_SENSOR_Y];
 
         if (r->x[1][i] != r->x[1][i - 1] || r->x[2][i] != r->x[2][i - 1] ||
-            r->x[3][i] != r->x[3][i - 1] || !glint_rays_seen(r, i) ||
-            !glint_rays_seen(r, i - 1) || a[i] < near)
+            r->x[3][i] != r->x[3][i - 1] || !glint_zone_rays_seen(r, i) ||
+            !glint_zone_rays_seen(r, i - 1) || a[i] < near)
             continue;
         moved2 += (x[i] - x[i - 1]) * (x[i] - x[i - 1]) +
                   (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
@@ -146,7 +146,7 @@ static void set_tolerances(struct glint_zone_fit *f,
                            const struct glint_zone *zone)
 {
     const struct glint_tolerance *t = f->tolerance;
-    const struct glint_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->rays;
     const double share = share_of(f, zone);
     const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
     const double ease = fmin(t->ease, shows);
@@ -164,7 +164,7 @@ static void set_tolerances(struct glint_zone_fit *f,
 
 static void set_weights(struct glint_zone_fit *f)
 {
-    const struct glint_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->rays;
 
     for (int i = 0; i < r->n; i++) {
         f->weight[i] = weight_past_edge(r->at[RAY_EXCESS][i]);
@@ -176,7 +176,7 @@ static void set_weights(struct glint_zone_fit *f)
 }
 
 /* The polynomials let ray I pass, which the lens stops by far. */
-static bool leaks(const struct glint_rays *r, int i,
+static bool leaks(const struct glint_zone_rays *r, int i,
                   const struct glint_fitted_system *system, double field_mm)
 {
     const double x[GLINT_VARIABLES] = {r->x[0][i], r->x[1][i], r->x[2][i],
@@ -232,15 +232,15 @@ static enum glint_status keep(struct glint_fitted_system *system,
 }
 
 /* Fits VALUE over RAYS with CHANNEL_WEIGHT; returns what is left. */
-static double fit_poly(struct glint_zone_fit *f, const struct glint_rays *r,
-                       enum glint_channel kind, double rms,
-                       struct glint_poly *poly)
+static double fit_poly(struct glint_zone_fit *f,
+                       const struct glint_zone_rays *r, enum glint_channel kind,
+                       double rms, struct glint_poly *poly)
 {
-    const struct glint_samples samples = {
+    const struct glint_regress_samples samples = {
         r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->channel_weight};
     struct glint_degrees degrees =
         kind != GLINT_OUT_ENERGY ? position_degrees
-        : f->by_all_means && glint_rays_spread(&f->rays) > GLINT_STEEP
+        : f->by_all_means && glint_zone_rays_spread(&f->rays) > GLINT_STEEP
             ? steep_degrees
             : energy_degrees;
 
@@ -255,7 +255,7 @@ static double fit_poly(struct glint_zone_fit *f, const struct glint_rays *r,
 
 /* *WORST becomes what is left, if larger. */
 static enum glint_status fit_output(struct glint_zone_fit *f,
-                                    const struct glint_rays *r,
+                                    const struct glint_zone_rays *r,
                                     enum glint_channel kind, double rms,
                                     struct glint_fitted_system *system,
                                     double *worst)
@@ -282,10 +282,11 @@ static enum glint_status fit_channel(struct glint_zone_fit *f, int channel,
 }
 
 /* Least and most energy of what is seen. */
-static void energies_of(const struct glint_rays *r, double *least, double *most)
+static void energies_of(const struct glint_zone_rays *r, double *least,
+                        double *most)
 {
     for (int i = 0; i < r->n; i++)
-        if (glint_rays_seen(r, i)) {
+        if (glint_zone_rays_seen(r, i)) {
             *least = fmin(*least, r->at[RAY_ENERGY][i]);
             *most = fmax(*most, r->at[RAY_ENERGY][i]);
         }
@@ -294,8 +295,9 @@ static void energies_of(const struct glint_rays *r, double *least, double *most)
 /* Sets VALUE to the energy, or its fourth root, and CHANNEL_WEIGHT, so that
  * energy counts by its share, down to a two-hundredth of MOST. Returns the
  * largest weight. */
-static double set_energies(struct glint_zone_fit *f, const struct glint_rays *r,
-                           double most, bool root)
+static double set_energies(struct glint_zone_fit *f,
+                           const struct glint_zone_rays *r, double most,
+                           bool root)
 {
     double largest = 0;
 
@@ -320,7 +322,7 @@ static enum glint_status fit_energy(struct glint_zone_fit *f,
                                     struct glint_fitted_system *system,
                                     double *worst)
 {
-    const struct glint_rays *r = f->energies.n ? &f->energies : &f->rays;
+    const struct glint_zone_rays *r = f->energies.n ? &f->energies : &f->rays;
     struct glint_fitted_output *o = &system->output[system->n_outputs];
     double least = HUGE_VAL, most = 1e-30, left, grain;
     struct glint_poly poly, other;
@@ -355,7 +357,7 @@ static enum glint_status fit_barrel(struct glint_zone_fit *f, int barrel,
                                     struct glint_fitted_system *system,
                                     double *worst)
 {
-    const struct glint_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->rays;
     double stretch;
 
     for (int i = 0; i < r->n; i++) {
@@ -416,7 +418,7 @@ static double check_output(const struct glint_zone_fit *f,
                            const struct glint_fitted_output *o,
                            const double *value, double rms)
 {
-    const struct glint_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->rays;
     double sum2 = 0;
     int n = 0;
 
@@ -460,7 +462,7 @@ static double check_zone(struct glint_zone_fit *f,
 bool glint_zone_fit_is_dark(const struct glint_zone_fit *f)
 {
     for (int i = 0; i < f->rays.n; i++)
-        if (glint_rays_seen(&f->rays, i))
+        if (glint_zone_rays_seen(&f->rays, i))
             return false;
     return true;
 }

@@ -24,7 +24,7 @@ struct glint_zone_fit {
     const struct glint_hunt *hunt; /* in the band of the zone */
     const struct glint_tolerance *tolerance;
     double *scratch; /* glint_regress_doubles(GLINT_ZONE_RAYS) */
-    struct glint_rays rays, energies;
+    struct glint_zone_rays rays, energies;
     bool by_all_means; /* a root of the energy, and more terms */
     double hopeless;   /* left of what is not worth to be fitted to the end, in
                           tolerances; 0: everything is */

@@ -99,7 +99,8 @@ static double mix(double a, double b, double part)
 }
 
 /* The box at SINE, between those of the profile. */
-static struct glint_pupil box_at(const struct glint_profile *p, double sine)
+static struct glint_pupil box_at(const struct glint_visible_profile *p,
+                                 double sine)
 {
     struct glint_pupil box = p->box[0];
     int k = 0;
@@ -149,7 +150,7 @@ static enum glint_status set_knots(struct job *job, const double range[2])
 {
     struct knots *k = &job->knots[job->n_ranges];
     const size_t most = (size_t)job->options->n_zones + 2;
-    struct glint_profile profile;
+    struct glint_visible_profile profile;
 
     if (range[1] < range[0] + LEAST_RANGE)
         return GLINT_OK;

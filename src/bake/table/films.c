@@ -4,8 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct glint_range nm_range = {"coating wavelength", 100, 5000};
-const struct glint_range glint_film_index_range = {"coating index", 1.01, 4};
+static const struct glint_text_range nm_range = {"coating wavelength", 100,
+                                                 5000};
+const struct glint_text_range glint_film_index_range = {"coating index", 1.01,
+                                                        4};
 
 bool glint_film_of(const struct glint_text *text, const struct glint_word *word,
                    struct glint_film *film)

@@ -10,7 +10,7 @@
 
 #define GLINT_MGF2_INDEX 1.38
 
-extern const struct glint_range glint_film_index_range;
+extern const struct glint_text_range glint_film_index_range;
 
 /* WORD as a film without its index, which is magnesium fluoride's. False: the
  * error is written. */

@@ -26,17 +26,19 @@ struct medium {
     double nd, vd;
 };
 
-static const struct glint_range f_number_range = {
+static const struct glint_text_range f_number_range = {
     "f-number", GLINT_MIN_F_NUMBER, GLINT_MAX_F_NUMBER};
-static const struct glint_range film_width_range = {"film width", 0.1, 1000};
-static const struct glint_range film_height_range = {"film height", 0.1, 1000};
-static const struct glint_range stated_range = {"focal length", 0.01,
-                                                GLINT_MAX_FOCAL_MM};
-static const struct glint_range radius_range = {"radius", 0.01, 1e9};
-static const struct glint_range thickness_range = {"thickness", 0, 1e5};
-static const struct glint_range semi_range = {"semi-diameter", 0.01, 1e4};
-static const struct glint_range nd_range = {"index", 1.01, 4};
-static const struct glint_range vd_range = {"Abbe number", 10, 150};
+static const struct glint_text_range film_width_range = {"film width", 0.1,
+                                                         1000};
+static const struct glint_text_range film_height_range = {"film height", 0.1,
+                                                          1000};
+static const struct glint_text_range stated_range = {"focal length", 0.01,
+                                                     GLINT_MAX_FOCAL_MM};
+static const struct glint_text_range radius_range = {"radius", 0.01, 1e9};
+static const struct glint_text_range thickness_range = {"thickness", 0, 1e5};
+static const struct glint_text_range semi_range = {"semi-diameter", 0.01, 1e4};
+static const struct glint_text_range nd_range = {"index", 1.01, 4};
+static const struct glint_text_range vd_range = {"Abbe number", 10, 150};
 
 enum field {
     NAME,

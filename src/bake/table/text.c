@@ -321,7 +321,7 @@ bool glint_text_number_of(const struct glint_text *text,
 
 bool glint_text_in_range(const struct glint_text *text,
                          struct glint_text_place place,
-                         const struct glint_range *range, double value)
+                         const struct glint_text_range *range, double value)
 {
     return (value >= range->min && value <= range->max) ||
            glint_text_fail(text, place, "%s must be %.10g .. %.10g, not %g",
@@ -330,14 +330,15 @@ bool glint_text_in_range(const struct glint_text *text,
 
 bool glint_text_value_of(const struct glint_text *text,
                          const struct glint_word *word,
-                         const struct glint_range *range, double *value)
+                         const struct glint_text_range *range, double *value)
 {
     return glint_text_number_of(text, word, range->name, value) &&
            glint_text_in_range(text, word->place, range, *value);
 }
 
-bool glint_text_value(struct glint_text *text, const struct glint_range *range,
-                      double *value, struct glint_text_place *place)
+bool glint_text_value(struct glint_text *text,
+                      const struct glint_text_range *range, double *value,
+                      struct glint_text_place *place)
 {
     const struct glint_word word = glint_text_next_word(text);
 

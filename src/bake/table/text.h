@@ -68,7 +68,7 @@ bool glint_text_fail(const struct glint_text *text,
                      struct glint_text_place place, const char *format, ...);
 
 /* A quantity and the values it may take. */
-struct glint_range {
+struct glint_text_range {
     const char *name;
     double min, max;
 };
@@ -81,16 +81,17 @@ bool glint_text_number_of(const struct glint_text *text,
 
 bool glint_text_in_range(const struct glint_text *text,
                          struct glint_text_place place,
-                         const struct glint_range *range, double value);
+                         const struct glint_text_range *range, double value);
 
 /* WORD as a number in RANGE. */
 bool glint_text_value_of(const struct glint_text *text,
                          const struct glint_word *word,
-                         const struct glint_range *range, double *value);
+                         const struct glint_text_range *range, double *value);
 
 /* The next word as a number in RANGE; PLACE, unless NULL, is where it is. */
-bool glint_text_value(struct glint_text *text, const struct glint_range *range,
-                      double *value, struct glint_text_place *place);
+bool glint_text_value(struct glint_text *text,
+                      const struct glint_text_range *range, double *value,
+                      struct glint_text_place *place);
 
 bool glint_word_is(const struct glint_word *word, const char *string);
 

@@ -357,9 +357,9 @@ static void test_near_barrels(void **state)
     static struct glint_prescription lens;
     static struct glint_setup zoom;
     static struct glint_hunt hunt;
-    static struct glint_profile profile;
+    static struct glint_visible_profile profile;
     static glint_zone_survey survey;
-    static struct glint_rays rays;
+    static struct glint_zone_rays rays;
     struct glint_error error;
     struct glint_zone zone;
 
@@ -387,7 +387,7 @@ static double unit(uint32_t *seed)
 static void test_cut(void **state)
 {
     struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
-    const struct glint_part part = {-0.25, 0.5, 0.75, -0.5, 0.75, 3};
+    const struct glint_zone_part part = {-0.25, 0.5, 0.75, -0.5, 0.75, 3};
     uint32_t seed = 3;
 
     (void)state;
@@ -413,7 +413,7 @@ static void test_cut(void **state)
     }
 }
 
-static bool part_has(const struct glint_part *p, double u, double v)
+static bool part_has(const struct glint_zone_part *p, double u, double v)
 {
     return u >= p->u0 && u < p->u1 && v < p->top &&
            v >= p->top * glint_zone_rim(p->hollow);
@@ -423,17 +423,17 @@ static bool part_has(const struct glint_part *p, double u, double v)
 static void test_halves(void **state)
 {
     enum { DEPTH = 8, PARTS = 1 << DEPTH };
-    static struct glint_part part[PARTS] = {{-1, 1, 1, -1, 1, 0}};
+    static struct glint_zone_part part[PARTS] = {{-1, 1, 1, -1, 1, 0}};
     uint32_t seed = 5;
     double area = 0;
 
     (void)state;
     for (int depth = 0; depth < DEPTH; depth++)
         for (int k = (1 << depth) - 1; k >= 0; k--) {
-            const struct glint_part whole = part[k];
+            const struct glint_zone_part whole = part[k];
 
-            glint_part_halve(&whole, depth % 2 == 0, &part[2 * k],
-                             &part[2 * k + 1]);
+            glint_zone_part_halve(&whole, depth % 2 == 0, &part[2 * k],
+                                  &part[2 * k + 1]);
         }
     for (int k = 0; k < PARTS; k++) {
         assert_in_range(part[k].hollow, 0, GLINT_MAX_HOLLOW);
@@ -456,9 +456,9 @@ static void test_crop(void **state)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
     static struct glint_hunt hunt, narrow;
-    static struct glint_profile profile;
-    const struct glint_part whole = {-1, 1, 1, -1, 1, false};
-    struct glint_part part = whole;
+    static struct glint_visible_profile profile;
+    const struct glint_zone_part whole = {-1, 1, 1, -1, 1, false};
+    struct glint_zone_part part = whole;
     struct glint_zone zone;
     uint32_t seed = 8;
     int seen = 0;

@@ -31,7 +31,7 @@ struct fixture {
     struct glint_wave wave[WAVES];
     struct glint_beam beam[MAX_BEAMS];
     int n_beams;
-    struct glint_rays rays;
+    struct glint_flare_frame rays;
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
     void *mem;
@@ -61,12 +61,12 @@ static void open_fixture(struct fixture *f, int n_beams)
                                          (int32_t)lrint(sin(i) * 0x1p30),
                                          real_of(1000 + i, 0),
                                          {16384, 16384, 16384}};
-    f->rays = (struct glint_rays){.lens = &f->lens,
-                                  .wave = f->wave,
-                                  .n_waves = WAVES,
-                                  .pixels_per_mm = real_of(64, 0),
-                                  .fineness = 16,
-                                  .only_ghost = -1};
+    f->rays = (struct glint_flare_frame){.lens = &f->lens,
+                                         .wave = f->wave,
+                                         .n_waves = WAVES,
+                                         .pixels_per_mm = real_of(64, 0),
+                                         .fineness = 16,
+                                         .only_ghost = -1};
     f->cfg = (struct glint_flare_config){.width = WIDTH,
                                          .height = HEIGHT,
                                          .tile_log2 = 4,

@@ -30,12 +30,12 @@ static struct glint_vertex at(int x_q16, int y_q16)
 }
 
 /* The part of A to B that is seen. */
-static struct glint_part part_of(const struct glint_vertex *a,
-                                 const struct glint_vertex *b)
+static struct glint_edge_part part_of(const struct glint_vertex *a,
+                                      const struct glint_vertex *b)
 {
     const struct glint_vertex *const end[2] = {a, b};
     struct glint_outside out[2];
-    struct glint_part part;
+    struct glint_edge_part part;
 
     for (int k = 0; k < 2; k++)
         glint_cuts_row(&square, end[k], 1, &out[k].sides, &out[k].barrels);
@@ -50,8 +50,8 @@ static void test_part(void **state)
     for (int from = -ONE_Q16 + 64; from < ONE_Q16; from += 1777)
         for (int to = ONE_Q16; to < 40 * ONE_Q16; to += to / 3) {
             const struct glint_vertex in = at(from, 0), out = at(to, 5 * 256);
-            const struct glint_part there = part_of(&in, &out);
-            const struct glint_part back = part_of(&out, &in);
+            const struct glint_edge_part there = part_of(&in, &out);
+            const struct glint_edge_part back = part_of(&out, &in);
 
             assert_true(there.visible && back.visible);
             assert_int_equal(there.cut[0], GLINT_CUT_NOTHING);
@@ -71,8 +71,8 @@ static void test_part_of_two_cuts(void **state)
     const struct glint_vertex right = at(3 * ONE_Q16 / 2, 0);
     const struct glint_vertex high = at(0, 5 * ONE_Q16 / 4);
     const struct glint_vertex past = at(ONE_Q16 / 2, 5 * ONE_Q16 / 2);
-    const struct glint_part through = part_of(&left, &right);
-    const struct glint_part over = part_of(&right, &high);
+    const struct glint_edge_part through = part_of(&left, &right);
+    const struct glint_edge_part over = part_of(&right, &high);
 
     (void)state;
     assert_true(through.visible && over.visible);

@@ -80,7 +80,7 @@ struct fixture {
     struct glint_lens lens;
     struct glint_wave wave[2];
     struct glint_beam beam;
-    struct glint_rays rays;
+    struct glint_flare_frame rays;
     struct glint_flare_config cfg;
     void *mem;
     struct glint_flare *flare;
@@ -103,12 +103,12 @@ static void open_fixture(struct fixture *f)
                                 real_of(1, 0)};
     f->beam = (struct glint_beam){0, 1 << 30,          1 << 30,
                                   0, real_of(1000, 0), {16384, 16384, 16384}};
-    f->rays = (struct glint_rays){.lens = &f->lens,
-                                  .wave = f->wave,
-                                  .n_waves = 2,
-                                  .pixels_per_mm = real_of(64, 0),
-                                  .fineness = 64,
-                                  .only_ghost = -1};
+    f->rays = (struct glint_flare_frame){.lens = &f->lens,
+                                         .wave = f->wave,
+                                         .n_waves = 2,
+                                         .pixels_per_mm = real_of(64, 0),
+                                         .fineness = 64,
+                                         .only_ghost = -1};
     f->cfg = (struct glint_flare_config){.width = WIDTH,
                                          .height = HEIGHT,
                                          .tile_log2 = 5,
@@ -561,7 +561,7 @@ static void test_rows_and_grids(void **state)
     start(&f);
     glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
     picture(&f, rows);
-    plan = (struct glint_plan){.rays = &f.rays,
+    plan = (struct glint_plan){.frame = &f.rays,
                                .beam = &f.beam,
                                .n_beams = 1,
                                .width = WIDTH,
@@ -569,18 +569,18 @@ static void test_rows_and_grids(void **state)
     glint_flare_begin(f.flare);
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++)
         for (int wave = 0; wave < 2; wave++) {
-            struct glint_source source = {.ghost = ghost, .wave = wave};
+            struct glint_bundle_plan planned = {.ghost = ghost, .wave = wave};
             const struct glint_place place = glint_plan_place(&plan, 0);
             struct glint_bundle bundle;
             struct glint_vertex *v;
 
-            glint_plan_bundle(&plan, &source, &bundle, &scratch);
+            glint_plan_bundle(&plan, &planned, &bundle, &scratch);
             if (bundle.n_cells == 0)
                 continue;
             assert_int_equal(bundle.n_cells % 4, 0);
             v = glint_flare_add(f.flare, &bundle);
             assert_non_null(v);
-            glint_plan_transfer(&plan, &source, &scratch.transfer);
+            glint_plan_transfer(&plan, &planned, &scratch.transfer);
             glint_transfer_grid(&scratch.transfer, &place, bundle.n_cells, v);
         }
     picture(&f, grid);
@@ -604,16 +604,16 @@ static void test_finest_grid(void **state)
     open_fixture(&f);
     f.rays.pixels_per_mm = real_of(12000, 0);
     f.rays.fineness = GLINT_MAX_CELLS;
-    plan = (struct glint_plan){.rays = &f.rays,
+    plan = (struct glint_plan){.frame = &f.rays,
                                .beam = &f.beam,
                                .n_beams = 1,
                                .width = WIDTH,
                                .height = HEIGHT};
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++) {
-        struct glint_source source = {.ghost = ghost};
+        struct glint_bundle_plan planned = {.ghost = ghost};
         struct glint_bundle bundle;
 
-        glint_plan_bundle(&plan, &source, &bundle, &scratch);
+        glint_plan_bundle(&plan, &planned, &bundle, &scratch);
         most = bundle.n_cells > most ? bundle.n_cells : most;
     }
     assert_int_equal(most, GLINT_MAX_CELLS);
@@ -625,7 +625,7 @@ static void test_finest_grid(void **state)
 static void test_sag(void **state)
 {
     static struct glint_plan_scratch scratch;
-    struct glint_source source = {.ghost = 0};
+    struct glint_bundle_plan planned = {.ghost = 0};
     struct glint_bundle bundle;
     struct glint_plan plan;
     struct fixture f;
@@ -633,16 +633,16 @@ static void test_sag(void **state)
 
     (void)state;
     open_fixture(&f);
-    plan = (struct glint_plan){.rays = &f.rays,
+    plan = (struct glint_plan){.frame = &f.rays,
                                .beam = &f.beam,
                                .n_beams = 1,
                                .width = WIDTH,
                                .height = HEIGHT};
-    glint_plan_bundle(&plan, &source, &bundle, &scratch);
+    glint_plan_bundle(&plan, &planned, &bundle, &scratch);
     assert_true(bundle.n_cells >= 8);
     sag = 65536 * 4.0 / 12 / (bundle.n_cells * bundle.n_cells);
-    assert_true(fabs(source.sag_q16[0] - sag) <= 1 + 0.01 * sag);
-    assert_int_equal(source.sag_q16[1], 0);
+    assert_true(fabs(planned.sag_q16[0] - sag) <= 1 + 0.01 * sag);
+    assert_int_equal(planned.sag_q16[1], 0);
     close_fixture(&f);
 }
 
