@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/half.h - floats of 16 bits, as EXR and TIFF have them.
+ * formats/half.h - floats of 16 bits, as EXR and TIFF have them.
  */
 #ifndef GLINT_PLATFORM_FORMATS_HALF_H
 #define GLINT_PLATFORM_FORMATS_HALF_H

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "formats/kept_colours.h"
 #include "formats/kept_types.h"
 #include "formats/pfm.h"
 #include "formats/picture.h"
@@ -149,96 +150,7 @@ static void refill_native(struct glint_kept *k)
         swap_shorts(at, k->own, samples_bytes(&k->samples));
 }
 
-/* ----------------------------------------------------------------- meaning */
-
-static void note(struct glint_kept *k, const char *text)
-{
-    const size_t used = strlen(k->note);
-
-    snprintf(k->note + used, sizeof k->note - used, "%s%s", used ? "; " : "",
-             text);
-}
-
-/* By ITU-T H.273. False: not one that is known here. */
-static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
-{
-    static const double p3[4][2] = {
-        {0.68, 0.32}, {0.265, 0.69}, {0.15, 0.06}, {0.3127, 0.329}};
-    static const double bt2020[4][2] = {
-        {0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}};
-
-    if (cicp[1] == 13)
-        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
-    else if (cicp[1] == 8)
-        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
-    else if (cicp[1] == 4 || cicp[1] == 5)
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, cicp[1] == 4 ? 2.2 : 2.8,
-                          "gamma");
-    else if (cicp[1] == 1 || cicp[1] == 6 || cicp[1] == 14 || cicp[1] == 15)
-        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
-    else
-        return false;
-    if (cicp[0] == 9)
-        return glint_colours_primaries(c, bt2020);
-    return cicp[0] != 12 || glint_colours_primaries(c, p3);
-}
-
-/* As OpenImageIO calls colour spaces. False: not one that is known here. */
-static bool set_by_name(struct glint_colours *c, const char *name)
-{
-    static const double adobe[4][2] = {
-        {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, {0.3127, 0.329}};
-    double gamma;
-
-    if (strcasecmp(name, "sRGB") == 0)
-        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
-    else if (strcasecmp(name, "linear") == 0 ||
-             strncasecmp(name, "lin_", 4) == 0)
-        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
-    else if (strcasecmp(name, "Rec709") == 0)
-        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
-    else if (strcasecmp(name, "AdobeRGB") == 0) {
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
-        return glint_colours_primaries(c, adobe);
-    } else if (strncmp(name, "Gamma", 5) == 0 &&
-               (gamma = strtod(name + 5, NULL)) > 0.1 && gamma < 10)
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
-    else
-        return false;
-    return true;
-}
-
-static void set_colours(struct glint_kept *k,
-                        const struct glint_oiio_facts *facts)
-{
-    struct glint_samples *const s = &k->samples;
-    struct glint_colours *const c = &s->colours;
-    char text[96];
-    bool known = true;
-
-    if (k->is_float)
-        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
-    else
-        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
-    if (facts->cicp[1])
-        known = set_by_cicp(c, facts->cicp);
-    else if (facts->icc)
-        known = glint_icc_read(c, facts->icc, facts->icc_bytes);
-    else if (facts->gamma > 0.1 && facts->gamma < 10)
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
-    else if (*facts->colour_space && !k->is_float)
-        known = set_by_name(c, facts->colour_space);
-    if (!facts->icc && !facts->cicp[1] && facts->has_primaries)
-        glint_colours_primaries(c, (const double(*)[2])facts->primaries);
-    if (known)
-        return;
-    snprintf(text, sizeof text, "%.24s is not known here; taken as %s",
-             facts->cicp[1] ? "the transfer of its cICP"
-             : facts->icc   ? "what its profile says"
-                            : facts->colour_space,
-             k->is_float ? "linear" : "sRGB");
-    note(k, text);
-}
+/* --------------------------------------------------------------- plug-in */
 
 static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
                                         struct glint_error *error)
@@ -256,8 +168,8 @@ static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
     k->has_icc = facts.icc != NULL;
     k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
     if (*facts.note)
-        note(k, facts.note);
-    set_colours(k, &facts);
+        glint_kept_note(k->note, facts.note);
+    glint_kept_set_colours(k, &facts);
     return GLINT_OK;
 }
 
@@ -401,14 +313,6 @@ enum glint_status glint_kept_blank(struct glint_samples *blank,
     return blank->mem ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-static void say(struct glint_kept_options *options, const char *text)
-{
-    const size_t used = strlen(options->said);
-
-    snprintf(options->said + used, sizeof options->said - used, "%s%s",
-             used ? "; " : "", text);
-}
-
 static void say_losses(struct glint_kept_options *options,
                        const struct glint_samples *to,
                        const struct glint_samples *from)
@@ -416,16 +320,20 @@ static void say_losses(struct glint_kept_options *options,
     const bool was_float = glint_sample_is_float(from->colour[0].sample);
 
     if (from->has_alpha && !to->has_alpha)
-        say(options, "the file type has no alpha: what is seen over black is "
-                     "written");
+        glint_kept_note(
+            options->said,
+            "the file type has no alpha: what is seen over black is "
+            "written");
     if (was_float && !glint_sample_is_float(to->colour[0].sample))
-        say(options, to->colour[0].sample == GLINT_SAMPLE_U8
-                         ? "light above white is clipped, and 8 bits are left"
-                         : "light above white is clipped, and 16 bits are "
-                           "left");
+        glint_kept_note(
+            options->said,
+            to->colour[0].sample == GLINT_SAMPLE_U8
+                ? "light above white is clipped, and 8 bits are left"
+                : "light above white is clipped, and 16 bits are "
+                  "left");
     else if (glint_sample_bytes(from->colour[0].sample) > 1 &&
              to->colour[0].sample == GLINT_SAMPLE_U8)
-        say(options, "8 bits are left");
+        glint_kept_note(options->said, "8 bits are left");
 }
 
 /* FROM as TYPE takes it; TO's memory is the caller's to free. */

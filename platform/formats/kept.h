@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/kept.h - a picture file that is opened, lit and written with all that
+ * formats/kept.h - a picture file that is opened, lit and written with all that
  * it holds.
  *
  *     glint_kept_open(&kept, "in.png", &error);
- *     ... change kept.samples: plain/samples.h ...
+ *     ... change kept.samples: formats/samples.h ...
  *     glint_kept_save(&kept, "out.png", NULL, &options, &error);
  *     glint_kept_close(&kept);
  *
@@ -23,10 +23,13 @@
 #include "oiio/oiio.h"
 #include "formats/samples.h"
 
+enum { GLINT_KEPT_NOTES = 256 }; /* bytes */
+
 struct glint_kept {
     struct glint_samples samples;
-    bool is_float;  /* light beyond white is what it is, not clipped */
-    char note[256]; /* what glint takes otherwise than the file means it */
+    bool is_float; /* light beyond white is what it is, not clipped */
+    char note[GLINT_KEPT_NOTES]; /* what glint takes otherwise than the file
+                                    means it */
 
     /* Private. */
     const char *path;
@@ -48,9 +51,9 @@ enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
 void glint_kept_close(struct glint_kept *kept);
 
 struct glint_kept_options {
-    int quality;    /* of JPEG and WebP, 1 .. 100; 0: the input's own, or 95 */
-    bool quiet;     /* do not say what is lost */
-    char said[256]; /* out: what was lost, "" if nothing */
+    int quality; /* of JPEG and WebP, 1 .. 100; 0: the input's own, or 95 */
+    bool quiet;  /* do not say what is lost */
+    char said[GLINT_KEPT_NOTES]; /* out: what was lost, "" if nothing */
 };
 
 /* Writes KEPT, or unless NULL the picture ALONE, which has the size of KEPT

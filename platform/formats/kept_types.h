@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/kept_types.h - what picture file types can hold.
+ * formats/kept_types.h - what picture file types can hold.
  */
 #ifndef GLINT_PLATFORM_FORMATS_KEPT_TYPES_H
 #define GLINT_PLATFORM_FORMATS_KEPT_TYPES_H

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/pfm.h - PFM pictures: linear light in floats, without a library.
+ * formats/pfm.h - PFM pictures: linear light in floats, without a library.
  *
  *     glint_pfm_read(&floats, data, bytes, "x.pfm", &error);
  *     ...

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/pnm.h - PPM and PGM pictures without a library.
+ * formats/pnm.h - PPM and PGM pictures without a library.
  *
  *     glint_pnm_read(&image, data, bytes, "x.ppm", &error);
  *     ...

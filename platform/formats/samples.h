@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/samples.h - a picture's pixels as its file holds them, to be looked at
+ * formats/samples.h - a picture's pixels as its file holds them, to be looked at
  * and lit without losing anything.
  *
  *     glint_samples_proxy(&samples, &proxy, &white);     what is seen, 8 bits

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/tones.h - from the codes of a picture file to linear light, whatever
+ * formats/tones.h - from the codes of a picture file to linear light, whatever
  * its profile says, and between its primaries and BT.709.
  *
  *     glint_tone_curve_set(&transfer, GLINT_TONE_IS_SRGB, 0);      or

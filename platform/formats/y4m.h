@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/y4m.h - YUV4MPEG2 video in and out, frame by frame.
+ * formats/y4m.h - YUV4MPEG2 video in and out, frame by frame.
  *
  *     glint_y4m_reader_open(&in, "-", &error);
  *     glint_y4m_writer_open(&out, "x.y4m", &in.header, &error);
@@ -14,12 +14,12 @@
  * This is what ffmpeg -f yuv4mpegpipe speaks. A stream is one header line and
  * then, for each frame, a line FRAME and the planes Y, Cb, Cr without padding;
  * chroma of subsampled formats has (side + 1) / 2 samples, as everywhere in
- * glint. Handled is what plain/y4m_layout.h lists (where the chroma samples of
- * 4:2:0 lie makes no difference here). Frames of more than 8 bits, and 4:1:1,
- * are looked at through a copy of 8 bits; they themselves are planes that
- * plain/y4m_light.h adds light to and glint_y4m_writer_put_planes writes, and
- * an alpha plane goes with them. Interlaced frames are taken as they come, both
- * fields in one.
+ * glint. Handled is what formats/y4m_layout.h lists (where the chroma samples
+ * of 4:2:0 lie makes no difference here). Frames of more than 8 bits, and
+ * 4:1:1, are looked at through a copy of 8 bits; they themselves are planes
+ * that formats/y4m_light.h adds light to and glint_y4m_writer_put_planes
+ * writes, and an alpha plane goes with them. Interlaced frames are taken as
+ * they come, both fields in one.
  *
  * What the codes mean, unless the caller overrules it in the header after open:
  *   range     limited; full only by the tag XCOLORRANGE=FULL. C420jpeg by

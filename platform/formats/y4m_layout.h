@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/y4m_layout.h - what a frame of Y4M looks like, by its tag C.
+ * formats/y4m_layout.h - what a frame of Y4M looks like, by its tag C.
  *
  *     C420 420jpeg 420mpeg2 420paldv 411 422 444 444alpha mono
  *     and 420 422 444 with p9 p10 p12 p14 p16, mono with 9 10 12 14 16

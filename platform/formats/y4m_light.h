@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/y4m_light.h - light on frames of Y4M of any depth and layout.
+ * formats/y4m_light.h - light on frames of Y4M of any depth and layout.
  *
  *     glint_y4m_light_init(&light, &header);             once for a stream
  *     glint_y4m_light_proxy(&light, &image, planes);     what the finder sees

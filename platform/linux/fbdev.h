@@ -8,7 +8,7 @@
  *
  * The mode is taken as it is, never set; what the driver says of its rows
  * (line_length) and bits is believed. Any packed true colour of 16, 24 or 32
- * bits will do (plain/panel.h). Where the driver offers memory for two screens
+ * bits will do (panel/panel.h). Where the driver offers memory for two screens
  * and panning, each frame is drawn unseen and then shown; else it is drawn
  * where it is seen.
  *
@@ -32,7 +32,7 @@
 
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
-    bool dither;  /* plain/row_pack.h */
+    bool dither;  /* panel/row_pack.h */
     bool vsync;   /* wait for the panel where there is one screen of memory and
                      the driver can: less tearing, up to a refresh a frame */
     bool console; /* take it (linux/console.h) */

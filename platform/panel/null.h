@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/null.h - a sink that shows nothing, to measure all that comes before.
+ * panel/null.h - a sink that shows nothing, to measure all that comes before.
  */
 #ifndef GLINT_PLATFORM_PANEL_NULL_H
 #define GLINT_PLATFORM_PANEL_NULL_H

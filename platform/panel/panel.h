@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/panel.h - pictures for a panel of packed true-colour pixels.
+ * panel/panel.h - pictures for a panel of packed true-colour pixels.
  *
  *     glint_panel_open(&panel, &cfg, &error);         takes all memory
  *     glint_panel_clear(&panel, mem, stride);         once: black everywhere
@@ -12,7 +12,7 @@
  * as it is, and what does not fit is cut off. What the picture does not cover
  * is left alone by draw.
  *
- * Each row is made in cached memory (plain/row_rgb.h, plain/row_pack.h) and
+ * Each row is made in cached memory (panel/row_rgb.h, panel/row_pack.h) and
  * then copied, so the panel's own memory is only written, and in order: it may
  * be write-combining. Rows that show the same row of the picture are made once.
  */

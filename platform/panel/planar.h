@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/planar.h - any 8-bit picture as planes of Y', Cb, Cr, for files.
+ * panel/planar.h - any 8-bit picture as planes of Y', Cb, Cr, for files.
  *
  * Packed and half-packed formats have their samples moved, none is computed.
  * RGB becomes GLINT_I444 by the matrix and range of the result, rounded to the

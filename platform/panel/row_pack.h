@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/row_pack.h - packed pixels of any true-colour layout.
+ * panel/row_pack.h - packed pixels of any true-colour layout.
  *
- *     in   R', G', B' bytes, an array each (plain/row_rgb.h)
+ *     in   R', G', B' bytes, an array each (panel/row_rgb.h)
  *     out  words of 16, 24 or 32 bits, in the order of the machine's bytes,
  *          as Linux describes framebuffers: offset and length of each channel
  *
  * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest,
- * and for 16 bits the inverse of what plain/row_rgb.h reads. Transparency is
+ * and for 16 bits the inverse of what panel/row_rgb.h reads. Transparency is
  * written opaque; bits that belong to nobody are zero.
  *
  * With dithering the 127 becomes one of 64 thresholds by the place of the pixel

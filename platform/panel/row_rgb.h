@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/row_rgb.h - a stretch of a row of a picture as R', G', B' bytes.
+ * panel/row_rgb.h - a stretch of a row of a picture as R', G', B' bytes.
  *
  *     in   picture of 8-bit codes, any format but GLINT_LINEAR_Q20
  *     out  three arrays of codes of full range, one for each channel

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/split.h - samples that lie by turns, moved apart: loops that compilers
+ * panel/split.h - samples that lie by turns, moved apart: loops that compilers
  * make vectors of. Arrays do not overlap.
  */
 #ifndef GLINT_PLATFORM_PANEL_SPLIT_H

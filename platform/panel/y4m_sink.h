@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * plain/y4m_sink.h - frames as YUV4MPEG2 (plain/y4m.h), as a sink.
+ * panel/y4m_sink.h - frames as YUV4MPEG2 (formats/y4m.h), as a sink.
  *
  * The stream is opened with the first frame, whose size, format and range all
  * must have. Formats that Y4M does not know are written as planes
- * (plain/planar.h); RGB is of limited range then, as most readers expect. The
+ * (panel/planar.h); RGB is of limited range then, as most readers expect. The
  * matrix goes unsaid, for Y4M has no word for it: readers take BT.601 below 720
  * lines, and RGB is written so.
  *
@@ -34,7 +34,7 @@ struct glint_y4m_sink {
     struct glint_y4m_writer writer;
 };
 
-/* PATH is kept; "-": standard output. Rate as in plain/y4m.h. Nothing can fail
+/* PATH is kept; "-": standard output. Rate as in formats/y4m.h. Nothing can fail
  * before the first frame. */
 void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den);

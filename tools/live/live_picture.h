@@ -23,7 +23,7 @@ const struct glint_image *live_copy(struct live_copy *copy,
                                     const struct glint_image *from);
 void live_copy_free(struct live_copy *copy);
 
-/* Saves FROM, of any 8-bit format, as plain/picture.h does. */
+/* Saves FROM, of any 8-bit format, as formats/picture.h does. */
 enum glint_status live_save(const char *name, const struct glint_image *from,
                             struct glint_error *error);
 

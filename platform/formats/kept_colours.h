@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * formats/kept_colours.h - what the colours of a picture file mean, by its
+ * cICP, profile, gamma or name. Part of formats/kept.h.
+ */
+#ifndef GLINT_PLATFORM_FORMATS_KEPT_COLOURS_H
+#define GLINT_PLATFORM_FORMATS_KEPT_COLOURS_H
+
+#include "formats/kept.h"
+
+/* Sets the colours of KEPT's samples as FACTS say; what glint does not know is
+ * taken as linear or sRGB, and KEPT's note says so. */
+void glint_kept_set_colours(struct glint_kept *kept,
+                            const struct glint_oiio_facts *facts);
+
+/* Adds TEXT to NOTES, behind a semicolon where there is something. */
+void glint_kept_note(char notes[GLINT_KEPT_NOTES], const char *text);
+
+#endif
