@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * oiio/keep_file.h - a file in memory, between its reading and its writing.
+ */
+#ifndef GLINT_PLATFORM_OIIO_KEEP_FILE_H
+#define GLINT_PLATFORM_OIIO_KEEP_FILE_H
+
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/imageio.h>
+
+#include "oiio/carry.h"
+
+namespace glint
+{
+
+struct part {
+    OIIO::ImageSpec spec; /* as it is stored */
+    std::vector<unsigned char> pixels;
+};
+
+/* Whether the channels of a part have types of their own. */
+inline bool is_mixed(const OIIO::ImageSpec &spec)
+{
+    return !spec.channelformats.empty();
+}
+
+/* Whether metadata of OpenImageIO's TYPE go over byte for byte. */
+bool is_carried(const std::string &type);
+
+/* All of PATH; throws failure. */
+bytes read_whole(const char *path);
+
+} // namespace glint
+
+struct glint_oiio_file {
+    std::string type;   /* OpenImageIO's name of the file type */
+    glint::bytes whole; /* the file, of the types that are carried over */
+    std::vector<glint::part> parts;
+    std::vector<unsigned char> icc;
+};
+
+#endif
