@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a baked lens is, for programs. Part of model_report.h.
+ */
+#ifndef GLINT_TOOLS_MODEL_MODEL_JSON_H
+#define GLINT_TOOLS_MODEL_MODEL_JSON_H
+
+#include "model/model_file.h"
+#include "options/tool.h"
+
+void model_json_info(const struct tool *tool, const struct model_file *model);
+void model_json_bake(const struct glint_lens *lens, double seconds,
+                     const struct glint_bake_report *report);
+
+#endif

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/model_summary.h"
+
+#include <math.h>
+
+const char *const model_output_names[GLINT_OUT_KINDS] = {
+    "sensor_x", "sensor_y", "stop_x",   "stop_y",   "energy",
+    "radius",   "barrel_0", "barrel_1", "barrel_2", "barrel_3"};
+const char *const model_output_units[GLINT_OUT_KINDS] = {
+    "px of 1920", "px of 1920", "stop radii", "stop radii", "share",
+    "radii",      "radii",      "radii",      "radii",      "radii"};
+
+/* Errors at the 99th percentile beyond which a ghost is pointed out: a quarter
+ * of a pixel of 1920, and what is worth as much elsewhere. */
+const double model_output_targets[GLINT_OUT_KINDS] = {
+    0.25, 0.25, 0.0024, 0.0024, 0.05, 0.005, 0.005, 0.005, 0.005, 0.005};
+
+const char *model_basis_name(const struct glint_lens *lens)
+{
+    return lens->header->basis == GLINT_BASIS_SPARSE ? "sparse" : "auto";
+}
+
+/* --------------------------------------------------------------- quantities */
+
+double model_degrees(int32_t sine_q30)
+{
+    return asin(fmin(1, ldexp(sine_q30, -30))) * (180 / 3.14159265358979323846);
+}
+
+double model_nanometres(int32_t wave_q24)
+{
+    return 1e3 / sqrt(ldexp(wave_q24, -24));
+}
+
+struct model_span model_span_of_all(const struct glint_lens *lens)
+{
+    return (struct model_span){0, lens->header->n_systems};
+}
+
+struct model_span model_span_of_ghost(const struct glint_lens *lens,
+                                      uint32_t ghost)
+{
+    return (struct model_span){lens->ghost[ghost].first_system,
+                               lens->ghost[ghost].n_systems};
+}
+
+const struct glint_model_output *
+model_outputs_of(const struct glint_lens *lens,
+                 const struct glint_model_system *s)
+{
+    const char *base = (const char *)lens->header;
+
+    return (const void *)(base + s->output_at);
+}
+
+/* Words of a system's box and knots. */
+static size_t box_words(const struct glint_model_system *s)
+{
+    size_t n = 4 * (size_t)s->n_knots;
+
+    for (int k = 0; k < GLINT_BOX_TERMS; k++)
+        n += 3 * (s->box_terms >> k & 1U);
+    return n;
+}
+
+/* What a span takes in the file, without regard to sharing. */
+size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
+{
+    size_t sum = 0;
+
+    for (uint32_t k = span.first; k < span.first + span.n; k++) {
+        const struct glint_model_system *s = &lens->system[k];
+        const struct glint_model_output *o = model_outputs_of(lens, s);
+        const size_t sets = s->n_knots ? s->n_knots : 1;
+
+        sum += sizeof *s + s->n_outputs * sizeof *o + 4 * box_words(s);
+        for (uint32_t m = 0; m < s->n_outputs; m++)
+            sum += 4 * sets * o[m].n_terms + (o[m].n_terms + 1U) / 2 * 4 -
+                   2 * (o[m].n_narrow & ~1U);
+    }
+    return sum;
+}
+
+/* Angles that a span covers. */
+void model_span_angles(const struct glint_lens *lens, struct model_span span,
+                       double range_deg[2])
+{
+    int32_t lo_q30 = INT32_MAX, hi_q30 = 0;
+
+    for (uint32_t k = span.first; k < span.first + span.n; k++) {
+        const struct glint_model_system *s = &lens->system[k];
+
+        lo_q30 = s->sine_lo_q30 < lo_q30 ? s->sine_lo_q30 : lo_q30;
+        hi_q30 = s->sine_hi_q30 > hi_q30 ? s->sine_hi_q30 : hi_q30;
+    }
+    range_deg[0] = span.n ? model_degrees(lo_q30) : 0;
+    range_deg[1] = model_degrees(hi_q30);
+}
+
+static double error_of(uint16_t stored)
+{
+    return ldexp((double)glint_model_error_q20(stored), -20);
+}
+
+static void add(struct model_errors *e, const struct glint_model_output *o,
+                double unit)
+{
+    const double rms = error_of(o->rms);
+    const double step = ldexp(unit, o->exponent);
+
+    e->n++;
+    e->terms += (o->n_terms - e->terms) / e->n;
+    e->mean2 += (rms * rms - e->mean2) / e->n;
+    e->p50 += (error_of(o->p50) - e->p50) / e->n;
+    e->p99 = fmax(e->p99, error_of(o->p99));
+    e->max = fmax(e->max, error_of(o->max));
+    e->bound = fmax(e->bound, o->bound * step);
+    e->rounding = fmax(e->rounding, ldexp(o->rounding_q8 * step, -8));
+}
+
+struct model_summary model_summary_of(const struct glint_lens *lens,
+                                      struct model_span span)
+{
+    const double px = 1920 / model_real_of(lens->header->film_width_mm);
+    struct model_summary sum = {{{0}}};
+
+    for (uint32_t k = span.first; k < span.first + span.n; k++) {
+        const struct glint_model_system *s = &lens->system[k];
+        const struct glint_model_output *o = model_outputs_of(lens, s);
+
+        for (uint32_t m = 0; m < s->n_outputs; m++)
+            add(&sum.of[o[m].kind], &o[m],
+                o[m].kind <= GLINT_OUT_SENSOR_Y ? px : 1);
+    }
+    return sum;
+}
+
+double model_terms(const struct model_summary *sum)
+{
+    double terms = 0;
+
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        terms += sum->of[kind].n * sum->of[kind].terms;
+    return terms;
+}
+
+/* Of an output. */
+double model_mean_terms(const struct model_summary *sum)
+{
+    uint32_t n = 0;
+
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        n += sum->of[kind].n;
+    return n ? model_terms(sum) / n : 0;
+}
+
+bool model_misses(const struct model_summary *sum)
+{
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (sum->of[kind].p99 > model_output_targets[kind])
+            return true;
+    return false;
+}
+
+/* Ghosts without the further parts of their pupils. */
+uint32_t model_ghost_count(const struct glint_lens *lens)
+{
+    return lens->header->n_ghosts - lens->header->n_parts;
+}
+
+/* The number of the ghost that ENTRY is, or is a part of. */
+uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry)
+{
+    const struct glint_model_ghost *g = &lens->ghost[entry];
+    uint32_t k = 0;
+
+    while (k < entry && (g->i != lens->ghost[k].i || g->j != lens->ghost[k].j))
+        k++;
+    return k;
+}
+
+/* Ghosts of which some part misses. */
+unsigned model_missed_count(const struct glint_lens *lens)
+{
+    bool missed[GLINT_MAX_GHOSTS] = {false};
+    unsigned n = 0;
+
+    for (uint32_t k = 0; k < lens->header->n_ghosts; k++) {
+        const struct model_summary sum =
+            model_summary_of(lens, model_span_of_ghost(lens, k));
+        const uint32_t ghost = model_ghost_of(lens, k);
+
+        if (ghost < GLINT_MAX_GHOSTS && model_misses(&sum) && !missed[ghost]) {
+            missed[ghost] = true;
+            n++;
+        }
+    }
+    return n;
+}

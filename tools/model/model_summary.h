@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * model_summary.h - what a baked lens takes and how far it is off, summed over
+ * systems; for reports.
+ */
+#ifndef GLINT_TOOLS_MODEL_MODEL_SUMMARY_H
+#define GLINT_TOOLS_MODEL_MODEL_SUMMARY_H
+
+#include "model/model_file.h"
+
+extern const char *const model_output_names[GLINT_OUT_KINDS];
+extern const char *const model_output_units[GLINT_OUT_KINDS];
+
+/* Errors at the 99th percentile beyond which a ghost is pointed out: a quarter
+ * of a pixel of 1920, and what is worth as much elsewhere. */
+extern const double model_output_targets[GLINT_OUT_KINDS];
+
+const char *model_basis_name(const struct glint_lens *lens);
+double model_degrees(int32_t sine_q30);
+double model_nanometres(int32_t wave_q24); /* from 1 / square micrometres */
+
+/* Systems that follow each other. */
+struct model_span {
+    uint32_t first, n;
+};
+
+struct model_span model_span_of_all(const struct glint_lens *lens);
+struct model_span model_span_of_ghost(const struct glint_lens *lens,
+                                      uint32_t ghost);
+
+const struct glint_model_output *
+model_outputs_of(const struct glint_lens *lens,
+                 const struct glint_model_system *system);
+
+/* What a span takes in the file, without regard to sharing. */
+size_t model_span_bytes(const struct glint_lens *lens, struct model_span span);
+
+/* Angles that a span covers. */
+void model_span_angles(const struct glint_lens *lens, struct model_span span,
+                       double range_deg[2]);
+
+/* An output over the systems of a span that have it. */
+struct model_errors {
+    uint32_t n;
+    double terms, mean2, p50;         /* means */
+    double p99, max, bound, rounding; /* worst; all in the unit of errors */
+};
+
+struct model_summary {
+    struct model_errors of[GLINT_OUT_KINDS];
+};
+
+struct model_summary model_summary_of(const struct glint_lens *lens,
+                                      struct model_span span);
+double model_terms(const struct model_summary *sum);      /* of all outputs */
+double model_mean_terms(const struct model_summary *sum); /* of an output */
+
+/* Whether some output misses its target. */
+bool model_misses(const struct model_summary *sum);
+
+/* Ghosts without the further parts of their pupils. */
+uint32_t model_ghost_count(const struct glint_lens *lens);
+
+/* The number of the ghost that ENTRY is, or is a part of. */
+uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry);
+
+/* Ghosts of which some part misses. */
+unsigned model_missed_count(const struct glint_lens *lens);
+
+#endif
