@@ -20,7 +20,7 @@
 using glint::bytes;
 using glint::check_spec;
 using glint::failure;
-using glint::part;
+using glint::kept_part;
 using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
@@ -88,7 +88,7 @@ void choose_types(ImageSpec &spec)
         spec.set_format(TypeDesc::FLOAT);
 }
 
-void read_part(ImageInput &in, int index, const bytes &whole, part &part)
+void read_part(ImageInput &in, int index, const bytes &whole, kept_part &part)
 {
     part.spec = in.spec(index);
     if (part.spec.width < 1 || part.spec.nchannels < 1)
@@ -209,7 +209,8 @@ struct glint_sample_place channel_of(const ImageSpec &spec, int index)
     return channel;
 }
 
-void fill_samples(struct glint_samples &s, part &part, const choice &choice)
+void fill_samples(struct glint_samples &s, kept_part &part,
+                  const choice &choice)
 {
     const ImageSpec &spec = part.spec;
 

@@ -15,7 +15,7 @@
 namespace glint
 {
 
-struct part {
+struct kept_part {
     OIIO::ImageSpec spec; /* as it is stored */
     std::vector<unsigned char> pixels;
 };
@@ -37,7 +37,7 @@ bytes read_whole(const char *path);
 struct glint_oiio_file {
     std::string type;   /* OpenImageIO's name of the file type */
     glint::bytes whole; /* the file, of the types that are carried over */
-    std::vector<glint::part> parts;
+    std::vector<glint::kept_part> parts;
     std::vector<unsigned char> icc;
 };
 

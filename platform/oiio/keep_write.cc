@@ -24,7 +24,7 @@
 
 using glint::bytes;
 using glint::failure;
-using glint::part;
+using glint::kept_part;
 using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
@@ -170,11 +170,11 @@ int quality_of(const std::string &type, const struct glint_oiio_file *file,
 }
 
 /* SAMPLES as a part, with the metadata of FILE if there is one. */
-part part_of(const struct glint_samples &samples,
-             const struct glint_oiio_file *file)
+kept_part part_of(const struct glint_samples &samples,
+                  const struct glint_oiio_file *file)
 {
     const int n = samples.n_colours + (samples.has_alpha ? 1 : 0);
-    part made;
+    kept_part made;
 
     made.spec = ImageSpec(samples.width, samples.height, n,
                           to_type(samples.colour[0].sample));
@@ -199,7 +199,8 @@ part part_of(const struct glint_samples &samples,
 }
 
 void write_parts(ImageOutput &out, const char *path,
-                 std::vector<ImageSpec> &specs, const std::vector<part> &parts)
+                 std::vector<ImageSpec> &specs,
+                 const std::vector<kept_part> &parts)
 {
     const bool announced =
         parts.size() > 1 && out.format_name() == std::string("openexr");
@@ -250,7 +251,7 @@ struct scratch {
 
 /* OpenImageIO 2.4 writes an EXR of parts into files alone, whatever it says. */
 bytes encode_by_file(ImageOutput &out, std::vector<ImageSpec> &specs,
-                     const std::vector<part> &parts)
+                     const std::vector<kept_part> &parts)
 {
     const scratch scratch;
 
@@ -265,7 +266,7 @@ bytes encode_by_file(ImageOutput &out, std::vector<ImageSpec> &specs,
 
 bytes encode_by_oiio(ImageOutput &out, const char *path,
                      std::vector<ImageSpec> specs,
-                     const std::vector<part> &parts)
+                     const std::vector<kept_part> &parts)
 {
     bytes encoded;
     memory to(encoded);
@@ -281,7 +282,7 @@ bytes encode_by_oiio(ImageOutput &out, const char *path,
     return encoded;
 }
 
-bytes encode_parts(const char *path, const std::vector<part> &parts,
+bytes encode_parts(const char *path, const std::vector<kept_part> &parts,
                    const struct glint_oiio_file *file, bool same,
                    const struct glint_oiio_options &options)
 {
@@ -294,7 +295,7 @@ bytes encode_parts(const char *path, const std::vector<part> &parts,
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
     const std::string type = out->format_name();
     const int quality = quality_of(type, file, options);
-    for (const part &p : parts) {
+    for (const kept_part &p : parts) {
         specs.push_back(same && is_carried_from(*file) ? bare(p.spec) : p.spec);
         if (type == "tiff")
             clear_exif(specs.back());
@@ -332,7 +333,7 @@ enum glint_status glint::encode_file(void **data, size_t *n_bytes,
 {
     return guarded(path, error, [&] {
         const bool same = file && is_same_type(file, path);
-        std::vector<part> made;
+        std::vector<kept_part> made;
 
         if (pixels)
             made.push_back(part_of(*pixels, file));
