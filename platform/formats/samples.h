@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/samples.h - a picture's pixels as its file holds them, to be looked at
- * and lit without losing anything.
+ * formats/samples.h - a picture's pixels as its file holds them, to be looked
+ * at and lit without losing anything.
  *
  *     glint_samples_proxy(&samples, &proxy, &white);     what is seen, 8 bits
  *     glint_samples_light(&samples, x, y, rgb);          of a pixel

@@ -34,8 +34,8 @@ struct glint_y4m_sink {
     struct glint_y4m_writer writer;
 };
 
-/* PATH is kept; "-": standard output. Rate as in formats/y4m.h. Nothing can fail
- * before the first frame. */
+/* PATH is kept; "-": standard output. Rate as in formats/y4m.h. Nothing can
+ * fail before the first frame. */
 void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den);
 
