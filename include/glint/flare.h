@@ -131,12 +131,9 @@ struct glint_flare_frame {
     int n_waves;                        /* 1 or more; of all sets together */
     const struct glint_wave_sets *sets; /* NULL: all waves for every ghost */
     struct glint_real pixels_per_mm;
-    int fineness; /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
-                     between rays is off by 0.01 px, outlines by 0.1 */
-    int uniform;  /* all grids have so many cells a side */
-    /* NULL, or for rays in 16-bit lanes glint_transfer_narrow, which only a
-     * program that names it links */
-    void (*narrow)(struct glint_transfer *transfer);
+    int fineness;   /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
+                       between rays is off by 0.01 px, outlines by 0.1 */
+    int uniform;    /* all grids have so many cells a side */
     int only_ghost; /* of the lens, with its parts; -1: all */
     /* Of a picture in codes: light that no pixel shows, display white. What
      * stays below may be left out, and the fainter a ghost, the coarser its

@@ -222,9 +222,6 @@ struct glint_transfer {
         } sparse[GLINT_OUT_KINDS];
     } of;
     uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
-    uint8_t
-        fraction; /* bits of u and v that count: 30, or 15 in 16-bit lanes */
-    uint8_t shift[GLINT_OUT_KINDS]; /* a value is as many bits above the unit */
     unsigned sets; /* instruction sets for rows, GLINT_SET_: 0 after init, for
                       the caller to set; changes no result */
     /* Scratch: polynomials in u, of one row of rays; places along a row. */
@@ -238,15 +235,6 @@ struct glint_transfer {
 int glint_transfer_init(struct glint_transfer *transfer,
                         const struct glint_lens *lens, int ghost,
                         int32_t sine_q30, int32_t wave_q24);
-
-/* Makes the polynomials of the auto basis ones whose coefficients, variables
- * and intermediates all fit int16: coarser, and for vectors of twice as many
- * lanes. Coefficients are rounded to 2^shift; each intermediate is below 2^15
- * because their magnitudes sum to less than that with every rounding added. A
- * value is off by at most 128 * 2^shift (100 coefficients, 69 products and the
- * variables' own rounding), and mostly by a few. Does nothing in the sparse
- * basis. */
-void glint_transfer_narrow(struct glint_transfer *transfer);
 
 /* Where the ray at (U, V), each within +-2^30, goes: integers by kind, to be
  * scaled by 2^exponent; 0 for outputs that are not there. */

@@ -484,8 +484,6 @@ void glint_plan_transfer(const struct glint_plan *plan,
     glint_transfer_init(transfer, r->lens, planned->ghost,
                         plan->beam[planned->beam].sine_q30,
                         r->wave[planned->wave].wave_q24);
-    if (r->narrow)
-        r->narrow(transfer);
     transfer->sets = plan->sets;
     transfer->energy_up = planned->energy_up;
 }

@@ -11,30 +11,20 @@
 #define w_load       vld1q_s32
 #define w_store      vst1q_s32
 
-/* Values are below 2^fraction: raised by what is missing to 31 bits, twice
- * their product's upper half is what a shift by the fraction leaves, and rounds
- * alike. */
-struct shift {
-    W up;
-};
-
-static inline struct shift shift_by(int fraction)
-{
-    return (struct shift){vdupq_n_s32(31 - fraction)};
-}
-
 struct factor {
     W x;
 };
 
-static inline struct factor factor_of(W x)
+static inline struct factor factor_of(W x_q30)
 {
-    return (struct factor){x};
+    return (struct factor){x_q30};
 }
 
-static inline W w_times(W a, struct factor by, struct shift s)
+/* Values are below 2^30: the upper half of twice the product of their double
+ * is what a shift by 30 leaves, and rounds alike. */
+static inline W w_times(W a, struct factor by)
 {
-    return vqrdmulhq_s32(vshlq_s32(a, s.up), by.x);
+    return vqrdmulhq_s32(vshlq_n_s32(a, 1), by.x);
 }
 
 #include "kernels/horner_v.inc"

@@ -104,16 +104,16 @@ typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
                               uint16_t *light_q16, int n);
 
 /* N values of a polynomial, Horner's way: ((c[D] x + c[D - 1]) x + ...) + c[0]
- * with each product rounded to integers by a shift of FRACTION bits, 2 .. 30.
- * Values of the polynomial stay below 2^FRACTION in magnitude, X within
- * +-2^FRACTION: the caller's promise.
+ * with each product rounded to integers by a shift of 30 bits. Values of the
+ * polynomial stay below 2^30 in magnitude, X within +-2^30: the caller's
+ * promise.
  *   along   of one polynomial at x[0 .. N - 1]
  *   across  of N polynomials, whose coefficients C[k] begin STRIDE apart, at X
  */
 typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
-                                   const int32_t *x, int fraction, int n);
+                                   const int32_t *x_q30, int n);
 typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
-                                    int degree, int32_t x, int fraction, int n);
+                                    int degree, int32_t x_q30, int n);
 
 /* Turns points (X, Y) by an angle, and their mirror images (X, -Y):
  *   out     x cos - y sin, x sin + y cos; x cos + y sin, x sin - y cos; each

@@ -5,8 +5,7 @@
  * Formats: variables are q30 and within +-2^30; coefficients and every
  * intermediate of an output are integers of that output's own unit, below 2^30
  * as bake has proven (bound in struct glint_model_output). So each product of
- * the two is below 2^60, and rounds to its unit by a shift of 30. In 16-bit
- * lanes variables are q15, values below 2^15 and the shift is 15.
+ * the two is below 2^60, and rounds to its unit by a shift of 30.
  */
 #include "glint/lens.h"
 
@@ -20,11 +19,7 @@
 enum {
     ONE_LOG2 = 30,
     RAYS = GLINT_RAYS,
-    MAX_EXPONENT = 15, /* of any variable */
-    /* Sums of magnitudes in 16-bit lanes: 100 coefficients off by a half each,
-     * 6 roundings of each of 10 entries of a row and 9 along it leave that much
-     * of 32767. */
-    NARROW_LIMIT = 32767 - 50 - 30 - 5
+    MAX_EXPONENT = 15 /* of any variable */
 };
 
 #define ONE_Q30 (INT32_C(1) << ONE_LOG2)
@@ -246,7 +241,7 @@ static void clear(struct glint_transfer *t)
     t->n_nodes = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         t->exponent[k] = 0;
-        t->degree_u[k] = t->degree_v[k] = t->shift[k] = 0;
+        t->degree_u[k] = t->degree_v[k] = 0;
     }
 }
 
@@ -265,7 +260,6 @@ int glint_transfer_init(struct glint_transfer *transfer,
     transfer->system = system;
     transfer->hollow = (uint8_t)system->hollow;
     transfer->basis = (enum glint_basis)lens->header->basis;
-    transfer->fraction = ONE_LOG2;
     settle(&set, lens, system, sine_q30, wave_q24);
     set_box(transfer, lens, &set);
     output = at(lens, system->output_at);
@@ -274,64 +268,7 @@ int glint_transfer_init(struct glint_transfer *transfer,
     return 1;
 }
 
-/* ------------------------------------------------------------- 16-bit lanes */
-
-typedef int32_t table_row[GLINT_TABLE_WIDTH];
-
-static int64_t magnitudes(table_row *table)
-{
-    int64_t sum = 0;
-
-    for (int b = 0; b <= GLINT_MAX_POWER; b++)
-        for (int a = 0; a <= GLINT_MAX_POWER; a++)
-            sum += table[b][a] < 0 ? -(int64_t)table[b][a] : table[b][a];
-    return sum;
-}
-
-static void narrow_table(struct glint_transfer *t, int kind)
-{
-    table_row *table = t->of.table[kind];
-    const int64_t sum = magnitudes(table);
-    int shift = 0;
-
-    while (sum >> shift >= NARROW_LIMIT)
-        shift++;
-    t->shift[kind] = (uint8_t)shift;
-    for (int b = 0; b <= GLINT_MAX_POWER; b++)
-        for (int a = 0; a <= GLINT_MAX_POWER; a++)
-            table[b][a] = (int32_t)q_shift(table[b][a], shift);
-}
-
-void glint_transfer_narrow(struct glint_transfer *transfer)
-{
-    if (transfer->basis == GLINT_BASIS_SPARSE)
-        return;
-    transfer->fraction = 15;
-    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
-        if (transfer->outputs >> kind & 1)
-            narrow_table(transfer, kind);
-}
-
 /* --------------------------------------------------------------------- rays */
-
-/* X times a variable, and more. */
-static int32_t times(const struct glint_transfer *t, int32_t x,
-                     int32_t variable, int32_t more)
-{
-    const int32_t sum = q_mul(x, variable, t->fraction) + more;
-
-    if (t->fraction == 15)
-        Q_FITS("16-bit lanes", sum, INT16_MIN, INT16_MAX);
-    return sum;
-}
-
-/* Of X_Q30 the bits that count. */
-static int32_t variable_of(const struct glint_transfer *t, int32_t x_q30)
-{
-    return t->fraction == 15
-               ? q_clamp_sat(q_shift(x_q30, 15), -INT16_MAX, INT16_MAX)
-               : x_q30;
-}
 
 static int has(const struct glint_transfer *t, int kind)
 {
@@ -346,16 +283,16 @@ static int is_odd(int kind)
 
 /* An output's polynomial in u along one row of the grid. */
 static void set_row(const struct glint_transfer *t,
-                    const struct glint_horner *k, int kind, int32_t v,
-                    int32_t v2, int32_t *of_u)
+                    const struct glint_horner *k, int kind, int32_t v_q30,
+                    int32_t v2_q30, int32_t *of_u)
 {
     const int odd = is_odd(kind);
 
     k->across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
-              (t->degree_v[kind] - odd) / 2, v2, t->fraction,
+              (t->degree_v[kind] - odd) / 2, v2_q30,
               t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
     for (int a = 0; odd && a <= t->degree_u[kind]; a++)
-        of_u[a] = times(t, of_u[a], v, 0);
+        of_u[a] = q_mul(of_u[a], v_q30, 30);
 }
 
 /* Fills the polynomials in u of the rays at V. */
@@ -363,11 +300,11 @@ static void set_rows(const struct glint_transfer *t,
                      const struct glint_horner *k, int32_t v_q30,
                      int32_t (*of_u)[GLINT_TABLE_WIDTH])
 {
-    const int32_t v = variable_of(t, v_q30), v2 = times(t, v, v, 0);
+    const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
 
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (has(t, kind))
-            set_row(t, k, kind, v, v2, of_u[kind]);
+            set_row(t, k, kind, v_q30, v2_q30, of_u[kind]);
 }
 
 /* From values of the polynomial of energy to N energies. */
@@ -384,17 +321,12 @@ static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
 
 /* The rays at U, by kind. */
 static void rays_of_rows(const struct glint_transfer *t,
-                         const struct glint_horner *k, const int32_t *u,
+                         const struct glint_horner *k, const int32_t *u_q30,
                          int32_t (*out)[RAYS])
 {
-    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
-        if (!has(t, kind))
-            continue;
-        k->along(out[kind], t->of_u[kind], t->degree_u[kind], u, t->fraction,
-                 RAYS);
-        for (int i = 0; t->shift[kind] && i < RAYS; i++)
-            out[kind][i] *= INT32_C(1) << t->shift[kind];
-    }
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (has(t, kind))
+            k->along(out[kind], t->of_u[kind], t->degree_u[kind], u_q30, RAYS);
     raise_energies(t, out[GLINT_OUT_ENERGY], RAYS);
 }
 
@@ -432,8 +364,7 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out)
 {
     const struct glint_transfer *t = transfer;
-    const int32_t u = variable_of(t, u_q30), v = variable_of(t, v_q30);
-    const int32_t v2 = times(t, v, v, 0);
+    const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
     const struct glint_horner *k = glint_horner_of(0);
 
     if (transfer->basis == GLINT_BASIS_SPARSE) {
@@ -446,9 +377,8 @@ void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
         out->at[kind] = 0;
         if (!has(t, kind))
             continue;
-        set_row(t, k, kind, v, v2, of_u);
-        k->along(&out->at[kind], of_u, t->degree_u[kind], &u, t->fraction, 1);
-        out->at[kind] *= INT32_C(1) << t->shift[kind];
+        set_row(t, k, kind, v_q30, v2_q30, of_u);
+        k->along(&out->at[kind], of_u, t->degree_u[kind], &u_q30, 1);
     }
     raise_energies(t, &out->at[GLINT_OUT_ENERGY], 1);
 }
@@ -470,7 +400,6 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS])
 {
     const struct glint_horner *k = glint_horner_of(transfer->sets);
-    int32_t u[RAYS];
 
     if (transfer->basis == GLINT_BASIS_SPARSE) {
         rays_of_terms(transfer, u_q30, v_q30, out);
@@ -478,9 +407,7 @@ void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
     }
     if (is_new)
         set_rows(transfer, k, v_q30, transfer->of_u);
-    for (int i = 0; transfer->fraction == 15 && i < RAYS; i++)
-        u[i] = variable_of(transfer, u_q30[i]);
-    rays_of_rows(transfer, k, transfer->fraction == 15 ? u : u_q30, out);
+    rays_of_rows(transfer, k, u_q30, out);
 }
 
 /* ----------------------------------------------------------------- vertices */

@@ -196,7 +196,6 @@ static void draw_flare(const struct glint_flare_config *c,
     rays.lens = &lens[number(n_models)];
     rays.n_waves = 1 + number(3);
     rays.fineness = 8 << number(4);
-    rays.narrow = number(4) ? NULL : glint_transfer_narrow;
     rays.half = number(3) == 0 ? &glint_half : NULL;
     make_waves(wave);
     for (int i = 0; i < n_given; i++)

@@ -51,7 +51,6 @@ struct frame {
     bool always_half;     /* whatever the ladder says */
     bool can_half;        /* the last picture was such a one */
     bool uniform;         /* the same grid for all ghosts */
-    bool narrow;          /* rays in 16-bit lanes */
     int only_ghost;       /* -1: all */
     int16_t *mask;        /* of the stop, unless NULL */
     struct budget budget; /* of models; turns dials of the above */

@@ -8,11 +8,10 @@
 
 /* Along the front that glint sweep measures over five lenses at 1280x720
  * (tests/figures/trade.md), the coarsest first. What is not on it: coarser
- * models, which save nothing and cost 6 dB, and 16-bit lanes, on processors
- * with AVX2. Finer models cost next to nothing but bytes and their baking,
- * which is why the default has none and all above it do. Dispersion has a front
- * of its own (make colour-table): what is for small boards draws three
- * wavelengths. */
+ * models, which save nothing and cost 6 dB. Finer models cost next to nothing
+ * but bytes and their baking, which is why the default has none and all above
+ * it do. Dispersion has a front of its own (make colour-table): what is for
+ * small boards draws three wavelengths. */
 /* clang-format off */
 static const struct rung {
     double quality, grid, quantum, whole, cull, tolerance, dispersion, points;

@@ -21,8 +21,6 @@ const struct dial dials[] = {
      6, 2, {0, 1, 2, 4, 8, 16}, {1, 4}},
     {"half", "half as many pixels each way", DIAL_BOOL, AT(half), 0, false, false,
      2, 2, {0, 1}, {0, 1}},
-    {"narrow", "rays in 16-bit lanes", DIAL_BOOL, AT(narrow), 0, false, false,
-     2, 0, {0, 1}, {0}},
     {"tolerance", "errors of the model", DIAL_DOUBLE, AT(tolerance), 1, true, false,
      3, 0, {0.25, 1, 4}, {1}},
     {"wavelengths", "wavelengths", DIAL_INT, AT(n_wavelengths), 3, true, false,

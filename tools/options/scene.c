@@ -101,7 +101,6 @@ static bool take(struct scene *s, int option, const char *value)
     static const char *const weights[] = {"loop-derose", "wachspress", NULL};
     static const char *const rasters[] = {"edges", "cells", NULL};
     static const char *const parts[] = {"ghosts", "all", NULL};
-    static const char *const lanes[] = {"16", "32", NULL};
     static const char *const rays[] = {"model", "exact", NULL};
     int word;
 
@@ -172,10 +171,8 @@ static bool take(struct scene *s, int option, const char *value)
         word = tool_word(value, rays);
         s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
         return word >= 0;
-    case OPT_LANES:
-        word = tool_word(value, lanes);
-        s->narrow = word == 0;
-        return word >= 0;
+    case OPT_LANES: /* of a release ago */
+        return strcmp(value, "32") == 0;
     case OPT_CULL:
         return tool_number(value, &s->cull) && s->cull >= 0 && s->cull <= 16;
     case OPT_BALANCE:
@@ -193,6 +190,15 @@ static bool take(struct scene *s, int option, const char *value)
     }
 }
 
+static void warn_lanes(const struct tool *tool)
+{
+    if (!tool->quiet)
+        fprintf(stderr,
+                "glint %s: --lanes has nothing to choose any more: rays are "
+                "computed with 32 bits\n",
+                tool->name);
+}
+
 int scene_option(const struct tool *tool, struct scene *scene, int option,
                  const char *value)
 {
@@ -202,8 +208,11 @@ int scene_option(const struct tool *tool, struct scene *scene, int option,
         return -2;
     if (option == OPT_COATING)
         return coating_take(tool, &scene->coating, value);
-    if (take(scene, option, value))
+    if (take(scene, option, value)) {
+        if (option == OPT_LANES)
+            warn_lanes(tool);
         return -1;
+    }
     if (option == OPT_ONLY && strcmp(value, "starburst") == 0)
         return tool_usage(tool, "there is no starburst yet; ghosts are all "
                                 "that is drawn");
@@ -360,7 +369,6 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->lens = scene->model.data ? &scene->model.lens : NULL;
     frame->max_cells = scene->grid ? scene->grid : 64;
     frame->uniform = scene->uniform;
-    frame->narrow = scene->narrow;
     frame->only_ghost = scene->only_ghost;
     frame->apart_px = scene->apart_px;
     frame->area_samples = scene->area_samples_asked ? scene->area_samples_asked

@@ -54,7 +54,7 @@ struct scene {
     enum glint_weights weights;
     bool by_edges;          /* was asked for, not only what is done anyway */
     bool half, always_half; /* as the ladder has it, or as was asked */
-    bool uniform, narrow, antialias, dither, has_exposure, balance;
+    bool uniform, antialias, dither, has_exposure, balance;
 };
 
 /* Long options of this file, for a command's array; all above 1000. */
@@ -203,11 +203,6 @@ enum scene_option {
     "                      --budget\n"                                         \
     "  --rays R            model: the lens's baked polynomials (default);\n"   \
     "                      exact: traced for every frame\n"                    \
-    "  --lanes 16|32       bits a model's rays are computed with (default "    \
-    "32): 16 "                                                                 \
-    "is\n"                                                                     \
-    "                      0.03 pixel coarser, for vectors of twice the "      \
-    "lanes\n"                                                                  \
     "  --cull CODES        in 8 bits: what stays so many codes near black, 0 " \
     "to 16,\n"                                                                 \
     "                      may be left out, and faint ghosts are drawn "       \

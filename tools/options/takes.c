@@ -54,7 +54,7 @@ static const struct {
     {NULL, "input", "a number, 0 to 255"},
     {NULL, "io", "auto, mmap, userptr or read"},
     {NULL, "kernels", "c, sse41, avx2, neon or auto, as this processor has it"},
-    {NULL, "lanes", "16 or 32"},
+    {NULL, "lanes", "32 alone: 16-bit lanes saved nothing, and are gone"},
     {NULL, "jpeg-quality", "a whole number, 1 to 100"},
     {NULL, "layer", "composite, flare or flare-alpha"},
     {NULL, "light",

@@ -153,8 +153,7 @@ static void test_ladder(void **state)
     ladder_set(&scene, 0.5);
     assert_int_equal(scene.grid, 64);
     assert_true(scene.quantum == plain.quantum && scene.cull == plain.cull &&
-                scene.tolerance == plain.tolerance &&
-                scene.narrow == plain.narrow && scene.rays == plain.rays);
+                scene.tolerance == plain.tolerance && scene.rays == plain.rays);
     scene_defaults(&last);
     ladder_set(&last, 0);
     for (int i = 1; i <= 100; i++) {
