@@ -4,7 +4,7 @@
  * a program that does not ask links none of it.
  */
 #include "base/q.h"
-#include "flare/state.h"
+#include "flare/by_edges.h"
 #include "flare/wave_sets.h"
 
 /* Where a bundle is among all there could be. */
@@ -106,11 +106,13 @@ static void count_edges(const struct glint_flare *f,
                         const struct glint_bundle_slot *slot,
                         struct glint_account *a)
 {
+    const struct glint_edge *edge = glint_by_edges_of(f)->edge;
+
     a->edges = slot->n;
     for (int i = slot->first; i < slot->first + slot->n; i++) {
-        a->rows += rows_of(&f->edge[i], f->cfg.height);
-        a->refs = glint_flare_add_need(a->refs,
-                                       glint_edge_span(&f->edge[i], &f->bins));
+        a->rows += rows_of(&edge[i], f->cfg.height);
+        a->refs =
+            glint_flare_add_need(a->refs, glint_edge_span(&edge[i], &f->bins));
     }
 }
 
@@ -170,6 +172,8 @@ static int is_of(const struct glint_flare *f, const struct glint_bundle_plan *s,
 
 void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
 {
+    const struct glint_edge *edge = glint_by_edges_of(flare)->edge;
+
     glint_bins_open(&flare->bins);
     for (int put = 0; put < 2; put++) {
         for (int i = 0; i < flare->n_drawn; i++) {
@@ -179,9 +183,9 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
                 continue;
             for (int k = slot->first; k < slot->first + slot->n; k++)
                 if (put)
-                    glint_edge_put(&flare->edge[k], &flare->bins, k);
+                    glint_edge_put(&edge[k], &flare->bins, k);
                 else
-                    glint_edge_count(&flare->edge[k], &flare->bins);
+                    glint_edge_count(&edge[k], &flare->bins);
         }
         if (!put)
             glint_bins_sum(&flare->bins);

@@ -2,14 +2,10 @@
  *
  * Drawing by edges: bundles to edges, edges to tiles, rows of tiles to pixels.
  */
-#include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
-#include "flare/state.h"
-
-/* As many bundles lose too much light to the rounding of each to _q16: half a
- * step of each may be missing, 1/40 of a code near black. */
-enum { FINE_BUNDLES = 1024 };
+#include "flare/by_edges.h"
+#include "flare/ghost_edges.h"
 
 /* -------------------------------------------------------------------- memory
  */
@@ -22,27 +18,39 @@ static size_t most_jobs(const struct glint_flare_config *c)
     return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
-static void carve(struct glint_flare *f, struct glint_arena *a,
-                  const struct glint_flare_config *c)
+/* Both run twice: to measure, which gives NULL, and to place. */
+static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
 {
-    f->edge = glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->edge);
-    f->order = glint_arena_take(a, most_jobs(c), sizeof *f->order);
+    struct glint_by_edges measured, *placed, *own;
+
+    placed = glint_arena_take(a, 1, sizeof *placed);
+    own = placed ? placed : &measured;
+    own->edge =
+        glint_arena_take(a, (size_t)c->max_primitives, sizeof *own->edge);
+    own->order = glint_arena_take(a, most_jobs(c), sizeof *own->order);
+    return placed;
 }
 
-static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
-                         const struct glint_flare_config *c)
+static void *carve_worker(struct glint_arena *a,
+                          const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
-    const size_t sums = 3 * side * (size_t)GLINT_EDGE_STRIDE(c->tile_log2);
+    const size_t n_sums = 3 * side * (size_t)GLINT_EDGE_STRIDE(c->tile_log2);
+    struct glint_edges_worker measured, *placed, *w;
+    struct glint_edge_sums *s;
 
+    placed = glint_arena_take(a, 1, sizeof *placed);
+    w = placed ? placed : &measured;
     w->rows = glint_arena_take(a, 1, sizeof *w->rows);
-    w->wide = glint_arena_take(a, sums, sizeof *w->wide);
-    w->narrow_q24 = glint_arena_take(a, sums, sizeof *w->narrow_q24);
-    w->carry = glint_arena_take(a, 3 * side, sizeof *w->carry);
-    w->touched = glint_arena_take(a, 3, sizeof *w->touched);
     w->at = glint_arena_take(
         a, glint_flare_count_tiles(c->width, c->height, c->tile_log2) + 1,
         sizeof *w->at);
+    s = &w->sums;
+    s->wide = glint_arena_take(a, n_sums, sizeof *s->wide);
+    s->narrow_q24 = glint_arena_take(a, n_sums, sizeof *s->narrow_q24);
+    s->carry = glint_arena_take(a, 3 * side, sizeof *s->carry);
+    s->touched = glint_arena_take(a, 3, sizeof *s->touched);
+    return placed;
 }
 
 /* Makes all sums 0, as they are between tiles. */
@@ -51,13 +59,13 @@ static void begin(struct glint_flare *f)
     const int log2 = f->cfg.tile_log2;
 
     for (int i = 0; i < glint_workers_count(f->cfg.workers); i++) {
-        struct glint_flare_worker *w = &f->worker[i];
+        struct glint_edge_sums *s = &glint_edges_worker_of(f, i)->sums;
 
         for (int c = 0; c < 3; c++)
-            w->touched[c] = 0;
+            s->touched[c] = 0;
         for (int k = 0; k < (3 << log2) * GLINT_EDGE_STRIDE(log2); k++) {
-            w->wide[k] = 0;
-            w->narrow_q24[k] = 0;
+            s->wide[k] = 0;
+            s->narrow_q24[k] = 0;
         }
     }
 }
@@ -71,6 +79,7 @@ typedef int weight_fn(const struct glint_flare *f, int job);
  * long one when the others are done. Changes no output. */
 static void set_order(struct glint_flare *f, int n, weight_fn *weight)
 {
+    int32_t *order = glint_by_edges_of(f)->order;
     int32_t at[33] = {0};
 
     for (int i = 0; i < n; i++)
@@ -82,7 +91,7 @@ static void set_order(struct glint_flare *f, int n, weight_fn *weight)
         sum += here;
     }
     for (int i = 0; i < n; i++)
-        f->order[at[32 - bit_length((uint32_t)weight(f, i))]++] = i;
+        order[at[32 - bit_length((uint32_t)weight(f, i))]++] = i;
 }
 
 static int cells_across(const struct glint_flare *f, int bundle)
@@ -132,9 +141,11 @@ static int32_t light_limit_q8(const struct glint_flare *f)
     return (int32_t)(share_q8 < GLINT_LIMIT_Q8 ? share_q8 : GLINT_LIMIT_Q8);
 }
 
-static void emit_bundle(struct glint_flare *f, int bundle,
-                        struct glint_flare_worker *w)
+static void emit_bundle(struct glint_flare *f, int bundle, int worker)
 {
+    const struct glint_by_edges *own = glint_by_edges_of(f);
+    struct glint_plan_scratch *plan = f->worker[worker].plan;
+    struct glint_edges_worker *w = glint_edges_worker_of(f, worker);
     struct glint_bundle_slot *slot = &f->slot[bundle];
     struct glint_ghost_edges ghost = {.vertex = f->vertex + slot->first_vertex,
                                       .bundle = &f->bundle[bundle],
@@ -142,16 +153,16 @@ static void emit_bundle(struct glint_flare *f, int bundle,
                                       .stop = &f->cfg.stop,
                                       .width = f->width,
                                       .height = f->height,
-                                      .limit_q8 = f->limit_q8,
+                                      .limit_q8 = own->limit_q8,
                                       .steps = f->cfg.irradiance_steps,
                                       .rows = w->rows,
-                                      .edge =
-                                          f->edge + w->first_edge + w->n_edges,
+                                      .edge = own->edge + w->first_edge +
+                                              w->n_edges,
                                       .max_edges = w->max_edges - w->n_edges};
 
     if (f->plan.frame) {
-        glint_plan_transfer(&f->plan, &f->planned[bundle], &w->plan->transfer);
-        ghost.transfer = &w->plan->transfer;
+        glint_plan_transfer(&f->plan, &f->planned[bundle], &plan->transfer);
+        ghost.transfer = &plan->transfer;
         ghost.coded = f->plan.frame->faintest.mantissa != 0;
         ghost.whole_codes_q8 = ghost.coded ? f->plan.frame->whole_codes_q8 : 0;
         ghost.place = glint_plan_place(&f->plan, f->planned[bundle].beam);
@@ -169,34 +180,32 @@ static void emit_bundle(struct glint_flare *f, int bundle,
     w->n_edges += ghost.n_edges;
 }
 
-/* The bins, as worker W fills them. */
-static struct glint_bins bins_of(const struct glint_flare *f,
-                                 const struct glint_flare_worker *w)
+/* The bins, as WORKER fills them. */
+static struct glint_bins bins_of(const struct glint_flare *f, int worker)
 {
     struct glint_bins bins = f->bins;
 
-    bins.start = w->at;
+    bins.start = glint_edges_worker_of(f, worker)->at;
     return bins;
 }
 
-static void count_bundle(struct glint_flare *f, int bundle,
-                         const struct glint_flare_worker *w)
+static void count_bundle(struct glint_flare *f, int bundle, int worker)
 {
     const struct glint_bundle_slot *slot = &f->slot[bundle];
-    struct glint_bins bins = bins_of(f, w);
+    struct glint_bins bins = bins_of(f, worker);
 
     for (int k = 0; slot->first >= 0 && k < slot->n; k++)
-        glint_edge_count(&f->edge[slot->first + k], &bins);
+        glint_edge_count(&glint_by_edges_of(f)->edge[slot->first + k], &bins);
 }
 
 static void emit_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
-    const int bundle = f->order[job];
+    const int bundle = glint_by_edges_of(f)->order[job];
 
-    emit_bundle(f, bundle, &f->worker[worker]);
+    emit_bundle(f, bundle, worker);
     f->slot[bundle].worker = worker;
-    count_bundle(f, bundle, &f->worker[worker]);
+    count_bundle(f, bundle, worker);
 }
 
 /* Gives each of N workers an equal part of the edges. */
@@ -205,16 +214,18 @@ static void share_out(struct glint_flare *f, int n)
     const int part = f->cfg.max_primitives / n;
 
     for (int i = 0; i < n; i++) {
-        f->worker[i].first_edge = i * part;
-        f->worker[i].max_edges = part;
-        f->worker[i].n_edges = 0;
+        struct glint_edges_worker *w = glint_edges_worker_of(f, i);
+
+        w->first_edge = i * part;
+        w->max_edges = part;
+        w->n_edges = 0;
     }
 }
 
 static void clear_counts(struct glint_flare *f)
 {
     for (int i = 0; i < glint_workers_count(f->cfg.workers); i++) {
-        struct glint_bins bins = bins_of(f, &f->worker[i]);
+        struct glint_bins bins = bins_of(f, i);
 
         glint_bins_open(&bins);
     }
@@ -236,13 +247,13 @@ static void emit_leftovers(struct glint_flare *f)
 
     for (int i = 0; i < f->n_bundles; i++)
         for (int k = 0; k < n_workers && f->slot[i].first < 0; k++) {
-            struct glint_flare_worker *w = &f->worker[k];
+            const struct glint_edges_worker *w = glint_edges_worker_of(f, k);
 
             if (f->slot[i].n > w->max_edges - w->n_edges)
                 continue;
-            emit_bundle(f, i, w);
+            emit_bundle(f, i, k);
             f->slot[i].worker = k;
-            count_bundle(f, i, w);
+            count_bundle(f, i, k);
         }
 }
 
@@ -255,12 +266,12 @@ static void emit_in_order(struct glint_flare *f)
     share_out(f, 1);
     clear_counts(f);
     for (int i = 0; i < f->n_bundles; i++) {
-        emit_bundle(f, i, &f->worker[0]);
+        emit_bundle(f, i, 0);
         f->slot[i].worker = 0;
         full |= f->slot[i].first < 0;
         if (full)
             f->slot[i].first = -1;
-        count_bundle(f, i, &f->worker[0]);
+        count_bundle(f, i, 0);
     }
 }
 
@@ -288,13 +299,15 @@ static void emit(struct glint_flare *f)
 /* Keeps the bundles whose entries fit; leaves counts that mean nothing. */
 static void drop_refs(struct glint_flare *f)
 {
-    struct glint_bins bins = bins_of(f, &f->worker[0]);
+    struct glint_bins bins = bins_of(f, 0);
     int refs = 0, n_kept = 0;
 
     for (int i = 0; i < f->n_drawn; i++) {
         for (int k = 0; k < f->slot[i].n; k++)
             refs = glint_flare_add_need(
-                refs, glint_edge_count(&f->edge[f->slot[i].first + k], &bins));
+                refs,
+                glint_edge_count(
+                    &glint_by_edges_of(f)->edge[f->slot[i].first + k], &bins));
         if (refs > f->cfg.max_refs)
             break;
         n_kept = i + 1;
@@ -313,9 +326,10 @@ static int place_refs(struct glint_flare *f)
     for (int tile = 0; tile < n_tiles; tile++) {
         f->bins.start[tile] = sum;
         for (int i = 0; i < n_workers; i++) {
-            const int32_t n = f->worker[i].at[tile];
+            int32_t *at = glint_edges_worker_of(f, i)->at + tile;
+            const int32_t n = *at;
 
-            f->worker[i].at[tile] = sum;
+            *at = sum;
             sum = glint_flare_add_need(sum, n);
         }
     }
@@ -327,14 +341,15 @@ static int place_refs(struct glint_flare *f)
 static void put_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
-    struct glint_bins bins = bins_of(f, &f->worker[job]);
+    struct glint_bins bins = bins_of(f, job);
 
     (void)worker;
     for (int i = 0; i < f->n_drawn; i++) {
         const struct glint_bundle_slot *slot = &f->slot[i];
 
         for (int k = 0; slot->worker == job && k < slot->n; k++)
-            glint_edge_put(&f->edge[slot->first + k], &bins, slot->first + k);
+            glint_edge_put(&glint_by_edges_of(f)->edge[slot->first + k], &bins,
+                           slot->first + k);
     }
 }
 
@@ -342,7 +357,7 @@ static void bin(struct glint_flare *flare)
 {
     struct glint_flare_stats *s = &flare->stats;
 
-    flare->limit_q8 = light_limit_q8(flare);
+    glint_by_edges_of(flare)->limit_q8 = light_limit_q8(flare);
     flare->n_drawn = 0;
     emit(flare);
     s->need_refs = s->refs = place_refs(flare);
@@ -350,7 +365,7 @@ static void bin(struct glint_flare *flare)
         drop_refs(flare);
         clear_counts(flare);
         for (int i = 0; i < flare->n_drawn; i++)
-            count_bundle(flare, i, &flare->worker[flare->slot[i].worker]);
+            count_bundle(flare, i, flare->slot[i].worker);
         s->refs = place_refs(flare);
     }
     glint_workers_run(flare->cfg.workers,
@@ -362,170 +377,28 @@ static void bin(struct glint_flare *flare)
 
 struct draw {
     struct glint_flare *flare;
-    const struct glint_image *image; /* NULL: light is dropped */
+    const struct glint_tiles *tiles;
+    const struct glint_pass *pass;
+    int n_passes;
 };
 
-/* Whether light runs into the next tile's rows. */
-static int is_lit(const struct glint_edge_sums *s)
-{
-    int64_t any = 0;
-
-    for (int i = 0; i < 3 << s->tile_log2; i++)
-        any |= s->carry[i];
-    return any != 0;
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-/* Each of N values twice, in place. */
-static void double_row(int32_t *row, int n)
-{
-    for (int i = n - 1; i >= 0; i--)
-        row[2 * i] = row[2 * i + 1] = row[i];
-}
-
-static void resolve_linear(const struct draw *d, struct glint_flare_worker *w,
-                           const struct glint_edge_sums *s)
-{
-    const struct glint_flare *f = d->flare;
-    const int n = s->tile.x1 - s->tile.x0, twice = 2 << s->tile_log2;
-    const int x = s->tile.x0 << f->half;
-    const int n_x = smaller(n << f->half, f->cfg.width - x);
-    int32_t *const row_q20[3] = {w->light_q20, w->light_q20 + twice,
-                                 w->light_q20 + 2 * twice};
-
-    for (int row = s->tile.y0; row < s->tile.y1; row++) {
-        const int y = row << f->half;
-        const int end = smaller(y + 1 + f->half, f->cfg.height);
-
-        for (int c = 0; c < 3; c++) {
-            glint_edge_linear(s, c, row - s->tile.y0, row_q20[c]);
-            if (f->half)
-                double_row(row_q20[c], n);
-        }
-        for (int k = y; k < end; k++)
-            w->n_held += glint_resolve_linear(d->image, x, k, n_x,
-                                              (const int32_t *const *)row_q20);
-    }
-}
-
-/* Two rows at a time, which share their colours in 4:2:0. */
-static void resolve_codes(const struct draw *d,
-                          const struct glint_flare_worker *w,
-                          const struct glint_edge_sums *s)
-{
-    const struct glint_resolve *r = d->flare->resolve;
-
-    for (int y = s->tile.y0; y < s->tile.y1; y += 2) {
-        const int n = y + 2 < s->tile.y1 ? 2 : s->tile.y1 - y;
-        int lit = 0;
-
-        if (glint_edge_dark(s, y - s->tile.y0) &&
-            glint_edge_dark(s, y + n - 1 - s->tile.y0))
-            continue;
-        for (int c = 0; c < 3; c++)
-            for (int row = 0; row < n; row++)
-                lit |= glint_edge_light(s, c, y + row - s->tile.y0, r->kernels,
-                                        w->light->rgb_q16[c][row]);
-        if (!lit || !d->image)
-            continue;
-        glint_resolve_stretch(r, d->image, s->tile.x0, y,
-                              s->tile.x1 - s->tile.x0, n, w->light,
-                              &w->codes->rows);
-    }
-}
-
-enum { QUADS = GLINT_CODES_WIDTH / 2 }; /* of a stretch */
-
-/* A row of pixels as two rows of twice as many. */
-static void resolve_row_of_quads(const struct draw *d,
-                                 const struct glint_flare_worker *w,
-                                 const struct glint_edge_sums *s, int y)
-{
-    const struct glint_flare *f = d->flare;
-    const int n_y = smaller(2, f->cfg.height - 2 * y);
-
-    for (int at = s->tile.x0; at < s->tile.x1; at += QUADS) {
-        const int first = at - s->tile.x0;
-        const int part = smaller(QUADS, s->tile.x1 - at);
-        const uint16_t *const light_q16[3] = {w->light->rgb_q16[0][0] + first,
-                                              w->light->rgb_q16[1][0] + first,
-                                              w->light->rgb_q16[2][0] + first};
-
-        f->quads->resolve(f->resolve, d->image, 2 * at, 2 * y,
-                          smaller(2 * part, f->cfg.width - 2 * at), n_y,
-                          light_q16, w->codes);
-    }
-}
-
-static void resolve_half(const struct draw *d,
-                         const struct glint_flare_worker *w,
-                         const struct glint_edge_sums *s)
-{
-    for (int y = s->tile.y0; y < s->tile.y1; y++) {
-        int lit = 0;
-
-        if (glint_edge_dark(s, y - s->tile.y0))
-            continue;
-        for (int c = 0; c < 3; c++)
-            lit |= glint_edge_light(s, c, y - s->tile.y0,
-                                    d->flare->resolve->kernels,
-                                    w->light->rgb_q16[c][0]);
-        if (lit && d->image)
-            resolve_row_of_quads(d, w, s, y);
-    }
-}
-
-static void draw_tile(const struct draw *d, struct glint_flare_worker *w,
-                      struct glint_edge_sums *s, int tile)
-{
-    const struct glint_flare *f = d->flare;
-    const int32_t first = f->bins.start[tile], end = f->bins.start[tile + 1];
-
-    if (first == end && !s->lit)
-        return;
-    s->tile = glint_bins_tile(&f->bins, tile);
-    glint_edge_add(s, f->edge, f->bundle, f->bins.ref + first, end - first);
-    w->n_tiles++;
-    if (s->linear)
-        resolve_linear(d, w, s);
-    else if (f->half)
-        resolve_half(d, w, s);
-    else
-        resolve_codes(d, w, s);
-    s->lit = is_lit(s);
-}
-
-/* A row of tiles, from left to right. */
 static void row_job(void *ctx, int job, int worker)
 {
-    struct draw *d = ctx;
-    struct glint_flare *f = d->flare;
-    struct glint_flare_worker *w = &f->worker[worker];
-    const int log2 = f->cfg.tile_log2, row = f->order[job];
-    struct glint_edge_sums s = {.linear = d->image &&
-                                          d->image->format == GLINT_LINEAR_Q20,
-                                .fine = f->n_bundles > FINE_BUNDLES,
-                                .wide = w->wide,
-                                .narrow_q24 = w->narrow_q24,
-                                .carry = w->carry,
-                                .touched = w->touched,
-                                .tile_log2 = log2,
-                                .stride = GLINT_EDGE_STRIDE(log2)};
+    const struct draw *d = ctx;
 
-    for (int i = 0; i < 3 << log2; i++)
-        s.carry[i] = 0;
-    for (int x = 0; x < f->bins.tiles_x; x++)
-        draw_tile(d, w, &s, row * f->bins.tiles_x + x);
+    glint_tile_rows(d->tiles, d->pass, d->n_passes,
+                    glint_by_edges_of(d->flare)->order[job], worker,
+                    &d->flare->worker[worker].tile);
 }
 
-static void draw(struct glint_flare *flare, const struct glint_image *image)
+static void draw(struct glint_flare *flare, const struct glint_tiles *tiles,
+                 struct glint_pass *pass, int n_below)
 {
-    struct draw d = {flare, image};
+    struct draw d = {flare, tiles, pass, n_below + 1};
 
+    glint_by_edges_of(flare)->linear =
+        tiles->image && tiles->image->format == GLINT_LINEAR_Q20;
+    pass[n_below] = glint_edges_pass(flare);
     set_order(flare, flare->bins.tiles_y, edges_in_row);
     glint_workers_run(flare->cfg.workers, flare->bins.tiles_y, row_job, &d);
 }

@@ -22,12 +22,13 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
                          const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
+    struct glint_tile_scratch *t = &w->tile;
 
-    w->light = glint_arena_take(a, 1, sizeof *w->light);
-    w->light_q20 = glint_arena_take(a, 3 * 2 * side, sizeof *w->light_q20);
-    w->codes = glint_arena_take(a, 1, sizeof *w->codes);
+    t->light = glint_arena_take(a, 1, sizeof *t->light);
+    t->light_q20 = glint_arena_take(a, 3 * 2 * side, sizeof *t->light_q20);
+    t->codes = glint_arena_take(a, 1, sizeof *t->codes);
     w->plan = glint_arena_take(a, 1, sizeof *w->plan);
-    raster_of(c)->carve_worker(w, a, c);
+    w->own = raster_of(c)->carve_worker(a, c);
 }
 
 /* Runs twice: to measure, which gives NULL, and to place. */
@@ -49,7 +50,7 @@ static struct glint_flare *carve(struct glint_arena *a,
     f->planned =
         glint_arena_take(a, (size_t)c->max_bundles, sizeof *f->planned);
     f->vertex = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->vertex);
-    raster_of(c)->carve(f, a, c);
+    f->own = raster_of(c)->carve(a, c);
     f->bins.start = glint_arena_take(
         a,
         glint_flare_count_tiles(c->width, c->height, first_level_log2(c)) + 1,
@@ -93,6 +94,13 @@ static int config_ok(const struct glint_flare_config *c)
            stop_ok(&c->stop, raster_of(c)->masks);
 }
 
+/* What the last frame drew. */
+static void forget_counts(struct glint_flare *f)
+{
+    for (int i = 0; i < glint_workers_count(f->cfg.workers); i++)
+        f->worker[i].tile.n_tiles = f->worker[i].tile.n_held = 0;
+}
+
 size_t glint_flare_bytes(const struct glint_flare_config *cfg)
 {
     struct glint_arena arena = glint_arena_measure();
@@ -117,8 +125,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
     f = carve(&arena, cfg);
     f->cfg = *cfg;
     f->cfg.raster = raster_of(cfg);
-    for (int i = 0; i < glint_workers_count(cfg->workers); i++)
-        f->worker[i].n_tiles = 0;
+    forget_counts(f);
     if (f->cfg.raster->begin)
         f->cfg.raster->begin(f);
     glint_flare_begin(f);
@@ -351,14 +358,23 @@ void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image)
 {
     static const struct glint_image none = {.format = GLINT_YUYV};
+    const struct glint_tiles tiles = {.region = flare->bins.region,
+                                      .tile_log2 = flare->cfg.tile_log2,
+                                      .half = flare->half,
+                                      .width = flare->cfg.width,
+                                      .height = flare->cfg.height,
+                                      .image = image,
+                                      .resolve = flare->resolve,
+                                      .quads = flare->quads};
 
-    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
-        flare->worker[i].n_tiles = flare->worker[i].n_held = 0;
+    struct glint_pass pass[GLINT_MAX_PASSES];
+
+    forget_counts(flare);
     if (flare->stats.primitives == 0)
         return; /* the bins may be another frame's */
     glint_resolve_init(flare->resolve, image ? image : &none, flare->cfg.dither,
                        flare->cfg.sets);
-    flare->cfg.raster->draw(flare, image);
+    flare->cfg.raster->draw(flare, &tiles, pass, 0);
 }
 
 int glint_flare_tiles(const struct glint_flare *flare)
@@ -366,7 +382,7 @@ int glint_flare_tiles(const struct glint_flare *flare)
     int n = 0;
 
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
-        n += flare->worker[i].n_tiles;
+        n += flare->worker[i].tile.n_tiles;
     return n;
 }
 
@@ -375,6 +391,6 @@ int glint_flare_held(const struct glint_flare *flare)
     int n = 0;
 
     for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
-        n += flare->worker[i].n_held;
+        n += flare->worker[i].tile.n_held;
     return n;
 }

@@ -1,42 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a flare holds, and what its two ways to draw, by edges (by_edges.c) and
- * by cells (by_cells.c), are to flare.c, which has what they share.
+ * What a flare holds, and what a way to draw it (by_edges.c; by_cells.c of
+ * published/) is to flare.c, which has what they share. Each carves a state of
+ * its own, for the flare and for each worker.
  */
 #ifndef GLINT_FLARE_STATE_H
 #define GLINT_FLARE_STATE_H
 
 #include "base/arena.h"
-#include "flare/ghost_edges.h"
-#include "published/ghost_grid.h"
+#include "flare/primitive.h"
 #include "flare/plan.h"
 #include "glint/flare.h"
 #include "tile/bins.h"
-#include "flare/edges.h"
-#include "published/raster.h"
-#include "image/quads.h"
+#include "tile/pass.h"
 
-/* What one worker needs while it draws. */
+/* What one worker needs. */
 struct glint_flare_worker {
-    struct glint_light_rows *light; /* two rows of a tile */
-    int32_t *light_q20;             /* [3][2 side]: one of a linear picture */
-    struct glint_quads_rows *codes;
-    int n_tiles; /* small tiles that it drew */
-    int n_held;  /* samples of a linear picture at the end of their range */
+    struct glint_tile_scratch tile;
     struct glint_plan_scratch *plan;
-    /* by edges */
-    struct glint_ghost_rows *rows;
-    uint64_t *wide; /* of one tile: tile/edges.h */
-    uint32_t *narrow_q24;
-    int64_t *carry;
-    uint64_t *touched;
-    int32_t *at; /* its places in the bins, tile by tile */
-    int first_edge, max_edges, n_edges; /* its part of the edges */
-    /* by cells */
-    int64_t *acc_q20; /* [3][side * side], one small tile's sums */
-    struct glint_clip *clip;
-    int32_t *start; /* small tiles of one large tile */
-    int32_t *ref;
+    void *own; /* the raster's */
 };
 
 struct glint_bundle_slot {
@@ -60,13 +42,8 @@ struct glint_flare {
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
-    struct glint_edge *edge; /* by edges */
-    int32_t
-        *order; /* by edges: bundles, then rows of tiles, as they are done */
-    int32_t limit_q8; /* of a cell's light in a pixel */
-    uint8_t *level;   /* by cells: one per vertex, what merge found */
-    struct glint_primitive *primitive; /* by cells */
-    struct glint_bins bins;            /* first level */
+    void *own;              /* the raster's */
+    struct glint_bins bins; /* first level */
     struct glint_flare_worker *worker;
     struct glint_resolve *resolve; /* tables for the picture drawn last */
 };
@@ -77,18 +54,19 @@ struct glint_raster {
     int masks;      /* takes a stop with a mask */
     int two_levels; /* tiles of tiles, if asked for */
     int halves;     /* can draw half as many pixels each way */
-    /* Its own parts of flare and worker; see carve() of flare.c. */
-    void (*carve)(struct glint_flare *f, struct glint_arena *a,
-                  const struct glint_flare_config *c);
-    void (*carve_worker)(struct glint_flare_worker *w, struct glint_arena *a,
-                         const struct glint_flare_config *c);
+    /* Its own parts of flare and worker, or NULL while A measures. */
+    void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
+    void *(*carve_worker)(struct glint_arena *a,
+                          const struct glint_flare_config *c);
     void (*begin)(struct glint_flare *f); /* once placed; or NULL */
     /* Fills the vertices of the bundles planned; NULL: they come and go. */
     void (*fill)(struct glint_flare *f);
     /* Sorts the bundles taken in into tiles: sets all statistics but the counts
      * of bundles and vertices, n_drawn, and what draw needs. */
     void (*bin)(struct glint_flare *f);
-    void (*draw)(struct glint_flare *f, const struct glint_image *image);
+    /* Draws over the first N_BELOW of PASS, and may set the one after them. */
+    void (*draw)(struct glint_flare *f, const struct glint_tiles *tiles,
+                 struct glint_pass *pass, int n_below);
 };
 
 /* A + B, held at INT_MAX: a need that large cannot be served anyway. */

@@ -5,26 +5,66 @@
  */
 #include "base/q.h"
 #include "flare/state.h"
+#include "published/ghost_grid.h"
+#include "published/raster.h"
 
-static void carve(struct glint_flare *f, struct glint_arena *a,
-                  const struct glint_flare_config *c)
+/* What a flare that is drawn by cells holds besides. */
+struct by_cells {
+    uint8_t *level; /* one per vertex, what merge found */
+    struct glint_primitive *primitive;
+};
+
+/* What one worker needs. */
+struct worker {
+    int64_t *acc_q20; /* [3][side * side], one small tile's sums */
+    struct glint_clip *clip;
+    int32_t *start; /* small tiles of one large tile */
+    int32_t *ref;
+    const struct draw *draw; /* while it draws a row of tiles */
+    const struct glint_bins *bins;
+    int at_tile; /* the next one of them */
+    struct glint_box tile;
+};
+
+static struct by_cells *own_of(const struct glint_flare *f)
 {
-    f->level = glint_arena_take(a, (size_t)c->max_vertices, sizeof *f->level);
-    f->primitive =
-        glint_arena_take(a, (size_t)c->max_primitives, sizeof *f->primitive);
+    return f->own;
 }
 
-static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
-                         const struct glint_flare_config *c)
+static struct worker *worker_of(const struct glint_flare *f, int i)
+{
+    return f->worker[i].own;
+}
+
+/* Both run twice: to measure, which gives NULL, and to place. */
+static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
+{
+    struct by_cells measured, *placed, *own;
+
+    placed = glint_arena_take(a, 1, sizeof *placed);
+    own = placed ? placed : &measured;
+    own->level =
+        glint_arena_take(a, (size_t)c->max_vertices, sizeof *own->level);
+    own->primitive =
+        glint_arena_take(a, (size_t)c->max_primitives, sizeof *own->primitive);
+    return placed;
+}
+
+static void *carve_worker(struct glint_arena *a,
+                          const struct glint_flare_config *c)
 {
     const size_t side = (size_t)1 << c->tile_log2;
     const size_t tiles =
         c->coarse_log2 ? (size_t)1 << (2 * (c->coarse_log2 - c->tile_log2)) : 0;
+    struct worker measured, *placed, *w;
 
+    placed = glint_arena_take(a, 1, sizeof *placed);
+    w = placed ? placed : &measured;
     w->acc_q20 = glint_arena_take(a, 3 * side * side, sizeof *w->acc_q20);
     w->clip = glint_arena_take(a, 1, sizeof *w->clip);
     w->start = glint_arena_take(a, tiles + 1, sizeof *w->start);
     w->ref = glint_arena_take(a, (size_t)c->max_tile_refs, sizeof *w->ref);
+    return placed;
 }
 
 static void transfer_job(void *ctx, int job, int worker)
@@ -59,7 +99,7 @@ static struct glint_ghost_grid grid_of(const struct glint_flare *f, int bundle)
         .antialias = f->cfg.antialias,
         .merge_steps = f->cfg.merge_steps,
         .merge_gamma_q16 = f->cfg.merge_gamma_q16,
-        .level = f->level + slot->first_vertex,
+        .level = own_of(f)->level + slot->first_vertex,
     };
 }
 
@@ -83,7 +123,8 @@ static void emit_job(void *ctx, int job, int worker)
     struct glint_ghost_grid grid = grid_of(f, job);
 
     (void)worker;
-    glint_ghost_grid_emit(&grid, job, f->primitive + f->slot[job].first);
+    glint_ghost_grid_emit(&grid, job,
+                          own_of(f)->primitive + f->slot[job].first);
     f->slot[job].n_held = grid.n_held;
 }
 
@@ -110,7 +151,7 @@ static void place_primitives(struct glint_flare *f)
 
 static struct glint_box primitive_box(const struct glint_flare *f, int index)
 {
-    const struct glint_primitive *p = &f->primitive[index];
+    const struct glint_primitive *p = &own_of(f)->primitive[index];
     struct glint_corners corners;
 
     glint_corners_gather(&corners, f->vertex, p->vertex,
@@ -159,7 +200,7 @@ static void fill_bins(struct glint_flare *f)
 
 /* Small tiles of the large tile TILE. */
 static struct glint_bins small_bins(const struct glint_flare *f, int tile,
-                                    const struct glint_flare_worker *w)
+                                    const struct worker *w)
 {
     struct glint_bins bins;
 
@@ -174,7 +215,7 @@ static void count_tile_refs(struct glint_flare *f)
     const int n = f->bins.tiles_x * f->bins.tiles_y;
 
     for (int tile = 0; tile < n; tile++) {
-        const struct glint_bins bins = small_bins(f, tile, &f->worker[0]);
+        const struct glint_bins bins = small_bins(f, tile, worker_of(f, 0));
         int refs = 0;
 
         for (int k = f->bins.start[tile]; k < f->bins.start[tile + 1]; k++)
@@ -205,145 +246,164 @@ static void bin(struct glint_flare *flare)
 
 struct draw {
     struct glint_flare *flare;
-    const struct glint_image *image; /* NULL: light is dropped */
+    const struct glint_tiles *tiles;
+    const struct glint_pass *pass;
+    int n_passes;
     struct glint_cell_raster cells;
 };
 
 /* Row Y of a tile's sums in channel C. */
-static const int64_t *sums_of(const struct glint_flare *f,
-                              const struct glint_flare_worker *w, int c, int y)
+static const int64_t *sums_of(const struct worker *w, int c, int y)
 {
-    const int side = 1 << f->cfg.tile_log2;
+    const int side = 1 << w->draw->cells.tile_log2;
 
     return w->acc_q20 + (ptrdiff_t)(c * side + y) * side;
 }
 
-static void resolve_linear(const struct draw *d, struct glint_flare_worker *w,
-                           struct glint_box tile)
+/* One level: a row of the frame's tiles. */
+static void *begin_row(const void *self, struct glint_box row, int worker)
 {
-    const int n = tile.x1 - tile.x0;
-    int32_t *const row_q20[3] = {w->light_q20, w->light_q20 + n,
-                                 w->light_q20 + 2 * n};
+    const struct draw *d = self;
+    struct worker *w = worker_of(d->flare, worker);
 
-    for (int y = tile.y0; y < tile.y1; y++) {
-        for (int c = 0; c < 3; c++)
-            for (int x = 0; x < n; x++)
-                row_q20[c][x] =
-                    q_clamp_sat(sums_of(d->flare, w, c, y - tile.y0)[x],
-                                INT32_MIN, INT32_MAX);
-        w->n_held += glint_resolve_linear(d->image, tile.x0, y, n,
-                                          (const int32_t *const *)row_q20);
-    }
+    w->draw = d;
+    w->bins = &d->flare->bins;
+    w->at_tile = (row.y0 >> w->bins->tile_log2) * w->bins->tiles_x;
+    return w;
 }
 
-/* Two rows at a time, which share their colours in 4:2:0. */
-static void resolve_codes(const struct draw *d,
-                          const struct glint_flare_worker *w,
-                          struct glint_box tile)
+/* Two levels: a row of small tiles in the large one that the worker is at. */
+static void *begin_small_row(const void *self, struct glint_box row, int worker)
 {
-    const int n_x = tile.x1 - tile.x0;
+    const struct draw *d = self;
+    struct worker *w = worker_of(d->flare, worker);
 
-    for (int y = tile.y0; y < tile.y1; y += 2) {
-        const int n_y = y + 2 < tile.y1 ? 2 : tile.y1 - y;
-
-        for (int c = 0; c < 3; c++)
-            for (int row = 0; row < n_y; row++)
-                for (int x = 0; x < n_x; x++)
-                    w->light->rgb_q16[c][row][x] = (uint16_t)q_clamp_sat(
-                        q_shift(sums_of(d->flare, w, c, y + row - tile.y0)[x],
-                                4),
-                        0, 65535);
-        if (d->image)
-            glint_resolve_stretch(d->flare->resolve, d->image, tile.x0, y, n_x,
-                                  n_y, w->light, &w->codes->rows);
-    }
+    (void)row;
+    w->draw = d;
+    return w;
 }
 
-/* The tile pass: clear, every primitive, resolve. */
-static void draw_tile(struct draw *d, struct glint_flare_worker *w,
-                      struct glint_box tile, const int32_t *ref, int n_refs)
+/* Clears the sums and adds every primitive. */
+static int add_tile(void *state, struct glint_box tile)
 {
-    const int sums = 3 << (2 * d->flare->cfg.tile_log2);
+    struct worker *w = state;
+    const int32_t *start = w->bins->start + w->at_tile++;
+    const int sums = 3 << (2 * w->draw->cells.tile_log2);
 
-    if (n_refs == 0)
-        return;
+    if (start[0] == start[1])
+        return 0;
     for (int i = 0; i < sums; i++)
         w->acc_q20[i] = 0;
-    for (int i = 0; i < n_refs; i++)
-        glint_cell_raster_primitive(&d->cells, ref[i], tile, w->clip,
-                                    w->acc_q20);
-    w->n_tiles++;
-    if (d->image && d->image->format == GLINT_LINEAR_Q20)
-        resolve_linear(d, w, tile);
-    else
-        resolve_codes(d, w, tile);
+    for (int32_t k = start[0]; k < start[1]; k++)
+        glint_cell_raster_primitive(&w->draw->cells, w->bins->ref[k], tile,
+                                    w->clip, w->acc_q20);
+    w->tile = tile;
+    return 1;
 }
 
-static void draw_tiles(struct draw *d, struct glint_flare_worker *w,
-                       const struct glint_bins *bins, int first, int end)
+static void light_linear(const struct worker *w, int y,
+                         int32_t *const row_q20[3])
 {
-    for (int tile = first; tile < end; tile++)
-        draw_tile(d, w, glint_bins_tile(bins, tile),
-                  bins->ref + bins->start[tile],
-                  bins->start[tile + 1] - bins->start[tile]);
+    for (int c = 0; c < 3; c++)
+        for (int x = 0; x < w->tile.x1 - w->tile.x0; x++)
+            row_q20[c][x] =
+                q_clamp_sat(sums_of(w, c, y)[x], INT32_MIN, INT32_MAX);
+}
+
+static int light_rows(void *state, const struct glint_pass_rows *rows)
+{
+    const struct worker *w = state;
+    const struct glint_image *image = w->draw->tiles->image;
+    const int first = rows->y - w->tile.y0, n_x = w->tile.x1 - w->tile.x0;
+
+    if (image && image->format == GLINT_LINEAR_Q20) {
+        light_linear(w, first, rows->light_q20);
+        return GLINT_PASS_LIGHT;
+    }
+    for (int c = 0; c < 3; c++)
+        for (int row = 0; row < rows->n; row++)
+            for (int x = 0; x < n_x; x++)
+                rows->light->rgb_q16[c][row][x] = (uint16_t)q_clamp_sat(
+                    q_shift(sums_of(w, c, first + row)[x], 4), 0, 65535);
+    return GLINT_PASS_LIGHT;
 }
 
 /* One level: a job is a row of small tiles. */
 static void row_job(void *ctx, int job, int worker)
 {
-    struct draw *d = ctx;
-    const struct glint_bins *bins = &d->flare->bins;
+    const struct draw *d = ctx;
 
-    draw_tiles(d, &d->flare->worker[worker], bins, job * bins->tiles_x,
-               (job + 1) * bins->tiles_x);
+    glint_tile_rows(d->tiles, d->pass, d->n_passes, job, worker,
+                    &d->flare->worker[worker].tile);
 }
 
-/* Two levels: a job is a large tile, sorted into small ones first. */
-static void coarse_job(void *ctx, int job, int worker)
+/* Sorts the large tile TILE into small ones, so many entries as there is room
+ * for. */
+static void sort_tile(const struct glint_flare *f, int tile,
+                      struct glint_bins *bins)
 {
-    struct draw *d = ctx;
-    struct glint_flare *f = d->flare;
-    struct glint_flare_worker *w = &f->worker[worker];
-    struct glint_bins bins = small_bins(f, job, w);
-    const int32_t first = f->bins.start[job];
+    const int32_t first = f->bins.start[tile];
     int32_t end = first;
     int n_refs = 0;
 
-    glint_bins_open(&bins);
-    for (int32_t k = first; k < f->bins.start[job + 1]; k++) {
+    glint_bins_open(bins);
+    for (int32_t k = first; k < f->bins.start[tile + 1]; k++) {
         const struct glint_box box = primitive_box(f, f->bins.ref[k]);
 
-        n_refs += glint_bins_span(&bins, box);
+        n_refs += glint_bins_span(bins, box);
         if (n_refs > f->cfg.max_tile_refs)
             break;
-        glint_bins_count(&bins, box);
+        glint_bins_count(bins, box);
         end = k + 1;
     }
-    glint_bins_sum(&bins);
+    glint_bins_sum(bins);
     for (int32_t k = first; k < end; k++)
-        glint_bins_put(&bins, primitive_box(f, f->bins.ref[k]), f->bins.ref[k]);
-    glint_bins_close(&bins);
-    draw_tiles(d, w, &bins, 0, bins.tiles_x * bins.tiles_y);
+        glint_bins_put(bins, primitive_box(f, f->bins.ref[k]), f->bins.ref[k]);
+    glint_bins_close(bins);
 }
 
-static void draw(struct glint_flare *flare, const struct glint_image *image)
+/* Two levels: a job is a large tile. */
+static void coarse_job(void *ctx, int job, int worker)
+{
+    const struct draw *d = ctx;
+    struct worker *w = worker_of(d->flare, worker);
+    struct glint_bins bins = small_bins(d->flare, job, w);
+    struct glint_tiles tiles = *d->tiles;
+
+    sort_tile(d->flare, job, &bins);
+    w->bins = &bins;
+    w->at_tile = 0;
+    tiles.region = bins.region;
+    for (int row = 0; row < bins.tiles_y; row++)
+        glint_tile_rows(&tiles, d->pass, d->n_passes, row, worker,
+                        &d->flare->worker[worker].tile);
+}
+
+static void draw(struct glint_flare *flare, const struct glint_tiles *tiles,
+                 struct glint_pass *pass, int n_below)
 {
     const struct glint_flare_config *c = &flare->cfg;
     struct draw d = {.flare = flare,
-                     .image = image,
+                     .tiles = tiles,
+                     .pass = pass,
+                     .n_passes = n_below + 1,
                      .cells = {.vertex = flare->vertex,
-                               .primitive = flare->primitive,
+                               .primitive = own_of(flare)->primitive,
                                .bundle = flare->bundle,
                                .stop = &c->stop,
                                .weights = c->weights,
                                .antialias = c->antialias,
                                .tile_log2 = c->tile_log2}};
 
-    if (c->coarse_log2)
-        glint_workers_run(c->workers, flare->bins.tiles_x * flare->bins.tiles_y,
-                          coarse_job, &d);
-    else
-        glint_workers_run(c->workers, flare->bins.tiles_y, row_job, &d);
+    pass[n_below] = (struct glint_pass){
+        .self = &d,
+        .begin = c->coarse_log2 ? begin_small_row : begin_row,
+        .tile = add_tile,
+        .rows = light_rows};
+    glint_workers_run(c->workers,
+                      c->coarse_log2 ? flare->bins.tiles_x * flare->bins.tiles_y
+                                     : flare->bins.tiles_y,
+                      c->coarse_log2 ? coarse_job : row_job, &d);
 }
 
 const struct glint_raster glint_raster_cells = {.max_bundles = 65535,

@@ -57,7 +57,7 @@ $(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
 $(call of,src/flare/ghost_edges,-O3)
 $(call of,src/flare/edges,-O3 -fno-tree-vectorize)# its loops are short
 # Unrolling these buys nothing but bytes.
-$(call of,$(addprefix src/image/,codes quads) src/flare/sums src/flare/by_edges src/lens/transfer,-ftree-vectorize)
+$(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,sums by_edges edges_pass) src/tile/pass src/lens/transfer,-ftree-vectorize)
 # Every frame of a camera goes through these on its way to a panel.
 $(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)
 # The floor that frames are measured by is as fast as can be.

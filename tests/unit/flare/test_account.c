@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "base/real.h"
-#include "flare/state.h"
+#include "flare/by_edges.h"
 #include "glint/flare.h"
 #include "support/model_builder.h"
 
@@ -395,8 +395,8 @@ static void test_rows(void **state)
     bin(&f);
     for (int i = 0; i < f.stats.primitives; i++)
         for (int y = 0; y < HEIGHT; y++)
-            want += f.flare->edge[i].y_q8 < 256 * (y + 1) &&
-                    f.flare->edge[i].end_y_q8 > 256 * y;
+            want += glint_by_edges_of(f.flare)->edge[i].y_q8 < 256 * (y + 1) &&
+                    glint_by_edges_of(f.flare)->edge[i].end_y_q8 > 256 * y;
     for (int beam = 0; beam < 2; beam++)
         for (int ghost = 0; ghost < 3; ghost++)
             for (int wave = 0; wave < WAVES; wave++) {

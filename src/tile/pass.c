@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+#include "tile/pass.h"
+
+/* One tile, and who draws in it. */
+struct visit {
+    const struct glint_tiles *tiles;
+    const struct glint_pass *pass;
+    int n_passes;
+    void *state[GLINT_MAX_PASSES];
+    unsigned awake; /* bit i: pass i draws in this tile */
+    struct glint_box tile;
+    struct glint_tile_scratch *scratch;
+};
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* Lets all passes draw ROWS; returns what they gave. */
+static int gather(const struct visit *v, const struct glint_pass_rows *rows)
+{
+    int given = 0;
+
+    for (int i = 0; i < v->n_passes; i++)
+        if (v->awake >> i & 1)
+            given |= v->pass[i].rows(v->state[i], rows);
+    return given;
+}
+
+/* -------------------------------------------------------------------- linear
+ */
+
+/* Each of N values twice, in place. */
+static void double_row(int32_t *row, int n)
+{
+    for (int i = n - 1; i >= 0; i--)
+        row[2 * i] = row[2 * i + 1] = row[i];
+}
+
+static void draw_linear(const struct visit *v)
+{
+    const struct glint_tiles *t = v->tiles;
+    const int n = v->tile.x1 - v->tile.x0, twice = 2 << t->tile_log2;
+    const int x = v->tile.x0 << t->half;
+    const int n_x = smaller(n << t->half, t->width - x);
+    int32_t *first = v->scratch->light_q20;
+    struct glint_pass_rows rows = {
+        .n = 1, .light_q20 = {first, first + twice, first + 2 * twice}};
+
+    for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y++) {
+        const int y = rows.y << t->half;
+        const int end = smaller(y + 1 + t->half, t->height);
+
+        if (!gather(v, &rows))
+            continue;
+        for (int c = 0; c < 3 && t->half; c++)
+            double_row(rows.light_q20[c], n);
+        for (int k = y; k < end; k++)
+            v->scratch->n_held += glint_resolve_linear(
+                t->image, x, k, n_x, (const int32_t *const *)rows.light_q20);
+    }
+}
+
+/* --------------------------------------------------------------------- codes
+ */
+
+/* Two rows at a time, which share their colours in 4:2:0. */
+static void draw_codes(const struct visit *v)
+{
+    const struct glint_tiles *t = v->tiles;
+    const struct glint_box *b = &v->tile;
+    struct glint_pass_rows rows = {.light = v->scratch->light};
+
+    for (rows.y = b->y0; rows.y < b->y1; rows.y += 2) {
+        rows.n = smaller(2, b->y1 - rows.y);
+        if (gather(v, &rows) && t->image)
+            glint_resolve_stretch(t->resolve, t->image, b->x0, rows.y,
+                                  b->x1 - b->x0, rows.n, rows.light,
+                                  &v->scratch->codes->rows);
+    }
+}
+
+enum { QUADS = GLINT_CODES_WIDTH / 2 }; /* of a stretch */
+
+/* A row of pixels as two rows of twice as many. */
+static void resolve_quads(const struct visit *v,
+                          const struct glint_pass_rows *rows)
+{
+    const struct glint_tiles *t = v->tiles;
+    const int n_y = smaller(2, t->height - 2 * rows->y);
+
+    for (int at = v->tile.x0; at < v->tile.x1; at += QUADS) {
+        const int first = at - v->tile.x0;
+        const int part = smaller(QUADS, v->tile.x1 - at);
+        const uint16_t *const light_q16[3] = {
+            rows->light->rgb_q16[0][0] + first,
+            rows->light->rgb_q16[1][0] + first,
+            rows->light->rgb_q16[2][0] + first};
+
+        t->quads->resolve(t->resolve, t->image, 2 * at, 2 * rows->y,
+                          smaller(2 * part, t->width - 2 * at), n_y, light_q16,
+                          v->scratch->codes);
+    }
+}
+
+static void draw_half(const struct visit *v)
+{
+    struct glint_pass_rows rows = {.n = 1, .light = v->scratch->light};
+
+    for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y++)
+        if (gather(v, &rows) && v->tiles->image)
+            resolve_quads(v, &rows);
+}
+
+/* --------------------------------------------------------------------- tiles
+ */
+
+static void draw_tile(struct visit *v)
+{
+    const struct glint_image *image = v->tiles->image;
+
+    v->awake = 0;
+    for (int i = 0; i < v->n_passes; i++)
+        v->awake |= (unsigned)(v->pass[i].tile(v->state[i], v->tile) != 0) << i;
+    if (!v->awake)
+        return;
+    v->scratch->n_tiles++;
+    if (image && image->format == GLINT_LINEAR_Q20)
+        draw_linear(v);
+    else if (v->tiles->half)
+        draw_half(v);
+    else
+        draw_codes(v);
+}
+
+int glint_tiles_down(const struct glint_tiles *tiles)
+{
+    const int side = 1 << tiles->tile_log2;
+
+    return (tiles->region.y1 - tiles->region.y0 + side - 1) >> tiles->tile_log2;
+}
+
+void glint_tile_rows(const struct glint_tiles *tiles,
+                     const struct glint_pass *pass, int n_passes, int row,
+                     int worker, struct glint_tile_scratch *scratch)
+{
+    const int side = 1 << tiles->tile_log2;
+    struct glint_box b = tiles->region;
+    struct visit v = {
+        .tiles = tiles, .pass = pass, .n_passes = n_passes, .scratch = scratch};
+
+    b.y0 += row * side;
+    b.y1 = smaller(b.y1, b.y0 + side);
+    for (int i = 0; i < n_passes; i++)
+        v.state[i] = pass[i].begin(pass[i].self, b, worker);
+    for (int x = b.x0; x < b.x1; x += side) {
+        v.tile = b;
+        v.tile.x0 = x;
+        v.tile.x1 = smaller(b.x1, x + side);
+        draw_tile(&v);
+    }
+}

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where all that draws onto a picture meets: rows of tiles, and the passes that
+ * light them.
+ *
+ *   in   passes, the hindmost first; the picture as it is so far
+ *   out  its pixels, changed in place
+ *
+ * The driver goes along a row of tiles from left to right, so that a pass may
+ * carry state from tile to tile, and takes two rows of pixels at a time, which
+ * share their chroma in 4:2:0; one of linear pictures and of those drawn at
+ * half resolution. Rows of tiles share nothing: they may be drawn in any order,
+ * or at once, each by another worker.
+ *
+ * Passes give light, which is added. Formats: struct glint_pass_rows.
+ */
+#ifndef GLINT_TILE_PASS_H
+#define GLINT_TILE_PASS_H
+
+#include "glint/image.h"
+#include "image/quads.h"
+#include "image/resolve.h"
+#include "tile/box.h"
+
+enum { GLINT_MAX_PASSES = 4 };
+
+/* Where a pass writes rows Y .. Y + N - 1 of its tile, from the tile's left
+ * edge on: to light_q20 of a linear picture, where N is 1, else to light. */
+struct glint_pass_rows {
+    int y, n;
+    struct glint_light_rows *light; /* _q16, padded to GLINT_LANES */
+    int32_t *light_q20[3];          /* R, G, B: one value a pixel */
+};
+
+/* What rows gives of them. */
+enum {
+    GLINT_PASS_LIGHT = 1, /* all three channels have been written */
+};
+
+struct glint_pass {
+    const void *self;
+    /* Begins the row of tiles ROW on worker WORKER; what it returns is STATE
+     * below. */
+    void *(*begin)(const void *self, struct glint_box row, int worker);
+    /* Goes on to the tile TILE; 0: it stays as it is, and rows is not called.
+     */
+    int (*tile)(void *state, struct glint_box tile);
+    /* Draws rows of that tile, which come from top to bottom, each once, even
+     * where there is no picture. Returns GLINT_PASS_ bits; 0: nothing. */
+    int (*rows)(void *state, const struct glint_pass_rows *rows);
+};
+
+/* What is drawn onto, in tiles. */
+struct glint_tiles {
+    struct glint_box region; /* in pixels that passes see */
+    int tile_log2;           /* 3 .. 6 */
+    int half;          /* 1: each of these pixels is 2 x 2 of the picture */
+    int width, height; /* of the picture */
+    const struct glint_image *image; /* NULL: light is dropped */
+    const struct glint_resolve *resolve;
+    const struct glint_half *quads; /* if half, and the picture not linear */
+};
+
+/* What a worker needs for it. */
+struct glint_tile_scratch {
+    struct glint_light_rows *light;
+    int32_t *light_q20; /* [3][2 sides of a tile]; of linear pictures */
+    struct glint_quads_rows *codes;
+    int n_tiles; /* in which something was drawn, so far */
+    int n_held;  /* samples of a linear picture at the end of their range */
+};
+
+/* Draws the row of tiles of number ROW, counted from the region's upper edge,
+ * as worker WORKER. */
+void glint_tile_rows(const struct glint_tiles *tiles,
+                     const struct glint_pass *pass, int n_passes, int row,
+                     int worker, struct glint_tile_scratch *scratch);
+
+/* How many rows of tiles there are. */
+int glint_tiles_down(const struct glint_tiles *tiles);
+
+#endif
