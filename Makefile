@@ -44,6 +44,7 @@ include tools/make/target.mk
 # below. src/README.md says what each is for.
 CORE      := base image kernels lens lamps follow tile flare
 PUBLISHED := published
+ENGINE    := engine
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats panel linux jpeg oiio sdl
 TOOLS     := engine options model overlay command live lab
@@ -66,6 +67,7 @@ absent += tools/command/glint.c tools/live/glint_live.c tools/live/models_only.c
 
 core_o      := $(call objects,src,$(CORE))
 published_o := $(call objects,src,$(PUBLISHED))
+engine_o    := $(call objects,src,$(ENGINE))
 bake_o      := $(call objects,src,$(BAKE))
 platform_o  := $(call objects,platform,$(PLATFORM))
 tools_o     := $(call objects,tools,$(TOOLS))
@@ -85,6 +87,7 @@ $(OUT)/tools/options/config_absent.o: NOTE := --config left out: no libinih-dev
 
 $(OUT)/libglint.a: $(core_o)
 $(OUT)/libglint-published.a: $(published_o)
+$(OUT)/libglint-engine.a: $(engine_o)
 $(OUT)/libglint-bake.a: $(bake_o)
 $(OUT)/libglint-platform.a: $(platform_o)
 $(OUT)/libglint-tools.a: $(tools_o)
@@ -93,9 +96,9 @@ $(OUT)/lib%.a:
 	$(Q)rm -f $@; $(AR) rcs $@ $(filter %.o,$^)
 # Archives are made anew where other files are to be in them, and what knows the
 # prefix where that is another.
-archives := $(patsubst %,$(OUT)/libglint%.a,-tools -platform -bake -published) $(OUT)/libglint.a
+archives := $(patsubst %,$(OUT)/libglint%.a,-tools -platform -bake -engine -published) $(OUT)/libglint.a
 $(archives): $(OUT)/parts
-$(OUT)/parts: parts := $(core_o) $(published_o) $(bake_o) $(platform_o) $(tools_o)
+$(OUT)/parts: parts := $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o)
 $(OUT)/prefix: parts := $(PREFIX)
 $(OUT)/parts $(OUT)/prefix: always
 	@mkdir -p $(@D); echo '$(parts)' | cmp -s - $@ || echo '$(parts)' >$@

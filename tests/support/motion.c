@@ -333,10 +333,10 @@ static bool open_sweep(struct sweep *s)
     if (!s->linear || !s->codes || !open_stage(&s->test, &s->o) ||
         !open_stage(&s->finest, &s->o))
         return false;
-    s->finest.frame.max_cells = 256;
-    s->finest.frame.cfg.irradiance_steps = 0;
-    s->test.frame.cfg.irradiance_steps = s->o.steps;
-    s->test.frame.max_cells = s->o.fineness;
+    s->finest.frame.dials.fineness = 256;
+    s->finest.frame.dials.irradiance_steps = 0;
+    s->test.frame.dials.irradiance_steps = s->o.steps;
+    s->test.frame.dials.fineness = s->o.fineness;
     s->power = stage_power(&s->test, &middle);
     return true;
 }

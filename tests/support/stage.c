@@ -119,7 +119,7 @@ void stage_view(struct stage *stage, int width, int height, double sensor_mm)
                stage->file.data ? &stage->of_model : &stage->setup, stage->view,
                stage->workers);
     stage->frame.lens = stage->file.data ? &stage->file.lens : NULL;
-    stage->frame.cfg.irradiance_steps = 69;
+    stage->frame.dials.irradiance_steps = 69;
     stage->frame.cfg.sets = glint_sets_here();
     stage->framed = true;
 }

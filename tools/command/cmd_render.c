@@ -149,7 +149,7 @@ static struct glint_lamp *points_of(const struct render *r, int *n)
     const struct area_rule rule =
         area_rule_of(r->lamp, r->n_lamps, pixels,
                      r->scene.area_samples_asked ? r->scene.area_samples_asked
-                                                 : r->scene.area_samples,
+                                                 : r->scene.dials.area_points,
                      INT_MAX, &total);
 
     *n = 0;
@@ -174,7 +174,7 @@ static int render_exact(struct tool *tool, struct render *r)
         .view = scene_view(&r->scene, r->width, r->height),
         .lamps = points,
         .n_lamps = n_points,
-        .grid = r->scene.grid ? (r->scene.grid + 1) / 2 * 2 : 512,
+        .grid = r->scene.has_grid ? (r->scene.dials.fineness + 1) / 2 * 2 : 512,
         .only_ghost = r->scene.only_ghost,
         .workers = tool->workers,
         .progress = tool_progress_show,
@@ -227,7 +227,7 @@ static int render_model(struct tool *tool, struct render *r)
     if (code == EXIT_OK) {
         status = r->reserve_bytes && r->n_lamps > 0
                      ? frame_reserve(&frame, r->reserve_bytes, r->n_lamps,
-                                     frame.max_lights)
+                                     frame.dials.max_lights)
                      : GLINT_OK;
         if (status == GLINT_OK)
             status =

@@ -3,9 +3,6 @@
 
 #include <math.h>
 
-#include "engine/cost.h"
-#include "engine/ladder.h"
-
 #define FIRST      1    /* octaves that a first frame takes more, for memory */
 #define ROOM       0.98 /* of the budget that is planned for */
 #define SPARE      0.9  /* less than so much of it: finer */
@@ -38,44 +35,58 @@ void budget_begin(struct budget *b)
     b->n_frames += b->n_frames < 2;
 }
 
-typedef char budget_has_rungs[(int)BUDGET_RUNGS == (int)LADDER_RUNGS ? 1 : -1];
+/* No cost model covers sets of wavelengths, so a budget draws with three. */
+static struct glint_dials dials_at(int step, const struct glint_dials *asked)
+{
+    struct glint_dials d = glint_quality_at((double)step / BUDGET_STEPS).dials;
+
+    d.dispersion_q8 = 0;
+    d.max_lights = asked->max_lights;
+    d.flags |= asked->flags & GLINT_DIAL_ALWAYS_HALF;
+    return d;
+}
+
+struct glint_dials budget_dials(const struct budget *b,
+                                const struct glint_dials *asked)
+{
+    return dials_at(b->step, asked);
+}
 
 static double place_of(int step)
 {
-    return ladder_place((double)step / BUDGET_STEPS);
+    return glint_quality_place((double)step / BUDGET_STEPS);
 }
 
 static double octaves_at(const struct budget *b, int step)
 {
     const double at = place_of(step);
-    const int below = at < BUDGET_RUNGS - 1 ? (int)at : BUDGET_RUNGS - 2;
+    const int below =
+        at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
 
     return b->octaves[below] +
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
 }
 
-/* Of FRAME, planned as it is, at another quality. */
-static double predict(const struct budget *b, const struct frame *frame,
+/* Of PLAN, at another quality. */
+static double predict(const struct budget *b, const struct cost_plan *plan,
                       int step)
 {
-    struct frame then = *frame;
-    struct cost cost;
+    const struct glint_dials then = dials_at(step, &plan->dials);
+    const struct cost cost = cost_of(plan, &then);
 
-    ladder_frame(&then, (double)step / BUDGET_STEPS);
-    cost = cost_of(frame, &then);
     return b->ms_per_minsn * cost_minsn(&cost) *
            exp2(octaves_at(b, step) + (b->n_frames > 1 ? 0 : FIRST));
 }
 
 /* The best within the budget, or the coarsest. */
-static int best_step(const struct budget *b, const struct frame *frame)
+static int best_step(const struct budget *b, const struct cost_plan *plan)
 {
     int low = 0, high = BUDGET_STEPS;
 
     while (low < high) {
         const int middle = (low + high + 1) / 2;
 
-        if (predict(b, frame, middle) <= ROOM * b->ms)
+        if (predict(b, plan, middle) <= ROOM * b->ms)
             low = middle;
         else
             high = middle - 1;
@@ -86,34 +97,34 @@ static int best_step(const struct budget *b, const struct frame *frame)
 /* Where no rung lies between STEP, which leaves much of the budget, and the
  * next, which is told to miss it by little, the latter for a few frames in all:
  * it may have been told too much. */
-static int try_next(struct budget *b, const struct frame *frame, int step)
+static int try_next(struct budget *b, const struct cost_plan *plan, int step)
 {
     const int is_gap = place_of(step + 1) - place_of(step) >= 1;
 
     if (step == BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
-        predict(b, frame, step) >= SPARE * b->ms ||
-        predict(b, frame, step + 1) > TRY * b->ms)
+        predict(b, plan, step) >= SPARE * b->ms ||
+        predict(b, plan, step + 1) > TRY * b->ms)
         return step;
     b->n_trials++;
     b->n_tries = MAX_TRIES; /* as it is told, it would not do */
     return step + 1;
 }
 
-bool budget_choose(struct budget *b, struct frame *frame)
+bool budget_choose(struct budget *b, const struct cost_plan *plan,
+                   struct glint_dials *dials)
 {
     int step;
 
-    b->predicted_ms = predict(b, frame, b->step);
+    b->predicted_ms = predict(b, plan, b->step);
     if (++b->n_tries >= MAX_TRIES ||
         (b->predicted_ms <= b->ms &&
          (b->predicted_ms >= SPARE * b->ms || b->step == BUDGET_STEPS)))
         return false;
-    step = try_next(b, frame, best_step(b, frame));
+    step = try_next(b, plan, best_step(b, plan));
     if (step == b->step)
         return false;
     b->step = step;
-    ladder_frame(frame, budget_quality(b));
-    frame_retune(frame);
+    *dials = dials_at(step, dials);
     return true;
 }
 
@@ -133,7 +144,8 @@ void budget_note(struct budget *b, double ms)
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));
     const double here = octaves_at(b, b->step);
 
-    for (int i = 0; i < BUDGET_RUNGS && ms > 0 && b->n_frames > 1; i++) {
+    for (int i = 0; i < GLINT_QUALITY_LEVELS && ms > 0 && b->n_frames > 1;
+         i++) {
         const double near = fmax(0, 1 - fabs(at - i)) / both;
 
         if (near <= 0)

@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+#include "engine/quality.h"
+#include "glint/bake.h"
+
 /* Octaves that light typically varies over within a ghost. */
 #define VARIATION 0.35
 
@@ -43,21 +46,20 @@ static double steps_at(int steps, double octaves)
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
 }
 
-struct cost cost_of(const struct frame *f, const struct frame *then)
+struct cost cost_of(const struct cost_plan *p, const struct glint_dials *then)
 {
-    const bool half = then->half && f->can_half;
-    const double width = f->cfg.width / (half ? 2. : 1);
-    const double height = f->cfg.height / (half ? 2. : 1);
-    const double finer = (double)then->max_cells / f->max_cells;
-    /* pixels that were planned for */
-    const double larger = pow(4, (f->half && f->can_half) - half);
-    const int steps = then->cfg.irradiance_steps;
-    struct cost cost = {
-        {1, (double)f->n_beams * f->setup->n_ghosts * f->setup->n_wavelengths}};
+    const bool half = glint_dials_half(then) && p->can_half;
+    const bool was_half = glint_dials_half(&p->dials) && p->can_half;
+    const double width = p->width / (half ? 2. : 1);
+    const double height = p->height / (half ? 2. : 1);
+    const double finer = (double)then->fineness / p->dials.fineness;
+    const double larger = pow(4, was_half - half); /* pixels planned for */
+    const int steps = then->irradiance_steps;
+    struct cost cost = {{1, p->n_looked_at}};
     struct glint_planned b;
     double covered = 0;
 
-    for (int i = 0; glint_flare_planned(f->flare, i, &b); i++) {
+    for (int i = 0; glint_flare_planned(p->flare, i, &b); i++) {
         const double n = cells_at(b.n_cells, finer);
         const double light = glint_real_value(b.light);
         const double area = larger * glint_real_value(b.flux) / light;

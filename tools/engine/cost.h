@@ -6,7 +6,10 @@
 #ifndef GLINT_TOOLS_ENGINE_COST_H
 #define GLINT_TOOLS_ENGINE_COST_H
 
-#include "engine/frame.h"
+#include <stdbool.h>
+
+#include "glint/dials.h"
+#include "glint/flare.h"
 
 /* Counts of what is worked through. */
 enum cost_kind {
@@ -22,10 +25,19 @@ struct cost {
     double count[COST_KINDS];
 };
 
-/* Of the bundles that F's flare has planned, if fineness, steps of irradiance
- * and half were as in THEN (F itself: as they are). Of fineness within a factor
- * of 4 of the planned one, or grids at the limits are misjudged. */
-struct cost cost_of(const struct frame *f, const struct frame *then);
+/* A frame that was planned, not yet binned. */
+struct cost_plan {
+    const struct glint_flare *flare;
+    int width, height;        /* of the picture */
+    double n_looked_at;       /* bundles */
+    bool can_half;            /* it is in codes, by edges */
+    struct glint_dials dials; /* that it was planned with */
+};
+
+/* Of the bundles of PLAN, if dials were THEN. Of fineness within a factor of 4
+ * of the planned one, or grids at the limits are misjudged. */
+struct cost cost_of(const struct cost_plan *plan,
+                    const struct glint_dials *then);
 
 /* Instructions, in millions, of a processor with 8 lanes of 32 bits; times what
  * one takes on this machine it is time. Fitted to counts of callgrind. */

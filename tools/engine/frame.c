@@ -8,6 +8,7 @@
 
 #include "engine/area.h"
 #include "engine/frame_feed.h"
+#include "engine/quality.h"
 #include "options/tool.h"
 
 /* What one frame may take, by edges and by cells. */
@@ -24,12 +25,8 @@ void frame_init(struct frame *frame, const struct glint_setup *setup,
                                     .tile_log2 = 6,
                                     .weights = GLINT_WEIGHTS_WACHSPRESS,
                                     .antialias = 1},
-                            .max_lights = FRAME_MAX_LIGHTS,
+                            .dials = glint_dials_at(1 << 14),
                             .apart_px = FRAME_APART_PX,
-                            .area_samples = AREA_SAMPLES,
-                            .max_cells = 64,
-                            .faintest_codes = FRAME_CULL_CODES,
-                            .whole_codes = FRAME_WHOLE_CODES,
                             .only_ghost = -1};
     glint_setup_stop(setup, &frame->cfg.stop);
 }
@@ -95,7 +92,7 @@ static int all_waves(const struct glint_setup *s)
 
 static bool has_sets(const struct frame *f)
 {
-    return f->lens && f->setup->n_sets && f->dispersion_px > 0;
+    return f->lens && f->setup->n_sets && f->dials.dispersion_q8 > 0;
 }
 
 static void set_waves(struct frame *f)
@@ -103,10 +100,9 @@ static void set_waves(struct frame *f)
     const struct glint_setup *s = f->setup;
     const struct glint_set_wave *w = s->set_wave;
 
-    f->sets = (struct glint_wave_sets){
-        .planner = &glint_wave_planner,
-        .n_sets = s->n_sets,
-        .apart_q8 = (int32_t)lrint(f->dispersion_px * 256)};
+    f->sets = (struct glint_wave_sets){.planner = &glint_wave_planner,
+                                       .n_sets = s->n_sets,
+                                       .apart_q8 = f->dials.dispersion_q8};
     for (int i = 0; i < s->n_sets; i++)
         f->sets.size[i] = s->set_size[i];
     if (has_sets(f))
@@ -217,11 +213,11 @@ static int add_beams(struct frame *f, const struct glint_lamp *lamp,
 static enum glint_status
 set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
 {
-    const int room =
-        f->reserved ? smaller(f->max_lights, f->max_beams) : f->max_lights;
+    const int room = f->reserved ? smaller(f->dials.max_lights, f->max_beams)
+                                 : f->dials.max_lights;
     int within = 0, total;
-    const struct area_rule rule = area_rule_of(lamps, n, pixels_per_tangent(f),
-                                               f->area_samples, room, &total);
+    const struct area_rule rule = area_rule_of(
+        lamps, n, pixels_per_tangent(f), f->dials.area_points, room, &total);
 
     if (hold_beams(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;
@@ -233,8 +229,8 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
         f->n_beyond += within == before;
     }
     f->n_more = within - (n - f->n_beyond);
-    f->n_beams = glint_beams_merge(f->beam, within, near_q30(f), f->max_lights,
-                                   &f->n_apart);
+    f->n_beams = glint_beams_merge(f->beam, within, near_q30(f),
+                                   f->dials.max_lights, &f->n_apart);
     return GLINT_OK;
 }
 
@@ -265,12 +261,13 @@ static struct glint_flare_frame rays_of(struct frame *f,
         .n_waves = has_sets(f) ? all_waves(f->setup) : f->setup->n_wavelengths,
         .sets = has_sets(f) ? &f->sets : NULL,
         .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
-        .fineness = f->max_cells,
+        .fineness = f->dials.fineness,
         .uniform = f->uniform,
         .only_ghost = f->only_ghost,
-        .faintest = glint_real_of(light_of(f, image, f->faintest_codes)),
-        .whole_codes_q8 = (int)lrint(f->whole_codes * 256),
-        .half = f->half && f->can_half ? &glint_half : NULL};
+        .faintest = glint_real_of(light_of(f, image, f->dials.cull_codes)),
+        .whole_codes_q8 = f->dials.snap_codes_q8,
+        .half =
+            glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL};
 }
 
 /* --------------------------------------------------------------------- memory
@@ -313,8 +310,16 @@ static int bundles_of(const struct frame *f, int n_beams)
 
 void frame_retune(struct frame *f)
 {
+    f->cfg.irradiance_steps = f->dials.irradiance_steps;
     if (f->mem)
         glint_flare_init(&f->flare, &f->cfg, f->mem, f->bytes);
+}
+
+/* The flare has the steps of the dials. */
+static void follow_dials(struct frame *f)
+{
+    if (f->cfg.irradiance_steps != f->dials.irradiance_steps)
+        frame_retune(f);
 }
 
 /* Plans, with room for all bundles there can be. */
@@ -323,6 +328,7 @@ static enum glint_status plan(struct frame *f,
 {
     const int bundles = bundles_of(f, f->n_beams);
 
+    follow_dials(f);
     if (!f->reserved && (!f->mem || bundles > f->cfg.max_bundles)) {
         enum glint_status status;
 
@@ -378,10 +384,11 @@ enum glint_status frame_reserve(struct frame *f, size_t bytes, int n_lamps,
 {
     int most = 0;
 
-    f->max_lights = smaller(f->max_lights, smaller(n_drawn, n_lamps));
+    f->dials.max_lights =
+        smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
     /* not all ghosts are seen, and few take the largest set */
-    f->cfg.max_bundles = bundles_within(f, (has_sets(f) ? 2. : 1) *
-                                               bundles_of(f, f->max_lights));
+    f->cfg.max_bundles = bundles_within(
+        f, (has_sets(f) ? 2. : 1) * bundles_of(f, f->dials.max_lights));
     for (int step = 1 << 24; step > 0; step /= 2) {
         const size_t need = bytes_for(f, most + step);
 
@@ -450,6 +457,27 @@ static int count_ghosts(struct frame *frame, int n)
     return n_ghosts;
 }
 
+/* What F has planned, for telling what it takes. */
+struct cost_plan frame_plan(const struct frame *f)
+{
+    return (struct cost_plan){.flare = f->flare,
+                              .width = f->cfg.width,
+                              .height = f->cfg.height,
+                              .n_looked_at = (double)f->n_beams *
+                                             f->setup->n_ghosts *
+                                             f->setup->n_wavelengths,
+                              .can_half = f->can_half,
+                              .dials = f->dials};
+}
+
+/* Whether dials were turned and the frame has to be planned anew. */
+static bool choose(struct frame *f)
+{
+    const struct cost_plan plan = frame_plan(f);
+
+    return budget_choose(&f->budget, &plan, &f->dials);
+}
+
 static enum glint_status
 draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
            double scale, const struct glint_image *image,
@@ -467,7 +495,7 @@ draw_model(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
             return status;
-        if (f->budget.ms > 0 && budget_choose(&f->budget, f)) {
+        if (f->budget.ms > 0 && choose(f)) {
             f->rays = rays_of(f, image);
             continue;
         }
@@ -512,6 +540,7 @@ draw_exact(struct frame *f, const struct glint_lamp *lamps, int n_lamps,
 {
     const struct glint_lamp *merged = merged_lamps(f, lamps, &n_lamps);
 
+    follow_dials(f);
     return merged
                ? frame_feed_draw(f, merged, n_lamps, scale, image, stats, times)
                : GLINT_E_MEMORY;

@@ -15,19 +15,12 @@
 #include <stdbool.h>
 
 #include "engine/budget.h"
+#include "engine/cost.h"
+#include "glint/dials.h"
 #include "glint/glint.h"
 
-/* Lights: so many cost less than three times what 64 do, and a model is less
- * exact than lights so near. */
-#define FRAME_MAX_LIGHTS 128
-#define FRAME_APART_PX   0.125
-/* Pixels and codes: steps between wavelengths that do not show. */
-#define FRAME_DISPERSION_PX 1.0
-#define FRAME_STEP_CODES    2.0
-/* Codes. Hundreds of ghosts that each stay below half of one can be seen
- * together. */
-#define FRAME_CULL_CODES  0.125
-#define FRAME_WHOLE_CODES 4.0
+#define FRAME_APART_PX   0.125 /* a model is less exact than lights so near */
+#define FRAME_STEP_CODES 2.0   /* steps between wavelengths that do not show */
 
 struct frame {
     const struct glint_setup *setup;
@@ -35,25 +28,14 @@ struct frame {
     struct glint_view view;
     struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop;
                                       capacities are the frame's own */
-    int max_lights;      /* that are drawn; more merge, the faint ones first */
-    double apart_px;     /* lights whose images are nearer are one */
-    double area_samples; /* points that a lamp of some extent is drawn as, at
-                            most; all together are no more than max_lights */
-    int max_cells;
-    double faintest_codes; /* codes near black that a ghost may stay below */
-    double whole_codes;    /* edges of less lie on whole pixels */
-    double dispersion_px;  /* of a setup with sets of wavelengths: outlines of
-                              neighbouring ones may be so far apart; 0: all
-                              ghosts have the setup's wavelengths */
-    bool for_codes;        /* a linear picture is planned as if for codes */
-    bool half;            /* of pictures in codes, by edges: half as many pixels
-                             each way, */
-    bool always_half;     /* whatever the ladder says */
-    bool can_half;        /* the last picture was such a one */
+    struct glint_dials dials;      /* may be turned between frames */
+    double apart_px;               /* lights whose images are nearer are one */
+    bool for_codes;       /* a linear picture is planned as if for codes */
+    bool can_half;        /* the last picture was in codes, by edges */
     bool uniform;         /* the same grid for all ghosts */
     int only_ghost;       /* -1: all */
     int16_t *mask;        /* of the stop, unless NULL */
-    struct budget budget; /* of models; turns dials of the above */
+    struct budget budget; /* of models; turns the dials */
     bool reserved;        /* memory is what it is */
 
     struct glint_wave wave[GLINT_SET_WAVES];
@@ -112,11 +94,11 @@ enum glint_status frame_draw(struct frame *frame,
                              double scale, const struct glint_image *image,
                              struct frame_report *report);
 
+/* What FRAME planned last, for cost_of(). */
+struct cost_plan frame_plan(const struct frame *frame);
+
 /* Whether LAMP is farther off the axis than FRAME's model goes. */
 bool frame_is_beyond(const struct frame *frame, const struct glint_lamp *lamp);
-
-/* Takes over what changed in cfg since memory was taken; no more of it is. */
-void frame_retune(struct frame *frame);
 
 /* Draws the flare of LAMPS alone, times GAIN, into RGB, [height][width][3],
  * linear light. The scale within is a power of two that leaves the faint as
@@ -126,6 +108,9 @@ enum glint_status frame_draw_alone(struct frame *frame,
                                    const struct glint_lamp *lamps, int n_lamps,
                                    double gain, float *rgb,
                                    struct frame_report *report);
+
+/* Takes over what changed in cfg since memory was taken; no more of it is. */
+void frame_retune(struct frame *frame);
 
 void frame_finish(struct frame *frame);
 

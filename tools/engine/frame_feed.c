@@ -26,8 +26,8 @@ struct job {
 
 static struct glint_feed_config feed_config(const struct frame *f, double scale)
 {
-    return (struct glint_feed_config){f->setup, f->view, scale, f->max_cells,
-                                      f->uniform};
+    return (struct glint_feed_config){f->setup, f->view, scale,
+                                      f->dials.fineness, f->uniform};
 }
 
 /* All wavelengths of one ghost and lamp. */

@@ -84,7 +84,7 @@ static struct scene plain_of(const struct scene *scene)
     plain.only_ghost = -1;
     plain.raster = 0;
     plain.uniform = false;
-    plain.grid = scene->model.data ? GRID : EXACT_GRID;
+    plain.dials.fineness = scene->model.data ? GRID : EXACT_GRID;
     return plain;
 }
 

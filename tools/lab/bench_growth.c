@@ -125,9 +125,7 @@ static int add_quanta(struct bench *b, const struct scene *scene)
         code = add(b, scene, "quantum", 0, 0, 1);
         if (b->n_tests == at)
             break;
-        f->cfg.irradiance_steps = steps[i];
-        free(f->mem); /* a flare keeps the steps it was made with */
-        f->mem = NULL;
+        f->dials.irradiance_steps = steps[i];
     }
     return code;
 }
@@ -141,7 +139,7 @@ static int add_grids(struct bench *b, const struct scene *scene)
 
         code = add(b, scene, "grid", 0, 0, 1);
         if (b->n_tests > at)
-            b->test[at].frame.max_cells = cells;
+            b->test[at].frame.dials.fineness = cells;
     }
     return code;
 }

@@ -8,7 +8,7 @@
 
 #include "engine/cost.h"
 #include "options/dials.h"
-#include "engine/ladder.h"
+#include "engine/quality.h"
 #include "formats/pfm.h"
 #include "lab/yardstick.h"
 

@@ -103,7 +103,7 @@ static void names_row(const struct sweep *s, int c, FILE *file)
             k->n_lamps);
     for (int i = 0; i < k->n; i++) {
         const struct sweep_point *p = &s->point[k->first + i];
-        const double at = p->set.quality * (LADDER_NAMES - 1);
+        const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 
         if (p->set.kind == SWEEP_LADDER && at == floor(at))
             fprintf(file, " %.1f; %.1f; %zu + %zu |", sweep_cost(s, p),
@@ -144,8 +144,8 @@ void sweep_names(const struct sweep *s, FILE *file)
     fprintf(file,
             "%s; PSNR, dB; KiB of arena + model\n\n| lens, size, lights |",
             s->by_instructions ? "Million instructions" : "Times memory floor");
-    for (int i = 0; i < LADDER_NAMES; i++)
-        fprintf(file, " %s |", ladder_name[i]);
+    for (int i = 0; i < GLINT_QUALITY_NAMES; i++)
+        fprintf(file, " %s |", glint_quality_name[i]);
     fputs("\n|---|---|---|---|---|---|\n", file);
     for (int c = 0; c < s->n_cases; c++)
         if (!s->scase[c].growth)

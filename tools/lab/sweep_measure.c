@@ -185,12 +185,13 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
     }
     for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
         struct run *r = &b->run[i];
+        const struct cost_plan plan = frame_plan(&r->frame);
 
         r->point->ms = yardstick_median(r->ms, r->n);
         r->point->floor_ms = yardstick_median(b->floor_ms, n);
         r->point->ratio = r->point->ms / r->point->floor_ms;
         r->point->arena_bytes = r->point->report.peak_bytes;
-        r->point->cost = cost_of(&r->frame, &r->frame);
+        r->point->cost = cost_of(&plan, &plan.dials);
     }
     return status;
 }
@@ -310,7 +311,7 @@ static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
 /* Those that stand for the others on the page. */
 static bool is_pictured(const struct sweep_point *p)
 {
-    const double named = p->set.quality * (LADDER_NAMES - 1);
+    const double named = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 
     return p->set.kind == SWEEP_LADDER && named == floor(named);
 }

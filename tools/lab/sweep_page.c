@@ -47,19 +47,20 @@ static void table_of_names(const struct sweep *s, FILE *file)
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];
         const struct sweep_case *c = &s->scase[p->of];
-        const double at = p->set.quality * (LADDER_NAMES - 1);
+        const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 
         if (p->set.kind != SWEEP_LADDER || at != floor(at))
             continue;
-        fprintf(
-            file,
-            "<tr><td>%s</td><td>%dx%d, %d</td><td>%s</td><td>%.1f</td>"
-            "<td>%.1f</td><td>%.4f</td><td>%g</td><td%s>%+.2f</td>"
-            "<td>%zu</td><td>%zu</td></tr>\n",
-            s->lens[c->lens], c->width, c->height, c->n_lamps,
-            ladder_name[(int)at], sweep_cost(s, p), p->psnr_db, p->ssim, p->p99,
-            fabs(p->flux_error) > MAX_FLUX_ERROR ? " class=\"worse\"" : "",
-            100 * p->flux_error, p->arena_bytes / 1024, p->model_bytes / 1024);
+        fprintf(file,
+                "<tr><td>%s</td><td>%dx%d, %d</td><td>%s</td><td>%.1f</td>"
+                "<td>%.1f</td><td>%.4f</td><td>%g</td><td%s>%+.2f</td>"
+                "<td>%zu</td><td>%zu</td></tr>\n",
+                s->lens[c->lens], c->width, c->height, c->n_lamps,
+                glint_quality_name[(int)at], sweep_cost(s, p), p->psnr_db,
+                p->ssim, p->p99,
+                fabs(p->flux_error) > MAX_FLUX_ERROR ? " class=\"worse\"" : "",
+                100 * p->flux_error, p->arena_bytes / 1024,
+                p->model_bytes / 1024);
     }
     fputs("</table>\n", file);
 }

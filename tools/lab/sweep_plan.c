@@ -102,7 +102,7 @@ static enum glint_status add_quality(struct sweep *s, int c, double quality)
     for (int d = 0; d < n_dials; d++)
         dial_set(&scene, &dials[d], dials[d].standard);
     set.quality = quality;
-    ladder_set(&scene, quality);
+    scene_set_quality(&scene, quality);
     for (int d = 0; d < n_dials; d++)
         if (!s->small || !dials[d].opens)
             set.value[d] = dial_get(&scene, &dials[d]);

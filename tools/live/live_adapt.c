@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/ladder.h"
+#include "engine/quality.h"
 
 #define TIGHT      0.9  /* of a period: a step down */
 #define SPARE      0.55 /* of a period: a step up, later */
@@ -12,7 +12,7 @@
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 
-/* Down the ladder from its middle, what was asked for if that is coarser; then
+/* Down the table from its middle, what was asked for if that is coarser; then
  * lights go. */
 static const struct {
     double quality;
@@ -61,28 +61,15 @@ bool live_adapt_note(struct live_adapt *a, double busy_ms, double period_ms,
     return a->below_s >= a->hold_s && go(a, -1);
 }
 
-static int smaller(int a, int b)
+struct glint_dials live_adapt_dials(const struct live_adapt *a,
+                                    struct glint_dials asked)
 {
-    return a < b ? a : b;
-}
-
-void live_adapt_apply(const struct live_adapt *a, struct frame *frame,
-                      const struct frame *asked)
-{
-    struct frame rung = *asked;
+    struct glint_dials d = asked;
 
     if (a->step > 0)
-        ladder_frame(&rung, step_of[a->step].quality);
-    frame->max_cells = smaller(asked->max_cells, rung.max_cells);
-    frame->cfg.irradiance_steps =
-        smaller(asked->cfg.irradiance_steps, rung.cfg.irradiance_steps);
-    frame->whole_codes = fmax(asked->whole_codes, rung.whole_codes);
-    frame->faintest_codes = fmax(asked->faintest_codes, rung.faintest_codes);
-    frame->dispersion_px = asked->dispersion_px > 0 && rung.dispersion_px > 0
-                               ? fmax(asked->dispersion_px, rung.dispersion_px)
-                               : 0;
-    frame->area_samples = fmin(asked->area_samples, rung.area_samples);
-    frame->half = asked->half || rung.half;
-    frame->max_lights = smaller(asked->max_lights, step_of[a->step].max_lights);
-    frame_retune(frame);
+        d = glint_dials_coarser(
+            asked, glint_quality_at(step_of[a->step].quality).dials);
+    if (d.max_lights > step_of[a->step].max_lights)
+        d.max_lights = step_of[a->step].max_lights;
+    return d;
 }

@@ -4,7 +4,7 @@
  *
  * A step down at once when frames are missed or hardly any time is left; a step
  * up only after a while with time to spare, and a longer while each time that
- * proved to be too early. Steps go down the ladder of --quality; below it there
+ * proved to be too early. Steps go down the table of --quality; below it there
  * are fewer lights.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_ADAPT_H
@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-#include "engine/frame.h"
+#include "glint/dials.h"
 
 #define LIVE_MAX_STEP 7
 
@@ -31,8 +31,8 @@ void live_adapt_init(struct live_adapt *adapt);
 bool live_adapt_note(struct live_adapt *adapt, double busy_ms, double period_ms,
                      int n_missed);
 
-/* Sets FRAME, made as SCENE says by ASKED, to a step. */
-void live_adapt_apply(const struct live_adapt *adapt, struct frame *frame,
-                      const struct frame *asked);
+/* What becomes of the dials ASKED for at its step. */
+struct glint_dials live_adapt_dials(const struct live_adapt *adapt,
+                                    struct glint_dials asked);
 
 #endif

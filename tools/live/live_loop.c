@@ -24,7 +24,7 @@ struct live {
     struct live_copy copy; /* of frames that lie in slow memory */
 
     struct live_adapt adapt;
-    struct frame asked; /* the look's frame before it was adapted */
+    struct glint_dials asked; /* of the look's frame before it was adapted */
     struct live_stats stats;
     int n_shown, n_snapshots;
     struct glint_error why; /* the camera could not be opened, last time */
@@ -168,8 +168,8 @@ static int take_size(struct live *l, const struct glint_image *image)
     code = look_size(l->tool, look, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    l->asked = look->frame;
-    live_adapt_apply(&l->adapt, &look->frame, &l->asked);
+    l->asked = look->frame.dials;
+    look->frame.dials = live_adapt_dials(&l->adapt, l->asked);
     return EXIT_OK;
 }
 
@@ -217,7 +217,7 @@ static void adapt(struct live *l, int64_t busy_us, int n_missed)
         !live_adapt_note(&l->adapt, 1e-3 * (double)busy_us, period_ms(l),
                          n_missed))
         return;
-    live_adapt_apply(&l->adapt, &l->o->look.frame, &l->asked);
+    l->o->look.frame.dials = live_adapt_dials(&l->adapt, l->asked);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
              l->adapt.step > before ? "lowered to hold the rate" : "raised",
              l->adapt.step, LIVE_MAX_STEP,

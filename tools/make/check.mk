@@ -124,7 +124,7 @@ run-fuzz run-fuzz-keep: $(fuzz_bins)
 analyze:
 	@tools/make/deps "static analysis" gcc clang-tidy cppcheck
 	@$(MAKE) --no-print-directory CC=gcc CONFIG=analyze WERROR=-Werror run-analyze
-run-analyze: $(core_o) $(published_o) $(bake_o) $(platform_o) $(tools_o) $(OUT)/tools/command/glint.o
+run-analyze: $(core_o) $(published_o) $(engine_o) $(bake_o) $(platform_o) $(tools_o) $(OUT)/tools/command/glint.o
 	$(say) CPPCHECK 'src platform tools'
 	@mkdir -p $(OUT)/cppcheck
 	$(Q)cppcheck -q --std=c99 --language=c --error-exitcode=1 \
@@ -138,7 +138,7 @@ sources = $(shell find include src platform tools tests -name '*.[ch]' -o -name 
 format:
 	$(Q)clang-format -i $(sources)
 libraries := $(OUT)/libglint.a $(OUT)/libglint-published.a
-lint: $(libraries) $(OUT)/libglint-bake.a
+lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a
 	@tools/lint/layers && tools/lint/tags && tools/lint/q
 	@tools/lint/symbols $(NM) $^
 	@[ $(CONFIG) != release ] || \

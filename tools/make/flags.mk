@@ -6,7 +6,7 @@ CFLAGS := $(MACHINE_$(TARGET)) $(SECTIONS) -std=c99 -O2 -g -ffp-contract=off -fv
 $(OUT)/src/%.o $(OUT)/tests/%.o: CPPFLAGS += -Isrc
 $(OUT)/tests/%.o: CPPFLAGS += -Itests
 $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
-        -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
+        -Isrc -Iplatform -Itools -D_POSIX_C_SOURCE=200809L \
         -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
         -DGLINT_PLUGIN_DIR='"$(PREFIX)/lib/glint"'
 $(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
@@ -21,13 +21,13 @@ CFLAGS += -fPIE
 LINKED += -pie
 endif
 ifneq ($(filter release qcheck,$(CONFIG)),)
-$(bake_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += \
+$(engine_o) $(bake_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += \
         -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2
 endif
 # On boards what is around the frames is small rather than fast, but for the rows
 # of pixels below.
 ifdef CROSS
-$(platform_o) $(tools_o) $(main_o): CFLAGS += -Os -fno-asynchronous-unwind-tables -fno-unwind-tables
+$(engine_o) $(platform_o) $(tools_o) $(main_o): CFLAGS += -Os -fno-asynchronous-unwind-tables -fno-unwind-tables
 endif
 # The run-time half has no library and small stack frames; --gc-sections takes
 # out what is not called.

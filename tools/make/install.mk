@@ -9,7 +9,7 @@ PLUGIN  ?= $(if $(CROSS),no,$(shell command -v $(CXX) >/dev/null && \
 WINDOW  ?= $(if $(CROSS),no,$(shell pkg-config --exists sdl2 2>/dev/null && echo yes || echo no))
 MODELS  ?= $(if $(CROSS),no,yes)
 to := $(DESTDIR)$(PREFIX)
-INSTALLED := -bake -published
+INSTALLED := -bake -engine -published
 install: all glint-live $(if $(filter yes,$(PLUGIN)),build/glint-oiio.so) \
         $(if $(filter yes,$(WINDOW)),build/glint-sdl.so)
 	install -d $(to)/bin $(to)/include/glint $(to)/lib/glint \

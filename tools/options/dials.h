@@ -14,12 +14,23 @@ enum {
     DIAL_TOGETHER = 5 /* of these, in combination with the other dials' */
 };
 
-enum dial_kind { DIAL_INT, DIAL_BOOL, DIAL_DOUBLE };
+enum dial_id {
+    DIAL_GRID,
+    DIAL_QUANTUM,
+    DIAL_CULL,
+    DIAL_WHOLE,
+    DIAL_HALF,
+    DIAL_TOLERANCE,
+    DIAL_WAVELENGTHS,
+    DIAL_RASTER,
+    DIAL_TILE,
+    DIAL_APART,
+    DIAL_MAX_LIGHTS
+};
 
 struct dial {
     const char *name, *what; /* for tables; for plots */
-    enum dial_kind kind;
-    size_t at;        /* in struct scene */
+    enum dial_id id;
     double standard;  /* what a scene has by default */
     bool opens;       /* a scene has to be opened anew for it */
     bool many_lights; /* does nothing to a single one */

@@ -8,7 +8,6 @@
 #include "engine/area.h"
 #include "engine/lamps.h"
 #include "engine/cost.h"
-#include "engine/ladder.h"
 #include "options/scene_table.h"
 #include "options/scene_waves.h"
 #include "options/takes.h"
@@ -22,14 +21,11 @@ void scene_defaults(struct scene *scene)
                             .tolerance = 1,
                             .only_ghost = -1,
                             .apart_px = FRAME_APART_PX,
-                            .area_samples = AREA_SAMPLES,
                             .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
-                            .whole_codes = FRAME_WHOLE_CODES,
+                            .dials = glint_dials_at(1 << 14),
                             .quality = 0.5,
-                            .dispersion_px = FRAME_DISPERSION_PX,
-                            .cull = FRAME_CULL_CODES,
                             .antialias = true};
 }
 
@@ -92,7 +88,63 @@ static bool take_error(const char *text, struct scene *s)
 
     if (!tool_number(text, &px) || px <= 0)
         return false;
-    ladder_set(s, ladder_for_error(px));
+    scene_set_quality(s, glint_quality_for_error(px));
+    return true;
+}
+
+static bool take_dispersion(const char *text, struct scene *s)
+{
+    double px;
+
+    if (!tool_number(text, &px) || (px != 0 && !(px >= 0.1 && px <= 100)))
+        return false;
+    s->dials.dispersion_q8 = (int)lrint(px * 256);
+    return true;
+}
+
+static bool take_quantum(const char *text, struct scene *s)
+{
+    if (!tool_number(text, &s->quantum) || s->quantum < 0 || s->quantum > 50)
+        return false;
+    s->dials.irradiance_steps = glint_quality_steps(s->quantum);
+    return true;
+}
+
+static bool take_whole(const char *text, struct scene *s)
+{
+    double codes;
+
+    if (!tool_number(text, &codes) || codes < 0 || codes > 100)
+        return false;
+    s->dials.snap_codes_q8 = (int)lrint(codes * 256);
+    return true;
+}
+
+void scene_set_quality(struct scene *s, double quality)
+{
+    const struct glint_quality q = glint_quality_at(quality);
+    const unsigned kept = s->dials.flags & GLINT_DIAL_ALWAYS_HALF;
+
+    s->quality = quality;
+    s->dials = q.dials;
+    s->dials.flags |= kept;
+    s->quantum = q.quantum;
+    s->tolerance = q.tolerance;
+    s->has_grid = true;
+}
+
+bool scene_take_quality(struct scene *s, const char *text)
+{
+    const bool exact = strcmp(text, "exact") == 0;
+    const int name = tool_word(text, glint_quality_name);
+    double quality = exact ? 1 : glint_quality_named(name);
+
+    if (!exact && name < 0 &&
+        (!tool_number(text, &quality) || quality < 0 || quality > 1))
+        return false;
+    scene_set_quality(s, quality);
+    if (exact)
+        s->rays = SCENE_RAYS_EXACT;
     return true;
 }
 
@@ -112,9 +164,7 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_WAVELENGTHS:
         return scene_take_waves(s, value);
     case OPT_DISPERSION:
-        return tool_number(value, &s->dispersion_px) &&
-               (s->dispersion_px == 0 ||
-                (s->dispersion_px >= 0.1 && s->dispersion_px <= 100));
+        return take_dispersion(value, s);
     case OPT_SENSOR:
         return parse_sensor(value, s->sensor_mm);
     case OPT_EXPOSURE:
@@ -126,7 +176,8 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_GHOST:
         return tool_integer(value, 0, GLINT_MAX_GHOSTS, &s->only_ghost);
     case OPT_GRID:
-        return tool_integer(value, 4, GLINT_MAX_CELLS, &s->grid);
+        s->has_grid = true;
+        return tool_integer(value, 4, GLINT_MAX_CELLS, &s->dials.fineness);
     case OPT_UNIFORM:
         return s->uniform = true;
     case OPT_MERGE:
@@ -153,15 +204,13 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_DITHER:
         return s->dither = true;
     case OPT_QUANTUM:
-        return tool_number(value, &s->quantum) && s->quantum >= 0 &&
-               s->quantum <= 50;
+        return take_quantum(value, s);
     case OPT_WHOLE:
-        return tool_number(value, &s->whole_codes) && s->whole_codes >= 0 &&
-               s->whole_codes <= 100;
+        return take_whole(value, s);
     case OPT_HALF:
-        return s->always_half = true;
+        return s->dials.flags |= GLINT_DIAL_ALWAYS_HALF;
     case OPT_QUALITY:
-        return ladder_take(s, value);
+        return scene_take_quality(s, value);
     case OPT_ERROR:
         return take_error(value, s);
     case OPT_BUDGET:
@@ -174,7 +223,8 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_LANES: /* of a release ago */
         return strcmp(value, "32") == 0;
     case OPT_CULL:
-        return tool_number(value, &s->cull) && s->cull >= 0 && s->cull <= 16;
+        return tool_number(value, &s->dials.cull_codes) &&
+               s->dials.cull_codes >= 0 && s->dials.cull_codes <= 16;
     case OPT_BALANCE:
         return s->balance = true;
     case OPT_MAX_LIGHTS:
@@ -324,9 +374,11 @@ static int check_raster(const struct tool *tool, const struct scene *s)
         return tool_usage(tool, "--mask is drawn by cells, not --raster edges");
     if (s->merge_steps && !s->raster && !s->mask_nodes)
         return tool_usage(tool, "--merge is for --raster cells");
-    if (s->always_half && (s->raster || s->mask_nodes))
+    if ((s->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
+        (s->raster || s->mask_nodes))
         return tool_usage(tool, "--half is drawn by edges, not by cells");
-    if (s->always_half && s->rays == SCENE_RAYS_EXACT)
+    if ((s->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
+        s->rays == SCENE_RAYS_EXACT)
         return tool_usage(tool, "--half is not for exact rays");
     return EXIT_OK;
 }
@@ -367,26 +419,20 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame_init(frame, &scene->setup, view, tool->workers);
     frame->cfg.sets = tool_sets(tool);
     frame->lens = scene->model.data ? &scene->model.lens : NULL;
-    frame->max_cells = scene->grid ? scene->grid : 64;
+    frame->dials = scene->dials;
     frame->uniform = scene->uniform;
     frame->only_ghost = scene->only_ghost;
     frame->apart_px = scene->apart_px;
-    frame->area_samples = scene->area_samples_asked ? scene->area_samples_asked
-                                                    : scene->area_samples;
-    frame->faintest_codes = scene->cull;
+    if (scene->area_samples_asked)
+        frame->dials.area_points = scene->area_samples_asked;
     if (scene->max_lights)
-        frame->max_lights = scene->max_lights;
+        frame->dials.max_lights = scene->max_lights;
     frame->cfg.tile_log2 = scene->tile_log2;
     /* no larger than the small ones: one level, and the same picture */
     frame->cfg.coarse_log2 =
         scene->coarse_log2 > scene->tile_log2 ? scene->coarse_log2 : 0;
     frame->cfg.raster = scene->raster ? &glint_raster_cells : NULL;
     frame->cfg.weights = scene->weights;
-    frame->cfg.irradiance_steps = scene_steps(scene->quantum);
-    frame->whole_codes = scene->whole_codes;
-    frame->dispersion_px = scene->dispersion_px;
-    frame->half = scene->half || scene->always_half;
-    frame->always_half = scene->always_half;
     frame->cfg.merge_steps = scene->merge_steps;
     frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
     frame->cfg.antialias = scene->antialias;
@@ -396,7 +442,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (scene->budget_ms > 0 && frame->lens) {
         budget_init(&frame->budget, scene->budget_ms);
-        ladder_frame(frame, budget_quality(&frame->budget));
+        frame->dials = budget_dials(&frame->budget, &frame->dials);
         return scene_calibrate(tool, scene, view, &frame->budget);
     }
     return EXIT_OK;
@@ -423,10 +469,12 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
     void *mem =
         calloc(1, glint_image_bytes(GLINT_YUYV, view.width, view.height));
     double least_ms = 1e9;
+    struct cost_plan plan;
     struct cost cost;
     int code;
 
-    plain.budget_ms = plain.dispersion_px = 0;
+    plain.budget_ms = 0;
+    plain.dials.dispersion_q8 = 0;
     plain.mask_nodes = 0;
     plain.only_ghost = -1;
     code = scene_frame(tool, &plain, view, &frame);
@@ -442,20 +490,14 @@ int scene_calibrate(const struct tool *tool, const struct scene *scene,
                 fmin(least_ms, report.plan_ms + report.bin_ms + report.draw_ms);
     }
     if (mem && code == EXIT_OK && report.stats.bundles > 0) {
-        cost = cost_of(&frame, &frame);
+        plan = frame_plan(&frame);
+        cost = cost_of(&plan, &plan.dials);
         budget->calibrated_minsn = cost_minsn(&cost);
         budget->ms_per_minsn = least_ms / budget->calibrated_minsn;
     }
     frame_finish(&frame);
     free(mem);
     return code;
-}
-
-/* The mean step, as steps are even within an octave. */
-int scene_steps(double quantum)
-{
-    return quantum > 0 ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / quantum)))
-                       : 0;
 }
 
 double scene_scale(const struct scene *scene)

@@ -7,6 +7,7 @@
 
 #include "options/coating.h"
 #include "engine/frame.h"
+#include "engine/quality.h"
 #include "model/model_file.h"
 #include "options/tool.h"
 
@@ -36,24 +37,23 @@ struct scene {
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     int n_wavelengths;
     enum scene_waves waves;
-    double dispersion_px; /* of each ghost its own number: see struct frame */
-    double sensor_mm[2];  /* 0: the table's film */
+    double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
     int only_ghost;
-    int max_lights;         /* 0: not said */
-    double apart_px;        /* lights whose images are nearer are one */
-    double area_samples;    /* points of a lamp of some extent, at most */
-    int area_samples_asked; /* the same by hand; 0: as the quality has it */
+    struct glint_dials dials; /* but for max_lights */
+    double quantum;           /* percent: its irradiance_steps */
+    int max_lights;           /* 0: not said */
+    int area_samples_asked;   /* 0: as the quality has it */
+    double apart_px;          /* lights whose images are nearer are one */
 
-    int grid, merge_steps, tile_log2, coarse_log2, mask_nodes;
-    double merge_gamma, quantum, cull;
-    double whole_codes; /* see struct frame */
-    double quality;     /* as asked for, 0.5 by default */
-    double budget_ms;   /* 0: none */
-    int raster;         /* 0: by edges, 1: by cells */
+    int merge_steps, tile_log2, coarse_log2, mask_nodes;
+    double merge_gamma;
+    double quality;   /* as asked for, 0.5 by default */
+    double budget_ms; /* 0: none */
+    int raster;       /* 0: by edges, 1: by cells */
     enum glint_weights weights;
-    bool by_edges;          /* was asked for, not only what is done anyway */
-    bool half, always_half; /* as the ladder has it, or as was asked */
+    bool has_grid; /* fineness was said, by itself or as a quality */
+    bool by_edges; /* was asked for, not only what is done anyway */
     bool uniform, antialias, dither, has_exposure, balance;
 };
 
@@ -272,8 +272,13 @@ struct glint_view scene_view(const struct scene *scene, int width, int height);
 int scene_frame(const struct tool *tool, const struct scene *scene,
                 struct glint_view view, struct frame *frame);
 
-/* Steps of irradiance an octave for a quantum in percent. */
-int scene_steps(double quantum);
+/* Sets the dials of SCENE for QUALITY, 0 to 1; 0.5 is what it has by default.
+ */
+void scene_set_quality(struct scene *scene, double quality);
+
+/* The same from a number or a name; "exact" is the finest with exact rays.
+ * False: neither. */
+bool scene_take_quality(struct scene *scene, const char *text);
 
 /* TEXT of --memory, MiB, in bytes. */
 bool scene_memory(const char *text, size_t *bytes);

@@ -465,7 +465,8 @@ void look_find(struct look *look, const struct glint_image *image,
     look->n_lamps = set_lamps(look, image, elapsed_us);
     /* there is time for a picture by itself */
     if (elapsed_us == 0 && !scene->area_samples_asked && scene->budget_ms == 0)
-        look->frame.area_samples = 1 + AREA_STILL * (scene->area_samples - 1);
+        look->frame.dials.area_points =
+            1 + AREA_STILL * (scene->dials.area_points - 1);
     look->find_ms = 1e3 * (tool_seconds() - start);
 }
 

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "engine/cost.h"
-#include "engine/ladder.h"
+#include "engine/quality.h"
 #include "options/scene.h"
 #include "options/tool.h"
 
@@ -34,11 +34,11 @@ static struct machine {
 
 static double frame_ms(const struct machine *m)
 {
-    const double pixels = m->frame->half ? 0.4 : 1;
+    const double pixels = glint_dials_half(&m->frame->dials) ? 0.4 : 1;
 
     return pixels * m->base_ms +
-           m->cells_ms * pow(m->frame->max_cells / 64., m->power) +
-           m->steps_ms * m->frame->cfg.irradiance_steps / 69.;
+           m->cells_ms * pow(m->frame->dials.fineness / 64., m->power) +
+           m->steps_ms * m->frame->dials.irradiance_steps / 69.;
 }
 
 double __wrap_tool_seconds(void);
@@ -67,8 +67,7 @@ static struct frame_report run(struct frame *frame, double budget_ms, int n)
 
     glint_image_place(&image, px);
     budget_init(&frame->budget, budget_ms);
-    ladder_frame(frame, budget_quality(&frame->budget));
-    frame_retune(frame);
+    frame->dials = budget_dials(&frame->budget, &frame->dials);
     for (int i = 0; i < n; i++)
         assert_int_equal(frame_draw(frame, lamps, 3, 1, &image, &report),
                          GLINT_OK);
@@ -138,13 +137,13 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     glint_image_place(&image, px);
     run(&frame, 2.2, SETTLED);
     frame.budget.ms = ms;
-    for (int i = from; i < BUDGET_RUNGS; i++)
+    for (int i = from; i < GLINT_QUALITY_LEVELS; i++)
         frame.budget.octaves[i] = frame.budget.octaves[0] + octaves;
     for (int i = 0; i < n; i++) {
         frame_draw(&frame, lamps, 3, 1, &image, &report);
-        n_whole += !frame.half;
+        n_whole += !glint_dials_half(&frame.dials);
     }
-    *last = !frame.half;
+    *last = !glint_dials_half(&frame.dials);
     machine.frame = NULL;
     frame_finish(&frame);
     return n_whole;
@@ -172,7 +171,8 @@ static void test_tries_next(void **state)
     assert_in_range(draw_whole(4.6, 2, 1.25, 20, &last), 1, 20);
     assert_true(last);
     assert_int_equal(draw_whole(4.6, 2, 1.6, 20, &last), 0); /* by half */
-    assert_in_range(draw_whole(3.9, BUDGET_RUNGS, 0, 100, &last), 1, 25);
+    assert_in_range(draw_whole(3.9, GLINT_QUALITY_LEVELS, 0, 100, &last), 1,
+                    25);
     assert_false(last);
 }
 
@@ -207,7 +207,7 @@ static void test_new_lights(void **state)
     glint_image_place(&image, px);
     budget_init(&frame.budget, 3);
     frame.budget.ms_per_minsn = 0.1; /* and time stands still */
-    ladder_frame(&frame, 0.5);
+    frame.dials = budget_dials(&frame.budget, &frame.dials);
     for (int i = 0; i < 4; i++)
         assert_int_equal(frame_draw(&frame, lamps, 1, 1, &image, &one),
                          GLINT_OK);
@@ -225,41 +225,46 @@ static void test_counts(void **state)
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
     struct frame_report report;
     struct cost coarse, fine, told;
-    struct frame frame, then;
+    struct frame frame;
+    struct glint_dials then;
+    struct cost_plan plan;
 
     (void)state;
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
     glint_image_place(&image, px);
-    frame.max_cells = 64;
+    frame.dials.fineness = 64;
     frame_draw(&frame, lamps, 1, 1, &image, &report);
-    coarse = cost_of(&frame, &frame);
-    then = frame;
-    then.max_cells = 128;
-    told = cost_of(&frame, &then);
+    plan = frame_plan(&frame);
+    coarse = cost_of(&plan, &plan.dials);
+    then = plan.dials;
+    then.fineness = 128;
+    told = cost_of(&plan, &then);
     /* the last ones may turn out to have no edges */
     assert_true(coarse.count[COST_BUNDLES] >= report.stats.bundles);
     assert_true(coarse.count[COST_BUNDLES] <=
                 scene.setup.n_ghosts * scene.setup.n_wavelengths);
     assert_true(coarse.count[COST_LIT] <= WIDTH * HEIGHT);
-    then = frame;
-    then.cfg.irradiance_steps = 0;
-    assert_true(cost_of(&frame, &then).count[COST_EDGES] >
+    then = plan.dials;
+    then.irradiance_steps = 0;
+    assert_true(cost_of(&plan, &then).count[COST_EDGES] >
                 coarse.count[COST_EDGES]);
-    frame.max_cells = 128;
+    frame.dials.fineness = 128;
     frame_draw(&frame, lamps, 1, 1, &image, &report);
-    fine = cost_of(&frame, &frame);
+    plan = frame_plan(&frame);
+    fine = cost_of(&plan, &plan.dials);
     for (int k = 0; k < COST_KINDS; k++) {
         assert_true(fabs(told.count[k] / fine.count[k] - 1) < 0.25);
     }
     assert_true(cost_minsn(&fine) > cost_minsn(&coarse));
     /* of half as many pixels each way: told, and planned */
-    then = frame;
-    then.half = true;
-    told = cost_of(&frame, &then);
-    frame.half = true;
+    then = plan.dials;
+    then.flags |= GLINT_DIAL_HALF;
+    told = cost_of(&plan, &then);
+    frame.dials.flags |= GLINT_DIAL_HALF;
     frame_draw(&frame, lamps, 1, 1, &image, &report);
-    coarse = cost_of(&frame, &frame);
+    plan = frame_plan(&frame);
+    coarse = cost_of(&plan, &plan.dials);
     for (int k = 0; k < COST_KINDS; k++)
         assert_true(fabs(told.count[k] / coarse.count[k] - 1) < 0.5);
     assert_true(coarse.count[COST_LIT] < 0.6 * fine.count[COST_LIT]);

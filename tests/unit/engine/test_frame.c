@@ -81,7 +81,7 @@ static void make_of(const struct scene *of, struct frame *frame)
     const struct glint_view view = scene_view(of, WIDTH, HEIGHT);
 
     assert_int_equal(scene_frame(&tool, of, view, frame), EXIT_OK);
-    frame->max_cells = 16;
+    frame->dials.fineness = 16;
 }
 
 static void make(struct frame *frame)
@@ -204,7 +204,7 @@ static void test_more_lamps(void **state)
 
     (void)state;
     make(&frame);
-    frame.max_lights = 2;
+    frame.dials.max_lights = 2;
     assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS, N_LAMPS),
                      GLINT_OK);
     n_asked = 0;
@@ -241,13 +241,12 @@ static void test_retune(void **state)
 
         make(&fresh);
         for (int k = 0; k < 2; k++) {
-            both[k]->max_cells = setting[i].cells;
-            both[k]->cfg.irradiance_steps = setting[i].steps;
-            both[k]->max_lights = setting[i].lights;
-            both[k]->faintest_codes = setting[i].codes;
+            both[k]->dials.fineness = setting[i].cells;
+            both[k]->dials.irradiance_steps = setting[i].steps;
+            both[k]->dials.max_lights = setting[i].lights;
+            both[k]->dials.cull_codes = setting[i].codes;
         }
         n_asked = 0;
-        frame_retune(&frame);
         memcpy(want, got, BYTES); /* of the settings before */
         draw(&frame, N_LAMPS, got, &report);
         assert_int_equal(n_asked, 0);
@@ -276,7 +275,7 @@ static void test_no_memory(void **state)
 
             make_of(exact ? &exact_scene : &scene, &frame);
             frame.only_ghost = 0;
-            frame.max_lights = 2; /* so that some merge */
+            frame.dials.max_lights = 2; /* so that some merge */
             n_asked = 0;
             fail_at = nth;
             status = frame_draw_alone(&frame, lamps, 3, 1, nth ? got : want,
@@ -315,7 +314,7 @@ static void test_too_many_feeds(void **state)
     crowd.n_ghosts = 2016;
     crowd.n_wavelengths = 32;
     frame.setup = &crowd;
-    frame.max_lights = N;
+    frame.dials.max_lights = N;
     frame.apart_px = 0;
     assert_int_equal(frame_draw_alone(&frame, many, N, 1, rgb, &report),
                      GLINT_E_MEMORY);

@@ -129,7 +129,7 @@ static void test_dial(void **state)
     (void)state;
     scene.setup.lens = &chosen.lens;
     for (double px = 8; px > 0.1; px /= 2) {
-        scene.dispersion_px = px;
+        scene.dials.dispersion_q8 = (int)(px * 256);
         drawn(&frame, &scene, WIDTH, 100, picture);
         count(&frame, ghosts, &bundles);
         assert_true(bundles >= before);
@@ -147,7 +147,7 @@ static void test_off(void **state)
     struct frame frame;
 
     (void)state;
-    scene.dispersion_px = 0;
+    scene.dials.dispersion_q8 = 0;
     drawn(&frame, &scene, WIDTH, 1, picture);
     frame_finish(&frame);
     drawn(&frame, &three, WIDTH, 1, other);
@@ -163,7 +163,7 @@ static void test_one_set(void **state)
 
     (void)state;
     scene.setup.n_sets = 1;
-    scene.cull = list.cull = 0;
+    scene.dials.cull_codes = list.dials.cull_codes = 0;
     assert_true(scene_take_waves(&list, "4"));
     scene_choose_waves(&list);
     assert_int_equal(list.n_wavelengths, 4);
@@ -192,7 +192,7 @@ static void test_little_room(void **state)
     void *mem;
 
     (void)state;
-    scene.dispersion_px = 0.25;
+    scene.dials.dispersion_q8 = 64;
     drawn(&frame, &scene, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
@@ -395,7 +395,7 @@ static int enter(void **state)
                    "540,550,560,570,580,590,600,610,620,630,640,650,660,670,"
                    "680,690,700"))
         return 1;
-    all.cull = 0;
+    all.dials.cull_codes = 0;
     return 0;
 }
 

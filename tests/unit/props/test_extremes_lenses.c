@@ -177,9 +177,9 @@ static void test_barrels(void **state)
     assert_true(stage_model(&stage, 1, 8));
     stage_view(&stage, WIDE, HIGH, 0);
     stage.frame.uniform = true;
-    stage.frame.max_cells = 128;
+    stage.frame.dials.fineness = 128;
     assert_true(stage_linear(&stage, &lamp, 1, want));
-    stage.frame.max_cells = 8;
+    stage.frame.dials.fineness = 8;
     assert_true(stage_linear(&stage, &lamp, 1, drawn));
     db = stage_compare(&stage, want, drawn).psnr_db;
     free(drawn);
@@ -459,7 +459,7 @@ static void test_two_thousand_ghosts(void **state)
     open_many(64, 64);
     assert_int_equal(stage.setup.n_ghosts, 2016);
     stage_view(&stage, W, H, 0);
-    stage.frame.max_cells = 32;
+    stage.frame.dials.fineness = 32;
     assert_true(stage_linear(&stage, &lamp, 1, test));
     assert_true(stage_exact(&stage, &lamp, 1, 48, exact));
     {

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "engine/ladder.h"
+#include "engine/quality.h"
 #include "support/extreme.h"
 #include "support/stage.h"
 
@@ -111,17 +111,16 @@ static void look_at(double theta_deg, struct offsets *o)
     for (int ghost = 0; ghost < stage.of_model.n_ghosts; ghost++) {
         f->only_ghost = ghost;
         f->uniform = true;
-        f->max_cells = 256;
-        f->cfg.irradiance_steps = 0;
-        frame_retune(f);
+        f->dials.fineness = 256;
+        f->dials.irradiance_steps = 0;
         assert_true(stage_linear(&stage, &lamp, 1, finest));
         if (stage.drawn.stats.primitives == 0)
             continue;
         f->uniform = false;
         for (int k = 0; k < ERRORS; k++) {
-            ladder_frame(f, ladder_for_error(error_px[k]));
-            f->cfg.irradiance_steps = 0; /* outlines have none */
-            frame_retune(f);
+            f->dials =
+                glint_quality_at(glint_quality_for_error(error_px[k])).dials;
+            f->dials.irradiance_steps = 0; /* outlines have none */
             assert_true(stage_linear(&stage, &lamp, 1, drawn));
             add_ghost(&o[k]);
         }

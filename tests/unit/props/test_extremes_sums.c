@@ -80,7 +80,7 @@ static void test_spread(void **state)
         lamp[i] =
             stage_lamp(stage_uniform(&r, 0, 12), stage_uniform(&r, -180, 180),
                        exp(stage_uniform(&r, -4, 4)));
-    heliar.frame.max_cells = 16;
+    heliar.frame.dials.fineness = 16;
     assert_true(stage_linear(&heliar, lamp, n, test));
     assert_int_equal(heliar.drawn.drawn_lights, 128);
     for (int i = 0; i < n; i += 125) {
@@ -88,7 +88,7 @@ static void test_spread(void **state)
             stage_linear(&heliar, lamp + i, n - i < 125 ? n - i : 125, part));
         whole += stage_flux(&heliar, part);
     }
-    heliar.frame.max_cells = 64;
+    heliar.frame.dials.fineness = 64;
     assert_true(
         extreme_at_most(extreme_long() ? "sums: 10 000 lights merged, flux"
                                        : "sums: 1000 lights merged, flux",

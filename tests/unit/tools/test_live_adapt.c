@@ -10,6 +10,7 @@
 
 #include <string.h>
 
+#include "engine/quality.h"
 #include "live/live_adapt.h"
 
 #define PERIOD_MS (1000. / 30)
@@ -156,50 +157,38 @@ static void test_forgets(void **state)
     assert_int_equal(adapt.step, 0);
 }
 
-static void apply(const struct frame *asked, int step, struct frame *frame)
-{
-    *frame = *asked; /* nothing drawn yet: no memory to make anew */
-    adapt.step = step;
-    live_adapt_apply(&adapt, frame, asked);
-}
-
 /* Step 0 is what was asked for, and no step is finer than the one before. */
 static void test_steps(void **state)
 {
-    static const struct {
-        int cells, steps, lights;
-        double codes;
-    } ask[] = {{64, 69, 128, 0.125}, {8, 1, 1, 0},      {4, 2, 2, 40},
-               {1024, 4096, 9, 1},   {64, 0, 128, 0.5}, {17, 3, 64, 0.2}};
+    static const struct glint_dials ask[] = {
+        {64, 69, 1024, 256, 128, 0, 0.125, 7},
+        {8, 1, 0, 0, 1, 0, 0, 1},
+        {4, 2, 0, 0, 2, 0, 40, 1},
+        {1024, 4096, 0, 64, 9, 0, 1, 61},
+        {64, 0, 1024, 0, 128, 0, 0.5, 7},
+        {17, 3, 1, 256, 64, 0, 0.2, 2}};
 
     (void)state;
     for (size_t i = 0; i < sizeof ask / sizeof *ask; i++) {
-        struct frame asked, frame, last;
+        struct glint_dials last = ask[i];
 
-        memset(&asked, 0, sizeof asked);
-        asked.max_cells = ask[i].cells;
-        asked.cfg.irradiance_steps = ask[i].steps;
-        asked.max_lights = ask[i].lights;
-        asked.faintest_codes = ask[i].codes;
-        last = asked;
-        for (int s = 0; s <= LIVE_MAX_STEP; s++, last = frame) {
-            apply(&asked, s, &frame);
-            if (s == 0) {
-                assert_int_equal(frame.max_cells, ask[i].cells);
-                assert_int_equal(frame.cfg.irradiance_steps, ask[i].steps);
-                assert_int_equal(frame.max_lights, ask[i].lights);
-                assert_true(frame.faintest_codes == ask[i].codes);
-            }
-            assert_true(frame.half == (s > 3)); /* of quality 0 */
-            assert_true(frame.max_cells >= 1);
-            assert_true(frame.max_lights >= 1);
-            assert_true(frame.max_cells <= last.max_cells);
-            assert_true(frame.max_lights <= last.max_lights);
-            assert_true(frame.faintest_codes >= last.faintest_codes);
-            assert_true(frame.cfg.irradiance_steps <=
-                        last.cfg.irradiance_steps);
-            assert_int_equal(frame.cfg.irradiance_steps == 0,
-                             ask[i].steps == 0);
+        for (int s = 0; s <= LIVE_MAX_STEP; s++) {
+            struct glint_dials d;
+
+            adapt.step = s;
+            d = live_adapt_dials(&adapt, ask[i]);
+            if (s == 0)
+                assert_memory_equal(&d, &ask[i], sizeof d);
+            assert_int_equal(glint_dials_half(&d), s > 3); /* of quality 0 */
+            assert_in_range(d.fineness, 1, last.fineness);
+            assert_in_range(d.max_lights, 1, last.max_lights);
+            assert_in_range(d.snap_codes_q8, last.snap_codes_q8, 1 << 15);
+            assert_true(d.cull_codes >= last.cull_codes);
+            assert_true(d.area_points <= last.area_points);
+            assert_true(d.irradiance_steps <= last.irradiance_steps);
+            assert_int_equal(d.irradiance_steps == 0,
+                             ask[i].irradiance_steps == 0);
+            last = d;
         }
     }
 }

@@ -141,7 +141,12 @@ static void test_dials(void **state)
     }
 }
 
-/* Better is never coarser, among rungs that draw all pixels and among those
+static int is_half(const struct scene *scene)
+{
+    return glint_dials_half(&scene->dials);
+}
+
+/* Better is never coarser, among levels that draw all pixels and among those
  * that do not; the middle is what a scene has anyway. */
 static void test_ladder(void **state)
 {
@@ -150,29 +155,33 @@ static void test_ladder(void **state)
     (void)state;
     scene_defaults(&plain);
     scene_defaults(&scene);
-    ladder_set(&scene, 0.5);
-    assert_int_equal(scene.grid, 64);
-    assert_true(scene.quantum == plain.quantum && scene.cull == plain.cull &&
+    scene_set_quality(&scene, 0.5);
+    assert_int_equal(scene.dials.fineness, 64);
+    assert_true(scene.quantum == plain.quantum &&
+                scene.dials.cull_codes == plain.dials.cull_codes &&
                 scene.tolerance == plain.tolerance && scene.rays == plain.rays);
     scene_defaults(&last);
-    ladder_set(&last, 0);
+    scene_set_quality(&last, 0);
     for (int i = 1; i <= 100; i++) {
-        ladder_set(&scene, i / 100.);
-        if (scene.half == last.half) { /* else pixels are what is finer */
-            assert_in_range(scene.grid, last.grid, GLINT_MAX_CELLS);
+        scene_set_quality(&scene, i / 100.);
+        if (is_half(&scene) ==
+            is_half(&last)) { /* else pixels are what is finer */
+            assert_in_range(scene.dials.fineness, last.dials.fineness,
+                            GLINT_MAX_CELLS);
             assert_true(scene.quantum <= last.quantum);
         }
-        assert_true(scene.cull <= last.cull);
+        assert_true(scene.dials.cull_codes <= last.dials.cull_codes);
         assert_true(scene.tolerance <= last.tolerance);
-        assert_true(scene.half <= last.half);
+        assert_true(is_half(&scene) <= is_half(&last));
         last = scene;
     }
-    assert_true(ladder_take(&scene, "0.25") && ladder_take(&last, "draft"));
-    assert_int_equal(scene.grid, last.grid);
-    assert_true(ladder_take(&scene, "exact"));
+    assert_true(scene_take_quality(&scene, "0.25") &&
+                scene_take_quality(&last, "draft"));
+    assert_int_equal(scene.dials.fineness, last.dials.fineness);
+    assert_true(scene_take_quality(&scene, "exact"));
     assert_int_equal(scene.rays, SCENE_RAYS_EXACT);
-    assert_false(ladder_take(&scene, "1.01"));
-    assert_false(ladder_take(&scene, "best"));
+    assert_false(scene_take_quality(&scene, "1.01"));
+    assert_false(scene_take_quality(&scene, "best"));
 }
 
 int main(void)

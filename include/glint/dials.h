@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/dials.h - what trades accuracy for time, of one frame.
+ *
+ *     cfg.dials = glint_dials_at(1 << 14);                  the default
+ *     cfg.dials = glint_dials_coarser(cfg.dials, glint_dials_at(1 << 12));
+ *
+ * A small struct that is copied freely: what is asked for, what a budget has
+ * chosen and what a measurement turns are each one of these.
+ */
+#ifndef GLINT_DIALS_H
+#define GLINT_DIALS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum glint_dial_flag {
+    GLINT_DIAL_HALF = 1,       /* pictures in codes are drawn by edges with half
+                                  as many pixels each way */
+    GLINT_DIAL_ALWAYS_HALF = 2 /* the same, whatever a budget chooses */
+};
+
+struct glint_dials {
+    int fineness;         /* of ray grids, 4 .. GLINT_MAX_CELLS; with 64 what
+                             lies between rays is off by 0.01 pixel */
+    int irradiance_steps; /* an octave, 1 .. 4096; 0: not rounded */
+    int snap_codes_q8;    /* codes: weaker edges lie on whole pixels; 0: none */
+    int dispersion_q8;    /* pixels that outlines of neighbouring wavelengths
+                             may be apart; 0: three wavelengths for all */
+    int max_lights;       /* that are drawn; more merge, the faint ones first */
+    unsigned flags;       /* enum glint_dial_flag */
+    double cull_codes;    /* codes near black that may be left out */
+    double area_points;   /* that a lamp of some extent is drawn as, at most */
+};
+
+/* The dials at QUALITY_Q15, 0 .. 2^15, along the measured front of accuracy
+ * over time; 2^14 is the default. */
+struct glint_dials glint_dials_at(int quality_q15);
+
+/* Of each dial the coarser setting of A and B. Steps of irradiance that are
+ * not rounded stay so, and three wavelengths are neither coarse nor fine. */
+struct glint_dials glint_dials_coarser(struct glint_dials a,
+                                       struct glint_dials b);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/quality.h"
+
+#include <math.h>
+#include <stddef.h>
+
+enum { MAX_LIGHTS = 128 }; /* cost less than three times what 64 do */
+
+/* Along the front that glint sweep measures over five lenses at 1280x720
+ * (tests/figures/trade.md), the coarsest first. What is not on it: coarser
+ * models, which save nothing and cost 6 dB. Finer models cost next to nothing
+ * but bytes and their baking, which is why the default has none and all above
+ * it do. Dispersion has a front of its own (make colour-table): what is for
+ * small boards draws three wavelengths. Of light left out, an eighth of a code
+ * is the most that hundreds of ghosts may hide without being seen together. */
+/* clang-format off */
+static const struct level {
+    double quality, grid, quantum, snap, cull, tolerance, dispersion, points;
+    bool half;
+} level[] = {
+    {0,      16, 8,      32,  1,     1,    0,    1,  true},
+    {0.0625, 64, 1,      4,   1,     1,    0,    1,  true},
+    {0.125,  20, 3,      8,   0.5,   1,    0,    1,  false},
+    {0.25,   32, 1,      4,   0.5,   1,    0,    1,  false},
+    {0.375,  40, 1,      4,   0.5,   1,    2,    4,  false},
+    {0.5,    64, 1,      4,   0.125, 1,    1,    7,  false},
+    {0.625,  96, 0.5,    2,   0.125, 0.25, 1,    12, false},
+    {0.75,  160, 0.25,   1,   0.125, 0.25, 0.5,  19, false},
+    {0.875, 192, 0.125,  0.5, 0.125, 0.25, 0.5,  37, false},
+    {1,     256, 0.0625, 0,   0.125, 0.25, 0.25, 61, false},
+};
+/* clang-format on */
+
+typedef char
+    levels_fit[sizeof level / sizeof *level == GLINT_QUALITY_LEVELS ? 1 : -1];
+
+const char *const glint_quality_name[GLINT_QUALITY_NAMES + 1] = {
+    "least", "draft", "default", "high", "finest", NULL};
+
+double glint_quality_named(int name)
+{
+    return (double)name / (GLINT_QUALITY_NAMES - 1);
+}
+
+/* PART of the way from A to B, in equal ratios. */
+static double between(double a, double b, double part)
+{
+    return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
+}
+
+double glint_quality_place(double quality)
+{
+    int i = 0;
+    double part;
+
+    while (i < GLINT_QUALITY_LEVELS - 2 && level[i + 1].quality <= quality)
+        i++;
+    part = (quality - level[i].quality) /
+           (level[i + 1].quality - level[i].quality);
+    part = fmin(fmax(part, 0), 1);
+    return level[i].half == level[i + 1].half ? i + part : i + (part >= 0.5);
+}
+
+/* Between the levels of QUALITY; what has no between is of the nearer one, but
+ * models, of which the finer one costs no time. */
+static struct level level_at(double quality)
+{
+    const double at = glint_quality_place(quality);
+    const int below =
+        at < GLINT_QUALITY_LEVELS - 1 ? (int)at : GLINT_QUALITY_LEVELS - 2;
+    const struct level *a = &level[below], *b = &level[below + 1];
+    struct level l = at - below < 0.5 ? *a : *b;
+
+    l.tolerance = at > below ? b->tolerance : a->tolerance;
+    l.grid = between(a->grid, b->grid, at - below);
+    l.quantum = between(a->quantum, b->quantum, at - below);
+    l.snap = between(a->snap, b->snap, at - below);
+    l.cull = between(a->cull, b->cull, at - below);
+    l.points = between(a->points, b->points, at - below);
+    if (a->dispersion > 0 && b->dispersion > 0)
+        l.dispersion = between(a->dispersion, b->dispersion, at - below);
+    return l;
+}
+
+int glint_quality_steps(double quantum)
+{
+    return quantum > 0 ? (int)lrint(fmin(4096, fmax(1, 100 * log(2) / quantum)))
+                       : 0;
+}
+
+struct glint_quality glint_quality_at(double quality)
+{
+    const struct level l = level_at(quality);
+
+    return (struct glint_quality){
+        .dials = {.fineness = 4 * (int)lrint(l.grid / 4), /* by fours */
+                  .irradiance_steps = glint_quality_steps(l.quantum),
+                  .snap_codes_q8 = (int)lrint(l.snap * 256),
+                  .dispersion_q8 = (int)lrint(l.dispersion * 256),
+                  .max_lights = MAX_LIGHTS,
+                  .flags = l.half ? GLINT_DIAL_HALF : 0,
+                  .cull_codes = l.cull,
+                  .area_points = l.points},
+        .quantum = l.quantum,
+        .tolerance = l.tolerance};
+}
+
+struct glint_dials glint_dials_at(int quality_q15)
+{
+    return glint_quality_at(quality_q15 * 0x1p-15).dials;
+}
+
+/* Outlines, a tenth of a pixel at fineness 64, and by the square of it. */
+double glint_quality_for_error(double px)
+{
+    const double grid = 64 * sqrt(0.1 / px);
+    int i = 0;
+
+    while (i < 256 &&
+           (level_at(i / 256.).half || level_at(i / 256.).grid < grid))
+        i++;
+    return i / 256.;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+struct glint_dials glint_dials_coarser(struct glint_dials a,
+                                       struct glint_dials b)
+{
+    return (struct glint_dials){
+        .fineness = smaller(a.fineness, b.fineness),
+        .irradiance_steps = smaller(a.irradiance_steps, b.irradiance_steps),
+        .snap_codes_q8 = larger(a.snap_codes_q8, b.snap_codes_q8),
+        .dispersion_q8 = a.dispersion_q8 && b.dispersion_q8
+                             ? larger(a.dispersion_q8, b.dispersion_q8)
+                             : 0,
+        .max_lights = smaller(a.max_lights, b.max_lights),
+        .flags = a.flags | b.flags,
+        .cull_codes = fmax(a.cull_codes, b.cull_codes),
+        .area_points = fmin(a.area_points, b.area_points)};
+}
