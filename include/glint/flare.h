@@ -8,7 +8,7 @@
  *     for each ghost, light and wavelength:
  *         vertices = glint_flare_add(flare, &bundle);        fill them in
  *     or for those of a baked lens at once, instead of both:
- *         glint_flare_plan(flare, &frame, beams, n_beams);
+ *         glint_flare_plan(flare, &frame, lights, n_lights);
  *     glint_flare_bin(flare, &stats);
  *     glint_flare_draw(flare, &image);
  *
@@ -85,7 +85,7 @@ struct glint_bundle {
 /* --------------------------------------------------------- rays of a lens */
 
 /* A light as the lens sees it: parallel rays. */
-struct glint_beam {
+struct glint_light {
     int32_t sine_q30, cosine_q30; /* of the angle off the axis, 0 .. 2^30 */
     int32_t cos_q30, sin_q30;     /* of the azimuth: 0 = right, 90 = up */
     struct glint_real power; /* its in-focus image, spread over one pixel, would
@@ -150,16 +150,16 @@ struct glint_flare_frame {
     const struct glint_half *half;
 };
 
-/* Merges beams in place, and returns how many are left, the brightest first;
+/* Merges lights in place, and returns how many are left, the brightest first;
  * what lies behind them means nothing any more. Those nearer than NEAR, as the
  * chord of the angle between them, merge as they cannot be told apart; then,
  * while there are more than MOST (1 or more), those whose merging changes the
  * picture least, faint ones over long distances before bright ones. A merged
- * beam has the light of both and the direction between, by their powers. What
+ * light has the power of both and the direction between, by their powers. What
  * has no light is left out. *N_APART is how many were left before MOST asked
- * for fewer. The result does not depend on the order of beams. */
-int glint_beams_merge(struct glint_beam *beams, int n_beams, int32_t near_q30,
-                      int most, int *n_apart);
+ * for fewer. The result does not depend on the order of lights. */
+int glint_lights_merge(struct glint_light *lights, int n_lights,
+                       int32_t near_q30, int most, int *n_apart);
 
 /* ------------------------------------------------------------------ drawing */
 
@@ -239,14 +239,14 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
                                      const struct glint_bundle *bundle);
 
 /* Forgets all bundles and takes those in that the ghosts of a lens make of
- * BEAMS, as far as they can be seen; no vertices are to be filled in. All that
- * FRAME points to, and BEAMS, are kept until bin has returned. Needs room for
- * n_beams * ghosts * n_waves bundles, or the last ones are left out; with sets
+ * LIGHTS, as far as they can be seen; no vertices are to be filled in. All that
+ * FRAME points to, and LIGHTS, are kept until bin has returned. Needs room for
+ * n_lights * ghosts * n_waves bundles, or the last ones are left out; with sets
  * for as many of the first set, and for those of the sets that are chosen, or
  * the last ghosts take the first set. */
 void glint_flare_plan(struct glint_flare *flare,
                       const struct glint_flare_frame *frame,
-                      const struct glint_beam *beams, int n_beams);
+                      const struct glint_light *lights, int n_lights);
 
 /* Which ghost of the lens bundle I of those planned is; I from 0 to the bundles
  * of the statistics. */
@@ -255,9 +255,9 @@ int glint_flare_ghost(const struct glint_flare *flare, int i);
 /* What bundle I of those planned, and not yet binned, is: for telling what a
  * frame will take before it is drawn. */
 struct glint_planned {
-    int n_cells;             /* per side */
-    struct glint_real flux;  /* display white times pixels */
-    struct glint_real light; /* the same over the pixels it falls on */
+    int n_cells;                  /* per side */
+    struct glint_real flux;       /* display white times pixels */
+    struct glint_real irradiance; /* the same over the pixels it falls on */
 };
 
 /* 0: there are not so many. */
@@ -290,18 +290,19 @@ int glint_flare_held(const struct glint_flare *flare);
 
 /* ------------------------------------------------------------ what and why */
 
-/* What became of the rays of one ghost, beam and wave. */
+/* What became of the rays of one ghost, light and wave. */
 enum glint_fate {
     GLINT_FATE_DRAWN,
-    GLINT_FATE_EMPTY,  /* planned, but no edge of its grid changes a pixel */
-    GLINT_FATE_OTHER,  /* only_ghost asks for another one */
-    GLINT_FATE_BEYOND, /* the beam comes from farther out than the model goes */
-    GLINT_FATE_CLOSED, /* of this angle the model says: no ray gets through */
-    GLINT_FATE_BLOCKED,   /* the stop and the barrels take all rays looked at */
-    GLINT_FATE_DARK,      /* the beam has no light in this wave */
-    GLINT_FATE_OUTSIDE,   /* it lies beside the picture */
-    GLINT_FATE_FAINT,     /* no pixel can show it, of all beams together */
-    GLINT_FATE_NO_ROOM,   /* a capacity is full */
+    GLINT_FATE_EMPTY,   /* planned, but no edge of its grid changes a pixel */
+    GLINT_FATE_OTHER,   /* only_ghost asks for another one */
+    GLINT_FATE_BEYOND,  /* the light comes from farther out than the model goes
+                         */
+    GLINT_FATE_CLOSED,  /* of this angle the model says: no ray gets through */
+    GLINT_FATE_BLOCKED, /* the stop and the barrels take all rays looked at */
+    GLINT_FATE_DARK,    /* the light has no power in this wave */
+    GLINT_FATE_OUTSIDE, /* it lies beside the picture */
+    GLINT_FATE_FAINT,   /* no pixel can show it, of all lights together */
+    GLINT_FATE_NO_ROOM, /* a capacity is full */
     GLINT_FATE_OTHER_SET, /* the ghost takes another set of waves */
     GLINT_FATES
 };
@@ -321,18 +322,19 @@ struct glint_account {
                                picture's sides: display white times pixels */
 };
 
-/* The account of ghost GHOST (or part) of the lens, of beam BEAM and wave WAVE
- * of the frame that was planned and binned last, by edges. It asks the plan
- * again, so that what plan was given must still be there; changes nothing that
- * is drawn. Costs as much as planning that bundle. */
-void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
+/* The account of ghost GHOST (or part) of the lens, of light LIGHT and wave
+ * WAVE of the frame that was planned and binned last, by edges. It asks the
+ * plan again, so that what plan was given must still be there; changes nothing
+ * that is drawn. Costs as much as planning that bundle. */
+void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account);
 
 /* Of the bundles planned and binned last, by edges, keeps in the tiles those of
- * GHOST with all its parts, BEAM and WAVE (with sets: all waves of set WAVE),
+ * GHOST with all its parts, LIGHT and WAVE (with sets: all waves of set WAVE),
  * each -1 for all: draw draws these alone, until the next time that this or bin
  * is called. */
-void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave);
+void glint_flare_keep(struct glint_flare *flare, int ghost, int light,
+                      int wave);
 
 /* Edges in the list of small tile TILE, row by row; light that runs in from the
  * left is in none. */

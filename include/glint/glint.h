@@ -7,8 +7,8 @@
  *
  *   offline   glint/bake.h                   double precision; lens tables,
  *                                            exact rays
- *   run time  glint/lights.h tracks.h flare.h  integers only; no allocation
- *                                            after init
+ *   run time  glint/lamps.h lamp_tracker.h   integers only; no allocation
+ *             flare.h                        after init
  *
  * Conventions, unless a header says otherwise: pointers are not NULL; arrays do
  * not overlap; pointers are borrowed for the call, and kept only where marked
@@ -27,11 +27,11 @@
 #include "glint/flare.h"
 #include "glint/image.h"
 #include "glint/kernels.h"
+#include "glint/lamp_tracker.h"
+#include "glint/lamps.h"
 #include "glint/lens.h"
-#include "glint/lights.h"
 #include "glint/profile.h"
 #include "glint/status.h"
-#include "glint/tracks.h"
 #include "glint/workers.h"
 
 #define GLINT_VERSION "0.1.0"

@@ -8,12 +8,12 @@
 #include "flare/wave_sets.h"
 
 /* Where a bundle is among all there could be. */
-static int64_t number_of(const struct glint_flare *f, int ghost, int beam,
+static int64_t number_of(const struct glint_flare *f, int ghost, int light,
                          int wave)
 {
     const struct glint_flare_frame *r = f->plan.frame;
 
-    return ((int64_t)beam * (int)r->lens->header->n_ghosts + ghost) *
+    return ((int64_t)light * (int)r->lens->header->n_ghosts + ghost) *
                r->n_waves +
            wave;
 }
@@ -28,7 +28,7 @@ static int first_from(const struct glint_flare *f, int64_t number)
         const int middle = low + (high - low) / 2;
         const struct glint_bundle_plan *s = &f->planned[middle];
 
-        if (number_of(f, s->ghost, s->beam, s->wave) < number)
+        if (number_of(f, s->ghost, s->light, s->wave) < number)
             low = middle + 1;
         else
             high = middle;
@@ -43,29 +43,29 @@ static int find(const struct glint_flare *f, int64_t number)
 
     if (at == f->n_bundles)
         return -1;
-    return number_of(f, f->planned[at].ghost, f->planned[at].beam,
+    return number_of(f, f->planned[at].ghost, f->planned[at].light,
                      f->planned[at].wave) == number
                ? at
                : -1;
 }
 
-/* The set that GHOST took of BEAM; the first one if nothing is seen of it. */
-static int set_of(const struct glint_flare *f, int ghost, int beam)
+/* The set that GHOST took of LIGHT; the first one if nothing is seen of it. */
+static int set_of(const struct glint_flare *f, int ghost, int light)
 {
-    const int at = first_from(f, number_of(f, ghost, beam, 0));
+    const int at = first_from(f, number_of(f, ghost, light, 0));
     const struct glint_bundle_plan *s = &f->planned[at];
 
-    return at < f->n_bundles && s->ghost == ghost && s->beam == beam
+    return at < f->n_bundles && s->ghost == ghost && s->light == light
                ? glint_wave_sets_of(f->plan.frame->sets, s->wave)
                : 0;
 }
 
 /* The last place that the plan needed to look at the bundle. */
-static int64_t place_of(const struct glint_flare *f, int ghost, int beam,
+static int64_t place_of(const struct glint_flare *f, int ghost, int light,
                         int wave)
 {
     const struct glint_flare_frame *r = f->plan.frame;
-    const int64_t number = number_of(f, ghost, beam, wave);
+    const int64_t number = number_of(f, ghost, light, wave);
 
     return r->sets ? (number / r->n_waves + 1) * r->sets->size[0] - 1 : number;
 }
@@ -116,22 +116,22 @@ static void count_edges(const struct glint_flare *f,
     }
 }
 
-void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
+void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account)
 {
     struct glint_plan_scratch *scratch = flare->worker[0].plan;
-    const int64_t number = number_of(flare, ghost, beam, wave);
-    const int64_t place = place_of(flare, ghost, beam, wave);
+    const int64_t number = number_of(flare, ghost, light, wave);
+    const int64_t place = place_of(flare, ghost, light, wave);
     const struct glint_wave_sets *sets = flare->plan.frame->sets;
     const int at = find(flare, number);
     struct glint_bundle_plan planned = {
-        .ghost = ghost, .beam = beam, .wave = wave};
+        .ghost = ghost, .light = light, .wave = wave};
     struct glint_bundle bundle;
 
     *account = (struct glint_account){.fate = GLINT_FATE_DRAWN};
     account->fate = glint_plan_bundle(&flare->plan, &planned, &bundle, scratch);
     account->surveyed = scratch->survey.n_rays;
-    if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, beam)) {
+    if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, light)) {
         account->fate = GLINT_FATE_OTHER_SET;
         account->surveyed *= wave < sets->size[0];
         return;
@@ -158,19 +158,19 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int beam,
 }
 
 static int is_of(const struct glint_flare *f, const struct glint_bundle_plan *s,
-                 int ghost, int beam, int wave)
+                 int ghost, int light, int wave)
 {
     const struct glint_model_ghost *of = f->plan.frame->lens->ghost;
     const struct glint_wave_sets *sets = f->plan.frame->sets;
     const struct glint_model_ghost *here = &of[s->ghost];
 
     return (ghost < 0 || (here->i == of[ghost].i && here->j == of[ghost].j)) &&
-           (beam < 0 || s->beam == beam) &&
+           (light < 0 || s->light == light) &&
            (wave < 0 ||
             (sets ? glint_wave_sets_of(sets, s->wave) : s->wave) == wave);
 }
 
-void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
+void glint_flare_keep(struct glint_flare *flare, int ghost, int light, int wave)
 {
     const struct glint_edge *edge = glint_by_edges_of(flare)->edge;
 
@@ -179,7 +179,7 @@ void glint_flare_keep(struct glint_flare *flare, int ghost, int beam, int wave)
         for (int i = 0; i < flare->n_drawn; i++) {
             const struct glint_bundle_slot *slot = &flare->slot[i];
 
-            if (!is_of(flare, &flare->planned[i], ghost, beam, wave))
+            if (!is_of(flare, &flare->planned[i], ghost, light, wave))
                 continue;
             for (int k = slot->first; k < slot->first + slot->n; k++)
                 if (put)

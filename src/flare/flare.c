@@ -178,17 +178,17 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 /* ---------------------------------------------------------------------- plan
  */
 
-/* N beams without the last ones that are beyond the lens: a frame that has no
+/* N lights without the last ones that are beyond the lens: a frame that has no
  * others takes no time. */
 static int n_within(const struct glint_lens *lens,
-                    const struct glint_beam *beams, int n)
+                    const struct glint_light *lights, int n)
 {
-    while (n > 0 && glint_plan_is_beyond(lens, &beams[n - 1]))
+    while (n > 0 && glint_plan_is_beyond(lens, &lights[n - 1]))
         n--;
     return n;
 }
 
-/* All waves of one ghost and beam. */
+/* All waves of one ghost and light. */
 static void plan_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
@@ -201,7 +201,7 @@ static void plan_job(void *ctx, int job, int worker)
         if (at >= f->cfg.max_bundles)
             return;
         f->planned[at] = (struct glint_bundle_plan){
-            .ghost = job % n_ghosts, .beam = job / n_ghosts, .wave = wave};
+            .ghost = job % n_ghosts, .light = job / n_ghosts, .wave = wave};
         glint_plan_bundle(&f->plan, &f->planned[at], &f->bundle[at],
                           f->worker[worker].plan);
     }
@@ -215,8 +215,9 @@ static int stored(const struct glint_flare *f, const struct glint_bundle *b)
     return f->cfg.raster->fill ? n * n : 0;
 }
 
-/* Of many beams none may be seen by itself, but all together: a ghost is left
- * out in one wave for all beams. Sums of integers: their order is no matter. */
+/* Of many lights none may be seen by itself, but all together: a ghost is left
+ * out in one wave for all lights. Sums of integers: their order is no matter.
+ */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -243,8 +244,8 @@ static void keep_seen(struct glint_flare *f, int n)
         if (f->bundle[i].n_cells == 0)
             continue;
         f->flux = real_plus(f->flux, f->planned[i].flux);
-        if (real_less(f->brightest, f->planned[i].light))
-            f->brightest = f->planned[i].light;
+        if (real_less(f->brightest, f->planned[i].irradiance))
+            f->brightest = f->planned[i].irradiance;
         s->need_vertices = glint_flare_add_need(s->need_vertices, vertices);
         if (vertices > f->cfg.max_vertices - f->n_vertices) {
             s->dropped_bundles++;
@@ -258,7 +259,7 @@ static void keep_seen(struct glint_flare *f, int n)
     }
 }
 
-/* N_JOBS pairs of a ghost and a beam, all waves of each; returns how many
+/* N_JOBS pairs of a ghost and a light, all waves of each; returns how many
  * bundles there are. */
 static int plan_all(struct glint_flare *f, int n_jobs)
 {
@@ -278,19 +279,19 @@ static int plan_all(struct glint_flare *f, int n_jobs)
 
 void glint_flare_plan(struct glint_flare *flare,
                       const struct glint_flare_frame *frame,
-                      const struct glint_beam *beams, int n_beams)
+                      const struct glint_light *lights, int n_lights)
 {
     const int n_ghosts = (int)frame->lens->header->n_ghosts;
     const int64_t pairs =
-        (int64_t)n_within(frame->lens, beams, n_beams) * n_ghosts;
+        (int64_t)n_within(frame->lens, lights, n_lights) * n_ghosts;
     const int n_jobs = pairs < INT32_MAX ? (int)pairs : INT32_MAX;
 
     glint_flare_begin(flare);
     flare->quads = frame->half;
     set_size(flare, frame->half && flare->cfg.raster->halves);
     flare->plan = (struct glint_plan){.frame = frame,
-                                      .beam = beams,
-                                      .n_beams = n_beams,
+                                      .light = lights,
+                                      .n_lights = n_lights,
                                       .width = flare->cfg.width,
                                       .height = flare->cfg.height,
                                       .sets = flare->cfg.sets,
@@ -315,7 +316,7 @@ int glint_flare_planned(const struct glint_flare *flare, int i,
         return 0;
     *planned =
         (struct glint_planned){flare->bundle[i].n_cells, flare->planned[i].flux,
-                               flare->planned[i].light};
+                               flare->planned[i].irradiance};
     return 1;
 }
 

@@ -390,9 +390,9 @@ static int64_t pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* What the survey's rays reach, and a tenth more, turned by the beam's azimuth,
- * meets the picture. */
-static int is_in_view(const struct glint_plan *p, const struct glint_beam *b,
+/* What the survey's rays reach, and a tenth more, turned by the light's
+ * azimuth, meets the picture. */
+static int is_in_view(const struct glint_plan *p, const struct glint_light *b,
                       const struct glint_transfer *t,
                       const struct glint_plan_extent *e)
 {
@@ -418,7 +418,8 @@ static struct glint_real box_side(const struct glint_transfer *t, int k)
 
 /* The colour of the bundle, its largest channel 1; returns what that was. */
 static struct glint_real colour_of(const struct glint_wave *w,
-                                   const struct glint_beam *b, int32_t *rgb_q14)
+                                   const struct glint_light *b,
+                                   int32_t *rgb_q14)
 {
     int64_t rgb_q28[3], most = 0;
 
@@ -441,7 +442,7 @@ static struct glint_real flux_of(const struct glint_plan *p,
                                  struct glint_real colour, int exponent)
 {
     const struct glint_wave *w = &p->frame->wave[s->wave];
-    const struct glint_beam *b = &p->beam[s->beam];
+    const struct glint_light *b = &p->light[s->light];
     struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
 
     x.exponent += 2 + exponent; /* both are halves */
@@ -482,16 +483,16 @@ void glint_plan_transfer(const struct glint_plan *plan,
     const struct glint_flare_frame *r = plan->frame;
 
     glint_transfer_init(transfer, r->lens, planned->ghost,
-                        plan->beam[planned->beam].sine_q30,
+                        plan->light[planned->light].sine_q30,
                         r->wave[planned->wave].wave_q24);
     transfer->sets = plan->sets;
     transfer->energy_up = planned->energy_up;
 }
 
-struct glint_place glint_plan_place(const struct glint_plan *plan, int beam)
+struct glint_place glint_plan_place(const struct glint_plan *plan, int light)
 {
-    return (struct glint_place){.cos_q30 = plan->beam[beam].cos_q30,
-                                .sin_q30 = plan->beam[beam].sin_q30,
+    return (struct glint_place){.cos_q30 = plan->light[light].cos_q30,
+                                .sin_q30 = plan->light[light].sin_q30,
                                 .pixels_per_mm = pixels_per_mm(plan),
                                 .middle_x_q8 = plan->width * 128 >> plan->half,
                                 .middle_y_q8 =
@@ -519,9 +520,9 @@ static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
 }
 
 int glint_plan_is_beyond(const struct glint_lens *lens,
-                         const struct glint_beam *beam)
+                         const struct glint_light *light)
 {
-    return beam->sine_q30 > lens->header->sine_hi_q30;
+    return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
 /* Whether ghost or part GHOST is of the pair asked for. */
@@ -540,7 +541,7 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
                                   struct glint_plan_scratch *scratch)
 {
     const struct glint_flare_frame *r = plan->frame;
-    const struct glint_beam *b = &plan->beam[planned->beam];
+    const struct glint_light *b = &plan->light[planned->light];
     struct glint_transfer *transfer = &scratch->transfer;
     struct glint_plan_survey *s = &scratch->survey;
     struct glint_real colour;
@@ -576,11 +577,11 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     exponent = transfer->exponent[GLINT_OUT_ENERGY] + 29 - planned->energy_up;
     planned->flux = flux_of(plan, planned, transfer, colour, exponent);
     planned->peak_q20 = peak_q20(plan, s, transfer, planned->flux);
-    if (plan->n_beams == 1 && !r->sets && planned->peak_q20 < 1 << 20)
+    if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
         return GLINT_FATE_FAINT;
-    planned->light = real_over(
+    planned->irradiance = real_over(
         planned->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
-    bundle->n_cells = cells_of(plan, s, transfer, planned->light);
+    bundle->n_cells = cells_of(plan, s, transfer, planned->irradiance);
     if (transfer->hollow) /* two rows of cells are the middle's */
         bundle->n_cells = hollow_cells(bundle->n_cells);
     set_sags(planned, s, transfer, bundle->n_cells, plan->round);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a frame has to draw of a lens: which ghosts, beams and wavelengths, each
- * with how fine a grid.
+ * What a frame has to draw of a lens: which ghosts, lights and wavelengths,
+ * each with how fine a grid.
  *
- *   in   a baked lens, beams, waves, the picture's size
- *   out  a bundle for each ghost, beam and wave that can be seen in it
+ *   in   a baked lens, lights, waves, the picture's size
+ *   out  a bundle for each ghost, light and wave that can be seen in it
  *
  * Method: a few rays of each bundle go through its polynomials. Where they land
  * says whether it is in the picture, how much its light bends how many cells it
@@ -19,22 +19,22 @@
 
 /* Where the rays of a bundle come from. */
 struct glint_bundle_plan {
-    int32_t ghost, beam, wave;
+    int32_t ghost, light, wave;
     uint8_t energy_up; /* see struct glint_transfer */
     /* Of two barrels and a round stop: how far, in the mean, the grid's
      * straight lines lie above (1 + r^2) / 2, which is bent between its rays */
     uint16_t sag_q16[3];
-    struct glint_real flux;  /* of the whole pupil, at the most energy seen;
-                                display white times pixels */
-    struct glint_real light; /* the same over the pixels it falls on */
+    struct glint_real flux; /* of the whole pupil, at the most energy seen;
+                               display white times pixels */
+    struct glint_real irradiance; /* the same over the pixels it falls on */
     int64_t peak_q20; /* no pixel gets more; 1 = what can be seen, 2^20 at most
                        */
 };
 
 struct glint_plan {
     const struct glint_flare_frame *frame;
-    const struct glint_beam *beam;
-    int n_beams, width, height; /* of the picture */
+    const struct glint_light *light;
+    int n_lights, width, height; /* of the picture */
     unsigned sets;
     int half;  /* pixels are twice as wide and high as the picture's */
     int round; /* the stop is */
@@ -84,12 +84,12 @@ struct glint_plan_scratch {
     struct glint_plan_survey survey;
 };
 
-/* Whether the lens was never looked at from where BEAM comes. */
+/* Whether the lens was never looked at from where LIGHT comes. */
 int glint_plan_is_beyond(const struct glint_lens *lens,
-                         const struct glint_beam *beam);
+                         const struct glint_light *light);
 
 /* Plans one bundle: BUNDLE->n_cells is 0 where nothing of it can be seen, and
- * what is returned says why. SOURCE has ghost, beam and wave set. */
+ * what is returned says why. PLANNED has ghost, light and wave set. */
 enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
                                   struct glint_bundle_plan *planned,
                                   struct glint_bundle *bundle,
@@ -100,7 +100,7 @@ void glint_plan_transfer(const struct glint_plan *plan,
                          const struct glint_bundle_plan *planned,
                          struct glint_transfer *transfer);
 
-/* Where beam BEAM's ghosts lie in the picture. */
-struct glint_place glint_plan_place(const struct glint_plan *plan, int beam);
+/* Where light LIGHT's ghosts lie in the picture. */
+struct glint_place glint_plan_place(const struct glint_plan *plan, int light);
 
 #endif

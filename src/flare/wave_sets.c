@@ -6,9 +6,9 @@
 
 enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 
-/* A ghost and a beam. Lies where bundles find their places only later. */
+/* A ghost and a light. Lies where bundles find their places only later. */
 struct job {
-    int ghost, beam;
+    int ghost, light;
     int set;      /* or UNSEEN */
     int peak_q20; /* of all its waves, 2^20 at most: see struct
                      glint_bundle_plan */
@@ -52,9 +52,9 @@ static void trace(const struct glint_plan *plan, const struct job *job,
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const struct glint_real scale =
-        glint_plan_place(plan, job->beam).pixels_per_mm;
+        glint_plan_place(plan, job->light).pixels_per_mm;
     const struct glint_bundle_plan planned = {
-        .ghost = job->ghost, .beam = job->beam, .wave = wave};
+        .ghost = job->ghost, .light = job->light, .wave = wave};
 
     glint_plan_transfer(plan, &planned, t);
     for (int row = 0; row < ROWS; row++) {
@@ -130,7 +130,7 @@ static int choose(const struct glint_plan *plan, const struct job *job,
 
     for (int i = 0; i < n; i++)
         if (bundle[i].n_cells)
-            light = real_plus(light, planned[i].light);
+            light = real_plus(light, planned[i].irradiance);
     if (r->sets->n_sets > 1 && !serves(r, 0, FARTHEST_Q8, light)) {
         const int64_t apart = both ? apart_q8(plan, job, t) : FARTHEST_Q8;
 
@@ -151,13 +151,13 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
 
     for (int i = 0; i < sets->size[set]; i++) {
         f->planned[at + i] = (struct glint_bundle_plan){
-            .ghost = job->ghost, .beam = job->beam, .wave = first + i};
+            .ghost = job->ghost, .light = job->light, .wave = first + i};
         glint_plan_bundle(&f->plan, &f->planned[at + i], &f->bundle[at + i],
                           scratch);
     }
 }
 
-/* A ghost and a beam with the first set, and what it takes. */
+/* A ghost and a light with the first set, and what it takes. */
 static void look_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
@@ -168,7 +168,7 @@ static void look_job(void *ctx, int number, int worker)
     int64_t peak_q20 = 0;
 
     *job = (struct job){
-        .ghost = number % n_ghosts, .beam = number / n_ghosts, .set = UNSEEN};
+        .ghost = number % n_ghosts, .light = number / n_ghosts, .set = UNSEEN};
     plan_waves(f, job, at, 0, f->worker[worker].plan);
     for (int i = 0; i < n; i++)
         if (f->bundle[at + i].n_cells) {
@@ -190,7 +190,7 @@ static void more_job(void *ctx, int number, int worker)
         plan_waves(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* A ghost that no pixel can show of all beams together. */
+/* A ghost that no pixel can show of all lights together. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;

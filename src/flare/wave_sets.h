@@ -2,7 +2,7 @@
  *
  * Which set of waves a ghost takes.
  *
- *   in   a flare whose plan has sets; how many ghosts and beams there are
+ *   in   a flare whose plan has sets; how many ghosts and lights there are
  *   out  bundles, as of glint_plan_bundle(), one after the other
  *
  * Method: all ghosts are planned with the first set, which says which can be
@@ -18,7 +18,7 @@
 #include "flare/state.h"
 
 struct glint_wave_planner {
-    /* Plans N_JOBS pairs of a ghost and a beam, ghosts first; returns how many
+    /* Plans N_JOBS pairs of a ghost and a light, ghosts first; returns how many
      * bundles there are, and sets the statistics of what was needed. */
     int (*plan)(struct glint_flare *flare, int n_jobs);
 };

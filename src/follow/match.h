@@ -14,7 +14,7 @@
 #ifndef GLINT_FOLLOW_MATCH_H
 #define GLINT_FOLLOW_MATCH_H
 
-#include "glint/lights.h"
+#include "glint/lamps.h"
 
 struct glint_arena;
 

@@ -219,7 +219,7 @@ static void coast(struct glint_record *r, const struct glint_record_step *step)
 {
     for (int axis = 0; axis < 2; axis++) {
         r->of[X + axis].value = r->ahead_q16[axis];
-        if (r->state != GLINT_TRACK_LEAVING)
+        if (r->state != GLINT_LAMP_LEAVING)
             slow_down(r, step, axis);
     }
 }
@@ -258,7 +258,8 @@ static enum glint_follow_as judge_light(int64_t change, int64_t larger,
 }
 
 /* The time that all of a light takes to come or go. */
-static int32_t blend_us(const struct glint_tracks_config *cfg, int64_t change)
+static int32_t blend_us(const struct glint_lamp_tracker_config *cfg,
+                        int64_t change)
 {
     return 1000 * (change > 0 ? cfg->attack_ms : cfg->release_ms);
 }
@@ -362,7 +363,7 @@ static int is_far(const struct glint_record *r)
 static int is_over(const struct glint_record *r,
                    const struct glint_record_step *step)
 {
-    return r->level_q30 == 0 && (r->state == GLINT_TRACK_LEAVING ||
+    return r->level_q30 == 0 && (r->state == GLINT_LAMP_LEAVING ||
                                  r->lost_us / 1000 >= step->cfg->memory_ms);
 }
 
@@ -371,8 +372,7 @@ void glint_record_miss(struct glint_record *r,
 {
     blend(r, step);
     if (r->lost_us == 0)
-        r->state =
-            is_leaving(r, step) ? GLINT_TRACK_LEAVING : GLINT_TRACK_FADING;
+        r->state = is_leaving(r, step) ? GLINT_LAMP_LEAVING : GLINT_LAMP_FADING;
     coast(r, step);
     r->lost_us += step->pace.elapsed_us > 0 ? step->pace.elapsed_us : 1;
     if (is_over(r, step) || is_far(r))
@@ -397,18 +397,17 @@ static void rise(struct glint_record *r, const struct glint_record_step *step)
     r->level_q30 = step->is_fresh || r->level_q30 > FULL_Q30 - part_q30
                        ? FULL_Q30
                        : r->level_q30 + part_q30;
-    r->state =
-        r->level_q30 == FULL_Q30 ? GLINT_TRACK_STEADY : GLINT_TRACK_RISING;
+    r->state = r->level_q30 == FULL_Q30 ? GLINT_LAMP_STEADY : GLINT_LAMP_RISING;
 }
 
 static void fade(struct glint_record *r, const struct glint_record_step *step)
 {
-    const int is_out = r->state == GLINT_TRACK_LEAVING && r->lost_us > 0;
+    const int is_out = r->state == GLINT_LAMP_LEAVING && r->lost_us > 0;
     const int32_t part_q30 = level_step_q30(
         step, is_out ? step->cfg->leave_ms : step->cfg->release_ms);
 
     r->level_q30 = r->level_q30 > part_q30 ? r->level_q30 - part_q30 : 0;
-    r->state = is_out ? GLINT_TRACK_LEAVING : GLINT_TRACK_FADING;
+    r->state = is_out ? GLINT_LAMP_LEAVING : GLINT_LAMP_FADING;
 }
 
 void glint_record_set_level(struct glint_record *r,
@@ -421,7 +420,7 @@ void glint_record_set_level(struct glint_record *r,
 }
 
 /* The axis that lies at half the angle; across where none is known. */
-static void set_axis(struct glint_track *track, int64_t cos2_q15,
+static void set_axis(struct glint_lamp_track *track, int64_t cos2_q15,
                      int64_t sin2_q15)
 {
     const int64_t size_q15 =
@@ -437,10 +436,10 @@ static void set_axis(struct glint_track *track, int64_t cos2_q15,
         track->sin_q15 = -track->sin_q15;
 }
 
-struct glint_track glint_record_track(const struct glint_record *r)
+struct glint_lamp_track glint_record_track(const struct glint_record *r)
 {
     const struct glint_follow *of = r->of;
-    struct glint_track track = {
+    struct glint_lamp_track track = {
         .id = r->id,
         .state = r->state,
         .x_q8 = q_narrow(q_shift(glint_follow_shown(&of[X]), 8)),

@@ -12,7 +12,7 @@
 #define GLINT_FOLLOW_RECORD_H
 
 #include "follow/follow.h"
-#include "glint/tracks.h"
+#include "glint/lamp_tracker.h"
 
 /* What is followed: places _q16, the rest as in a spot. */
 enum glint_record_channel {
@@ -33,7 +33,7 @@ enum glint_record_channel {
 
 struct glint_record {
     uint32_t id; /* 0: forgotten */
-    enum glint_track_state state;
+    enum glint_lamp_state state;
     struct glint_follow of[GLINT_CHANNELS];
     struct glint_spot last;  /* it was seen as */
     int n_same;              /* pictures in a row before that showed the same */
@@ -46,7 +46,7 @@ struct glint_record {
 
 /* What is the same for all records of a picture. */
 struct glint_record_step {
-    const struct glint_tracks_config *cfg;
+    const struct glint_lamp_tracker_config *cfg;
     struct glint_pace pace;
     int is_fresh; /* what begins is at full level at once */
 };
@@ -76,6 +76,6 @@ void glint_record_miss(struct glint_record *r,
 void glint_record_set_level(struct glint_record *r,
                             const struct glint_record_step *step);
 
-struct glint_track glint_record_track(const struct glint_record *r);
+struct glint_lamp_track glint_record_track(const struct glint_record *r);
 
 #endif

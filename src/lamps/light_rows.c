@@ -6,7 +6,7 @@
  * of a row is summed where one needs it that may still be a light.
  */
 #include "base/q.h"
-#include "lamps/lights_state.h"
+#include "lamps/lamp_finder.h"
 
 /* Regions of which less than 1 / 2^SEED_LOG2 reaches the upper threshold are
  * lit surfaces, not lights. */
@@ -23,7 +23,7 @@
 /* ------------------------------------------------------------------- levels */
 
 /* Regions at LIGHT times the thresholds. */
-static void add_level(struct glint_lights *f, int32_t light_q20)
+static void add_level(struct glint_lamp_finder *f, int32_t light_q20)
 {
     const struct glint_bright *b = &f->bright;
     struct glint_level *level = &f->level[f->n_levels++];
@@ -36,7 +36,7 @@ static void add_level(struct glint_lights *f, int32_t light_q20)
 
 /* The same of a picture that is darker than white, unless much of it is as
  * bright. */
-static void add_dark_level(struct glint_lights *f)
+static void add_dark_level(struct glint_lamp_finder *f)
 {
     if (!f->cfg.judge || f->white->light_q20 >= LINEAR_WHITE_Q20)
         return;
@@ -51,7 +51,7 @@ static void add_dark_level(struct glint_lights *f)
 }
 
 /* Regions of what is clipped, in one channel or in all, LOW and above. */
-static void add_core(struct glint_lights *f, int low, int32_t cost_q8)
+static void add_core(struct glint_lamp_finder *f, int low, int32_t cost_q8)
 {
     f->level[f->n_levels++] =
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
@@ -59,7 +59,7 @@ static void add_core(struct glint_lights *f, int low, int32_t cost_q8)
 
 /* A picture that is darker than white has lamps that are, and may have others
  * that are not. */
-static void set_levels(struct glint_lights *f)
+static void set_levels(struct glint_lamp_finder *f)
 {
     const int white_code = f->cfg.white_code;
     struct glint_bright *b = &f->bright;
@@ -82,7 +82,7 @@ static void set_levels(struct glint_lights *f)
 
 /* --------------------------------------------------------------- candidates */
 
-static int is_light(const struct glint_lights *f,
+static int is_light(const struct glint_lamp_finder *f,
                     const struct glint_region *sum)
 {
     return sum->area >= f->cfg.min_area && sum->n_seeds > 0 &&
@@ -90,7 +90,7 @@ static int is_light(const struct glint_lights *f,
 }
 
 /* Large enough to be what is left of a light. */
-static int is_faint(const struct glint_lights *f,
+static int is_faint(const struct glint_lamp_finder *f,
                     const struct glint_region *sum)
 {
     return f->cfg.keep_faint && sum->area >= (f->cfg.min_area + 1) / 2;
@@ -99,20 +99,21 @@ static int is_faint(const struct glint_lights *f,
 /* Holds SUM if it qualifies. */
 static void offer(void *finder, const struct glint_region *sum)
 {
-    struct glint_lights *f = finder;
+    struct glint_lamp_finder *f = finder;
     const int light = is_light(f, sum);
 
     if (sum->area <= f->max_area && (light || is_faint(f, sum)))
-        glint_lights_hold(f,
-                          &(struct glint_candidate){.sum = *sum,
-                                                    .level = (int16_t)f->at,
-                                                    .faint = (uint8_t)!light});
+        glint_lamps_hold(f,
+                         &(struct glint_candidate){.sum = *sum,
+                                                   .level = (int16_t)f->at,
+                                                   .faint = (uint8_t)!light});
 }
 
 /* --------------------------------------------------------------------- rows */
 
 /* Adds RUN of row Y to what is known of SUM without its light. */
-static void count_run(struct glint_region *sum, const struct glint_lights *f,
+static void count_run(struct glint_region *sum,
+                      const struct glint_lamp_finder *f,
                       const struct glint_run *run, int y)
 {
     const struct glint_level *level = &f->level[f->at];
@@ -143,13 +144,13 @@ static void want(struct glint_run **outer, const struct glint_run *run)
 }
 
 /* What is larger is no light, whatever else it is. */
-static int may_be_light(const struct glint_lights *f,
+static int may_be_light(const struct glint_lamp_finder *f,
                         const struct glint_region *sum)
 {
     return sum->area <= f->max_area;
 }
 
-static void link_level(struct glint_lights *f, int greatest, int y)
+static void link_level(struct glint_lamp_finder *f, int greatest, int y)
 {
     struct glint_regions *r = &f->regions[f->at];
     const int low = f->level[f->at].low;
@@ -168,7 +169,7 @@ static void link_level(struct glint_lights *f, int greatest, int y)
 }
 
 /* Sums light where a region of any level needs it. */
-static void sum_row(struct glint_lights *f)
+static void sum_row(struct glint_lamp_finder *f)
 {
     const struct glint_run_row *row = &f->regions[0].here;
     const int last = f->cfg.width - ROW_LIGHT_RIM;
@@ -186,7 +187,7 @@ static void sum_row(struct glint_lights *f)
     }
 }
 
-static void light_level(struct glint_lights *f, int y)
+static void light_level(struct glint_lamp_finder *f, int y)
 {
     struct glint_regions *r = &f->regions[f->at];
 
@@ -202,7 +203,7 @@ static void light_level(struct glint_lights *f, int y)
         glint_regions_end_row(r, offer, f, y);
 }
 
-static void take_row(struct glint_lights *f, int y)
+static void take_row(struct glint_lamp_finder *f, int y)
 {
     const int greatest = glint_bright_scan(&f->bright, y);
 
@@ -213,8 +214,8 @@ static void take_row(struct glint_lights *f, int y)
         light_level(f, y);
 }
 
-void glint_lights_collect(struct glint_lights *f,
-                          const struct glint_image *image)
+void glint_lamps_collect(struct glint_lamp_finder *f,
+                         const struct glint_image *image)
 {
     f->n = f->dropped = 0;
     glint_bright_begin(&f->bright, image);

@@ -76,7 +76,7 @@ static void circle(int32_t t, int32_t *sine, int32_t *cosine)
     *cosine = (int32_t)(((one - t2) << 30) / (one + t2));
 }
 
-static void make_beam(struct glint_beam *b)
+static void make_beam(struct glint_light *b)
 {
     int32_t sine, cosine;
     int exponent;
@@ -148,20 +148,21 @@ static void make_picture(struct glint_image *image, uint8_t *mem, size_t bytes)
 
 static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
 {
-    struct glint_lights_config c;
-    struct glint_lights *finder;
+    struct glint_lamp_finder_config c;
+    struct glint_lamp_finder *finder;
     struct glint_spot spot[MAX_SPOTS];
     int n;
 
-    glint_lights_defaults(&c, image->width, image->height);
+    glint_lamp_finder_defaults(&c, image->width, image->height);
     c.threshold_high_q8 = -number(512);
     c.threshold_low_q8 = c.threshold_high_q8 - number(512);
     c.judge = number(2);
     c.keep_faint = number(2);
     if (image->format == GLINT_LINEAR_Q20 ||
-        glint_lights_init(&finder, &c, finder_memory, FINDER_BYTES) != GLINT_OK)
+        glint_lamp_finder_init(&finder, &c, finder_memory, FINDER_BYTES) !=
+            GLINT_OK)
         return h;
-    n = glint_lights_find(finder, image, spot, MAX_SPOTS);
+    n = glint_lamp_finder_find(finder, image, spot, MAX_SPOTS);
     for (int i = 0; i < n; i++) {
         const struct glint_spot *s = &spot[i];
         const int64_t all[] = {s->x_q8,       s->y_q8,       s->size_q8,
@@ -177,7 +178,7 @@ static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
 static void draw_flare(const struct glint_flare_config *c,
                        const struct glint_image *image)
 {
-    struct glint_beam beam[MAX_BEAMS];
+    struct glint_light beam[MAX_BEAMS];
     struct glint_wave wave[3];
     struct glint_flare_stats stats;
     struct glint_flare *flare;
@@ -202,7 +203,7 @@ static void draw_flare(const struct glint_flare_config *c,
         make_beam(&beam[i]);
     if (image->format != GLINT_LINEAR_Q20)
         rays.faintest = real_of(1, -13);
-    n = glint_beams_merge(beam, n_given, near_q30, most, &n_apart);
+    n = glint_lights_merge(beam, n_given, near_q30, most, &n_apart);
     glint_flare_plan(flare, &rays, beam, n);
     glint_flare_bin(flare, &stats);
     glint_flare_draw(flare, image);

@@ -5,10 +5,10 @@
  * the level, box, centroid (pixels), pixels, then the measures of
  * enum glint_evidence and the score that the library gives.
  */
-#include "lamps/lights_state.h"
+#include "lamps/lamp_finder.h"
 #include "ppm.h"
 
-static void put(const char *name, const struct glint_lights *f,
+static void put(const char *name, const struct glint_lamp_finder *f,
                 const struct glint_candidate *c)
 {
     const struct glint_region *sum = &c->sum;
@@ -24,7 +24,7 @@ static void put(const char *name, const struct glint_lights *f,
     printf(",%d\n", (int)c->score_q8);
 }
 
-static void score(struct glint_lights *f)
+static void score(struct glint_lamp_finder *f)
 {
     const struct glint_score all = {&f->bright,    f->white, f->cfg.width,
                                     f->cfg.height, f->level, 0};
@@ -34,20 +34,20 @@ static void score(struct glint_lights *f)
 
 static int list(const char *name, const struct glint_image *image)
 {
-    struct glint_lights_config cfg;
-    struct glint_lights *f;
+    struct glint_lamp_finder_config cfg;
+    struct glint_lamp_finder *f;
     void *mem = NULL;
     size_t bytes;
 
-    glint_lights_defaults(&cfg, image->width, image->height);
-    bytes = glint_lights_bytes(&cfg);
+    glint_lamp_finder_defaults(&cfg, image->width, image->height);
+    bytes = glint_lamp_finder_bytes(&cfg);
     if (posix_memalign(&mem, 64, bytes) != 0 ||
-        glint_lights_init(&f, &cfg, mem, bytes) != GLINT_OK) {
+        glint_lamp_finder_init(&f, &cfg, mem, bytes) != GLINT_OK) {
         fprintf(stderr, "%s: no finder for this size\n", name);
         free(mem);
         return 1;
     }
-    glint_lights_collect(f, image);
+    glint_lamps_collect(f, image);
     score(f);
     for (int i = 0; i < f->n; i++)
         put(name, f, &f->candidate[f->order[i]]);

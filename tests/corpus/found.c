@@ -4,29 +4,29 @@
  * picture, then x, y, RMS radius, pixels and light of each lamp. What does not
  * fit 128 lamps joins others.
  */
-#include "glint/lights.h"
+#include "glint/lamps.h"
 #include "ppm.h"
 
 enum { MOST = 128 };
 
 static int find(const char *name, const struct glint_image *image)
 {
-    struct glint_lights_config cfg;
-    struct glint_lights *finder;
+    struct glint_lamp_finder_config cfg;
+    struct glint_lamp_finder *finder;
     struct glint_spot spot[MOST];
     void *mem = NULL;
     size_t bytes;
     int n;
 
-    glint_lights_defaults(&cfg, image->width, image->height);
-    bytes = glint_lights_bytes(&cfg);
+    glint_lamp_finder_defaults(&cfg, image->width, image->height);
+    bytes = glint_lamp_finder_bytes(&cfg);
     if (posix_memalign(&mem, 64, bytes) != 0 ||
-        glint_lights_init(&finder, &cfg, mem, bytes) != GLINT_OK) {
+        glint_lamp_finder_init(&finder, &cfg, mem, bytes) != GLINT_OK) {
         fprintf(stderr, "%s: no finder for this size\n", name);
         free(mem);
         return 1;
     }
-    n = glint_lights_find(finder, image, spot, MOST);
+    n = glint_lamp_finder_find(finder, image, spot, MOST);
     for (int i = 0; i < n; i++)
         printf("%s,%.2f,%.2f,%.2f,%d,%.3f\n", name, spot[i].x_q8 / 256.0,
                spot[i].y_q8 / 256.0, spot[i].size_q8 / 256.0, (int)spot[i].area,

@@ -119,7 +119,7 @@ static void check_frame(const struct glint_lens *lens)
     const struct glint_wave wave[2] = {
         {h->wave_lo_q24, {16384, 0, 0}, {1 << 30, -30}},
         {h->wave_hi_q24, {0, 9000, 16384}, {1 << 30, 9}}};
-    const struct glint_beam beam[2] = {
+    const struct glint_light beam[2] = {
         {0, ONE, ONE, 0, {1 << 30, -20}, {16384, 16384, 16384}},
         {h->sine_hi_q30, ONE / 2, ONE / 2, -ONE, {1 << 30, 20}, {16384, 1, 0}}};
     const struct glint_flare_frame rays = {.lens = lens,

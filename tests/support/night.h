@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "glint/lights.h"
+#include "glint/lamps.h"
 #include "glint/profile.h"
-#include "glint/tracks.h"
+#include "glint/lamp_tracker.h"
 
 enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
 
@@ -25,14 +25,14 @@ struct night {
     struct glint_image image;
     double sigma;            /* of the noise, codes */
     double pole_x0, pole_x1; /* nothing is seen between */
-    struct glint_lights *finder;
-    struct glint_lights_config lights;
-    struct glint_tracks *tracks;
-    struct glint_tracks_config cfg;
+    struct glint_lamp_finder *finder;
+    struct glint_lamp_finder_config lights;
+    struct glint_lamp_tracker *tracks;
+    struct glint_lamp_tracker_config cfg;
     struct glint_profile *profile;
     void *mem[3];
     struct glint_spot spot[NIGHT_MAX];
-    struct glint_track track[NIGHT_MAX];
+    struct glint_lamp_track track[NIGHT_MAX];
     int n_spots, n_tracks;
     uint32_t seed;
     int8_t noise[NIGHT_NOISE];     /* 1/16 of sigma */
@@ -60,26 +60,26 @@ static inline void night_init(struct night *night, int width, int height)
             sum += night_random(night, 1 << 20) * 0x1p-20;
         night->noise[i] = (int8_t)fmax(-127, fmin(127, floor(16 * sum + 0.5)));
     }
-    glint_lights_defaults(&night->lights, width, height);
+    glint_lamp_finder_defaults(&night->lights, width, height);
     night->lights.keep_faint = 1;
     night->lights.max_share_q15 = 1 << 15;
-    glint_tracks_defaults(&night->cfg, width, height);
+    glint_lamp_tracker_defaults(&night->cfg, width, height);
 }
 
 /* After configuration. Returns whether all went well. */
 static inline int night_open(struct night *n)
 {
-    const size_t bytes[2] = {glint_lights_bytes(&n->lights),
-                             glint_tracks_bytes(&n->cfg)};
+    const size_t bytes[2] = {glint_lamp_finder_bytes(&n->lights),
+                             glint_lamp_tracker_bytes(&n->cfg)};
 
     return posix_memalign(&n->mem[0], 64, bytes[0]) == 0 &&
            posix_memalign(&n->mem[1], 64, bytes[1]) == 0 &&
            posix_memalign(&n->mem[2], 64, glint_profile_bytes()) == 0 &&
            glint_profile_init(&n->profile, n->mem[2], glint_profile_bytes()) ==
                GLINT_OK &&
-           glint_lights_init(&n->finder, &n->lights, n->mem[0], bytes[0]) ==
-               GLINT_OK &&
-           glint_tracks_init(&n->tracks, &n->cfg, n->mem[1], bytes[1]) ==
+           glint_lamp_finder_init(&n->finder, &n->lights, n->mem[0],
+                                  bytes[0]) == GLINT_OK &&
+           glint_lamp_tracker_init(&n->tracks, &n->cfg, n->mem[1], bytes[1]) ==
                GLINT_OK;
 }
 
@@ -156,10 +156,11 @@ static inline void night_draw(struct night *night,
 /* Finds and tracks what the picture shows. */
 static inline void night_track(struct night *n, int32_t elapsed_us)
 {
-    n->n_spots = glint_lights_find(n->finder, &n->image, n->spot, NIGHT_MAX);
+    n->n_spots =
+        glint_lamp_finder_find(n->finder, &n->image, n->spot, NIGHT_MAX);
     glint_profile_measure(n->profile, &n->image, n->spot, n->n_spots);
-    n->n_tracks = glint_tracks_step(n->tracks, n->spot, n->n_spots, elapsed_us,
-                                    n->track, NIGHT_MAX);
+    n->n_tracks = glint_lamp_tracker_step(n->tracks, n->spot, n->n_spots,
+                                          elapsed_us, n->track, NIGHT_MAX);
 }
 
 static inline void night_step(struct night *n, const struct night_lamp *lamp,
@@ -169,7 +170,7 @@ static inline void night_step(struct night *n, const struct night_lamp *lamp,
     night_track(n, elapsed_us);
 }
 
-static inline double night_power(const struct glint_track *t)
+static inline double night_power(const struct glint_lamp_track *t)
 {
     return t->level_q15 / 32768.0 * (double)t->power_q16 / 65536;
 }

@@ -30,7 +30,7 @@ static int n_rows, features;
 
 struct camera {
     struct glint_image image;
-    struct glint_lights *finder;
+    struct glint_lamp_finder *finder;
     struct glint_profile *profile;
     struct glint_spot spot[MAX_SPOTS];
     int n;
@@ -41,11 +41,11 @@ struct camera {
 
 static void open_camera(struct camera *c, int width, int height)
 {
-    struct glint_lights_config cfg;
+    struct glint_lamp_finder_config cfg;
     size_t bytes;
 
-    glint_lights_defaults(&cfg, width, height);
-    bytes = glint_lights_bytes(&cfg);
+    glint_lamp_finder_defaults(&cfg, width, height);
+    bytes = glint_lamp_finder_bytes(&cfg);
     c->image = (struct glint_image){
         .format = GLINT_RGB24, .width = width, .height = height};
     glint_image_place(&c->image, malloc((size_t)(3 * width * height)));
@@ -53,7 +53,7 @@ static void open_camera(struct camera *c, int width, int height)
     c->stack = malloc(sizeof *c->stack * (size_t)(width * height));
     if (posix_memalign(&c->mem[0], 64, bytes) ||
         posix_memalign(&c->mem[1], 64, glint_profile_bytes()) ||
-        glint_lights_init(&c->finder, &cfg, c->mem[0], bytes) ||
+        glint_lamp_finder_init(&c->finder, &cfg, c->mem[0], bytes) ||
         glint_profile_init(&c->profile, c->mem[1], glint_profile_bytes()))
         exit(1);
 }
@@ -370,7 +370,7 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
         const double gain = base * exp2(-k);
 
         power_expose(c.image.plane[0], &scene, gain, 1.5, &seed);
-        c.n = glint_lights_find(c.finder, &c.image, c.spot, MAX_SPOTS);
+        c.n = glint_lamp_finder_find(c.finder, &c.image, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, &c.image, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {
             struct glint_spot ideal;

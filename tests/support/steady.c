@@ -51,7 +51,7 @@ static double beyond(double step, double own)
 
 static void note(struct steady *s, double total, double own)
 {
-    const bool is_cut = glint_tracks_was_cut(s->look.finder.tracks);
+    const bool is_cut = glint_lamp_tracker_was_cut(s->look.finder.tracks);
     /* A flare below this is unseen, so it does not step when it appears. */
     const double least = 1e-6;
 

@@ -117,7 +117,7 @@ static void print_lights(const struct explain *e, const struct explain_title *t)
 {
     print_head("light    angle azimuth bundles");
     for (int i = 0; i < e->n_beams && i < t->top; i++) {
-        const struct glint_beam *b = &e->frame->beam[i];
+        const struct glint_light *b = &e->frame->beam[i];
 
         printf("%5d %8.3f %7.1f %7d", i + 1,
                degrees(b->sine_q30, b->cosine_q30),
@@ -274,7 +274,7 @@ static void json_lights(const struct explain *e, const struct explain_title *t)
 
     printf("\"lights\": [");
     for (int i = 0; i < e->n_beams; i++) {
-        const struct glint_beam *b = &e->frame->beam[i];
+        const struct glint_light *b = &e->frame->beam[i];
 
         printf("%s{\"angle_deg\": %.6g, \"azimuth_deg\": %.6g, ", i ? ", " : "",
                degrees(b->sine_q30, b->cosine_q30),

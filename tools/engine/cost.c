@@ -61,7 +61,7 @@ struct cost cost_of(const struct cost_plan *p, const struct glint_dials *then)
 
     for (int i = 0; glint_flare_planned(p->flare, i, &b); i++) {
         const double n = cells_at(b.n_cells, finer);
-        const double light = glint_real_value(b.light);
+        const double light = glint_real_value(b.irradiance);
         const double area = larger * glint_real_value(b.flux) / light;
         const double rows = fmin(sqrt(area), height);
         const double levels =

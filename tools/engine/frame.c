@@ -114,10 +114,10 @@ static void set_waves(struct frame *f)
                 wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
 }
 
-static struct glint_beam beam_of(const struct glint_lamp *l, double scale)
+static struct glint_light beam_of(const struct glint_lamp *l, double scale)
 {
     const double degree = 3.14159265358979323846 / 180;
-    struct glint_beam b;
+    struct glint_light b;
     const double size = glint_real_value(largest_of(l->rgb, b.rgb_q14));
     const double power = size * l->power * scale;
 
@@ -129,7 +129,7 @@ static struct glint_beam beam_of(const struct glint_lamp *l, double scale)
     return b;
 }
 
-static struct glint_lamp lamp_of(const struct glint_beam *b)
+static struct glint_lamp lamp_of(const struct glint_light *b)
 {
     const double degree = 3.14159265358979323846 / 180;
 
@@ -166,21 +166,21 @@ static int32_t near_q30(const struct frame *f)
 }
 
 /* Beams that give nothing must not be merged with others into one that does. */
-static bool is_beyond(const struct frame *f, const struct glint_beam *b)
+static bool is_beyond(const struct frame *f, const struct glint_light *b)
 {
     return f->lens && b->sine_q30 > f->lens->header->sine_hi_q30;
 }
 
 bool frame_is_beyond(const struct frame *frame, const struct glint_lamp *lamp)
 {
-    const struct glint_beam b = beam_of(lamp, 1);
+    const struct glint_light b = beam_of(lamp, 1);
 
     return is_beyond(frame, &b);
 }
 
 static enum glint_status hold_beams(struct frame *f, int n)
 {
-    struct glint_beam *beam;
+    struct glint_light *beam;
 
     if (n <= f->max_beams)
         return GLINT_OK;
@@ -229,8 +229,8 @@ set_beams(struct frame *f, const struct glint_lamp *lamps, int n, double scale)
         f->n_beyond += within == before;
     }
     f->n_more = within - (n - f->n_beyond);
-    f->n_beams = glint_beams_merge(f->beam, within, near_q30(f),
-                                   f->dials.max_lights, &f->n_apart);
+    f->n_beams = glint_lights_merge(f->beam, within, near_q30(f),
+                                    f->dials.max_lights, &f->n_apart);
     return GLINT_OK;
 }
 

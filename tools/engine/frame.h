@@ -40,7 +40,7 @@ struct frame {
 
     struct glint_wave wave[GLINT_SET_WAVES];
     struct glint_wave_sets sets;
-    struct glint_beam *beam;
+    struct glint_light *beam;
     int n_beams, max_beams;
     int n_apart;  /* lights that can be told apart */
     int n_beyond; /* left out before: the model ends before them */

@@ -322,11 +322,11 @@ static size_t padded(size_t bytes)
 
 /* Takes one block and places everything in it. */
 static enum glint_status place(struct lamp_finder *f,
-                               const struct glint_lights_config *lights,
-                               const struct glint_tracks_config *tracks)
+                               const struct glint_lamp_finder_config *lights,
+                               const struct glint_lamp_tracker_config *tracks)
 {
-    const size_t lights_bytes = padded(glint_lights_bytes(lights));
-    const size_t tracks_bytes = padded(glint_tracks_bytes(tracks));
+    const size_t lights_bytes = padded(glint_lamp_finder_bytes(lights));
+    const size_t tracks_bytes = padded(glint_lamp_tracker_bytes(tracks));
     const size_t profile_bytes = padded(glint_profile_bytes());
     const size_t spot_bytes = padded(LAMP_FINDER_MAX * sizeof *f->spot);
     enum glint_status status;
@@ -340,31 +340,31 @@ static enum glint_status place(struct lamp_finder *f,
                            (size_t)f->max_tracks * sizeof *f->track) != 0)
         return GLINT_E_MEMORY;
     at = f->mem;
-    status = glint_lights_init(&f->lights, lights, at, lights_bytes);
+    status = glint_lamp_finder_init(&f->lights, lights, at, lights_bytes);
     if (status == GLINT_OK)
-        status = glint_tracks_init(&f->tracks, tracks, at + lights_bytes,
-                                   tracks_bytes);
+        status = glint_lamp_tracker_init(&f->tracks, tracks, at + lights_bytes,
+                                         tracks_bytes);
     at += lights_bytes + tracks_bytes;
     if (status == GLINT_OK)
         status = glint_profile_init(&f->profile, at, profile_bytes);
     at += profile_bytes;
     f->spot = (struct glint_spot *)(void *)at;
-    f->track = (struct glint_track *)(void *)(at + spot_bytes);
+    f->track = (struct glint_lamp_track *)(void *)(at + spot_bytes);
     return status;
 }
 
 enum glint_status lamp_finder_open(struct lamp_finder *finder,
-                                   const struct glint_lights_config *cfg)
+                                   const struct glint_lamp_finder_config *cfg)
 {
-    struct glint_lights_config lights = *cfg;
-    struct glint_tracks_config tracks;
+    struct glint_lamp_finder_config lights = *cfg;
+    struct glint_lamp_tracker_config tracks;
     enum glint_status status;
 
     finder->mem = NULL;
     finder->n_tracks = 0;
     finder->max_tracks = tracks_for(finder->max);
     lights.keep_faint = 1;
-    glint_tracks_defaults(&tracks, cfg->width, cfg->height);
+    glint_lamp_tracker_defaults(&tracks, cfg->width, cfg->height);
     tracks.max_tracks = finder->max_tracks;
     tracks.max_shown = finder->max;
     status = place(finder, &lights, &tracks);
@@ -381,14 +381,14 @@ void lamp_finder_close(struct lamp_finder *finder)
 
 void lamp_finder_restart(struct lamp_finder *finder)
 {
-    glint_tracks_restart(finder->tracks);
+    glint_lamp_tracker_restart(finder->tracks);
 }
 
-static struct glint_track still(const struct glint_spot *spot, uint32_t id)
+static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
 {
-    return (struct glint_track){
+    return (struct glint_lamp_track){
         .id = id,
-        .state = GLINT_TRACK_STEADY,
+        .state = GLINT_LAMP_STEADY,
         .x_q8 = spot->x_q8,
         .y_q8 = spot->y_q8,
         .size_q8 = spot->size_q8,
@@ -417,7 +417,7 @@ static void set_power(struct lamp_finder *f, struct glint_spot *spot)
  */
 static int find(struct lamp_finder *f, const struct glint_image *image, int max)
 {
-    const int n = glint_lights_find(f->lights, image, f->spot, max);
+    const int n = glint_lamp_finder_find(f->lights, image, f->spot, max);
 
     glint_profile_measure(f->profile, image, f->spot,
                           n < f->max_tracks ? n : f->max_tracks);
@@ -439,14 +439,14 @@ static int find_still(struct lamp_finder *f, const struct glint_image *image)
 }
 
 static double power_of(const struct lamp_finder *f,
-                       const struct glint_track *track)
+                       const struct glint_lamp_track *track)
 {
     return track->level_q15 / 32768.0 * (double)track->power_q16 / 65536 *
            f->scale;
 }
 
-static void set_extent(struct glint_lamp *lamp, const struct glint_track *track,
-                       double tangent)
+static void set_extent(struct glint_lamp *lamp,
+                       const struct glint_lamp_track *track, double tangent)
 {
     for (int k = 0; k < 2; k++)
         lamp->axis[k] = track->axis_q8[k] / 256.0 * tangent;
@@ -464,13 +464,13 @@ int lamp_finder_frame(struct lamp_finder *finder,
     if (elapsed_us > 0) {
         const int n = find(f, image, LAMP_FINDER_MAX);
 
-        f->n_tracks = glint_tracks_step(f->tracks, f->spot, n, elapsed_us,
-                                        f->track, f->max_tracks);
+        f->n_tracks = glint_lamp_tracker_step(f->tracks, f->spot, n, elapsed_us,
+                                              f->track, f->max_tracks);
     } else {
         f->n_tracks = find_still(f, image);
     }
     for (int i = 0; i < f->n_tracks; i++) {
-        const struct glint_track *track = &f->track[i];
+        const struct glint_lamp_track *track = &f->track[i];
 
         glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
                              track->y_q8 / 256.0, &lamps[i]);

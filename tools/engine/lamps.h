@@ -66,12 +66,12 @@ struct lamp_finder {
 
     /* Of the last frame, as found, the strongest first; untracked ones are
      * numbered from 1. */
-    struct glint_track *track;
+    struct glint_lamp_track *track;
     int n_tracks;
 
     /* Private. */
-    struct glint_lights *lights;
-    struct glint_tracks *tracks;
+    struct glint_lamp_finder *lights;
+    struct glint_lamp_tracker *tracks;
     struct glint_profile *profile;
     double scale;            /* of the power of tracks */
     struct glint_spot *spot; /* [LAMP_FINDER_MAX] */
@@ -82,12 +82,12 @@ struct lamp_finder {
 /* Sets headroom_ev and max before. CFG says what a light is; keep_faint is the
  * finder's own. */
 enum glint_status lamp_finder_open(struct lamp_finder *finder,
-                                   const struct glint_lights_config *cfg);
+                                   const struct glint_lamp_finder_config *cfg);
 void lamp_finder_close(struct lamp_finder *finder);
 
 /* Writes the lamps of IMAGE, which comes ELAPSED_US after the one before:
- * rising and fading as glint/tracks.h has it, so a few more than max may be
- * there for a while. 0: a picture by itself. LAMPS has room for
+ * rising and fading as glint/lamp_tracker.h has it, so a few more than max may
+ * be there for a while. 0: a picture by itself. LAMPS has room for
  * LAMP_FINDER_MAX. */
 int lamp_finder_frame(struct lamp_finder *finder,
                       const struct glint_image *image, int32_t elapsed_us,

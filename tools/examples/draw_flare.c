@@ -60,9 +60,9 @@ static double pixels_per_mm(const struct glint_model_header *h,
 }
 
 /* A lamp that is seen at (X, Y). */
-static struct glint_beam beam_at(const struct glint_model_header *h,
-                                 const struct glint_image *image, int x, int y,
-                                 double power)
+static struct glint_light beam_at(const struct glint_model_header *h,
+                                  const struct glint_image *image, int x, int y,
+                                  double power)
 {
     const double dx = x + 0.5 - image->width / 2.0;
     const double dy = image->height / 2.0 - y - 0.5;
@@ -70,16 +70,16 @@ static struct glint_beam beam_at(const struct glint_model_header *h,
     const double angle =
         atan(r / pixels_per_mm(h, image) / value_of(h->focal_mm));
 
-    return (struct glint_beam){.sine_q30 = q30(sin(angle)),
-                               .cosine_q30 = q30(cos(angle)),
-                               .cos_q30 = q30(cos(azimuth)),
-                               .sin_q30 = q30(sin(azimuth)),
-                               .power = real_of(power),
-                               .rgb_q14 = {1 << 14, 1 << 14, 1 << 14}};
+    return (struct glint_light){.sine_q30 = q30(sin(angle)),
+                                .cosine_q30 = q30(cos(angle)),
+                                .cos_q30 = q30(cos(azimuth)),
+                                .sin_q30 = q30(sin(azimuth)),
+                                .power = real_of(power),
+                                .rgb_q14 = {1 << 14, 1 << 14, 1 << 14}};
 }
 
 static int draw(const struct glint_lens *lens, const struct glint_image *image,
-                const struct glint_beam *beam)
+                const struct glint_light *beam)
 {
     struct glint_wave wave[WAVES];
     const struct glint_flare_frame rays = {
@@ -137,7 +137,7 @@ int main(int argc, char **argv)
         return 5;
     code = ppm_read(argv[2], &image);
     if (code == 0) {
-        const struct glint_beam beam =
+        const struct glint_light beam =
             beam_at(lens.header, &image, atoi(argv[3]), atoi(argv[4]),
                     exp2(atof(argv[5])));
 

@@ -3,29 +3,29 @@
  * find_lamps PICTURE.ppm - where the lamps of a picture are. Links of glint the
  * finder alone.
  */
-#include "glint/lights.h"
+#include "glint/lamps.h"
 #include "ppm.h"
 
 enum { MOST = 32 };
 
 static int find(const struct glint_image *image)
 {
-    struct glint_lights_config cfg;
-    struct glint_lights *finder;
+    struct glint_lamp_finder_config cfg;
+    struct glint_lamp_finder *finder;
     struct glint_spot spot[MOST];
     void *mem = NULL;
     size_t bytes;
     int n;
 
-    glint_lights_defaults(&cfg, image->width, image->height);
-    bytes = glint_lights_bytes(&cfg);
+    glint_lamp_finder_defaults(&cfg, image->width, image->height);
+    bytes = glint_lamp_finder_bytes(&cfg);
     if (posix_memalign(&mem, 64, bytes) != 0 ||
-        glint_lights_init(&finder, &cfg, mem, bytes) != GLINT_OK) {
+        glint_lamp_finder_init(&finder, &cfg, mem, bytes) != GLINT_OK) {
         fprintf(stderr, "out of memory\n");
         free(mem);
         return 1;
     }
-    n = glint_lights_find(finder, image, spot, MOST);
+    n = glint_lamp_finder_find(finder, image, spot, MOST);
     for (int i = 0; i < n; i++)
         printf("%.2f,%.2f,%.3f\n", spot[i].x_q8 / 256.0, spot[i].y_q8 / 256.0,
                (double)spot[i].flux_q16 / 65536);

@@ -84,7 +84,7 @@ mutants: $(test_bins)
 	@tests/mutants/run $(OUT) $(MUTANTS)
 # What valgrind says of memory that was never written, which no sanitizer of
 # gcc's does: the run-time half, what reads files, and the fuzzers' corpora.
-VALGRIND := $(filter arena kernels model curve resolve lights flare plan beams pnm y4m \
+VALGRIND := $(filter arena kernels model curve resolve lamp_finder flare plan lights pnm y4m \
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \

@@ -45,9 +45,9 @@ of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
 
 # Run once, or once for a lamp, bundle or row: small rather than fast.
 $(call of,$(addprefix src/base/,status arena workers) src/image/image src/lens/model,-Os)
-$(call of,$(addprefix src/lamps/,lights light_list),-Os)
-$(call of,$(addprefix src/follow/,match follow record tracks),-Os)
-$(call of,$(addprefix src/flare/,beams plan wave_sets flare account),-Os)
+$(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
+$(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
+$(call of,$(addprefix src/flare/,lights plan wave_sets flare account),-Os)
 $(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
 $(call of,src/tile/bins $(addprefix src/image/,resolve curve mix),-Os)
 

@@ -208,9 +208,9 @@ static void unsize(struct look *look)
 
 static enum glint_status open_finder(struct look *look, int width, int height)
 {
-    struct glint_lights_config cfg;
+    struct glint_lamp_finder_config cfg;
 
-    glint_lights_defaults(&cfg, width, height);
+    glint_lamp_finder_defaults(&cfg, width, height);
     cfg.threshold_high_q8 = (int32_t)floor(256 * look->threshold_ev[0] + 0.5);
     cfg.threshold_low_q8 = (int32_t)floor(256 * look->threshold_ev[1] + 0.5);
     look->finder.headroom_ev = look->headroom_ev;
@@ -315,7 +315,7 @@ static struct lamp_row row_of(const struct look *look, int i)
 
     memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
     if (found) {
-        const struct glint_track *track = &look->finder.track[i];
+        const struct glint_lamp_track *track = &look->finder.track[i];
 
         row.x = track->x_q8 / 256.0;
         row.y = track->y_q8 / 256.0;
@@ -420,7 +420,7 @@ void look_mark(const struct look *look, const struct glint_image *image)
     for (int i = 0; i < look->n_lamps; i++) {
         const struct lamp_row row = row_of(look, i);
         const uint32_t id = row.id < LAMP_ID_TEXT ? row.id : (uint32_t)i + 1;
-        struct glint_track track = {.id = id, .state = GLINT_TRACK_STEADY};
+        struct glint_lamp_track track = {.id = id, .state = GLINT_LAMP_STEADY};
 
         if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
             continue;
@@ -443,7 +443,7 @@ void look_expose(struct look *look, int32_t elapsed_us)
     const bool is_new =
         look->no_tracking ||
         (look->is_listed ? lamp_keys_is_cut(&look->list, look->n_frames)
-                         : glint_tracks_was_cut(look->finder.tracks));
+                         : glint_lamp_tracker_was_cut(look->finder.tracks));
     const struct strength_lamps lamps = {look->lamp, look->level, look->n_lamps,
                                          (double)look->view.width *
                                              look->view.height * look->white};

@@ -19,7 +19,7 @@ static int within(double v, int most)
     return (int)fmin(fmax(v, 0), most);
 }
 
-static struct reach reach_of(const struct glint_track *track, int width,
+static struct reach reach_of(const struct glint_lamp_track *track, int width,
                              int height)
 {
     struct reach r = {.x = track->x_q8 / 256.0, .y = track->y_q8 / 256.0};
@@ -90,7 +90,7 @@ static void add_excess(struct sum *sum, const struct glint_samples *samples,
 }
 
 /* What the finder saw of TRACK, in the picture's light. */
-static struct sum seen_of(const struct glint_track *track, double white)
+static struct sum seen_of(const struct glint_lamp_track *track, double white)
 {
     const double flux = (double)track->flux_q16 / 65536 * white;
     struct sum sum = {.luminance = 0};
@@ -105,7 +105,7 @@ static struct sum seen_of(const struct glint_track *track, double white)
 static void set_lamp(struct look *look, int i, const struct sum *sum)
 {
     struct glint_lamp *const lamp = &look->lamp[i];
-    struct glint_track *const track = &look->finder.track[i];
+    struct glint_lamp_track *const track = &look->finder.track[i];
     const double focal = look->scene.setup.optics.focal_mm;
 
     if (!(sum->luminance > 0))

@@ -6,19 +6,19 @@
 
 #include "overlay/paint.h"
 
-static void set_state(struct paint *p, enum glint_track_state state)
+static void set_state(struct paint *p, enum glint_lamp_state state)
 {
     switch (state) {
-    case GLINT_TRACK_RISING:
+    case GLINT_LAMP_RISING:
         paint_colour(p, 255, 255, 0);
         break;
-    case GLINT_TRACK_STEADY:
+    case GLINT_LAMP_STEADY:
         paint_colour(p, 0, 255, 0);
         break;
-    case GLINT_TRACK_FADING:
+    case GLINT_LAMP_FADING:
         paint_colour(p, 255, 0, 0);
         break;
-    case GLINT_TRACK_LEAVING:
+    case GLINT_LAMP_LEAVING:
         paint_colour(p, 0, 128, 255);
         break;
     }
@@ -70,7 +70,7 @@ static void draw_all(const struct paint *p, int x, int y, int half, uint32_t id,
 
 /* A shadow first, as lamps are as bright as any line. */
 static void draw(const struct glint_image *image,
-                 const struct glint_track *track, const char *stops)
+                 const struct glint_lamp_track *track, const char *stops)
 {
     struct paint p = {.image = image, .line = line_of(image)};
     const int x = track->x_q8 >> 8, y = track->y_q8 >> 8;
@@ -83,13 +83,13 @@ static void draw(const struct glint_image *image,
 }
 
 void show_light(const struct glint_image *image,
-                const struct glint_track *track)
+                const struct glint_lamp_track *track)
 {
     draw(image, track, "");
 }
 
 void show_light_of(const struct glint_image *image,
-                   const struct glint_track *track, double power)
+                   const struct glint_lamp_track *track, double power)
 {
     char stops[32] = "";
 
@@ -103,11 +103,11 @@ void show_light_of(const struct glint_image *image,
 
 static const struct {
     const char *word;
-    enum glint_track_state state;
-} states[] = {{"STEADY", GLINT_TRACK_STEADY},
-              {"RISING", GLINT_TRACK_RISING},
-              {"FADING", GLINT_TRACK_FADING},
-              {"LEFT THE PICTURE", GLINT_TRACK_LEAVING}};
+    enum glint_lamp_state state;
+} states[] = {{"STEADY", GLINT_LAMP_STEADY},
+              {"RISING", GLINT_LAMP_RISING},
+              {"FADING", GLINT_LAMP_FADING},
+              {"LEFT THE PICTURE", GLINT_LAMP_LEAVING}};
 
 static const char words[] = "NUMBER, EV: STOPS OVER A WHITE PIXEL";
 

@@ -26,7 +26,7 @@ static void test_found_lamp(void **state)
                                 .height = HEIGHT,
                                 .range = GLINT_RANGE_FULL};
     struct lamp_finder finder = {.headroom_ev = 3, .max = 8};
-    struct glint_lights_config cfg;
+    struct glint_lamp_finder_config cfg;
     static struct glint_lamp lamp[LAMP_FINDER_MAX];
     double x, y;
 
@@ -34,7 +34,7 @@ static void test_found_lamp(void **state)
     glint_image_place(&image, rgb);
     for (int i = 0; i < SIDE; i++)
         memset(rgb + 3 * ((Y0 + i) * WIDTH + X0), 255, 3 * SIDE);
-    glint_lights_defaults(&cfg, WIDTH, HEIGHT);
+    glint_lamp_finder_defaults(&cfg, WIDTH, HEIGHT);
     assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
     assert_int_equal(lamp_finder_frame(&finder, &image, 0, &view, 50, lamp), 1);
     lamp_finder_close(&finder);
@@ -66,12 +66,12 @@ static void test_tracked_lamps(void **state)
     const struct glint_view view = glint_view_fit(W, H, 36, 24);
     struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
     struct lamp_finder finder = {.headroom_ev = 12, .max = 8};
-    struct glint_lights_config cfg;
+    struct glint_lamp_finder_config cfg;
 
     (void)state;
     glint_image_place(&image, grey);
     draw_square(&image, 50, 60, 9);
-    glint_lights_defaults(&cfg, W, H);
+    glint_lamp_finder_defaults(&cfg, W, H);
     assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
     for (int frame = 0; frame < 5; frame++)
         assert_int_equal(
@@ -85,7 +85,7 @@ static void test_tracked_lamps(void **state)
                      2);
     assert_int_equal(finder.n_tracks, 2);
     assert_near(lamp[1].power, still[0].power / 5, 10); /* 40 of 200 ms */
-    assert_int_equal(finder.track[1].state, GLINT_TRACK_RISING);
+    assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
     lamp_finder_restart(&finder);
     lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp);
@@ -102,14 +102,14 @@ static void test_most_lamps(void **state)
     const struct glint_view view = glint_view_fit(W, H, 36, 24);
     struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
     struct lamp_finder finder = {.headroom_ev = 0, .max = 4};
-    struct glint_lights_config cfg;
+    struct glint_lamp_finder_config cfg;
 
     (void)state;
     glint_image_place(&image, grey);
     for (int i = 0; i < 12; i++)
         draw_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
                     3 + i * 5 % 12);
-    glint_lights_defaults(&cfg, W, H);
+    glint_lamp_finder_defaults(&cfg, W, H);
     assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
     for (int us = 0; us <= 40000; us += 40000) {
         assert_int_equal(

@@ -29,8 +29,8 @@ struct fixture {
     struct model_image m;
     struct glint_lens lens;
     struct glint_wave wave[WAVES];
-    struct glint_beam beam[MAX_BEAMS];
-    int n_beams;
+    struct glint_light light[MAX_BEAMS];
+    int n_lights;
     struct glint_flare_frame rays;
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
@@ -42,11 +42,11 @@ static const int32_t square[4][2] = {
     {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
 
 /* Beams at a sine of 1/8, all round. */
-static void open_fixture(struct fixture *f, int n_beams)
+static void open_fixture(struct fixture *f, int n_lights)
 {
     const char *reason;
 
-    *f = (struct fixture){.m = model_auto(), .n_beams = n_beams};
+    *f = (struct fixture){.m = model_auto(), .n_lights = n_lights};
     assert_int_equal(glint_lens_open(&f->lens, f->m.data, f->m.bytes, &reason),
                      GLINT_OK);
     for (int i = 0; i < WAVES; i++)
@@ -55,12 +55,12 @@ static void open_fixture(struct fixture *f, int n_beams)
                                 {i ? 0 : 16384, i ? 16384 : 0, 0},
                                 real_of(1, 0)};
     for (int i = 0; i < MAX_BEAMS; i++)
-        f->beam[i] = (struct glint_beam){1 << 27,
-                                         1065344904,
-                                         (int32_t)lrint(cos(i) * 0x1p30),
-                                         (int32_t)lrint(sin(i) * 0x1p30),
-                                         real_of(1000 + i, 0),
-                                         {16384, 16384, 16384}};
+        f->light[i] = (struct glint_light){1 << 27,
+                                           1065344904,
+                                           (int32_t)lrint(cos(i) * 0x1p30),
+                                           (int32_t)lrint(sin(i) * 0x1p30),
+                                           real_of(1000 + i, 0),
+                                           {16384, 16384, 16384}};
     f->rays = (struct glint_flare_frame){.lens = &f->lens,
                                          .wave = f->wave,
                                          .n_waves = WAVES,
@@ -86,7 +86,7 @@ static void bin(struct fixture *f)
     assert_int_equal(posix_memalign(&f->mem, 64, bytes), 0);
     assert_int_equal(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes),
                      GLINT_OK);
-    glint_flare_plan(f->flare, &f->rays, f->beam, f->n_beams);
+    glint_flare_plan(f->flare, &f->rays, f->light, f->n_lights);
     glint_flare_bin(f->flare, &f->stats);
 }
 
@@ -118,12 +118,12 @@ static struct sums accounts(struct fixture *f)
 {
     struct sums sums = {.n = 0};
 
-    for (int beam = 0; beam < f->n_beams; beam++)
+    for (int light = 0; light < f->n_lights; light++)
         for (int ghost = 0; ghost < (int)f->lens.header->n_ghosts; ghost++)
             for (int wave = 0; wave < WAVES; wave++) {
                 struct glint_account a;
 
-                glint_flare_account(f->flare, ghost, beam, wave, &a);
+                glint_flare_account(f->flare, ghost, light, wave, &a);
                 sums.of[a.fate]++;
                 sums.n++;
                 sums.edges += a.edges;
@@ -182,7 +182,7 @@ static void test_drawn_and_closed(void **state)
     open_fixture(&f, 3);
     assert_fate(&f, GLINT_FATE_DRAWN, 3 * 2 * WAVES);
     assert_int_equal(accounts(&f).of[GLINT_FATE_CLOSED], 3 * WAVES);
-    f.beam[1].sine_q30 = 1 << 26;
+    f.light[1].sine_q30 = 1 << 26;
     assert_fate(&f, GLINT_FATE_DRAWN, (3 * 2 - 1) * WAVES);
     close_fixture(&f);
 }
@@ -205,7 +205,7 @@ static void test_beyond(void **state)
     (void)state;
     open_fixture(&f, 3);
     for (int i = 0; i < 3; i++) {
-        f.beam[i].sine_q30 = 1 << 29; /* 30 degrees */
+        f.light[i].sine_q30 = 1 << 29; /* 30 degrees */
         ((struct glint_model_header *)f.m.data)->sine_hi_q30 = 1 << 28;
         assert_fate(&f, GLINT_FATE_BEYOND, (i + 1) * 3 * WAVES);
     }
@@ -218,9 +218,9 @@ static void test_dark(void **state)
 
     (void)state;
     open_fixture(&f, 2);
-    f.beam[1].rgb_q14[0] = 0; /* no red, which is wave 0 */
+    f.light[1].rgb_q14[0] = 0; /* no red, which is wave 0 */
     assert_fate(&f, GLINT_FATE_DARK, 2);
-    f.beam[0].power = real_of(0, 0);
+    f.light[0].power = real_of(0, 0);
     assert_fate(&f, GLINT_FATE_DARK, 2 + 4);
     close_fixture(&f);
 }
@@ -245,7 +245,7 @@ static void test_outside(void **state)
 
     (void)state;
     open_fixture(&f, 1);
-    f.beam[0].sine_q30 = 1 << 26;
+    f.light[0].sine_q30 = 1 << 26;
     *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
     assert_fate(&f, GLINT_FATE_OUTSIDE, WAVES);
     *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 469762048; /* 1.75 mm */
@@ -308,7 +308,7 @@ static void draw(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* By ghost, by beam, by wave: each way the parts are the whole, but for the
+/* By ghost, by light, by wave: each way the parts are the whole, but for the
  * rounding of each to 2^-20; what an account says, and kept alone draws
  * nothing, has no light. */
 static void test_parts(void **state)
@@ -372,7 +372,7 @@ static void test_terms(void **state)
     (void)state;
     open_fixture(&f, 1);
     for (int off = 0; off < 2; off++) {
-        f.beam[0].sine_q30 = (1 << 27) - (off << 26);
+        f.light[0].sine_q30 = (1 << 27) - (off << 26);
         bin(&f);
         glint_flare_account(f.flare, 0, 0, 0, &a);
         assert_int_equal(a.fate, GLINT_FATE_DRAWN);
@@ -397,12 +397,12 @@ static void test_rows(void **state)
         for (int y = 0; y < HEIGHT; y++)
             want += glint_by_edges_of(f.flare)->edge[i].y_q8 < 256 * (y + 1) &&
                     glint_by_edges_of(f.flare)->edge[i].end_y_q8 > 256 * y;
-    for (int beam = 0; beam < 2; beam++)
+    for (int light = 0; light < 2; light++)
         for (int ghost = 0; ghost < 3; ghost++)
             for (int wave = 0; wave < WAVES; wave++) {
                 struct glint_account a;
 
-                glint_flare_account(f.flare, ghost, beam, wave, &a);
+                glint_flare_account(f.flare, ghost, light, wave, &a);
                 got += a.rows;
             }
     assert_true(want > 1000);
@@ -456,10 +456,10 @@ static void check_outside(int small_stop)
             struct glint_account a;
 
             f.rays.pixels_per_mm = real_of(100, 0);
-            f.beam[0].sine_q30 = 1 << 26;
-            f.beam[0].cos_q30 =
+            f.light[0].sine_q30 = 1 << 26;
+            f.light[0].cos_q30 =
                 (int32_t)lrint(cos(degrees / 57.29578) * 0x1p30);
-            f.beam[0].sin_q30 =
+            f.light[0].sin_q30 =
                 (int32_t)lrint(sin(degrees / 57.29578) * 0x1p30);
             *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
             f.cfg.width = WIDTH;

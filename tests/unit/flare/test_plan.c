@@ -79,7 +79,7 @@ struct fixture {
     struct model_image m;
     struct glint_lens lens;
     struct glint_wave wave[2];
-    struct glint_beam beam;
+    struct glint_light light;
     struct glint_flare_frame rays;
     struct glint_flare_config cfg;
     void *mem;
@@ -101,8 +101,8 @@ static void open_fixture(struct fixture *f)
             (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,
                                 {i ? 0 : 16384, i ? 16384 : 0, 0},
                                 real_of(1, 0)};
-    f->beam = (struct glint_beam){0, 1 << 30,          1 << 30,
-                                  0, real_of(1000, 0), {16384, 16384, 16384}};
+    f->light = (struct glint_light){0, 1 << 30,          1 << 30,
+                                    0, real_of(1000, 0), {16384, 16384, 16384}};
     f->rays = (struct glint_flare_frame){.lens = &f->lens,
                                          .wave = f->wave,
                                          .n_waves = 2,
@@ -136,12 +136,12 @@ static void close_fixture(struct fixture *f)
     free(f->m.data);
 }
 
-static struct glint_flare_stats planned(struct fixture *f, int n_beams)
+static struct glint_flare_stats planned(struct fixture *f, int n_lights)
 {
     struct glint_flare_stats s;
 
     start(f);
-    glint_flare_plan(f->flare, &f->rays, &f->beam, n_beams);
+    glint_flare_plan(f->flare, &f->rays, &f->light, n_lights);
     glint_flare_bin(f->flare, &s);
     free(f->mem);
     f->mem = NULL;
@@ -158,14 +158,14 @@ static void test_what_is_seen(void **state)
     all = planned(&f, 1).bundles;
     assert_true(all >= 1);
     assert_int_equal(planned(&f, 0).bundles, 0);
-    f.beam.power = real_of(0, 0);
+    f.light.power = real_of(0, 0);
     assert_int_equal(planned(&f, 1).bundles, 0);
-    f.beam.power = real_of(1000, 0);
+    f.light.power = real_of(1000, 0);
     f.rays.faintest = real_of(1, 60); /* nothing is that bright */
     assert_int_equal(planned(&f, 1).bundles, 0);
     f.rays.faintest = real_of(1, -60);
     assert_int_equal(planned(&f, 1).bundles, all);
-    f.beam.rgb_q14[0] = 0; /* no red */
+    f.light.rgb_q14[0] = 0; /* no red */
     assert_true(planned(&f, 1).bundles < all);
     close_fixture(&f);
 }
@@ -182,7 +182,7 @@ static double peak(struct fixture *f)
     memset(px_q20, 0, sizeof px_q20);
     glint_image_place(&image, px_q20);
     start(f);
-    glint_flare_plan(f->flare, &f->rays, &f->beam, 1);
+    glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, &s);
     glint_flare_draw(f->flare, &image);
     free(f->mem);
@@ -206,7 +206,7 @@ static void test_faint(void **state)
         double light;
         int bundles;
 
-        f.beam.power = real_of(1, e);
+        f.light.power = real_of(1, e);
         f.rays.faintest = real_of(0, 0);
         light = peak(&f);
         f.rays.faintest = real_of(1, -10);
@@ -236,7 +236,7 @@ static void draw(struct fixture *f, int32_t *px_q20,
     memset(px_q20, 0, sizeof(int32_t) * 3 * WIDTH * HEIGHT);
     glint_image_place(&image, px_q20);
     start(f);
-    glint_flare_plan(f->flare, &f->rays, &f->beam, 1);
+    glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, s);
     glint_flare_draw(f->flare, &image);
     free(f->mem);
@@ -258,7 +258,7 @@ static void test_steps_follow_codes(void **state)
         struct glint_flare_stats all, fewer;
         double sum = 0;
 
-        f.beam.power = real_of(1, e);
+        f.light.power = real_of(1, e);
         f.rays.faintest = real_of(0, 0);
         draw(&f, linear, &all);
         f.rays.faintest = real_of(1, -20);
@@ -293,7 +293,7 @@ static void test_whole_edges(void **state)
     for (int e = 8; e > -8; e--) {
         double flux[2] = {0, 0}, sum = 0;
 
-        f.beam.power = real_of(1, e);
+        f.light.power = real_of(1, e);
         f.rays.whole_codes_q8 = 0;
         draw(&f, smooth, &s);
         f.rays.whole_codes_q8 = 4 << 8;
@@ -324,12 +324,12 @@ static void draw_half(struct fixture *f, int half, struct glint_image *image,
     f->cfg.width = image->width;
     f->cfg.height = image->height;
     f->cfg.irradiance_steps = 70;
-    f->beam.power = real_of(1, 2);
+    f->light.power = real_of(1, 2);
     f->rays.faintest = real_of(163, -22);
     f->rays.half = half ? &glint_half : NULL;
     glint_image_place(image, mem);
     start(f);
-    glint_flare_plan(f->flare, &f->rays, &f->beam, 1);
+    glint_flare_plan(f->flare, &f->rays, &f->light, 1);
     glint_flare_bin(f->flare, &s);
     glint_flare_draw(f->flare, image);
     free(f->mem);
@@ -435,7 +435,7 @@ static void test_same_bits(void **state)
     (void)state;
     open_fixture(&f);
     f.cfg.irradiance_steps = 70;
-    f.beam.power = real_of(1, 2);
+    f.light.power = real_of(1, 2);
     f.rays.faintest = real_of(163, -22);
     for (int i = 0; i < 2 * 4 * 3 * 12; i++) {
         struct glint_image image = {.format = formats[i / 12 % 3],
@@ -456,7 +456,7 @@ static void test_same_bits(void **state)
         memset(px[!first], 0, sizeof px[0]);
         glint_image_place(&image, px[!first]);
         start(&f);
-        glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
+        glint_flare_plan(f.flare, &f.rays, &f.light, 1);
         glint_flare_bin(f.flare, &s);
         assert_true(s.bundles > 0 && s.dropped_bundles == 0);
         glint_flare_draw(f.flare, &image);
@@ -472,7 +472,7 @@ static void test_same_bits(void **state)
 static void test_many_faint_lights(void **state)
 {
     enum { MANY = 1024 };
-    static struct glint_beam beam[MANY];
+    static struct glint_light light[MANY];
     static int32_t linear[3 * WIDTH * HEIGHT];
     static uint8_t codes[3 * WIDTH * HEIGHT];
     struct glint_image image = {
@@ -489,10 +489,10 @@ static void test_many_faint_lights(void **state)
     f.cfg.max_primitives = 4000000;
     f.cfg.max_refs = 4000000;
     for (int i = 0; i < MANY; i++) {
-        beam[i] = f.beam;
-        beam[i].cos_q30 = (int32_t)lrint(0x1p30 * cos(0.001 * i));
-        beam[i].sin_q30 = (int32_t)lrint(0x1p30 * sin(0.001 * i));
-        beam[i].power = real_of(1000 + i, -18);
+        light[i] = f.light;
+        light[i].cos_q30 = (int32_t)lrint(0x1p30 * cos(0.001 * i));
+        light[i].sin_q30 = (int32_t)lrint(0x1p30 * sin(0.001 * i));
+        light[i].power = real_of(1000 + i, -18);
     }
     glint_image_place(&layer, linear);
     glint_image_place(&image, codes);
@@ -501,7 +501,7 @@ static void test_many_faint_lights(void **state)
     start(&f);
     for (int turn = 0; turn < 2; turn++) {
         f.rays.faintest = real_of(turn ? 163 : 0, -22); /* 1/8 code */
-        glint_flare_plan(f.flare, &f.rays, beam, MANY);
+        glint_flare_plan(f.flare, &f.rays, light, MANY);
         glint_flare_bin(f.flare, &s);
         assert_int_equal(s.dropped_bundles, 0);
         assert_true(s.bundles > 1024);
@@ -559,11 +559,11 @@ static void test_rows_and_grids(void **state)
     (void)state;
     open_fixture(&f);
     start(&f);
-    glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
+    glint_flare_plan(f.flare, &f.rays, &f.light, 1);
     picture(&f, rows);
     plan = (struct glint_plan){.frame = &f.rays,
-                               .beam = &f.beam,
-                               .n_beams = 1,
+                               .light = &f.light,
+                               .n_lights = 1,
                                .width = WIDTH,
                                .height = HEIGHT};
     glint_flare_begin(f.flare);
@@ -605,8 +605,8 @@ static void test_finest_grid(void **state)
     f.rays.pixels_per_mm = real_of(12000, 0);
     f.rays.fineness = GLINT_MAX_CELLS;
     plan = (struct glint_plan){.frame = &f.rays,
-                               .beam = &f.beam,
-                               .n_beams = 1,
+                               .light = &f.light,
+                               .n_lights = 1,
                                .width = WIDTH,
                                .height = HEIGHT};
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++) {
@@ -634,8 +634,8 @@ static void test_sag(void **state)
     (void)state;
     open_fixture(&f);
     plan = (struct glint_plan){.frame = &f.rays,
-                               .beam = &f.beam,
-                               .n_beams = 1,
+                               .light = &f.light,
+                               .n_lights = 1,
                                .width = WIDTH,
                                .height = HEIGHT};
     glint_plan_bundle(&plan, &planned, &bundle, &scratch);
@@ -646,7 +646,7 @@ static void test_sag(void **state)
     close_fixture(&f);
 }
 
-/* Of beams beyond the lens nothing is drawn, whatever its polynomials say, and
+/* Of lights beyond the lens nothing is drawn, whatever its polynomials say, and
  * no room is asked for unless others come after them. */
 static void test_beyond(void **state)
 {
@@ -656,19 +656,19 @@ static void test_beyond(void **state)
 
     (void)state;
     open_fixture(&f);
-    f.beam.sine_q30 = inside_q30;
+    f.light.sine_q30 = inside_q30;
     alone = planned(&f, 1).bundles;
-    f.beam.sine_q30 = outside_q30;
+    f.light.sine_q30 = outside_q30;
     assert_true(planned(&f, 1).bundles > 0);
     ((struct glint_model_header *)f.m.data)->sine_hi_q30 = inside_q30;
     assert_int_equal(planned(&f, 1).need_bundles, 0);
     for (int last = 0; last < 2; last++) {
-        struct glint_beam beam[2] = {f.beam, f.beam};
+        struct glint_light light[2] = {f.light, f.light};
         struct glint_flare_stats s;
 
-        beam[last].sine_q30 = inside_q30;
+        light[last].sine_q30 = inside_q30;
         start(&f);
-        glint_flare_plan(f.flare, &f.rays, beam, 2);
+        glint_flare_plan(f.flare, &f.rays, light, 2);
         glint_flare_bin(f.flare, &s);
         assert_int_equal(s.need_bundles, last ? 12 : 6);
         assert_int_equal(s.bundles, alone);
@@ -693,12 +693,12 @@ static void test_dark_frame(void **state)
         open_fixture(&f);
         f.cfg.raster = raster ? &glint_raster_cells : NULL;
         start(&f);
-        glint_flare_plan(f.flare, &f.rays, &f.beam, 1);
+        glint_flare_plan(f.flare, &f.rays, &f.light, 1);
         picture(&f, px_q20);
         assert_true(glint_flare_tiles(f.flare) > 0);
         memset(px_q20, 0, sizeof px_q20);
         glint_image_place(&image, px_q20);
-        glint_flare_plan(f.flare, &f.rays, &f.beam, 0);
+        glint_flare_plan(f.flare, &f.rays, &f.light, 0);
         glint_flare_bin(f.flare, &s);
         glint_flare_draw(f.flare, &image);
         assert_int_equal(s.primitives + s.refs + s.bundles, 0);

@@ -53,23 +53,24 @@ static void measure(const struct glint_image *image, int n)
 /* Finds all that is bright, and measures it. */
 static int look(const struct glint_image *image)
 {
-    struct glint_lights_config cfg;
-    struct glint_lights *finder;
+    struct glint_lamp_finder_config cfg;
+    struct glint_lamp_finder *finder;
     size_t bytes;
     void *mem;
     int n;
 
-    glint_lights_defaults(&cfg, image->width, image->height);
+    glint_lamp_finder_defaults(&cfg, image->width, image->height);
     cfg.judge = 0;
     cfg.threshold_high_q8 = -256;
     cfg.threshold_low_q8 = -512;
     cfg.min_area = 1;
     cfg.max_share_q15 = 1 << 15;
     cfg.white_code = 255;
-    bytes = glint_lights_bytes(&cfg);
+    bytes = glint_lamp_finder_bytes(&cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_lights_init(&finder, &cfg, mem, bytes), GLINT_OK);
-    n = glint_lights_find(finder, image, spot, MAX_SPOTS);
+    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, bytes),
+                     GLINT_OK);
+    n = glint_lamp_finder_find(finder, image, spot, MAX_SPOTS);
     free(mem);
     measure(image, n);
     return n;

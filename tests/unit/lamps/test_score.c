@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "glint/lights.h"
+#include "glint/lamps.h"
 
 enum { MOST = 64 };
 
@@ -118,8 +118,8 @@ static int find(const struct scene *s, enum glint_pixel_format format,
 {
     struct glint_image image = {
         .format = format, .width = s->width, .height = s->height};
-    struct glint_lights_config cfg;
-    struct glint_lights *finder;
+    struct glint_lamp_finder_config cfg;
+    struct glint_lamp_finder *finder;
     void *mem;
     int n;
 
@@ -136,12 +136,13 @@ static int find(const struct scene *s, enum glint_pixel_format format,
                 rgb[c] = code_of(s->light[3 * (y * s->width + x) + c]) + noise;
             put(&image, x, y, rgb);
         }
-    glint_lights_defaults(&cfg, s->width, s->height);
-    assert_int_equal(posix_memalign(&mem, 64, glint_lights_bytes(&cfg)), 0);
-    assert_int_equal(
-        glint_lights_init(&finder, &cfg, mem, glint_lights_bytes(&cfg)),
-        GLINT_OK);
-    n = glint_lights_find(finder, &image, spot, MOST);
+    glint_lamp_finder_defaults(&cfg, s->width, s->height);
+    assert_int_equal(posix_memalign(&mem, 64, glint_lamp_finder_bytes(&cfg)),
+                     0);
+    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem,
+                                            glint_lamp_finder_bytes(&cfg)),
+                     GLINT_OK);
+    n = glint_lamp_finder_find(finder, &image, spot, MOST);
     free(mem);
     free(image.plane[0]);
     return n;

@@ -48,13 +48,13 @@ static void assert_guards(const struct glint_image *image, const uint8_t *mem)
     }
 }
 
-static struct glint_track track_at(int x, int y)
+static struct glint_lamp_track track_at(int x, int y)
 {
-    return (struct glint_track){.id = 907,
-                                .state = GLINT_TRACK_STEADY,
-                                .x_q8 = x * 256 + 128,
-                                .y_q8 = y * 256 + 128,
-                                .size_q8 = 2 << 8};
+    return (struct glint_lamp_track){.id = 907,
+                                     .state = GLINT_LAMP_STEADY,
+                                     .x_q8 = x * 256 + 128,
+                                     .y_q8 = y * 256 + 128,
+                                     .size_q8 = 2 << 8};
 }
 
 /* What is drawn with one pixel a line: a cross of 5, a box of +-8, digits. */
@@ -63,7 +63,7 @@ static void test_what_is_drawn(void **state)
     static const char *const number[5] = {"### ### ###", "# # # #   #",
                                           "### # #   #", "  # # #  # ",
                                           "### ###  # "};
-    const struct glint_track track = track_at(30, 20);
+    const struct glint_lamp_track track = track_at(30, 20);
     uint8_t *mem;
     struct glint_image image = new_image(GLINT_RGB24, &mem);
     const uint8_t *px = image.plane[0];
@@ -115,7 +115,7 @@ static void test_colours_of_formats(void **state)
 
     (void)state;
     for (unsigned i = 0; i < 2 * sizeof at / sizeof *at; i++) {
-        const struct glint_track track = track_at(30, 20);
+        const struct glint_lamp_track track = track_at(30, 20);
         uint8_t *mem;
         struct glint_image image = new_image(at[i / 2].format, &mem);
 
@@ -131,12 +131,12 @@ static void test_colours_of_formats(void **state)
 
 static void test_565(void **state)
 {
-    struct glint_track track = track_at(30, 20);
+    struct glint_lamp_track track = track_at(30, 20);
     uint8_t *mem;
     struct glint_image image = new_image(GLINT_RGB565, &mem);
 
     (void)state;
-    track.state = GLINT_TRACK_FADING;
+    track.state = GLINT_LAMP_FADING;
     show_light(&image, &track);
     assert_int_equal(mem[GUARD + 3900], 0x00); /* red: 0xf800 */
     assert_int_equal(mem[GUARD + 3901], 0xf8);
@@ -151,7 +151,7 @@ static void test_clipped_at_the_borders(void **state)
 
     (void)state;
     for (int i = 0; i < 144 * N_FORMATS; i++) {
-        struct glint_track track =
+        struct glint_lamp_track track =
             track_at(places[i % 12], places[i / 12 % 12]);
         uint8_t *mem;
         struct glint_image image = new_image(formats[i / 144], &mem);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/tracks.h - lights over time: which spot of a picture is which lamp.
+ * glint/lamp_tracker.h - lights over time: which spot of a picture is which
+ * lamp.
  *
- *     bytes = glint_tracks_bytes(&cfg);                        once
- *     glint_tracks_init(&tracks, &cfg, mem, bytes);
- *     n = glint_lights_find(finder, &image, spots, 1024);      each picture
- *     n = glint_tracks_step(tracks, spots, n, us, track, max);
+ *     bytes = glint_lamp_tracker_bytes(&cfg);                        once
+ *     glint_lamp_tracker_init(&tracks, &cfg, mem, bytes);
+ *     n = glint_lamp_finder_find(finder, &image, spots, 1024);      each
+ * picture n = glint_lamp_tracker_step(tracks, spots, n, us, track, max);
  *
  * A track is one lamp with a number of its own. It takes the nearest spot to
  * where it should be by now; its place, flux and colour are averaged where they
@@ -19,31 +20,31 @@
  * bit for bit, is what its track says after attack + 1 s or five pictures,
  * whichever is later: bit for bit, at full level.
  */
-#ifndef GLINT_TRACKS_H
-#define GLINT_TRACKS_H
+#ifndef GLINT_LAMP_TRACKER_H
+#define GLINT_LAMP_TRACKER_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "glint/lights.h"
+#include "glint/lamps.h"
 #include "glint/status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-enum glint_track_state {
-    GLINT_TRACK_RISING,
-    GLINT_TRACK_STEADY, /* seen, at full level */
-    GLINT_TRACK_FADING, /* its lamp is hidden or out, or too many are brighter;
+enum glint_lamp_state {
+    GLINT_LAMP_RISING,
+    GLINT_LAMP_STEADY, /* seen, at full level */
+    GLINT_LAMP_FADING, /* its lamp is hidden or out, or too many are brighter;
                            moves on, slower and slower */
-    GLINT_TRACK_LEAVING /* its lamp went out of the picture, and it moves on */
+    GLINT_LAMP_LEAVING /* its lamp went out of the picture, and it moves on */
 };
 
 /* What is to be drawn is LEVEL times power: the level is not in it. */
-struct glint_track {
+struct glint_lamp_track {
     uint32_t id; /* counts from 1; no two lamps have the same */
-    enum glint_track_state state;
+    enum glint_lamp_state state;
     int32_t x_q8, y_q8;       /* as of a spot; may be outside of the picture */
     int32_t size_q8;          /* RMS radius, pixels */
     int32_t level_q15;        /* 1 .. 32768: how far it has risen or faded */
@@ -54,7 +55,7 @@ struct glint_track {
     int32_t rgb_q15[3];       /* mean linear colour, luminance 1 */
 };
 
-struct glint_tracks_config {
+struct glint_lamp_tracker_config {
     int width, height;  /* of the pictures, 1 .. GLINT_MAX_SIDE */
     int max_tracks;     /* that are followed, 1 .. 1024 */
     int max_shown;      /* the strongest that are seen; the others' level
@@ -71,36 +72,38 @@ struct glint_tracks_config {
     int32_t smooth_ms;  /* that scatter is averaged over */
 };                      /* times 1 .. 60000 */
 
-struct glint_tracks; /* opaque, in the caller's memory */
+struct glint_lamp_tracker; /* opaque, in the caller's memory */
 
 /* What a newcomer should start from, for WIDTH x HEIGHT. */
-void glint_tracks_defaults(struct glint_tracks_config *cfg, int width,
-                           int height);
+void glint_lamp_tracker_defaults(struct glint_lamp_tracker_config *cfg,
+                                 int width, int height);
 
 /* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
-size_t glint_tracks_bytes(const struct glint_tracks_config *cfg);
+size_t glint_lamp_tracker_bytes(const struct glint_lamp_tracker_config *cfg);
 
 /* Places tracks in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: too small.
  * GLINT_E_ARGUMENT: CFG or the alignment is wrong. */
-enum glint_status glint_tracks_init(struct glint_tracks **tracks,
-                                    const struct glint_tracks_config *cfg,
-                                    void *mem, size_t bytes);
+enum glint_status
+glint_lamp_tracker_init(struct glint_lamp_tracker **tracks,
+                        const struct glint_lamp_tracker_config *cfg, void *mem,
+                        size_t bytes);
 
 /* Takes the N (0 .. 1024) spots of the next picture, ELAPSED_US after the one
  * before, and writes the tracks that are to be drawn, the strongest first, at
  * most MAX of them; max_tracks is enough. Returns how many it wrote. Faint
- * spots (glint/lights.h) only continue tracks. */
-int glint_tracks_step(struct glint_tracks *tracks,
-                      const struct glint_spot *spots, int n, int32_t elapsed_us,
-                      struct glint_track *out, int max);
+ * spots (glint/lamps.h) only continue tracks. */
+int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
+                            const struct glint_spot *spots, int n,
+                            int32_t elapsed_us, struct glint_lamp_track *out,
+                            int max);
 
 /* Forgets all tracks: the spots of the next step are new and at full level at
  * once, as after init. For a caller who knows of a cut. */
-void glint_tracks_restart(struct glint_tracks *tracks);
+void glint_lamp_tracker_restart(struct glint_lamp_tracker *tracks);
 
 /* Whether the last step was the first, or took its picture for one after a cut.
  */
-int glint_tracks_was_cut(const struct glint_tracks *tracks);
+int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks);
 
 #ifdef __cplusplus
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Many beams made few: pairs merge whose lights move least.
+ * Many lights made few: pairs merge whose images move least.
  *
- *   in   beams in any order
+ *   in   lights in any order
  *   out  fewer, with the same light from nearly the same directions
  *
- * Method: beams are sorted along a Z-order curve through the plane of their
+ * Method: lights are sorted along a Z-order curve through the plane of their
  * direction sines, and neighbours on it are looked at. A curve parts some
  * neighbours of the plane; so each round has another, through a shifted plane.
  *
@@ -17,9 +17,9 @@
  * ones keep their places. A round merges the cheapest of the pairs it finds, a
  * part of what has to go, so that costs rise slowly.
  *
- * In place: O(n log n) for all rounds, as each leaves fewer beams; nothing
- * depends on the order that beams came in, as the sort is by all they hold.
- * While it works, rgb_q14 of a beam has HELD more fraction bits, or a faint
+ * In place: O(n log n) for all rounds, as each leaves fewer lights; nothing
+ * depends on the order that lights came in, as the sort is by all they hold.
+ * While it works, rgb_q14 of a light has HELD more fraction bits, or a faint
  * light's colour would be lost in the rounding of a bright one's.
  */
 #include "base/q.h"
@@ -31,7 +31,7 @@ enum {
     PART = 4,   /* of what has to go goes in a round */
     BINS = 64,  /* of costs */
     HELD = 14,
-    WORDS = 9 /* of a beam */
+    WORDS = 9 /* of a light */
 };
 
 #define ONE_Q30 (INT32_C(1) << 30)
@@ -42,7 +42,7 @@ struct direction {
     int32_t x_q30, y_q30, z_q30;
 };
 
-static struct direction direction_of(const struct glint_beam *b)
+static struct direction direction_of(const struct glint_light *b)
 {
     return (struct direction){q_mul(b->sine_q30, b->cos_q30, 30),
                               q_mul(b->sine_q30, b->sin_q30, 30),
@@ -50,8 +50,8 @@ static struct direction direction_of(const struct glint_beam *b)
 }
 
 /* Squared distance on the unit sphere, at most 4. */
-static uint64_t distance2_q60(const struct glint_beam *a,
-                              const struct glint_beam *b)
+static uint64_t distance2_q60(const struct glint_light *a,
+                              const struct glint_light *b)
 {
     const struct direction p = direction_of(a), q = direction_of(b);
     const int64_t x = (int64_t)p.x_q30 - q.x_q30;
@@ -62,7 +62,7 @@ static uint64_t distance2_q60(const struct glint_beam *a,
 }
 
 /* The azimuth of X, Y; returns their length. Straight ahead any will do. */
-static int64_t set_azimuth(struct glint_beam *b, int32_t x_q30, int32_t y_q30)
+static int64_t set_azimuth(struct glint_light *b, int32_t x_q30, int32_t y_q30)
 {
     const uint32_t size = (uint32_t)(x_q30 < 0 ? -x_q30 : x_q30) |
                           (uint32_t)(y_q30 < 0 ? -y_q30 : y_q30);
@@ -79,7 +79,7 @@ static int64_t set_azimuth(struct glint_beam *b, int32_t x_q30, int32_t y_q30)
 }
 
 /* Points B at what is D when its length is made 1. */
-static void set_direction(struct glint_beam *b, const struct direction *d)
+static void set_direction(struct glint_light *b, const struct direction *d)
 {
     const int64_t off = set_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
     const int64_t length = q_root((uint64_t)(off * off + z * z));
@@ -98,7 +98,7 @@ struct order {
     uint32_t x0, y0; /* where it begins, 2^-30 below -1 */
 };
 
-static void words_of(const struct glint_beam *b, int32_t *word)
+static void words_of(const struct glint_light *b, int32_t *word)
 {
     word[0] = b->power.exponent;
     word[1] = b->power.mantissa;
@@ -111,7 +111,7 @@ static void words_of(const struct glint_beam *b, int32_t *word)
 }
 
 /* Whether A comes before B by all that they hold. */
-static int is_brighter(const struct glint_beam *a, const struct glint_beam *b)
+static int is_brighter(const struct glint_light *a, const struct glint_light *b)
 {
     int32_t p[WORDS], q[WORDS];
 
@@ -129,8 +129,8 @@ static uint32_t along(int32_t v_q30, uint32_t zero)
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
 }
 
-static int is_before(const struct order *o, const struct glint_beam *a,
-                     const struct glint_beam *b)
+static int is_before(const struct order *o, const struct glint_light *a,
+                     const struct glint_light *b)
 {
     const struct direction p = direction_of(a), q = direction_of(b);
     const uint32_t px = along(p.x_q30, o->x0), qx = along(q.x_q30, o->x0);
@@ -144,10 +144,10 @@ static int is_before(const struct order *o, const struct glint_beam *a,
 }
 
 /* Restores the heap b[0 .. n - 1], the last of the order first, below AT. */
-static void sift_down(const struct order *o, struct glint_beam *b, int at,
+static void sift_down(const struct order *o, struct glint_light *b, int at,
                       int n)
 {
-    const struct glint_beam moved = b[at];
+    const struct glint_light moved = b[at];
 
     for (;;) {
         int child = 2 * at + 1;
@@ -164,12 +164,12 @@ static void sift_down(const struct order *o, struct glint_beam *b, int at,
     b[at] = moved;
 }
 
-static void sort(const struct order *o, struct glint_beam *b, int n)
+static void sort(const struct order *o, struct glint_light *b, int n)
 {
     for (int i = n / 2 - 1; i >= 0; i--)
         sift_down(o, b, i, n);
     for (int end = n - 1; end > 0; end--) {
-        const struct glint_beam last = b[0];
+        const struct glint_light last = b[0];
 
         b[0] = b[end];
         b[end] = last;
@@ -178,7 +178,7 @@ static void sort(const struct order *o, struct glint_beam *b, int n)
 }
 
 /* Multiples of irrational numbers: no two rounds part the same neighbours. */
-static void sort_along(struct glint_beam *b, int n, int round)
+static void sort_along(struct glint_light *b, int n, int round)
 {
     const uint32_t k = (uint32_t)round;
     const struct order o = {0, k * UINT32_C(1640531527) >> 2,
@@ -191,7 +191,7 @@ static void sort_along(struct glint_beam *b, int n, int round)
  */
 
 /* A gets the light of B and the direction between. */
-static void merge(struct glint_beam *a, const struct glint_beam *b)
+static void merge(struct glint_light *a, const struct glint_light *b)
 {
     const struct glint_real power = real_plus(a->power, b->power);
     const int64_t share_q30 =
@@ -220,7 +220,7 @@ static void merge(struct glint_beam *a, const struct glint_beam *b)
 }
 
 /* The power of two that merging A and B costs, squared. */
-static int cost_of(const struct glint_beam *a, const struct glint_beam *b)
+static int cost_of(const struct glint_light *a, const struct glint_light *b)
 {
     const uint64_t d2_q59 = distance2_q60(a, b) >> 1 | 1;
     const struct glint_real light = real_times(a->power, b->power);
@@ -236,15 +236,15 @@ struct rule {
     int most;           /* while there are more than so many */
 };
 
-static int may_merge(const struct rule *r, const struct glint_beam *a,
-                     const struct glint_beam *b)
+static int may_merge(const struct rule *r, const struct glint_light *a,
+                     const struct glint_light *b)
 {
     return r->near2_q60 ? distance2_q60(a, b) <= r->near2_q60
                         : cost_of(a, b) <= r->cost;
 }
 
 /* Returns how many are left. */
-static int merge_neighbours(struct glint_beam *b, int n, const struct rule *r)
+static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
 {
     int last = 0, left = n;
 
@@ -258,7 +258,7 @@ static int merge_neighbours(struct glint_beam *b, int n, const struct rule *r)
 }
 
 /* The least cost that serves for a part of the N - MOST that have to go. */
-static int next_cost(const struct glint_beam *b, int n, int most)
+static int next_cost(const struct glint_light *b, int n, int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
     int wanted = (n - most + PART - 1) / PART;
@@ -278,7 +278,7 @@ static int next_cost(const struct glint_beam *b, int n, int most)
 }
 
 /* Leaves out what is dark, and holds colours finely. */
-static int take_in(struct glint_beam *b, int n)
+static int take_in(struct glint_light *b, int n)
 {
     int kept = 0;
 
@@ -295,7 +295,7 @@ static int take_in(struct glint_beam *b, int n)
     return kept;
 }
 
-static void give_out(struct glint_beam *b, int n)
+static void give_out(struct glint_light *b, int n)
 {
     const struct order brightest_first = {.by_power = 1};
 
@@ -305,24 +305,24 @@ static void give_out(struct glint_beam *b, int n)
     sort(&brightest_first, b, n);
 }
 
-int glint_beams_merge(struct glint_beam *beams, int n_beams, int32_t near_q30,
-                      int most, int *n_apart)
+int glint_lights_merge(struct glint_light *lights, int n_lights,
+                       int32_t near_q30, int most, int *n_apart)
 {
     struct rule rule = {
         .near2_q60 = (uint64_t)near_q30 * (uint64_t)near_q30 + 1, .most = 1};
-    int n = take_in(beams, n_beams), round = 0;
+    int n = take_in(lights, n_lights), round = 0;
 
     for (; round < CURVES && n > 1; round++) {
-        sort_along(beams, n, round);
-        n = merge_neighbours(beams, n, &rule);
+        sort_along(lights, n, round);
+        n = merge_neighbours(lights, n, &rule);
     }
     *n_apart = n;
     rule = (struct rule){.most = most > 1 ? most : 1};
     for (; n > rule.most; round++) {
-        sort_along(beams, n, round);
-        rule.cost = next_cost(beams, n, rule.most);
-        n = merge_neighbours(beams, n, &rule);
+        sort_along(lights, n, round);
+        rule.cost = next_cost(lights, n, rule.most);
+        n = merge_neighbours(lights, n, &rule);
     }
-    give_out(beams, n);
+    give_out(lights, n);
     return n;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Many beams made few: the same for every order, no light lost, the bright ones
- * where they were, at most as many as asked for.
+ * Many lights made few: the same for every order, no light lost, the bright
+ * ones where they were, at most as many as asked for.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -36,12 +36,12 @@ static int32_t q30(double x)
     return (int32_t)lrint(x * 0x1p30);
 }
 
-/* A beam from direction sines X, Y. */
-static struct glint_beam beam_at(double x, double y, double power)
+/* A light from direction sines X, Y. */
+static struct glint_light beam_at(double x, double y, double power)
 {
     const double sine = hypot(x, y);
 
-    return (struct glint_beam){
+    return (struct glint_light){
         .sine_q30 = q30(sine),
         .cosine_q30 = q30(sqrt(1 - sine * sine)),
         .cos_q30 = sine > 0 ? q30(x / sine) : 1 << 30,
@@ -58,7 +58,7 @@ static double uniform(uint32_t *state)
 
 /* Powers from 1e-6 to 1e9, most of them small; some lights coincide, some lie
  * on the axis, with any azimuth. */
-static void scatter(struct glint_beam *b, int n, uint32_t seed)
+static void scatter(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = 0; i < n; i++) {
         const double x = 0.6 * (uniform(&seed) - 0.5);
@@ -78,18 +78,18 @@ static void scatter(struct glint_beam *b, int n, uint32_t seed)
     }
 }
 
-static void mix(struct glint_beam *b, int n, uint32_t seed)
+static void mix(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = n - 1; i > 0; i--) {
         const int j = (int)(shuffle_next(&seed) % (uint32_t)(i + 1));
-        const struct glint_beam old = b[i];
+        const struct glint_light old = b[i];
 
         b[i] = b[j];
         b[j] = old;
     }
 }
 
-static void flux_of(const struct glint_beam *b, int n, double flux[3])
+static void flux_of(const struct glint_light *b, int n, double flux[3])
 {
     flux[0] = flux[1] = flux[2] = 0;
     for (int i = 0; i < n; i++)
@@ -97,8 +97,8 @@ static void flux_of(const struct glint_beam *b, int n, double flux[3])
             flux[c] += value(b[i].power) * b[i].rgb_q14[c] / 16384;
 }
 
-/* What a beam promises to those who draw it. */
-static void assert_sound(const struct glint_beam *b)
+/* What a light promises to those who draw it. */
+static void assert_sound(const struct glint_light *b)
 {
     const double off = hypot(b->sine_q30, b->cosine_q30) * 0x1p-30;
     const double round = hypot(b->cos_q30, b->sin_q30) * 0x1p-30;
@@ -117,28 +117,28 @@ static void assert_sound(const struct glint_beam *b)
 
 static void test_none_and_one(void **state)
 {
-    struct glint_beam b = beam_at(0.1, -0.2, 3), was = b;
+    struct glint_light b = beam_at(0.1, -0.2, 3), was = b;
     int apart = 7;
 
     (void)state;
     b.rgb_q14[1] = 12345;
     was = b;
-    assert_int_equal(glint_beams_merge(&b, 0, NEAR_Q30, 5, &apart), 0);
+    assert_int_equal(glint_lights_merge(&b, 0, NEAR_Q30, 5, &apart), 0);
     assert_int_equal(apart, 0);
-    assert_int_equal(glint_beams_merge(&b, 1, NEAR_Q30, 1, &apart), 1);
+    assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 1);
     assert_int_equal(apart, 1);
     assert_memory_equal(&b, &was, sizeof b);
     b.power = real_of(0, 0);
-    assert_int_equal(glint_beams_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
+    assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
     b = was;
     memset(b.rgb_q14, 0, sizeof b.rgb_q14);
-    assert_int_equal(glint_beams_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
+    assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
 }
 
 /* Too few and too far apart to merge: every bit stays. */
 static void test_untouched(void **state)
 {
-    static struct glint_beam b[200], was[200];
+    static struct glint_light b[200], was[200];
     int apart, found = 0;
 
     (void)state;
@@ -147,7 +147,7 @@ static void test_untouched(void **state)
         b[i].rgb_q14[i % 3] = i;
     }
     memcpy(was, b, sizeof b);
-    assert_int_equal(glint_beams_merge(b, 200, NEAR_Q30, 200, &apart), 200);
+    assert_int_equal(glint_lights_merge(b, 200, NEAR_Q30, 200, &apart), 200);
     assert_int_equal(apart, 200);
     for (int i = 0; i < 200; i++) {
         assert_true(i == 0 || !real_less(b[i - 1].power, b[i].power));
@@ -159,14 +159,14 @@ static void test_untouched(void **state)
 
 static void test_identical(void **state)
 {
-    static struct glint_beam b[MANY];
-    const struct glint_beam one = beam_at(-0.11, 0.23, 0.5);
+    static struct glint_light b[MANY];
+    const struct glint_light one = beam_at(-0.11, 0.23, 0.5);
     int apart;
 
     (void)state;
     for (int i = 0; i < MANY; i++)
         b[i] = one;
-    assert_int_equal(glint_beams_merge(b, MANY, 0, MANY, &apart), 1);
+    assert_int_equal(glint_lights_merge(b, MANY, 0, MANY, &apart), 1);
     assert_int_equal(apart, 1);
     assert_sound(b);
     assert_true(abs(b->sine_q30 - one.sine_q30) < 64 &&
@@ -196,8 +196,9 @@ static void test_near(void **state)
         const double dx = 2 * near * (uniform(&seed) - 0.5);
         const double dy = 2 * near * (uniform(&seed) - 0.5);
         const double d = chord(x, y, x + dx, y + dy);
-        struct glint_beam b[2] = {beam_at(x, y, 1), beam_at(x + dx, y + dy, 3)};
-        const int left = glint_beams_merge(b, 2, NEAR_Q30, 2, &apart);
+        struct glint_light b[2] = {beam_at(x, y, 1),
+                                   beam_at(x + dx, y + dy, 3)};
+        const int left = glint_lights_merge(b, 2, NEAR_Q30, 2, &apart);
 
         if (fabs(d - near) > 0.001 * near)
             assert_int_equal(left, d < near ? 1 : 2);
@@ -217,46 +218,46 @@ static void test_near(void **state)
 
 static void test_axis(void **state)
 {
-    struct glint_beam b[4] = {beam_at(0, 0, 1), beam_at(0, 0, 1),
-                              beam_at(2e-9, 0, 1), beam_at(-2e-9, 0, 1)};
-    struct glint_beam far[2] = {beam_at(0.1, 0, 1), beam_at(-0.1, 0, 1)};
-    struct glint_beam aside[2] = {beam_at(2e-9, 0, 1), beam_at(0, 2e-9, 1)};
+    struct glint_light b[4] = {beam_at(0, 0, 1), beam_at(0, 0, 1),
+                               beam_at(2e-9, 0, 1), beam_at(-2e-9, 0, 1)};
+    struct glint_light far[2] = {beam_at(0.1, 0, 1), beam_at(-0.1, 0, 1)};
+    struct glint_light aside[2] = {beam_at(2e-9, 0, 1), beam_at(0, 2e-9, 1)};
     int apart;
 
     (void)state;
     b[1].cos_q30 = -(1 << 29);
     b[1].sin_q30 = 929887697; /* 120 degrees */
-    assert_int_equal(glint_beams_merge(b, 4, NEAR_Q30, 4, &apart), 1);
+    assert_int_equal(glint_lights_merge(b, 4, NEAR_Q30, 4, &apart), 1);
     assert_sound(b);
     assert_true(b->sine_q30 <= 2);
     assert_true(fabs(value(b->power) - 4) < 1e-8);
-    assert_int_equal(glint_beams_merge(far, 2, NEAR_Q30, 1, &apart), 1);
+    assert_int_equal(glint_lights_merge(far, 2, NEAR_Q30, 1, &apart), 1);
     assert_int_equal(apart, 2);
     assert_sound(far);
     assert_true(far->sine_q30 <= 2);
-    assert_int_equal(glint_beams_merge(aside, 2, NEAR_Q30, 1, &apart), 1);
+    assert_int_equal(glint_lights_merge(aside, 2, NEAR_Q30, 1, &apart), 1);
     assert_sound(aside);
 }
 
 static void test_horizon(void **state)
 {
-    struct glint_beam b[3] = {beam_at(1, 0, 1), beam_at(-1, 0, 1),
-                              beam_at(0, 1, 1)};
+    struct glint_light b[3] = {beam_at(1, 0, 1), beam_at(-1, 0, 1),
+                               beam_at(0, 1, 1)};
     int apart;
 
     (void)state;
-    assert_int_equal(glint_beams_merge(b, 2, 1 << 30, 1, &apart), 1);
+    assert_int_equal(glint_lights_merge(b, 2, 1 << 30, 1, &apart), 1);
     assert_sound(b);
     b[0] = beam_at(1, 0, 1);
     b[1] = beam_at(-1, 0, 1);
-    assert_int_equal(glint_beams_merge(b, 3, NEAR_Q30, 1, &apart), 1);
+    assert_int_equal(glint_lights_merge(b, 3, NEAR_Q30, 1, &apart), 1);
     assert_sound(b);
 }
 
 /* Bit for bit, for every number asked for. */
 static void test_order(void **state)
 {
-    static struct glint_beam want[MANY], got[MANY];
+    static struct glint_light want[MANY], got[MANY];
 
     (void)state;
     for (uint32_t k = 0; k < 24; k++) {
@@ -266,9 +267,9 @@ static void test_order(void **state)
         scatter(want, n, 77 + k / 3);
         memcpy(got, want, sizeof got);
         mix(got, n, 1000 + k);
-        left = glint_beams_merge(want, n, NEAR_Q30, most, &apart);
+        left = glint_lights_merge(want, n, NEAR_Q30, most, &apart);
         assert_int_equal(
-            glint_beams_merge(got, n, NEAR_Q30, most, &apart_again), left);
+            glint_lights_merge(got, n, NEAR_Q30, most, &apart_again), left);
         assert_int_equal(apart, apart_again);
         assert_memory_equal(got, want, (size_t)left * sizeof *got);
     }
@@ -276,7 +277,7 @@ static void test_order(void **state)
 
 static void test_cap_and_flux(void **state)
 {
-    static struct glint_beam b[MANY];
+    static struct glint_light b[MANY];
 
     (void)state;
     for (int most = 1; most <= 4096; most *= 2) {
@@ -285,7 +286,7 @@ static void test_cap_and_flux(void **state)
 
         scatter(b, MANY, 9);
         flux_of(b, MANY, before);
-        left = glint_beams_merge(b, MANY, NEAR_Q30, most, &apart);
+        left = glint_lights_merge(b, MANY, NEAR_Q30, most, &apart);
         assert_true(apart <= MANY - MANY / 100 && apart > MANY * 9 / 10);
         assert_int_equal(left, most < apart ? most : apart);
         flux_of(b, left, after);
@@ -299,7 +300,7 @@ static void test_cap_and_flux(void **state)
 /* A faint colour is not lost in the rounding of a bright light's. */
 static void test_faint_colour(void **state)
 {
-    static struct glint_beam b[MANY];
+    static struct glint_light b[MANY];
     double flux[3];
     int apart;
 
@@ -309,7 +310,7 @@ static void test_faint_colour(void **state)
         b[i].rgb_q14[1] = b[i].rgb_q14[2] = 0;
     }
     b[0] = beam_at(0.1, 0.1, 1);
-    assert_int_equal(glint_beams_merge(b, MANY, NEAR_Q30, 1, &apart), 1);
+    assert_int_equal(glint_lights_merge(b, MANY, NEAR_Q30, 1, &apart), 1);
     flux_of(b, 1, flux);
     assert_true(fabs(flux[0] - 1 - 1e-5 * (MANY - 1)) < 1e-5);
     assert_true(fabs(flux[1] - 1) < 1e-4 && fabs(flux[2] - 1) < 1e-4);
@@ -323,13 +324,13 @@ static void test_powers(void **state)
     (void)state;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
-            struct glint_beam b[3] = {beam_at(0.1, 0.1, powers[i]),
-                                      beam_at(0.2, 0.1, powers[j]),
-                                      beam_at(0.1, 0.3, powers[i])};
+            struct glint_light b[3] = {beam_at(0.1, 0.1, powers[i]),
+                                       beam_at(0.2, 0.1, powers[j]),
+                                       beam_at(0.1, 0.3, powers[i])};
             const double sum = 2 * powers[i] + powers[j];
             int apart;
 
-            assert_int_equal(glint_beams_merge(b, 3, NEAR_Q30, 1, &apart), 1);
+            assert_int_equal(glint_lights_merge(b, 3, NEAR_Q30, 1, &apart), 1);
             assert_sound(b);
             assert_true(fabs(value(b->power) - sum) < 1e-8 * sum);
         }
@@ -338,7 +339,7 @@ static void test_powers(void **state)
 /* Of a few bright lights among many faint ones the bright ones stay. */
 static void test_bright_ones_stay(void **state)
 {
-    static struct glint_beam b[MANY];
+    static struct glint_light b[MANY];
     int apart;
 
     (void)state;
@@ -347,7 +348,7 @@ static void test_bright_ones_stay(void **state)
         b[i].power = real(0.01);
     for (int i = 0; i < 20; i++)
         b[150 * i] = beam_at(0.02 * i - 0.2, 0.15 - 0.01 * i, 100);
-    assert_int_equal(glint_beams_merge(b, MANY, NEAR_Q30, 128, &apart), 128);
+    assert_int_equal(glint_lights_merge(b, MANY, NEAR_Q30, 128, &apart), 128);
     for (int i = 0; i < 20; i++) {
         double nearest = 1;
 
@@ -377,5 +378,5 @@ int main(void)
         cmocka_unit_test(test_bright_ones_stay),
     };
 
-    return cmocka_run_group_tests_name("beams", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("lights", tests, NULL, NULL);
 }

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
  * What the parts of the finder of lights share: light_rows.c makes candidates
- * of a picture, light_list.c holds, sorts and merges them.
+ * of a picture, lamp_list.c holds, sorts and merges them.
  */
-#ifndef GLINT_LAMPS_LIGHTS_STATE_H
-#define GLINT_LAMPS_LIGHTS_STATE_H
+#ifndef GLINT_LAMPS_LAMP_FINDER_H
+#define GLINT_LAMPS_LAMP_FINDER_H
 
 #include "lamps/bright.h"
 #include "lamps/regions.h"
 #include "lamps/row_light.h"
 #include "lamps/score.h"
 #include "lamps/white.h"
-#include "glint/lights.h"
+#include "glint/lamps.h"
 
 enum {
     LIGHT_CANDIDATES = 2048, /* at least the 1024 that find may be asked for */
     LIGHT_LEVELS = 6
 };
 
-struct glint_lights {
-    struct glint_lights_config cfg;
+struct glint_lamp_finder {
+    struct glint_lamp_finder_config cfg;
     int64_t max_area;
     int64_t merge2_q16; /* squared merge distance */
     struct glint_bright bright;
@@ -36,20 +36,20 @@ struct glint_lights {
 };
 
 /* Holds the candidates that IMAGE has, and no others. */
-void glint_lights_collect(struct glint_lights *f,
-                          const struct glint_image *image);
+void glint_lamps_collect(struct glint_lamp_finder *f,
+                         const struct glint_image *image);
 
 /* Holds CANDIDATE, at the expense of the last if need be. */
-void glint_lights_hold(struct glint_lights *f,
-                       const struct glint_candidate *candidate);
+void glint_lamps_hold(struct glint_lamp_finder *f,
+                      const struct glint_candidate *candidate);
 
 /* Takes those out of the order that are gone. */
-void glint_lights_compact(struct glint_lights *f);
+void glint_lamps_compact(struct glint_lamp_finder *f);
 
 /* Sorts by falling flux and unites what is nearer than the merge distance. */
-void glint_lights_merge(struct glint_lights *f);
+void glint_lamps_merge(struct glint_lamp_finder *f);
 
 /* Leaves MAX: what exceeds it joins the nearest that is kept, or is dropped. */
-void glint_lights_cap(struct glint_lights *f, int max);
+void glint_lamps_cap(struct glint_lamp_finder *f, int max);
 
 #endif

@@ -5,18 +5,18 @@
  * A region that qualifies becomes a candidate; of these the brightest
  * LIGHT_CANDIDATES are held, and only when all are found is anything merged.
  */
-#include "glint/lights.h"
+#include "glint/lamps.h"
 
 #include "base/arena.h"
 #include "base/q.h"
-#include "lamps/lights_state.h"
+#include "lamps/lamp_finder.h"
 
 #define MAX_SPOTS 1024
 #define EV_MIN_Q8 (-20 * 256)
 
 /* ------------------------------------------------------------------- memory */
 
-static int is_valid(const struct glint_lights_config *c)
+static int is_valid(const struct glint_lamp_finder_config *c)
 {
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->threshold_low_q8 >= EV_MIN_Q8 &&
@@ -29,12 +29,12 @@ static int is_valid(const struct glint_lights_config *c)
 }
 
 /* Runs twice: to measure, and to place. NULL if measuring or full. */
-static struct glint_lights *carve(struct glint_arena *a,
-                                  const struct glint_lights_config *c)
+static struct glint_lamp_finder *carve(struct glint_arena *a,
+                                       const struct glint_lamp_finder_config *c)
 {
-    struct glint_lights *placed = glint_arena_take(a, 1, sizeof *placed);
-    struct glint_lights measured;
-    struct glint_lights *f = placed ? placed : &measured;
+    struct glint_lamp_finder *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_lamp_finder measured;
+    struct glint_lamp_finder *f = placed ? placed : &measured;
 
     glint_bright_carve(&f->bright, a, c->width);
     for (int i = 0; i < LIGHT_LEVELS; i++)
@@ -47,23 +47,23 @@ static struct glint_lights *carve(struct glint_arena *a,
     return a->used <= a->size ? placed : NULL;
 }
 
-void glint_lights_defaults(struct glint_lights_config *cfg, int width,
-                           int height)
+void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
+                                int height)
 {
     const int pixels = width * height; /* 2^30 at most */
 
-    *cfg = (struct glint_lights_config){.width = width,
-                                        .height = height,
-                                        .threshold_high_q8 = -26,
-                                        .threshold_low_q8 = -38,
-                                        .judge = 1,
-                                        .min_area =
-                                            pixels < 1 << 19 ? 2 : pixels >> 18,
-                                        .max_share_q15 = Q_CONST(0.25, 15),
-                                        .merge_q15 = Q_CONST(0.01, 15)};
+    *cfg = (struct glint_lamp_finder_config){
+        .width = width,
+        .height = height,
+        .threshold_high_q8 = -26,
+        .threshold_low_q8 = -38,
+        .judge = 1,
+        .min_area = pixels < 1 << 19 ? 2 : pixels >> 18,
+        .max_share_q15 = Q_CONST(0.25, 15),
+        .merge_q15 = Q_CONST(0.01, 15)};
 }
 
-size_t glint_lights_bytes(const struct glint_lights_config *cfg)
+size_t glint_lamp_finder_bytes(const struct glint_lamp_finder_config *cfg)
 {
     struct glint_arena measured = glint_arena_measure();
 
@@ -73,12 +73,13 @@ size_t glint_lights_bytes(const struct glint_lights_config *cfg)
     return measured.used;
 }
 
-enum glint_status glint_lights_init(struct glint_lights **finder,
-                                    const struct glint_lights_config *cfg,
-                                    void *mem, size_t bytes)
+enum glint_status
+glint_lamp_finder_init(struct glint_lamp_finder **finder,
+                       const struct glint_lamp_finder_config *cfg, void *mem,
+                       size_t bytes)
 {
     struct glint_arena arena = glint_arena_over(mem, bytes);
-    struct glint_lights *f;
+    struct glint_lamp_finder *f;
     int64_t merge_q8;
 
     if (!is_valid(cfg) || (uintptr_t)mem % GLINT_ALIGN)
@@ -100,7 +101,7 @@ enum glint_status glint_lights_init(struct glint_lights **finder,
 /* -------------------------------------------------------------------- score */
 
 /* Leaves what looks like a lamp, and what may still be one as faint. */
-static void judge(struct glint_lights *f)
+static void judge(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
                                       f->cfg.height, f->level, 1};
@@ -117,7 +118,7 @@ static void judge(struct glint_lights *f)
             f->order[f->n++] = f->order[i];
     }
     glint_score_choose(&score, f->candidate, f->order, f->n);
-    glint_lights_compact(f);
+    glint_lamps_compact(f);
 }
 
 /* ------------------------------------------------------------------- result */
@@ -142,21 +143,21 @@ static struct glint_spot spot_of(const struct glint_candidate *candidate)
     return s;
 }
 
-int glint_lights_find(struct glint_lights *finder,
-                      const struct glint_image *image, struct glint_spot *spots,
-                      int max)
+int glint_lamp_finder_find(struct glint_lamp_finder *finder,
+                           const struct glint_image *image,
+                           struct glint_spot *spots, int max)
 {
-    glint_lights_collect(finder, image);
+    glint_lamps_collect(finder, image);
     if (finder->cfg.judge)
         judge(finder);
-    glint_lights_merge(finder);
-    glint_lights_cap(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
+    glint_lamps_merge(finder);
+    glint_lamps_cap(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
     for (int i = 0; i < finder->n; i++)
         spots[i] = spot_of(&finder->candidate[finder->order[i]]);
     return finder->n;
 }
 
-int glint_lights_dropped(const struct glint_lights *finder)
+int glint_lamp_finder_dropped(const struct glint_lamp_finder *finder)
 {
     return finder->dropped;
 }

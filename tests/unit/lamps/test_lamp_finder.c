@@ -3,7 +3,7 @@
  * Lights found in drawn pictures: where they are, that they stay there, what is
  * no light, and regions of every shape against a flood fill.
  */
-#include "glint/lights.h"
+#include "glint/lamps.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -118,28 +118,29 @@ static void draw_disc(const struct glint_image *image, double cx, double cy,
 }
 
 /* What a new finder of exactly the bytes asked for finds, in dirty memory. */
-static int find_at_most(const struct glint_lights_config *cfg,
+static int find_at_most(const struct glint_lamp_finder_config *cfg,
                         const struct glint_image *image, int max, int *dropped)
 {
-    const size_t bytes = glint_lights_bytes(cfg);
-    struct glint_lights *finder;
+    const size_t bytes = glint_lamp_finder_bytes(cfg);
+    struct glint_lamp_finder *finder;
     void *mem;
     int n;
 
     assert_true(bytes > 0);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
     memset(mem, draw_random(256), bytes);
-    assert_int_equal(glint_lights_init(&finder, cfg, mem, bytes), GLINT_OK);
-    n = glint_lights_find(finder, image, spot, max);
+    assert_int_equal(glint_lamp_finder_init(&finder, cfg, mem, bytes),
+                     GLINT_OK);
+    n = glint_lamp_finder_find(finder, image, spot, max);
     if (dropped)
-        *dropped = glint_lights_dropped(finder);
+        *dropped = glint_lamp_finder_dropped(finder);
     else
-        assert_int_equal(glint_lights_dropped(finder), 0);
+        assert_int_equal(glint_lamp_finder_dropped(finder), 0);
     free(mem);
     return n;
 }
 
-static int find(const struct glint_lights_config *cfg,
+static int find(const struct glint_lamp_finder_config *cfg,
                 const struct glint_image *image)
 {
     return find_at_most(cfg, image, MAX_SPOTS, NULL);
@@ -154,24 +155,25 @@ static int32_t stops_q8_of(int code)
 
 /* Every region counts: no smallest, no largest, nothing merges. LOW and HIGH
  * are codes, HIGH 250 at most. */
-static struct glint_lights_config plain_config(const struct glint_image *image,
-                                               int low, int high)
+static struct glint_lamp_finder_config
+plain_config(const struct glint_image *image, int low, int high)
 {
-    return (struct glint_lights_config){.width = image->width,
-                                        .height = image->height,
-                                        .threshold_low_q8 = stops_q8_of(low),
-                                        .threshold_high_q8 = stops_q8_of(high),
-                                        .white_code = 255,
-                                        .min_area = 1,
-                                        .max_share_q15 = 1 << 15};
+    return (struct glint_lamp_finder_config){
+        .width = image->width,
+        .height = image->height,
+        .threshold_low_q8 = stops_q8_of(low),
+        .threshold_high_q8 = stops_q8_of(high),
+        .white_code = 255,
+        .min_area = 1,
+        .max_share_q15 = 1 << 15};
 }
 
-static struct glint_lights_config
+static struct glint_lamp_finder_config
 default_config(const struct glint_image *image)
 {
-    struct glint_lights_config cfg;
+    struct glint_lamp_finder_config cfg;
 
-    glint_lights_defaults(&cfg, image->width, image->height);
+    glint_lamp_finder_defaults(&cfg, image->width, image->height);
     return cfg;
 }
 
@@ -189,42 +191,44 @@ static double y_of(int i)
 
 static void test_memory_is_exact(void **state)
 {
-    struct glint_lights *finder;
-    struct glint_lights_config cfg;
+    struct glint_lamp_finder *finder;
+    struct glint_lamp_finder_config cfg;
     size_t bytes;
     void *mem;
 
     (void)state;
-    glint_lights_defaults(&cfg, 1302, 953);
-    bytes = glint_lights_bytes(&cfg);
+    glint_lamp_finder_defaults(&cfg, 1302, 953);
+    bytes = glint_lamp_finder_bytes(&cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_lights_init(&finder, &cfg, mem, bytes), GLINT_OK);
-    assert_int_equal(glint_lights_init(&finder, &cfg, mem, bytes - 1),
+    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, bytes),
+                     GLINT_OK);
+    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, bytes - 1),
                      GLINT_E_MEMORY);
-    assert_int_equal(glint_lights_init(&finder, &cfg, mem, 1), GLINT_E_MEMORY);
+    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, 1),
+                     GLINT_E_MEMORY);
     assert_int_equal(
-        glint_lights_init(&finder, &cfg, (char *)mem + 8, bytes - 8),
+        glint_lamp_finder_init(&finder, &cfg, (char *)mem + 8, bytes - 8),
         GLINT_E_ARGUMENT);
     free(mem);
 }
 
-static void assert_refused(struct glint_lights_config cfg)
+static void assert_refused(struct glint_lamp_finder_config cfg)
 {
     static uint64_t mem[16];
-    struct glint_lights *finder;
+    struct glint_lamp_finder *finder;
 
-    assert_true(glint_lights_bytes(&cfg) == 0);
-    assert_int_equal(glint_lights_init(&finder, &cfg, mem, sizeof mem),
+    assert_true(glint_lamp_finder_bytes(&cfg) == 0);
+    assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem, sizeof mem),
                      GLINT_E_ARGUMENT);
 }
 
 static void test_bad_configurations_are_refused(void **state)
 {
-    struct glint_lights_config good, bad;
+    struct glint_lamp_finder_config good, bad;
 
     (void)state;
-    glint_lights_defaults(&good, 640, 480);
-    assert_true(glint_lights_bytes(&good) > 0);
+    glint_lamp_finder_defaults(&good, 640, 480);
+    assert_true(glint_lamp_finder_bytes(&good) > 0);
     bad = good, bad.width = 0, assert_refused(bad);
     bad = good, bad.width = GLINT_MAX_SIDE + 1, assert_refused(bad);
     bad = good, bad.height = 0, assert_refused(bad);
@@ -249,10 +253,10 @@ static void test_defaults_are_valid_for_every_size(void **state)
 
     (void)state;
     for (int i = 0; i < 25; i++) {
-        struct glint_lights_config cfg;
+        struct glint_lamp_finder_config cfg;
 
-        glint_lights_defaults(&cfg, sides[i % 5], sides[i / 5]);
-        assert_true(glint_lights_bytes(&cfg) > 0);
+        glint_lamp_finder_defaults(&cfg, sides[i % 5], sides[i / 5]);
+        assert_true(glint_lamp_finder_bytes(&cfg) > 0);
     }
 }
 
@@ -261,7 +265,7 @@ static void test_defaults_are_valid_for_every_size(void **state)
 static void test_one_pixel(void **state)
 {
     struct glint_image image = new_image(GLINT_RGB24, 1, 1);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
     (void)state;
     assert_int_equal(find(&cfg, &image), 0);
@@ -282,7 +286,7 @@ static void test_one_pixel(void **state)
 static void test_moments_by_hand(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 16, 8);
-    struct glint_lights_config cfg = plain_config(&image, 180, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 180, 250);
 
     (void)state;
     set_grey(&image, 10, 5, 188);
@@ -307,7 +311,7 @@ static void test_disc_is_found_to_a_sixteenth(void **state)
     (void)state;
     for (int round = 0; round < 100; round++) {
         struct glint_image image = new_image(GLINT_GREY, 64, 48);
-        struct glint_lights_config cfg = plain_config(&image, 2, 250);
+        struct glint_lamp_finder_config cfg = plain_config(&image, 2, 250);
         const double radius = 1.5 + draw_random(600) / 100.0;
         const double cx = 20 + draw_random(2000) / 100.0;
         const double cy = 20 + draw_random(1000) / 100.0;
@@ -348,7 +352,7 @@ static void test_disc_with_defaults(void **state)
     (void)state;
     for (int round = 0; round < 100; round++) {
         struct glint_image image = new_image(GLINT_GREY, 640, 480);
-        struct glint_lights_config cfg = default_config(&image);
+        struct glint_lamp_finder_config cfg = default_config(&image);
         const double radius = 3 + draw_random(900) / 100.0;
         const double cx = 20 + draw_random(60000) / 100.0;
         const double cy = 20 + draw_random(44000) / 100.0;
@@ -370,7 +374,7 @@ static void test_noise_does_not_move_a_light(void **state)
     (void)state;
     for (int frame = 0; frame < 100; frame++) {
         struct glint_image image = new_image(GLINT_GREY, 100, 80);
-        struct glint_lights_config cfg = default_config(&image);
+        struct glint_lamp_finder_config cfg = default_config(&image);
 
         cfg.max_share_q15 = 1 << 15;
         for (int y = 0; y < 80; y++)
@@ -393,7 +397,7 @@ static void test_noise_does_not_move_a_light(void **state)
 static void test_sparkle_does_not_move_a_light(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 64, 64);
-    struct glint_lights_config cfg = plain_config(&image, 150, 200);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 150, 200);
     double furthest = 0;
 
     (void)state;
@@ -413,7 +417,7 @@ static void test_sparkle_does_not_move_a_light(void **state)
 static void test_hot_pixel_among_dim_ones(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 64, 64);
-    struct glint_lights_config cfg = plain_config(&image, 40, 43);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 40, 43);
 
     (void)state;
     fill_grey(&image, 20, 30, 28, 38, 43); /* linear 0.0242 */
@@ -426,7 +430,7 @@ static void test_hot_pixel_among_dim_ones(void **state)
 static void test_same_every_time(void **state)
 {
     struct glint_image image = new_image(GLINT_RGB24, 300, 200);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
     static struct glint_spot first[MAX_SPOTS];
     int n, dropped;
 
@@ -448,7 +452,7 @@ static void test_same_every_time(void **state)
 static void test_black_and_white(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 100, 50);
-    struct glint_lights_config cfg = default_config(&image);
+    struct glint_lamp_finder_config cfg = default_config(&image);
 
     (void)state;
     assert_int_equal(find(&cfg, &image), 0);
@@ -471,7 +475,7 @@ static void test_large_picture(void **state)
 {
     enum { SIDE = 8192 };
     struct glint_image image = new_image(GLINT_GREY, SIDE, SIDE);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
     (void)state;
     memset(image.plane[0], 255, (size_t)SIDE * SIDE);
@@ -537,7 +541,7 @@ static void test_longest_pictures(void **state)
     for (int turned = 0; turned < 2; turned++) {
         const int width = turned ? SHORT : LONG, height = turned ? LONG : SHORT;
         struct glint_image image = new_image(GLINT_GREY, width, height);
-        struct glint_lights_config cfg = plain_config(&image, 200, 250);
+        struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
         memset(image.plane[0], 0, (size_t)width * (size_t)height);
         for (int end = 0; end < 2; end++)
@@ -563,7 +567,7 @@ static void test_longest_pictures(void **state)
 static void test_sky_is_no_light(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 100, 100);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
     (void)state;
     cfg.max_share_q15 = 32768 / 10; /* 999.9 pixels, rounded */
@@ -581,7 +585,7 @@ static void test_sky_is_no_light(void **state)
 static void test_few_seeds_are_no_light(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 100, 100);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
     (void)state;
     fill_grey(&image, 10, 10, 42, 42, 240); /* 1024 */
@@ -598,7 +602,7 @@ static void test_few_seeds_are_no_light(void **state)
 static void test_hysteresis(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 60, 60);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
     int area = 0;
 
     (void)state;
@@ -629,7 +633,7 @@ static void test_faint_regions_come_last(void **state)
     (void)state;
     for (int round = 0; round < 50; round++) {
         struct glint_image image = new_image(GLINT_GREY, 256, 256);
-        struct glint_lights_config cfg = plain_config(&image, 100, 200);
+        struct glint_lamp_finder_config cfg = plain_config(&image, 100, 200);
         int n_lights, n, max = round % 2 ? MAX_SPOTS : 20, dropped;
 
         cfg.min_area = 4;
@@ -667,7 +671,7 @@ static void test_sums_of_a_large_region(void **state)
     (void)state;
     for (int round = 0; round < 20; round++) {
         struct glint_image image = new_image(GLINT_GREY, 320, 200);
-        struct glint_lights_config cfg = plain_config(&image, 1, 1);
+        struct glint_lamp_finder_config cfg = plain_config(&image, 1, 1);
         double flux = 0, x_sum = 0, y_sum = 0, r2 = 0;
 
         for (int i = 0; i < 320 * 200; i++)
@@ -700,7 +704,7 @@ static void test_sums_of_a_large_region(void **state)
 static void test_small_ones_are_noise(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 60, 60);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
     (void)state;
     cfg.min_area = 5;
@@ -716,7 +720,7 @@ static void test_small_ones_are_noise(void **state)
 static void test_two_discs_by_flux(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 100, 60);
-    struct glint_lights_config cfg = plain_config(&image, 100, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 100, 250);
 
     (void)state;
     draw_disc(&image, 20.5, 20.5, 4, 1);
@@ -731,7 +735,7 @@ static void test_two_discs_by_flux(void **state)
 static void test_ties_go_by_position(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 100, 60);
-    struct glint_lights_config cfg = plain_config(&image, 100, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 100, 250);
 
     (void)state;
     fill_grey(&image, 50, 20, 52, 22, 255);
@@ -746,7 +750,7 @@ static void test_ties_go_by_position(void **state)
 static void test_near_ones_merge(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 128, 64);
-    struct glint_lights_config cfg = plain_config(&image, 100, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 100, 250);
 
     (void)state;
     fill_grey(&image, 20, 20, 23, 23, 255);
@@ -766,7 +770,7 @@ static void test_near_ones_merge(void **state)
 static void test_merged_ones_keep_their_distance(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 256, 256);
-    struct glint_lights_config cfg = plain_config(&image, 100, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 100, 250);
     int n, area = 0;
 
     (void)state;
@@ -790,7 +794,7 @@ static void test_merged_ones_keep_their_distance(void **state)
 static void test_cap(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 256, 64);
-    struct glint_lights_config cfg = plain_config(&image, 100, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 100, 250);
     int dropped;
 
     (void)state;
@@ -810,7 +814,7 @@ static void test_cap(void **state)
 static void test_joining_can_change_the_order(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 256, 64);
-    struct glint_lights_config cfg = plain_config(&image, 100, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 100, 250);
     int dropped;
 
     (void)state;
@@ -829,7 +833,7 @@ static void test_joining_can_change_the_order(void **state)
 static void test_more_lights_than_can_be_held(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 256, 256);
-    struct glint_lights_config cfg = plain_config(&image, 100, 150);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 100, 150);
     int dropped, bright = 0;
 
     (void)state;
@@ -855,7 +859,7 @@ static void test_more_lights_than_can_be_held(void **state)
 
 static void assert_one_region(const struct glint_image *image)
 {
-    struct glint_lights_config cfg = plain_config(image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(image, 200, 250);
     int area = 0;
 
     for (int y = 0; y < image->height; y++)
@@ -943,7 +947,7 @@ static int flood(const struct glint_image *image, int x, int y)
 static void check_against_flood(int width, int height, int percent)
 {
     struct glint_image image = new_image(GLINT_GREY, width, height);
-    struct glint_lights_config cfg = plain_config(&image, 250, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 250, 250);
     int of_area[64 * 64 + 1] = {0};
     int n, regions = 0;
 
@@ -996,7 +1000,7 @@ static void fill_rgb(const struct glint_image *image, int x0, int y0, int x1,
 static void test_colour_unclipped(void **state)
 {
     struct glint_image image = new_image(GLINT_RGB24, 40, 40);
-    struct glint_lights_config cfg = plain_config(&image, 150, 200);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 150, 200);
 
     (void)state;
     fill_rgb(&image, 10, 10, 20, 20, 240, 200, 120);
@@ -1010,7 +1014,7 @@ static void test_colour_unclipped(void **state)
 static void test_colour_of_the_rim(void **state)
 {
     struct glint_image image = new_image(GLINT_RGB24, 60, 40);
-    struct glint_lights_config cfg = plain_config(&image, 150, 200);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 150, 200);
 
     (void)state;
     fill_rgb(&image, 9, 9, 21, 21, 240, 200, 120);
@@ -1027,7 +1031,7 @@ static void test_colour_of_the_rim(void **state)
 static void test_colour_partly_clipped(void **state)
 {
     struct glint_image image = new_image(GLINT_RGB24, 40, 40);
-    struct glint_lights_config cfg = plain_config(&image, 50, 50);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 50, 50);
 
     (void)state;
     fill_rgb(&image, 10, 10, 20, 20, 255, 0, 0);
@@ -1045,7 +1049,7 @@ static void test_ycc_formats(void **state)
     (void)state;
     for (int f = 0; f < 3; f++) {
         struct glint_image image = new_image(formats[f], 41, 31);
-        struct glint_lights_config cfg = plain_config(&image, 200, 250);
+        struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
         image.range = GLINT_RANGE_LIMITED;
         image.transfer = GLINT_TONE_BT709;
@@ -1075,7 +1079,7 @@ static void test_ycc_formats(void **state)
 static void test_ycc_colour(void **state)
 {
     struct glint_image image = new_image(GLINT_I444, 20, 20);
-    struct glint_lights_config cfg = plain_config(&image, 150, 170);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 150, 170);
 
     (void)state;
     image.range = GLINT_RANGE_LIMITED;
@@ -1095,7 +1099,7 @@ static void test_ycc_colour(void **state)
 static void test_negative_stride(void **state)
 {
     struct glint_image image = new_image(GLINT_GREY, 40, 30);
-    struct glint_lights_config cfg = plain_config(&image, 200, 250);
+    struct glint_lamp_finder_config cfg = plain_config(&image, 200, 250);
 
     (void)state;
     fill_grey(&image, 5, 2, 8, 5, 255);

@@ -6,7 +6,7 @@
  * find there (match.h); each goes on from its spot or without (record.h); what
  * spots are left over become tracks; the strongest are shown.
  */
-#include "glint/tracks.h"
+#include "glint/lamp_tracker.h"
 
 #include "base/arena.h"
 #include "base/q.h"
@@ -26,8 +26,8 @@ enum {
 #define REACH_US       1000000 /* a lost light may be as far again */
 #define MAX_REACHES    3
 
-struct glint_tracks {
-    struct glint_tracks_config cfg;
+struct glint_lamp_tracker {
+    struct glint_lamp_tracker_config cfg;
     int32_t reach_q8;
     uint32_t last_id;
     int was_cut;
@@ -45,7 +45,7 @@ static int is_time(int32_t ms)
     return ms >= 1 && ms <= MAX_MS;
 }
 
-static int is_valid(const struct glint_tracks_config *c)
+static int is_valid(const struct glint_lamp_tracker_config *c)
 {
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->max_tracks >= 1 &&
@@ -58,13 +58,13 @@ static int is_valid(const struct glint_tracks_config *c)
 }
 
 /* Runs twice: to measure, and to place. NULL if measuring or full. */
-static struct glint_tracks *carve(struct glint_arena *a,
-                                  const struct glint_tracks_config *c)
+static struct glint_lamp_tracker *
+carve(struct glint_arena *a, const struct glint_lamp_tracker_config *c)
 {
     const size_t n_records = (size_t)c->max_tracks;
-    struct glint_tracks *placed = glint_arena_take(a, 1, sizeof *placed);
-    struct glint_tracks measured;
-    struct glint_tracks *t = placed ? placed : &measured;
+    struct glint_lamp_tracker *placed = glint_arena_take(a, 1, sizeof *placed);
+    struct glint_lamp_tracker measured;
+    struct glint_lamp_tracker *t = placed ? placed : &measured;
 
     t->record = glint_arena_take(a, n_records, sizeof *t->record);
     t->owner = glint_arena_take(a, n_records, sizeof *t->owner);
@@ -73,23 +73,23 @@ static struct glint_tracks *carve(struct glint_arena *a,
     return a->used <= a->size ? placed : NULL;
 }
 
-void glint_tracks_defaults(struct glint_tracks_config *cfg, int width,
-                           int height)
+void glint_lamp_tracker_defaults(struct glint_lamp_tracker_config *cfg,
+                                 int width, int height)
 {
-    *cfg = (struct glint_tracks_config){.width = width,
-                                        .height = height,
-                                        .max_tracks = 128,
-                                        .max_shown = 16,
-                                        .match_q15 = Q_CONST(0.06, 15),
-                                        .cut_q15 = Q_CONST(0.75, 15),
-                                        .attack_ms = 200,
-                                        .release_ms = 200,
-                                        .leave_ms = 400,
-                                        .memory_ms = 2000,
-                                        .smooth_ms = 300};
+    *cfg = (struct glint_lamp_tracker_config){.width = width,
+                                              .height = height,
+                                              .max_tracks = 128,
+                                              .max_shown = 16,
+                                              .match_q15 = Q_CONST(0.06, 15),
+                                              .cut_q15 = Q_CONST(0.75, 15),
+                                              .attack_ms = 200,
+                                              .release_ms = 200,
+                                              .leave_ms = 400,
+                                              .memory_ms = 2000,
+                                              .smooth_ms = 300};
 }
 
-size_t glint_tracks_bytes(const struct glint_tracks_config *cfg)
+size_t glint_lamp_tracker_bytes(const struct glint_lamp_tracker_config *cfg)
 {
     struct glint_arena measured = glint_arena_measure();
 
@@ -99,12 +99,13 @@ size_t glint_tracks_bytes(const struct glint_tracks_config *cfg)
     return measured.used;
 }
 
-enum glint_status glint_tracks_init(struct glint_tracks **tracks,
-                                    const struct glint_tracks_config *cfg,
-                                    void *mem, size_t bytes)
+enum glint_status
+glint_lamp_tracker_init(struct glint_lamp_tracker **tracks,
+                        const struct glint_lamp_tracker_config *cfg, void *mem,
+                        size_t bytes)
 {
     struct glint_arena arena = glint_arena_over(mem, bytes);
-    struct glint_tracks *t;
+    struct glint_lamp_tracker *t;
 
     if (!is_valid(cfg) || (uintptr_t)mem % GLINT_ALIGN)
         return GLINT_E_ARGUMENT;
@@ -117,26 +118,26 @@ enum glint_status glint_tracks_init(struct glint_tracks **tracks,
         q_narrow(q_shift((int64_t)cfg->width * cfg->match_q15, 15 - 8));
     t->last_id = 0;
     t->was_cut = 0;
-    glint_tracks_restart(t);
+    glint_lamp_tracker_restart(t);
     *tracks = t;
     return GLINT_OK;
 }
 
-void glint_tracks_restart(struct glint_tracks *tracks)
+void glint_lamp_tracker_restart(struct glint_lamp_tracker *tracks)
 {
     for (int i = 0; i < tracks->cfg.max_tracks; i++)
         tracks->record[i].id = 0;
     tracks->step.is_fresh = 1;
 }
 
-int glint_tracks_was_cut(const struct glint_tracks *tracks)
+int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks)
 {
     return tracks->was_cut;
 }
 
 /* ----------------------------------------------------------------- matching */
 
-static int32_t reach_of_q8(const struct glint_tracks *t,
+static int32_t reach_of_q8(const struct glint_lamp_tracker *t,
                            const struct glint_record *r)
 {
     const int64_t more_q8 = (int64_t)t->reach_q8 * r->lost_us / REACH_US;
@@ -146,7 +147,7 @@ static int32_t reach_of_q8(const struct glint_tracks *t,
 }
 
 /* All tracks look where they should be by now. */
-static void send_seekers(struct glint_tracks *t)
+static void send_seekers(struct glint_lamp_tracker *t)
 {
     struct glint_match *m = &t->match;
 
@@ -170,7 +171,7 @@ static void send_seekers(struct glint_tracks *t)
 
 /* How near a spot must be to be the same light where there are N spots: among
  * many there is always one in reach, by chance. */
-static int64_t near2_q16(const struct glint_tracks *t, int n)
+static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
 {
     const int64_t reach2_q16 = (int64_t)t->reach_q8 * t->reach_q8;
 
@@ -201,7 +202,7 @@ struct side {
 
 /* Whether most of A is not in B. Where nothing is seen on this side, many
  * lights on the other speak for a cut: they came or went all at once. */
-static int is_apart(const struct glint_tracks *t, const struct side *a,
+static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                     const struct side *b)
 {
     return a->flux > 0 ? a->flux - a->kept >= (a->flux * t->cfg.cut_q15) >> 15
@@ -209,8 +210,8 @@ static int is_apart(const struct glint_tracks *t, const struct side *a,
 }
 
 /* Whether most of what was seen is gone and most of what is seen is new. */
-static int is_cut(const struct glint_tracks *t, const struct glint_spot *spots,
-                  int n)
+static int is_cut(const struct glint_lamp_tracker *t,
+                  const struct glint_spot *spots, int n)
 {
     const int64_t limit2_q16 = near2_q16(t, n);
     struct side before = {0, 0, 0}, now = {0, 0, 0};
@@ -237,12 +238,13 @@ static int is_cut(const struct glint_tracks *t, const struct glint_spot *spots,
 }
 
 /* Gives each track its spot, or after a cut none. */
-static void match(struct glint_tracks *t, const struct glint_spot *spots, int n)
+static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
+                  int n)
 {
     send_seekers(t);
     glint_match_find(&t->match, spots, n);
     if (is_cut(t, spots, n)) {
-        glint_tracks_restart(t);
+        glint_lamp_tracker_restart(t);
         send_seekers(t);
         glint_match_find(&t->match, spots, n);
     }
@@ -266,7 +268,8 @@ static int yields_first(const struct glint_record *p,
 
 /* The place for a new light of POWER: a free one, else that of one which is not
  * shown and either lost or fainter. NULL: none. */
-static struct glint_record *place_for(struct glint_tracks *t, int64_t power_q16)
+static struct glint_record *place_for(struct glint_lamp_tracker *t,
+                                      int64_t power_q16)
 {
     struct glint_record *best = NULL;
 
@@ -299,8 +302,8 @@ static int is_brighter(const void *ctx, int32_t a, int32_t b)
 }
 
 /* Spots that no track took become tracks, the brightest first. */
-static void begin_tracks(struct glint_tracks *t, const struct glint_spot *spots,
-                         int n)
+static void begin_tracks(struct glint_lamp_tracker *t,
+                         const struct glint_spot *spots, int n)
 {
     const struct ranked_spots ranked = {spots, t->match.by_x};
     int n_new = 0;
@@ -343,7 +346,7 @@ static int is_stronger(const void *ctx, int32_t a, int32_t b)
 
 /* Lists all tracks in t->order, the strongest first, and picks those that are
  * shown. */
-static int rank_tracks(struct glint_tracks *t)
+static int rank_tracks(struct glint_lamp_tracker *t)
 {
     int n = 0, n_shown = 0;
 
@@ -360,7 +363,8 @@ static int rank_tracks(struct glint_tracks *t)
     return n;
 }
 
-static int show(struct glint_tracks *t, struct glint_track *out, int max)
+static int show(struct glint_lamp_tracker *t, struct glint_lamp_track *out,
+                int max)
 {
     const int n = rank_tracks(t);
     int n_out = 0;
@@ -375,11 +379,12 @@ static int show(struct glint_tracks *t, struct glint_track *out, int max)
     return n_out;
 }
 
-int glint_tracks_step(struct glint_tracks *tracks,
-                      const struct glint_spot *spots, int n, int32_t elapsed_us,
-                      struct glint_track *out, int max)
+int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
+                            const struct glint_spot *spots, int n,
+                            int32_t elapsed_us, struct glint_lamp_track *out,
+                            int max)
 {
-    struct glint_tracks *t = tracks;
+    struct glint_lamp_tracker *t = tracks;
 
     t->step.pace = glint_pace_of(q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US),
                                  t->cfg.smooth_ms * 1000);

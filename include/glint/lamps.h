@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/lights.h - finds the lamps and the sun in a picture.
+ * glint/lamps.h - finds the lamps and the sun in a picture.
  *
- *     bytes = glint_lights_bytes(&cfg);                     once
- *     glint_lights_init(&finder, &cfg, mem, bytes);
- *     n = glint_lights_find(finder, &image, lights, 64);    each picture
+ *     bytes = glint_lamp_finder_bytes(&cfg);                     once
+ *     glint_lamp_finder_init(&finder, &cfg, mem, bytes);
+ *     n = glint_lamp_finder_find(finder, &image, lights, 64);    each picture
  *
  * Bright regions become lights: pixels above the upper threshold seed a region,
  * pixels above the lower one belong to it. Pixels are judged by their largest
@@ -27,8 +27,8 @@
  * that it has the same lights at any resolution. Integers only; nothing is kept
  * from picture to picture.
  */
-#ifndef GLINT_LIGHTS_H
-#define GLINT_LIGHTS_H
+#ifndef GLINT_LAMPS_H
+#define GLINT_LAMPS_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -61,7 +61,7 @@ struct glint_spot {
     int32_t cos_q15, sin_q15; /* of the major one, y down; cos >= 0 */
 };
 
-struct glint_lights_config {
+struct glint_lamp_finder_config {
     int width, height;         /* of the pictures, 1 .. GLINT_MAX_SIDE */
     int32_t threshold_high_q8; /* stops from white, -20 .. 0: a region needs
                                   pixels there */
@@ -76,34 +76,35 @@ struct glint_lights_config {
     int32_t keep_faint;       /* 1: after the lights come regions that have too
                                  few pixels at the upper threshold, half of
                                  min_area, or a score a little too low, marked
-                                 faint; for glint/tracks.h */
+                                 faint; for glint/lamp_tracker.h */
 };
 
-struct glint_lights; /* opaque, in the caller's memory */
+struct glint_lamp_finder; /* opaque, in the caller's memory */
 
 /* What a newcomer should start from, for WIDTH x HEIGHT. */
-void glint_lights_defaults(struct glint_lights_config *cfg, int width,
-                           int height);
+void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
+                                int height);
 
 /* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
-size_t glint_lights_bytes(const struct glint_lights_config *cfg);
+size_t glint_lamp_finder_bytes(const struct glint_lamp_finder_config *cfg);
 
 /* Places a finder in MEM[BYTES], aligned to 64. GLINT_E_MEMORY: too small.
  * GLINT_E_ARGUMENT: CFG or the alignment is wrong. */
-enum glint_status glint_lights_init(struct glint_lights **finder,
-                                    const struct glint_lights_config *cfg,
-                                    void *mem, size_t bytes);
+enum glint_status
+glint_lamp_finder_init(struct glint_lamp_finder **finder,
+                       const struct glint_lamp_finder_config *cfg, void *mem,
+                       size_t bytes);
 
 /* Writes the lights of IMAGE (of cfg's size, any format but LINEAR_Q20), by
  * falling flux, at most MAX (1 .. 1024). What exceeds MAX joins the nearest
  * light kept where one is near, else it is dropped. Returns how many it wrote.
  */
-int glint_lights_find(struct glint_lights *finder,
-                      const struct glint_image *image, struct glint_spot *spots,
-                      int max);
+int glint_lamp_finder_find(struct glint_lamp_finder *finder,
+                           const struct glint_image *image,
+                           struct glint_spot *spots, int max);
 
 /* Lights of the last find that were dropped because MAX was too small. */
-int glint_lights_dropped(const struct glint_lights *finder);
+int glint_lamp_finder_dropped(const struct glint_lamp_finder *finder);
 
 #ifdef __cplusplus
 }

@@ -3,11 +3,11 @@
  * Candidates for lights: held by flux, merged where they are near, capped.
  */
 #include "base/q.h"
-#include "lamps/lights_state.h"
+#include "lamps/lamp_finder.h"
 
 #define JOIN_REACH 4 /* what exceeds MAX joins within so many merge radii */
 
-static int is_brighter(const struct glint_lights *f, int32_t a, int32_t b)
+static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
 {
     const struct glint_candidate *p = &f->candidate[a], *q = &f->candidate[b];
 
@@ -26,7 +26,7 @@ static void swap(int32_t *a, int32_t *b)
 }
 
 /* Restores the heap order[0 .. n - 1], the faintest first, below AT. */
-static void sift_down(struct glint_lights *f, int at, int n)
+static void sift_down(struct glint_lamp_finder *f, int at, int n)
 {
     int32_t *order = f->order;
 
@@ -44,13 +44,13 @@ static void sift_down(struct glint_lights *f, int at, int n)
     }
 }
 
-static void make_heap(struct glint_lights *f, int n)
+static void make_heap(struct glint_lamp_finder *f, int n)
 {
     for (int i = n / 2 - 1; i >= 0; i--)
         sift_down(f, i, n);
 }
 
-static void sort_by_flux(struct glint_lights *f)
+static void sort_by_flux(struct glint_lamp_finder *f)
 {
     make_heap(f, f->n);
     for (int end = f->n - 1; end > 0; end--) {
@@ -59,8 +59,8 @@ static void sort_by_flux(struct glint_lights *f)
     }
 }
 
-void glint_lights_hold(struct glint_lights *f,
-                       const struct glint_candidate *candidate)
+void glint_lamps_hold(struct glint_lamp_finder *f,
+                      const struct glint_candidate *candidate)
 {
     struct glint_candidate *last = &f->candidate[LIGHT_CANDIDATES];
 
@@ -83,7 +83,7 @@ void glint_lights_hold(struct glint_lights *f,
     f->dropped += !last->faint;
 }
 
-void glint_lights_compact(struct glint_lights *f)
+void glint_lamps_compact(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
 
@@ -95,7 +95,7 @@ void glint_lights_compact(struct glint_lights *f)
 
 /* ------------------------------------------------------------------ merging */
 
-static void locate(struct glint_lights *f)
+static void locate(struct glint_lamp_finder *f)
 {
     for (int i = 0; i < f->n; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
@@ -106,7 +106,7 @@ static void locate(struct glint_lights *f)
 }
 
 /* Of the sorted candidates these come first. */
-static int count_lights(const struct glint_lights *f)
+static int count_lights(const struct glint_lamp_finder *f)
 {
     int n = f->n;
 
@@ -133,7 +133,7 @@ static void give(struct glint_candidate *candidate,
 
 /* Each, the brightest first, takes what lies within the merge distance of where
  * it was. Returns whether anything merged. */
-static int merge_once(struct glint_lights *f)
+static int merge_once(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
     int n_lights;
@@ -151,18 +151,18 @@ static int merge_once(struct glint_lights *f)
                 give(other, c);
         }
     }
-    glint_lights_compact(f);
+    glint_lamps_compact(f);
     return f->n < n_before;
 }
 
-void glint_lights_merge(struct glint_lights *f)
+void glint_lamps_merge(struct glint_lamp_finder *f)
 {
     while (merge_once(f))
         ;
 }
 
 /* The nearest of the first MAX to candidate C, or NULL if none is in reach. */
-static struct glint_candidate *nearest_kept(const struct glint_lights *f,
+static struct glint_candidate *nearest_kept(const struct glint_lamp_finder *f,
                                             const struct glint_candidate *c,
                                             int max)
 {
@@ -181,7 +181,7 @@ static struct glint_candidate *nearest_kept(const struct glint_lights *f,
     return best;
 }
 
-void glint_lights_cap(struct glint_lights *f, int max)
+void glint_lamps_cap(struct glint_lamp_finder *f, int max)
 {
     const int n_lights = count_lights(f);
 

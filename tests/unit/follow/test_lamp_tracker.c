@@ -3,7 +3,7 @@
  * Lights over time, in drawn night scenes seen through the real finder: that
  * noise does not show, that motion does, and that nothing pops.
  */
-#include "glint/tracks.h"
+#include "glint/lamp_tracker.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -28,7 +28,7 @@ static void open_night(int width, int height, double sigma)
     assert_true(night_open(&night));
 }
 
-static const struct glint_track *only_track(void)
+static const struct glint_lamp_track *only_track(void)
 {
     assert_int_equal(night.n_tracks, 1);
     return &night.track[0];
@@ -38,42 +38,44 @@ static const struct glint_track *only_track(void)
 
 static void test_memory_is_exact(void **state)
 {
-    struct glint_tracks_config cfg;
-    struct glint_tracks *tracks;
+    struct glint_lamp_tracker_config cfg;
+    struct glint_lamp_tracker *tracks;
     size_t bytes;
     void *mem;
 
     (void)state;
-    glint_tracks_defaults(&cfg, 1920, 1080);
-    bytes = glint_tracks_bytes(&cfg);
+    glint_lamp_tracker_defaults(&cfg, 1920, 1080);
+    bytes = glint_lamp_tracker_bytes(&cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, bytes), GLINT_OK);
-    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, bytes - 1),
+    assert_int_equal(glint_lamp_tracker_init(&tracks, &cfg, mem, bytes),
+                     GLINT_OK);
+    assert_int_equal(glint_lamp_tracker_init(&tracks, &cfg, mem, bytes - 1),
                      GLINT_E_MEMORY);
-    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, 1), GLINT_E_MEMORY);
+    assert_int_equal(glint_lamp_tracker_init(&tracks, &cfg, mem, 1),
+                     GLINT_E_MEMORY);
     assert_int_equal(
-        glint_tracks_init(&tracks, &cfg, (char *)mem + 8, bytes - 8),
+        glint_lamp_tracker_init(&tracks, &cfg, (char *)mem + 8, bytes - 8),
         GLINT_E_ARGUMENT);
     free(mem);
 }
 
-static void assert_refused(struct glint_tracks_config cfg)
+static void assert_refused(struct glint_lamp_tracker_config cfg)
 {
     static uint64_t mem[16];
-    struct glint_tracks *tracks;
+    struct glint_lamp_tracker *tracks;
 
-    assert_true(glint_tracks_bytes(&cfg) == 0);
-    assert_int_equal(glint_tracks_init(&tracks, &cfg, mem, sizeof mem),
+    assert_true(glint_lamp_tracker_bytes(&cfg) == 0);
+    assert_int_equal(glint_lamp_tracker_init(&tracks, &cfg, mem, sizeof mem),
                      GLINT_E_ARGUMENT);
 }
 
 static void test_bad_configurations_are_refused(void **state)
 {
-    struct glint_tracks_config good, bad;
+    struct glint_lamp_tracker_config good, bad;
 
     (void)state;
-    glint_tracks_defaults(&good, 640, 480);
-    assert_true(glint_tracks_bytes(&good) > 0);
+    glint_lamp_tracker_defaults(&good, 640, 480);
+    assert_true(glint_lamp_tracker_bytes(&good) > 0);
     bad = good, bad.width = 0, assert_refused(bad);
     bad = good, bad.height = GLINT_MAX_SIDE + 1, assert_refused(bad);
     bad = good, bad.max_tracks = 0, assert_refused(bad);
@@ -135,7 +137,7 @@ static void test_static_scene_stands_still(void **state)
         night_step(&night, lamp, N, FPS30);
         assert_int_equal(night.n_tracks, N);
         for (int i = 0; i < N; i++) {
-            const struct glint_track *t =
+            const struct glint_lamp_track *t =
                 &night.track[night_track_at(&night, lamp[i].x, lamp[i].y)];
             const struct glint_spot *s =
                 &night.spot[night_spot_at(&night, lamp[i].x, lamp[i].y)];
@@ -199,8 +201,8 @@ static double turns_of(double degrees)
             .rgb_q15 = {1 << 15, 1 << 15, 1 << 15}};
         double off;
 
-        assert_int_equal(glint_tracks_step(night.tracks, &spot, 1, FPS30,
-                                           night.track, NIGHT_MAX),
+        assert_int_equal(glint_lamp_tracker_step(night.tracks, &spot, 1, FPS30,
+                                                 night.track, NIGHT_MAX),
                          1);
         off = atan2(night.track[0].sin_q15, night.track[0].cos_q15) * 180 /
                   3.14159 -
@@ -237,7 +239,7 @@ static double sparkle_moves(int every, uint32_t seed)
     assert_true(night_open(&night));
     for (int frame = 0; frame < 300; frame++) {
         uint8_t *const corner = night.image.plane[0] + 100 * 320 + 150;
-        const struct glint_track *t;
+        const struct glint_lamp_track *t;
 
         memset(night.image.plane[0], 5, 320 * 200);
         for (int y = 0; y < 8; y++)
@@ -286,7 +288,7 @@ static void test_hysteresis(void **state)
             memset(night.image.plane[0] + 320 * (100 + y) + 150, code, 6);
         night_track(&night, FPS30);
         n_faint += night.spot[0].faint;
-        assert_int_equal(only_track()->state, GLINT_TRACK_STEADY);
+        assert_int_equal(only_track()->state, GLINT_LAMP_STEADY);
         if (frame == 0)
             id = only_track()->id;
         assert_int_equal(only_track()->id, id);
@@ -306,29 +308,33 @@ static void test_faint_spots_begin_no_track(void **state)
 
     (void)state;
     open_night(320, 200, 0);
-    assert_int_equal(
-        glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX),
-        0);
+    assert_int_equal(glint_lamp_tracker_step(night.tracks, spot, 1, FPS30,
+                                             night.track, NIGHT_MAX),
+                     0);
     spot[0].faint = 0;
-    assert_int_equal(glint_tracks_step(night.tracks, spot, 1, 1000000,
-                                       night.track, NIGHT_MAX),
+    assert_int_equal(glint_lamp_tracker_step(night.tracks, spot, 1, 1000000,
+                                             night.track, NIGHT_MAX),
                      1);
     spot[0].faint = 1;
     spot[0].area = 161; /* more than four times */
-    glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX);
-    assert_int_equal(night.track[0].state, GLINT_TRACK_FADING);
-    glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX);
+    glint_lamp_tracker_step(night.tracks, spot, 1, FPS30, night.track,
+                            NIGHT_MAX);
+    assert_int_equal(night.track[0].state, GLINT_LAMP_FADING);
+    glint_lamp_tracker_step(night.tracks, spot, 1, FPS30, night.track,
+                            NIGHT_MAX);
     spot[0].area = 160;
-    glint_tracks_step(night.tracks, spot, 1, FPS30, night.track, NIGHT_MAX);
-    assert_int_equal(night.track[0].state, GLINT_TRACK_RISING);
+    glint_lamp_tracker_step(night.tracks, spot, 1, FPS30, night.track,
+                            NIGHT_MAX);
+    assert_int_equal(night.track[0].state, GLINT_LAMP_RISING);
     night_close(&night);
 }
 
 /* --------------------------------------------------------------- exactness */
 
-static bool is_spot(const struct glint_track *t, const struct glint_spot *s)
+static bool is_spot(const struct glint_lamp_track *t,
+                    const struct glint_spot *s)
 {
-    return t->state == GLINT_TRACK_STEADY && t->level_q15 == FULL &&
+    return t->state == GLINT_LAMP_STEADY && t->level_q15 == FULL &&
            t->x_q8 == s->x_q8 && t->y_q8 == s->y_q8 &&
            t->size_q8 == s->size_q8 && t->flux_q16 == s->flux_q16 &&
            t->power_q16 == s->power_q16 && t->axis_q8[0] == s->axis_q8[0] &&
@@ -344,7 +350,7 @@ static bool all_settled(void)
     for (int i = 0; i < night.n_spots; i++)
         n_lights += !night.spot[i].faint;
     for (int i = 0; i < night.n_tracks; i++) {
-        const struct glint_track *t = &night.track[i];
+        const struct glint_lamp_track *t = &night.track[i];
 
         if (!is_spot(t, &night.spot[night_spot_at(&night, t->x_q8 / 256.0,
                                                   t->y_q8 / 256.0)]))
@@ -376,12 +382,12 @@ static void test_repeated_pictures_are_met_exactly(void **state)
             }
             night_step(&night, lamp, 3, us);
         }
-        night.n_spots = glint_lights_find(night.finder, &night.image,
-                                          night.spot, NIGHT_MAX);
+        night.n_spots = glint_lamp_finder_find(night.finder, &night.image,
+                                               night.spot, NIGHT_MAX);
         for (; n_frames < 5 || n_frames * (int64_t)us < 1200000; n_frames++) {
             night.n_tracks =
-                glint_tracks_step(night.tracks, night.spot, night.n_spots, us,
-                                  night.track, NIGHT_MAX);
+                glint_lamp_tracker_step(night.tracks, night.spot, night.n_spots,
+                                        us, night.track, NIGHT_MAX);
             n_settled = all_settled() ? n_settled + 1 : 0;
         }
         if (us < 200000)
@@ -412,7 +418,7 @@ static void test_a_moving_lamp_does_not_lag(void **state)
         for (int frame = 0; frame < 45; frame++) {
             const struct night_lamp lamp = {40.3 + speed * frame,
                                             100.4 - 0.1 * speed * frame, 6, 3};
-            const struct glint_track *t;
+            const struct glint_lamp_track *t;
 
             night_step(&night, &lamp, 1, FPS30);
             t = only_track();
@@ -465,12 +471,12 @@ static void test_a_lamp_that_comes_back(void **state)
         lamp[1] = (struct night_lamp){225, 100, 7, 3};
         night_step(&night, lamp, 2, FPS30);
         if (k) {
-            const struct glint_track *t =
+            const struct glint_lamp_track *t =
                 &night.track[night_track_at(&night, 225, 100)];
 
             assert_int_equal(night.n_tracks, 2);
             assert_in_range(t->id, 1, 2);
-            assert_int_equal(t->state, GLINT_TRACK_RISING);
+            assert_int_equal(t->state, GLINT_LAMP_RISING);
             assert_true(fabs(t->x_q8 / 256.0 - 225) < 0.05);
             assert_true(t->flux_q16 ==
                         night.spot[night_spot_at(&night, 225, 100)].flux_q16);
@@ -520,7 +526,7 @@ static void test_leaving_lamp_moves_on_and_fades(void **state)
     open_night(320, 200, 2);
     for (int frame = 0; frame < 50; frame++) {
         const struct night_lamp lamp = {100 + 9.0 * frame, 100, 5, 3};
-        const struct glint_track *t;
+        const struct glint_lamp_track *t;
 
         night_step(&night, &lamp, 1, FPS30);
         if (night.n_tracks == 0)
@@ -528,7 +534,7 @@ static void test_leaving_lamp_moves_on_and_fades(void **state)
         t = only_track();
         if (frame > 10 && lamp.x < 310) {
             assert_true(fabs(t->x_q8 / 256.0 - lamp.x) < 0.5);
-        } else if (t->state == GLINT_TRACK_LEAVING) {
+        } else if (t->state == GLINT_LAMP_LEAVING) {
             n_leaving++;
             assert_true(fabs(t->x_q8 / 256.0 - last_x - 9) < 3);
             assert_true(night_power(t) < last_power);
@@ -595,18 +601,18 @@ static void test_cut_restarts_in_one_frame(void **state)
     open_night(320, 200, 3);
     for (int frame = 0; frame < 20; frame++) {
         night_step(&night, before, 3, FPS30);
-        assert_int_equal(glint_tracks_was_cut(night.tracks), frame == 0);
+        assert_int_equal(glint_lamp_tracker_was_cut(night.tracks), frame == 0);
     }
     for (int frame = 0; frame < 20; frame++) {
         night_step(&night, after, 4, FPS30);
-        assert_int_equal(glint_tracks_was_cut(night.tracks), frame == 0);
+        assert_int_equal(glint_lamp_tracker_was_cut(night.tracks), frame == 0);
         assert_int_equal(night.n_tracks, 4);
         for (int i = 0; i < 4; i++) {
-            const struct glint_track *t = &night.track[i];
+            const struct glint_lamp_track *t = &night.track[i];
 
             assert_true(t->id > 3);
             assert_int_equal(t->level_q15, FULL);
-            assert_int_equal(t->state, GLINT_TRACK_STEADY);
+            assert_int_equal(t->state, GLINT_LAMP_STEADY);
             assert_true(
                 hypot(t->x_q8 / 256.0 - after[t->id > 7 ? 0 : 0].x, 0) >= 0);
             if (frame == 0) {
@@ -660,7 +666,7 @@ static void test_what_is_no_cut(void **state)
                                           {120 + pan, 160, 6, 3}};
 
         night_step(&night, lamp + (frame == 30), 3 + (frame > 40), FPS30);
-        assert_int_equal(glint_tracks_was_cut(night.tracks), frame == 0);
+        assert_int_equal(glint_lamp_tracker_was_cut(night.tracks), frame == 0);
     }
     night_close(&night);
 }
@@ -723,7 +729,7 @@ static void test_merging_and_splitting(void **state)
 {
     struct steps energy = {0, 0, 0, 0};
     double least = HUGE_VAL, both = 0, jump = 0;
-    struct glint_track last[8];
+    struct glint_lamp_track last[8];
     int n_last = 0, n_merged = 0;
 
     (void)state;
@@ -819,9 +825,9 @@ static void test_more_lights_than_tracks(void **state)
                                       .flux_q16 = (1 + i * 37 % 101) << 16,
                                       .power_q16 = (1 + i * 37 % 101) << 16};
     for (int step = 0; step < 3; step++) {
-        assert_int_equal(
-            glint_tracks_step(night.tracks, spot, 100, FPS30, night.track, 5),
-            5);
+        assert_int_equal(glint_lamp_tracker_step(night.tracks, spot, 100, FPS30,
+                                                 night.track, 5),
+                         5);
         for (int i = 0; i < 5; i++)
             assert_true(night.track[i].flux_q16 >= 97 << 16);
     }
@@ -876,7 +882,7 @@ static int32_t any_time(void)
 static void assert_sound(int n)
 {
     for (int i = 0; i < n; i++) {
-        const struct glint_track *t = &night.track[i];
+        const struct glint_lamp_track *t = &night.track[i];
 
         assert_in_range(t->level_q15, 1, FULL);
         assert_true(t->flux_q16 >= 0 && t->flux_q16 <= INT64_C(1) << 42);
@@ -895,8 +901,8 @@ static void assert_sound(int n)
 static void test_order_of_spots_changes_nothing(void **state)
 {
     static struct glint_spot spot[NIGHT_MAX], mixed[NIGHT_MAX];
-    static struct glint_track track[NIGHT_MAX];
-    struct glint_tracks *other;
+    static struct glint_lamp_track track[NIGHT_MAX];
+    struct glint_lamp_tracker *other;
     void *mem;
 
     (void)state;
@@ -909,11 +915,12 @@ static void test_order_of_spots_changes_nothing(void **state)
         night.cfg.max_shown = 1 + night_random(&night, night.cfg.max_tracks);
         assert_true(night_open(&night));
         assert_int_equal(
-            posix_memalign(&mem, 64, glint_tracks_bytes(&night.cfg)), 0);
-        memset(mem, 0xa5, glint_tracks_bytes(&night.cfg));
-        assert_int_equal(glint_tracks_init(&other, &night.cfg, mem,
-                                           glint_tracks_bytes(&night.cfg)),
-                         GLINT_OK);
+            posix_memalign(&mem, 64, glint_lamp_tracker_bytes(&night.cfg)), 0);
+        memset(mem, 0xa5, glint_lamp_tracker_bytes(&night.cfg));
+        assert_int_equal(
+            glint_lamp_tracker_init(&other, &night.cfg, mem,
+                                    glint_lamp_tracker_bytes(&night.cfg)),
+            GLINT_OK);
         for (int step = 0; step < 50; step++) {
             const int32_t us = any_time();
             const int n_new = night_random(&night, round % 4 ? 100 : NIGHT_MAX);
@@ -934,16 +941,17 @@ static void test_order_of_spots_changes_nothing(void **state)
                 mixed[i] = mixed[j];
                 mixed[j] = spot[i];
             }
-            night.n_tracks = glint_tracks_step(night.tracks, spot, n, us,
-                                               night.track, NIGHT_MAX);
-            n_tracks = glint_tracks_step(other, mixed, n, us, track, NIGHT_MAX);
+            night.n_tracks = glint_lamp_tracker_step(night.tracks, spot, n, us,
+                                                     night.track, NIGHT_MAX);
+            n_tracks =
+                glint_lamp_tracker_step(other, mixed, n, us, track, NIGHT_MAX);
             assert_int_equal(n_tracks, night.n_tracks);
             assert_memory_equal(track, night.track,
                                 (size_t)n_tracks * sizeof *track);
             assert_sound(n_tracks);
             if (night_random(&night, 20) == 0) {
-                glint_tracks_restart(night.tracks);
-                glint_tracks_restart(other);
+                glint_lamp_tracker_restart(night.tracks);
+                glint_lamp_tracker_restart(other);
             }
         }
         free(mem);
