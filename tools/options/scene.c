@@ -564,9 +564,9 @@ void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
                 "glint %s: there was no room for %d bundles of rays, which are "
                 "missing: fewer lights or a smaller --grid would fit\n",
                 tool->name, r->stats.dropped_bundles);
-    if (r->stats.dropped_cells > 0)
+    if (tool->verbose && r->stats.dropped_cells > 0)
         fprintf(stderr,
-                "glint %s: there was no room for %d cells of rays, whose light "
-                "is missing (--memory)\n",
+                "glint %s: %d cells of rays give no light: a corner of each "
+                "lies too far outside to be drawn\n",
                 tool->name, r->stats.dropped_cells);
 }
