@@ -16,8 +16,8 @@
 #define AREA_SAMPLES                                        \
     7 /* points of the brightest lamp at most, unless asked \
        */
-#define AREA_STILL      3 /* times as many of those in a picture by itself */
-#define AREA_SPACING_PX 4 /* a point for each square of so many pixels */
+#define AREA_STILL      10 /* times as many of those in a picture by itself */
+#define AREA_SPACING_PX 4  /* a point for each square of so many pixels */
 
 enum { AREA_MOST_SAMPLES = 4096 };
 

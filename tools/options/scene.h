@@ -174,7 +174,7 @@ enum scene_option {
     "1 to\n"                                                                   \
     "                      4096, of the brightest lamp (default by "           \
     "--quality:\n"                                                             \
-    "                      7, of a picture by itself 19); all lamps' "         \
+    "                      7, of a picture by itself 61); all lamps' "         \
     "together\n"                                                               \
     "                      are no more than --max-lights\n"                    \
     "  --apart PX          lights whose images are nearer are one (default "   \
