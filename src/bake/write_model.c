@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/blob.h"
 #include "base/compiler.h"
 
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
@@ -214,7 +215,6 @@ glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                          h.system_at +
                              n * (uint32_t)sizeof(struct glint_model_system),
                          &fitted[k].system[m], &quantised[k][m]);
-    h.bytes = (uint32_t)draft->bytes;
     amend(draft, 0, &h, sizeof h);
     return draft->out_of_memory ? GLINT_E_MEMORY : GLINT_OK;
 }
@@ -257,8 +257,5 @@ void glint_draft_note(struct glint_draft *draft, int system,
 
 void glint_draft_close(struct glint_draft *draft)
 {
-    struct glint_model_header *h = (void *)draft->data;
-    const size_t from = offsetof(struct glint_model_header, basis);
-
-    h->crc32 = glint_model_crc32(draft->data + from, draft->bytes - from);
+    glint_blob_seal(draft->data, draft->bytes);
 }

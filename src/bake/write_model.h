@@ -16,8 +16,8 @@ struct glint_draft {
     bool out_of_memory;
 };
 
-/* Lays out FITTED and QUANTISED [n_ghosts]; the errors are 0 and the CRC is not
- * set yet. GLINT_E_MEMORY. */
+/* Lays out FITTED and QUANTISED [n_ghosts]; the errors are 0, size and CRC are
+ * not set yet. GLINT_E_MEMORY. */
 enum glint_status
 glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                   const struct glint_model_header *header,
@@ -31,7 +31,7 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft);
 void glint_draft_note(struct glint_draft *draft, int system,
                       const struct glint_measured *measured);
 
-/* Sets the CRC: the model is done. */
+/* Sets size and CRC: the model is done. */
 void glint_draft_close(struct glint_draft *draft);
 
 #endif

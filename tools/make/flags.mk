@@ -44,7 +44,8 @@ endif
 of = $(eval $(patsubst %,$(OUT)/%.o,$(1)): CFLAGS += $(2))
 
 # Run once, or once for a lamp, bundle or row: small rather than fast.
-$(call of,$(addprefix src/base/,status arena workers) src/image/image src/lens/model,-Os)
+$(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
+$(call of,$(addprefix src/lens/,model model_system),-Os)
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,lights plan wave_sets flare account),-Os)
@@ -57,7 +58,8 @@ $(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
 $(call of,src/flare/ghost_edges,-O3)
 $(call of,src/flare/edges,-O3 -fno-tree-vectorize)# its loops are short
 # Unrolling these buys nothing but bytes.
-$(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,sums by_edges edges_pass) src/tile/pass src/lens/transfer,-ftree-vectorize)
+$(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,sums by_edges edges_pass) src/tile/pass \
+	$(addprefix src/lens/,transfer transfer_rays transfer_grid),-ftree-vectorize)
 # Every frame of a camera goes through these on its way to a panel.
 $(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)
 # The floor that frames are measured by is as fast as can be.

@@ -4,7 +4,7 @@
  *
  *   in   a fitted system
  *   out  integer coefficients and exponents; for each output a proven bound on
- *        every intermediate of src/lens/transfer.c and on how far rounding can
+ *        every intermediate of src/lens/transfer*.c and on how far rounding can
  *        take its result from the polynomial
  *
  * Method: interval arithmetic over the whole domain, operation by operation as

@@ -324,7 +324,7 @@ static void compare_sparse(const struct made *m, int32_t sine_q30,
 static struct used check_proofs(enum glint_basis basis, int systems)
 {
     enum { BUNDLES = 8, RAYS = 50 };
-    struct used used = {0, 0, 0, 0};
+    struct used used = {0, 0, 0};
 
     for (int k = 0; k < systems; k++) {
         const struct glint_model_system *s;

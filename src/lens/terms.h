@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the two halves of the transfer share: transfer.c, which puts angle and
+ * wavelength into polynomials, and transfer_rays.c, which puts rays in.
+ */
+#ifndef GLINT_LENS_TERMS_H
+#define GLINT_LENS_TERMS_H
+
+#include "base/q.h"
+#include "glint/lens.h"
+
+enum { TRANSFER_MAX_EXPONENT = 15 }; /* of any variable */
+
+#define TRANSFER_ONE_Q30 (INT32_C(1) << 30)
+
+/* The powers 0 .. N of X. */
+static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
+{
+    power_q30[0] = TRANSFER_ONE_Q30;
+    for (int k = 1; k <= n; k++)
+        power_q30[k] = q_mul(power_q30[k - 1], x_q30, 30);
+}
+
+static inline int transfer_has(const struct glint_transfer *t, int kind)
+{
+    return (t->outputs >> kind & 1) != 0;
+}
+
+#endif

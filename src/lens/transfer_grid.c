@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Grids of rays to vertices in the picture: values of the polynomials become
+ * pixels, stop radii and energies of fixed formats, turned by the azimuth of
+ * the light; what does not fit is lost.
+ */
+#include "glint/lens.h"
+
+#include <stddef.h>
+
+#include "base/compiler.h"
+#include "base/divide.h"
+#include "base/q.h"
+#include "glint/flare.h"
+#include "kernels/kernels.h"
+#include "lens/terms.h"
+
+enum { RAYS = GLINT_RAYS, LIMIT_Q16 = 1 << 30 };
+
+STATIC_ASSERT((int)RAYS == (int)GLINT_TURNED);
+
+/* ---------------------------------------------------------------- vertices */
+
+/* As many rays as are computed at once, on their way to vertices. */
+struct block {
+    /* x and y, and those of the other side of the light's plane */
+    int32_t sensor_q8[4][RAYS], stop_q16[4][RAYS];
+    int32_t barrel_q16[2][RAYS];
+    int32_t energy_q16[RAYS];
+    int32_t lost[2][RAYS]; /* here and there: all bits, or none */
+};
+
+/* The rays' values X over 2^SHIFT; where that is LIMIT or more, or negative, a
+ * ray is lost. */
+static void scale_rays(const int32_t *x, int shift, int32_t limit,
+                       int32_t *scaled, int32_t *lost)
+{
+    if (shift < 1 || shift > 30 || limit < LIMIT_Q16) {
+        for (int i = 0; i < RAYS; i++)
+            scaled[i] = q_scaled(x[i], shift, limit, &lost[i]);
+        return;
+    }
+    for (int i = 0; i < RAYS; i++) /* below 2^30 + 61 and 2^29: no overflow */
+        scaled[i] = (x[i] + (INT32_C(1) << (shift - 1))) >> shift;
+}
+
+static void set_radius(const struct glint_transfer *t, const int32_t *rays,
+                       struct block *b)
+{
+    int32_t r_q16[RAYS];
+
+    scale_rays(rays, -(t->exponent[GLINT_OUT_RADIUS] + 16), 1 << 23, r_q16,
+               b->lost[0]);
+    for (int i = 0; i < RAYS; i++)
+        b->barrel_q16[0][i] =
+            (int32_t)(((INT64_C(1) << 16) +
+                       q_shift((int64_t)r_q16[i] * r_q16[i], 16)) /
+                      2);
+}
+
+static void set_barrels(const struct glint_transfer *t,
+                        const int32_t (*rays)[RAYS], struct block *b)
+{
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < RAYS; i++)
+            b->barrel_q16[k][i] = 0;
+    if (transfer_has(t, GLINT_OUT_RADIUS))
+        set_radius(t, rays[GLINT_OUT_RADIUS], b);
+    for (int kind = GLINT_OUT_BARREL_0; kind < GLINT_OUT_KINDS; kind++) {
+        int32_t *to = b->barrel_q16[kind > GLINT_OUT_BARREL_0];
+        int32_t more[RAYS];
+
+        if (!transfer_has(t, kind))
+            continue;
+        scale_rays(rays[kind], -(t->exponent[kind] + 16), LIMIT_Q16, more,
+                   b->lost[0]);
+        for (int i = 0; i < RAYS; i++) {
+            b->lost[0][i] |= more[i] >> 31;
+            to[i] = more[i] > to[i] ? more[i] : to[i];
+        }
+    }
+}
+
+/* Energies count 2^UP times, in 2^13, held to 0 .. 1. */
+static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
+{
+    const int raise = up > 13 ? up - 13 : 0, lower = up < 13 ? 13 - up : 0;
+    const int32_t half = lower ? INT32_C(1) << (lower - 1) : 0;
+    const int32_t most = (INT32_C(1) << 16) >> raise;
+
+    for (int i = 0; i < RAYS; i++) {
+        const int32_t e = (energy[i] + half) >> lower;
+
+        energy_q16[i] = (e < 0 ? 0 : e > most ? most : e) * (1 << raise);
+    }
+}
+
+/* How rays lie in the picture: the azimuth of the light, for the sensor times
+ * pixels per mm, and the shifts to the formats of a vertex. */
+struct turns {
+    struct glint_turn sensor, stop;
+};
+
+static struct turns turns_of(const struct glint_transfer *t,
+                             const struct glint_place *p)
+{
+    const struct glint_real size = p->pixels_per_mm;
+
+    return (struct turns){
+        {(int32_t)q_shift((int64_t)p->cos_q30 * size.mantissa, 30),
+         (int32_t)q_shift((int64_t)p->sin_q30 * size.mantissa, 30),
+         -(t->exponent[GLINT_OUT_SENSOR_X] + size.exponent + 8),
+         GLINT_VERTEX_LIMIT_Q8 / 2},
+        {p->cos_q30, p->sin_q30, 30 - (t->exponent[GLINT_OUT_STOP_X] + 16),
+         LIMIT_Q16}};
+}
+
+static void turn(const struct glint_turn *turn, unsigned sets, const int32_t *x,
+                 const int32_t *y, int32_t (*out)[RAYS], int32_t (*lost)[RAYS])
+{
+    const int usual = turn->shift >= 1 && turn->shift <= 62;
+
+    glint_turn_of(usual ? sets : 0)(turn, x, y, out, lost);
+}
+
+static void set_block(const struct glint_transfer *t, const struct turns *turns,
+                      const int32_t (*rays)[RAYS], struct block *b)
+{
+    for (int i = 0; i < RAYS; i++)
+        b->lost[0][i] = 0;
+    set_barrels(t, rays, b);
+    for (int i = 0; i < RAYS; i++)
+        b->lost[1][i] = b->lost[0][i];
+    set_energies(rays[GLINT_OUT_ENERGY], t->energy_up, b->energy_q16);
+    turn(&turns->sensor, t->sets, rays[GLINT_OUT_SENSOR_X],
+         rays[GLINT_OUT_SENSOR_Y], b->sensor_q8, b->lost);
+    turn(&turns->stop, t->sets, rays[GLINT_OUT_STOP_X], rays[GLINT_OUT_STOP_Y],
+         b->stop_q16, b->lost);
+}
+
+/* The first N of them on this side of the light's plane, or, SIDE 1, on the
+ * other one. */
+static void put_block(const struct block *b, const struct glint_place *p,
+                      int side, int n, struct glint_vertex *v)
+{
+    for (int i = 0; i < n; i++)
+        v[i] = (struct glint_vertex){
+            .x_q8 = p->middle_x_q8 + b->sensor_q8[2 * side][i],
+            .y_q8 = p->middle_y_q8 - b->sensor_q8[2 * side + 1][i],
+            .stop_x_q16 = b->stop_q16[2 * side][i],
+            .stop_y_q16 = b->stop_q16[2 * side + 1][i],
+            .barrel_q16 = {b->barrel_q16[0][i], b->barrel_q16[1][i]},
+            .energy_q16 = b->energy_q16[i] | b->lost[side][i]};
+}
+
+/* --------------------------------------------------------------------- rows */
+
+static int32_t node_q30(int k, int n_cells)
+{
+    return (int32_t)q_divide((int64_t)(2 * k - n_cells) * TRANSFER_ONE_Q30,
+                             n_cells);
+}
+
+int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
+{
+    const int rim = transfer->hollow;
+
+    /* NOLINTNEXTLINE: there is a step */
+    return (int32_t)q_divide(TRANSFER_ONE_Q30 * ((int64_t)rim * n + j),
+                             (rim + 1) * n);
+}
+
+/* Whether row J lies between the two sides of a hollow box. */
+static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
+{
+    return t->hollow && 2 * j == n_cells;
+}
+
+/* V of row J. */
+static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
+{
+    const int last = n_cells / 2 - 1; /* of the lower side, at its rim */
+
+    if (!t->hollow)
+        return node_q30(j, n_cells);
+    return j <= last ? -glint_transfer_v(t, last - j, last)
+                     : glint_transfer_v(t, last - (n_cells - j), last);
+}
+
+/* Row J of the lower half into ROW, and the one on the other side of the
+ * light's plane into MIRRORED, unless they are NULL. */
+static void set_row_pair(struct glint_transfer *t,
+                         const struct glint_place *place, int n_cells, int j,
+                         struct glint_vertex *row,
+                         struct glint_vertex *mirrored)
+{
+    const struct turns turns = turns_of(t, place);
+    const int32_t v_q30 = row_q30(t, n_cells, j);
+
+    if (t->n_nodes != n_cells + 1) {
+        t->n_nodes = n_cells + 1;
+        for (int i = 0; i < n_cells + RAYS; i++)
+            t->node_q30[i] = node_q30(i < n_cells ? i : n_cells, n_cells);
+    }
+    for (int first = 0; first <= n_cells; first += RAYS) {
+        const int n = n_cells + 1 - first < RAYS ? n_cells + 1 - first : RAYS;
+        int32_t rays[GLINT_OUT_KINDS][RAYS];
+        struct block b;
+
+        glint_transfer_rays(t, v_q30, t->node_q30 + first, first == 0, rays);
+        set_block(t, &turns, (const int32_t(*)[RAYS])rays, &b);
+        if (row)
+            put_block(&b, place, 0, n, row + first);
+        if (mirrored)
+            put_block(&b, place, 1, n, mirrored + first);
+    }
+}
+
+static void lose_row(struct glint_vertex *row, int n_cells)
+{
+    for (int i = 0; i <= n_cells; i++)
+        row[i].energy_q16 = -1;
+}
+
+void glint_transfer_row(struct glint_transfer *transfer,
+                        const struct glint_place *place, int n_cells, int j,
+                        struct glint_vertex *row)
+{
+    const int sparse = transfer->basis == GLINT_BASIS_SPARSE;
+
+    if (is_hidden(transfer, n_cells, j))
+        lose_row(row, n_cells);
+    else if (sparse || 2 * j <= n_cells)
+        set_row_pair(transfer, place, n_cells, j, row, NULL);
+    else
+        set_row_pair(transfer, place, n_cells, n_cells - j, NULL, row);
+}
+
+void glint_transfer_rows(struct glint_transfer *transfer,
+                         const struct glint_place *place, int n_cells, int j,
+                         struct glint_vertex *row,
+                         struct glint_vertex *mirrored)
+{
+    if (is_hidden(transfer, n_cells, j)) {
+        lose_row(row, n_cells);
+        lose_row(mirrored, n_cells);
+    } else if (transfer->basis == GLINT_BASIS_SPARSE) {
+        set_row_pair(transfer, place, n_cells, j, row, NULL);
+        set_row_pair(transfer, place, n_cells, n_cells - j, mirrored, NULL);
+    } else {
+        set_row_pair(transfer, place, n_cells, j, row, mirrored);
+    }
+}
+
+void glint_transfer_grid(struct glint_transfer *transfer,
+                         const struct glint_place *place, int n_cells,
+                         struct glint_vertex *vertices)
+{
+    const int sparse = transfer->basis == GLINT_BASIS_SPARSE;
+    const int nodes = n_cells + 1;
+
+    for (int j = 0; j < nodes; j++) {
+        struct glint_vertex *row = vertices + (ptrdiff_t)j * nodes;
+        struct glint_vertex *mirrored =
+            vertices + (ptrdiff_t)(n_cells - j) * nodes;
+
+        if (is_hidden(transfer, n_cells, j))
+            lose_row(row, n_cells);
+        else if (sparse)
+            set_row_pair(transfer, place, n_cells, j, row, NULL);
+        else if (2 * j <= n_cells)
+            set_row_pair(transfer, place, n_cells, j, row, mirrored);
+    }
+}

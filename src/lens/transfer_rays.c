@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rays through the polynomials of a bundle, into which transfer.c has put angle
+ * and wavelength: along rows of a grid by Horner's rule (kernels/horner), eight
+ * at once. Formats are those of transfer.c.
+ */
+#include "glint/lens.h"
+
+#include "base/q.h"
+#include "kernels/kernels.h"
+#include "lens/terms.h"
+
+enum { RAYS = GLINT_RAYS };
+
+/* Powers of v of a kind are all odd, or all even. */
+static int is_odd(int kind)
+{
+    return kind & 1 && kind < GLINT_OUT_ENERGY;
+}
+
+/* An output's polynomial in u along one row of the grid. */
+static void set_row(const struct glint_transfer *t,
+                    const struct glint_horner *k, int kind, int32_t v_q30,
+                    int32_t v2_q30, int32_t *of_u)
+{
+    const int odd = is_odd(kind);
+
+    k->across(of_u, t->of.table[kind][odd], 2 * GLINT_TABLE_WIDTH,
+              (t->degree_v[kind] - odd) / 2, v2_q30,
+              t->degree_u[kind] < 8 ? 8 : GLINT_TABLE_WIDTH);
+    for (int a = 0; odd && a <= t->degree_u[kind]; a++)
+        of_u[a] = q_mul(of_u[a], v_q30, 30);
+}
+
+/* Fills the polynomials in u of the rays at V. */
+static void set_rows(const struct glint_transfer *t,
+                     const struct glint_horner *k, int32_t v_q30,
+                     int32_t (*of_u)[GLINT_TABLE_WIDTH])
+{
+    const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
+
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (transfer_has(t, kind))
+            set_row(t, k, kind, v_q30, v2_q30, of_u[kind]);
+}
+
+/* From values of the polynomial of energy to N energies. */
+static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
+{
+    const int32_t most = (INT32_C(1) << 29) >> t->head;
+
+    for (int i = 0; (t->head || t->roots) && i < n; i++)
+        e[i] = (e[i] < 0 ? 0 : e[i] > most ? most : e[i]) * (1 << t->head);
+    for (int k = 0; k < t->roots; k++)
+        for (int i = 0; i < n; i++)
+            e[i] = q_mul(e[i], e[i], 29);
+}
+
+/* The rays at U, by kind. */
+static void rays_of_rows(const struct glint_transfer *t,
+                         const struct glint_horner *k, const int32_t *u_q30,
+                         int32_t (*out)[RAYS])
+{
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+        if (transfer_has(t, kind))
+            k->along(out[kind], t->of_u[kind], t->degree_u[kind], u_q30, RAYS);
+    raise_energies(t, out[GLINT_OUT_ENERGY], RAYS);
+}
+
+static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,
+                         int32_t v_q30, struct glint_outputs *out)
+{
+    int32_t x[4][TRANSFER_MAX_EXPONENT + 1];
+    const int32_t px_q30 = t->box[0] + q_mul(t->box[1], u_q30, 30);
+    const int32_t py_q30 = q_mul(t->box[2], v_q30, 30);
+    const int64_t r2_q60 = (int64_t)px_q30 * px_q30 + (int64_t)py_q30 * py_q30;
+    const int32_t r_q30 =
+        q_clamp_sat(q_root((uint64_t)r2_q60), 0, TRANSFER_ONE_Q30);
+
+    transfer_powers(px_q30, TRANSFER_MAX_EXPONENT, x[0]);
+    transfer_powers(py_q30, TRANSFER_MAX_EXPONENT, x[1]);
+    transfer_powers(r_q30, TRANSFER_MAX_EXPONENT, x[2]);
+    transfer_powers(TRANSFER_ONE_Q30 - r_q30, TRANSFER_MAX_EXPONENT, x[3]);
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        int32_t sum = 0;
+
+        for (int k = 0; transfer_has(t, kind) && k < t->of.sparse[kind].n_terms;
+             k++) {
+            int32_t value = t->of.sparse[kind].coef[k];
+
+            for (int i = 0; i < 4; i++) {
+                const int e = t->of.sparse[kind].power[k] >> (4 * i) & 15;
+
+                value = e ? q_mul(value, x[i][e], 30) : value;
+            }
+            sum += value;
+        }
+        out->at[kind] = sum;
+    }
+}
+
+void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
+                        int32_t v_q30, struct glint_outputs *out)
+{
+    const struct glint_transfer *t = transfer;
+    const int32_t v2_q30 = q_mul(v_q30, v_q30, 30);
+    const struct glint_horner *k = glint_horner_of(0);
+
+    if (transfer->basis == GLINT_BASIS_SPARSE) {
+        ray_of_terms(transfer, u_q30, v_q30, out);
+        return;
+    }
+    for (int kind = 0; kind < GLINT_OUT_KINDS; kind++) {
+        int32_t of_u[GLINT_TABLE_WIDTH];
+
+        out->at[kind] = 0;
+        if (!transfer_has(t, kind))
+            continue;
+        set_row(t, k, kind, v_q30, v2_q30, of_u);
+        k->along(&out->at[kind], of_u, t->degree_u[kind], &u_q30, 1);
+    }
+    raise_energies(t, &out->at[GLINT_OUT_ENERGY], 1);
+}
+
+static void rays_of_terms(const struct glint_transfer *t, const int32_t *u_q30,
+                          int32_t v_q30, int32_t (*rays)[RAYS])
+{
+    for (int i = 0; i < RAYS; i++) {
+        struct glint_outputs out;
+
+        ray_of_terms(t, u_q30[i], v_q30, &out);
+        for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
+            rays[kind][i] = out.at[kind];
+    }
+}
+
+void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
+                         const int32_t u_q30[GLINT_RAYS], int is_new,
+                         int32_t out[GLINT_OUT_KINDS][GLINT_RAYS])
+{
+    const struct glint_horner *k = glint_horner_of(transfer->sets);
+
+    if (transfer->basis == GLINT_BASIS_SPARSE) {
+        rays_of_terms(transfer, u_q30, v_q30, out);
+        return;
+    }
+    if (is_new)
+        set_rows(transfer, k, v_q30, transfer->of_u);
+    rays_of_rows(transfer, k, u_q30, out);
+}

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The container of baked files: bytes written down here by hand, and each thing
+ * that may be wrong with them.
+ */
+#include "base/blob.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { HEADER = 100, BYTES = 124 };
+
+static const struct glint_blob_kind kind = {UINT32_C(0x424f4c42), 3, HEADER};
+
+/* A file of 24 bytes of sections behind a header with two words of its own. */
+struct file {
+    uint32_t word[BYTES / 4];
+};
+
+static void make(struct file *f)
+{
+    memset(f, 0, sizeof *f);
+    f->word[0] = kind.magic;
+    f->word[1] = kind.version;
+    f->word[5] = 0x89abcdef;
+    f->word[6] = 0x01234567;
+    memcpy(&f->word[7], "Heliar", 6);
+    for (int k = 0; k < 6; k++)
+        f->word[HEADER / 4 + k] = (uint32_t)k;
+    glint_blob_seal(f, BYTES);
+}
+
+static enum glint_blob_fault opened(const struct file *f, size_t bytes)
+{
+    struct glint_blob blob;
+
+    return glint_blob_open(&blob, &kind, f, bytes);
+}
+
+static void test_crc(void **state)
+{
+    (void)state;
+    assert_true(glint_blob_crc32("123456789", 9) == UINT32_C(0xcbf43926));
+    assert_true(glint_blob_crc32("", 0) == 0);
+}
+
+/* Fields lie where files on disk have them. */
+static void test_layout(void **state)
+{
+    struct glint_blob blob;
+    struct file f;
+
+    (void)state;
+    make(&f);
+    assert_int_equal(f.word[2], BYTES);
+    assert_true(f.word[3] == glint_blob_crc32(&f.word[4], BYTES - 16));
+    assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
+    assert_true(blob.header->key[0] == 0x89abcdef);
+    assert_true(blob.header->key[1] == 0x01234567);
+    assert_string_equal(blob.header->name, "Heliar");
+    assert_int_equal(glint_blob_check_name(&blob), GLINT_BLOB_OK);
+}
+
+static void test_faults(void **state)
+{
+    static const struct {
+        int word;
+        uint32_t value;
+        enum glint_blob_fault fault;
+    } of[] = {{0, 0x544e4c47, GLINT_BLOB_FOREIGN},
+              {1, 4, GLINT_BLOB_NEWER},
+              {1, 0, GLINT_BLOB_NO_VERSION},
+              {1, 2, GLINT_BLOB_OLDER},
+              {2, BYTES + 4, GLINT_BLOB_TRUNCATED},
+              {2, BYTES - 4, GLINT_BLOB_LONGER}};
+    struct file f;
+
+    (void)state;
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        make(&f);
+        f.word[of[k].word] = of[k].value;
+        assert_int_equal(opened(&f, BYTES), of[k].fault);
+    }
+    make(&f);
+    assert_int_equal(opened(&f, 7), GLINT_BLOB_FOREIGN);
+    assert_int_equal(opened(&f, 8), GLINT_BLOB_TRUNCATED);
+    assert_int_equal(opened(&f, HEADER - 1), GLINT_BLOB_TRUNCATED);
+    assert_int_equal(glint_blob_open(&(struct glint_blob){0}, &kind,
+                                     (const unsigned char *)&f + 1, BYTES - 4),
+                     GLINT_BLOB_UNALIGNED);
+}
+
+/* Every bit behind the checksum is in it. */
+static void test_damage(void **state)
+{
+    struct file f;
+
+    (void)state;
+    for (int bit = 8 * 12; bit < 8 * BYTES; bit++) {
+        make(&f);
+        ((unsigned char *)&f)[bit / 8] ^= (unsigned char)(1 << bit % 8);
+        assert_int_equal(opened(&f, BYTES), GLINT_BLOB_DAMAGED);
+    }
+}
+
+static enum glint_blob_fault named(const char *name, size_t length)
+{
+    struct glint_blob blob;
+    struct file f;
+
+    make(&f);
+    memset(&f.word[7], 0, 64);
+    memcpy(&f.word[7], name, length);
+    glint_blob_seal(&f, BYTES);
+    assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
+    return glint_blob_check_name(&blob);
+}
+
+static void test_names(void **state)
+{
+    char longest[64];
+
+    (void)state;
+    memset(longest, '~', sizeof longest);
+    assert_int_equal(named(longest, 63), GLINT_BLOB_OK);
+    assert_int_equal(named(longest, 64), GLINT_BLOB_NAME_ENDLESS);
+    assert_int_equal(named("", 0), GLINT_BLOB_NAME_EMPTY);
+    assert_int_equal(named("a\033[2J", 5), GLINT_BLOB_NAME_CONTROL);
+    assert_int_equal(named("a\177", 2), GLINT_BLOB_NAME_CONTROL);
+    assert_int_equal(named("a\233", 2), GLINT_BLOB_NAME_FOREIGN);
+}
+
+static void test_sections(void **state)
+{
+    struct glint_blob blob;
+    struct file f;
+
+    (void)state;
+    make(&f);
+    assert_int_equal(glint_blob_open(&blob, &kind, &f, BYTES), GLINT_BLOB_OK);
+    assert_ptr_equal(glint_blob_section(&blob, HEADER, 3, 8),
+                     &f.word[HEADER / 4]);
+    assert_ptr_equal(glint_blob_section(&blob, HEADER + 4, 5, 4),
+                     &f.word[HEADER / 4 + 1]);
+    assert_ptr_equal(glint_blob_section(&blob, BYTES, 0, 4),
+                     &f.word[BYTES / 4]);
+    assert_true(blob.referred == 24 + 20);
+    assert_null(glint_blob_section(&blob, HEADER, 25, 1));
+    assert_null(glint_blob_section(&blob, HEADER + 4, 6, 4));
+    assert_null(glint_blob_section(&blob, HEADER + 2, 1, 4));
+    assert_null(glint_blob_section(&blob, HEADER - 4, 1, 4));
+    assert_null(glint_blob_section(&blob, BYTES + 4, 0, 4));
+    assert_null(glint_blob_section(&blob, UINT32_MAX - 3, 1, 4));
+    assert_null(
+        glint_blob_section(&blob, HEADER, (UINT64_C(1) << 38) - 1, 1 << 25));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_crc),    cmocka_unit_test(test_layout),
+        cmocka_unit_test(test_faults), cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_names),  cmocka_unit_test(test_sections),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
