@@ -33,17 +33,31 @@ struct glint_source_frame {
     void *buffer;             /* the source's own */
 };
 
+/* What a source delivers. */
+struct glint_source_format {
+    struct glint_image image; /* of a frame, without its memory */
+    int fps_num, fps_den;     /* frames a second; 0: not known */
+    char text[512];           /* one line about it for a person */
+    const char *detail;       /* a further one; NULL: none */
+};
+
 struct glint_source {
-    int fd; /* readable when there may be a frame; -1: always. May be another
-               after next */
+    int fd; /* readable when there may be a frame; may be another after next */
+    int n_restarts;  /* since it was opened; its format may be another after
+                        each */
+    bool has_signal; /* false: its picture is what it makes of none */
 
     /* Gives the newest frame there is, and older ones back; never waits.
-     * GLINT_E_DEVICE: the device is lost; close it. */
+     * GLINT_E_DEVICE: the device is lost; close it. GLINT_E_CLOSED: there are
+     * no more. */
     enum glint_status (*next)(struct glint_source *source,
                               struct glint_source_frame *frame,
                               struct glint_error *error);
     /* Gives FRAME back. */
     void (*done)(struct glint_source *source, struct glint_source_frame *frame);
+    /* Says what it delivers now. */
+    void (*describe)(const struct glint_source *source,
+                     struct glint_source_format *format);
     void (*close)(struct glint_source *source); /* idempotent */
 };
 

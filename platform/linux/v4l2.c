@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <linux/videodev2.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include "jpeg/mjpeg.h"
 #include "linux/request.h"
 #include "linux/v4l2_buffers.h"
+#include "posix/clock.h"
 #include "posix/error.h"
 
 #define PATIENCE_US  900000  /* a broken stream gets so long to come back */
@@ -70,7 +72,7 @@ static enum glint_status start(struct glint_v4l2 *v, struct glint_error *error)
     v->streams = true;
     v->n_numbered = 0;
     v->n_useless = 0;
-    v->heard_us = glint_v4l2_now_us();
+    v->heard_us = glint_now_us();
     v->is_cached = glint_v4l2_is_cached(v);
     v->exports_dmabuf = glint_v4l2_can_export(v);
     return make_decoder(v, error);
@@ -121,15 +123,15 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
     if (!is_there(v))
         return gone(v, error);
     if (v->broken_us == 0)
-        v->broken_us = glint_v4l2_now_us();
+        v->broken_us = glint_now_us();
     else {
         nanosleep(&breath, NULL);
-        is_late = glint_v4l2_now_us() - v->broken_us > PATIENCE_US;
+        is_late = glint_now_us() - v->broken_us > PATIENCE_US;
     }
     if (is_late && started)
         return glint_error_report(error, GLINT_E_DEVICE, v->device.path,
                                   "%s, and starting anew does not help", why);
-    v->n_restarts++;
+    v->source.n_restarts++;
     status = agree_anew(v, error);
     if (status == GLINT_OK)
         status = start(v, error);
@@ -146,7 +148,7 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
  * counts from now, and so does patience. */
 static void begin_waiting(struct glint_v4l2 *v)
 {
-    v->heard_us = glint_v4l2_now_us();
+    v->heard_us = glint_now_us();
     if (v->broken_us)
         v->broken_us = v->heard_us;
 }
@@ -225,7 +227,7 @@ static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
         outcome = glint_v4l2_take(v, &t);
         if (outcome != GLINT_V4L2_TAKEN)
             break;
-        v->heard_us = glint_v4l2_now_us();
+        v->heard_us = glint_now_us();
         frame->n_dropped += gap(v, t.sequence);
         if (!is_whole(v, &t)) {
             frame->n_corrupt++;
@@ -310,7 +312,7 @@ static bool is_stalled(struct glint_v4l2 *v)
     const int64_t frame_us =
         f->fps_num ? INT64_C(1000000) * f->fps_den / f->fps_num : 0;
 
-    if (glint_v4l2_now_us() - v->heard_us < STALL_US + STALL_FRAMES * frame_us)
+    if (glint_now_us() - v->heard_us < STALL_US + STALL_FRAMES * frame_us)
         return false;
     glint_v4l2_device_retimed(&v->device);
     if (!v->device.has_signal)
@@ -318,11 +320,10 @@ static bool is_stalled(struct glint_v4l2 *v)
     return v->device.has_signal;
 }
 
-static enum glint_status next(struct glint_source *source,
-                              struct glint_source_frame *frame,
-                              struct glint_error *error)
+static enum glint_status take_frame(struct glint_v4l2 *v,
+                                    struct glint_source_frame *frame,
+                                    struct glint_error *error)
 {
-    struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_taken newest;
 
     *frame = (struct glint_source_frame){.sequence = 0};
@@ -351,6 +352,17 @@ static enum glint_status next(struct glint_source *source,
                       error);
 }
 
+static enum glint_status next(struct glint_source *source,
+                              struct glint_source_frame *frame,
+                              struct glint_error *error)
+{
+    struct glint_v4l2 *v = (struct glint_v4l2 *)source;
+    const enum glint_status status = take_frame(v, frame, error);
+
+    source->has_signal = v->device.has_signal;
+    return status;
+}
+
 static void done(struct glint_source *source, struct glint_source_frame *frame)
 {
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
@@ -374,6 +386,33 @@ static void close_camera(struct glint_source *source)
     v->source.fd = -1;
 }
 
+static void describe(const struct glint_source *source,
+                     struct glint_source_format *format)
+{
+    static const char *const io[] = {"", "mapped", "user", "read"};
+    const struct glint_v4l2 *v = (const struct glint_v4l2 *)source;
+    const struct glint_v4l2_format *f = &v->device.format;
+    char text[96];
+
+    *format = (struct glint_source_format){
+        .image = {.format = f->is_jpeg ? GLINT_I420 : f->pixels,
+                  .width = f->width,
+                  .height = f->height,
+                  .range = f->range,
+                  .matrix = f->matrix,
+                  .transfer = f->transfer},
+        .fps_num = f->fps_num,
+        .fps_den = f->fps_den,
+        .detail =
+            v->exports_dmabuf ? "buffers could be exported as DMABUF" : NULL};
+    glint_v4l2_format_text(f, text);
+    snprintf(format->text, sizeof format->text,
+             "%s (%s): %s, %d %s buffers%s%s", v->device.path, v->device.card,
+             text, v->n_buffers, io[v->io],
+             v->is_cached ? "" : ", uncached: copied first",
+             v->device.has_signal ? "" : "; NO SIGNAL");
+}
+
 enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                   const struct glint_v4l2_config *wish,
                                   enum glint_v4l2_io io, int n_buffers,
@@ -381,10 +420,13 @@ enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
 {
     enum glint_status status;
 
-    *camera = (struct glint_v4l2){
-        .source = {.fd = -1, .next = next, .done = done, .close = close_camera},
-        .wish_io = io,
-        .wish_buffers = n_buffers};
+    *camera = (struct glint_v4l2){.source = {.fd = -1,
+                                             .next = next,
+                                             .done = done,
+                                             .describe = describe,
+                                             .close = close_camera},
+                                  .wish_io = io,
+                                  .wish_buffers = n_buffers};
     status = glint_v4l2_device_open(&camera->device, wish, error);
     if (status != GLINT_OK)
         return status;
@@ -392,5 +434,6 @@ enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
     if (status != GLINT_OK)
         close_camera(&camera->source);
     camera->source.fd = camera->device.fd;
+    camera->source.has_signal = camera->device.has_signal;
     return status;
 }

@@ -48,7 +48,6 @@ struct glint_v4l2 {
     int n_buffers;
     bool is_cached;      /* buffers are read at the speed of memory */
     bool exports_dmabuf; /* they could be handed on without a copy */
-    int n_restarts;
 
     /* Private. */
     enum glint_v4l2_io wish_io;

@@ -6,21 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "linux/request.h"
+#include "posix/clock.h"
 
 #define PAGE       4096
 #define MAX_AGE_US 5000000 /* of a frame that comes from the driver */
-
-int64_t glint_v4l2_now_us(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (int64_t)t.tv_sec * 1000000 + t.tv_nsec / 1000;
-}
 
 static bool is_multiplanar(const struct glint_v4l2 *v)
 {
@@ -74,7 +66,7 @@ int glint_v4l2_queue(struct glint_v4l2 *v, int index)
 static int64_t capture_time_us(const struct v4l2_buffer *b)
 {
     const uint32_t clock = b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
-    const int64_t now_us = glint_v4l2_now_us();
+    const int64_t now_us = glint_now_us();
     const int64_t stamp_us =
         (int64_t)b->timestamp.tv_sec * 1000000 + b->timestamp.tv_usec;
     const bool is_it = clock == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC ||
@@ -133,7 +125,7 @@ static enum glint_v4l2_outcome read_frame(struct glint_v4l2 *v,
     *t = (struct glint_v4l2_taken){.index = i,
                                    .bytes = {(size_t)got},
                                    .sequence = v->n_read++,
-                                   .time_us = glint_v4l2_now_us()};
+                                   .time_us = glint_now_us()};
     v->buffer[i].queued = false;
     return GLINT_V4L2_TAKEN;
 }
@@ -243,12 +235,12 @@ bool glint_v4l2_can_export(const struct glint_v4l2 *v)
 static int64_t read_time_us(const void *mem, size_t bytes)
 {
     const volatile uint64_t *at = mem;
-    const int64_t start = glint_v4l2_now_us();
+    const int64_t start = glint_now_us();
 
     for (int k = 0; k < 2; k++)
         for (size_t i = 0; i < bytes / sizeof *at; i += 2)
             (void)at[i];
-    return glint_v4l2_now_us() - start;
+    return glint_now_us() - start;
 }
 
 bool glint_v4l2_is_cached(const struct glint_v4l2 *v)

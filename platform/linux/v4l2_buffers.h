@@ -43,7 +43,4 @@ bool glint_v4l2_can_export(const struct glint_v4l2 *v);
  * tried. */
 bool glint_v4l2_is_cached(const struct glint_v4l2 *v);
 
-/* CLOCK_MONOTONIC, which drivers stamp frames with. */
-int64_t glint_v4l2_now_us(void);
-
 #endif

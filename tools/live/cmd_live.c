@@ -114,11 +114,11 @@ struct line {
 
 static void set_defaults(struct live_options *o)
 {
-    *o = (struct live_options){.camera = {.device = "/dev/video0",
-                                          .input = -1,
-                                          .range = -1,
-                                          .matrix = -1},
-                               .n_buffers = 4,
+    *o = (struct live_options){.input = {.camera = {.device = "/dev/video0",
+                                                    .input = -1,
+                                                    .range = -1,
+                                                    .matrix = -1},
+                                         .n_buffers = 4},
                                .output = "fb",
                                .snapshot = "glint-%03d.ppm"};
     look_defaults(&o->look);
@@ -194,7 +194,7 @@ static bool take_run(struct live_options *o, int option, const char *value)
 
     switch (option) {
     case OPT_IO:
-        o->io = (enum glint_v4l2_io)(word = tool_word(value, ios));
+        o->input.io = (enum glint_v4l2_io)(word = tool_word(value, ios));
         return word >= 0;
     case OPT_STATS:
         o->report = (enum live_report)(word = tool_word(value, stats));
@@ -216,7 +216,8 @@ static bool take_run(struct live_options *o, int option, const char *value)
         return is_pattern(value) &&
                snprintf(NULL, 0, value, INT_MAX) < LIVE_NAME_BYTES;
     case 'n':
-        return tool_integer(value, 2, GLINT_V4L2_MAX_BUFFERS, &o->n_buffers);
+        return tool_integer(value, 2, GLINT_V4L2_MAX_BUFFERS,
+                            &o->input.n_buffers);
     default: /* 'o' */
         o->output = value;
         return live_output_parse(&(struct live_output){.path = NULL}, value);
@@ -248,7 +249,7 @@ static int take(struct live_options *o, int option, const char *value)
     case 'i':
     case OPT_RANGE:
     case OPT_MATRIX:
-        return take_camera(&o->camera, option, value) ? -1 : -3;
+        return take_camera(&o->input.camera, option, value) ? -1 : -3;
     case 'n':
     case 'o':
         return take_run(o, option, value) ? -1 : -3;
@@ -329,9 +330,10 @@ static int list(struct tool *tool, const struct live_options *o)
 {
     struct glint_error error = {""};
     const enum glint_status status =
-        o->list_devices ? glint_v4l2_list_devices(stdout, tool->json)
-                        : glint_v4l2_list_formats(stdout, o->camera.device,
-                                                  tool->json, &error);
+        o->list_devices
+            ? glint_v4l2_list_devices(stdout, tool->json)
+            : glint_v4l2_list_formats(stdout, o->input.camera.device,
+                                      tool->json, &error);
 
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }

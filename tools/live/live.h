@@ -2,34 +2,25 @@
  *
  * glint live: camera in, flares on the panel.
  *
- * cmd_live.c takes the options, live_loop.c runs, live_output.c opens what the
- * frames go to.
+ * cmd_live.c takes the options, live_input.c opens what frames come from and
+ * live_output.c what they go to, live_loop.c runs.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_H
 #define GLINT_TOOLS_LIVE_LIVE_H
 
 #include <signal.h>
 
-#include "linux/v4l2.h"
 #include "live/live_adapt.h"
+#include "live/live_input.h"
+#include "live/live_log.h"
 #include "live/live_output.h"
-#include "live/live_stats.h"
 #include "overlay/look.h"
-
-enum live_report {
-    LIVE_REPORT_AUTO,
-    LIVE_REPORT_LINE,
-    LIVE_REPORT_JSON,
-    LIVE_REPORT_NONE
-};
 
 enum { LIVE_NAME_BYTES = 1024 }; /* of a snapshot */
 
 struct live_options {
     struct look look; /* options only, until opened */
-    struct glint_v4l2_config camera;
-    enum glint_v4l2_io io;
-    int n_buffers;
+    struct live_wish input;
     const char *output, *snapshot;
     enum glint_panel_fit fit;
     int count, skip; /* frames to show, 0: no end; and to let pass before */

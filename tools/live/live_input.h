@@ -1,51 +1,44 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_input.h - where live frames come from: a camera, or what stands in for
- * one where there is none:
+ * live_input.h - where live frames come from, by name:
  *   /dev/videoN, N   a camera (linux/v4l2.h)
- *   FILE.y4m         a video at its own rate, to its end; frames that are late
- *                    are left out, as of a camera
- *   -                a y4m pipe, each frame as it comes
- *   test             a lamp over a night street (live_scene.h)
- *
- * What stands in fills the parts of CAMERA that live reads: source, format,
- * card, path.
+ *   FILE.y4m, -      a video, or a pipe of one (live_video.h)
+ *   test             a lamp over a night street (live_test.h)
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_INPUT_H
 #define GLINT_TOOLS_LIVE_LIVE_INPUT_H
 
 #include "linux/v4l2.h"
-#include "live/live_scene.h"
-#include "formats/y4m.h"
+#include "live/live_test.h"
+#include "live/live_video.h"
 
-enum live_input_kind {
-    LIVE_INPUT_CAMERA,
-    LIVE_INPUT_FILE,
-    LIVE_INPUT_PIPE,
-    LIVE_INPUT_TEST
+struct live_wish {
+    struct glint_v4l2_config camera; /* device, size and rate of any source */
+    enum glint_v4l2_io io;           /* of a camera */
+    int n_buffers;                   /* of a camera */
 };
 
 struct live_input {
-    struct glint_v4l2 camera; /* first: its source is this */
-    enum live_input_kind kind;
-
-    /* Private. */
-    struct glint_y4m_reader y4m;
-    struct live_scene scene;
-    int timer; /* of frames; -1: none */
-    int64_t n; /* the next frame */
+    struct glint_source *source; /* NULL: closed */
+    union {
+        struct glint_v4l2 camera;
+        struct live_video video;
+        struct live_test test;
+    } as;
 };
 
-enum live_input_kind live_input_kind(const char *device);
+/* Whether NAME is a camera's. */
+bool live_input_is_camera(const char *name);
 
 /* Tells what can be told before there is a lens. GLINT_E_DEVICE, _IO. */
-enum glint_status live_input_look(const char *name, struct glint_error *error);
+enum glint_status live_input_check(const char *name, struct glint_error *error);
 
-/* Opens what WISH names; IO and N_BUFFERS are a camera's, SEED the test's. Once
- * a stand-in has come to its end, next fails with GLINT_E_CLOSED. */
+/* Opens what WISH names; SEED is the test's. */
 enum glint_status live_input_open(struct live_input *input,
-                                  const struct glint_v4l2_config *wish,
-                                  enum glint_v4l2_io io, int n_buffers,
-                                  uint32_t seed, struct glint_error *error);
+                                  const struct live_wish *wish, uint32_t seed,
+                                  struct glint_error *error);
+
+/* Does nothing when closed. */
+void live_input_close(struct live_input *input);
 
 #endif

@@ -82,6 +82,27 @@ enum glint_status live_output_open(struct live_output *o,
     }
 }
 
+const char *live_output_text(const struct live_output *o, char *text,
+                             size_t size)
+{
+    const struct glint_fbdev *fb = &o->as.fb;
+
+    *text = '\0';
+    if (o->kind == LIVE_OUTPUT_FB)
+        snprintf(text, size, "%s: %dx%d, %d bits a pixel%s", fb->id, fb->width,
+                 fb->height, 8 * fb->layout.bytes,
+                 fb->n_pages > 1 ? ", drawn unseen" : "");
+    else if (o->kind == LIVE_OUTPUT_V4L2)
+        snprintf(text, size, "%s", o->as.v4l2.card);
+    return text;
+}
+
+const char *live_output_note(const struct live_output *o)
+{
+    return o->kind == LIVE_OUTPUT_FB && o->as.fb.has_note ? o->as.fb.note.text
+                                                          : NULL;
+}
+
 long live_output_dropped(const struct live_output *o)
 {
     return !o->sink                      ? 0

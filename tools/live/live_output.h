@@ -51,6 +51,12 @@ enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error);
 
+/* Of an open one: what it is, in TEXT, which is returned, "" where its name
+ * says all; and what speaks against it, NULL: nothing. */
+const char *live_output_text(const struct live_output *output, char *text,
+                             size_t size);
+const char *live_output_note(const struct live_output *output);
+
 /* Frames it could not take because it was busy. */
 long live_output_dropped(const struct live_output *output);
 

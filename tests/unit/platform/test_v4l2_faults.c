@@ -23,7 +23,7 @@ static void test_queueing_fails_once(void **state)
     fake_camera_deliver(1, 2);
     must_get(2); /* which tries again first */
     assert_int_equal(camera.n_queued, 4);
-    assert_int_equal(v4l2.n_restarts, 0);
+    assert_int_equal(v4l2.source.n_restarts, 0);
     must_close();
     fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* and at the start */
     must_open(NULL);
@@ -125,7 +125,7 @@ static void test_broken_stream(void **state)
     camera.now.width = 32;
     camera.now.height = 24;
     must_get_nothing();
-    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.source.n_restarts, 1);
     assert_int_equal(v4l2.device.format.width, 32);
     fake_camera_deliver(0, 2);
     must_get_wide(32, 2);
@@ -224,7 +224,7 @@ static void test_patience(void **state)
         must_get_nothing();
         fake_camera_deliver(0, i);
         must_get(i);
-        assert_int_equal(v4l2.n_restarts, i);
+        assert_int_equal(v4l2.source.n_restarts, i);
         fake_camera_pass(100000);
     }
     must_close();
@@ -279,7 +279,7 @@ static void damaged_to_the_end(bool as_jpeg)
         f->bytesused[0] = as_jpeg ? sizeof garbage : 0;
         status = next();
         n_corrupt += frame.n_corrupt;
-        assert_int_equal(v4l2.n_restarts,
+        assert_int_equal(v4l2.source.n_restarts,
                          (n_frames + 1) / 30 > 1 ? 1 : (n_frames + 1) / 30);
         done();
         fake_camera_pass(33333);
@@ -315,7 +315,7 @@ static void test_many_damaged(void **state)
         else
             must_get_nothing();
     }
-    assert_int_equal(v4l2.n_restarts, 0);
+    assert_int_equal(v4l2.source.n_restarts, 0);
     must_close();
 }
 
@@ -330,7 +330,7 @@ static void test_wrong_index(void **state)
     fake_camera_deliver(0, 1);
     camera.says_index = 5;
     must_get_nothing();
-    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.source.n_restarts, 1);
     camera.says_index = 0;
     fake_camera_deliver(0, 1);
     assert_int_equal(next(), GLINT_OK);
@@ -338,7 +338,7 @@ static void test_wrong_index(void **state)
     fake_camera_deliver(1, 2);
     camera.says_index = 1; /* which is the index plus one that is lent */
     must_get_nothing();
-    assert_int_equal(v4l2.n_restarts, 2);
+    assert_int_equal(v4l2.source.n_restarts, 2);
     camera.says_index = 0;
     v4l2.source.done(&v4l2.source, &kept);
     assert_int_equal(camera.n_queued, 4);
@@ -359,10 +359,10 @@ static void test_silence(void **state)
     must_open(NULL);
     fake_camera_pass(2100000);
     must_get_nothing();
-    assert_int_equal(v4l2.n_restarts, 0);
+    assert_int_equal(v4l2.source.n_restarts, 0);
     fake_camera_pass(40000); /* 2 s and 4 frames */
     must_get_nothing();
-    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.source.n_restarts, 1);
     fake_camera_deliver(0, 1); /* that helped */
     must_get(1);
     assert_int_equal(follow(10000, &failed_ms), GLINT_E_DEVICE);
@@ -385,7 +385,7 @@ static void test_slow_camera(void **state)
         fake_camera_deliver(i, 1);
         must_get(1);
     }
-    assert_int_equal(v4l2.n_restarts, 0);
+    assert_int_equal(v4l2.source.n_restarts, 0);
     must_close();
 }
 
@@ -402,7 +402,7 @@ static void test_source_changes(void **state)
     camera.n_events = 2;
     camera.now.width = 32;
     must_get_nothing();
-    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.source.n_restarts, 1);
     fake_camera_deliver(0, 2);
     must_get_wide(32, 2);
     must_close();
@@ -423,11 +423,11 @@ static void test_timings_change(void **state)
     camera.n_events = 1; /* of what it has already */
     fake_camera_deliver(0, 1);
     must_get(1);
-    assert_int_equal(v4l2.n_restarts, 0);
+    assert_int_equal(v4l2.source.n_restarts, 0);
     camera.received.width = 128;
     camera.n_events = 1;
     must_get_nothing();
-    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.source.n_restarts, 1);
     assert_int_equal(camera.timings.width, 128);
     fake_camera_deliver(0, 2);
     must_get_wide(128, 2);
@@ -447,13 +447,13 @@ static void test_signal_lost(void **state)
         camera.n_events = with_events;
         assert_int_equal(follow(60000, &failed_ms), GLINT_OK);
         assert_false(v4l2.device.has_signal);
-        assert_int_equal(v4l2.n_restarts, 0);
+        assert_int_equal(v4l2.source.n_restarts, 0);
         camera.has_signal = true;
         camera.n_events = with_events;
         if (with_events) {
             assert_int_equal(follow(100, &failed_ms), GLINT_OK);
             assert_true(v4l2.device.has_signal);
-            assert_int_equal(v4l2.n_restarts, 0);
+            assert_int_equal(v4l2.source.n_restarts, 0);
         }
         fake_camera_deliver(0, 1);
         must_get(1);
@@ -533,7 +533,7 @@ static void check_anew(enum glint_v4l2_io io)
         camera.is_broken = true;
     must_get_nothing();
     camera.read_errno = 0;
-    assert_int_equal(v4l2.n_restarts, 1);
+    assert_int_equal(v4l2.source.n_restarts, 1);
     assert_int_equal(v4l2.source.fd, camera.fd);
     camera.now.width = 64;
     fake_camera_deliver(0, 2);

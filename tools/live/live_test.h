@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * live_test.h - live frames without a camera: a night street with a lamp that
+ * goes round, of sky, houses with lit windows, a lamp with a halo, noise of a
+ * sensor.
+ *
+ * Frame N of a seed and size is the same picture anywhere.
+ */
+#ifndef GLINT_TOOLS_LIVE_LIVE_TEST_H
+#define GLINT_TOOLS_LIVE_LIVE_TEST_H
+
+#include "live/live_timed.h"
+
+struct live_test {
+    struct live_timed timed;
+    struct glint_image image; /* I420 of limited range; of the last frame */
+    uint32_t seed;
+    uint8_t *still; /* luma without lamp and noise */
+    void *mem;
+};
+
+/* WISH may say a size of 16 to GLINT_PANEL_SIDE pixels a side, rate and codes.
+ * The lamp goes round in eight seconds. On failure TEST is closed.
+ * GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
+enum glint_status live_test_open(struct live_test *test,
+                                 const struct glint_v4l2_config *wish,
+                                 uint32_t seed, struct glint_error *error);
+
+#endif

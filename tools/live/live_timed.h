@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * live_timed.h - what sources without a device have in common: frames that are
+ * due by a clock, and a format that is known when they are opened.
+ */
+#ifndef GLINT_TOOLS_LIVE_LIVE_TIMED_H
+#define GLINT_TOOLS_LIVE_LIVE_TIMED_H
+
+#include "linux/v4l2_device.h"
+#include "source_sink.h"
+
+struct live_timed {
+    struct glint_source source;
+    struct glint_source_format format;
+    int timer; /* -1: frames are due when they come */
+    int64_t n; /* number of the next frame */
+};
+
+/* Begins with FORMAT, but for what WISH says of rate and codes; CARD says what
+ * it is. The implementation sets next and close, and fd. */
+void live_timed_init(struct live_timed *timed,
+                     const struct glint_source_format *format,
+                     const struct glint_v4l2_config *wish, const char *card);
+
+/* Starts the timer and makes it the source's fd. GLINT_E_DEVICE. */
+enum glint_status live_timed_start(struct live_timed *timed, const char *name,
+                                   struct glint_error *error);
+
+/* Begins FRAME. Returns the frames that are due since the last time, of which
+ * the last is to be shown; 0: none yet. */
+uint64_t live_timed_due(struct live_timed *timed,
+                        struct glint_source_frame *frame);
+
+/* Ends FRAME with IMAGE, the last of N that were due. */
+void live_timed_show(struct live_timed *timed, struct glint_source_frame *frame,
+                     const struct glint_image *image, uint64_t n);
+
+void live_timed_stop(struct live_timed *timed);
+
+#endif
