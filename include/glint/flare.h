@@ -24,82 +24,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "glint/bundle.h"
+#include "glint/half.h"
 #include "glint/image.h"
-#include "glint/lens.h"
+#include "glint/light.h"
+#include "glint/model.h"
+#include "glint/real.h"
 #include "glint/status.h"
 #include "glint/workers.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-#define GLINT_MAX_BLADES 64
-
-/* ------------------------------------------------------------ aperture stop */
-
-/* The opening of the aperture stop, in stop radii (1 = the circle that the
- * f-number asks for), fixed to the camera: x right, y up. */
-struct glint_stop {
-    int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
-    int32_t normal_q30[GLINT_MAX_BLADES][2]; /* of each side, outwards */
-    int32_t apothem_q16;                     /* centre to side */
-
-    /* Unless NULL, the opening is read from this mask instead: signed distance
-     * to the outline, positive inside, at the nodes of a square of
-     * mask_nodes^2 over +-mask_span_q16, row 0 at the lowest y. Kept. */
-    const int16_t *mask_q13;
-    int mask_nodes; /* 2 .. 4096 */
-    int32_t mask_span_q16;
-};
-
-/* --------------------------------------------------------------- ray grids */
-
-/* Where one ray of a grid went. */
-struct glint_vertex {
-    int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
-                           down; within +-GLINT_VERTEX_LIMIT_Q8 */
-    int32_t stop_x_q16, stop_y_q16; /* stop radii, within +-2^14 */
-    /* Two barrels that may cut, each (1 + r^2) / 2 with the relative radius r
-     * where the ray passes it: 1 at the barrel, above 1 cut, as steep as r
-     * there and smooth everywhere. 0 .. 2^14; 0: no such barrel. */
-    int32_t barrel_q16[2];
-    int32_t energy_q16; /* 0 .. 65536, in units of the bundle; below 0: the ray
-                           was lost, and the rest means nothing */
-};
-
-#define GLINT_VERTEX_LIMIT_Q8 (INT32_C(1) << 28) /* 2^20 pixels */
-
-/* The rays of one ghost, one light and one wavelength, as a square grid over
- * the ghost's part of the entrance pupil. */
-struct glint_bundle {
-    int n_cells; /* per side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2 vertices,
-                    row by row */
-    /* What one cell sends through the lens at energy 1: flux_q31 * 2^(exponent
-     * - 31), in display white times pixels. */
-    int32_t flux_q31; /* 2^30 .. 2^31 - 1, or 0 */
-    int flux_exponent;
-    int32_t rgb_q14[3]; /* colour of the wavelength times that of the light,
-                           linear BT.709, -4 .. 4 */
-};
-
-/* --------------------------------------------------------- rays of a lens */
-
-/* A light as the lens sees it: parallel rays. */
-struct glint_light {
-    int32_t sine_q30, cosine_q30; /* of the angle off the axis, 0 .. 2^30 */
-    int32_t cos_q30, sin_q30;     /* of the azimuth: 0 = right, 90 = up */
-    struct glint_real power; /* its in-focus image, spread over one pixel, would
-                                have this value; 1 = display white */
-    int32_t rgb_q14[3];      /* colour, linear BT.709, largest channel 1 */
-};
-
-/* A wavelength that is drawn. */
-struct glint_wave {
-    int32_t wave_q24;         /* 1 / wavelength^2, um^-2 */
-    int32_t rgb_q14[3];       /* colour, largest channel 1 */
-    struct glint_real weight; /* its size, over the flux that light is measured
-                                 by: the direct image's at angle 0, mm^2 */
-};
 
 /* Chooses among sets of waves. */
 struct glint_wave_planner;
@@ -119,10 +55,6 @@ struct glint_wave_sets {
     struct glint_real step; /* display white: what no step of light may pass
                                for outlines farther apart; 0: any is seen */
 };
-
-/* Four pixels as one; see struct glint_flare_frame. */
-struct glint_half;
-extern const struct glint_half glint_half;
 
 /* What a frame is made of. */
 struct glint_flare_frame {

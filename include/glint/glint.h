@@ -5,10 +5,10 @@
  * glint computes the ghosts that a real lens throws across a picture when a
  * lamp shines into it. Two halves:
  *
- *   offline   glint/bake.h                   double precision; lens tables,
- *                                            exact rays
+ *   offline   glint/prescription.h trace.h   double precision; lens tables,
+ *             exact.h bake.h                 exact rays and pictures, models
  *   run time  glint/lamps.h lamp_tracker.h   integers only; no allocation
- *             flare.h                        after init
+ *             model.h flare.h                after init
  *
  * Conventions, unless a header says otherwise: pointers are not NULL; arrays do
  * not overlap; pointers are borrowed for the call, and kept only where marked
@@ -23,15 +23,27 @@
 #define GLINT_GLINT_H
 
 #include "glint/bake.h"
+#include "glint/bundle.h"
 #include "glint/composite.h"
+#include "glint/dials.h"
+#include "glint/exact.h"
 #include "glint/flare.h"
+#include "glint/half.h"
 #include "glint/image.h"
 #include "glint/kernels.h"
 #include "glint/lamp_tracker.h"
 #include "glint/lamps.h"
-#include "glint/lens.h"
+#include "glint/light.h"
+#include "glint/model.h"
+#include "glint/prescription.h"
 #include "glint/profile.h"
+#include "glint/real.h"
+#include "glint/setup.h"
 #include "glint/status.h"
+#include "glint/trace.h"
+#include "glint/traced_bundle.h"
+#include "glint/transfer.h"
+#include "glint/view.h"
 #include "glint/workers.h"
 
 #define GLINT_VERSION "0.1.0"

@@ -2,14 +2,16 @@
  *
  * From a lens table to its model: fit, quantise, prove, write, measure.
  */
+#include "glint/bake.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/exact/cells.h"
 #include "bake/fit/fit.h"
 #include "bake/published/published.h"
+#include "bake/trace/cells.h"
 #include "bake/write_model.h"
 
 enum {

@@ -4,8 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/trace/degrees.h"
 #include "bake/fit/zone.h"
+#include "bake/trace/degrees.h"
+#include "glint/transfer.h"
 
 enum { RAYS = 400, TRIES = 1600, PER_BUNDLE = 16 };
 

@@ -8,7 +8,7 @@
 
 #include "bake/fit/fitted.h"
 #include "bake/fit/hunt.h"
-#include "glint/lens.h"
+#include "glint/model.h"
 
 struct glint_errors {
     double rms, p50, p99, max;

@@ -7,7 +7,7 @@
 
 #include "bake/measure_model.h"
 #include "bake/fit/quantise.h"
-#include "glint/bake.h"
+#include "glint/setup.h"
 
 /* A model in the making; owned. */
 struct glint_draft {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Numbers of any size in integers: struct glint_real of glint/lens.h, mantissa
+ * Numbers of any size in integers: struct glint_real of glint/real.h, mantissa
  * times a power of two, mantissa 0 or 2^30 .. 2^31 - 1 in magnitude. Products
  * and quotients are cut, so off by 2^-30 at most.
  */
@@ -8,7 +8,7 @@
 #define GLINT_BASE_REAL_H
 
 #include "base/divide.h"
-#include "glint/lens.h"
+#include "glint/real.h"
 
 /* X * 2^EXPONENT; X within +-2^62. */
 static inline struct glint_real real_of(int64_t x, int exponent)

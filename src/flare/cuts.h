@@ -14,7 +14,8 @@
 
 #include <stdint.h>
 
-#include "glint/flare.h"
+#include "glint/bundle.h"
+#include "glint/light.h"
 
 /* The cuts that a node lies on or outside of: a bit for each side of the stop,
  * of a round one the lowest, and for each barrel. */

@@ -25,7 +25,8 @@
 
 #include <stdint.h>
 
-#include "glint/flare.h"
+#include "glint/light.h"
+#include "glint/transfer.h"
 #include "flare/edges.h"
 #include "flare/outline.h"
 

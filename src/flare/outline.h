@@ -23,6 +23,7 @@
 
 #include "base/q.h"
 #include "flare/primitive.h"
+#include "glint/light.h"
 
 /* How far V lies inside of side SIDE of a stop, stop radii, and of a barrel. */
 static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,

@@ -15,7 +15,7 @@
 #define GLINT_FLARE_PLAN_H
 
 #include "glint/flare.h"
-#include "glint/lens.h"
+#include "glint/transfer.h"
 
 /* Where the rays of a bundle come from. */
 struct glint_bundle_plan {

@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "glint/flare.h"
+#include "glint/bundle.h"
 #include "tile/box.h"
 
 enum {

@@ -14,7 +14,8 @@
 #ifndef GLINT_IMAGE_QUADS_H
 #define GLINT_IMAGE_QUADS_H
 
-#include "glint/flare.h"
+#include "glint/half.h"
+#include "glint/image.h"
 #include "image/resolve.h"
 
 /* Scratch of a worker. */

@@ -7,7 +7,7 @@
 #define GLINT_LENS_BOX_H
 
 #include "base/q.h"
-#include "glint/lens.h"
+#include "glint/model.h"
 
 /* Takes a side out of a model, where it has the terms of the bits set in
  * TERMS. Returns where the next one is. */

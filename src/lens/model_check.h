@@ -7,7 +7,7 @@
 #define GLINT_LENS_MODEL_CHECK_H
 
 #include "base/blob.h"
-#include "glint/lens.h"
+#include "glint/model.h"
 
 enum { MODEL_LIMIT = 1 << 30 }; /* of sums of magnitudes; also 1 as a q30 */
 

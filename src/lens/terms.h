@@ -7,7 +7,7 @@
 #define GLINT_LENS_TERMS_H
 
 #include "base/q.h"
-#include "glint/lens.h"
+#include "glint/transfer.h"
 
 enum { TRANSFER_MAX_EXPONENT = 15 }; /* of any variable */
 

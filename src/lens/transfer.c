@@ -11,7 +11,7 @@
  * as bake has proven (bound in struct glint_model_output). So each product of
  * the two is below 2^60, and rounds to its unit by a shift of 30.
  */
-#include "glint/lens.h"
+#include "glint/transfer.h"
 
 #include "base/compiler.h"
 #include "base/divide.h"

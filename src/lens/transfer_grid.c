@@ -4,14 +4,13 @@
  * pixels, stop radii and energies of fixed formats, turned by the azimuth of
  * the light; what does not fit is lost.
  */
-#include "glint/lens.h"
+#include "glint/transfer.h"
 
 #include <stddef.h>
 
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
-#include "glint/flare.h"
 #include "kernels/kernels.h"
 #include "lens/terms.h"
 

@@ -4,7 +4,7 @@
  * and wavelength: along rows of a grid by Horner's rule (kernels/horner), eight
  * at once. Formats are those of transfer.c.
  */
-#include "glint/lens.h"
+#include "glint/transfer.h"
 
 #include "base/q.h"
 #include "kernels/kernels.h"

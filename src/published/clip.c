@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "published/clip.h"
 
+#include <stddef.h>
+
 #include "base/compiler.h"
 #include "base/q.h"
 

@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "flare/primitive.h"
+#include "glint/light.h"
 
 struct glint_clip {
     int n;                                  /* linear functions */

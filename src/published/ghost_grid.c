@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "published/ghost_grid.h"
 
+#include <stddef.h>
+
 #include "base/compiler.h"
 #include "base/q.h"
 #include "published/clip.h"

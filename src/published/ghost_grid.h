@@ -18,6 +18,7 @@
 #include <stdint.h>
 
 #include "flare/primitive.h"
+#include "glint/light.h"
 
 /* A bundle in the making; counts are what the grid gave. */
 struct glint_ghost_grid {

@@ -15,6 +15,7 @@
 
 #include <stdint.h>
 
+#include "glint/flare.h"
 #include "published/clip.h"
 #include "flare/primitive.h"
 

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "glint/flare.h"
-#include "glint/lens.h"
+#include "glint/transfer.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "glint/lens.h"
+#include "glint/model.h"
 
 enum {
     MODEL_ROOM = 1 << 17,

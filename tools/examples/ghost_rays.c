@@ -6,6 +6,7 @@
  */
 #include <math.h>
 
+#include "glint/transfer.h"
 #include "model.h"
 
 enum { FAN = 9 };

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "glint/lens.h"
+#include "glint/model.h"
 
 /* The whole file, to be freed. NULL: it cannot be read. */
 static inline void *read_all(const char *path, size_t *bytes)

@@ -10,7 +10,7 @@
 #ifndef GLINT_TOOLS_MODEL_MODEL_FILE_H
 #define GLINT_TOOLS_MODEL_MODEL_FILE_H
 
-#include "glint/lens.h"
+#include "glint/model.h"
 #include "options/tool.h"
 
 /* Closed when zeroed. */

@@ -10,13 +10,14 @@
  * picture. Work is split into rows of rays and bands of pixels; every pixel
  * receives its contributions in one order, so threads change nothing.
  */
-#include "glint/bake.h"
+#include "glint/exact.h"
+#include "glint/trace.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/exact/cells.h"
+#include "bake/trace/cells.h"
 
 enum { BAND = 32 }; /* pixel rows a job; the last may be shorter */
 /* Ghosts times lamps times wavelengths: more would be years of work. */

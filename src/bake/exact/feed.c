@@ -7,8 +7,7 @@
 
 #include "bake/trace/degrees.h"
 #include "bake/trace/survey.h"
-#include "glint/bake.h"
-#include "glint/flare.h"
+#include "glint/traced_bundle.h"
 
 enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
 /* where the survey finds fewer rays, cells a stop radius */

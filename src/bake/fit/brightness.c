@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "bake/trace/degrees.h"
+#include "glint/trace.h"
 
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN };
 

@@ -12,7 +12,8 @@
 #ifndef GLINT_BAKE_FIT_BRIGHTNESS_H
 #define GLINT_BAKE_FIT_BRIGHTNESS_H
 
-#include "glint/bake.h"
+#include "glint/setup.h"
+#include "glint/workers.h"
 
 enum { GLINT_BRIGHTNESS_ANGLES = 11 };
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * What a fit leaves behind, in double precision, before it is made integers:
- * the shape of glint/lens.h without its formats.
+ * the shape of glint/model.h without its formats.
  */
 #ifndef GLINT_BAKE_FIT_FITTED_H
 #define GLINT_BAKE_FIT_FITTED_H
 
 #include "bake/fit/regress.h"
-#include "glint/lens.h"
+#include "glint/model.h"
 #include "glint/status.h"
 
 /* One output. COEF is [sets][n_terms], sets as the system says; owned. */

@@ -15,7 +15,8 @@
 #ifndef GLINT_BAKE_FIT_HUNT_H
 #define GLINT_BAKE_FIT_HUNT_H
 
-#include "glint/bake.h"
+#include "glint/setup.h"
+#include "glint/trace.h"
 
 enum {
     GLINT_HUNT_WAVES = 11,

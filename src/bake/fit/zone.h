@@ -17,7 +17,8 @@
 
 #include "bake/fit/hunt.h"
 #include "bake/fit/regress.h"
-#include "glint/lens.h"
+#include "glint/model.h"
+#include "glint/trace.h"
 
 enum {
     GLINT_ZONE_SINES = 6,

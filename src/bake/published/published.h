@@ -26,7 +26,7 @@
 #define GLINT_BAKE_PUBLISHED_PUBLISHED_H
 
 #include "bake/fit/fitted.h"
-#include "glint/bake.h"
+#include "glint/setup.h"
 
 struct glint_published_options {
     int n_zones;    /* angles 0 .. max_deg, at least 2; 241 as published */

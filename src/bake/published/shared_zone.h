@@ -23,7 +23,7 @@
 #include <stdint.h>
 
 #include "bake/fit/regress.h"
-#include "glint/lens.h"
+#include "glint/model.h"
 
 enum {
     GLINT_SHARED_TERMS = 12,

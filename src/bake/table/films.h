@@ -6,7 +6,7 @@
 #define GLINT_BAKE_TABLE_FILMS_H
 
 #include "bake/table/text.h"
-#include "glint/bake.h"
+#include "glint/prescription.h"
 
 #define GLINT_MGF2_INDEX 1.38
 

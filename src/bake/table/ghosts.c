@@ -3,7 +3,7 @@
  * Lens -> the pairs of surfaces whose reflections reach the sensor through the
  * stop once. Pairs across the stop cross it three times and hardly pass.
  */
-#include "glint/bake.h"
+#include "glint/prescription.h"
 
 int glint_ghost_list(const struct glint_prescription *lens,
                      struct glint_ghost *ghosts, int max)

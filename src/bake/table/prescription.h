@@ -6,7 +6,7 @@
 #ifndef GLINT_BAKE_TABLE_PRESCRIPTION_H
 #define GLINT_BAKE_TABLE_PRESCRIPTION_H
 
-#include "glint/bake.h"
+#include "glint/prescription.h"
 
 #define GLINT_MAX_ELEMENTS (GLINT_MAX_SURFACES + 1)
 

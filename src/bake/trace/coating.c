@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "bake/trace/coating.h"
 
-#include "glint/bake.h"
+#include "glint/trace.h"
 
 double glint_reflectance(double n_from, double n_to, double cos_from,
                          double film_n, double film_phase)

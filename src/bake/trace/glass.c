@@ -6,7 +6,7 @@
  * and the dispersion n_F - n_C = (nd - 1) / Vd. Exact at the d line and in
  * that difference; a real glass bends a little more towards the violet.
  */
-#include "glint/bake.h"
+#include "glint/trace.h"
 
 /* In air, as glass catalogues give them. Rounding them to 587.56, 486.13 and
  * 656.27 moves rays by some 1e-5 mm. */

@@ -10,7 +10,7 @@
  * than a 64th of the front element and whose surroundings bend by more than the
  * margin can be missed if it is long or lies aside.
  */
-#include "glint/bake.h"
+#include "glint/trace.h"
 
 #include <math.h>
 

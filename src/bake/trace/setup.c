@@ -3,17 +3,16 @@
  * Lens, stop and wavelengths, made ready once: colours of the wavelengths and
  * the flux of the direct image that everything is measured by.
  */
-#include "glint/bake.h"
+#include "glint/setup.h"
+#include "glint/view.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "bake/exact/cells.h"
+#include "bake/trace/cells.h"
 #include "bake/trace/degrees.h"
-#include "bake/fit/quantise.h"
 #include "bake/trace/spectrum.h"
-#include "glint/flare.h"
 
 /* Scales each channel to the sum 1, so that a flat spectrum is white. A channel
  * that the wavelengths hardly excite, or excite negatively, takes them all

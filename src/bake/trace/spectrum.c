@@ -16,7 +16,7 @@
 
 #include <math.h>
 
-#include "glint/bake.h"
+#include "glint/setup.h"
 
 enum {
     N_ALL = 31,

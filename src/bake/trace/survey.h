@@ -14,7 +14,7 @@
 #ifndef GLINT_BAKE_TRACE_SURVEY_H
 #define GLINT_BAKE_TRACE_SURVEY_H
 
-#include "glint/bake.h"
+#include "glint/trace.h"
 
 enum { GLINT_MAX_SURVEY = 96 };
 

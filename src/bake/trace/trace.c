@@ -19,6 +19,7 @@
 #include "bake/trace/coating.h"
 #include "base/compiler.h"
 #include "bake/table/prescription.h"
+#include "glint/trace.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -15,6 +15,7 @@
 #include "bake/measure_model.h"
 #include "bake/fit/zone.h"
 #include "bake/fit/quantise.h"
+#include "glint/transfer.h"
 #include "support/lens_check.h"
 #include "support/shuffle.h"
 

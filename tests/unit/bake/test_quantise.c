@@ -15,6 +15,7 @@
 #include "bake/fit/quantise.h"
 #include "bake/write_model.h"
 #include "base/q.h"
+#include "glint/transfer.h"
 #include "support/lens_check.h"
 #include "support/shuffle.h"
 

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "glint/flare.h"
-#include "glint/lens.h"
+#include "glint/transfer.h"
 #include "support/model_builder.h"
 #include "support/shuffle.h"
 

@@ -9,10 +9,11 @@
  * Between the rays everything is linear. A curved edge becomes a chord per
  * triangle, so errors fall with the square of the cell size.
  */
-#ifndef GLINT_BAKE_EXACT_CELLS_H
-#define GLINT_BAKE_EXACT_CELLS_H
+#ifndef GLINT_BAKE_TRACE_CELLS_H
+#define GLINT_BAKE_TRACE_CELLS_H
 
-#include "glint/bake.h"
+#include "glint/setup.h"
+#include "glint/trace.h"
 
 enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
 

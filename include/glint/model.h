@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/lens.h - a baked lens: its model file, and rays through it in integers.
+ * glint/model.h - a baked lens: its file, used where it lies.
  *
  *     status = glint_lens_open(&lens, data, bytes, &reason);    once
- *     glint_transfer_init(&transfer, &lens, ghost, sine_q30, wave_q24);
- *     glint_transfer_ray(&transfer, u_q30, v_q30, &out);        or
- *     glint_transfer_grid(&transfer, &place, n_cells, vertices);
  *
  * A model holds, for every ghost, sparse polynomials from the pupil to the
  * stop, the sensor, the barrels and the energy. It is one block of 32-bit words
@@ -23,40 +20,29 @@
  * s and w are the same for a whole bundle: init puts them in and leaves
  * polynomials in u and v. Method after [Bodonyi25], in coordinates in which
  * ghosts are tame.
+ *
+ * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
+ * start of the file, multiples of 4. Header first, then in any order what it
+ * points to.
  */
-#ifndef GLINT_LENS_H
-#define GLINT_LENS_H
+#ifndef GLINT_MODEL_H
+#define GLINT_MODEL_H
 
 #include <stddef.h>
 #include <stdint.h>
 
+#include "glint/real.h"
 #include "glint/status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define GLINT_MAX_WAVE_SETS 5 /* see struct glint_wave_sets, flare.h */
-
-struct glint_vertex;
-
-/* ------------------------------------------------------------- model file
- *
- * Little-endian 32-bit words; offsets ("_at") are bytes from the start of the
- * file, multiples of 4. Header first, then in any order what it points to. */
-
 #define GLINT_MODEL_MAGIC   UINT32_C(0x544e4c47) /* "GLNT" */
 #define GLINT_MODEL_VERSION 3
 
-/* mantissa * 2^exponent; mantissa 0, or 2^30 .. 2^31 - 1 in magnitude;
- * exponent within +-200. */
-struct glint_real {
-    int32_t mantissa;
-    int32_t exponent;
-};
-
 enum glint_basis {
-    GLINT_BASIS_AUTO,  /* u, v, s, w as above */
+    GLINT_BASIS_AUTO,  /* u, v, s, w: see above */
     GLINT_BASIS_SPARSE /* x, y, r and 1 - r, [Bodonyi25]: the place on the
                           vertex plane over 2^(30 + box_exponent) mm, a
                           radius that holds all boxes of the system
@@ -121,8 +107,7 @@ struct glint_model_system {
 };
 
 enum {
-    GLINT_MAX_CELLS = 1024, /* of a ray grid, per side */
-    GLINT_BOX_POWERS = 6,   /* of s alone, the 0th among them */
+    GLINT_BOX_POWERS = 6, /* of s alone, the 0th among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
     GLINT_MAX_HOLLOW = 15,
@@ -181,8 +166,6 @@ static inline uint64_t glint_model_error_q20(uint16_t e)
     return (uint64_t)(e & 2047) << (e >> 11);
 }
 
-/* ------------------------------------------------------------------ opening */
-
 struct glint_lens {
     const struct glint_model_header *header;
     const struct glint_model_ghost *ghost;
@@ -197,90 +180,6 @@ enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
 
 /* CRC of BYTES bytes as in the header. */
 uint32_t glint_model_crc32(const void *data, size_t bytes);
-
-/* ----------------------------------------------------------------- transfer */
-
-/* The polynomials of one bundle: one ghost, light and wavelength. */
-struct glint_transfer {
-    const struct glint_model_system *system;
-    uint32_t outputs; /* bit KIND is set where there is that output */
-    int32_t exponent[GLINT_OUT_KINDS]; /* of what comes out */
-    uint8_t head, roots;               /* of the energy */
-    uint8_t energy_up; /* a vertex's energy counts 2^so many times, at most 29:
-                          0 after init, for the caller to set */
-    int32_t box[3];    /* middle, half width, half height at this angle */
-    int32_t box_exponent;
-    uint8_t hollow;
-    enum glint_basis basis;
-    union {
-        /* of u^a v^b: [b][a] */
-        int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
-        struct {
-            int32_t n_terms;
-            uint16_t power[GLINT_MAX_MODEL_TERMS];
-            int32_t coef[GLINT_MAX_MODEL_TERMS];
-        } sparse[GLINT_OUT_KINDS];
-    } of;
-    uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
-    unsigned sets; /* instruction sets for rows, GLINT_SET_: 0 after init, for
-                      the caller to set; changes no result */
-    /* Scratch: polynomials in u, of one row of rays; places along a row. */
-    int32_t of_u[GLINT_OUT_KINDS][GLINT_TABLE_WIDTH];
-    int32_t n_nodes, node_q30[GLINT_MAX_CELLS + GLINT_RAYS];
-};
-
-/* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 0 .. 2^30,
- * WAVE_Q24 within the band (else held to it). Returns 0 where nothing of the
- * ghost gets through. */
-int glint_transfer_init(struct glint_transfer *transfer,
-                        const struct glint_lens *lens, int ghost,
-                        int32_t sine_q30, int32_t wave_q24);
-
-/* Where the ray at (U, V), each within +-2^30, goes: integers by kind, to be
- * scaled by 2^exponent; 0 for outputs that are not there. */
-struct glint_outputs {
-    int32_t at[GLINT_OUT_KINDS];
-};
-void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
-                        int32_t v_q30, struct glint_outputs *out);
-
-/* Where the rays at (U[i], V) go, by kind; kinds that are not there are left as
- * they are. IS_NEW: V is another one than in the last call. */
-void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
-                         const int32_t u_q30[GLINT_RAYS], int is_new,
-                         int32_t out[GLINT_OUT_KINDS][GLINT_RAYS]);
-
-/* Where the bundle lies in the picture. */
-struct glint_place {
-    int32_t cos_q30, sin_q30; /* of the light's azimuth */
-    struct glint_real pixels_per_mm;
-    int32_t middle_x_q8, middle_y_q8; /* the sensor's centre, pixels */
-};
-
-/* V, _q30, at J of N steps from the middle of the box, or from the rim of a
- * hollow one, to 1. */
-int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
-
-/* Fills the vertices of a grid of N_CELLS a side over the whole box, row by
- * row, [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a
- * vertex is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does
- * not fit a vertex is lost. Of a hollow box N_CELLS is even, at least 4; the
- * row in the middle is lost, and those beside it are its rim: n_cells - 2 rows
- * of cells cover what there is. */
-void glint_transfer_grid(struct glint_transfer *transfer,
-                         const struct glint_place *place, int n_cells,
-                         struct glint_vertex *vertices);
-
-/* Row J of it alone, 0 .. N_CELLS. */
-void glint_transfer_row(struct glint_transfer *transfer,
-                        const struct glint_place *place, int n_cells, int j,
-                        struct glint_vertex *row);
-
-/* Row J and, for little more, row N_CELLS - J, its mirror image. */
-void glint_transfer_rows(struct glint_transfer *transfer,
-                         const struct glint_place *place, int n_cells, int j,
-                         struct glint_vertex *row,
-                         struct glint_vertex *mirrored);
 
 #ifdef __cplusplus
 }

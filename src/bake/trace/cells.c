@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/exact/cells.h"
+#include "bake/trace/cells.h"
 
 #include <math.h>
 #include <stdlib.h>

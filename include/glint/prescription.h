@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/prescription.h - lens tables, and the ghosts of a lens.
+ *
+ *     glint_prescription_parse(&lens, text, bytes, "x.lens", &error);
+ *     glint_optics_of(&lens, &optics);                   focal length, ...
+ *     n = glint_ghost_list(&lens, ghosts, GLINT_MAX_GHOSTS);
+ *
+ * The offline half is double precision and may take its time. Lengths are in
+ * millimetres, wavelengths in nanometres, angles in degrees.
+ *
+ * Axes: z runs from the front vertex (0) to the sensor, x to the right and y
+ * up as the picture is seen. A light at (THETA, PHI) sends parallel rays along
+ * (sin T cos P, sin T sin P, cos T); its own image is at f tan T (cos P, sin P)
+ * on the sensor.
+ */
+#ifndef GLINT_PRESCRIPTION_H
+#define GLINT_PRESCRIPTION_H
+
+#include <stddef.h>
+
+#include "glint/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GLINT_MAX_SURFACES 64 /* refracting surfaces of a lens */
+#define GLINT_MAX_GHOSTS   (GLINT_MAX_SURFACES * (GLINT_MAX_SURFACES - 1) / 2)
+#define GLINT_NAME_BYTES   64
+
+/* A refracting surface. The medium before surface 0 is air. */
+struct glint_surface {
+    double radius_mm;    /* > 0: centre towards the sensor; 0: plane */
+    double thickness_mm; /* to the next surface, the stop, or the sensor */
+    double semi_mm;      /* semi-diameter of the barrel here */
+    double nd;           /* index at 587.56 nm of the medium after it */
+    double vd;           /* Abbe number of that medium; 0 for air */
+    double coating_nm;   /* design wavelength of its quarter-wave film; 0:
+                            bare, as cemented surfaces always are */
+    double coating_n;    /* index of the film */
+};
+
+/* A film on a surface, a quarter wave thick. */
+struct glint_film {
+    double nm;    /* design wavelength, 100 .. 5000; 0: no film */
+    double index; /* 1.01 .. 4 */
+};
+
+#define GLINT_MAX_FILMS GLINT_MAX_SURFACES
+
+/* A lens table, all of it checked. The stop lies between two surfaces: its gap
+ * before is the thickness of the surface in front of it. */
+struct glint_prescription {
+    char name[GLINT_NAME_BYTES];
+    char source[256]; /* patent or book, for people */
+    double f_number;
+    double film_width_mm, film_height_mm;
+    int n_surfaces; /* without the stop, 1 .. GLINT_MAX_SURFACES */
+    struct glint_surface surface[GLINT_MAX_SURFACES];
+    int stop_after;           /* surfaces before the stop, 0 .. n_surfaces */
+    double stop_thickness_mm; /* from the stop to the next surface (or the
+                                 sensor); a front stop lies at z < 0 */
+    double stop_semi_mm;      /* largest opening of the stop */
+    double check_focal_mm;    /* stated values; 0: not stated */
+    double check_back_mm;
+    /* What the table would have on its surfaces to be looked at, rather than
+     * measured; on them only after glint_prescription_coat(). */
+    struct glint_film mixed[GLINT_MAX_FILMS];
+    int n_mixed; /* 0: the table does not say */
+};
+
+/* Reads a lens table; lenses/README.md describes the format. TEXT need not be
+ * terminated and may hold anything. FILE_NAME only names it in errors.
+ * GLINT_E_LENS: ERROR says file, line, column and cause; LENS is unchanged. */
+enum glint_status glint_prescription_parse(struct glint_prescription *lens,
+                                           const char *text, size_t bytes,
+                                           const char *file_name,
+                                           struct glint_error *error);
+
+/* Changes the f-number. GLINT_E_ARGUMENT: not finite, or the stop it asks for
+ * is wider than stop_semi_mm. */
+enum glint_status
+glint_prescription_set_f_number(struct glint_prescription *lens,
+                                double f_number, struct glint_error *error);
+
+/* Takes what is on LENS's surfaces between air and glass off, and deals FILMS
+ * out over them, the first one to the front and from the first again behind the
+ * last; N 1 .. GLINT_MAX_FILMS. Cemented surfaces stay bare. */
+void glint_prescription_coat(struct glint_prescription *lens,
+                             const struct glint_film *films, int n);
+
+/* The films that a table without any of its own is mixed of; returns how many
+ * there are. */
+int glint_films_mixed(struct glint_film films[GLINT_MAX_FILMS]);
+
+/* Reads films as the tables have them, "none", "NM" or "NM/INDEX", but divided
+ * by commas. GLINT_E_ARGUMENT: ERROR says what is wrong; nothing is written. */
+enum glint_status glint_films_parse(struct glint_film films[GLINT_MAX_FILMS],
+                                    int *n, const char *text,
+                                    struct glint_error *error);
+
+/* First-order quantities at the d line (587.56 nm). */
+struct glint_optics {
+    double focal_mm;           /* effective focal length */
+    double back_focal_mm;      /* last surface to the paraxial focus */
+    double entrance_radius_mm; /* of the entrance pupil: focal / (2 N) */
+    double entrance_z_mm;      /* of the entrance pupil from the front vertex */
+    double stop_radius_mm;     /* of the aperture stop at the f-number */
+    double length_mm;          /* front vertex to sensor */
+};
+
+void glint_optics_of(const struct glint_prescription *lens,
+                     struct glint_optics *optics);
+
+/* Light reflected at surface J and then, running backwards, at surface I.
+ * I = J = -1 is the direct path without reflections. */
+struct glint_ghost {
+    int i, j; /* indices into glint_prescription.surface, i < j */
+};
+
+/* All pairs on the same side of the stop, those before it first, I outer, J
+ * inner. Writes at most MAX; returns how many there are. [Hullin11] */
+int glint_ghost_list(const struct glint_prescription *lens,
+                     struct glint_ghost *ghosts, int max);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

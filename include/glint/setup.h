@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/setup.h - a lens made ready for drawing: its colours and its stop.
+ */
+#ifndef GLINT_SETUP_H
+#define GLINT_SETUP_H
+
+#include <stdint.h>
+
+#include "glint/light.h"
+#include "glint/model.h"
+#include "glint/prescription.h"
+#include "glint/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GLINT_MAX_WAVELENGTHS 32
+#define GLINT_SET_WAVES       65 /* of all sets together, see below */
+
+/* N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that stand for light of all
+ * wavelengths: WAVELENGTH_NM rises, and RGB[i] times what is at wavelength i,
+ * summed, is nearly what all of 400 .. 700 nm give to linear BT.709 by the CIE
+ * 1931 observer [Wyman13], exactly if that is a polynomial of a degree below
+ * 4 and N. Each channel sums to 1, so that a flat spectrum is white; single
+ * colours lie outside of BT.709 and are negative in part. SHARE[i] is that of
+ * the mean over the wavelengths and sums to 1. Wavelengths lie where steps
+ * between them, as a ghost's outline moves in proportion to 1 / wavelength^2,
+ * are smallest in the mean of squares over the channels. */
+void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
+                    double *share);
+
+/* One of a set. */
+struct glint_set_wave {
+    double nm, rgb[3];
+    double direct_flux, unit_flux; /* as in struct glint_setup */
+};
+
+/* A lens made ready for drawing: everything that no light and no frame
+ * changes. */
+struct glint_setup {
+    const struct glint_prescription *lens; /* kept; NULL: made from a model */
+    struct glint_optics optics;
+    int n_ghosts;
+    int n_parts; /* of a model: the last so many ghosts are further parts of the
+                    pupil of some of those before them */
+    struct glint_ghost ghost[GLINT_MAX_GHOSTS];
+    int n_blades;              /* of the stop; 0: circle */
+    double blade_rotation_deg; /* of the first corner, from x towards y */
+    int n_wavelengths;
+    double wavelength_nm[GLINT_MAX_WAVELENGTHS];
+    double rgb[GLINT_MAX_WAVELENGTHS][3]; /* linear BT.709; each channel sums
+                                             to 1 */
+    double direct_flux[GLINT_MAX_WAVELENGTHS]; /* through the stop at angle 0
+                                                  for irradiance 1, mm^2 */
+    double unit_flux[GLINT_MAX_WAVELENGTHS]; /* what light is measured by, mm^2:
+                                                the mean of direct_flux, or
+                                                itself after _balance */
+    /* After _spread: sets of wavelengths, one after the other, the smallest
+     * first, of which each ghost takes its own. */
+    int n_sets, set_size[GLINT_MAX_WAVE_SETS];
+    struct glint_set_wave set_wave[GLINT_SET_WAVES];
+};
+
+/* Prepares LENS with a stop of N_BLADES (0 or 3 .. 64; corners on the circle of
+ * the f-number) for N wavelengths (1 .. GLINT_MAX_WAVELENGTHS, 300 .. 1100 nm).
+ * Three wavelengths become R, G and B as they stand; any other number is
+ * weighted by the CIE 1931 observer [Wyman13]. GLINT_E_ARGUMENT: out of range.
+ * GLINT_E_LENS: no light gets through. */
+enum glint_status glint_setup_init(struct glint_setup *setup,
+                                   const struct glint_prescription *lens,
+                                   int n_blades, double blade_rotation_deg,
+                                   const double *wavelength_nm, int n,
+                                   struct glint_error *error);
+
+/* The same from a model, without its lens table: everything but exact rays. A
+ * wavelength outside of the model's band counts as the nearest one inside. */
+enum glint_status glint_setup_from_model(struct glint_setup *setup,
+                                         const struct glint_lens *lens,
+                                         int n_blades,
+                                         double blade_rotation_deg,
+                                         const double *wavelength_nm, int n,
+                                         struct glint_error *error);
+
+/* Of a setup for the N wavelengths of glint_spectrum(): takes its colours. */
+void glint_setup_weigh(struct glint_setup *setup);
+
+/* Gives SETUP, made from LENS, the sets for each ghost to choose from. */
+void glint_setup_spread(struct glint_setup *setup,
+                        const struct glint_lens *lens);
+
+/* Measures each wavelength by its own direct image, as a camera does that is
+ * balanced to white behind this lens. Otherwise the lens's own tint shows in
+ * the ghosts as it shows in everything else. */
+void glint_setup_balance(struct glint_setup *setup);
+
+/* The stop of SETUP as a flare takes it. */
+void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop);
+
+/* Signed distances of that stop at the nodes of a square mask of NODES^2 over
+ * +-SPAN stop radii, q13, row 0 at the lowest y. */
+void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
+                      int nodes, double span);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
