@@ -46,7 +46,7 @@ CORE      := base image kernels lens lamps follow tile flare
 PUBLISHED := published
 ENGINE    := engine
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
-PLATFORM  := posix formats panel linux jpeg oiio sdl
+PLATFORM  := posix formats video panel linux jpeg oiio sdl
 TOOLS     := engine options model overlay command live lab
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * panel/y4m_sink.h - frames as YUV4MPEG2 (formats/y4m.h), as a sink.
+ * panel/y4m_sink.h - frames as YUV4MPEG2 (video/y4m.h), as a sink.
  *
  * The stream is opened with the first frame, whose size, format and range all
  * must have. Formats that Y4M does not know are written as planes
@@ -15,7 +15,7 @@
 #define GLINT_PLATFORM_PANEL_Y4M_SINK_H
 
 #include "panel/planar.h"
-#include "formats/y4m.h"
+#include "video/y4m.h"
 #include "source_sink.h"
 
 struct glint_y4m_sink {
@@ -34,7 +34,7 @@ struct glint_y4m_sink {
     struct glint_y4m_writer writer;
 };
 
-/* PATH is kept; "-": standard output. Rate as in formats/y4m.h. Nothing can
+/* PATH is kept; "-": standard output. Rate as in video/y4m.h. Nothing can
  * fail before the first frame. */
 void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den);

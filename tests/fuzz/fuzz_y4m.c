@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "formats/y4m.h"
+#include "video/y4m.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

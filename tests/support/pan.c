@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #include "formats/picture.h"
-#include "formats/y4m.h"
+#include "video/y4m.h"
 #include "options/tool.h"
 
 static uint32_t random_next(uint32_t *state)

@@ -14,7 +14,7 @@
 #include <stdio.h>
 
 #include "overlay/look.h"
-#include "formats/y4m.h"
+#include "video/y4m.h"
 #include "posix/error.h"
 #include "support/night.h"
 

@@ -7,7 +7,7 @@
 #ifndef GLINT_TOOLS_LIVE_LIVE_VIDEO_H
 #define GLINT_TOOLS_LIVE_LIVE_VIDEO_H
 
-#include "formats/y4m.h"
+#include "video/y4m.h"
 #include "live/live_timed.h"
 
 struct live_video {

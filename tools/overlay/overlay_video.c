@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "overlay/ffmpeg.h"
-#include "formats/y4m.h"
+#include "video/y4m.h"
 #include "posix/error.h"
 
 struct video {

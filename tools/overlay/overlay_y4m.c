@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "overlay/look_layer.h"
-#include "formats/y4m_light.h"
+#include "video/y4m_light.h"
 
 /* What all frames of a stream share. */
 struct overlay_y4m {

@@ -7,7 +7,7 @@
 #define GLINT_TOOLS_OVERLAY_OVERLAY_Y4M_H
 
 #include "overlay/overlay.h"
-#include "formats/y4m.h"
+#include "video/y4m.h"
 
 /* Bytes of IN's planes. */
 size_t overlay_y4m_bytes(const struct glint_y4m_reader *in);

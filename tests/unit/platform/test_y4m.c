@@ -14,8 +14,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "formats/y4m.h"
-#include "formats/y4m_light.h"
+#include "video/y4m.h"
+#include "video/y4m_light.h"
 
 #define BYTES(text) text, sizeof text - 1
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "formats/y4m_divide.h"
+#include "video/y4m_divide.h"
 
 /* To nearest, ties away from 0; D is above 0. */
 static int64_t divide(int64_t n, int64_t d)

@@ -11,7 +11,7 @@
 
 #include "layout.h"
 #include "panel/panel.h"
-#include "formats/y4m.h"
+#include "video/y4m.h"
 
 static void die(const char *why)
 {

@@ -12,7 +12,7 @@
 #include <jpeglib.h>
 
 #include "jpeg/mjpeg.h"
-#include "formats/y4m.h"
+#include "video/y4m.h"
 
 #define MAX_SIDE  2048
 #define MAX_BYTES (1 << 20) /* of a frame */

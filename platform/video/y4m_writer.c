@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * The writing half of formats/y4m.h. */
+ * The writing half of video/y4m.h. */
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "formats/y4m.h"
+#include "video/y4m.h"
 
 enum glint_status glint_y4m_writer_open(struct glint_y4m_writer *writer,
                                         const char *path,

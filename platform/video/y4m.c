@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "formats/y4m.h"
+#include "video/y4m.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "formats/y4m_light.h"
+#include "video/y4m_light.h"
 #include "posix/error.h"
 
 #define MAGIC "YUV4MPEG2"

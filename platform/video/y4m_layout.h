@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/y4m_layout.h - what a frame of Y4M looks like, by its tag C.
+ * video/y4m_layout.h - what a frame of Y4M looks like, by its tag C.
  *
  *     C420 420jpeg 420mpeg2 420paldv 411 422 444 444alpha mono
  *     and 420 422 444 with p9 p10 p12 p14 p16, mono with 9 10 12 14 16
  *
  * A sample of more than 8 bits takes two bytes, the low one first.
  */
-#ifndef GLINT_PLATFORM_FORMATS_Y4M_LAYOUT_H
-#define GLINT_PLATFORM_FORMATS_Y4M_LAYOUT_H
+#ifndef GLINT_PLATFORM_VIDEO_Y4M_LAYOUT_H
+#define GLINT_PLATFORM_VIDEO_Y4M_LAYOUT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "formats/y4m_layout.h"
+#include "video/y4m_layout.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/y4m_light.h - light on frames of Y4M of any depth and layout.
+ * video/y4m_light.h - light on frames of Y4M of any depth and layout.
  *
  *     glint_y4m_light_init(&light, &header);             once for a stream
  *     glint_y4m_light_proxy(&light, &image, planes);     what the finder sees
@@ -11,12 +11,12 @@
  * over its pixels. Integers and tables of them, so the same everywhere; codes
  * that no light falls on stay as they are.
  */
-#ifndef GLINT_PLATFORM_FORMATS_Y4M_LIGHT_H
-#define GLINT_PLATFORM_FORMATS_Y4M_LIGHT_H
+#ifndef GLINT_PLATFORM_VIDEO_Y4M_LIGHT_H
+#define GLINT_PLATFORM_VIDEO_Y4M_LIGHT_H
 
 #include <stdint.h>
 
-#include "formats/y4m.h"
+#include "video/y4m.h"
 
 enum {
     GLINT_Y4M_STEPS = 4096,   /* of R'G'B' from black to white */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "formats/y4m_light.h"
+#include "video/y4m_light.h"
 
 #include <stdbool.h>
 #include <string.h>
 
-#include "formats/y4m_divide.h"
+#include "video/y4m_divide.h"
 
 #define WHITE_Q24 (INT32_C(1) << 24)
 #define WHITE_Q20 (INT32_C(1) << 20)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/y4m.h - YUV4MPEG2 video in and out, frame by frame.
+ * video/y4m.h - YUV4MPEG2 video in and out, frame by frame.
  *
  *     glint_y4m_reader_open(&in, "-", &error);
  *     glint_y4m_writer_open(&out, "x.y4m", &in.header, &error);
@@ -14,10 +14,10 @@
  * This is what ffmpeg -f yuv4mpegpipe speaks. A stream is one header line and
  * then, for each frame, a line FRAME and the planes Y, Cb, Cr without padding;
  * chroma of subsampled formats has (side + 1) / 2 samples, as everywhere in
- * glint. Handled is what formats/y4m_layout.h lists (where the chroma samples
+ * glint. Handled is what video/y4m_layout.h lists (where the chroma samples
  * of 4:2:0 lie makes no difference here). Frames of more than 8 bits, and
  * 4:1:1, are looked at through a copy of 8 bits; they themselves are planes
- * that formats/y4m_light.h adds light to and glint_y4m_writer_put_planes
+ * that video/y4m_light.h adds light to and glint_y4m_writer_put_planes
  * writes, and an alpha plane goes with them. Interlaced frames are taken as
  * they come, both fields in one.
  *
@@ -32,8 +32,8 @@
  * Tags that mean nothing to glint are carried over as they are, those of the
  * stream and those of each frame. Frames are counted from 0.
  */
-#ifndef GLINT_PLATFORM_FORMATS_Y4M_H
-#define GLINT_PLATFORM_FORMATS_Y4M_H
+#ifndef GLINT_PLATFORM_VIDEO_Y4M_H
+#define GLINT_PLATFORM_VIDEO_Y4M_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,7 +41,7 @@
 
 #include "glint/image.h"
 #include "glint/status.h"
-#include "formats/y4m_layout.h"
+#include "video/y4m_layout.h"
 #include "posix/input.h"
 #include "posix/output.h"
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/y4m_divide.h - the divisions that light on a pixel takes, by a
+ * video/y4m_divide.h - the divisions that light on a pixel takes, by a
  * multiplication: a CPU of 32 bits calls a function for one of 64 bits. The
  * results are those of the division, rounded to nearest, ties away from 0.
  */
-#ifndef GLINT_PLATFORM_FORMATS_Y4M_DIVIDE_H
-#define GLINT_PLATFORM_FORMATS_Y4M_DIVIDE_H
+#ifndef GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
+#define GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
 
 #include <stdint.h>
 
