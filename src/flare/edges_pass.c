@@ -55,15 +55,16 @@ static int add_tile(void *state, struct glint_box tile)
     return 1;
 }
 
-static int light_row(const struct glint_edge_sums *s,
-                     const struct glint_pass_rows *rows)
+static enum glint_given light_row(const struct glint_edge_sums *s,
+                                  const struct glint_pass_rows *rows)
 {
     for (int c = 0; c < 3; c++)
         glint_edge_linear(s, c, rows->y - s->tile.y0, rows->light_q20[c]);
-    return GLINT_PASS_LIGHT;
+    return GLINT_GIVES_LIGHT;
 }
 
-static int light_rows(void *state, const struct glint_pass_rows *rows)
+static enum glint_given light_rows(void *state,
+                                   const struct glint_pass_rows *rows)
 {
     const struct glint_edges_worker *w = state;
     const struct glint_edge_sums *s = &w->sums;
@@ -74,12 +75,12 @@ static int light_rows(void *state, const struct glint_pass_rows *rows)
     if (s->linear)
         return light_row(s, rows);
     if (glint_edge_dark(s, first) && glint_edge_dark(s, first + rows->n - 1))
-        return 0;
+        return GLINT_GIVES_NOTHING;
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < rows->n; row++)
             lit |= glint_edge_light(s, c, first + row, kernels,
                                     rows->light->rgb_q16[c][row]);
-    return lit ? GLINT_PASS_LIGHT : 0;
+    return lit ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;
 }
 
 struct glint_pass glint_edges_pass(const struct glint_flare *flare)

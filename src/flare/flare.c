@@ -2,6 +2,7 @@
 #include "glint/flare.h"
 
 #include "base/real.h"
+#include "flare/draw_over.h"
 #include "flare/state.h"
 #include "flare/wave_sets.h"
 
@@ -355,8 +356,34 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
     *stats = flare->stats;
 }
 
-void glint_flare_draw(struct glint_flare *flare,
-                      const struct glint_image *image)
+struct under_job {
+    struct glint_flare *flare;
+    const struct glint_tiles *tiles;
+    const struct glint_flare_under *under;
+};
+
+static void under_job(void *ctx, int job, int worker)
+{
+    const struct under_job *j = ctx;
+
+    glint_tile_rows(j->tiles, j->under->pass, j->under->n, job, worker,
+                    &j->flare->worker[worker].tile);
+}
+
+/* The bins may be another frame's where nothing has been drawn. */
+static void draw_under(struct glint_flare *f, const struct glint_tiles *tiles,
+                       const struct glint_flare_under *under)
+{
+    struct under_job job = {f, tiles, under};
+
+    if (under->n)
+        glint_workers_run(f->cfg.workers, glint_tiles_down(tiles), under_job,
+                          &job);
+}
+
+void glint_flare_draw_over(struct glint_flare *flare,
+                           const struct glint_image *image,
+                           const struct glint_flare_under *under)
 {
     static const struct glint_image none = {.format = GLINT_YUYV};
     const struct glint_tiles tiles = {.region = flare->bins.region,
@@ -366,16 +393,31 @@ void glint_flare_draw(struct glint_flare *flare,
                                       .height = flare->cfg.height,
                                       .image = image,
                                       .resolve = flare->resolve,
-                                      .quads = flare->quads};
-
+                                      .quads = flare->quads,
+                                      .blend = under->blend};
     struct glint_pass pass[GLINT_MAX_PASSES];
 
     forget_counts(flare);
-    if (flare->stats.primitives == 0)
-        return; /* the bins may be another frame's */
+    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
+        flare->worker[i].tile.blend = under->n ? &under->rows[i] : NULL;
+    if (flare->stats.primitives == 0 && under->n == 0)
+        return;
     glint_resolve_init(flare->resolve, image ? image : &none, flare->cfg.dither,
                        flare->cfg.sets);
-    flare->cfg.raster->draw(flare, &tiles, pass, 0);
+    for (int i = 0; i < under->n; i++)
+        pass[i] = under->pass[i];
+    if (flare->stats.primitives == 0)
+        draw_under(flare, &tiles, under);
+    else
+        flare->cfg.raster->draw(flare, &tiles, pass, under->n);
+}
+
+void glint_flare_draw(struct glint_flare *flare,
+                      const struct glint_image *image)
+{
+    const struct glint_flare_under nothing = {NULL, 0, NULL, NULL};
+
+    glint_flare_draw_over(flare, image, &nothing);
 }
 
 int glint_flare_tiles(const struct glint_flare *flare)

@@ -163,6 +163,22 @@ static void resolve_packed(const struct glint_resolve *r,
         px[2 * whole + i] = rest[i];
 }
 
+void glint_resolve_codes(const struct glint_resolve *resolve,
+                         const struct glint_image *image, int y, int n_x,
+                         int n_y, struct glint_light_rows *light,
+                         struct glint_resolve_rows *rows)
+{
+    const struct glint_layout *l = glint_layout_of(image->format);
+
+    if (l->kind == GLINT_LAYOUT_RGB || l->kind == GLINT_LAYOUT_565)
+        resolve_rgb(resolve, y, n_x, n_y, light, &rows->codes);
+    else if (l->log2_x)
+        resolve_pairs(resolve, l, y, n_x, n_y, light, rows);
+    else
+        for (int row = 0; row < n_y; row++)
+            resolve_whole(resolve, image, y + row, n_x, row, light, rows);
+}
+
 void glint_resolve_stretch(const struct glint_resolve *resolve,
                            const struct glint_image *image, int x, int y,
                            int n_x, int n_y, struct glint_light_rows *light,
@@ -177,13 +193,7 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
         return;
     }
     glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
-    if (l->kind == GLINT_LAYOUT_RGB || l->kind == GLINT_LAYOUT_565)
-        resolve_rgb(resolve, y, n_x, n_y, light, &rows->codes);
-    else if (l->log2_x)
-        resolve_pairs(resolve, l, y, n_x, n_y, light, rows);
-    else
-        for (int row = 0; row < n_y; row++)
-            resolve_whole(resolve, image, y + row, n_x, row, light, rows);
+    glint_resolve_codes(resolve, image, y, n_x, n_y, light, rows);
     glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
 }
 

@@ -66,6 +66,13 @@ void glint_resolve_stretch(const struct glint_resolve *resolve,
                            int n_x, int n_y, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows);
 
+/* The same of a stretch that has been read to rows->codes, and is not yet
+ * written. */
+void glint_resolve_codes(const struct glint_resolve *resolve,
+                         const struct glint_image *image, int y, int n_x,
+                         int n_y, struct glint_light_rows *light,
+                         struct glint_resolve_rows *rows);
+
 /* Adds N values of LIGHT, R, G, B by themselves, to a row of a LINEAR_Q20
  * picture (4-byte aligned) from (X, Y) on, as they are, saturating at the int32
  * range; returns how many came to an end of it. */

@@ -58,12 +58,12 @@ static int16_t change_of(const struct glint_tone16 *t, int16_t code,
 /* Of the changes of R', G', B', Y' of a pixel, those that chroma goes by. */
 static const int kept[3] = {0, 2, 3};
 
-/* What R', G', B' and Y' (_q7) of one pixel change by. */
-static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
-                         const uint16_t light[3], int16_t change[4],
-                         const struct glint_mix *mix)
+/* R', G', B' of a pixel whose Y', Cb, Cr are _q7. */
+static WHOLLY_INLINE void full_range(int luma_q7, int cb_q7, int cr_q7,
+                                     int16_t rgb[3],
+                                     const struct glint_mix *mix)
 {
-    const int16_t *from = mix->from_ycc.one, *to = mix->to_ycc.one;
+    const int16_t *from = mix->from_ycc.one;
     const int base = times(luma_q7, from[GLINT_MIX_BASE]) + mix->black[0];
     const int b_q7 = cb_q7 - (1 << 14), r_q7 = cr_q7 - (1 << 14);
     const int tint[3] = {times(r_q7, from[GLINT_MIX_RED_CR]),
@@ -71,12 +71,24 @@ static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
                              times(r_q7, from[GLINT_MIX_GREEN_CR]),
                          2 * times(b_q7, from[GLINT_MIX_BLUE_CB])};
 
-    change[0] = change[1] = change[2] = change[3] = 0;
-    for (int c = 0; c < 3 && (light[0] | light[1] | light[2]); c++) {
-        const int16_t half = sum_sat(base, tint[c]);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = held(2 * sum_sat(base, tint[c]), 0, GLINT_WHITE_Q15);
+}
 
-        change[c] =
-            change_of(&mix->tone, held(2 * half, 0, GLINT_WHITE_Q15), light[c]);
+/* What R', G', B' and Y' (_q7) of one pixel change by. */
+static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
+                         const uint16_t light[3], int16_t change[4],
+                         const struct glint_mix *mix)
+{
+    const int16_t *to = mix->to_ycc.one;
+    int16_t rgb[3];
+
+    change[0] = change[1] = change[2] = change[3] = 0;
+    if (!(light[0] | light[1] | light[2]))
+        return;
+    full_range(luma_q7, cb_q7, cr_q7, rgb, mix);
+    for (int c = 0; c < 3; c++) {
+        change[c] = change_of(&mix->tone, rgb[c], light[c]);
         change[3] =
             (int16_t)(change[3] + times(change[c], to[GLINT_MIX_LUMA + c]));
     }
@@ -322,4 +334,69 @@ void glint_run_sum_c(uint32_t *change_q24, uint32_t *carry_q24,
                                                   : 65535);
     }
     *carry_q24 = sum_q24;
+}
+
+/* What is left of CODE, a full-range one, under COVER. */
+static int16_t left_of(const struct glint_tone16 *t, int16_t code, int cover_q8)
+{
+    const uint32_t light = decode(t, code) * (uint32_t)(256 - cover_q8);
+    const int16_t left = encode(t, (uint16_t)((light + 128) >> 8));
+
+    return left < code ? left : code;
+}
+
+void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
+                        const struct glint_tone16 *tone)
+{
+    for (int i = 0; i < n; i++) {
+        const int16_t full = (int16_t)((code[i] * 257) >> 1);
+        const int change_q7 = times(left_of(tone, full, cover_q8[i]) - full,
+                                    tone->factor.one[GLINT_TONE_Q7]);
+
+        if (cover_q8[i])
+            code[i] = cover_q8[i] < 256
+                          ? add_luma(code[i], (int16_t)change_q7, 64)
+                          : 0;
+    }
+}
+
+/* One pixel, its Y', Cb and Cr _q7, of which some shows and some does not. */
+static void cover_pixel(int16_t ycc_q7[3], int cover_q8,
+                        const struct glint_mix *mix)
+{
+    const int16_t *to = mix->to_ycc.one;
+    int16_t rgb[3];
+    int change[4] = {0, 0, 0, 0};
+
+    full_range(ycc_q7[0], ycc_q7[1], ycc_q7[2], rgb, mix);
+    for (int c = 0; c < 3; c++) {
+        change[c] = left_of(&mix->tone, rgb[c], cover_q8) - rgb[c];
+        change[3] += times(change[c], to[GLINT_MIX_LUMA + c]);
+    }
+    ycc_q7[0] = held(ycc_q7[0] + change[3], 0, INT16_MAX);
+    ycc_q7[1] = held(ycc_q7[1] + times(change[2], to[GLINT_MIX_CB_BLUE]) -
+                         times(change[3], to[GLINT_MIX_CB_LUMA]),
+                     0, INT16_MAX);
+    ycc_q7[2] = held(ycc_q7[2] + times(change[0], to[GLINT_MIX_CR_RED]) -
+                         times(change[3], to[GLINT_MIX_CR_LUMA]),
+                     0, INT16_MAX);
+}
+
+void glint_cover_ycc_c(int16_t *const ycc_q7[3], const uint16_t *cover_q8,
+                       int n, int black, const struct glint_mix *mix)
+{
+    for (int i = 0; i < n; i++) {
+        int16_t here_q7[3] = {ycc_q7[0][i], ycc_q7[1][i], ycc_q7[2][i]};
+
+        if (cover_q8[i] == 0)
+            continue;
+        if (cover_q8[i] < 256)
+            cover_pixel(here_q7, cover_q8[i], mix);
+        else {
+            here_q7[0] = (int16_t)(black * 128);
+            here_q7[1] = here_q7[2] = 1 << 14;
+        }
+        for (int c = 0; c < 3; c++)
+            ycc_q7[c][i] = here_q7[c];
+    }
 }

@@ -97,6 +97,19 @@ typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
                                const int16_t *round);
 
+/* Hides COVER (_q8, 0 .. 256: all of it) of N pixels: what is left of their
+ * light, rounded to the nearest codes. Where COVER is 0 codes stay, and where
+ * it is all they are black.
+ *   code  one channel of R'G'B'
+ *   ycc   Y', Cb, Cr of each pixel, _q7; BLACK: code of Y' = 0 */
+typedef void glint_cover_code_fn(uint8_t *code, const uint16_t *cover_q8, int n,
+                                 const struct glint_tone16 *tone);
+typedef void glint_cover_ycc_fn(int16_t *const ycc_q7[3],
+                                const uint16_t *cover_q8, int n, int black,
+                                const struct glint_mix *mix);
+glint_cover_code_fn glint_cover_code_c;
+glint_cover_ycc_fn glint_cover_ycc_c;
+
 /* From changes to light, along a row: light[i] is *CARRY plus changes 0 .. i,
  * _q24, rounded to _q16 and held to 0 .. 65535. Changes are cleared, sums may
  * wrap and wrap back; *CARRY goes on. */

@@ -310,7 +310,8 @@ static void light_linear(const struct worker *w, int y,
                 q_clamp_sat(sums_of(w, c, y)[x], INT32_MIN, INT32_MAX);
 }
 
-static int light_rows(void *state, const struct glint_pass_rows *rows)
+static enum glint_given light_rows(void *state,
+                                   const struct glint_pass_rows *rows)
 {
     const struct worker *w = state;
     const struct glint_image *image = w->draw->tiles->image;
@@ -318,14 +319,14 @@ static int light_rows(void *state, const struct glint_pass_rows *rows)
 
     if (image && image->format == GLINT_LINEAR_Q20) {
         light_linear(w, first, rows->light_q20);
-        return GLINT_PASS_LIGHT;
+        return GLINT_GIVES_LIGHT;
     }
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < rows->n; row++)
             for (int x = 0; x < n_x; x++)
                 rows->light->rgb_q16[c][row][x] = (uint16_t)q_clamp_sat(
                     q_shift(sums_of(w, c, first + row)[x], 4), 0, 65535);
-    return GLINT_PASS_LIGHT;
+    return GLINT_GIVES_LIGHT;
 }
 
 /* One level: a job is a row of small tiles. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "tile/pass.h"
 
+#include "tile/blend.h"
+
 /* One tile, and who draws in it. */
 struct visit {
     const struct glint_tiles *tiles;
@@ -17,15 +19,30 @@ static int smaller(int a, int b)
     return a < b ? a : b;
 }
 
-/* Lets all passes draw ROWS; returns what they gave. */
-static int gather(const struct visit *v, const struct glint_pass_rows *rows)
+/* Has all passes draw ROWS; returns what they give together. */
+static enum glint_given gather(const struct visit *v,
+                               struct glint_pass_rows *rows)
 {
-    int given = 0;
+    struct glint_blend_rows *more = v->scratch->blend;
+    enum glint_given given = GLINT_GIVES_NOTHING;
 
+    rows->cover = more ? &more->cover : NULL;
     for (int i = 0; i < v->n_passes; i++)
-        if (v->awake >> i & 1)
-            given |= v->pass[i].rows(v->state[i], rows);
+        if (!(v->awake >> i & 1))
+            continue;
+        else if (given == GLINT_GIVES_NOTHING)
+            given = v->pass[i].rows(v->state[i], rows);
+        else
+            given = v->tiles->blend->add(&v->pass[i], v->state[i], rows, given,
+                                         v->tile.x1 - v->tile.x0, more);
     return given;
+}
+
+/* Hides what is covered of row Y, whose pixels are not those of codes. */
+static void hide(const struct visit *v, enum glint_given given, int y)
+{
+    if (given == GLINT_GIVES_COVER)
+        v->tiles->blend->hide(v->tiles, v->tile, y, v->scratch);
 }
 
 /* -------------------------------------------------------------------- linear
@@ -45,6 +62,7 @@ static void draw_linear(const struct visit *v)
     const int x = v->tile.x0 << t->half;
     const int n_x = smaller(n << t->half, t->width - x);
     int32_t *first = v->scratch->light_q20;
+    enum glint_given given;
     struct glint_pass_rows rows = {
         .n = 1, .light_q20 = {first, first + twice, first + 2 * twice}};
 
@@ -52,8 +70,10 @@ static void draw_linear(const struct visit *v)
         const int y = rows.y << t->half;
         const int end = smaller(y + 1 + t->half, t->height);
 
-        if (!gather(v, &rows))
+        given = gather(v, &rows);
+        if (given == GLINT_GIVES_NOTHING)
             continue;
+        hide(v, given, rows.y);
         for (int c = 0; c < 3 && t->half; c++)
             double_row(rows.light_q20[c], n);
         for (int k = y; k < end; k++)
@@ -65,19 +85,32 @@ static void draw_linear(const struct visit *v)
 /* --------------------------------------------------------------------- codes
  */
 
+static void resolve_rows(const struct visit *v, enum glint_given given,
+                         const struct glint_pass_rows *rows)
+{
+    const struct glint_tiles *t = v->tiles;
+    const int x = v->tile.x0, n_x = v->tile.x1 - x;
+
+    if (given == GLINT_GIVES_COVER)
+        t->blend->stretch(t->resolve, t->image, x, rows->y, n_x, rows->n,
+                          rows->cover, rows->light, &v->scratch->codes->rows);
+    else
+        glint_resolve_stretch(t->resolve, t->image, x, rows->y, n_x, rows->n,
+                              rows->light, &v->scratch->codes->rows);
+}
+
 /* Two rows at a time, which share their colours in 4:2:0. */
 static void draw_codes(const struct visit *v)
 {
-    const struct glint_tiles *t = v->tiles;
-    const struct glint_box *b = &v->tile;
     struct glint_pass_rows rows = {.light = v->scratch->light};
 
-    for (rows.y = b->y0; rows.y < b->y1; rows.y += 2) {
-        rows.n = smaller(2, b->y1 - rows.y);
-        if (gather(v, &rows) && t->image)
-            glint_resolve_stretch(t->resolve, t->image, b->x0, rows.y,
-                                  b->x1 - b->x0, rows.n, rows.light,
-                                  &v->scratch->codes->rows);
+    for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y += 2) {
+        enum glint_given given;
+
+        rows.n = smaller(2, v->tile.y1 - rows.y);
+        given = gather(v, &rows);
+        if (given != GLINT_GIVES_NOTHING && v->tiles->image)
+            resolve_rows(v, given, &rows);
     }
 }
 
@@ -108,9 +141,14 @@ static void draw_half(const struct visit *v)
 {
     struct glint_pass_rows rows = {.n = 1, .light = v->scratch->light};
 
-    for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y++)
-        if (gather(v, &rows) && v->tiles->image)
-            resolve_quads(v, &rows);
+    for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y++) {
+        const enum glint_given given = gather(v, &rows);
+
+        if (given == GLINT_GIVES_NOTHING || !v->tiles->image)
+            continue;
+        hide(v, given, rows.y);
+        resolve_quads(v, &rows);
+    }
 }
 
 /* --------------------------------------------------------------------- tiles

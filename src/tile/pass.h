@@ -12,12 +12,16 @@
  * half resolution. Rows of tiles share nothing: they may be drawn in any order,
  * or at once, each by another worker.
  *
- * Passes give light, which is added. Formats: struct glint_pass_rows.
+ * Passes give light, which is added, and may give cover, the share of each
+ * pixel in which they hide the picture and the light of the passes before
+ * them: a pixel that is covered wholly is set. More than one pass, or one that
+ * covers, takes glint_blend (blend.h), which a flare alone does not link.
  */
 #ifndef GLINT_TILE_PASS_H
 #define GLINT_TILE_PASS_H
 
 #include "glint/image.h"
+#include "image/cover.h"
 #include "image/quads.h"
 #include "image/resolve.h"
 #include "tile/box.h"
@@ -30,11 +34,14 @@ struct glint_pass_rows {
     int y, n;
     struct glint_light_rows *light; /* _q16, padded to GLINT_LANES */
     int32_t *light_q20[3];          /* R, G, B: one value a pixel */
+    struct glint_cover_rows *cover; /* NULL: passes are to give light alone */
 };
 
-/* What rows gives of them. */
-enum {
-    GLINT_PASS_LIGHT = 1, /* all three channels have been written */
+/* What a pass has given. */
+enum glint_given {
+    GLINT_GIVES_NOTHING,
+    GLINT_GIVES_LIGHT, /* in all three channels */
+    GLINT_GIVES_COVER  /* and light, be it 0 */
 };
 
 struct glint_pass {
@@ -46,8 +53,8 @@ struct glint_pass {
      */
     int (*tile)(void *state, struct glint_box tile);
     /* Draws rows of that tile, which come from top to bottom, each once, even
-     * where there is no picture. Returns GLINT_PASS_ bits; 0: nothing. */
-    int (*rows)(void *state, const struct glint_pass_rows *rows);
+     * where there is no picture. */
+    enum glint_given (*rows)(void *state, const struct glint_pass_rows *rows);
 };
 
 /* What is drawn onto, in tiles. */
@@ -58,7 +65,8 @@ struct glint_tiles {
     int width, height; /* of the picture */
     const struct glint_image *image; /* NULL: light is dropped */
     const struct glint_resolve *resolve;
-    const struct glint_half *quads; /* if half, and the picture not linear */
+    const struct glint_half *quads;  /* if half, and the picture not linear */
+    const struct glint_blend *blend; /* NULL: one pass, which gives no cover */
 };
 
 /* What a worker needs for it. */
@@ -68,6 +76,7 @@ struct glint_tile_scratch {
     struct glint_quads_rows *codes;
     int n_tiles; /* in which something was drawn, so far */
     int n_held;  /* samples of a linear picture at the end of their range */
+    struct glint_blend_rows *blend; /* if tiles have it */
 };
 
 /* Draws the row of tiles of number ROW, counted from the region's upper edge,

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT */
+#include "image/cover.h"
+
+#include "base/q.h"
+
+enum { WIDTH = GLINT_CODES_WIDTH };
+
+/* A stretch of one or two rows that share their chroma, or do not. */
+struct stretch {
+    const struct glint_layout *layout;
+    int n_x, n_y, black;
+    const struct glint_cover_rows *cover;
+    struct glint_codes *codes;
+    int32_t sum_q7[WIDTH]; /* of the pixels of each pair: Cb, Cr by turns */
+};
+
+static void cover_rgb(const struct stretch *s, const struct glint_mix *mix)
+{
+    for (int row = 0; row < s->n_y; row++)
+        for (int c = 0; c < 3; c++)
+            glint_cover_code_c(s->codes->sample[c][row],
+                               s->cover->cover_q8[row], s->n_x, &mix->tone);
+}
+
+/* The chroma of row ROW, of pairs. */
+static uint8_t *pairs_of(const struct stretch *s, int row)
+{
+    return s->codes->chroma[s->layout->log2_y ? 0 : row];
+}
+
+/* Y', Cb, Cr of every pixel of a row. */
+static void spread(const struct stretch *s, int row, int16_t *const ycc_q7[3])
+{
+    const uint8_t *pairs = pairs_of(s, row);
+
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < s->n_x; i++)
+            ycc_q7[c][i] = (int16_t)(128 * (c && s->layout->log2_x
+                                                ? pairs[(i & ~1) + c - 1]
+                                                : s->codes->sample[c][row][i]));
+}
+
+static uint8_t rounded(int32_t sum_q7, int log2)
+{
+    return (uint8_t)q_clamp_sat(q_shift(sum_q7, 7 + log2), 0, 255);
+}
+
+/* The sum of a row of pairs; where the width is odd, the last pixel counts
+ * twice. */
+static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
+{
+    for (int i = 0; i < s->n_x; i += 2)
+        for (int k = 0; k < 2; k++) {
+            const int16_t *at_q7 = ycc_q7[1 + k] + i;
+
+            s->sum_q7[i + k] += at_q7[0] + at_q7[i + 1 < s->n_x];
+        }
+}
+
+/* Pairs of as many rows as share them. */
+static void put_pairs(struct stretch *s, int row)
+{
+    uint8_t *pairs = pairs_of(s, row);
+
+    for (int i = 0; i < ((s->n_x + 1) & ~1); i++)
+        pairs[i] = rounded(s->sum_q7[i], s->layout->log2_y && row ? 2 : 1);
+}
+
+static void put_row(const struct stretch *s, int row, int16_t *const ycc_q7[3])
+{
+    for (int c = 0; c < (s->layout->log2_x ? 1 : 3); c++)
+        for (int i = 0; i < s->n_x; i++)
+            s->codes->sample[c][row][i] = rounded(ycc_q7[c][i], 0);
+}
+
+static void cover_ycc(struct stretch *s, const struct glint_mix *mix,
+                      struct glint_resolve_rows *rows)
+{
+    int16_t *const ycc_q7[3] = {rows->change[0], rows->change[1],
+                                rows->change[2]};
+
+    for (int row = 0; row < s->n_y; row++) {
+        if (row == 0 || !s->layout->log2_y)
+            for (int i = 0; i < WIDTH; i++)
+                s->sum_q7[i] = 0;
+        spread(s, row, ycc_q7);
+        glint_cover_ycc_c(ycc_q7, s->cover->cover_q8[row], s->n_x, s->black,
+                          mix);
+        put_row(s, row, ycc_q7);
+        if (!s->layout->log2_x)
+            continue;
+        add_pairs(s, ycc_q7);
+        if (row == s->n_y - 1 || !s->layout->log2_y)
+            put_pairs(s, row);
+    }
+}
+
+void glint_cover_stretch(const struct glint_resolve *resolve,
+                         const struct glint_image *image, int x, int y, int n_x,
+                         int n_y, const struct glint_cover_rows *cover,
+                         struct glint_light_rows *light,
+                         struct glint_resolve_rows *rows)
+{
+    struct stretch s = {.layout = glint_layout_of(image->format),
+                        .n_x = n_x,
+                        .n_y = n_y,
+                        .black = image->range == GLINT_RANGE_LIMITED ? 16 : 0,
+                        .cover = cover,
+                        .codes = &rows->codes};
+
+    glint_codes_read(&rows->codes, image, x, y, n_x, n_y);
+    if (s.layout->kind == GLINT_LAYOUT_RGB ||
+        s.layout->kind == GLINT_LAYOUT_565)
+        cover_rgb(&s, &resolve->mix);
+    else
+        cover_ycc(&s, &resolve->mix, rows);
+    if (light)
+        glint_resolve_codes(resolve, image, y, n_x, n_y, light, rows);
+    glint_codes_write(&rows->codes, image, x, y, n_x, n_y);
+}
+
+void glint_cover_linear(const struct glint_image *image, int x, int y, int n,
+                        const uint16_t *cover_q8)
+{
+    int32_t *px_q20 =
+        (int32_t *)(void *)(image->plane[0] + y * image->stride_bytes[0]) +
+        3 * x;
+
+    for (int i = 0; i < n; i++, px_q20 += 3)
+        for (int c = 0; c < 3; c++)
+            px_q20[c] = (int32_t)q_shift(
+                px_q20[c] * (int64_t)(GLINT_COVER_ALL - cover_q8[i]), 8);
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Hiding what a picture shows.
+ *
+ *   in   the share of each pixel that is hidden; light to add then
+ *   out  the picture's own codes, changed in place
+ *
+ *   code = encode(decode(code) (1 - cover) + light)
+ *
+ * A pixel that is all hidden is set to the light, whatever it was; one of which
+ * nothing is hidden keeps its code until light is added, as resolve.h says.
+ * Chroma that pixels share is the mean of what it would be for each of them.
+ * What is left is rounded to codes before light is added.
+ */
+#ifndef GLINT_IMAGE_COVER_H
+#define GLINT_IMAGE_COVER_H
+
+#include "image/resolve.h"
+
+enum { GLINT_COVER_ALL = 256 };
+
+/* Of two rows. */
+struct glint_cover_rows {
+    ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH]; /* 0 .. 256 */
+};
+
+/* Hides COVER of the pixels that LIGHT is then added to, as by
+ * glint_resolve_stretch(), whose X, Y, N_X and N_Y these are. LIGHT may be
+ * NULL. */
+void glint_cover_stretch(const struct glint_resolve *resolve,
+                         const struct glint_image *image, int x, int y, int n_x,
+                         int n_y, const struct glint_cover_rows *cover,
+                         struct glint_light_rows *light,
+                         struct glint_resolve_rows *rows);
+
+/* Hides COVER of N pixels of a LINEAR_Q20 picture from (X, Y) on. */
+void glint_cover_linear(const struct glint_image *image, int x, int y, int n,
+                        const uint16_t *cover_q8);
+
+#endif

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What passes hide and add, against the definition in linear light: in every
+ * way of coding, at full and half resolution, two of them in either order.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "glint/kernels.h"
+#include "tile/blend.h"
+
+enum { WIDTH = 91, HEIGHT = 53, N = WIDTH * HEIGHT, GREY_CODE = 120 };
+
+static int32_t light_q20[3 * N];
+static uint8_t *const px = (uint8_t *)light_q20;
+
+/* Stripes of which some hide, some shine and some do both. */
+struct stripes {
+    int step, light_q16[3];
+    int linear;
+    struct glint_box tile;
+};
+
+static int cover_of(const struct stripes *s, int x)
+{
+    return x / s->step % 5 * 64;
+}
+
+static int light_of(const struct stripes *s, int x, int y, int channel)
+{
+    return (x / 5 + y / 3) % 3 ? s->light_q16[channel] : 0;
+}
+
+static void *begin_row(const void *self, struct glint_box row, int worker)
+{
+    (void)row;
+    (void)worker;
+    return *(struct stripes *const *)self;
+}
+
+static int go_on(void *state, struct glint_box tile)
+{
+    struct stripes *s = state;
+
+    s->tile = tile;
+    return 1;
+}
+
+static enum glint_given give(void *state, const struct glint_pass_rows *rows)
+{
+    const struct stripes *s = state;
+
+    for (int row = 0; row < rows->n; row++)
+        for (int i = 0; i < s->tile.x1 - s->tile.x0; i++) {
+            const int x = s->tile.x0 + i, y = rows->y + row;
+
+            rows->cover->cover_q8[row][i] = (uint16_t)cover_of(s, x);
+            for (int c = 0; c < 3; c++)
+                if (s->linear)
+                    rows->light_q20[c][i] = 16 * light_of(s, x, y, c);
+                else
+                    rows->light->rgb_q16[c][row][i] =
+                        (uint16_t)light_of(s, x, y, c);
+        }
+    return s->step < WIDTH ? GLINT_GIVES_COVER : GLINT_GIVES_LIGHT;
+}
+
+/* Draws N_PASSES of S onto IMAGE. */
+static void draw(const struct glint_image *image, int half, struct stripes *s,
+                 int n_passes)
+{
+    static struct glint_resolve resolve;
+    static struct glint_light_rows light;
+    static struct glint_quads_rows codes;
+    static struct glint_blend_rows blend;
+    static int32_t row_q20[3 * 2 * GLINT_CODES_WIDTH];
+    struct stripes *const self[2] = {s, s + 1};
+    const struct glint_tiles tiles = {
+        .region = {0, 0, (WIDTH + half) >> half, (HEIGHT + half) >> half},
+        .tile_log2 = 5,
+        .half = half,
+        .width = WIDTH,
+        .height = HEIGHT,
+        .image = image,
+        .resolve = &resolve,
+        .quads = &glint_half,
+        .blend = &glint_blend};
+    struct glint_tile_scratch scratch = {&light, row_q20, &codes, 0, 0, &blend};
+    struct glint_pass pass[2];
+
+    memset(&blend, 0x5a, sizeof blend);
+    glint_resolve_init(&resolve, image, 0, glint_sets_here());
+    for (int i = 0; i < n_passes; i++) {
+        s[i].linear = image->format == GLINT_LINEAR_Q20;
+        pass[i] = (struct glint_pass){&self[i], begin_row, go_on, give};
+    }
+    for (int row = 0; row < glint_tiles_down(&tiles); row++)
+        glint_tile_rows(&tiles, pass, n_passes, row, 0, &scratch);
+}
+
+static double linear_of(double code)
+{
+    const double x = code / 255;
+
+    return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+}
+
+static double code_of(double x)
+{
+    return 255 * (x <= 0.0031308 ? 12.92 * x
+                                 : 1.055 * pow(fmin(1, x), 1 / 2.4) - 0.055);
+}
+
+/* What the pixel is then: linear light. */
+static double want_of(const struct stripes *s, int n_passes, int half, int x,
+                      int y, int channel)
+{
+    double light = linear_of(GREY_CODE);
+
+    x >>= half;
+    y >>= half;
+    for (int i = 0; i < n_passes; i++, s++) {
+        if (s->step < WIDTH)
+            light *= 1 - cover_of(s, x) / 256.;
+        light += fmin(1, light_of(s, x, y, channel) / 65535.);
+    }
+    return light;
+}
+
+/* A picture of one grey. */
+static struct glint_image grey_image(enum glint_pixel_format format)
+{
+    struct glint_image image = {
+        .format = format, .width = WIDTH, .height = HEIGHT};
+
+    memset(px, GREY_CODE, sizeof light_q20);
+    glint_image_place(&image, px);
+    for (int p = 1; p < 3; p++)
+        if (image.plane[p])
+            memset(image.plane[p], 128,
+                   glint_image_row_bytes(format, p, WIDTH) *
+                       (size_t)glint_image_plane_height(format, p, HEIGHT));
+    for (int i = 0; i < 4 * N && format == GLINT_YUYV; i++)
+        px[i] = i % 2 ? 128 : GREY_CODE;
+    for (int i = 0; i < 3 * N && format == GLINT_LINEAR_Q20; i++)
+        light_q20[i] = (int32_t)(linear_of(GREY_CODE) * 0x1p20);
+    return image;
+}
+
+static struct stripes grey(int step, int light_q16)
+{
+    return (struct stripes){step, {light_q16, light_q16, light_q16}, 0, {0}};
+}
+
+/* The first sample of each pixel, STEP bytes apart, is within OFF of what it is
+ * to be. */
+static void check_codes(enum glint_pixel_format format, int step, int half,
+                        struct stripes *s, int n_passes, double off)
+{
+    const struct glint_image image = grey_image(format);
+    double sum = 0;
+
+    draw(&image, half, s, n_passes);
+    for (int i = 0; i < N; i++) {
+        const int x = i % WIDTH, y = i / WIDTH;
+        const double want = code_of(want_of(s, n_passes, half, x, y, 0)) -
+                            px[y * image.stride_bytes[0] + step * x];
+
+        assert_true(fabs(want) < off);
+        sum += want;
+    }
+    assert_true(fabs(sum / N) < 0.3);
+}
+
+static void test_codes(void **state)
+{
+    (void)state;
+    for (int half = 0; half < 2; half++)
+        for (int i = 0; i < 4; i++) {
+            struct stripes s[2] = {grey(i % 2 ? 7 : WIDTH, 9000),
+                                   grey(i / 2 ? 4 : WIDTH, 21000)};
+
+            for (int n = 1; n <= 2; n++) {
+                check_codes(GLINT_RGB24, 3, half, s, n, 1.0);
+                check_codes(GLINT_XRGB8888, 4, half, s, n, 1.0);
+                check_codes(GLINT_I444, 1, half, s, n, 1.0);
+                check_codes(GLINT_I420, 1, half, s, n, 1.0);
+                check_codes(GLINT_NV12, 1, half, s, n, 1.0);
+                check_codes(GLINT_YUYV, 2, half, s, n, 1.0);
+                check_codes(GLINT_GREY, 1, half, s, n, 1.0);
+            }
+        }
+}
+
+static void test_linear(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        const struct glint_image image = grey_image(GLINT_LINEAR_Q20);
+        struct stripes s[2] = {{i % 2 ? 7 : WIDTH, {900, 8000, 65535}, 0, {0}},
+                               {i / 2 % 2 ? 4 : WIDTH, {70, 50, 30}, 0, {0}}};
+
+        draw(&image, i / 4, s, 2);
+        for (int k = 0; k < 3 * N; k++) {
+            const double want =
+                want_of(s, 2, i / 4, k / 3 % WIDTH, k / 3 / WIDTH, k % 3) *
+                0x1p20;
+
+            assert_true(fabs(light_q20[k] - want) < 20); /* 65536 / 65535 */
+        }
+    }
+}
+
+/* What is hidden wholly has no colour left, and shared chroma is the mean. */
+static void test_chroma(void **state)
+{
+    struct stripes s = grey(2, 0); /* 0, 1/4, 1/2, 3/4, 1, by pairs */
+    struct glint_image image = {
+        .format = GLINT_I420, .width = WIDTH, .height = HEIGHT};
+
+    (void)state;
+    for (int odd = 0; odd < 2; odd++) {
+        for (int i = 0; i < N / 2 * 3; i++)
+            px[i] = (uint8_t)(i < N ? 120 : 150);
+        glint_image_place(&image, px);
+        s.step = 2 - odd;
+        draw(&image, 0, &s, 1);
+        for (int i = 0; i < 46; i++) {
+            const int code = image.plane[1][i];
+
+            if (odd)
+                assert_in_range(code, 128, 150);
+            else if (i % 5 == 0 || i % 5 == 4)
+                assert_int_equal(code, i % 5 ? 128 : 150);
+            else
+                assert_in_range(code, 129, image.plane[1][i - 1] - 1);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_codes),
+        cmocka_unit_test(test_linear),
+        cmocka_unit_test(test_chroma),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A second pass beside the flare, small enough to read: a flat triangle that
+ * sets pixels and is the light of the flare that is drawn over it. What it
+ * gives is worked out here at 4 x 4 points of each pixel.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/real.h"
+#include "flare/draw_over.h"
+#include "glint/kernels.h"
+#include "support/model_builder.h"
+#include "support/shuffle.h"
+
+enum { WIDTH = 153, HEIGHT = 117, BYTES = 12 * WIDTH * HEIGHT };
+enum { MAX_WORKERS = 3, N_FORMATS = 9 };
+
+struct triangle {
+    int on, half, linear;
+    int corner[3][2]; /* pixels, counter-clockwise where y runs down */
+    int light_q16[3];
+    struct on_row *at; /* [MAX_WORKERS] */
+};
+
+/* What a worker keeps of a row of tiles. */
+struct on_row {
+    const struct triangle *triangle;
+    struct glint_box row, tile;
+};
+
+static int is_inside(const struct triangle *t, int x_q3, int y_q3)
+{
+    int in = 1;
+
+    for (int i = 0; i < 3; i++) {
+        const int *a = t->corner[i], *b = t->corner[(i + 1) % 3];
+
+        in &= (b[0] - a[0]) * (y_q3 - 8 * a[1]) <=
+              (b[1] - a[1]) * (x_q3 - 8 * a[0]);
+    }
+    return in;
+}
+
+/* Cover of pixel (X, Y), _q8. */
+static int cover_of(const struct triangle *t, int x, int y)
+{
+    int n = 0;
+
+    for (int k = 0; k < 16; k++)
+        n += is_inside(t, (8 * x + 2 * (k % 4) + 1) << t->half,
+                       (8 * y + 2 * (k / 4) + 1) << t->half);
+    return 16 * n;
+}
+
+static void *begin_row(const void *self, struct glint_box row, int worker)
+{
+    const struct triangle *t = self;
+
+    assert_in_range(worker, 0, MAX_WORKERS - 1);
+    t->at[worker] = (struct on_row){t, row, {0, row.y0, 0, row.y1}};
+    return &t->at[worker];
+}
+
+static int go_on(void *state, struct glint_box tile)
+{
+    struct on_row *r = state;
+
+    /* from left to right, none left out */
+    assert_int_equal(tile.x0, r->tile.x1);
+    assert_int_equal(tile.y0, r->row.y0);
+    assert_int_equal(tile.y1, r->row.y1);
+    r->tile = tile;
+    return r->triangle->on;
+}
+
+static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
+{
+    const struct on_row *r = state;
+    const struct triangle *t = r->triangle;
+    int any = 0;
+
+    assert_true(out->n == 1 || (out->n == 2 && out->y % 2 == 0));
+    for (int i = 0; i < out->n * (r->tile.x1 - r->tile.x0); i++) {
+        const int row = i % out->n, x = i / out->n;
+        const int cover_q8 = cover_of(t, r->tile.x0 + x, out->y + row);
+
+        any |= cover_q8;
+        out->cover->cover_q8[row][x] = (uint16_t)cover_q8;
+        for (int c = 0; c < 3; c++)
+            if (t->linear)
+                out->light_q20[c][x] = t->light_q16[c] * cover_q8 / 16;
+            else
+                out->light->rgb_q16[c][row][x] =
+                    (uint16_t)(t->light_q16[c] * cover_q8 / 256);
+    }
+    return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
+}
+
+/* The light it hands to the flare: its own, times its pixels. */
+static struct glint_light light_of(const struct triangle *t)
+{
+    const int(*p)[2] = t->corner;
+    const int area2 = (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]) -
+                      (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]);
+    struct glint_light light = {0,  1 << 30, 1 << 30, 0, real_of(area2, -4),
+                                {0}};
+
+    for (int c = 0; c < 3; c++)
+        light.rgb_q14[c] = t->light_q16[c] / 4;
+    return light;
+}
+
+struct frame {
+    struct glint_image image;
+    struct triangle triangle;
+    struct glint_flare_config cfg;
+    int half, n_workers, n_lights, alone; /* by glint_flare_draw() */
+    uint32_t order;
+};
+
+static const struct frame first = {
+    .image = {.width = WIDTH, .height = HEIGHT},
+    .triangle = {.on = 1,
+                 .corner = {{20, 12}, {28, 104}, {131, 60}},
+                 .light_q16 = {65535, 26000, 9000}},
+    .cfg = {.width = WIDTH,
+            .height = HEIGHT,
+            .tile_log2 = 6,
+            .irradiance_steps = 70,
+            .max_bundles = 16,
+            .max_primitives = 20000,
+            .max_refs = 40000},
+    .n_workers = 1,
+    .n_lights = 1};
+
+static void draw_passes(struct frame *f, struct glint_flare *flare)
+{
+    static struct glint_blend_rows rows[MAX_WORKERS];
+    struct on_row at[MAX_WORKERS];
+    const struct glint_pass pass = {&f->triangle, begin_row, go_on, set_rows};
+    const struct glint_flare_under under = {&pass, 1, &glint_blend, rows};
+
+    memset(rows, 0xa5, sizeof rows); /* nothing may hang on what was there */
+    f->triangle.half = f->half;
+    f->triangle.linear = f->image.format == GLINT_LINEAR_Q20;
+    f->triangle.at = at;
+    glint_flare_draw_over(flare, &f->image, &under);
+}
+
+/* Byte I of the picture before. */
+static uint8_t ground_of(int i)
+{
+    return (uint8_t)(40 + i * 7 / 2 % 90);
+}
+
+static void draw(struct frame f, uint8_t *px)
+{
+    const struct glint_wave wave = {
+        MODEL_WAVE_LO_Q24, {16384, 12000, 5000}, real_of(1, 0)};
+    const struct glint_light light = light_of(&f.triangle);
+    struct model_image m = model_auto();
+    struct glint_lens lens;
+    const struct glint_flare_frame planned = {.lens = &lens,
+                                              .wave = &wave,
+                                              .n_waves = 1,
+                                              .pixels_per_mm = real_of(64, 0),
+                                              .fineness = 64,
+                                              .only_ghost = -1,
+                                              .faintest = real_of(163, -22),
+                                              .half =
+                                                  f.half ? &glint_half : NULL};
+    struct glint_flare_stats stats;
+    struct glint_flare *flare;
+    struct shuffle shuffle;
+    const char *reason;
+    void *mem;
+
+    for (int i = 0; i < BYTES; i++) /* each fourth: light below white */
+        px[i] =
+            f.image.format == GLINT_LINEAR_Q20 && i % 4 == 3 ? 0 : ground_of(i);
+    glint_image_place(&f.image, px);
+    shuffle_init(&shuffle, f.n_workers, f.order);
+    assert_int_equal(glint_lens_open(&lens, m.data, m.bytes, &reason),
+                     GLINT_OK);
+    f.cfg.workers = &shuffle.workers;
+    assert_int_equal(posix_memalign(&mem, 64, glint_flare_bytes(&f.cfg)), 0);
+    assert_int_equal(
+        glint_flare_init(&flare, &f.cfg, mem, glint_flare_bytes(&f.cfg)),
+        GLINT_OK);
+    glint_flare_plan(flare, &planned, &light, f.n_lights);
+    glint_flare_bin(flare, &stats);
+    assert_true(stats.dropped_bundles == 0 &&
+                (stats.primitives > 0) == (f.n_lights > 0));
+    if (f.alone)
+        glint_flare_draw(flare, &f.image);
+    else
+        draw_passes(&f, flare);
+    free(mem);
+    free(m.data);
+}
+
+static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4]; /* or codes */
+static uint8_t *const one = (uint8_t *)one_q20, *const other =
+                                                    (uint8_t *)other_q20;
+
+static const enum glint_pixel_format formats[N_FORMATS] = {
+    GLINT_RGB24, GLINT_I420, GLINT_NV12,       GLINT_YUYV,  GLINT_I422,
+    GLINT_I444,  GLINT_GREY, GLINT_LINEAR_Q20, GLINT_RGB565};
+
+/* Workers, tiles, the order of jobs and kernels do not show. */
+static void test_same_bits(void **state)
+{
+    uint32_t seed = 5;
+
+    (void)state;
+    for (int i = 0; i < 2 * N_FORMATS; i++) {
+        struct frame f = first;
+
+        f.image.format = formats[i / 2];
+        f.half = i % 2;
+        draw(f, one);
+        for (int k = 0; k < 9; k++) {
+            f.cfg.tile_log2 = 3 + k % 4;
+            f.n_workers = 1 + k % MAX_WORKERS;
+            f.order = shuffle_next(&seed);
+            f.cfg.sets = shuffle_next(&seed) & glint_sets_here();
+            draw(f, other);
+            assert_memory_equal(one, other, BYTES);
+        }
+    }
+}
+
+/* Off: the flare alone. On: something else. */
+static void test_off(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2 * N_FORMATS; i++) {
+        struct frame f = first;
+
+        f.image.format = formats[i / 2];
+        f.half = i % 2;
+        f.alone = 1;
+        draw(f, one);
+        f.alone = 0;
+        draw(f, other);
+        assert_memory_not_equal(one, other, BYTES);
+        f.triangle.on = 0;
+        draw(f, other);
+        assert_memory_equal(one, other, BYTES);
+    }
+}
+
+/* On any ground what it covers wholly is its own, and what it does not cover
+ * stays; the flare lies over both. */
+static void test_sets(void **state)
+{
+    struct frame f = first;
+    int n_set = 0, n_kept = 0, n_lit = 0;
+
+    (void)state;
+    draw(f, other);
+    f.n_lights = 0;
+    draw(f, one);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i += 3) {
+        const int cover_q8 =
+            cover_of(&f.triangle, i / 3 % WIDTH, i / 3 / WIDTH);
+
+        n_set += cover_q8 == GLINT_COVER_ALL;
+        n_kept += cover_q8 == 0;
+        n_lit += cover_q8 == GLINT_COVER_ALL && other[i + 1] > one[i + 1];
+        if (cover_q8 == GLINT_COVER_ALL) /* sRGB of 1, 0.397, 0.137 */
+            assert_true(one[i] == 255 && one[i + 1] == 169 &&
+                        one[i + 2] == 104);
+        else if (cover_q8 == 0)
+            assert_true(one[i] == ground_of(i) &&
+                        one[i + 1] == ground_of(i + 1));
+        assert_true(other[i] >= one[i]);
+    }
+    assert_true(n_set > 1000 && n_kept > 1000 && n_lit > 100);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_off),
+        cmocka_unit_test(test_sets),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
