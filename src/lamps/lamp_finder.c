@@ -106,15 +106,16 @@ static void judge(struct glint_lamp_finder *f)
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
                                       f->cfg.height, f->level, 1};
     const int n = f->n;
-    const int32_t least_q8 = f->cfg.keep_faint ? -SCORE_DOUBT : 0;
+    int32_t least_q8;
 
     glint_score_all(&score, f->candidate, f->order, n);
+    least_q8 = glint_score_least(&score, f->candidate, f->order, n);
     f->n = 0;
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &f->candidate[f->order[i]];
 
-        c->faint |= c->score_q8 < 0;
-        if (c->score_q8 >= least_q8)
+        c->faint |= c->score_q8 < least_q8;
+        if (c->score_q8 >= (f->cfg.keep_faint ? -SCORE_DOUBT : least_q8))
             f->order[f->n++] = f->order[i];
     }
     glint_score_choose(&score, f->candidate, f->order, f->n);

@@ -11,7 +11,10 @@ enum {
     SMALL_Q8 = -2424, /* log2 of a share of the picture: 1/700; a colour counts
                          for a lamp here, */
     LARGE_Q8 = -1400, /* and against it from here on */
-    SURE_Q8 = 384     /* scores beyond are all the same */
+    HALO_MOST_Q8 = 512,
+    WIDE_Q8 = 1400, /* log2, from where a region is large until it is wholly */
+    SURE_Q8 = 384,  /* scores beyond are all the same */
+    SCORE_PARTS = EVIDENCE_DARK_32 - EVIDENCE_DARK_2 + 1
 };
 
 /* Adds WEIGHT of MEASURE, held to LEAST .. MOST, over LEAST. */
@@ -22,16 +25,19 @@ struct term {
 
 /* By logistic regression, weights held to the sign that their reason gives
  * them: tests/corpus/fit prints them; 64 are a natural logarithm of odds. */
-enum { BIAS_Q8 = -1207 };
+enum { BIAS_Q8 = -1502 };
 
 static const struct term terms[] = {
-    {EVIDENCE_AROUND, 0, 448, 94},      {EVIDENCE_HALO, -256, 512, 72},
-    {EVIDENCE_SPREAD, 0, 512, -51},     {EVIDENCE_FILL, 64, 160, 262},
-    {EVIDENCE_FILL, 160, 224, 333},     {EVIDENCE_BOX, 96, 200, 79},
-    {EVIDENCE_SIZE, -4400, -3400, 104}, {EVIDENCE_SIZE, -3400, -2000, 22},
-    {EVIDENCE_COLOUR, 0, 256, 83},      {EVIDENCE_DIM, 0, 1280, -75},
-    {EVIDENCE_CLOSE, 0, 300, 110},      {EVIDENCE_SOLID, 0, 256, 137},
-    {EVIDENCE_WHITE, -512, 0, 136},     {EVIDENCE_CROWD, 0, 2620, -39}};
+    {EVIDENCE_AROUND, 0, 448, 59},     {EVIDENCE_AROUND, 448, 1200, 34},
+    {EVIDENCE_HALO, -256, 512, 24},    {EVIDENCE_SPREAD, 0, 512, -47},
+    {EVIDENCE_FILL, 64, 160, 288},     {EVIDENCE_FILL, 160, 224, 422},
+    {EVIDENCE_BOX, 96, 200, 145},      {EVIDENCE_SIZE, -4400, -3400, 119},
+    {EVIDENCE_SIZE, -3400, -2000, 18}, {EVIDENCE_COLOUR, 0, 256, 217},
+    {EVIDENCE_DIM, 0, 1280, -24},      {EVIDENCE_CLOSE, 0, 300, 132},
+    {EVIDENCE_WHITE, -512, 0, 71},     {EVIDENCE_CROWD, 0, 2620, -21},
+    {EVIDENCE_HIGH, 0, 160, 121},      {EVIDENCE_WIDE_HALO, 0, 512, 128},
+    {EVIDENCE_WIDE_HOT, 0, 256, 145},  {EVIDENCE_DARK_2, 0, 700, 19},
+    {EVIDENCE_DARK_4, 0, 500, 132},    {EVIDENCE_DARK_32, 400, 1600, 75}};
 
 /* ----------------------------------------------------------------- contrast */
 
@@ -170,6 +176,14 @@ static void mean_stops(const struct glint_region *sum, int32_t stops_q8[2])
     stops_of(mean_q20, stops_q8);
 }
 
+/* VALUE as far as C is large. */
+static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
+{
+    const int64_t size_q8 = (int64_t)c->evidence_q8[EVIDENCE_SIZE];
+
+    return value_q8 * q_clamp_sat(size_q8 + 2 * WIDE_Q8, 0, WIDE_Q8) / WIDE_Q8;
+}
+
 static void look_at_rings(struct glint_candidate *c,
                           const struct glint_score *s)
 {
@@ -186,6 +200,9 @@ static void look_at_rings(struct glint_candidate *c,
     c->evidence_q8[EVIDENCE_HALO] = ring[2].mean_q8 - ring[0].mean_q8;
     c->evidence_q8[EVIDENCE_CLOSE] = ring[0].lower_q8;
     c->evidence_q8[EVIDENCE_SPREAD] = ring[0].upper_q8 - ring[0].lower_q8;
+    c->evidence_q8[EVIDENCE_WIDE_HALO] =
+        wide_q8(c, q_clamp_sat((int64_t)ring[2].mean_q8 - ring[0].mean_q8, 0,
+                               HALO_MOST_Q8));
 }
 
 /* -------------------------------------------------------------------- shape */
@@ -233,6 +250,29 @@ static int32_t dim_q8(const struct glint_score *s,
                        0, 5 * 256);
 }
 
+/* Stops below white of what 1 / 2^PART_LOG2 of the picture exceeds. */
+static int32_t below_white_q8(const struct glint_score *s, int part_log2)
+{
+    const int32_t *light_q20 = s->bright->curve->decode_q20;
+    const int code = glint_white_reached_by(s->white, part_log2);
+
+    return -glint_stops_q8(
+        light_q20[code < BRIGHT_CLIPPED ? code : BRIGHT_CLIPPED] + FLOOR_Q20);
+}
+
+/* How dark parts of the picture are. */
+struct dark {
+    int32_t part_q8[SCORE_PARTS];
+};
+
+static void look_at_dark(struct dark *dark, const struct glint_score *s)
+{
+    static const int8_t part_log2[SCORE_PARTS] = {1, 2, 5};
+
+    for (int i = 0; i < SCORE_PARTS; i++)
+        dark->part_q8[i] = below_white_q8(s, part_log2[i]);
+}
+
 static void look_at_shape(struct glint_candidate *c,
                           const struct glint_score *s)
 {
@@ -243,7 +283,7 @@ static void look_at_shape(struct glint_candidate *c,
         q_clamp_sat((int64_t)size_q8 - SMALL_Q8, 0, LARGE_Q8 - SMALL_Q8);
     const int32_t tint_q8 = colour_q8(sum) * large_q8 / (LARGE_Q8 - SMALL_Q8);
     int32_t *e_q8 = c->evidence_q8;
-    int32_t in_q8[2];
+    int32_t in_q8[2], x_q8, y_q8;
 
     mean_stops(sum, in_q8);
     e_q8[EVIDENCE_WHITE] =
@@ -255,8 +295,9 @@ static void look_at_shape(struct glint_candidate *c,
     e_q8[EVIDENCE_BOX] = (int32_t)(((int64_t)sum->area << 8) / box);
     e_q8[EVIDENCE_SIZE] = size_q8;
     e_q8[EVIDENCE_COLOUR] = colour_q8(sum) - tint_q8;
-    e_q8[EVIDENCE_SOLID] =
-        (int32_t)(((int64_t)sum->n_clipped << 8) / sum->area);
+    e_q8[EVIDENCE_WIDE_HOT] = wide_q8(c, e_q8[EVIDENCE_WHITE] >= -2 ? 256 : 0);
+    glint_region_centroid(sum, &x_q8, &y_q8);
+    e_q8[EVIDENCE_HIGH] = 256 - y_q8 / s->height;
 }
 
 /* -------------------------------------------------------------------- score */
@@ -301,6 +342,7 @@ static int32_t most_of(struct glint_candidate *c, int32_t most_of_rings_q8)
     for (int i = 0; i < EVIDENCES; i++)
         if (is_of_rings(i))
             c->evidence_q8[i] = INT16_MIN; /* the least of each term: 0 */
+    c->evidence_q8[EVIDENCE_WIDE_HALO] = wide_q8(c, HALO_MOST_Q8);
     return score_of(c->evidence_q8) + most_of_rings_q8;
 }
 
@@ -324,11 +366,15 @@ void glint_score_all(const struct glint_score *score,
                      int n)
 {
     const int32_t most_q8 = most_of_rings();
+    struct dark dark;
 
     count_crowd(candidate, order, n);
+    look_at_dark(&dark, score);
     for (int i = 0; i < n; i++) {
         struct glint_candidate *c = &candidate[order[i]];
 
+        for (int part = 0; part < SCORE_PARTS; part++)
+            c->evidence_q8[EVIDENCE_DARK_2 + part] = dark.part_q8[part];
         look_at_shape(c, score);
         c->score_q8 = most_of(c, most_q8);
         if (score->is_brief && c->score_q8 < -SCORE_DOUBT)
@@ -384,4 +430,25 @@ void glint_score_choose(const struct glint_score *score,
                 (uint8_t)(is_within(other, c) || is_within(c, other));
         }
     }
+}
+
+int32_t glint_score_least(const struct glint_score *score,
+                          struct glint_candidate *candidate, int32_t *order,
+                          int n)
+{
+    int n_over = 0, n_lamps = 0;
+
+    for (int i = 0; i < n; i++)
+        if (candidate[order[i]].score_q8 >= 0 && !candidate[order[i]].faint) {
+            const int32_t old = order[n_over];
+
+            order[n_over++] = order[i];
+            order[i] = old;
+        }
+    glint_score_choose(score, candidate, order, n_over);
+    for (int i = 0; i < n_over; i++) {
+        n_lamps += !candidate[order[i]].gone;
+        candidate[order[i]].gone = 0;
+    }
+    return n_lamps >= SCORE_SEVERAL ? -SCORE_COMPANY : 0;
 }

@@ -5,7 +5,9 @@
  *   in   the bright regions of a picture, at each of the levels of brightness
  *        that they were sought at, and the picture around them
  *   out  a score of each: 0 and more speak for a lamp, 64 are a factor e of
- *        its odds; below -SCORE_DOUBT it is none even if it was one before
+ *        its odds; below -SCORE_DOUBT it is none even if it was one before.
+ *        Lamps are seldom alone: where a picture has SCORE_SEVERAL, what is
+ *        above -SCORE_COMPANY is one, too
  *
  * The score is a sum of terms, each a measure held to a range and weighed; so
  * it moves little where the picture does. Regions of the levels lie within each
@@ -16,7 +18,7 @@
  * distances grow with the region and with the picture, so that the same scene
  * in more pixels has the same score.
  *
- * Limits: each term is below 2^13 * 2^10, so that the sum of some 14 fits 32
+ * Limits: each term is below 2^13 * 2^10, so that the sum of some 20 fits 32
  * bits with ease; what areas and boxes need is in 64.
  */
 #ifndef GLINT_LAMPS_SCORE_H
@@ -30,6 +32,8 @@ enum {
     SCORE_RINGS = 3,
     SCORE_POINTS = 16,
     SCORE_DOUBT = 256,
+    SCORE_SEVERAL = 2,
+    SCORE_COMPANY = 96,
     SCORE_LEVELS = 8
 };
 
@@ -46,9 +50,17 @@ enum glint_evidence {
     EVIDENCE_DIM,    /* stops by which half of the picture is less than five
                         below a white that is none */
     EVIDENCE_CLOSE,  /* as AROUND, close to the edge: that of a lamp is steep */
-    EVIDENCE_SOLID,  /* share of it that is clipped: 256 is all of it */
     EVIDENCE_WHITE,  /* stops of its mean luminance over its level's white */
     EVIDENCE_CROWD,  /* log2 of the regions of its level: lamps are few */
+    EVIDENCE_HIGH, /* how far above the picture's lower edge: 256 is the top */
+    /* Of a large region, which is the sun or a shade; 0 of a small one. */
+    EVIDENCE_WIDE_HALO,
+    EVIDENCE_WIDE_HOT, /* 256: as bright as its level's white, and more */
+    /* Stops below white that one pixel in 2, 4, 32 of the picture reaches:
+       where nearly all is dark, what is bright is lit from within. */
+    EVIDENCE_DARK_2,
+    EVIDENCE_DARK_4,
+    EVIDENCE_DARK_32,
     EVIDENCES
 };
 
@@ -86,6 +98,12 @@ struct glint_score {
 void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n);
+
+/* The score from which a candidate is a lamp: 0, or less in company. ORDER
+ * comes out in another order. */
+int32_t glint_score_least(const struct glint_score *score,
+                          struct glint_candidate *candidate, int32_t *order,
+                          int n);
 
 /* Marks those gone that lie within or around one with a higher score. ORDER
  * comes out by falling score. */

@@ -14,6 +14,7 @@
 #include <cmocka.h>
 
 #include "glint/lamps.h"
+#include "lamps/score.h"
 
 enum { MOST = 64 };
 
@@ -335,6 +336,48 @@ static void test_noise_in_the_dark(void **state)
     free(s.light);
 }
 
+/* ----------------------------------------------------------------- company */
+
+/* A candidate of SCORE in a box of 4 x 4 pixels at X, of LEVEL, which is within
+ * those of lower levels at the same place. */
+static struct glint_candidate one_at(int x, int level, int32_t score_q8)
+{
+    return (struct glint_candidate){
+        .sum = {.first = x, .x0 = x, .y0 = 0, .x1 = x + 4, .y1 = 4},
+        .score_q8 = score_q8,
+        .level = (int16_t)level};
+}
+
+static int32_t least_of(struct glint_candidate *candidate, int n)
+{
+    const struct glint_level level[2] = {{.low = 1}, {.low = 2}};
+    const struct glint_score score = {.level = level};
+    int32_t order[4] = {0, 1, 2, 3};
+    const int32_t least_q8 = glint_score_least(&score, candidate, order, n);
+
+    for (int i = 0; i < n; i++)
+        assert_int_equal(candidate[i].gone, 0);
+    return least_q8;
+}
+
+/* Two sure lamps speak for others: not one, nor a lamp and its own core, nor
+ * one that is faint. */
+static void test_company(void **state)
+{
+    struct glint_candidate c[4] = {one_at(0, 0, -50), one_at(10, 0, 80),
+                                   one_at(20, 0, -300), one_at(30, 0, -1)};
+
+    (void)state;
+    assert_int_equal(least_of(c, 4), 0);
+    c[3] = one_at(10, 1, 60);
+    assert_int_equal(least_of(c, 4), 0);
+    c[3] = one_at(30, 0, 60);
+    c[3].faint = 1;
+    assert_int_equal(least_of(c, 4), 0);
+    c[3].faint = 0;
+    assert_int_equal(least_of(c, 4), -SCORE_COMPANY);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -347,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_snow),
         cmocka_unit_test(test_skies),
         cmocka_unit_test(test_noise_in_the_dark),
+        cmocka_unit_test(test_company),
     };
 
     return cmocka_run_group_tests_name("score", tests, NULL, NULL);
