@@ -444,7 +444,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < LAMPS && (!features || first == argc); i++)
         rendered(i);
     for (int i = first; i < argc; i++)
-        panorama(argv[i], i);
+        panorama(argv[i], i - first + 1);
     if (features)
         return 0;
     printf("kind             half        n   median     p90     bias\n");
