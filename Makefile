@@ -42,7 +42,7 @@ include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
-CORE      := base image kernels lens lamps follow tile flare
+CORE      := base image kernels lens lamps follow tile flare/edges flare
 PUBLISHED := published
 ENGINE    := engine
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published

@@ -130,7 +130,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
 
     *account = (struct glint_account){.fate = GLINT_FATE_DRAWN};
     account->fate = glint_plan_bundle(&flare->plan, &planned, &bundle, scratch);
-    account->surveyed = scratch->survey.n_rays;
+    account->surveyed = scratch->probe.n_rays;
     if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, light)) {
         account->fate = GLINT_FATE_OTHER_SET;
         account->surveyed *= wave < sets->size[0];

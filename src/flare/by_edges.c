@@ -5,7 +5,7 @@
 #include "base/divide.h"
 #include "base/q.h"
 #include "flare/by_edges.h"
-#include "flare/ghost_edges.h"
+#include "flare/edges/ghost_edges.h"
 
 /* -------------------------------------------------------------------- memory
  */

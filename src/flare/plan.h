@@ -16,6 +16,7 @@
 
 #include "glint/flare.h"
 #include "glint/transfer.h"
+#include "flare/probe.h"
 
 /* Where the rays of a bundle come from. */
 struct glint_bundle_plan {
@@ -40,48 +41,10 @@ struct glint_plan {
     int round; /* the stop is */
 };
 
-/* Where light lands: least and largest x on the sensor, and largest y. */
-struct glint_plan_extent {
-    int64_t low, high, wide;
-};
-
-/* What a few rays of a bundle say, in cells across the pupil and down half of
- * it: few, and more where these hardly find anything.
- */
-enum { GLINT_PLAN_ACROSS = 16, GLINT_PLAN_DOWN = 8 };
-
-struct glint_plan_node {
-    int32_t at[GLINT_OUT_KINDS];
-    int inside; /* of the stop and the barrels, and a little around */
-};
-
-/* How a quantity changes from ray to ray: sums of squares of differences, and
- * of second differences as they are, across the pupil and down. */
-struct glint_plan_change {
-    uint64_t first, second;
-    int64_t bent[2];
-};
-
-struct glint_plan_survey {
-    struct glint_plan_node row[3][GLINT_PLAN_ACROSS + 1]; /* the last three */
-    struct glint_plan_change change[GLINT_OUT_KINDS];
-    int across, down; /* cells */
-    int n_rays;       /* of all surveys of the bundle */
-    int n_bends, n_bent[2], n_inside, n_kinds;
-    uint8_t kind[GLINT_OUT_KINDS];  /* of outputs that there are, but energy */
-    int n_up, n_down;               /* cells by the way they are turned */
-    struct glint_plan_extent seen;  /* of what is inside */
-    struct glint_plan_extent reach; /* of cells that any of is, and so of what
-                                       lies between rays, too */
-    int64_t energy;
-    uint64_t least_area;            /* of half a cell on the sensor */
-    int64_t limit[GLINT_OUT_KINDS]; /* what counts as inside */
-};
-
 /* Of a worker. */
 struct glint_plan_scratch {
     struct glint_transfer transfer;
-    struct glint_plan_survey survey;
+    struct glint_probe probe;
 };
 
 /* Whether the lens was never looked at from where LIGHT comes. */

@@ -8,7 +8,7 @@
 #define GLINT_FLARE_STATE_H
 
 #include "base/arena.h"
-#include "flare/primitive.h"
+#include "flare/edges/primitive.h"
 #include "flare/plan.h"
 #include "glint/flare.h"
 #include "tile/bins.h"

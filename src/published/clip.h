@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#include "flare/primitive.h"
+#include "flare/edges/primitive.h"
 #include "glint/light.h"
 
 struct glint_clip {

@@ -17,7 +17,7 @@
 
 #include <stdint.h>
 
-#include "flare/primitive.h"
+#include "flare/edges/primitive.h"
 #include "glint/light.h"
 
 /* A bundle in the making; counts are what the grid gave. */

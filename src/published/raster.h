@@ -17,7 +17,7 @@
 
 #include "glint/flare.h"
 #include "published/clip.h"
-#include "flare/primitive.h"
+#include "flare/edges/primitive.h"
 
 struct glint_cell_raster {
     const struct glint_vertex *vertex;

@@ -3,7 +3,7 @@
  * Where the sides of a square stop cut edges and cells that lie on it as they
  * do on the screen: 256 q8 to a stop radius.
  */
-#include "flare/cuts.h"
+#include "flare/edges/cuts.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

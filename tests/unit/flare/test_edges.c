@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "kernels/kernels.h"
-#include "flare/edges.h"
+#include "flare/edges/edges.h"
 
 enum { LOG2 = 3, SIDE = 1 << LOG2, STRIDE = GLINT_EDGE_STRIDE(LOG2) };
 

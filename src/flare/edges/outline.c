@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "flare/outline.h"
+#include "flare/edges/outline.h"
 
 #include "base/divide.h"
 #include "base/q.h"

@@ -1,18 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "flare/ghost_edges.h"
+#include "flare/edges/ghost_edges.h"
 
 #include "base/compiler.h"
 #include "base/q.h"
-#include "flare/cuts.h"
+#include "flare/edges/ghost_parts.h"
 
 enum {
     OCTAVES = GLINT_LIGHT_OCTAVES,
     WHITE_LOG2 = 20 /* of display white, q20 */
 };
-
-/* Of a node, beside the barrels: no ray; the sides of the picture that it lies
- * beyond, not the left one, as light runs in from there. */
-enum { BARRELS = 3, LOST = 4, ABOVE = 8, BELOW = 16, RIGHT = 32 };
 
 typedef int32_t point_q8[2];
 
@@ -34,10 +30,8 @@ static int is_weak(const struct glint_ghost_edges *g, int32_t light,
     return change_q20 < weak_q20 && change_q20 > -weak_q20;
 }
 
-/* Adds the edge A to B with LIGHT to its inner side and OTHER beyond, if it can
- * change a pixel. */
-static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
-                     const int32_t b_q8[2], int32_t light, int32_t other)
+void glint_ghost_add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
+                          const int32_t b_q8[2], int32_t light, int32_t other)
 {
     const int32_t right_q8 = g->width * 256, bottom_q8 = g->height * 256;
     struct glint_edge edge;
@@ -55,104 +49,21 @@ static void add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
     g->edge[g->n_edges - 1] = edge;
 }
 
-/* --------------------------------------------------------------------- nodes
- */
-
-/* Of the two rows that are there. */
-static const struct glint_vertex *node(const struct glint_ghost_edges *g, int i,
-                                       int j)
-{
-    return &g->row[j & 1][i];
-}
-
-static int vertex_valid(const struct glint_vertex *v)
-{
-    const uint32_t most = GLINT_VERTEX_LIMIT_Q8 - 1;
-
-    return v->energy_q16 >= 0 && (uint32_t)v->x_q8 + most <= 2 * most &&
-           (uint32_t)v->y_q8 + most <= 2 * most;
-}
-
-/* Lowers the barrels of a row by their sag; brings the stop nearer where it is
- * round, by its own. */
-static struct glint_vertex *lower(const struct glint_ghost_edges *g,
-                                  struct glint_vertex *row)
-{
-    const int64_t nearer_q16 = g->sag_q16[2];
-    const int lowers = g->sag_q16[0] | g->sag_q16[1];
-
-    for (int i = 0; lowers && i <= g->bundle->n_cells; i++)
-        for (int k = 0; k < 2; k++)
-            row[i].barrel_q16[k] -= g->sag_q16[k];
-    for (int i = 0; nearer_q16 && i <= g->bundle->n_cells; i++) {
-        row[i].stop_x_q16 -=
-            q_narrow(q_shift(row[i].stop_x_q16 * nearer_q16, 16));
-        row[i].stop_y_q16 -=
-            q_narrow(q_shift(row[i].stop_y_q16 * nearer_q16, 16));
-    }
-    return row;
-}
-
-/* Row J of the grid; valid until the next but one. */
-static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
-{
-    const int n = g->bundle->n_cells;
-    struct glint_ghost_rows *r = g->rows;
-    struct glint_vertex *row = r->vertex[j & 1];
-
-    if (!g->transfer)
-        return g->vertex + (ptrdiff_t)j * (n + 1);
-    if (n > GLINT_HELD_CELLS || 2 * j == n)
-        glint_transfer_row(g->transfer, &g->place, n, j, row);
-    else if (2 * j < n)
-        glint_transfer_rows(g->transfer, &g->place, n, j, row, r->held[j]);
-    else
-        return lower(g, r->held[n - j]);
-    return lower(g, row);
-}
-
-static void set_nodes(struct glint_ghost_edges *g, int j)
-{
-    const int n = g->bundle->n_cells;
-    uint64_t *sides = g->rows->sides[j & 1];
-    uint8_t *barrels = g->rows->barrels[j & 1];
-    const int32_t floor = g->height * 256, right = g->width * 256;
-
-    g->row[j & 1] = row_of(g, j);
-    glint_cuts_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
-    for (int i = 0; i <= n; i++) {
-        const struct glint_vertex *v = node(g, i, j);
-
-        if (!vertex_valid(v)) {
-            sides[i] = 0;
-            barrels[i] = LOST;
-        } else
-            barrels[i] |=
-                (uint8_t)(ABOVE * (v->y_q8 <= 0) + BELOW * (v->y_q8 >= floor) +
-                          RIGHT * (v->x_q8 >= right));
-    }
-}
-
 /* --------------------------------------------------------------------- cells
  */
 
-struct cell {
-    const struct glint_vertex *corner[4]; /* in order */
-    struct glint_outside at[4];
-};
-
 static void set_cell(const struct glint_ghost_edges *g, int i, int j,
-                     struct cell *c)
+                     struct glint_ghost_cell *c)
 {
     const struct glint_ghost_rows *r = g->rows;
 
     for (int k = 0; k < 4; k++) {
         const int across = i + (k == 1 || k == 2), down = j + (k >= 2);
 
-        c->corner[k] = node(g, across, down);
+        c->corner[k] = ghost_node(g, across, down);
         c->at[k] = (struct glint_outside){r->sides[down & 1][across],
                                           r->barrels[down & 1][across] &
-                                              (BARRELS | LOST)};
+                                              (NODE_BARRELS | NODE_LOST)};
     }
 }
 
@@ -223,10 +134,8 @@ static int64_t in_steps(int64_t x, const uint16_t *steps_of)
     return base + (((int64_t)((k << 19) / (uint32_t)steps) << log2) >> 19);
 }
 
-/* The light of 2^SHARE_LOG2 cells over AREA2 / 2^FRAC pixels, as it is packed;
- * SIGN -1: of a mirrored one. */
-static int32_t light_of(struct glint_ghost_edges *g, int64_t area2, int frac,
-                        int share_log2, int64_t energy_q16, int sign)
+int32_t glint_ghost_light(struct glint_ghost_edges *g, int64_t area2, int frac,
+                          int share_log2, int64_t energy_q16, int sign)
 {
     const int64_t irradiance_q22 = glint_irradiance_q22(
         g->bundle, share_log2, area2, frac, g->limit_q8, &g->n_held);
@@ -236,101 +145,12 @@ static int32_t light_of(struct glint_ghost_edges *g, int64_t area2, int frac,
         in_steps(q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
 }
 
-/* ------------------------------------------------------------- by themselves
- */
-
-/* The edges of OUTLINE, closed. */
-static void add_outline(struct glint_ghost_edges *g,
-                        const struct glint_outline *o, int32_t light)
-{
-    point_q8 first, last, here;
-
-    for (int i = 0; i < o->n; i++) {
-        here[0] = q_narrow(q_shift(o->x_q16[i], 8));
-        here[1] = q_narrow(q_shift(o->y_q16[i], 8));
-        if (i > 0)
-            add_edge(g, last, here, light, 0);
-        for (int k = 0; k < 2; k++) {
-            last[k] = here[k];
-            first[k] = i ? first[k] : here[k];
-        }
-    }
-    if (o->n > 0)
-        add_edge(g, last, first, light, 0);
-}
-
-/* What the cuts leave of a convex primitive, its light spread over at least a
- * strip. */
-static void add_alone(struct glint_ghost_edges *g,
-                      const struct glint_vertex *const *corner, int n,
-                      int share_log2)
-{
-    struct glint_outline *o = &g->rows->outline;
-    const struct glint_vertex *turned[4];
-    struct glint_corners c;
-    int cut, thin;
-
-    glint_corners_set(&c, corner, n);
-    for (int i = 0; i < n; i++)
-        turned[i] = corner[c.area2_q16 >= 0 ? i : n - 1 - i];
-    glint_corners_set(&c, turned, n);
-    cut = glint_outline_classify(&c, g->stop);
-    if (cut < 0 ||
-        glint_box_empty(glint_corners_reach(&c, g->width, g->height)))
-        return;
-    cut |= cut && g->transfer ? GLINT_CUT_LOWERED : 0;
-    thin = glint_corners_thin(&c);
-    for (int k = 0; k < (cut ? n - 2 : 1); k++) {
-        int64_t area2 = c.area2_q16, share_q28;
-        int frac = 2 * GLINT_VERTEX_FRAC + 1, share = share_log2;
-
-        if (cut)
-            glint_outline_cut(o, &c, k, g->stop, cut);
-        else
-            glint_outline_whole(o, &c);
-        if (o->n == 0)
-            continue;
-        share_q28 = 1 << 28;
-        if (thin) {
-            share_q28 = o->share_q28;
-            share -= cut && n == 4;
-            area2 = glint_outline_widen_q32(o);
-            frac = 33;
-        }
-        add_outline(g, o,
-                    light_of(g, area2, frac, share,
-                             q_shift(o->energy_q16 * share_q28, 28), 1));
-    }
-}
-
-/* A cell that is no convex quad: two triangles, or the one that is left. */
-static void add_triangles(struct glint_ghost_edges *g, const struct cell *c)
-{
-    static const int half[2][3] = {{0, 1, 2}, {0, 2, 3}};
-    const struct glint_vertex *left[4];
-    int n = 0;
-
-    for (int k = 0; k < 4; k++)
-        if (!(c->at[k].barrels & LOST))
-            left[n++] = c->corner[k];
-    g->n_dropped += n < 4;
-    if (n == 3)
-        add_alone(g, left, 3, -1);
-    for (int k = 0; n == 4 && k < 2; k++) {
-        const struct glint_vertex *const t[3] = {c->corner[half[k][0]],
-                                                 c->corner[half[k][1]],
-                                                 c->corner[half[k][2]]};
-
-        add_alone(g, t, 3, -1);
-    }
-}
-
 /* ----------------------------------------------------------------- in the grid
  */
 
 /* The part of side K of a cell, in the cell's order: corner K to K + 1. */
 static void part_of_side(const struct glint_ghost_edges *g,
-                         const struct cell *c, int k,
+                         const struct glint_ghost_cell *c, int k,
                          struct glint_edge_part *part)
 {
     const int reverse = k >= 2, next = (k + 1) & 3;
@@ -350,8 +170,8 @@ static void part_of_side(const struct glint_ghost_edges *g,
 }
 
 /* The chords of a cell that is cut: they link what is left of its sides. */
-static void add_chords(struct glint_ghost_edges *g, const struct cell *c,
-                       int32_t light)
+static void add_chords(struct glint_ghost_edges *g,
+                       const struct glint_ghost_cell *c, int32_t light)
 {
     struct glint_edge_part part[4];
     int n = 0;
@@ -369,10 +189,10 @@ static void add_chords(struct glint_ghost_edges *g, const struct cell *c,
             next->cut[0] != GLINT_CUT_NOTHING &&
             glint_cuts_cross(g->stop, c->corner, here->cut[1], next->cut[0],
                              corner)) {
-            add_edge(g, here->end_q8[1], corner, light, 0);
-            add_edge(g, corner, next->end_q8[0], light, 0);
+            glint_ghost_add_edge(g, here->end_q8[1], corner, light, 0);
+            glint_ghost_add_edge(g, corner, next->end_q8[0], light, 0);
         } else
-            add_edge(g, here->end_q8[1], next->end_q8[0], light, 0);
+            glint_ghost_add_edge(g, here->end_q8[1], next->end_q8[0], light, 0);
     }
 }
 
@@ -386,21 +206,11 @@ static int64_t mean_energy_q16(const struct glint_corners *c)
 static void set_corners(const struct glint_ghost_edges *g, int i, int j,
                         struct glint_corners *corners)
 {
-    const struct glint_vertex *const at[4] = {node(g, i, j), node(g, i + 1, j),
-                                              node(g, i + 1, j + 1),
-                                              node(g, i, j + 1)};
+    const struct glint_vertex *const at[4] = {
+        ghost_node(g, i, j), ghost_node(g, i + 1, j),
+        ghost_node(g, i + 1, j + 1), ghost_node(g, i, j + 1)};
 
     glint_corners_set(corners, at, 4);
-}
-
-/* A cell that shares no side with its neighbours. */
-static void add_odd(struct glint_ghost_edges *g, const struct cell *c,
-                    const struct glint_corners *corners, int turn)
-{
-    if (turn == 0 && !glint_corners_tiny(corners, 16))
-        add_triangles(g, c);
-    else
-        add_alone(g, c->corner, 4, 0);
 }
 
 /* The light of the cell at (I, J) towards its neighbours: what is drawn by
@@ -413,15 +223,15 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     const uint8_t *a = r->barrels[j & 1] + i, *b = r->barrels[~j & 1] + i;
     const uint8_t some = a[0] | a[1] | b[0] | b[1];
     const struct glint_outside any = {s[0] | s[1] | t[0] | t[1],
-                                      some & BARRELS};
+                                      some & NODE_BARRELS};
     struct glint_corners corners;
-    struct cell cell;
+    struct glint_ghost_cell cell;
     int32_t light;
     int cuts, turn, odd;
 
-    if (some & LOST) {
+    if (some & NODE_LOST) {
         set_cell(g, i, j, &cell);
-        add_triangles(g, &cell);
+        glint_ghost_add_triangles(g, &cell);
         return 0;
     }
     /* all is cut off by one side or barrel, or no edge of it can be drawn */
@@ -436,11 +246,12 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     if (odd || cuts)
         set_cell(g, i, j, &cell);
     if (odd) {
-        add_odd(g, &cell, &corners, turn);
+        glint_ghost_add_odd(g, &cell, &corners, turn);
         return 0;
     }
-    light = light_of(g, turn * corners.area2_q16, 2 * GLINT_VERTEX_FRAC + 1, 0,
-                     mean_energy_q16(&corners), turn);
+    light = glint_ghost_light(g, turn * corners.area2_q16,
+                              2 * GLINT_VERTEX_FRAC + 1, 0,
+                              mean_energy_q16(&corners), turn);
     if (cuts)
         add_chords(g, &cell, light);
     return light;
@@ -459,19 +270,19 @@ static void add_shared(struct glint_ghost_edges *g,
     if (!(at_a.sides | at_b.sides) && !(at_a.barrels | at_b.barrels)) {
         const point_q8 from = {a->x_q8, a->y_q8}, to = {b->x_q8, b->y_q8};
 
-        add_edge(g, from, to, light, other);
+        glint_ghost_add_edge(g, from, to, light, other);
         return;
     }
     glint_cuts_part(g->stop, a, at_a, b, at_b, &part);
     if (part.visible)
-        add_edge(g, part.end_q8[0], part.end_q8[1], light, other);
+        glint_ghost_add_edge(g, part.end_q8[0], part.end_q8[1], light, other);
 }
 
 static struct glint_outside outside_at(const struct glint_ghost_edges *g, int i,
                                        int j)
 {
     return (struct glint_outside){g->rows->sides[j & 1][i],
-                                  g->rows->barrels[j & 1][i] & BARRELS};
+                                  g->rows->barrels[j & 1][i] & NODE_BARRELS};
 }
 
 /* The edges between two rows of cells; the nodes of row J. */
@@ -480,8 +291,9 @@ static void add_level(struct glint_ghost_edges *g, int j, const int32_t *above,
 {
     for (int i = 0; i < g->bundle->n_cells; i++)
         if (above[i] != below[i])
-            add_shared(g, node(g, i, j), outside_at(g, i, j), node(g, i + 1, j),
-                       outside_at(g, i + 1, j), below[i], above[i]);
+            add_shared(g, ghost_node(g, i, j), outside_at(g, i, j),
+                       ghost_node(g, i + 1, j), outside_at(g, i + 1, j),
+                       below[i], above[i]);
 }
 
 /* The edges between the cells of row J. */
@@ -495,8 +307,9 @@ static void add_upright(struct glint_ghost_edges *g, int j,
         const int32_t behind = i < n ? light[i] : 0;
 
         if (before != behind)
-            add_shared(g, node(g, i, j), outside_at(g, i, j), node(g, i, j + 1),
-                       outside_at(g, i, j + 1), before, behind);
+            add_shared(g, ghost_node(g, i, j), outside_at(g, i, j),
+                       ghost_node(g, i, j + 1), outside_at(g, i, j + 1), before,
+                       behind);
     }
 }
 
@@ -508,13 +321,13 @@ void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
     ghost->n_edges = ghost->n_dropped = ghost->n_held = 0;
     set_steps(ghost);
     set_weak(ghost);
-    set_nodes(ghost, 0);
+    glint_ghost_set_nodes(ghost, 0);
     for (int i = 0; i < n; i++)
         r->light[1][i] = 0;
     for (int j = 0; j < n; j++) {
         int32_t *here = r->light[j & 1], *above = r->light[~j & 1];
 
-        set_nodes(ghost, j + 1);
+        glint_ghost_set_nodes(ghost, j + 1);
         for (int i = 0; i < n; i++)
             here[i] = light_at(ghost, i, j);
         add_level(ghost, j, above, here);

@@ -22,7 +22,7 @@
 #include <stdint.h>
 
 #include "base/q.h"
-#include "flare/primitive.h"
+#include "flare/edges/primitive.h"
 #include "glint/light.h"
 
 /* How far V lies inside of side SIDE of a stop, stop radii, and of a barrel. */

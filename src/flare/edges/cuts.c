@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "flare/cuts.h"
+#include "flare/edges/cuts.h"
 
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
-#include "flare/outline.h"
+#include "flare/edges/outline.h"
 
 /* What cuts: side K of the stop, or barrel K - BARREL. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };

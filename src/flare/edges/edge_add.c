@@ -1,143 +1,22 @@
-/* SPDX-License-Identifier: MIT */
-#include "flare/edges.h"
+/* SPDX-License-Identifier: MIT
+ *
+ * The light of edges in one tile's sums: of smooth edges the area they cover in
+ * each pixel, of those on whole pixels that of a row. edges.h has the formats.
+ */
+#include "flare/edges/edges.h"
 
 #include <stddef.h>
 
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
+#include "flare/edges/edge_at.h"
 
 #define ONE_Q16 (INT32_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
 
 /* Below 2^31, in whatever a CPU adds up at once. */
 typedef int_fast32_t fast;
-
-/* --------------------------------------------------------------------- edge
- */
-
-/* ACROSS / DOWN, or nearer to 0 by no more than 2^-31 of it and a unit; DOWN >
- * 0, both below 2^30. */
-static int64_t slope_of(int32_t across, int32_t down)
-{
-    const int up = q_up((uint32_t)down);
-    const int64_t r = q_reciprocal((uint32_t)down << up);
-    const int64_t size_q40 = (across < 0 ? -across : across) * r >> (31 - up);
-
-    return across < 0 ? -size_q40 : size_q40;
-}
-
-int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
-                   const int32_t b_q8[2], int32_t light, int32_t other)
-{
-    const int up = b_q8[1] < a_q8[1];
-    const int32_t *upper = up ? b_q8 : a_q8, *lower = up ? a_q8 : b_q8;
-
-    if (a_q8[1] == b_q8[1])
-        return 0;
-    *edge = (struct glint_edge){
-        .x_q8 = upper[0],
-        .y_q8 = upper[1],
-        .end_y_q8 = lower[1],
-        .slope_q40 = slope_of(lower[0] - upper[0], lower[1] - upper[1]),
-        .left = up ? other : light,
-        .right = up ? light : other};
-    return 1;
-}
-
-/* Half a pixel on, the nearest one is the one that it is in. */
-void glint_edge_make_whole(struct glint_edge *edge)
-{
-    edge->x_q8 += edge->whole ? 0 : 128;
-    edge->whole = 1;
-}
-
-/* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
- * slope is never too large, so it never lies beyond its ends. */
-static int64_t x_at_q40(const struct glint_edge *e, int32_t y_q8)
-{
-    return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
-}
-
-static int32_t later(int32_t a, int32_t b)
-{
-    return a > b ? a : b;
-}
-
-static int32_t sooner(int32_t a, int32_t b)
-{
-    return a < b ? a : b;
-}
-
-/* --------------------------------------------------------------------- bins
- */
-
-enum visit { COUNT, PUT, SPAN };
-
-/* The tile of N that has column X of the region. */
-static inline int tile_of(int x, int last, int log2)
-{
-    return (x < 0 ? 0 : x > last ? last : x) >> log2;
-}
-
-/* Visits the tiles that EDGE crosses, by rows of tiles; what lies left of the
- * region is taken for its first column. Returns how many. */
-static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
-                                   const struct glint_bins *bins,
-                                   enum visit visit, int32_t index)
-{
-    const struct glint_box *r = &bins->region;
-    const int log2 = bins->tile_log2, last = r->x1 - 1 - r->x0;
-    const int32_t end_q8 = sooner(e->end_y_q8, r->y1 * 256);
-    int32_t y_q8 = later(e->y_q8, r->y0 * 256);
-    const int row = ((y_q8 >> 8) - r->y0) >> log2;
-    int32_t floor_q8 = (r->y0 + ((row + 1) * (1 << log2))) * 256;
-    int32_t *start = bins->start + (ptrdiff_t)row * bins->tiles_x;
-    int64_t x_q40 = x_at_q40(e, y_q8) - r->x0 * ONE_Q40;
-    int n = 0;
-
-    while (y_q8 < end_q8) {
-        const int32_t next_q8 = sooner(end_q8, floor_q8);
-        const int64_t next_q40 = x_q40 + e->slope_q40 * (next_q8 - y_q8);
-        const int x = (int)(x_q40 >> 40), next_x = (int)(next_q40 >> 40);
-        const int low = sooner(x, next_x), high = later(x, next_x);
-
-        if (low <= last)
-            for (int k = tile_of(low, last, log2);
-                 k <= tile_of(high, last, log2); k++) {
-                n++;
-                if (visit == PUT)
-                    bins->ref[start[k]] = index;
-                if (visit != SPAN)
-                    start[k]++;
-            }
-        y_q8 = next_q8;
-        x_q40 = next_q40;
-        floor_q8 += 256 << log2;
-        start += bins->tiles_x;
-    }
-    return n;
-}
-
-int glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins)
-{
-    return each_tile(edge, bins, COUNT, 0);
-}
-
-void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
-                    int32_t index)
-{
-    each_tile(edge, bins, PUT, index);
-}
-
-int glint_edge_span(const struct glint_edge *edge,
-                    const struct glint_bins *bins)
-{
-    return each_tile(edge, bins, SPAN, 0);
-}
-
-/* --------------------------------------------------------------------- add
- */
 
 /* Sums of 64 bits, or of 32, of light _q16 below this. */
 enum mode { WIDE, NARROW };
@@ -328,15 +207,15 @@ static inline struct part part_of(const struct glint_edge_sums *s,
                                   int64_t light, int channel)
 {
     const struct glint_box *t = &s->tile;
-    const int32_t end_q8 = sooner(e->end_y_q8, t->y1 * 256);
-    const int32_t y_q8 = later(e->y_q8, t->y0 * 256);
+    const int32_t end_q8 = edge_sooner(e->end_y_q8, t->y1 * 256);
+    const int32_t y_q8 = edge_later(e->y_q8, t->y0 * 256);
     const int row = (y_q8 >> 8) - t->y0;
     const ptrdiff_t at =
         (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
     struct part p = {{{NULL}, s->linear ? 0 : 8, t->x0, t->x1, light, 0},
                      y_q8,
                      end_q8,
-                     x_at_q40(e, y_q8)};
+                     edge_x_at_q40(e, y_q8)};
 
     s->touched[channel] |= rows_between(row, ((end_q8 + 255) >> 8) - t->y0);
     if (mode == NARROW)
@@ -349,14 +228,14 @@ static inline struct part part_of(const struct glint_edge_sums *s,
 /* Of the row that P begins in, the part of it; not a whole one. */
 static inline int32_t height_of(const struct part *p)
 {
-    return sooner((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
+    return edge_sooner((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
 }
 
 /* All its rows. */
 static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
                               const struct glint_edge *e, struct part p)
 {
-    const int64_t end_q40 = x_at_q40(e, p.end_q8);
+    const int64_t end_q40 = edge_x_at_q40(e, p.end_q8);
     const int64_t low_q40 = p.x_q40 < end_q40 ? p.x_q40 : end_q40;
     const int64_t high_q40 = p.x_q40 < end_q40 ? end_q40 : p.x_q40;
     int n;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "flare/primitive.h"
+#include "flare/edges/primitive.h"
 
 #include "base/compiler.h"
 #include "base/divide.h"

@@ -27,8 +27,8 @@
 
 #include "glint/light.h"
 #include "glint/transfer.h"
-#include "flare/edges.h"
-#include "flare/outline.h"
+#include "flare/edges/edges.h"
+#include "flare/edges/outline.h"
 
 enum {
     GLINT_LIGHT_OCTAVES = 45, /* of irradiance _q20 */

@@ -30,7 +30,7 @@
 #include "base/q.h"
 #include "kernels/kernels.h"
 #include "tile/bins.h"
-#include "flare/primitive.h"
+#include "flare/edges/primitive.h"
 
 struct glint_edge {     /* 32 bytes */
     int64_t slope_q40;  /* of x, pixels, per 1/256 pixel of y */

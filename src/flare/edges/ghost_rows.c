@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rows of nodes of a grid: their vertices, and what of stop, barrels and
+ * picture each lies outside of.
+ */
+#include "flare/edges/ghost_parts.h"
+
+#include <stddef.h>
+
+#include "base/q.h"
+
+static int vertex_valid(const struct glint_vertex *v)
+{
+    const uint32_t most = GLINT_VERTEX_LIMIT_Q8 - 1;
+
+    return v->energy_q16 >= 0 && (uint32_t)v->x_q8 + most <= 2 * most &&
+           (uint32_t)v->y_q8 + most <= 2 * most;
+}
+
+/* Lowers the barrels of a row by their sag; brings the stop nearer where it is
+ * round, by its own. */
+static struct glint_vertex *lower(const struct glint_ghost_edges *g,
+                                  struct glint_vertex *row)
+{
+    const int64_t nearer_q16 = g->sag_q16[2];
+    const int lowers = g->sag_q16[0] | g->sag_q16[1];
+
+    for (int i = 0; lowers && i <= g->bundle->n_cells; i++)
+        for (int k = 0; k < 2; k++)
+            row[i].barrel_q16[k] -= g->sag_q16[k];
+    for (int i = 0; nearer_q16 && i <= g->bundle->n_cells; i++) {
+        row[i].stop_x_q16 -=
+            q_narrow(q_shift(row[i].stop_x_q16 * nearer_q16, 16));
+        row[i].stop_y_q16 -=
+            q_narrow(q_shift(row[i].stop_y_q16 * nearer_q16, 16));
+    }
+    return row;
+}
+
+/* Row J of the grid; valid until the next but one. */
+static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
+{
+    const int n = g->bundle->n_cells;
+    struct glint_ghost_rows *r = g->rows;
+    struct glint_vertex *row = r->vertex[j & 1];
+
+    if (!g->transfer)
+        return g->vertex + (ptrdiff_t)j * (n + 1);
+    if (n > GLINT_HELD_CELLS || 2 * j == n)
+        glint_transfer_row(g->transfer, &g->place, n, j, row);
+    else if (2 * j < n)
+        glint_transfer_rows(g->transfer, &g->place, n, j, row, r->held[j]);
+    else
+        return lower(g, r->held[n - j]);
+    return lower(g, row);
+}
+
+void glint_ghost_set_nodes(struct glint_ghost_edges *g, int j)
+{
+    const int n = g->bundle->n_cells;
+    uint64_t *sides = g->rows->sides[j & 1];
+    uint8_t *barrels = g->rows->barrels[j & 1];
+    const int32_t floor = g->height * 256, right = g->width * 256;
+
+    g->row[j & 1] = row_of(g, j);
+    glint_cuts_row(g->stop, g->row[j & 1], n + 1, sides, barrels);
+    for (int i = 0; i <= n; i++) {
+        const struct glint_vertex *v = ghost_node(g, i, j);
+
+        if (!vertex_valid(v)) {
+            sides[i] = 0;
+            barrels[i] = NODE_LOST;
+        } else
+            barrels[i] |= (uint8_t)(NODE_ABOVE * (v->y_q8 <= 0) +
+                                    NODE_BELOW * (v->y_q8 >= floor) +
+                                    NODE_RIGHT * (v->x_q8 >= right));
+    }
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/plan_cells.h"
+
+#include "base/divide.h"
+#include "base/q.h"
+#include "base/real.h"
+
+enum {
+    LEAST = 8, /* cells a side */
+    FOLD_OCTAVES = 3
+};
+
+/* Root of SUM / N, of differences whose squares were taken over 2^10 more. */
+static int64_t root_mean(uint64_t sum, int n)
+{
+    return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
+}
+
+/* The second derivative of the kinds A and B, worth on the sensor, in units of
+ * that over 2^GLINT_PROBE_FINE_LOG2. */
+static int64_t bend_of(const struct glint_probe *s, int a, int b)
+{
+    const int64_t second = root_mean(
+        s->change[a].second + (a == b ? 0 : s->change[b].second), s->n_bends);
+    const int64_t first = root_mean(
+        s->change[a].first + (a == b ? 0 : s->change[b].first), s->n_bends);
+    const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
+                                         s->change[GLINT_OUT_SENSOR_Y].first,
+                                     s->n_bends);
+
+    return first ? q_divide(second * sensor, first) : 0; /* 2^30 * 2^31 */
+}
+
+/* What the stop position changes by over the box, and the stop's radius, both
+ * in units of the outputs over 2^GLINT_PROBE_FINE_LOG2. */
+static int64_t stop_change(const struct glint_probe *s)
+{
+    return root_mean(s->change[GLINT_OUT_STOP_X].first +
+                         s->change[GLINT_OUT_STOP_Y].first,
+                     s->n_bends);
+}
+
+static int64_t one_radius(const struct glint_probe *s)
+{
+    const int64_t radius = q_divide(s->limit[GLINT_OUT_STOP_X] * 20, 21) >>
+                           GLINT_PROBE_FINE_LOG2; /* of 1.05 */
+
+    return radius > 0 ? radius : 1; /* of coarser units than a radius */
+}
+
+/* The same of a round stop's outline, (1 + r^2) / 2 like a barrel's: where r is
+ * 1, that changes as fast as the stop position S does, and bends by S'^2. */
+static int64_t round_bend(const struct glint_probe *s)
+{
+    const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
+                                         s->change[GLINT_OUT_SENSOR_Y].first,
+                                     s->n_bends);
+
+    /* 2^30 * 2^31 */
+    return q_divide((stop_change(s) >> 2) * sensor, (one_radius(s) >> 2) + 1);
+}
+
+/* What codes need of N cells a side. Errors of a faint ghost are the less seen:
+ * in codes its light shrinks by 2^(5/12) with each octave, its errors with the
+ * square of the cells. Folds are brighter than their ghost's mean. */
+static int cells_for_codes(const struct glint_probe *s,
+                           struct glint_real irradiance, int n)
+{
+    const int folded = s->n_up && s->n_down;
+    int octaves = -(irradiance.exponent + 31) - (folded ? FOLD_OCTAVES : 0);
+
+    if (!folded)
+        n -= n / 4;
+    for (; octaves > 0 && n > LEAST; octaves--)
+        n -= n / 8;
+    return n;
+}
+
+/* How much more outlines may bend than light does. A vertex has two barrels, of
+ * which the second is the tightest of all others: where three and more meet it
+ * has kinks, so that tips of outlines come and go with the grid. A round stop
+ * is round on all sides, of every ghost. */
+static int outline_over_light(const struct glint_plan *p,
+                              const struct glint_transfer *t)
+{
+    return p->round || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
+}
+
+/* As many cells as keep what is straight between rays within a hundredth of a
+ * pixel of what bends, at fineness 64, and outlines within a tenth: light piles
+ * up along folds, but not along cuts. */
+static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
+                    const struct glint_transfer *t,
+                    struct glint_real irradiance)
+{
+    const struct glint_flare_frame *r = p->frame;
+    const int folds = (s->n_up && s->n_down ? 4 : 2) * r->fineness;
+    const int most = folds < GLINT_MAX_CELLS ? folds : GLINT_MAX_CELLS;
+    int64_t bend = bend_of(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
+    int64_t outline = bend_of(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
+    int64_t bend_q8;
+    int n;
+
+    if (r->uniform)
+        return r->fineness;
+    for (int k = GLINT_OUT_RADIUS; k < GLINT_OUT_KINDS; k++)
+        if (t->outputs >> k & 1) {
+            const int64_t cut = bend_of(s, k, k);
+
+            outline = cut > outline ? cut : outline;
+        }
+    if (p->round) {
+        const int64_t cut = round_bend(s);
+
+        outline = cut > outline ? cut : outline;
+    }
+    outline = q_divide(outline, outline_over_light(p, t));
+    bend = bend > outline ? bend : outline;
+    bend_q8 =
+        real_integer(real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] +
+                                                  GLINT_PROBE_FINE_LOG2),
+                                plan_pixels_per_mm(p)),
+                     8, INT64_C(1) << 40);
+    /* the root of 12.5 times as much, times fineness / 64 */
+    n = q_narrow(
+        ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
+        14);
+    if (r->faintest.mantissa)
+        n = cells_for_codes(s, irradiance, n);
+    n = n < LEAST ? LEAST : n;
+    n = (n + 3) / 4 * 4;
+    return n < most ? n : most;
+}
+
+/* As N, but even, and two more if there is room. */
+static int hollow_cells(int n)
+{
+    const int more = (n + 3) / 2 * 2;
+
+    return more < GLINT_MAX_CELLS ? more : GLINT_MAX_CELLS;
+}
+
+int glint_plan_cells(const struct glint_plan *plan,
+                     const struct glint_probe *probe,
+                     const struct glint_transfer *transfer,
+                     struct glint_real irradiance)
+{
+    const int n = cells_of(plan, probe, transfer, irradiance);
+
+    return transfer->hollow ? hollow_cells(n) : n;
+}
+
+/* What kind K bends by over the box, all ways together, in its units over
+ * 2^GLINT_PROBE_FINE_LOG2. */
+static int64_t bowl_of(const struct glint_probe *s, int k)
+{
+    int64_t sum = 0;
+
+    for (int way = 0; way < 2; way++)
+        sum += s->n_bent[way] ? q_divide(s->change[k].bent[way], s->n_bent[way])
+                              : 0;
+    return sum;
+}
+
+/* The same of a round stop, where r^2 / 2 bends by the square of what the stop
+ * position changes by. */
+static int64_t round_bowl_q16(const struct glint_probe *s)
+{
+    const struct glint_real change =
+        real_over(real_of(stop_change(s), 0), real_of(one_radius(s), 0));
+
+    return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
+}
+
+/* How far what is straight between the rays of N_CELLS lies off such a bowl in
+ * the mean: where a cell bends by D across and E down, (D + E) / 12. */
+static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
+{
+    return (uint16_t)q_clamp_sat(
+        q_divide(bowl_q16, 12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
+}
+
+/* A barrel's (1 + r^2) / 2 is a bowl. With the sag taken off, outlines lie as
+ * often outside as inside. */
+void glint_plan_sags(struct glint_bundle_plan *planned,
+                     const struct glint_probe *probe,
+                     const struct glint_transfer *transfer, int n_cells,
+                     int round)
+{
+    for (int k = GLINT_OUT_BARREL_0; k <= GLINT_OUT_BARREL_1; k++) {
+        const int64_t bowl_q16 =
+            transfer->outputs >> k & 1
+                ? real_integer(
+                      real_of(bowl_of(probe, k),
+                              transfer->exponent[k] + GLINT_PROBE_FINE_LOG2),
+                      16, INT64_C(1) << 40)
+                : 0;
+
+        planned->sag_q16[k - GLINT_OUT_BARREL_0] = sag_q16(bowl_q16, n_cells);
+    }
+    planned->sag_q16[2] = round ? sag_q16(round_bowl_q16(probe), n_cells) : 0;
+}

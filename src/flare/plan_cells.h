@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How fine the grid of a bundle has to be, from how much its rays bend.
+ *
+ *   in   a probe of the bundle, its irradiance
+ *   out  cells a side; how far straight lines between rays lie off outlines
+ */
+#ifndef GLINT_FLARE_PLAN_CELLS_H
+#define GLINT_FLARE_PLAN_CELLS_H
+
+#include "flare/plan.h"
+
+static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
+{
+    struct glint_real x = p->frame->pixels_per_mm;
+
+    x.exponent -= p->half;
+    return x;
+}
+
+/* Cells a side of the grid of a bundle that shines with IRRADIANCE, display
+ * white. Of a hollow box two rows of them are the middle's. */
+int glint_plan_cells(const struct glint_plan *plan,
+                     const struct glint_probe *probe,
+                     const struct glint_transfer *transfer,
+                     struct glint_real irradiance);
+
+/* Sets the sags of PLANNED for a grid of N_CELLS a side; ROUND: the stop is. */
+void glint_plan_sags(struct glint_bundle_plan *planned,
+                     const struct glint_probe *probe,
+                     const struct glint_transfer *transfer, int n_cells,
+                     int round);
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A few rays of a bundle through its polynomials: where they land, how they
+ * spread, how the outputs change from ray to ray.
+ *
+ *   in   the polynomials of a bundle, how many rays
+ *   out  extents, sums of differences, cells by the way they are turned
+ */
+#ifndef GLINT_FLARE_PROBE_H
+#define GLINT_FLARE_PROBE_H
+
+#include "glint/transfer.h"
+
+/* Where light lands: least and largest x on the sensor, and largest y. */
+struct glint_probe_extent {
+    int64_t low, high, wide;
+};
+
+/* Most cells across the pupil and down half of it. */
+enum { GLINT_PROBE_ACROSS = 16, GLINT_PROBE_DOWN = 8 };
+
+struct glint_probe_node {
+    int32_t at[GLINT_OUT_KINDS];
+    int inside; /* of the stop and the barrels, and a little around */
+};
+
+/* How a quantity changes from ray to ray: sums of squares of differences, and
+ * of second differences as they are, across the pupil and down. */
+struct glint_probe_change {
+    uint64_t first, second;
+    int64_t bent[2];
+};
+
+struct glint_probe {
+    struct glint_probe_node row[3][GLINT_PROBE_ACROSS + 1]; /* the last three */
+    struct glint_probe_change change[GLINT_OUT_KINDS];
+    int across, down; /* cells */
+    int n_rays;       /* of all probes of the bundle */
+    int n_bends, n_bent[2], n_inside, n_kinds;
+    uint8_t kind[GLINT_OUT_KINDS];   /* of outputs that there are, but energy */
+    int n_up, n_down;                /* cells by the way they are turned */
+    struct glint_probe_extent seen;  /* of what is inside */
+    struct glint_probe_extent reach; /* of cells that any of is, and so of what
+                                       lies between rays, too */
+    int64_t energy;
+    uint64_t least_area;            /* of half a cell on the sensor */
+    int64_t limit[GLINT_OUT_KINDS]; /* what counts as inside */
+};
+
+enum {
+    GLINT_PROBE_FINE_LOG2 = 6
+}; /* squares are of differences over so much
+    */
+
+/* Sends the rays of a grid of ACROSS x DOWN cells over half the box of T. RUN
+ * adds to n_rays, and begins all else anew. */
+void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
+                     int across, int down);
+
+#endif
