@@ -40,7 +40,11 @@ corpus-evaluate: corpus $(OUT)/corpus-found
 corpus-sheet: corpus all
 	@tests/corpus/overlays build/corpus/sheet
 corpus-report: corpus all
-	@tests/corpus/report build/corpus/report.csv
+	@tests/corpus/report build/corpus/report.csv | tools/report/write-figures brightness
+# The bridge by night through every lens.
+lens-sheet: all oiio
+	@tools/make/deps "contact sheets" python3-pil
+	@tests/corpus/lenses build/lens-sheet.jpg
 # The weights of src/lamps/score.c, from the pictures that are there to tune on.
 corpus-fit: corpus $(OUT)/corpus-features
 	@OUT=$(OUT) tests/corpus/fit
@@ -71,5 +75,5 @@ budget: all
 	@tools/report/budget | tools/report/write-figures arm
 
 .PHONY: video-report demo inputs table bake-table accuracy-table colour-table ray-table power-table \
-        corpus corpus-evaluate corpus-sheet corpus-report corpus-fit \
+        corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet \
         bench bench-insn growth size trade memory-table budget

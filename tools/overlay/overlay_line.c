@@ -130,9 +130,10 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
             f_number_of(&look->scene));
     say_dial(look, to);
     fprintf(to,
-            ": the flare peaks at %.2g %% of white, %.2g %% on average; %.0f "
+            ": the flare peaks at %.*g %% of white, %.2g %% on average; %.0f "
             "ms\n",
-            100 * light->peak, 100 * light->mean, 1e3 * seconds);
+            light->peak < 1 ? 2 : 3, 100 * light->peak, 100 * light->mean,
+            1e3 * seconds);
     if (light->peak < least_seen)
         say_faint(o, light, to);
 }
