@@ -111,7 +111,7 @@ static int32_t growth_q16(const struct glint_profile_channel *of, int level)
 /* How many stops over white the clipped core is: the more the steeper the light
  * falls right beside it; the further the halo goes, above a background as even
  * as it is; and the wider the rim, for so large a core. Fitted to what
- * power_table makes (tests/support), by least absolute error. */
+ * power_table makes (tests/programs), by least absolute error. */
 static int32_t stops_q16(const struct glint_profile_channel *of)
 {
     const int32_t core_q16 = log_of_q8(of->area_q8[0]);

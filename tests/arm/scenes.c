@@ -19,6 +19,7 @@
 #include "linux/sets.h"
 #include "posix/input.h"
 #include "support/shuffle.h"
+#include "support/rng.h"
 
 enum {
     MAX_MODELS = 16,
@@ -37,7 +38,7 @@ static void *arena, *finder_memory;
 /* One to a statement: C does not say in which order arguments are evaluated. */
 static int number(int below)
 {
-    return (int)(shuffle_next(&seed) % (uint32_t)below);
+    return (int)(rng_xorshift(&seed) % (uint32_t)below);
 }
 
 /* ---------------------------------------------------------------------- hash

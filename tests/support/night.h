@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/rng.h"
 #include "glint/lamps.h"
 #include "glint/profile.h"
 #include "glint/lamp_tracker.h"
@@ -41,8 +42,7 @@ struct night {
 
 static inline int night_random(struct night *night, int n)
 {
-    night->seed = night->seed * 1664525 + 1013904223;
-    return (int)((uint64_t)(night->seed >> 8) * (uint32_t)n >> 24);
+    return rng_below(&night->seed, n);
 }
 
 /* A sum of twelve uniform numbers is all but a bell curve. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/power_scene.h"
+#include "support/rng.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,18 +8,12 @@
 
 enum { FINE = 5, SOURCES = 40, KERNEL = 1 << 18 };
 
-double power_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525 + 1013904223;
-    return (*seed >> 8) * 0x1p-24;
-}
-
 static double bell(uint32_t *seed)
 {
     double sum = -6;
 
     for (int i = 0; i < 12; i++)
-        sum += power_random(seed);
+        sum += rng_unit(seed);
     return sum;
 }
 
@@ -195,7 +190,7 @@ void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
         const double light = gain * scene->rgb[i];
         const double v = code[light < 1 ? (int)(light * CODES) : CODES];
 
-        *seed = *seed * 1664525 + 1013904223;
+        rng_bits(seed);
         rgb[i] = (uint8_t)fmax(
             0, fmin(255, floor(v + sigma * noise[*seed >> 16] + 0.5)));
     }

@@ -8,6 +8,7 @@
 
 #include <stdint.h>
 
+#include "support/rng.h"
 #include "glint/image.h"
 
 enum power_shape { POWER_DISC, POWER_SQUARE, POWER_TUBE, POWER_SHAPES };
@@ -42,8 +43,5 @@ void power_see(double *light, int width, int height,
 /* Codes of sRGB, 8 bits, of GAIN * SCENE with noise of SIGMA codes. */
 void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
                   double sigma, uint32_t *seed);
-
-/* Uniform, 0 .. 1. */
-double power_random(uint32_t *seed);
 
 #endif

@@ -9,21 +9,13 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "support/rng.h"
 #include "glint/workers.h"
 
 struct shuffle {
     struct glint_workers workers;
     uint32_t state;
 };
-
-/* Small, good enough, and the same everywhere. */
-static inline uint32_t shuffle_next(uint32_t *state)
-{
-    *state ^= *state << 13;
-    *state ^= *state >> 17;
-    *state ^= *state << 5;
-    return *state;
-}
 
 static inline void shuffle_run(struct glint_workers *workers, int n_jobs,
                                glint_job_fn *fn, void *ctx)
@@ -34,7 +26,7 @@ static inline void shuffle_run(struct glint_workers *workers, int n_jobs,
     for (int i = 0; i < n_jobs; i++)
         order[i] = i;
     for (int i = n_jobs - 1; i > 0; i--) {
-        const int j = (int)(shuffle_next(&s->state) % (uint32_t)(i + 1));
+        const int j = (int)(rng_xorshift(&s->state) % (uint32_t)(i + 1));
         const int swap = order[i];
 
         order[i] = order[j];
@@ -42,7 +34,7 @@ static inline void shuffle_run(struct glint_workers *workers, int n_jobs,
     }
     for (int i = 0; i < n_jobs; i++)
         fn(ctx, order[i],
-           (int)(shuffle_next(&s->state) % (uint32_t)workers->n));
+           (int)(rng_xorshift(&s->state) % (uint32_t)workers->n));
     free(order);
 }
 

@@ -1,5 +1,8 @@
 # Tests, sanitizers, analysis.
 
+# What tests share.
+$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c))
+
 # Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
 unit_c := $(wildcard tests/unit/*/test_*.c)
@@ -30,30 +33,18 @@ $(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
         -Wl,--wrap=realloc,--wrap=posix_memalign
 $(OUT)/tests/unit/test_budget: LDFLAGS += -Wl,--wrap=tool_seconds
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
-$(fake_bins): $(OUT)/tests/support/fake_camera.o
 extreme_bins := $(EXTREMES:%=$(OUT)/tests/unit/test_extremes_%)
-$(extreme_bins): $(OUT)/tests/support/stage.o
 $(foreach c,$(unit_c),$(eval $(OUT)/tests/unit/$(notdir $(basename $(c))): $(OUT)/$(c:.c=.o)))
-$(test_bins): $(libs)
+$(test_bins): $(OUT)/libglint-tests.a $(libs)
 	$(link)
 replay_bins := $(FUZZERS:%=$(OUT)/tests/fuzz/replay_%)
 $(replay_bins): $(OUT)/tests/fuzz/replay_%: $(OUT)/tests/fuzz/fuzz_%.o \
         $(OUT)/tests/fuzz/replay.o $(libs)
 	$(link)
-$(OUT)/hue_steps: $(OUT)/tests/support/hue_steps.o $(libs)
-	$(link)
-$(OUT)/pan: $(OUT)/tests/support/pan.o $(libs)
-	$(link)
-$(OUT)/tests/unit/test_profile: $(OUT)/tests/support/power_scene.o
-$(OUT)/power_table: $(OUT)/tests/support/power_table.o \
-        $(OUT)/tests/support/power_scene.o $(libs)
-	$(link)
-$(OUT)/steady: $(OUT)/tests/support/steady.o $(libs)
-	$(link)
-$(OUT)/motion: $(OUT)/tests/support/motion.o $(OUT)/tests/support/stage.o $(libs)
-	$(link)
-$(OUT)/random_lenses: $(OUT)/tests/support/random_lenses.o \
-        $(OUT)/tests/support/random_lens.o $(OUT)/tests/support/stage.o $(libs)
+# Programs of tests, for tables and long runs: tests/programs/NAME.c is OUT/NAME.
+PROGRAMS := $(patsubst tests/programs/%.c,$(OUT)/%,$(wildcard tests/programs/*.c))
+$(test_bins) $(PROGRAMS): libs := $(OUT)/libglint-tests.a $(archives)
+$(PROGRAMS): $(OUT)/%: $(OUT)/tests/programs/%.o $(OUT)/libglint-tests.a $(libs)
 	$(link)
 
 check:

@@ -18,6 +18,7 @@
 #include "glint/transfer.h"
 #include "support/lens_check.h"
 #include "support/shuffle.h"
+#include "support/rng.h"
 
 #define TOLERANCE 20
 #define MAX_DEG   12
@@ -381,7 +382,7 @@ static void test_near_barrels(void **state)
 
 static double unit(uint32_t *seed)
 {
-    return shuffle_next(seed) * 0x1p-31 - 1;
+    return rng_xorshift(seed) * 0x1p-31 - 1;
 }
 
 /* A cut box is the box, in the part's coordinates. */
@@ -523,8 +524,8 @@ static void try_ray(struct tally *tally, const struct glint_transfer *t,
                     const struct glint_path *path, const double direction[3],
                     uint32_t *seed)
 {
-    const int32_t u_q30 = (int32_t)shuffle_next(seed) / 2;
-    const int32_t v_q30 = (int32_t)shuffle_next(seed) / 2;
+    const int32_t u_q30 = (int32_t)rng_xorshift(seed) / 2;
+    const int32_t v_q30 = (int32_t)rng_xorshift(seed) / 2;
     const double unit = ldexp(1, t->box_exponent),
                  stop = setup.optics.stop_radius_mm;
     const double x = unit * (t->box[0] + t->box[1] * (u_q30 * 0x1p-30));
@@ -566,8 +567,8 @@ static long measure(const struct glint_lens *lens, int ghost, int system,
 
     tally = (struct tally){.n = 0};
     for (int k = 0; k < BUNDLES; k++) {
-        const double a = shuffle_next(&seed) * 0x1p-32;
-        const double b = shuffle_next(&seed) * 0x1p-32;
+        const double a = rng_xorshift(&seed) * 0x1p-32;
+        const double b = rng_xorshift(&seed) * 0x1p-32;
         const int32_t sine_q30 =
             s->sine_lo_q30 + 1 +
             (int32_t)(a * (s->sine_hi_q30 - s->sine_lo_q30 - 2));

@@ -18,6 +18,7 @@
 #include "glint/transfer.h"
 #include "support/lens_check.h"
 #include "support/shuffle.h"
+#include "support/rng.h"
 
 enum { ONE_Q30 = 1 << 30, KNOTS = 3, KINDS = GLINT_OUT_BARREL_0 + 1 };
 
@@ -26,12 +27,12 @@ static uint32_t seed = 1;
 /* -1 .. 1 */
 static double random_unit(void)
 {
-    return 2.0 * shuffle_next(&seed) / UINT32_MAX - 1;
+    return 2.0 * rng_xorshift(&seed) / UINT32_MAX - 1;
 }
 
 static int random_int(int lo, int hi)
 {
-    return lo + (int)(shuffle_next(&seed) % (uint32_t)(hi - lo + 1));
+    return lo + (int)(rng_xorshift(&seed) % (uint32_t)(hi - lo + 1));
 }
 
 /* Within +-2^30; one in four is at a corner or next to one. */

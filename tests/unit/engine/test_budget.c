@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "support/rng.h"
 #include "engine/cost.h"
 #include "engine/quality.h"
 #include "options/scene.h"
@@ -45,12 +46,7 @@ double __wrap_tool_seconds(void);
 double __wrap_tool_seconds(void)
 {
     const double noise =
-        machine.noise ? 0.94 + 0.12 *
-                                   ((machine.noise = machine.noise * 1664525U +
-                                                     1013904223U) >>
-                                    8) *
-                                   0x1p-24
-                      : 1;
+        machine.noise ? 0.94 + 0.12 * rng_unit(&machine.noise) : 1;
 
     if (machine.frame)
         machine.now_s += 1e-3 * frame_ms(&machine) / 3 * noise;

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "support/rng.h"
 #include "kernels/kernels.h"
 #include "flare/edges/edges.h"
 
@@ -105,8 +106,7 @@ static int draw_below(int n)
 {
     static uint32_t seed = 1;
 
-    seed = seed * 1664525U + 1013904223U;
-    return (int)((uint64_t)seed * (uint32_t)n >> 32);
+    return (int)((uint64_t)rng_bits(&seed) * (uint32_t)n >> 32);
 }
 
 /* Random edges, in a whole tile and in its halves, which go other ways through

@@ -18,6 +18,7 @@
 #include "flare/state.h"
 #include "posix/workers.h"
 #include "support/shuffle.h"
+#include "support/rng.h"
 
 enum { WIDTH = 203, HEIGHT = 151 };
 
@@ -312,8 +313,7 @@ static int draw_number(int n)
 {
     static uint32_t seed = 7;
 
-    seed = seed * 1664525 + 1013904223;
-    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
+    return rng_below(&seed, n);
 }
 
 static struct ghost random_ghost(void)

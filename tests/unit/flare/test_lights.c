@@ -15,6 +15,7 @@
 #include "base/real.h"
 #include "glint/flare.h"
 #include "support/shuffle.h"
+#include "support/rng.h"
 
 enum { MANY = 3000, NEAR_Q30 = 60000 }; /* an eighth of 2000 pixels */
 
@@ -53,7 +54,7 @@ static struct glint_light beam_at(double x, double y, double power)
 
 static double uniform(uint32_t *state)
 {
-    return shuffle_next(state) * 0x1p-32;
+    return rng_xorshift(state) * 0x1p-32;
 }
 
 /* Powers from 1e-6 to 1e9, most of them small; some lights coincide, some lie
@@ -67,8 +68,8 @@ static void scatter(struct glint_light *b, int n, uint32_t seed)
 
         b[i] = beam_at(x, y, power);
         for (int c = 0; c < 3; c++)
-            b[i].rgb_q14[c] = (int32_t)(shuffle_next(&seed) % 16385);
-        b[i].rgb_q14[shuffle_next(&seed) % 3] = 16384;
+            b[i].rgb_q14[c] = (int32_t)(rng_xorshift(&seed) % 16385);
+        b[i].rgb_q14[rng_xorshift(&seed) % 3] = 16384;
         if (i % 100 == 7)
             b[i] = b[i - 1];
         if (i % 100 == 9) {
@@ -81,7 +82,7 @@ static void scatter(struct glint_light *b, int n, uint32_t seed)
 static void mix(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = n - 1; i > 0; i--) {
-        const int j = (int)(shuffle_next(&seed) % (uint32_t)(i + 1));
+        const int j = (int)(rng_xorshift(&seed) % (uint32_t)(i + 1));
         const struct glint_light old = b[i];
 
         b[i] = b[j];

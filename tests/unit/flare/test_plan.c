@@ -18,6 +18,7 @@
 #include "glint/kernels.h"
 #include "support/model_builder.h"
 #include "support/shuffle.h"
+#include "support/rng.h"
 
 enum { WIDTH = 160, HEIGHT = 120 };
 
@@ -44,10 +45,10 @@ static void test_reals(void **state)
         int64_t a, b;
         int e, f;
 
-        seed = seed * 1664525 + 1013904223;
+        rng_bits(&seed);
         a = (int64_t)((uint64_t)seed << 30 >> (seed % 61)) + 1;
         e = (int)(seed >> 8 & 127) - 64;
-        seed = seed * 1664525 + 1013904223;
+        rng_bits(&seed);
         b = (int64_t)((uint64_t)seed << 30 >> (seed % 61)) + 1;
         f = (int)(seed >> 8 & 127) - 64;
         {
@@ -445,14 +446,14 @@ static void test_same_bits(void **state)
         struct glint_flare_stats s;
         struct shuffle shuffle;
 
-        shuffle_init(&shuffle, first ? 1 : 1 + i % 3, shuffle_next(&seed));
+        shuffle_init(&shuffle, first ? 1 : 1 + i % 3, rng_xorshift(&seed));
         f.rays.whole_codes_q8 = whole_q8[i / 36 % 4];
         f.rays.half = i / 144 ? &glint_half : NULL;
         f.cfg.width = image.width;
         f.cfg.height = image.height;
         f.cfg.workers = &shuffle.workers;
-        f.cfg.tile_log2 = first ? 6 : 3 + (int)(shuffle_next(&seed) % 4);
-        f.cfg.sets = first ? 0 : shuffle_next(&seed) & glint_sets_here();
+        f.cfg.tile_log2 = first ? 6 : 3 + (int)(rng_xorshift(&seed) % 4);
+        f.cfg.sets = first ? 0 : rng_xorshift(&seed) & glint_sets_here();
         memset(px[!first], 0, sizeof px[0]);
         glint_image_place(&image, px[!first]);
         start(&f);

@@ -2,6 +2,7 @@
  *
  * Lights and spots paired: the nearest first, against a search of all pairs.
  */
+#include "support/rng.h"
 #include "follow/match.h"
 
 #include <setjmp.h>
@@ -21,12 +22,6 @@ static struct glint_spot spot[MAX];
 static struct glint_match match;
 static void *mem;
 static uint32_t seed = 1;
-
-static int draw_random(int n)
-{
-    seed = seed * 1664525 + 1013904223;
-    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
-}
 
 static int set_up(void **state)
 {
@@ -54,16 +49,16 @@ static void scatter(int n_seekers, int n_spots, int side_q8)
     for (int i = 0; i < n_seekers; i++)
         match.seeker[i] =
             (struct glint_seeker){.id = (uint32_t)(i * 7919 % 1021) + 1,
-                                  .x_q8 = draw_random(side_q8),
-                                  .y_q8 = draw_random(side_q8),
-                                  .reach_q8 = draw_random(side_q8 / 4),
-                                  .max_faint_area = draw_random(200),
-                                  .is_lost = draw_random(4) == 0};
+                                  .x_q8 = rng_below(&seed, side_q8),
+                                  .y_q8 = rng_below(&seed, side_q8),
+                                  .reach_q8 = rng_below(&seed, side_q8 / 4),
+                                  .max_faint_area = rng_below(&seed, 200),
+                                  .is_lost = rng_below(&seed, 4) == 0};
     for (int i = 0; i < n_spots; i++)
-        spot[i] = (struct glint_spot){.x_q8 = draw_random(side_q8),
-                                      .y_q8 = draw_random(side_q8),
-                                      .area = draw_random(200),
-                                      .faint = draw_random(4) == 0};
+        spot[i] = (struct glint_spot){.x_q8 = rng_below(&seed, side_q8),
+                                      .y_q8 = rng_below(&seed, side_q8),
+                                      .area = rng_below(&seed, 200),
+                                      .faint = rng_below(&seed, 4) == 0};
 }
 
 /* As the header says it; -1: out of reach. */
@@ -116,8 +111,8 @@ static void test_against_all_pairs(void **state)
     (void)state;
     for (int round = 0; round < 300; round++) {
         const int is_near = round % 3 == 0; /* eight that want the same */
-        const int n_seekers = draw_random(is_near ? 9 : 40);
-        const int n_spots = draw_random(40);
+        const int n_seekers = rng_below(&seed, is_near ? 9 : 40);
+        const int n_spots = rng_below(&seed, 40);
 
         scatter(n_seekers, n_spots, 300 << 8);
         for (int i = 0; is_near && i < n_seekers; i++) {

@@ -3,6 +3,7 @@
  * Light added to pictures of every coding, against the same in double: through
  * the standards' own curves and matrices, not the tables.
  */
+#include "support/rng.h"
 #include "image/quads.h"
 
 #include <math.h>
@@ -38,12 +39,6 @@ struct fixture {
 static struct fixture fixture;
 static struct glint_resolve resolve;
 static uint32_t seed = 1;
-
-static int draw_random(int n)
-{
-    seed = seed * 1664525 + 1013904223;
-    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
-}
 
 /* Strides of 5 bytes more than the row; UPSIDE_DOWN: negative ones. */
 static void set_up(enum glint_pixel_format format, int width, int height,
@@ -94,7 +89,8 @@ static void fill(int plane, int low, int high)
 {
     for (int y = 0; y < down(plane); y++)
         for (int x = 0; x < across(plane); x++)
-            *sample(plane, x, y) = (uint8_t)(low + draw_random(high - low + 1));
+            *sample(plane, x, y) =
+                (uint8_t)(low + rng_below(&seed, high - low + 1));
 }
 
 /* What the kernels see of light _q20. */
@@ -328,9 +324,11 @@ static void fill_light(void)
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < MAX_SIDE * MAX_SIDE; k++) {
-            const int32_t size_q20 = draw_random(1 << draw_random(23));
+            const int32_t size_q20 =
+                rng_below(&seed, 1 << rng_below(&seed, 23));
 
-            fixture.light_q20[i][k] = draw_random(3) ? size_q20 : -size_q20;
+            fixture.light_q20[i][k] =
+                rng_below(&seed, 3) ? size_q20 : -size_q20;
         }
 }
 
@@ -388,7 +386,7 @@ static void check_untouched(int dither)
                 fill(i, 0, 255);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 33 * 18; j++)
-                    fixture.light_q20[i][j] = -draw_random(3);
+                    fixture.light_q20[i][j] = -rng_below(&seed, 3);
             add_light(dither);
             assert_memory_equal(fixture.plane, fixture.before,
                                 sizeof fixture.plane);
@@ -637,9 +635,10 @@ static void test_long_stretches_are_short_ones(void **state)
                 .format = packed[k & 1], .width = n, .height = 1};
 
             for (int i = 0; i < 2 * n; i++)
-                want[i] = got[i] = (uint8_t)draw_random(256);
+                want[i] = got[i] = (uint8_t)rng_below(&seed, 256);
             for (int i = 0; i < 3 * 64; i++)
-                light.rgb_q16[i / 64][0][i % 64] = (uint16_t)draw_random(9000);
+                light.rgb_q16[i / 64][0][i % 64] =
+                    (uint16_t)rng_below(&seed, 9000);
             glint_resolve_init(&resolve, &image, 0,
                                k & 2 ? glint_system_sets() : 0u);
             glint_image_place(&image, got);
@@ -813,9 +812,10 @@ static void test_long_quads_are_short_ones(void **state)
                 light.rgb_q16[0][0], light.rgb_q16[1][0], light.rgb_q16[2][0]};
 
             for (size_t i = 0; i < bytes; i++)
-                want[i] = got[i] = (uint8_t)draw_random(256);
+                want[i] = got[i] = (uint8_t)rng_below(&seed, 256);
             for (int i = 0; i < 3 * 64; i++)
-                light.rgb_q16[i / 64][0][i % 64] = (uint16_t)draw_random(9000);
+                light.rgb_q16[i / 64][0][i % 64] =
+                    (uint16_t)rng_below(&seed, 9000);
             glint_resolve_init(&resolve, &image, 0,
                                k > 2 ? glint_system_sets() : 0u);
             glint_image_place(&image, got);

@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 #include <time.h>
 
+#include "support/rng.h"
 #include "glint/kernels.h"
 #include "kernels/kernels.h"
 #include "linux/sets.h"
@@ -32,9 +33,7 @@ static uint32_t seed = 99;
 
 static uint32_t draw(void)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 17;
-    return seed ^= seed << 5;
+    return rng_xorshift(&seed);
 }
 
 static void *blocks[400];

@@ -3,6 +3,7 @@
  * What is bright in random pictures of every format and threshold, against
  * pixel by pixel; and how far pixels are the same.
  */
+#include "support/rng.h"
 #include "lamps/bright.h"
 
 #include <math.h>
@@ -27,12 +28,6 @@ enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 static uint32_t seed = 1;
 
-static int draw_random(int n)
-{
-    seed = seed * 1664525 + 1013904223;
-    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
-}
-
 static struct glint_image new_image(enum glint_pixel_format format, int width)
 {
     struct glint_image image = {
@@ -52,7 +47,8 @@ static void fill(const struct glint_image *image, int rare)
 
     for (size_t i = 0; i < bytes; i++)
         image->plane[0][i] =
-            (uint8_t)(draw_random(rare) ? draw_random(64) : draw_random(256));
+            (uint8_t)(rng_below(&seed, rare) ? rng_below(&seed, 64)
+                                             : rng_below(&seed, 256));
 }
 
 static struct glint_bright *new_bright(int width, void **mem)
@@ -285,8 +281,9 @@ static void test_same_pixels(void **state)
         memset(image.plane[0], 255,
                glint_image_bytes(image.format, image.width, HEIGHT));
         for (int i = 0; i < 8; i++)
-            image.plane[0][draw_random((int)glint_image_bytes(
-                image.format, image.width, HEIGHT))] = 77;
+            image.plane[0][rng_below(
+                &seed, (int)glint_image_bytes(image.format, image.width,
+                                              HEIGHT))] = 77;
         glint_bright_begin(b, &image);
         glint_bright_set_low(b, 1);
         for (int y = 0; y < HEIGHT; y++) {

@@ -3,6 +3,7 @@
  * Lights found in drawn pictures: where they are, that they stay there, what is
  * no light, and regions of every shape against a flood fill.
  */
+#include "support/rng.h"
 #include "glint/lamps.h"
 
 #include <math.h>
@@ -21,19 +22,13 @@ enum { MAX_SPOTS = 1024 };
 static struct glint_spot spot[MAX_SPOTS];
 static uint32_t seed = 1;
 
-static int draw_random(int n)
-{
-    seed = seed * 1664525 + 1013904223;
-    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
-}
-
 /* Eight uniform numbers: a bell curve of standard deviation SIGMA. */
 static double draw_noise(double sigma)
 {
     double sum = 0;
 
     for (int i = 0; i < 8; i++)
-        sum += draw_random(1 << 20) * 0x1p-20 - 0.5;
+        sum += rng_below(&seed, 1 << 20) * 0x1p-20 - 0.5;
     return sigma * sum / sqrt(8 / 12.0);
 }
 
@@ -128,7 +123,7 @@ static int find_at_most(const struct glint_lamp_finder_config *cfg,
 
     assert_true(bytes > 0);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    memset(mem, draw_random(256), bytes);
+    memset(mem, rng_below(&seed, 256), bytes);
     assert_int_equal(glint_lamp_finder_init(&finder, cfg, mem, bytes),
                      GLINT_OK);
     n = glint_lamp_finder_find(finder, image, spot, max);
@@ -312,9 +307,9 @@ static void test_disc_is_found_to_a_sixteenth(void **state)
     for (int round = 0; round < 100; round++) {
         struct glint_image image = new_image(GLINT_GREY, 64, 48);
         struct glint_lamp_finder_config cfg = plain_config(&image, 2, 250);
-        const double radius = 1.5 + draw_random(600) / 100.0;
-        const double cx = 20 + draw_random(2000) / 100.0;
-        const double cy = 20 + draw_random(1000) / 100.0;
+        const double radius = 1.5 + rng_below(&seed, 600) / 100.0;
+        const double cx = 20 + rng_below(&seed, 2000) / 100.0;
+        const double cy = 20 + rng_below(&seed, 1000) / 100.0;
 
         draw_disc(&image, cx, cy, radius, 1);
         assert_int_equal(find(&cfg, &image), 1);
@@ -353,9 +348,9 @@ static void test_disc_with_defaults(void **state)
     for (int round = 0; round < 100; round++) {
         struct glint_image image = new_image(GLINT_GREY, 640, 480);
         struct glint_lamp_finder_config cfg = default_config(&image);
-        const double radius = 3 + draw_random(900) / 100.0;
-        const double cx = 20 + draw_random(60000) / 100.0;
-        const double cy = 20 + draw_random(44000) / 100.0;
+        const double radius = 3 + rng_below(&seed, 900) / 100.0;
+        const double cx = 20 + rng_below(&seed, 60000) / 100.0;
+        const double cy = 20 + rng_below(&seed, 44000) / 100.0;
 
         draw_lamp(&image, cx, cy, radius, 1.5);
         assert_int_equal(find(&cfg, &image), 1);
@@ -437,7 +432,7 @@ static void test_same_every_time(void **state)
     (void)state;
     cfg.merge_q15 = 300;
     for (int i = 0; i < 3 * 300 * 200; i++)
-        image.plane[0][i] = (uint8_t)draw_random(256);
+        image.plane[0][i] = (uint8_t)rng_below(&seed, 256);
     n = find_at_most(&cfg, &image, 100, &dropped);
     memcpy(first, spot, sizeof first);
     for (int round = 0; round < 3; round++) {
@@ -639,10 +634,10 @@ static void test_faint_regions_come_last(void **state)
         cfg.min_area = 4;
         cfg.merge_q15 = 6 * 32768 / 256;
         for (int i = 0; i < 200; i++) {
-            const int x = draw_random(250), y = draw_random(250);
+            const int x = rng_below(&seed, 250), y = rng_below(&seed, 250);
 
-            fill_grey(&image, x, y, x + 1 + draw_random(4),
-                      y + 1 + draw_random(4), 100 + draw_random(156));
+            fill_grey(&image, x, y, x + 1 + rng_below(&seed, 4),
+                      y + 1 + rng_below(&seed, 4), 100 + rng_below(&seed, 156));
         }
         n_lights = find_at_most(&cfg, &image, max, &dropped);
         memcpy(light, spot, sizeof light);
@@ -675,11 +670,12 @@ static void test_sums_of_a_large_region(void **state)
         double flux = 0, x_sum = 0, y_sum = 0, r2 = 0;
 
         for (int i = 0; i < 320 * 200; i++)
-            image.plane[0][i] = (uint8_t)(100 + draw_random(156));
+            image.plane[0][i] = (uint8_t)(100 + rng_below(&seed, 156));
         for (int i = 0; i < 30; i++) {
-            const int x = draw_random(250), y = draw_random(150);
+            const int x = rng_below(&seed, 250), y = rng_below(&seed, 150);
 
-            fill_grey(&image, x, y, x + 70, y + 50, draw_random(2) ? 255 : 40);
+            fill_grey(&image, x, y, x + 70, y + 50,
+                      rng_below(&seed, 2) ? 255 : 40);
         }
         for (int i = 0; i < 320 * 200; i++) {
             const double v = image.plane[0][i] / 255.0;
@@ -776,7 +772,7 @@ static void test_merged_ones_keep_their_distance(void **state)
     (void)state;
     cfg.merge_q15 = 12 * 32768 / 256;
     for (int i = 0; i < 1000; i++)
-        set_grey(&image, draw_random(256), draw_random(256), 255);
+        set_grey(&image, rng_below(&seed, 256), rng_below(&seed, 256), 255);
     for (int i = 0; i < 256 * 256; i++)
         area += image.plane[0][i] > 0;
     n = find(&cfg, &image);
@@ -839,7 +835,7 @@ static void test_more_lights_than_can_be_held(void **state)
     (void)state;
     for (int y = 0; y < 256; y += 4)
         for (int x = 0; x < 256; x += 4)
-            set_grey(&image, x, y, 150 + draw_random(106));
+            set_grey(&image, x, y, 150 + rng_below(&seed, 106));
     assert_int_equal(find_at_most(&cfg, &image, 1024, &dropped), 1024);
     assert_int_equal(dropped, 4096 - 1024);
     for (int i = 1; i < 1024; i++)
@@ -952,7 +948,7 @@ static void check_against_flood(int width, int height, int percent)
     int n, regions = 0;
 
     for (int i = 0; i < width * height; i++)
-        image.plane[0][i] = draw_random(100) < percent ? 255 : 0;
+        image.plane[0][i] = rng_below(&seed, 100) < percent ? 255 : 0;
     n = find(&cfg, &image);
     for (int i = 0; i < n; i++)
         of_area[spot[i].area]--;
@@ -971,8 +967,8 @@ static void test_random_shapes(void **state)
 {
     (void)state;
     for (int round = 0; round < 300; round++)
-        check_against_flood(1 + draw_random(64), 1 + draw_random(64),
-                            10 + draw_random(70));
+        check_against_flood(1 + rng_below(&seed, 64), 1 + rng_below(&seed, 64),
+                            10 + rng_below(&seed, 70));
 }
 
 /* ------------------------------------------------------------------- colour */

@@ -4,6 +4,7 @@
  * differences of sums against pixel by pixel, and scores without a look around
  * against scores with one.
  */
+#include "support/rng.h"
 #include "lamps/row_light.h"
 
 #include <setjmp.h>
@@ -28,12 +29,6 @@ enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 static uint32_t seed = 1;
 
-static int draw_random(int n)
-{
-    seed = seed * 1664525 + 1013904223;
-    return (int)((uint64_t)(seed >> 8) * (uint32_t)n >> 24);
-}
-
 struct fixture {
     struct glint_image image;
     struct glint_bright bright;
@@ -47,14 +42,14 @@ static void set_up(struct fixture *f, enum glint_pixel_format format)
     struct glint_arena arena = glint_arena_measure();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
     const int dark =
-        4 * draw_random(2); /* as around lamps, every second time */
+        4 * rng_below(&seed, 2); /* as around lamps, every second time */
     uint8_t *codes = malloc(bytes);
 
     assert_non_null(codes);
     for (size_t i = 0; i < bytes; i++)
-        codes[i] =
-            (uint8_t)(i > 4 && draw_random(2) ? codes[i - 4]
-                                              : draw_random(256) >> dark);
+        codes[i] = (uint8_t)(i > 4 && rng_below(&seed, 2)
+                                 ? codes[i - 4]
+                                 : rng_below(&seed, 256) >> dark);
     *f = (struct fixture){
         .image = {.format = format, .width = WIDTH, .height = HEIGHT}};
     glint_image_place(&f->image, codes);
@@ -104,8 +99,8 @@ static void add_plainly(const struct fixture *f, struct glint_region *region,
 /* Some runs in one or two stretches of a row, which may overlap. */
 static void check_row(struct fixture *f, int y)
 {
-    const int from = draw_random(20), to = from + draw_random(20);
-    const int next = to - draw_random(5) + 2;
+    const int from = rng_below(&seed, 20), to = from + rng_below(&seed, 20);
+    const int next = to - rng_below(&seed, 5) + 2;
     const int ends[2][2] = {{from, to}, {next < from ? from : next, WIDTH}};
     struct glint_region sum, plain;
 
@@ -144,25 +139,26 @@ static void test_light_of_runs(void **state)
 /* A region anywhere in the picture, of any light, that fills its box or not. */
 static struct glint_candidate draw_candidate(void)
 {
-    const int x0 = draw_random(WIDTH - 1), y0 = draw_random(HEIGHT - 1);
-    const int x1 = x0 + 1 + draw_random(WIDTH - x0);
-    const int y1 = y0 + 1 + draw_random(HEIGHT - y0);
+    const int x0 = rng_below(&seed, WIDTH - 1),
+              y0 = rng_below(&seed, HEIGHT - 1);
+    const int x1 = x0 + 1 + rng_below(&seed, WIDTH - x0);
+    const int y1 = y0 + 1 + rng_below(&seed, HEIGHT - y0);
     struct glint_candidate c = {.sum = {.x0 = x0, .y0 = y0}};
-    const int hidden = 10 + draw_random(11); /* bits below white */
-    const int32_t rgb_q20[3] = {(1 << 20) - draw_random(1 << hidden),
-                                (1 << 20) - draw_random(1 << hidden),
-                                (1 << 20) - draw_random(1 << hidden)};
+    const int hidden = 10 + rng_below(&seed, 11); /* bits below white */
+    const int32_t rgb_q20[3] = {(1 << 20) - rng_below(&seed, 1 << hidden),
+                                (1 << 20) - rng_below(&seed, 1 << hidden),
+                                (1 << 20) - rng_below(&seed, 1 << hidden)};
     const struct glint_region_light light = region_light_of(rgb_q20);
 
     for (int y = y0; y < y1; y++) {
         glint_region_add_run(&c.sum, x0, x1, y);
         glint_region_add_pixels(&c.sum, &light, x0, x1, y);
     }
-    if (draw_random(2)) { /* what a lamp may be */
-        c.sum.area -= draw_random(c.sum.area) / 8;
-        c.sum.n_clipped = c.sum.area - draw_random(c.sum.area);
+    if (rng_below(&seed, 2)) { /* what a lamp may be */
+        c.sum.area -= rng_below(&seed, c.sum.area) / 8;
+        c.sum.n_clipped = c.sum.area - rng_below(&seed, c.sum.area);
     } else
-        c.sum.area = 1 + draw_random(c.sum.area) / 256;
+        c.sum.area = 1 + rng_below(&seed, c.sum.area) / 256;
     return c;
 }
 

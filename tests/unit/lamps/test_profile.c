@@ -13,6 +13,7 @@
 #include "base/log2.h"
 #include "glint/glint.h"
 #include "support/power_scene.h"
+#include "support/rng.h"
 
 enum { W = 160, H = 120, MAX_SPOTS = 64 };
 
@@ -431,16 +432,16 @@ static void test_any_spots(void **state)
     (void)state;
     for (int round = 0; round < 60; round++) {
         for (int i = 0; i < 3 * W * H; i++)
-            codes[i] = (uint8_t)(round % 3 ? 255 * power_random(&seed)
-                                           : 255 * (power_random(&seed) > 0.5));
+            codes[i] = (uint8_t)(round % 3 ? 255 * rng_unit(&seed)
+                                           : 255 * (rng_unit(&seed) > 0.5));
         for (int i = 0; i < MAX_SPOTS; i++)
             spot[i] = (struct glint_spot){
-                .x_q8 = i % 4 ? (int)(256 * W * power_random(&seed))
-                              : any[(int)(7 * power_random(&seed))],
-                .y_q8 = i % 5 ? (int)(256 * H * power_random(&seed))
-                              : any[(int)(7 * power_random(&seed))],
-                .size_q8 = i % 3 ? (int)(2560 * power_random(&seed))
-                                 : any[(int)(7 * power_random(&seed))]};
+                .x_q8 = i % 4 ? (int)(256 * W * rng_unit(&seed))
+                              : any[(int)(7 * rng_unit(&seed))],
+                .y_q8 = i % 5 ? (int)(256 * H * rng_unit(&seed))
+                              : any[(int)(7 * rng_unit(&seed))],
+                .size_q8 = i % 3 ? (int)(2560 * rng_unit(&seed))
+                                 : any[(int)(7 * rng_unit(&seed))]};
         measure(&image, MAX_SPOTS);
         for (int i = 0; i < MAX_SPOTS; i++) {
             const struct glint_spot *s = &spot[i];

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "support/rng.h"
 #include "glint/lamps.h"
 #include "lamps/score.h"
 
@@ -25,12 +26,6 @@ struct scene {
 
 static struct glint_spot spot[MOST];
 static uint32_t seed;
-
-static double draw_random(void)
-{
-    seed = seed * 1664525 + 1013904223;
-    return (seed >> 8) * 0x1p-24;
-}
 
 static struct scene new_scene(int width, int height, double light)
 {
@@ -129,8 +124,8 @@ static int find(const struct scene *s, enum glint_pixel_format format,
     for (int y = 0; y < s->height; y++)
         for (int x = 0; x < s->width; x++) {
             const double noise =
-                sigma * (draw_random() + draw_random() + draw_random() - 1.5) *
-                2;
+                sigma *
+                (rng_unit(&seed) + rng_unit(&seed) + rng_unit(&seed) - 1.5) * 2;
             double rgb[3];
 
             for (int c = 0; c < 3; c++)
@@ -266,13 +261,13 @@ static void write_text(const struct scene *s, double light)
     for (int line = 0; line < 18; line++)
         for (double x = 0.05; x < 0.9; x += 0.012) {
             const double y = 0.04 + line * 0.03;
-            const double tall = 0.008 + 0.008 * draw_random();
+            const double tall = 0.008 + 0.008 * rng_unit(&seed);
 
-            if (draw_random() < 0.15)
+            if (rng_unit(&seed) < 0.15)
                 continue;
             fill_box(s, x, y, x + 0.003, y + tall, light);
             fill_box(s, x, y, x + 0.008, y + 0.003, light);
-            if (draw_random() < 0.5)
+            if (rng_unit(&seed) < 0.5)
                 fill_box(s, x + 0.006, y, x + 0.009, y + tall, light);
         }
 }
@@ -299,7 +294,7 @@ static void test_snow(void **state)
 
     (void)state;
     for (int i = 0; i < 3 * 600 * 400; i += 3) {
-        const double light = 0.45 + 0.7 * draw_random();
+        const double light = 0.45 + 0.7 * rng_unit(&seed);
 
         s.light[i] = s.light[i + 1] = s.light[i + 2] = light;
     }

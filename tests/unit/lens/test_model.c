@@ -17,6 +17,7 @@
 #include "glint/transfer.h"
 #include "support/model_builder.h"
 #include "support/shuffle.h"
+#include "support/rng.h"
 
 /* NULL: accepted. */
 static const char *reason_of(const void *data, size_t bytes)
@@ -615,15 +616,15 @@ static void fill_up(struct model_image *m, uint32_t *seed)
         for (uint32_t c = 0; c < n_sets * o[k].n_terms; c++) {
             const int last = (c + 1) % o[k].n_terms == 0;
             const int32_t size =
-                last ? left : (int32_t)(shuffle_next(seed) % (uint32_t)left);
+                last ? left : (int32_t)(rng_xorshift(seed) % (uint32_t)left);
 
-            coef[c] = shuffle_next(seed) % 2 ? size : -size;
+            coef[c] = rng_xorshift(seed) % 2 ? size : -size;
             left = last ? ONE - 1 : left - size;
         }
     }
     for (uint32_t k = 0; k < s->n_knots; k++) {
-        box[3 * k + 1] = (int32_t)(shuffle_next(seed) % ONE);
-        box[3 * k] = shuffle_next(seed) % 2 ? ONE - box[3 * k + 1]
+        box[3 * k + 1] = (int32_t)(rng_xorshift(seed) % ONE);
+        box[3 * k] = rng_xorshift(seed) % 2 ? ONE - box[3 * k + 1]
                                             : box[3 * k + 1] - ONE;
         box[3 * k + 2] = ONE;
     }
@@ -639,8 +640,8 @@ static void test_extremes(void **state)
 
     (void)state;
     for (int k = 0; k < 20000; k++) {
-        const int32_t sine_q30 = (int32_t)(shuffle_next(&seed) % (ONE / 4));
-        const int32_t wave_q24 = (int32_t)(shuffle_next(&seed) >> 4);
+        const int32_t sine_q30 = (int32_t)(rng_xorshift(&seed) % (ONE / 4));
+        const int32_t wave_q24 = (int32_t)(rng_xorshift(&seed) >> 4);
         const int32_t u_q30 = k % 3 ? ONE * (k % 3 * 2 - 3) : sine_q30;
         const int32_t v_q30 = k % 5 ? -ONE : sine_q30 * 2;
         struct glint_outputs out;

@@ -18,6 +18,7 @@
 
 #include <jpeglib.h>
 
+#include "support/rng.h"
 #include "jpeg/mjpeg.h"
 
 #define NAME "cam"
@@ -579,11 +580,6 @@ static void test_every_truncation(void **state)
     check_truncations(c);
 }
 
-static uint32_t next_random(uint32_t *seed)
-{
-    return *seed = *seed * 1664525U + 1013904223U, *seed >> 8;
-}
-
 /* STDERR_FILENO goes to FILE; returns what brings it back. */
 static int divert(FILE *file)
 {
@@ -613,7 +609,8 @@ static void test_damage(void **state)
         enum glint_status status;
 
         for (int n = 1 + i % 4; n > 0; n--)
-            b.data[next_random(&seed) % b.n] = (uint8_t)next_random(&seed);
+            b.data[(rng_bits(&seed) >> 8) % b.n] =
+                (uint8_t)(rng_bits(&seed) >> 8);
         status = glint_mjpeg_decode(d, b.data, b.n, &image, &error);
         assert_true(status == GLINT_OK || status == GLINT_E_FORMAT ||
                     status == GLINT_E_UNSUPPORTED);
@@ -643,7 +640,7 @@ static void test_garbage(void **state)
         uint8_t noise[600];
 
         for (size_t i = 0; i < n; i++)
-            noise[i] = n % 3 ? (uint8_t)next_random(&seed) : 0;
+            noise[i] = n % 3 ? (uint8_t)(rng_bits(&seed) >> 8) : 0;
         splice(&b, 0, 0, noise, n);
         expect_refusal(d, &b, GLINT_E_FORMAT, "");
         if (n > 2) { /* behind a start of image it may be a large one */

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/rng.h"
 #include "panel/panel.h"
 
 static const struct glint_pixel_layout xrgb8888 = {
@@ -309,12 +310,6 @@ static void test_refuses_layouts(void **state)
 
 /* ------------------------------------------------------------------ formats */
 
-static uint32_t next_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525 + 1013904223;
-    return *seed >> 8;
-}
-
 /* A picture in FORMAT of random codes, rows apart by PAD bytes more than they
  * need, upside down in memory where PAD is negative; malloc'ed. */
 static uint8_t *make_picture(struct glint_image *image,
@@ -329,7 +324,7 @@ static uint8_t *make_picture(struct glint_image *image,
 
     assert_non_null(mem);
     for (size_t i = 0; i < bytes; i++)
-        mem[i] = (uint8_t)next_random(&seed);
+        mem[i] = (uint8_t)(rng_bits(&seed) >> 8);
     *image = (struct glint_image){.format = format,
                                   .width = width,
                                   .height = height,

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/rng.h"
 #include "live/live_stats.h"
 
 static struct live_stats stats;
@@ -23,11 +24,6 @@ static void add_latency(int64_t us)
     const struct live_frame_times t = {.shown = true, .shown_us = us};
 
     live_stats_add(&stats, &t);
-}
-
-static uint32_t next_random(uint32_t *seed)
-{
-    return *seed = *seed * 1664525U + 1013904223U, *seed >> 8;
 }
 
 static int compare(const void *a, const void *b)
@@ -47,7 +43,7 @@ static void check_percentiles(int n, int64_t low_us, int64_t span_us)
 
     live_stats_start(&stats, 0);
     for (int i = 0; i < n; i++) {
-        const int64_t r = next_random(&seed) % span_us;
+        const int64_t r = (rng_bits(&seed) >> 8) % span_us;
 
         us[i] = low_us + r * r / span_us; /* more short ones than long */
         add_latency(us[i]);

@@ -13,6 +13,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../../support/rng.h"
+
 enum { MAX_LAMPS = 16 };
 
 struct scene {
@@ -33,10 +35,8 @@ static double noise(void)
     static uint32_t seed = 7;
     double sum = -6;
 
-    for (int i = 0; i < 12; i++) {
-        seed = seed * 1664525 + 1013904223;
-        sum += (seed >> 8) / 16777216.0;
-    }
+    for (int i = 0; i < 12; i++)
+        sum += rng_unit(&seed);
     return sum;
 }
 

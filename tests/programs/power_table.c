@@ -14,6 +14,7 @@
 #include "lamps/profile.h"
 #include "glint/glint.h"
 #include "support/power_scene.h"
+#include "support/rng.h"
 
 enum { EXPOSURES = 10, LAMPS = 240, MAX_ROWS = 1 << 17, MAX_SPOTS = 64 };
 
@@ -177,7 +178,7 @@ static void note(struct camera *c, const char *kind, int held, double power,
 
 static double between(double low, double high, uint32_t *seed)
 {
-    return low + (high - low) * power_random(seed);
+    return low + (high - low) * rng_unit(seed);
 }
 
 /* From tungsten, or sodium, to blue. */
@@ -186,7 +187,7 @@ static void any_colour(double *rgb, uint32_t *seed)
     static const double colours[6][3] = {{1, 1, 1},      {1, 0.55, 0.18},
                                          {1, 0.4, 0.02}, {0.35, 0.55, 1},
                                          {1, 0.82, 0.6}, {0.15, 1, 0.35}};
-    const double *from = colours[(int)(6 * power_random(seed))];
+    const double *from = colours[(int)(6 * rng_unit(seed))];
     double y;
 
     for (int i = 0; i < 3; i++)
@@ -200,12 +201,12 @@ static struct power_lamp any_lamp(int i, int width, int height, uint32_t *seed)
 {
     struct power_lamp l = {.shape = (enum power_shape)(i % POWER_SHAPES)};
 
-    l.radius = 0.3 * pow(100, power_random(seed));
+    l.radius = 0.3 * pow(100, rng_unit(seed));
     l.x = width / 2 + between(-1, 1, seed);
     l.y = height / 2 + between(-1, 1, seed);
     l.angle = between(0, 3.14, seed);
     l.sigma = between(0.5, 1.3, seed);
-    l.glare = 0.01 * pow(8, power_random(seed));
+    l.glare = 0.01 * pow(8, rng_unit(seed));
     l.reach = between(1, 3, seed);
     l.fall = between(2.3, 3.3, seed);
     any_colour(l.rgb, seed);
@@ -224,11 +225,11 @@ static void rendered(int i)
     double power, black, slope, noise;
 
     for (int k = 0; k < 5; k++)
-        power_random(&seed);
+        rng_unit(&seed);
     lamp = any_lamp(i, W, H, &seed);
     power = exp2(between(9, 16, &seed));
     black = i % 4 == 3 ? between(0.1, 0.6, &seed)
-                       : 0.001 * pow(50, power_random(&seed));
+                       : 0.001 * pow(50, rng_unit(&seed));
     slope = between(0, 0.6, &seed);
     noise = between(0, 3, &seed);
     power_draw(light, W, H, &lamp);

@@ -10,21 +10,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "support/rng.h"
 #include "formats/picture.h"
 #include "video/y4m.h"
 #include "options/tool.h"
 
-static uint32_t random_next(uint32_t *state)
-{
-    *state = *state * 1664525u + 1013904223u;
-    return *state >> 16;
-}
-
 /* Sum of three uniform numbers: -6 .. 6, bell-shaped. */
 static int noise(uint32_t *state)
 {
-    return (int)(random_next(state) % 5 + random_next(state) % 5 +
-                 random_next(state) % 5) -
+    return (int)((rng_bits(state) >> 16) % 5 + (rng_bits(state) >> 16) % 5 +
+                 (rng_bits(state) >> 16) % 5) -
            6;
 }
 
