@@ -2,7 +2,6 @@
 #include "glint/flare.h"
 
 #include "base/real.h"
-#include "flare/draw_over.h"
 #include "flare/state.h"
 #include "flare/wave_sets.h"
 
@@ -95,11 +94,14 @@ static int config_ok(const struct glint_flare_config *c)
            stop_ok(&c->stop, raster_of(c)->masks);
 }
 
-/* What the last frame drew. */
-static void forget_counts(struct glint_flare *f)
+void glint_flare_forget(struct glint_flare *flare)
 {
-    for (int i = 0; i < glint_workers_count(f->cfg.workers); i++)
-        f->worker[i].tile.n_tiles = f->worker[i].tile.n_held = 0;
+    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++) {
+        struct glint_tile_scratch *t = &flare->worker[i].tile;
+
+        t->n_tiles = t->n_held = 0;
+        t->blend = NULL;
+    }
 }
 
 size_t glint_flare_bytes(const struct glint_flare_config *cfg)
@@ -126,7 +128,7 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
     f = carve(&arena, cfg);
     f->cfg = *cfg;
     f->cfg.raster = raster_of(cfg);
-    forget_counts(f);
+    glint_flare_forget(f);
     if (f->cfg.raster->begin)
         f->cfg.raster->begin(f);
     glint_flare_begin(f);
@@ -356,68 +358,34 @@ void glint_flare_bin(struct glint_flare *flare, struct glint_flare_stats *stats)
     *stats = flare->stats;
 }
 
-struct under_job {
-    struct glint_flare *flare;
-    const struct glint_tiles *tiles;
-    const struct glint_flare_under *under;
-};
-
-static void under_job(void *ctx, int job, int worker)
-{
-    const struct under_job *j = ctx;
-
-    glint_tile_rows(j->tiles, j->under->pass, j->under->n, job, worker,
-                    &j->flare->worker[worker].tile);
-}
-
-/* The bins may be another frame's where nothing has been drawn. */
-static void draw_under(struct glint_flare *f, const struct glint_tiles *tiles,
-                       const struct glint_flare_under *under)
-{
-    struct under_job job = {f, tiles, under};
-
-    if (under->n)
-        glint_workers_run(f->cfg.workers, glint_tiles_down(tiles), under_job,
-                          &job);
-}
-
-void glint_flare_draw_over(struct glint_flare *flare,
-                           const struct glint_image *image,
-                           const struct glint_flare_under *under)
+struct glint_tiles glint_flare_start(struct glint_flare *flare,
+                                     const struct glint_image *image)
 {
     static const struct glint_image none = {.format = GLINT_YUYV};
-    const struct glint_tiles tiles = {.region = flare->bins.region,
-                                      .tile_log2 = flare->cfg.tile_log2,
-                                      .half = flare->half,
-                                      .width = flare->cfg.width,
-                                      .height = flare->cfg.height,
-                                      .image = image,
-                                      .resolve = flare->resolve,
-                                      .quads = flare->quads,
-                                      .blend = under->blend};
-    struct glint_pass pass[GLINT_MAX_PASSES];
 
-    forget_counts(flare);
-    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
-        flare->worker[i].tile.blend = under->n ? &under->rows[i] : NULL;
-    if (flare->stats.primitives == 0 && under->n == 0)
-        return;
     glint_resolve_init(flare->resolve, image ? image : &none, flare->cfg.dither,
                        flare->cfg.sets);
-    for (int i = 0; i < under->n; i++)
-        pass[i] = under->pass[i];
-    if (flare->stats.primitives == 0)
-        draw_under(flare, &tiles, under);
-    else
-        flare->cfg.raster->draw(flare, &tiles, pass, under->n);
+    return (struct glint_tiles){.region = flare->bins.region,
+                                .tile_log2 = flare->cfg.tile_log2,
+                                .half = flare->half,
+                                .width = flare->cfg.width,
+                                .height = flare->cfg.height,
+                                .image = image,
+                                .resolve = flare->resolve,
+                                .quads = flare->quads};
 }
 
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image)
 {
-    const struct glint_flare_under nothing = {NULL, 0, NULL, NULL};
+    struct glint_pass pass[1];
+    struct glint_tiles tiles;
 
-    glint_flare_draw_over(flare, image, &nothing);
+    glint_flare_forget(flare);
+    if (flare->stats.primitives == 0)
+        return; /* the bins may be another frame's */
+    tiles = glint_flare_start(flare, image);
+    flare->cfg.raster->draw(flare, &tiles, pass, 0);
 }
 
 int glint_flare_tiles(const struct glint_flare *flare)

@@ -69,6 +69,13 @@ struct glint_raster {
                  struct glint_pass *pass, int n_below);
 };
 
+/* Forgets what the last frame drew, and that anything was under it. */
+void glint_flare_forget(struct glint_flare *flare);
+
+/* What a frame is drawn onto. */
+struct glint_tiles glint_flare_start(struct glint_flare *flare,
+                                     const struct glint_image *image);
+
 /* A + B, held at INT_MAX: a need that large cannot be served anyway. */
 static inline int glint_flare_add_need(int a, int b)
 {

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/draw_over.h"
+
+#include "flare/state.h"
+
+struct draw {
+    struct glint_flare *flare;
+    const struct glint_tiles *tiles;
+    const struct glint_flare_under *under;
+};
+
+static void row_job(void *ctx, int job, int worker)
+{
+    const struct draw *d = ctx;
+
+    glint_tile_rows(d->tiles, d->under->pass, d->under->n, job, worker,
+                    &d->flare->worker[worker].tile);
+}
+
+void glint_flare_draw_over(struct glint_flare *flare,
+                           const struct glint_image *image,
+                           const struct glint_flare_under *under)
+{
+    struct glint_tiles tiles = glint_flare_start(flare, image);
+    struct draw alone = {flare, &tiles, under};
+    struct glint_pass pass[GLINT_MAX_PASSES];
+
+    glint_flare_forget(flare);
+    tiles.blend = under->blend;
+    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
+        flare->worker[i].tile.blend = &under->rows[i];
+    for (int i = 0; i < under->n; i++)
+        pass[i] = under->pass[i];
+    if (flare->stats.primitives > 0)
+        flare->cfg.raster->draw(flare, &tiles, pass, under->n);
+    else /* the bins may be another frame's */
+        glint_workers_run(flare->cfg.workers, glint_tiles_down(&tiles), row_job,
+                          &alone);
+}
