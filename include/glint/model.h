@@ -100,9 +100,9 @@ struct glint_model_system {
     int32_t box_exponent;
     uint32_t output_at; /* struct glint_model_output, kinds rising */
     uint8_t n_outputs, box_terms;
-    uint8_t hollow; /* k: what is seen within |v| < k / (k + 1), its rim, is
+    uint8_t annulus; /* k: what is seen within |v| < k / (k + 1), its rim, is
                        other parts' and not this one's; at most
-                       GLINT_MAX_HOLLOW, 0 with knots */
+                       GLINT_MAX_ANNULUS, 0 with knots */
     uint8_t zero;
 };
 
@@ -110,7 +110,7 @@ enum {
     GLINT_BOX_POWERS = 6, /* of s alone, the 0th among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
-    GLINT_MAX_HOLLOW = 15,
+    GLINT_MAX_ANNULUS = 15,
     GLINT_RAYS = 8,         /* that are computed at once */
     GLINT_TABLE_WIDTH = 16, /* of a row of powers of u: whole vectors */
     GLINT_MAX_MODEL_TERMS = 120

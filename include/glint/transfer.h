@@ -32,7 +32,7 @@ struct glint_transfer {
                           0 after init, for the caller to set */
     int32_t box[3];    /* middle, half width, half height at this angle */
     int32_t box_exponent;
-    uint8_t hollow;
+    uint8_t annulus;
     enum glint_basis basis;
     union {
         /* of u^a v^b: [b][a] */
@@ -79,14 +79,14 @@ struct glint_place {
     int32_t middle_x_q8, middle_y_q8; /* the sensor's centre, pixels */
 };
 
-/* V, _q30, at J of N steps from the middle of the box, or from the rim of a
- * hollow one, to 1. */
+/* V, _q30, at J of N steps from the middle of the box, or from the rim of
+ * an annular one, to 1. */
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 
 /* Fills the vertices of a grid of N_CELLS a side over the whole box, row by
  * row, [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a
  * vertex is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does
- * not fit a vertex is lost. Of a hollow box N_CELLS is even, at least 4; the
+ * not fit a vertex is lost. Of an annular box N_CELLS is even, at least 4; the
  * row in the middle is lost, and those beside it are its rim: n_cells - 2 rows
  * of cells cover what there is. */
 void glint_transfer_grid(struct glint_transfer *transfer,

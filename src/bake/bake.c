@@ -19,8 +19,8 @@ enum {
     REVISION = 11 /* of what is made of a lens: raised when models change */
 };
 
-/* Everything one model takes. */
-struct kitchen {
+/* All that the making of one model takes. */
+struct bake_run {
     const struct glint_prescription *lens;
     struct glint_bake_options options;
     struct glint_setup setup;
@@ -127,7 +127,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 /* ------------------------------------------------------------------- header */
 
 /* The direct image's flux as a polynomial in w. */
-static enum glint_status set_flux(const struct kitchen *k,
+static enum glint_status set_flux(const struct bake_run *run,
                                   struct glint_model_header *h)
 {
     enum { NODES = 9 };
@@ -141,7 +141,7 @@ static enum glint_status set_flux(const struct kitchen *k,
                                           .total = FLUX_POWERS - 1,
                                           .parity = -1,
                                           .terms = FLUX_POWERS};
-    const double *band = k->options.band_nm;
+    const double *band = run->options.band_nm;
     const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
     struct glint_poly poly;
 
@@ -149,7 +149,7 @@ static enum glint_status set_flux(const struct kitchen *k,
         w[i] = 2.0 * i / (NODES - 1) - 1;
         one[i] = 1;
         flux[i] = glint_direct_flux(
-            &k->setup, 1 / sqrt(0.5 * (lo + hi) + 0.5 * w[i] * (hi - lo)));
+            &run->setup, 1 / sqrt(0.5 * (lo + hi) + 0.5 * w[i] * (hi - lo)));
         if (flux[i] < 0)
             return GLINT_E_MEMORY;
     }
@@ -160,72 +160,74 @@ static enum glint_status set_flux(const struct kitchen *k,
     return GLINT_OK;
 }
 
-static enum glint_status set_header(const struct kitchen *k,
+static enum glint_status set_header(const struct bake_run *run,
                                     struct glint_model_header *h)
 {
-    const struct glint_optics *o = &k->setup.optics;
-    const double *band = k->options.band_nm;
-    const uint64_t key = glint_bake_key(k->lens, &k->options);
+    const struct glint_optics *o = &run->setup.optics;
+    const double *band = run->options.band_nm;
+    const uint64_t key = glint_bake_key(run->lens, &run->options);
 
     *h = (struct glint_model_header){
         .magic = GLINT_MODEL_MAGIC,
         .version = GLINT_MODEL_VERSION,
-        .basis = (uint32_t)k->options.basis,
+        .basis = (uint32_t)run->options.basis,
         .key = {(uint32_t)key, (uint32_t)(key >> 32)},
         .focal_mm = glint_real_of(o->focal_mm),
         .back_focal_mm = glint_real_of(o->back_focal_mm),
         .entrance_radius_mm = glint_real_of(o->entrance_radius_mm),
         .stop_radius_mm = glint_real_of(o->stop_radius_mm),
-        .f_number = glint_real_of(k->lens->f_number),
-        .film_width_mm = glint_real_of(k->lens->film_width_mm),
-        .film_height_mm = glint_real_of(k->lens->film_height_mm),
-        .field_mm = glint_real_of(field_of(k->lens, &k->options)),
-        .front_mm = glint_real_of(k->lens->surface[0].semi_mm),
+        .f_number = glint_real_of(run->lens->f_number),
+        .film_width_mm = glint_real_of(run->lens->film_width_mm),
+        .film_height_mm = glint_real_of(run->lens->film_height_mm),
+        .field_mm = glint_real_of(field_of(run->lens, &run->options)),
+        .front_mm = glint_real_of(run->lens->surface[0].semi_mm),
         .wave_lo_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[1] * band[1])),
         .wave_hi_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[0] * band[0])),
         .sine_hi_q30 = (int32_t)lrint(
-            0x1p30 * sin(k->options.max_deg * 0.017453292519943295)),
-        .n_surfaces = (uint32_t)k->lens->n_surfaces};
-    snprintf(h->name, sizeof h->name, "%s", k->lens->name);
-    return set_flux(k, h);
+            0x1p30 * sin(run->options.max_deg * 0.017453292519943295)),
+        .n_surfaces = (uint32_t)run->lens->n_surfaces};
+    snprintf(h->name, sizeof h->name, "%s", run->lens->name);
+    return set_flux(run, h);
 }
 
 /* --------------------------------------------------------------------- jobs */
 
-static void hunt_init(const struct kitchen *k, int ghost,
-                      struct glint_hunt *hunt)
+static void visible_init(const struct bake_run *run, int ghost,
+                         struct glint_visible *visible)
 {
-    glint_hunt_init(hunt, &k->setup, ghost, field_of(k->lens, &k->options),
-                    k->options.band_nm);
+    glint_visible_init(visible, &run->setup, ghost,
+                       field_of(run->lens, &run->options),
+                       run->options.band_nm);
 }
 
-static enum glint_status quantise_ghost(struct kitchen *k, int ghost)
+static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
 {
-    const struct glint_fitted_ghost *f = &k->fitted[ghost];
+    const struct glint_fitted_ghost *f = &run->fitted[ghost];
     enum glint_status status = GLINT_OK;
 
-    k->quantised[ghost] =
-        calloc((size_t)f->n_systems + 1, sizeof **k->quantised);
-    if (!k->quantised[ghost])
+    run->quantised[ghost] =
+        calloc((size_t)f->n_systems + 1, sizeof **run->quantised);
+    if (!run->quantised[ghost])
         return GLINT_E_MEMORY;
     for (int i = 0; i < f->n_systems && status == GLINT_OK; i++)
-        status = glint_quantise(&f->system[i], &k->quantised[ghost][i]);
+        status = glint_quantise(&f->system[i], &run->quantised[ghost][i]);
     return status;
 }
 
-static enum glint_status fit_published(struct kitchen *k, int ghost)
+static enum glint_status fit_published(struct bake_run *run, int ghost)
 {
     struct glint_published_options options;
 
-    glint_published_defaults(&options, &k->setup);
-    options.max_deg = k->options.max_deg;
-    options.field_mm = field_of(k->lens, &k->options);
-    return glint_published_fit(&k->setup, ghost, &options, &k->fitted[ghost]);
+    glint_published_defaults(&options, &run->setup);
+    options.max_deg = run->options.max_deg;
+    options.field_mm = field_of(run->lens, &run->options);
+    return glint_published_fit(&run->setup, ghost, &options,
+                               &run->fitted[ghost]);
 }
 
-static enum glint_status fit_auto(struct kitchen *k, int ghost)
+static enum glint_status fit_auto(struct bake_run *run, int ghost)
 {
-    const double film = k->lens->film_width_mm, t = k->options.tolerance;
+    const double film = run->lens->film_width_mm, t = run->options.tolerance;
     const struct glint_tolerance tolerance = {
         .sensor_mm = 0.04 * t * film / 1920,
         .faint_sensor_mm = 0.07 * t * film / 1920,
@@ -238,62 +240,62 @@ static enum glint_status fit_auto(struct kitchen *k, int ghost)
         .axis = fmin(1, t),
         .axis_depth = (int)fmin(GLINT_MAX_AXIS_DEPTH,
                                 GLINT_PART_DEPTH + fmax(0, ceil(-log2(t)))),
-        .brightness = &k->brightness};
-    struct glint_hunt *hunt = malloc(sizeof *hunt);
+        .brightness = &run->brightness};
+    struct glint_visible *visible = malloc(sizeof *visible);
     enum glint_status status = GLINT_E_MEMORY;
 
-    if (hunt) {
-        hunt_init(k, ghost, hunt);
-        status = glint_fit_ghost(hunt, k->options.max_deg, &tolerance,
-                                 &k->fitted[ghost]);
+    if (visible) {
+        visible_init(run, ghost, visible);
+        status = glint_fit_ghost(visible, run->options.max_deg, &tolerance,
+                                 &run->fitted[ghost]);
     }
-    free(hunt);
+    free(visible);
     return status;
 }
 
 static void fit_job(void *ctx, int ghost, int worker)
 {
-    struct kitchen *k = ctx;
+    struct bake_run *run = ctx;
     (void)worker;
-    k->status[ghost] = k->options.basis == GLINT_BASIS_SPARSE
-                           ? fit_published(k, ghost)
-                           : fit_auto(k, ghost);
+    run->status[ghost] = run->options.basis == GLINT_BASIS_SPARSE
+                             ? fit_published(run, ghost)
+                             : fit_auto(run, ghost);
 }
 
 static void quantise_job(void *ctx, int ghost, int worker)
 {
-    struct kitchen *k = ctx;
+    struct bake_run *run = ctx;
     (void)worker;
-    k->status[ghost] = quantise_ghost(k, ghost);
+    run->status[ghost] = quantise_ghost(run, ghost);
 }
 
 static void measure_job(void *ctx, int ghost, int worker)
 {
-    struct kitchen *k = ctx;
-    const struct glint_lens lens = glint_draft_lens(&k->draft);
-    struct glint_hunt *hunt = malloc(sizeof *hunt);
+    struct bake_run *run = ctx;
+    const struct glint_lens lens = glint_draft_lens(&run->draft);
+    struct glint_visible *visible = malloc(sizeof *visible);
 
     (void)worker;
-    k->status[ghost] = GLINT_E_MEMORY;
-    if (!hunt)
+    run->status[ghost] = GLINT_E_MEMORY;
+    if (!visible)
         return;
-    hunt_init(k, ghost, hunt);
-    for (int i = 0; i < k->fitted[ghost].n_systems; i++) {
+    visible_init(run, ghost, visible);
+    for (int i = 0; i < run->fitted[ghost].n_systems; i++) {
         struct glint_measured m;
 
-        glint_measure_system(hunt, &lens, k->first[ghost] + i,
-                             &k->fitted[ghost].system[i], &m);
-        glint_draft_note(&k->draft, k->first[ghost] + i, &m);
-        k->intruders[ghost] += m.intruders;
-        k->rays[ghost] += m.rays;
+        glint_measure_system(visible, &lens, run->first[ghost] + i,
+                             &run->fitted[ghost].system[i], &m);
+        glint_draft_note(&run->draft, run->first[ghost] + i, &m);
+        run->intruders[ghost] += m.intruders;
+        run->rays[ghost] += m.rays;
     }
-    k->status[ghost] = GLINT_OK;
-    free(hunt);
+    run->status[ghost] = GLINT_OK;
+    free(visible);
 }
 
 /* A job for every ghost, and the share of progress it stands for. */
 struct round {
-    struct kitchen *kitchen;
+    struct bake_run *run;
     glint_job_fn *job;
     double from, to;
     int most; /* jobs that were begun */
@@ -304,28 +306,28 @@ struct round {
 static void round_job(void *ctx, int job, int worker)
 {
     struct round *r = ctx;
-    const struct glint_bake_options *o = &r->kitchen->options;
-    const int n = r->kitchen->setup.n_ghosts;
+    const struct glint_bake_options *o = &r->run->options;
+    const int n = r->run->setup.n_ghosts;
 
-    r->job(r->kitchen, job, worker);
+    r->job(r->run, job, worker);
     if (worker || !o->progress || job < r->most)
         return;
     r->most = job;
     o->progress(o->progress_ctx, r->from + (r->to - r->from) * job / n);
 }
 
-static enum glint_status for_ghosts(struct kitchen *k, glint_job_fn *job,
+static enum glint_status for_ghosts(struct bake_run *run, glint_job_fn *job,
                                     double from, double to)
 {
-    struct round round = {k, job, from, to, 0};
-    const int n = k->setup.n_ghosts;
+    struct round round = {run, job, from, to, 0};
+    const int n = run->setup.n_ghosts;
 
-    glint_workers_run(k->options.workers, n, round_job, &round);
-    if (k->options.progress)
-        k->options.progress(k->options.progress_ctx, to);
+    glint_workers_run(run->options.workers, n, round_job, &round);
+    if (run->options.progress)
+        run->options.progress(run->options.progress_ctx, to);
     for (int i = 0; i < n; i++)
-        if (k->status[i] != GLINT_OK)
-            return k->status[i];
+        if (run->status[i] != GLINT_OK)
+            return run->status[i];
     return GLINT_OK;
 }
 
@@ -342,25 +344,25 @@ static int parts_of(const struct glint_fitted_ghost *ghost)
 
 /* Gives the further parts of parted ghosts places of their own behind all
  * ghosts. */
-static enum glint_status part_ghosts(struct kitchen *k)
+static enum glint_status part_ghosts(struct bake_run *run)
 {
-    struct glint_setup *s = &k->setup;
+    struct glint_setup *s = &run->setup;
     const int n = s->n_ghosts;
     enum glint_status status = GLINT_OK;
 
     for (int ghost = 0; ghost < n; ghost++) {
-        const int n_parts = parts_of(&k->fitted[ghost]);
+        const int n_parts = parts_of(&run->fitted[ghost]);
 
         for (int part = 1; part < n_parts && status == GLINT_OK; part++) {
             if (s->n_ghosts == GLINT_MAX_GHOSTS) {
-                snprintf(k->error->text, sizeof k->error->text,
+                snprintf(run->error->text, sizeof run->error->text,
                          "%s: more than %d ghosts and parts of ghosts",
-                         k->lens->name, GLINT_MAX_GHOSTS);
+                         run->lens->name, GLINT_MAX_GHOSTS);
                 return GLINT_E_LENS;
             }
             s->ghost[s->n_ghosts] = s->ghost[ghost];
-            status = glint_fitted_part(&k->fitted[ghost], part,
-                                       &k->fitted[s->n_ghosts]);
+            status = glint_fitted_part(&run->fitted[ghost], part,
+                                       &run->fitted[s->n_ghosts]);
             s->n_ghosts++;
             s->n_parts++;
         }
@@ -368,92 +370,93 @@ static enum glint_status part_ghosts(struct kitchen *k)
     return status;
 }
 
-static enum glint_status reserve(struct kitchen *k)
+static enum glint_status reserve(struct bake_run *run)
 {
     const size_t n = GLINT_MAX_GHOSTS;
 
-    k->fitted = calloc(n, sizeof *k->fitted);
-    k->quantised = calloc(n, sizeof *k->quantised);
-    k->status = calloc(n, sizeof *k->status);
-    k->first = calloc(n, sizeof *k->first);
-    k->intruders = calloc(n, sizeof *k->intruders);
-    k->rays = calloc(n, sizeof *k->rays);
-    return k->fitted && k->quantised && k->status && k->first && k->intruders &&
-                   k->rays
+    run->fitted = calloc(n, sizeof *run->fitted);
+    run->quantised = calloc(n, sizeof *run->quantised);
+    run->status = calloc(n, sizeof *run->status);
+    run->first = calloc(n, sizeof *run->first);
+    run->intruders = calloc(n, sizeof *run->intruders);
+    run->rays = calloc(n, sizeof *run->rays);
+    return run->fitted && run->quantised && run->status && run->first &&
+                   run->intruders && run->rays
                ? GLINT_OK
                : GLINT_E_MEMORY;
 }
 
-static void clear(struct kitchen *k)
+static void clear(struct bake_run *run)
 {
-    for (int g = 0; g < k->setup.n_ghosts && k->fitted && k->quantised; g++) {
-        for (int i = 0; i < k->fitted[g].n_systems && k->quantised[g]; i++)
-            glint_quantised_finish(&k->quantised[g][i]);
-        free(k->quantised[g]);
-        glint_fitted_finish(&k->fitted[g]);
+    for (int g = 0; g < run->setup.n_ghosts && run->fitted && run->quantised;
+         g++) {
+        for (int i = 0; i < run->fitted[g].n_systems && run->quantised[g]; i++)
+            glint_quantised_finish(&run->quantised[g][i]);
+        free(run->quantised[g]);
+        glint_fitted_finish(&run->fitted[g]);
     }
-    free(k->fitted);
-    free(k->quantised);
-    free(k->status);
-    free(k->first);
-    free(k->intruders);
-    free(k->rays);
-    free(k->draft.data);
+    free(run->fitted);
+    free(run->quantised);
+    free(run->status);
+    free(run->first);
+    free(run->intruders);
+    free(run->rays);
+    free(run->draft.data);
 }
 
 /* What no reader would take is not handed out. */
-static enum glint_status check_draft(const struct kitchen *k)
+static enum glint_status check_draft(const struct bake_run *run)
 {
     struct glint_lens lens;
     const char *reason;
 
-    if (glint_lens_open(&lens, k->draft.data, k->draft.bytes, &reason) ==
+    if (glint_lens_open(&lens, run->draft.data, run->draft.bytes, &reason) ==
         GLINT_OK)
         return GLINT_OK;
-    snprintf(k->error->text, sizeof k->error->text, "%s: %s", k->lens->name,
-             reason);
+    snprintf(run->error->text, sizeof run->error->text, "%s: %s",
+             run->lens->name, reason);
     return GLINT_E_LENS;
 }
 
-static enum glint_status cook(struct kitchen *k)
+static enum glint_status bake_run(struct bake_run *run)
 {
     struct glint_model_header header;
-    enum glint_status status = reserve(k);
+    enum glint_status status = reserve(run);
 
     if (status == GLINT_OK)
-        status = set_header(k, &header);
+        status = set_header(run, &header);
     if (status == GLINT_OK)
-        status = glint_brightness_find(&k->brightness, &k->setup,
-                                       field_of(k->lens, &k->options),
-                                       k->options.band_nm, k->options.workers);
+        status = glint_brightness_find(
+            &run->brightness, &run->setup, field_of(run->lens, &run->options),
+            run->options.band_nm, run->options.workers);
     if (status == GLINT_OK)
-        status = for_ghosts(k, fit_job, 0, 0.88);
+        status = for_ghosts(run, fit_job, 0, 0.88);
     if (status == GLINT_OK)
-        status = part_ghosts(k);
+        status = part_ghosts(run);
     if (status == GLINT_OK)
-        status = for_ghosts(k, quantise_job, 0.88, 0.9);
+        status = for_ghosts(run, quantise_job, 0.88, 0.9);
     if (status == GLINT_OK)
-        status = glint_draft_write(&k->draft, &k->setup, &header, k->fitted,
-                                   k->quantised);
+        status = glint_draft_write(&run->draft, &run->setup, &header,
+                                   run->fitted, run->quantised);
     if (status != GLINT_OK)
         return status;
-    for (int g = 1; g < k->setup.n_ghosts; g++)
-        k->first[g] = k->first[g - 1] + k->fitted[g - 1].n_systems;
-    status = for_ghosts(k, measure_job, 0.9, 1);
+    for (int g = 1; g < run->setup.n_ghosts; g++)
+        run->first[g] = run->first[g - 1] + run->fitted[g - 1].n_systems;
+    status = for_ghosts(run, measure_job, 0.9, 1);
     if (status != GLINT_OK)
         return status;
-    glint_draft_close(&k->draft);
-    return check_draft(k);
+    glint_draft_close(&run->draft);
+    return check_draft(run);
 }
 
-static void sum_up(const struct kitchen *k, struct glint_bake_report *r)
+static void sum_up(const struct bake_run *run, struct glint_bake_report *r)
 {
     *r = (struct glint_bake_report){0, 0, 0};
-    for (int g = 0; g < k->setup.n_ghosts; g++) {
-        r->rays += k->rays[g];
-        r->intruders += k->intruders[g];
-        for (int i = 0; i < k->fitted[g].n_systems; i++)
-            r->unmet += !k->fitted[g].system[i].met;
+    for (int g = 0; g < run->setup.n_ghosts; g++) {
+        r->rays += run->rays[g];
+        r->intruders += run->intruders[g];
+        for (int i = 0; i < run->fitted[g].n_systems; i++)
+            r->unmet += !run->fitted[g].system[i].met;
     }
 }
 
@@ -464,32 +467,32 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                              struct glint_error *error)
 {
     static const double rgb_nm[] = {650, 532, 450};
-    struct kitchen *k = calloc(1, sizeof *k);
+    struct bake_run *run = calloc(1, sizeof *run);
     enum glint_status status;
 
     error->text[0] = 0;
-    if (!k)
+    if (!run)
         return GLINT_E_MEMORY;
-    k->lens = lens;
-    k->options = *options;
-    k->error = error;
+    run->lens = lens;
+    run->options = *options;
+    run->error = error;
     status = check(options, error);
     if (status == GLINT_OK)
-        status = glint_setup_init(&k->setup, lens, 0, 0, rgb_nm, 3, error);
+        status = glint_setup_init(&run->setup, lens, 0, 0, rgb_nm, 3, error);
     if (status == GLINT_OK) {
-        status = cook(k);
+        status = bake_run(run);
         if (status == GLINT_E_LENS && !error->text[0])
             snprintf(error->text, sizeof error->text,
                      "%s: no proof that its integers cannot overflow",
                      lens->name);
         if (status == GLINT_OK) {
-            sum_up(k, report);
-            *model = k->draft.data;
-            *bytes = k->draft.bytes;
-            k->draft.data = NULL;
+            sum_up(run, report);
+            *model = run->draft.data;
+            *bytes = run->draft.bytes;
+            run->draft.data = NULL;
         }
-        clear(k);
+        clear(run);
     }
-    free(k);
+    free(run);
     return status;
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/fit/zone.h"
+#include "bake/fit/zone_rays.h"
 #include "bake/trace/degrees.h"
 #include "glint/transfer.h"
 
@@ -26,7 +26,7 @@ static double next(struct random *r)
 
 /* A bundle and its exact counterpart. */
 struct meter {
-    const struct glint_hunt *hunt;
+    const struct glint_visible *visible;
     const struct glint_fitted_system *fitted;
     struct glint_transfer transfer;
     struct glint_path path;
@@ -76,7 +76,7 @@ static void note_barrels(struct meter *b, const struct glint_outputs *o,
 static void note_ray(struct meter *b, const struct glint_ray *ray,
                      const struct glint_outputs *o, double (*hits)[2])
 {
-    const struct glint_setup *s = b->hunt->setup;
+    const struct glint_setup *s = b->visible->setup;
     const double px = 1920 / s->lens->film_width_mm;
     const double stop = s->optics.stop_radius_mm;
 
@@ -101,7 +101,7 @@ static bool passes(const struct meter *b, const struct glint_outputs *o)
     bool clear = hypot(value(b, o, GLINT_OUT_STOP_X),
                        value(b, o, GLINT_OUT_STOP_Y)) <= 1 &&
                  hypot(value(b, o, GLINT_OUT_SENSOR_X),
-                       value(b, o, GLINT_OUT_SENSOR_Y)) <= b->hunt->field_mm;
+                       value(b, o, GLINT_OUT_SENSOR_Y)) <= b->visible->field_mm;
 
     for (int kind = GLINT_OUT_RADIUS; kind < GLINT_OUT_KINDS; kind++)
         clear &= !has(b, kind) || value(b, o, kind) <= 1;
@@ -114,7 +114,7 @@ static bool well_outside(const struct meter *b, enum glint_ray_status status,
 {
     return status != GLINT_RAY_OK || ray->rel_radius > 1.03 ||
            hypot(ray->stop_x_mm, ray->stop_y_mm) >
-               1.03 * b->hunt->setup->optics.stop_radius_mm;
+               1.03 * b->visible->setup->optics.stop_radius_mm;
 }
 
 static void try_ray(struct meter *b, double u, double v)
@@ -129,7 +129,7 @@ static void try_ray(struct meter *b, double u, double v)
 
     glint_transfer_ray(&b->transfer, (int32_t)lrint(u * 0x1p30),
                        (int32_t)lrint(v * 0x1p30), &o);
-    if (status == GLINT_RAY_OK && glint_hunt_visible(b->hunt, &ray))
+    if (status == GLINT_RAY_OK && glint_visible_passes(b->visible, &ray))
         note_ray(b, &ray, &o, hits);
     else if (well_outside(b, status, &ray) && passes(b, &o))
         b->out->intruders++;
@@ -181,29 +181,29 @@ static bool set_bundle(struct meter *b, const struct glint_lens *lens,
         (int32_t)(part * ((double)s->sine_hi_q30 - s->sine_lo_q30));
     const int32_t wave_q24 = (int32_t)lrint(wave);
 
-    if (!glint_transfer_init(&b->transfer, lens, b->hunt->ghost, sine_q30,
+    if (!glint_transfer_init(&b->transfer, lens, b->visible->ghost, sine_q30,
                              wave_q24) ||
         b->transfer.system != s)
         return false; /* on a border: the other side's */
     b->direction[0] = sine_q30 * 0x1p-30;
     b->direction[1] = 0;
     b->direction[2] = sqrt(1 - b->direction[0] * b->direction[0]);
-    glint_path_init(&b->path, b->hunt->setup->lens,
-                    &b->hunt->setup->ghost[b->hunt->ghost],
+    glint_path_init(&b->path, b->visible->setup->lens,
+                    &b->visible->setup->ghost[b->visible->ghost],
                     1e3 / sqrt(wave_q24 * 0x1p-24));
     return true;
 }
 
-void glint_measure_system(const struct glint_hunt *hunt,
+void glint_measure_system(const struct glint_visible *visible,
                           const struct glint_lens *lens, int system,
                           const struct glint_fitted_system *fitted,
                           struct glint_measured *out)
 {
-    const double rim = glint_zone_rim(fitted->hollow);
+    const double rim = glint_zone_rim(fitted->annulus);
     struct random random = {(uint64_t)system * 977 + 1};
     double error[GLINT_OUT_KINDS][RAYS], energy[RAYS];
     struct meter b = {
-        .hunt = hunt, .fitted = fitted, .energy = energy, .out = out};
+        .visible = visible, .fitted = fitted, .energy = energy, .out = out};
 
     *out = (struct glint_measured){0};
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)

@@ -7,7 +7,7 @@
 #define GLINT_BAKE_MEASURE_MODEL_H
 
 #include "bake/fit/fitted.h"
-#include "bake/fit/hunt.h"
+#include "bake/fit/visible.h"
 #include "glint/model.h"
 
 struct glint_errors {
@@ -22,7 +22,7 @@ struct glint_measured {
 };
 
 /* Measures system SYSTEM of LENS, made from FITTED. Deterministic. */
-void glint_measure_system(const struct glint_hunt *hunt,
+void glint_measure_system(const struct glint_visible *visible,
                           const struct glint_lens *lens, int system,
                           const struct glint_fitted_system *fitted,
                           struct glint_measured *out);

@@ -179,7 +179,7 @@ static void write_system(struct glint_draft *d, uint32_t where,
         .output_at = output_at,
         .n_outputs = (uint8_t)f->n_outputs,
         .box_terms = box_terms,
-        .hollow = (uint8_t)f->hollow};
+        .annulus = (uint8_t)f->annulus};
 
     amend(d, where, &system, sizeof system);
 }

@@ -67,7 +67,7 @@ static struct glint_real colour_of(const struct glint_wave *w,
     return real_of(most, -28);
 }
 
-/* Flux of the whole box, or of what a hollow one is, at energy 2^EXPONENT. */
+/* Flux of the whole box, or of what an annular one is, at energy 2^EXPONENT. */
 static struct glint_real flux_of(const struct glint_plan *p,
                                  const struct glint_bundle_plan *s,
                                  const struct glint_transfer *t,
@@ -79,8 +79,8 @@ static struct glint_real flux_of(const struct glint_plan *p,
 
     x.exponent += 2 + exponent; /* both are halves */
     x.exponent -= 2 * p->half;  /* over pixels as large as four */
-    if (t->hollow)
-        x = real_over(x, real_of(t->hollow + 1, 0));
+    if (t->annulus)
+        x = real_over(x, real_of(t->annulus + 1, 0));
     x = real_times(x, real_of(b->cosine_q30, -30));
     x = real_times(x, real_times(w->weight, b->power));
     return real_times(x, colour);
@@ -141,7 +141,7 @@ static int energy_up(int64_t energy)
 static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
                      struct glint_real flux)
 {
-    const int rows = b->n_cells - (t->hollow ? 2 : 0);
+    const int rows = b->n_cells - (t->annulus ? 2 : 0);
     const struct glint_real cell =
         real_over(flux, real_of((int64_t)b->n_cells * rows, 0));
 

@@ -133,7 +133,7 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
 }
 
 /* As N, but even, and two more if there is room. */
-static int hollow_cells(int n)
+static int annular_cells(int n)
 {
     const int more = (n + 3) / 2 * 2;
 
@@ -147,7 +147,7 @@ int glint_plan_cells(const struct glint_plan *plan,
 {
     const int n = cells_of(plan, probe, transfer, irradiance);
 
-    return transfer->hollow ? hollow_cells(n) : n;
+    return transfer->annulus ? annular_cells(n) : n;
 }
 
 /* What kind K bends by over the box, all ways together, in its units over

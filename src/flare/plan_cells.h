@@ -19,7 +19,7 @@ static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
 }
 
 /* Cells a side of the grid of a bundle that shines with IRRADIANCE, display
- * white. Of a hollow box two rows of them are the middle's. */
+ * white. Of an annular box two rows of them are the middle's. */
 int glint_plan_cells(const struct glint_plan *plan,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer,

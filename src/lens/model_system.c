@@ -254,8 +254,8 @@ const char *glint_model_check_system(struct glint_model_check *check,
     if (s->sine_lo_q30 < 0 || s->sine_lo_q30 >= s->sine_hi_q30 ||
         s->sine_hi_q30 > MODEL_LIMIT)
         return "a system's angles are out of range";
-    if (s->hollow > GLINT_MAX_HOLLOW || (s->hollow && s->n_knots) || s->zero)
-        return "a system is hollow in a way that there is not";
+    if (s->annulus > GLINT_MAX_ANNULUS || (s->annulus && s->n_knots) || s->zero)
+        return "a system's annulus is out of range";
     if (s->wave_lo_q24 <= 0 || s->wave_lo_q24 > s->wave_hi_q24)
         return "a system's band is out of range";
     reason = check_knots(check, s);

@@ -243,7 +243,7 @@ int glint_transfer_init(struct glint_transfer *transfer,
         return 0;
     clear(transfer);
     transfer->system = system;
-    transfer->hollow = (uint8_t)system->hollow;
+    transfer->annulus = (uint8_t)system->annulus;
     transfer->basis = (enum glint_basis)lens->header->basis;
     settle(&set, lens, system, sine_q30, wave_q24);
     set_box(transfer, lens, &set);

@@ -162,17 +162,17 @@ static int32_t node_q30(int k, int n_cells)
 
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
 {
-    const int rim = transfer->hollow;
+    const int rim = transfer->annulus;
 
     /* NOLINTNEXTLINE: there is a step */
     return (int32_t)q_divide(TRANSFER_ONE_Q30 * ((int64_t)rim * n + j),
                              (rim + 1) * n);
 }
 
-/* Whether row J lies between the two sides of a hollow box. */
+/* Whether row J lies between the two sides of an annular box. */
 static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
 {
-    return t->hollow && 2 * j == n_cells;
+    return t->annulus && 2 * j == n_cells;
 }
 
 /* V of row J. */
@@ -180,7 +180,7 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
 {
     const int last = n_cells / 2 - 1; /* of the lower side, at its rim */
 
-    if (!t->hollow)
+    if (!t->annulus)
         return node_q30(j, n_cells);
     return j <= last ? -glint_transfer_v(t, last - j, last)
                      : glint_transfer_v(t, last - (n_cells - j), last);

@@ -64,7 +64,7 @@ static void check_grids(struct glint_transfer *t)
             {k < 6 ? INT32_MAX : 1 << 30, exponent[k % 4]},
             960 << 8,
             540 << 8};
-        const int n_cells = t->hollow ? 4 : 1 + k % 3;
+        const int n_cells = t->annulus ? 4 : 1 + k % 3;
 
         memset(v, 0, sizeof v);
         glint_transfer_grid(t, &place, n_cells, v);

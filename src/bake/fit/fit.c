@@ -37,12 +37,12 @@ enum {
 };
 
 struct fitter {
-    const struct glint_hunt *hunt;
+    const struct glint_visible *visible;
     struct glint_fitted_ghost *out;
     struct glint_zone_fit fit;
     glint_zone_survey survey;
     struct glint_visible_profile profile;
-    struct glint_hunt in_band, in_part;
+    struct glint_visible in_band, in_part;
     struct glint_visible_profile band_profile;
     double profiled[4]; /* what it is of: angles and band */
     double wanders;     /* the box with the colour, half widths */
@@ -93,12 +93,12 @@ static double degrees_between(double lo, double hi)
 }
 
 /* A zone, or a part of one, to be fitted; BEFORE is what was left of it at the
- * last attempt. By all means: with a box that follows the colours, a root of
+ * last attempt. THOROUGH: with a box that follows the colours, a root of
  * the energy, and more terms. */
 struct pending {
     double lo, hi, before;
     double w0, w1; /* the part of the band, -1 .. 1 */
-    bool by_all_means;
+    bool thorough;
     struct glint_zone_part part;
     int depth; /* of the part; 0: the whole zone */
 };
@@ -119,8 +119,8 @@ static const struct glint_visible_profile *profile_of(struct fitter *f,
         return &f->profile;
     /* NOLINTNEXTLINE: other bits for equal numbers cost a profile, no more */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
-        glint_hunt_narrow(&f->in_band, f->hunt, p->w0, p->w1);
-        glint_hunt_profile(&f->in_band, range, &f->band_profile);
+        glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
+        glint_visible_profile_find(&f->in_band, range, &f->band_profile);
         memcpy(f->profiled, key, sizeof key);
     }
     return &f->band_profile;
@@ -130,28 +130,28 @@ static void cut_out(struct fitter *f, const struct pending *p,
                     struct glint_zone *zone)
 {
     const struct glint_zone_part *part = &p->part;
-    const struct glint_hunt *band =
-        is_whole_band(p->w0, p->w1) ? f->hunt : &f->in_band;
+    const struct glint_visible *band =
+        is_whole_band(p->w0, p->w1) ? f->visible : &f->in_band;
 
     glint_zone_cut(zone, part);
-    f->fit.hunt = band;
+    f->fit.visible = band;
     if (!is_whole_band(part->w0, part->w1)) {
-        glint_hunt_narrow(&f->in_part, band, part->w0, part->w1);
-        f->fit.hunt = &f->in_part;
+        glint_visible_narrow(&f->in_part, band, part->w0, part->w1);
+        f->fit.visible = &f->in_part;
     }
 }
 
-/* Cuts P out of ZONE, and by all means leaves off what is not seen: a ghost
+/* Cuts P out of ZONE. A thorough fit leaves off what is not seen: a ghost
  * that comes through here in red and there in blue leaves much. */
 static void set_part(struct fitter *f, struct pending *p,
                      struct glint_zone *zone)
 {
     const struct glint_zone uncropped = *zone;
-    double rest = p->by_all_means ? 0 : 1;
+    double rest = p->thorough ? 0 : 1;
 
     cut_out(f, p, zone);
     for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
-        rest = glint_zone_crop(zone, f->fit.hunt, &p->part);
+        rest = glint_zone_crop(zone, f->fit.visible, &p->part);
         *zone = uncropped;
         cut_out(f, p, zone);
     }
@@ -174,7 +174,7 @@ static int most_depth(const struct fitter *f, const struct pending *p)
  * has to be known. */
 static double hopeless(const struct fitter *f, const struct pending *p)
 {
-    if (p->by_all_means)
+    if (p->thorough)
         return p->depth < most_depth(f, p) ? HOPELESS * bearable(f) : 0;
     return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
 }
@@ -189,30 +189,30 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
     enum glint_status status;
     struct glint_zone zone;
 
-    *system = (struct glint_fitted_system){.ghost = f->hunt->ghost,
-                                           .hollow = p->part.hollow,
+    *system = (struct glint_fitted_system){.ghost = f->visible->ghost,
+                                           .annulus = p->part.annulus,
                                            .sine_lo = p->lo,
                                            .sine_hi = p->hi};
-    f->fit.by_all_means = p->by_all_means;
+    f->fit.thorough = p->thorough;
     *left = f->fit.off = 0;
     if (profile->n == 0)
         return GLINT_OK;
     *left = HUGE_VAL;
-    glint_zone_init(&zone, profile, p->lo, p->hi, p->by_all_means);
+    glint_zone_init(&zone, profile, p->lo, p->hi, p->thorough);
     f->wanders = (fabs(zone.middle[GLINT_BOX_POWERS]) +
                   fabs(zone.half_x[GLINT_BOX_POWERS])) /
                  zone.half_x[0];
-    if (!p->by_all_means && zone.fill < LEAST_FILL &&
+    if (!p->thorough && zone.fill < LEAST_FILL &&
         degrees_between(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
     set_part(f, p, &zone);
-    system->wave_lo = f->fit.hunt->wave_lo;
-    system->wave_hi = f->fit.hunt->wave_hi;
-    glint_zone_survey_barrels(&zone, f->fit.hunt, f->fit.tolerance->escape,
+    system->wave_lo = f->fit.visible->wave_lo;
+    system->wave_hi = f->fit.visible->wave_hi;
+    glint_zone_survey_barrels(&zone, f->fit.visible, f->fit.tolerance->escape,
                               &f->survey, &f->fit.rays);
     if (f->fit.rays.n_barrels > 2 && degrees_between(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
-    glint_zone_trace(&zone, f->fit.hunt, &f->fit.rays, &f->fit.energies);
+    glint_zone_trace(&zone, f->fit.visible, &f->fit.rays, &f->fit.energies);
     *left = 0;
     if ((p->depth > 0 || !is_whole_band(p->w0, p->w1)) &&
         glint_zone_fit_is_dark(&f->fit))
@@ -228,7 +228,7 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
 
 /* What to do about a zone that is left with LEFT. Halves of bright ones are
  * worth more. */
-enum next { KEEP, HALVE, ALL_MEANS, BANDS, PART };
+enum next { KEEP, HALVE, THOROUGH, BANDS, PART };
 
 static enum next next_step(const struct fitter *f, const struct pending *p,
                            double left)
@@ -240,16 +240,16 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
     const bool stuck =
         width < least * LEAST_DEG || (!helped && width < least * STUCK_DEG);
 
-    if (p->by_all_means && f->fit.off <= bearable(f))
+    if (p->thorough && f->fit.off <= bearable(f))
         return KEEP;
-    if (p->by_all_means && p->depth == 0 && f->wanders > WANDERS &&
+    if (p->thorough && p->depth == 0 && f->wanders > WANDERS &&
         p->w1 - p->w0 > LEAST_BAND)
         return BANDS;
-    if (p->by_all_means)
+    if (p->thorough)
         return p->depth < most_depth(f, p) ? PART : KEEP;
     if (left <= 1)
         return KEEP;
-    return stuck && left < HUGE_VAL ? ALL_MEANS : HALVE;
+    return stuck && left < HUGE_VAL ? THOROUGH : HALVE;
 }
 
 static const struct glint_zone_part whole = {-1, 1, 1, -1, 1, 0};
@@ -287,7 +287,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
     enum glint_status status = GLINT_OK;
     int n = 1;
 
-    glint_hunt_profile(f->hunt, range, &f->profile);
+    glint_visible_profile_find(f->visible, range, &f->profile);
     if (f->profile.n == 0)
         return GLINT_OK;
     while (n > 0 && status == GLINT_OK) {
@@ -309,8 +309,8 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
             system_finish(&system);
         }
         p.before = left;
-        if (next == ALL_MEANS) {
-            p.by_all_means = true;
+        if (next == THOROUGH) {
+            p.thorough = true;
             stack[n++] = p;
         } else if (next != KEEP) {
             n = push_halves(stack, n, p, next);
@@ -319,7 +319,8 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
     return status;
 }
 
-enum glint_status glint_fit_ghost(const struct glint_hunt *hunt, double max_deg,
+enum glint_status glint_fit_ghost(const struct glint_visible *visible,
+                                  double max_deg,
                                   const struct glint_tolerance *tolerance,
                                   struct glint_fitted_ghost *out)
 {
@@ -330,14 +331,14 @@ enum glint_status glint_fit_ghost(const struct glint_hunt *hunt, double max_deg,
     *out = (struct glint_fitted_ghost){0};
     if (!f)
         return status;
-    f->hunt = hunt;
+    f->visible = visible;
     f->fit.tolerance = tolerance;
     f->profiled[0] = HUGE_VAL; /* of nothing yet */
     f->out = out;
     f->fit.scratch =
         malloc(glint_regress_doubles(GLINT_ZONE_RAYS) * sizeof *f->fit.scratch);
     if (f->fit.scratch) {
-        const int n = glint_hunt_ranges(hunt, max_deg, range);
+        const int n = glint_visible_ranges(visible, max_deg, range);
 
         status = GLINT_OK;
         for (int k = 0; k < n && status == GLINT_OK; k++)

@@ -18,7 +18,7 @@
 
 #include "bake/fit/brightness.h"
 #include "bake/fit/fitted.h"
-#include "bake/fit/hunt.h"
+#include "bake/fit/visible.h"
 #include "glint/status.h"
 
 /* Times that a zone's box may be halved. */
@@ -46,7 +46,8 @@ struct glint_tolerance {
 };
 
 /* OUT is to be finished in any case. GLINT_E_MEMORY. */
-enum glint_status glint_fit_ghost(const struct glint_hunt *hunt, double max_deg,
+enum glint_status glint_fit_ghost(const struct glint_visible *visible,
+                                  double max_deg,
                                   const struct glint_tolerance *tolerance,
                                   struct glint_fitted_ghost *out);
 

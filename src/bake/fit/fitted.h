@@ -26,7 +26,7 @@ struct glint_fitted_output {
 
 struct glint_fitted_system {
     int ghost, part; /* of the pupil: 0, 1 .. where it is parted */
-    int hollow;      /* see struct glint_model_system */
+    int annulus;     /* see struct glint_model_system */
     double sine_lo, sine_hi;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
     int n_knots;             /* 0, or as many sets of coefficients */

@@ -14,7 +14,7 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
 enum {
     FEW_TERMS = 64,
-    MANY_TERMS = 96, /* of places, by all means */
+    MANY_TERMS = 96, /* of places, in thorough fits */
     PATIENCE = 36    /* terms, with what looks hopeless */
 };
 
@@ -31,7 +31,7 @@ static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .total = 10,
                                                     .terms = FEW_TERMS};
 
-/* By all means, where it changes a lot over the pupil. */
+/* Of thorough fits, where energy changes a lot over the pupil. */
 static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .weight = {1, 1, 1, 1},
                                                    .total = 12,
@@ -50,7 +50,7 @@ static double weight_past_edge(double excess)
  * how far it is out. */
 static double weight_past_field(const struct glint_zone_fit *f, double fields)
 {
-    const double out_mm = (fields - 1.01) * f->hunt->field_mm;
+    const double out_mm = (fields - 1.01) * f->visible->field_mm;
 
     return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->sensor_mm);
 }
@@ -95,7 +95,7 @@ static double share_of(const struct glint_zone_fit *f,
     for (int i = 0, next; i < r->n; i = next) {
         const struct sight v = look(r, i);
         const double s = r->x[2][i], w = r->x[3][i];
-        const double pupil = 4 * (1 - glint_zone_rim(zone->hollow)) *
+        const double pupil = 4 * (1 - glint_zone_rim(zone->annulus)) *
                              glint_zone_at(zone->half_x, s, w) *
                              glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
         const double level = glint_brightness_at(
@@ -204,7 +204,7 @@ static bool stop_leaks(struct glint_zone_fit *f,
     bool any = false;
 
     for (int i = 0; i < f->rays.n; i++)
-        if (leaks(&f->rays, i, system, f->hunt->field_mm)) {
+        if (leaks(&f->rays, i, system, f->visible->field_mm)) {
             f->weight[i] = fmax(f->weight[i], 0.1);
             any = true;
         }
@@ -240,11 +240,11 @@ static double fit_poly(struct glint_zone_fit *f,
         r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->channel_weight};
     struct glint_degrees degrees =
         kind != GLINT_OUT_ENERGY ? position_degrees
-        : f->by_all_means && glint_zone_rays_spread(&f->rays) > GLINT_STEEP
+        : f->thorough && glint_zone_rays_spread(&f->rays) > GLINT_STEEP
             ? steep_degrees
             : energy_degrees;
 
-    if (f->by_all_means && kind != GLINT_OUT_ENERGY)
+    if (f->thorough && kind != GLINT_OUT_ENERGY)
         degrees.terms = MANY_TERMS;
     degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->hopeless;
     degrees.patience = PATIENCE;
@@ -330,7 +330,7 @@ static enum glint_status fit_energy(struct glint_zone_fit *f,
 
     energies_of(r, &least, &most);
     energies_of(&f->rays, &least, &most);
-    root = f->by_all_means && most > WIDE_ENERGY * least;
+    root = f->thorough && most > WIDE_ENERGY * least;
     grain = f->energy / set_energies(f, r, most, root);
     left = fit_poly(f, r, GLINT_OUT_ENERGY, f->energy, &poly);
     if (root && left > 1) {
@@ -444,7 +444,7 @@ static double check_zone(struct glint_zone_fit *f,
 {
     double worst = 0;
 
-    glint_zone_check(zone, f->hunt, &f->rays);
+    glint_zone_check(zone, f->visible, &f->rays);
     for (int k = 0; k < system->n_outputs; k++) {
         const struct glint_fitted_output *o = &system->output[k];
 
@@ -483,7 +483,7 @@ enum glint_status glint_zone_fit_run(struct glint_zone_fit *f,
 
     if (status != GLINT_OK || is_hopeless(f))
         return status;
-    if ((f->by_all_means || *left <= 1) && stop_leaks(f, system)) {
+    if ((f->thorough || *left <= 1) && stop_leaks(f, system)) {
         drop_outputs(system);
         status = fit_outputs(f, system, left);
     }

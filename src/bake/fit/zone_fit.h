@@ -5,7 +5,7 @@
  *   in   rays of the zone, tolerances for its ghost
  *   out  a sparse polynomial of each output, and how far off they are
  *
- *     glint_zone_trace(&zone, hunt, &fit->rays, &fit->energies);
+ *     glint_zone_trace(&zone, visible, &fit->rays, &fit->energies);
  *     glint_zone_fit_begin(fit, &zone);
  *     status = glint_zone_fit_run(fit, &zone, &system, &left);
  *
@@ -17,17 +17,17 @@
 #define GLINT_BAKE_FIT_ZONE_FIT_H
 
 #include "bake/fit/fit.h"
-#include "bake/fit/zone.h"
+#include "bake/fit/zone_rays.h"
 
 struct glint_zone_fit {
     /* to be set */
-    const struct glint_hunt *hunt; /* in the band of the zone */
+    const struct glint_visible *visible; /* in the band of the zone */
     const struct glint_tolerance *tolerance;
     double *scratch; /* glint_regress_doubles(GLINT_ZONE_RAYS) */
     struct glint_zone_rays rays, energies;
-    bool by_all_means; /* a root of the energy, and more terms */
-    double hopeless;   /* left of what is not worth to be fitted to the end, in
-                          tolerances; 0: everything is */
+    bool thorough;   /* a root of the energy, and more terms */
+    double hopeless; /* left of what is not worth to be fitted to the end, in
+                        tolerances; 0: everything is */
     /* of this zone: tolerances, and how far they are below what its ghost would
      * show */
     double ease, sensor_mm, edge_mm, stop, energy, hidden;

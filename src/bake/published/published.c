@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "bake/trace/degrees.h"
-#include "bake/fit/hunt.h"
+#include "bake/fit/visible.h"
 #include "bake/published/shared_basis.h"
 
 enum {
@@ -32,7 +32,7 @@ struct knots {
 };
 
 struct job {
-    struct glint_hunt hunt;
+    struct glint_visible visible;
     const struct glint_published_options *options;
     int n_ranges;
     struct knots knots[GLINT_MAX_RANGES];
@@ -154,7 +154,7 @@ static enum glint_status set_knots(struct job *job, const double range[2])
 
     if (range[1] < range[0] + LEAST_RANGE)
         return GLINT_OK;
-    glint_hunt_profile(&job->hunt, range, &profile);
+    glint_visible_profile_find(&job->visible, range, &profile);
     if (profile.n == 0)
         return GLINT_OK;
     job->n_ranges++;
@@ -185,7 +185,8 @@ static enum glint_status find_knots(struct job *job)
 {
     double range[GLINT_MAX_RANGES][2];
     enum glint_status status = GLINT_OK;
-    const int n = glint_hunt_ranges(&job->hunt, job->options->max_deg, range);
+    const int n =
+        glint_visible_ranges(&job->visible, job->options->max_deg, range);
 
     for (int k = 0; k < n && status == GLINT_OK; k++)
         status = set_knots(job, range[k]);
@@ -208,7 +209,7 @@ struct zone_trace {
 static void trace_ray(const struct zone_trace *t, double i, double j,
                       struct glint_shared_rays *rays)
 {
-    const struct glint_hunt *h = &t->job->hunt;
+    const struct glint_visible *h = &t->job->visible;
     const double stop = h->setup->optics.stop_radius_mm;
     const double px = mix(t->box->x0_mm, t->box->x1_mm, i);
     const double py = t->box->y1_mm * j;
@@ -287,8 +288,8 @@ static int trace_some(struct job *job)
 
         while (knot - before >= job->knots[range].n)
             before += job->knots[range++].n;
-        glint_path_init(&path, job->hunt.setup->lens,
-                        &job->hunt.setup->ghost[job->hunt.ghost],
+        glint_path_init(&path, job->visible.setup->lens,
+                        &job->visible.setup->ghost[job->visible.ghost],
                         wavelength(job, k % waves));
         trace_zone(job, &path, &job->knots[range], knot - before,
                    &job->rays[k]);
@@ -326,7 +327,7 @@ static bool init_system(const struct job *job, const struct knots *knots,
     bool good;
 
     *s = (struct glint_fitted_system){
-        .ghost = job->hunt.ghost,
+        .ghost = job->visible.ghost,
         .sine_lo = knots->sine[0],
         .sine_hi = knots->sine[knots->n - 1],
         .wave_lo = 1e6 / (nm * nm),
@@ -358,8 +359,8 @@ static void fit_system(struct job *job, const struct knots *knots, double nm,
     struct glint_path path;
     int n = 0;
 
-    glint_path_init(&path, job->hunt.setup->lens,
-                    &job->hunt.setup->ghost[job->hunt.ghost], nm);
+    glint_path_init(&path, job->visible.setup->lens,
+                    &job->visible.setup->ghost[job->visible.ghost], nm);
     for (int k = 0; k < knots->n; k++) {
         double square = 0;
 
@@ -430,7 +431,7 @@ glint_published_fit(const struct glint_setup *setup, int ghost,
     sort_waves(&job);
     band_nm[0] = wavelength(&job, options->n_wavelengths - 1);
     band_nm[1] = wavelength(&job, 0);
-    glint_hunt_init(&job.hunt, setup, ghost, options->field_mm, band_nm);
+    glint_visible_init(&job.visible, setup, ghost, options->field_mm, band_nm);
     status = run(&job, out);
     for (int k = 0; k < job.n_ranges; k++) {
         free(job.knots[k].sine);

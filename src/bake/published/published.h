@@ -17,10 +17,11 @@
  * which the method leaves open: the search takes its zones from each in turn,
  * for a third of the time.
  *
- * Limits: those of the hunt for angles and boxes; ranges and boxes are
- * shared by all wavelengths; boxes run straight between those of the hunt's
- * profile. Between two knots the error is that of the interpolation: where the
- * box moves by its own size from knot to knot it is much larger than at them.
+ * Limits: those of the search for what is visible (bake/fit/visible.h); ranges
+ * and boxes are shared by all wavelengths; boxes run straight between those of
+ * that search's profile. Between two knots the error is that of the
+ * interpolation: where the box moves by its own size from knot to knot it is
+ * much larger than at them.
  */
 #ifndef GLINT_BAKE_PUBLISHED_PUBLISHED_H
 #define GLINT_BAKE_PUBLISHED_PUBLISHED_H

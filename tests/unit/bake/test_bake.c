@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "bake/measure_model.h"
-#include "bake/fit/zone.h"
+#include "bake/fit/zone_rays.h"
 #include "bake/fit/quantise.h"
 #include "glint/transfer.h"
 #include "support/lens_check.h"
@@ -358,7 +358,7 @@ static void test_near_barrels(void **state)
     static const double range[2] = {0.29, 0.305};
     static struct glint_prescription lens;
     static struct glint_setup zoom;
-    static struct glint_hunt hunt;
+    static struct glint_visible visible;
     static struct glint_visible_profile profile;
     static glint_zone_survey survey;
     static struct glint_zone_rays rays;
@@ -369,13 +369,13 @@ static void test_near_barrels(void **state)
     load_lens(&lens, "canon-zoom-long");
     assert_int_equal(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error),
                      GLINT_OK);
-    glint_hunt_init(&hunt, &zoom, 71, 23.8, band_nm);
-    glint_hunt_profile(&hunt, range, &profile);
+    glint_visible_init(&visible, &zoom, 71, 23.8, band_nm);
+    glint_visible_profile_find(&visible, range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
-    glint_zone_survey_barrels(&zone, &hunt, 1e-3, &survey, &rays);
+    glint_zone_survey_barrels(&zone, &visible, 1e-3, &survey, &rays);
     assert_int_equal(rays.n_barrels, 1);
     assert_true(rays.missed_cut <= 1e-3);
-    glint_zone_survey_barrels(&zone, &hunt, 2.5e-4, &survey, &rays);
+    glint_zone_survey_barrels(&zone, &visible, 2.5e-4, &survey, &rays);
     assert_int_equal(rays.n_barrels, 2);
     assert_true(rays.missed_cut <= 2.5e-4);
 }
@@ -400,7 +400,7 @@ static void test_cut(void **state)
     }
     cut = zone;
     glint_zone_cut(&cut, &part);
-    assert_int_equal(cut.hollow, 3);
+    assert_int_equal(cut.annulus, 3);
     for (int k = 0; k < 100; k++) {
         const double u = unit(&seed), s = unit(&seed), w = unit(&seed);
         const double whole_w = 0.125 + 0.625 * w, whole_u = 0.125 + 0.375 * u;
@@ -418,7 +418,7 @@ static void test_cut(void **state)
 static bool part_has(const struct glint_zone_part *p, double u, double v)
 {
     return u >= p->u0 && u < p->u1 && v < p->top &&
-           v >= p->top * glint_zone_rim(p->hollow);
+           v >= p->top * glint_zone_rim(p->annulus);
 }
 
 /* However often a box is halved, each place is in one half. */
@@ -438,9 +438,9 @@ static void test_halves(void **state)
                                   &part[2 * k + 1]);
         }
     for (int k = 0; k < PARTS; k++) {
-        assert_in_range(part[k].hollow, 0, GLINT_MAX_HOLLOW);
+        assert_in_range(part[k].annulus, 0, GLINT_MAX_ANNULUS);
         area += (part[k].u1 - part[k].u0) * part[k].top *
-                (1 - glint_zone_rim(part[k].hollow));
+                (1 - glint_zone_rim(part[k].annulus));
     }
     assert_near(area, 2, 1e-12);
     for (int i = 0; i < 1000; i++) {
@@ -457,7 +457,7 @@ static void test_halves(void **state)
 static void test_crop(void **state)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
-    static struct glint_hunt hunt, narrow;
+    static struct glint_visible visible, narrow;
     static struct glint_visible_profile profile;
     const struct glint_zone_part whole = {-1, 1, 1, -1, 1, false};
     struct glint_zone_part part = whole;
@@ -466,18 +466,20 @@ static void test_crop(void **state)
     int seen = 0;
 
     (void)state;
-    glint_hunt_init(&hunt, &setup, 7, field_mm, options.band_nm);
-    glint_hunt_narrow(&narrow, &hunt, -0.5, 1);
+    glint_visible_init(&visible, &setup, 7, field_mm, options.band_nm);
+    glint_visible_narrow(&narrow, &visible, -0.5, 1);
     assert_near(narrow.wave_lo,
-                hunt.wave_lo + 0.25 * (hunt.wave_hi - hunt.wave_lo), 1e-12);
-    assert_near(narrow.wave_hi, hunt.wave_hi, 1e-12);
-    glint_hunt_profile(&hunt, range, &profile);
+                visible.wave_lo + 0.25 * (visible.wave_hi - visible.wave_lo),
+                1e-12);
+    assert_near(narrow.wave_hi, visible.wave_hi, 1e-12);
+    glint_visible_profile_find(&visible, range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], true);
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
         zone.half_x[k] *= 3;
         zone.half_y[k] *= 2;
     }
-    assert_in_range((long)(100 * glint_zone_crop(&zone, &hunt, &part)), 10, 45);
+    assert_in_range((long)(100 * glint_zone_crop(&zone, &visible, &part)), 10,
+                    45);
     for (int k = 0; k < 4000; k++) {
         const double u = unit(&seed), v = fabs(unit(&seed)), s = unit(&seed),
                      w = unit(&seed);
@@ -487,13 +489,13 @@ static void test_crop(void **state)
         struct glint_path path;
         struct glint_ray ray;
 
-        glint_hunt_path(&hunt, w, &path);
+        glint_visible_path(&visible, w, &path);
         if (glint_trace(&path,
                         glint_zone_at(zone.middle, s, w) +
                             u * glint_zone_at(zone.half_x, s, w),
                         v * glint_zone_at(zone.half_y, s, w), direction, &ray,
                         NULL) ||
-            !glint_hunt_visible(&hunt, &ray))
+            !glint_visible_passes(&visible, &ray))
             continue;
         seen++;
         assert_true(u >= part.u0 && u <= part.u1 && v <= part.top);
@@ -688,7 +690,7 @@ static void test_planted_error(void **state)
 {
     static const struct glint_fitted_system no_barrels;
     static const double band_nm[2] = {400, 700};
-    static struct glint_hunt hunt;
+    static struct glint_visible visible;
     struct baked b = model;
     const struct glint_model_output *o;
     struct glint_measured before, after;
@@ -703,15 +705,15 @@ static void test_planted_error(void **state)
     b.lens.header = (const void *)b.data;
     b.lens.ghost = (const void *)(b.data + b.lens.header->ghost_at);
     b.lens.system = (const void *)(b.data + b.lens.header->system_at);
-    glint_hunt_init(&hunt, &setup, 0, field_mm, band_nm);
-    glint_measure_system(&hunt, &b.lens, 0, &no_barrels, &before);
+    glint_visible_init(&visible, &setup, 0, field_mm, band_nm);
+    glint_measure_system(&visible, &b.lens, 0, &no_barrels, &before);
     o = outputs_of(&b, 0);
     assert_near(error_of(o->rms) / before.of[0].rms, 1, 1e-3);
     coef = (void *)(b.data + o->coef_at);
     for (uint32_t k = 1; k < o->n_terms; k++)
         largest = labs(coef[k]) > labs(coef[largest]) ? k : largest;
     coef[largest] = -coef[largest];
-    glint_measure_system(&hunt, &b.lens, 0, &no_barrels, &after);
+    glint_measure_system(&visible, &b.lens, 0, &no_barrels, &after);
     measure(&b.lens, 0, 0, rms);
     assert_true(after.of[0].rms > 50 * before.of[0].rms);
     assert_true(after.of[0].max > 50 * before.of[0].max);
@@ -852,7 +854,7 @@ static void test_ranges_have_width(void **state)
     static const double band_nm[2] = {400, 700};
     static struct glint_prescription lens;
     static struct glint_setup doublet;
-    static struct glint_hunt hunt;
+    static struct glint_visible visible;
     double range[GLINT_MAX_RANGES][2];
     struct glint_error error;
 
@@ -863,8 +865,8 @@ static void test_ranges_have_width(void **state)
     for (int g = 0; g < doublet.n_ghosts; g++) {
         int n;
 
-        glint_hunt_init(&hunt, &doublet, g, 1e-3, band_nm);
-        n = glint_hunt_ranges(&hunt, 15, range);
+        glint_visible_init(&visible, &doublet, g, 1e-3, band_nm);
+        n = glint_visible_ranges(&visible, 15, range);
         for (int k = 0; k < n; k++)
             assert_true(range[k][1] > range[k][0]);
     }
@@ -881,7 +883,7 @@ static void test_ranges_of_spots(void **state)
     static const double band_nm[2] = {400, 700};
     static struct glint_prescription lens;
     static struct glint_setup zoom;
-    static struct glint_hunt hunt;
+    static struct glint_visible visible;
     double range[GLINT_MAX_RANGES][2];
     struct glint_error error;
 
@@ -890,8 +892,8 @@ static void test_ranges_of_spots(void **state)
     assert_int_equal(glint_setup_init(&zoom, &lens, 0, 0, band_nm, 2, &error),
                      GLINT_OK);
     for (size_t i = 0; i < sizeof spot / sizeof *spot; i++) {
-        glint_hunt_init(&hunt, &zoom, spot[i].ghost, 23.8, band_nm);
-        assert_int_equal(glint_hunt_ranges(&hunt, 60, range), 1);
+        glint_visible_init(&visible, &zoom, spot[i].ghost, 23.8, band_nm);
+        assert_int_equal(glint_visible_ranges(&visible, 60, range), 1);
         assert_near(range[0][0], 0, 1e-12);
         assert_true(range[0][1] > sin(spot[i].end_deg * 0.0174532925));
     }

@@ -172,7 +172,7 @@ static const char outside[] = "a table lies outside of the file",
                       "two ghosts share a system, or their lists do not rise",
                   overlap[] = "a ghost's systems overlap, or do not rise",
                   energy[] = "an output has no such roots or head",
-                  hollow[] = "a system is hollow in a way that there is not",
+                  annulus[] = "a system's annulus is out of range",
                   bad_angles[] = "a system's angles are out of range",
                   bad_band[] = "a system's band is out of range",
                   no_knots[] = "knots do not go with the basis",
@@ -269,10 +269,10 @@ static const struct rule auto_rules[] = {
     {SYSTEM_(3, wave_lo_q24), MODEL_WAVE_LO_Q24, overlap},
     {SYSTEM_(0, n_knots), 2, no_knots},
     {SYSTEM_(3, n_knots), UINT32_MAX, no_knots},
-    {SYSTEM_(0, hollow), 1, NULL},
-    {SYSTEM_(0, hollow), 15, NULL},
-    {SYSTEM_(3, hollow), 16, hollow},
-    {SYSTEM_(0, hollow), 255, hollow},
+    {SYSTEM_(0, annulus), 1, NULL},
+    {SYSTEM_(0, annulus), 15, NULL},
+    {SYSTEM_(3, annulus), 16, annulus},
+    {SYSTEM_(0, annulus), 255, annulus},
     {SYSTEM_(0, box_at), 2, outside},
     {SYSTEM_(0, box_at), 0x7ffffffc, outside},
     {SYSTEM_(0, box_exponent), 41, box_exponent},
@@ -281,7 +281,7 @@ static const struct rule auto_rules[] = {
     {SYSTEM_(0, n_outputs), 11, n_outputs},
     {SYSTEM_(0, n_outputs), 255, n_outputs},
     {SYSTEM_(0, output_at), 0x7ffffffd, outside},
-    {SYSTEM_(0, zero), 1, hollow},
+    {SYSTEM_(0, zero), 1, annulus},
     {SYSTEM_(0, box_terms), 3, small_box},
     {SYSTEM_(0, box_terms), 0, NULL},
     {BOX, 0, 4, INT32_MIN, far_box},
@@ -340,7 +340,7 @@ static const struct rule sparse_rules[] = {
     {SYSTEM_(0, n_knots), 2, not_covering},
     {SYSTEM_(0, n_knots), UINT32_MAX, outside},
     {SYSTEM_(0, n_knots), 1 << 30, outside},
-    {SYSTEM_(0, hollow), 1, hollow},
+    {SYSTEM_(0, annulus), 1, annulus},
     {SYSTEM_(0, box_terms), 1, "a box at knots has terms"},
     {SYSTEM_(0, knot_at), 4, outside},
     {SYSTEM_(0, sine_hi_q30), (1 << 29) + 1, not_covering},
@@ -717,11 +717,11 @@ static void test_grid(void **state)
     free(m.data);
 }
 
-/* A hollow one's rows lie between its rim and the box's, on both sides, where a
- * finer grid of the whole box has them too. */
+/* An annular one's rows lie between its rim and the box's, on both sides, where
+ * a finer grid of the whole box has them too. */
 static void test_hollow_grid(void **state)
 {
-    enum { N = 16, NODES = N + 1, HOLLOW = 3, SHELL = 6 };
+    enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
     struct model_image m = model_auto();
     const struct glint_lens lens = open_image(&m);
     const struct glint_place place = upright();
@@ -731,7 +731,7 @@ static void test_hollow_grid(void **state)
     (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
     glint_transfer_grid(&t, &place, N, whole[0]);
-    t.hollow = HOLLOW;
+    t.annulus = ANNULUS;
     glint_transfer_grid(&t, &place, SHELL, shell[0]);
     for (int j = 0; j <= SHELL; j++)
         for (int i = 0; i <= SHELL; i += SHELL / 2) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/fit/hunt.h"
+#include "bake/fit/visible.h"
 
 #include <math.h>
 
@@ -13,58 +13,62 @@ enum {
     FARTHER = 4 /* steps that the ends of the band may outlast its middle */
 };
 
-static double wave_of(const struct glint_hunt *hunt, double w)
+static double wave_of(const struct glint_visible *visible, double w)
 {
-    return 0.5 * (hunt->wave_lo + hunt->wave_hi) +
-           0.5 * w * (hunt->wave_hi - hunt->wave_lo);
+    return 0.5 * (visible->wave_lo + visible->wave_hi) +
+           0.5 * w * (visible->wave_hi - visible->wave_lo);
 }
 
-void glint_hunt_path(const struct glint_hunt *hunt, double w,
-                     struct glint_path *path)
+void glint_visible_path(const struct glint_visible *visible, double w,
+                        struct glint_path *path)
 {
-    glint_path_init(path, hunt->setup->lens, &hunt->setup->ghost[hunt->ghost],
-                    1e3 / sqrt(wave_of(hunt, w)));
+    glint_path_init(path, visible->setup->lens,
+                    &visible->setup->ghost[visible->ghost],
+                    1e3 / sqrt(wave_of(visible, w)));
 }
 
-static void set_paths(struct glint_hunt *hunt)
+static void set_paths(struct glint_visible *visible)
 {
-    for (int k = 0; k < GLINT_HUNT_WAVES; k++) {
-        glint_hunt_path(hunt, -cos(GLINT_PI * k / (GLINT_HUNT_WAVES - 1)),
-                        &hunt->path[k]);
-        hunt->scout[k] = hunt->path[k];
-        hunt->scout[k].places_only = true;
+    for (int k = 0; k < GLINT_VISIBLE_WAVES; k++) {
+        glint_visible_path(visible,
+                           -cos(GLINT_PI * k / (GLINT_VISIBLE_WAVES - 1)),
+                           &visible->path[k]);
+        visible->position_path[k] = visible->path[k];
+        visible->position_path[k].places_only = true;
     }
 }
 
-void glint_hunt_init(struct glint_hunt *hunt, const struct glint_setup *setup,
-                     int ghost, double field_mm, const double band_nm[2])
+void glint_visible_init(struct glint_visible *visible,
+                        const struct glint_setup *setup, int ghost,
+                        double field_mm, const double band_nm[2])
 {
-    hunt->setup = setup;
-    hunt->ghost = ghost;
-    hunt->field_mm = field_mm;
-    hunt->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
-    hunt->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
-    set_paths(hunt);
+    visible->setup = setup;
+    visible->ghost = ghost;
+    visible->field_mm = field_mm;
+    visible->wave_lo = 1e6 / (band_nm[1] * band_nm[1]);
+    visible->wave_hi = 1e6 / (band_nm[0] * band_nm[0]);
+    set_paths(visible);
 }
 
-void glint_hunt_narrow(struct glint_hunt *hunt, const struct glint_hunt *whole,
-                       double w0, double w1)
+void glint_visible_narrow(struct glint_visible *visible,
+                          const struct glint_visible *whole, double w0,
+                          double w1)
 {
-    hunt->setup = whole->setup;
-    hunt->ghost = whole->ghost;
-    hunt->field_mm = whole->field_mm;
-    hunt->wave_lo = wave_of(whole, w0);
-    hunt->wave_hi = wave_of(whole, w1);
-    set_paths(hunt);
+    visible->setup = whole->setup;
+    visible->ghost = whole->ghost;
+    visible->field_mm = whole->field_mm;
+    visible->wave_lo = wave_of(whole, w0);
+    visible->wave_hi = wave_of(whole, w1);
+    set_paths(visible);
 }
 
-bool glint_hunt_visible(const struct glint_hunt *hunt,
-                        const struct glint_ray *ray)
+bool glint_visible_passes(const struct glint_visible *visible,
+                          const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <=
-               hunt->setup->optics.stop_radius_mm &&
-           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= hunt->field_mm;
+               visible->setup->optics.stop_radius_mm &&
+           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= visible->field_mm;
 }
 
 /* -------------------------------------------------------------------- boxes */
@@ -74,7 +78,7 @@ struct extent {
     int i0, i1, j1;
 };
 
-static bool survey(const struct glint_hunt *h, const struct glint_path *path,
+static bool survey(const struct glint_visible *h, const struct glint_path *path,
                    double sine, int across, int down,
                    const struct glint_pupil *box, struct extent *extent)
 {
@@ -91,7 +95,7 @@ static bool survey(const struct glint_hunt *h, const struct glint_path *path,
         row.y_mm = box->y1_mm * j / down;
         glint_trace_row(path, &row, ray, status, NULL);
         for (int i = 0; i <= across; i++) {
-            if (status[i] != GLINT_RAY_OK || !glint_hunt_visible(h, &ray[i]))
+            if (status[i] != GLINT_RAY_OK || !glint_visible_passes(h, &ray[i]))
                 continue;
             extent->i0 = i < extent->i0 ? i : extent->i0;
             extent->i1 = i > extent->i1 ? i : extent->i1;
@@ -103,7 +107,7 @@ static bool survey(const struct glint_hunt *h, const struct glint_path *path,
 
 /* Shrinks BOX to the rays of a grid that get through and a cell around them.
  * Returns whether there are any. */
-static bool shrink(const struct glint_hunt *h, const struct glint_path *path,
+static bool shrink(const struct glint_visible *h, const struct glint_path *path,
                    double sine, int across, int down, struct glint_pupil *box)
 {
     const double dx = (box->x1_mm - box->x0_mm) / across;
@@ -119,8 +123,9 @@ static bool shrink(const struct glint_hunt *h, const struct glint_path *path,
 }
 
 /* Grows BOX on every side that light comes through, until none does. */
-static bool enclose(const struct glint_hunt *h, const struct glint_path *path,
-                    double sine, struct glint_pupil *box)
+static bool enclose(const struct glint_visible *h,
+                    const struct glint_path *path, double sine,
+                    struct glint_pupil *box)
 {
     enum { COARSE = 16, DOWN = 8, ROUNDS = 8 };
 
@@ -140,8 +145,9 @@ static bool enclose(const struct glint_hunt *h, const struct glint_path *path,
 }
 
 /* The box of the rays that get through, from one that holds it. */
-static bool tighten(const struct glint_hunt *h, const struct glint_path *path,
-                    double sine, struct glint_pupil *box)
+static bool tighten(const struct glint_visible *h,
+                    const struct glint_path *path, double sine,
+                    struct glint_pupil *box)
 {
     bool found = shrink(h, path, sine, 24, 12, box) ||
                  shrink(h, path, sine, ACROSS, 32, box);
@@ -157,7 +163,8 @@ static bool tighten(const struct glint_hunt *h, const struct glint_path *path,
 }
 
 /* By how much RAY misses what it has to get through: 1 or less is visible. */
-static double miss_of(const struct glint_hunt *h, const struct glint_ray *ray)
+static double miss_of(const struct glint_visible *h,
+                      const struct glint_ray *ray)
 {
     const double stop =
         hypot(ray->stop_x_mm, ray->stop_y_mm) / h->setup->optics.stop_radius_mm;
@@ -169,7 +176,7 @@ static double miss_of(const struct glint_hunt *h, const struct glint_ray *ray)
 
 /* Closes BOX around the ray of a grid that misses by least, a cell and a half
  * to each side. Returns by how much it does; HUGE_VAL: all were lost. */
-static double close_in(const struct glint_hunt *h,
+static double close_in(const struct glint_visible *h,
                        const struct glint_path *path, double sine,
                        struct glint_pupil *box)
 {
@@ -199,7 +206,7 @@ static double close_in(const struct glint_hunt *h,
 
 /* What a grid over BOX steps over: where the field is far smaller than the
  * front, so is the part of the pupil that it is seen through. */
-static bool seek(const struct glint_hunt *h, const struct glint_path *path,
+static bool seek(const struct glint_visible *h, const struct glint_path *path,
                  double sine, struct glint_pupil *box)
 {
     enum { ROUNDS = 4 };
@@ -217,8 +224,9 @@ static double degrees_of(double sine)
     return asin(sine) * (180 / GLINT_PI);
 }
 
-static bool find_box(const struct glint_hunt *h, const struct glint_path *path,
-                     double sine, struct glint_pupil *box)
+static bool find_box(const struct glint_visible *h,
+                     const struct glint_path *path, double sine,
+                     struct glint_pupil *box)
 {
     struct glint_pupil spot;
 
@@ -234,7 +242,7 @@ static bool find_box(const struct glint_hunt *h, const struct glint_path *path,
 }
 
 /* The same, looked for around NEAR first. */
-static bool follow_box(const struct glint_hunt *h,
+static bool follow_box(const struct glint_visible *h,
                        const struct glint_path *path, double sine,
                        const struct glint_pupil *near, struct glint_pupil *box)
 {
@@ -251,22 +259,23 @@ static bool follow_box(const struct glint_hunt *h,
 /* ------------------------------------------------------------------- angles */
 
 /* Ends and middle of the band. */
-static const int waves[] = {GLINT_HUNT_WAVES / 2, 0, GLINT_HUNT_WAVES - 1};
+static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
+                            GLINT_VISIBLE_WAVES - 1};
 
 /* Something gets through at the first N of these wavelengths. */
-static bool passes(const struct glint_hunt *h, double sine, int n)
+static bool passes(const struct glint_visible *h, double sine, int n)
 {
     struct glint_pupil box;
 
     for (int k = 0; k < n; k++)
-        if (find_box(h, &h->scout[waves[k]], sine, &box))
+        if (find_box(h, &h->position_path[waves[k]], sine, &box))
             return true;
     return false;
 }
 
 /* The last sine at which something of any colour gets through, from one that
  * has it at the middle of the band towards one that has not. */
-static double edge(const struct glint_hunt *h, double with, double without)
+static double edge(const struct glint_visible *h, double with, double without)
 {
     for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
         const double next = without + (without - with);
@@ -303,8 +312,8 @@ static int end_range(double (*range)[2], int n, double hi)
     return n - 1;
 }
 
-int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
-                      double (*range)[2])
+int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
+                         double (*range)[2])
 {
     const int steps = (int)ceil(max_deg / SCAN_DEG);
     double before = 0;
@@ -313,14 +322,14 @@ int glint_hunt_ranges(const struct glint_hunt *hunt, double max_deg,
 
     for (int k = 0; k <= steps; k++) {
         const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
-        const bool now = passes(hunt, sine, 1);
+        const bool now = passes(visible, sine, 1);
 
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
         if (now && !inside)
-            range[n++][0] = k ? edge(hunt, sine, before) : 0;
+            range[n++][0] = k ? edge(visible, sine, before) : 0;
         if (!now && inside)
-            n = end_range(range, n, edge(hunt, before, sine));
+            n = end_range(range, n, edge(visible, before, sine));
         inside = now;
         before = sine;
     }
@@ -348,16 +357,16 @@ static struct glint_pupil predict(const struct glint_pupil *before,
 }
 
 /* What gets through by angle and wavelength. */
-struct glimpses {
-    bool seen[GLINT_PROFILE][GLINT_HUNT_WAVES];
-    struct glint_pupil box[GLINT_PROFILE][GLINT_HUNT_WAVES];
+struct box_samples {
+    bool seen[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
+    struct glint_pupil box[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
 };
 
 /* Looks at one wavelength, at the angles that WANTED names. */
-static void look(const struct glint_hunt *h, const double *sine,
-                 const bool *wanted, int wave, struct glimpses *g)
+static void look(const struct glint_visible *h, const double *sine,
+                 const bool *wanted, int wave, struct box_samples *g)
 {
-    const struct glint_path *path = &h->scout[wave];
+    const struct glint_path *path = &h->position_path[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
     int have = 0; /* boxes in a row */
 
@@ -388,28 +397,29 @@ static void look(const struct glint_hunt *h, const double *sine,
 }
 
 static void add_angle(struct glint_visible_profile *p, double sine,
-                      const struct glimpses *g, int k)
+                      const struct box_samples *g, int k)
 {
-    const int first = p->n_glimpses;
+    const int first = p->n_samples;
 
-    for (int wave = 0; wave < GLINT_HUNT_WAVES; wave++)
+    for (int wave = 0; wave < GLINT_VISIBLE_WAVES; wave++)
         if (g->seen[k][wave])
-            p->glimpse[p->n_glimpses++] = (struct glint_glimpse){
-                sine, -cos(GLINT_PI * wave / (GLINT_HUNT_WAVES - 1)),
+            p->sample[p->n_samples++] = (struct glint_box_sample){
+                sine, -cos(GLINT_PI * wave / (GLINT_VISIBLE_WAVES - 1)),
                 g->box[k][wave]};
-    if (p->n_glimpses == first)
+    if (p->n_samples == first)
         return;
     p->sine[p->n] = sine;
-    p->box[p->n] = p->glimpse[first].box;
-    for (int i = first + 1; i < p->n_glimpses; i++)
-        join(&p->box[p->n], &p->glimpse[i].box);
+    p->box[p->n] = p->sample[first].box;
+    for (int i = first + 1; i < p->n_samples; i++)
+        join(&p->box[p->n], &p->sample[i].box);
     p->n++;
 }
 
-void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
-                        struct glint_visible_profile *profile)
+void glint_visible_profile_find(const struct glint_visible *visible,
+                                const double range[2],
+                                struct glint_visible_profile *profile)
 {
-    struct glimpses g = {.seen = {{false}}};
+    struct box_samples g = {.seen = {{false}}};
     double sine[GLINT_PROFILE];
     bool wanted[GLINT_PROFILE];
 
@@ -420,15 +430,15 @@ void glint_hunt_profile(const struct glint_hunt *hunt, const double range[2],
         wanted[k] = true;
     }
     for (int i = 0; i < 3; i++)
-        look(hunt, sine, wanted, waves[i], &g);
+        look(visible, sine, wanted, waves[i], &g);
     /* Where only some colours get through, boxes of others may lie between. */
     for (int k = 0; k < GLINT_PROFILE; k++)
         wanted[k] = !(g.seen[k][waves[0]] && g.seen[k][waves[1]] &&
                       g.seen[k][waves[2]]);
-    for (int wave = 1; wave < GLINT_HUNT_WAVES - 1; wave++)
-        if (wave != GLINT_HUNT_WAVES / 2)
-            look(hunt, sine, wanted, wave, &g);
-    profile->n = profile->n_glimpses = 0;
+    for (int wave = 1; wave < GLINT_VISIBLE_WAVES - 1; wave++)
+        if (wave != GLINT_VISIBLE_WAVES / 2)
+            look(visible, sine, wanted, wave, &g);
+    profile->n = profile->n_samples = 0;
     for (int k = 0; k < GLINT_PROFILE; k++)
         add_angle(profile, sine[k], &g, k);
 }

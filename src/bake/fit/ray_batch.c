@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/ray_batch.h"
+
+#include <math.h>
+
+void glint_ray_batch_scatter(int k, double x[GLINT_VARIABLES])
+{
+    const double root = 1.16730397826141868426;
+    double step = 1;
+
+    for (int i = 0; i < GLINT_VARIABLES; i++) {
+        step /= root;
+        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
+    }
+}
+
+static void direction_of(const struct glint_zone *z, double s, double d[3])
+{
+    d[0] = 0.5 * (z->lo + z->hi) + 0.5 * s * (z->hi - z->lo);
+    d[1] = 0;
+    d[2] = sqrt(1 - d[0] * d[0]);
+}
+
+void glint_ray_batch_add(struct glint_ray_batch *batch,
+                         const struct glint_zone *zone,
+                         const double x[GLINT_VARIABLES])
+{
+    const double s = x[2], w = x[3], rim = glint_zone_rim(zone->annulus);
+    struct glint_launch *from = &batch->from[batch->n];
+
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        batch->x[batch->n][k] = x[k];
+    batch->x[batch->n][1] = rim + (1 - rim) * x[1];
+    from->x_mm = glint_zone_at(zone->middle, s, w) +
+                 x[0] * glint_zone_at(zone->half_x, s, w);
+    from->y_mm = batch->x[batch->n][1] * glint_zone_at(zone->half_y, s, w);
+    direction_of(zone, s, from->direction);
+    batch->n++;
+}
+
+void glint_ray_batch_trace(struct glint_ray_batch *batch)
+{
+    for (int k = 0; k < batch->n * batch->path->n_events; k++)
+        batch->hits[k][0] = batch->hits[k][1] = -1;
+    glint_trace_many(batch->path, batch->n, batch->from, batch->ray,
+                     batch->status, batch->hits);
+}

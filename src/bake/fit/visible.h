@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where a ghost is visible: at which angles of the light, and through which
+ * part of the pupil.
+ *
+ *   in   a ghost of a lens, the band of wavelengths, the field that counts
+ *   out  ranges of angles, and boxes on the pupil at many angles of a range
+ *
+ * A ghost may appear, vanish and come back. Limits: ranges narrower than the
+ * step of the scan, or without the middle of the band, can be missed, and so
+ * can a visible part that is smaller than a thirtieth of its own box (unless
+ * the field is so small that it is closed in upon), or that is there for less
+ * than four angles apart from the one that is followed.
+ */
+#ifndef GLINT_BAKE_FIT_VISIBLE_H
+#define GLINT_BAKE_FIT_VISIBLE_H
+
+#include "glint/setup.h"
+#include "glint/trace.h"
+
+enum {
+    GLINT_VISIBLE_WAVES = 11,
+    GLINT_MAX_RANGES = 8,
+    GLINT_PROFILE = 49 /* boxes over a range */
+};
+
+/* One ghost and what all its ranges share. */
+struct glint_visible {
+    const struct glint_setup *setup;
+    int ghost;
+    double field_mm; /* light beyond this radius on the sensor is no loss */
+    double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
+    struct glint_path path[GLINT_VISIBLE_WAVES]; /* from wave_lo to wave_hi */
+    struct glint_path
+        position_path[GLINT_VISIBLE_WAVES]; /* the same, positions only */
+};
+
+void glint_visible_init(struct glint_visible *visible,
+                        const struct glint_setup *setup, int ghost,
+                        double field_mm, const double band_nm[2]);
+
+/* Sets VISIBLE for the part W0 .. W1, -1 .. 1, of the band of WHOLE. */
+void glint_visible_narrow(struct glint_visible *visible,
+                          const struct glint_visible *whole, double w0,
+                          double w1);
+
+/* The path at W, -1 .. 1 over the band. */
+void glint_visible_path(const struct glint_visible *visible, double w,
+                        struct glint_path *path);
+
+/* Sines of the angles between which something gets through, up to MAX_DEG.
+ * Returns how many ranges. */
+int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
+                         double (*range)[2]);
+
+/* The box of what gets through at one angle and wavelength. */
+struct glint_box_sample {
+    double sine, w; /* w: -1 .. 1 over the band */
+    struct glint_pupil box;
+};
+
+/* Boxes over a range: at each angle, the one that holds what gets through
+ * anywhere in the band, and those of single wavelengths, by rising angle. */
+struct glint_visible_profile {
+    int n, n_samples;
+    double sine[GLINT_PROFILE];
+    struct glint_pupil box[GLINT_PROFILE];
+    struct glint_box_sample sample[GLINT_PROFILE * GLINT_VISIBLE_WAVES];
+};
+
+void glint_visible_profile_find(const struct glint_visible *visible,
+                                const double range[2],
+                                struct glint_visible_profile *profile);
+
+/* Whether the stop, the barrels and the field let RAY through. */
+bool glint_visible_passes(const struct glint_visible *visible,
+                          const struct glint_ray *ray);
+
+#endif

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The barrels that cut in a zone: those past which no ray gets far.
+ */
+#include <math.h>
+
+#include "bake/fit/ray_batch.h"
+#include "bake/fit/zone_rays.h"
+
+/* What a ray of the survey says: how far past each barrel it is. */
+struct survey {
+    int n, n_events;
+    double (*radius)[GLINT_MAX_EVENTS + 1];
+};
+
+/* Notes the ray's radius at every event if the stop and the field let it pass,
+ * so that only barrels can stop it. */
+static bool survey_ray(const struct glint_visible *h,
+                       const struct glint_path *path,
+                       enum glint_ray_status status,
+                       const struct glint_ray *ray, double (*hits)[2],
+                       double *radius)
+{
+    const double stop = h->setup->optics.stop_radius_mm;
+    double most = 0;
+
+    for (int k = 0; k < path->n_events; k++) {
+        const struct glint_event *e = &path->event[k];
+        const double r = hypot(hits[k][0], hits[k][1]);
+
+        radius[k] =
+            e->kind == GLINT_STOP || (hits[k][0] == -1 && hits[k][1] == -1)
+                ? 0
+                : r / e->semi_mm;
+        most = fmax(most, radius[k]);
+    }
+    if (most <= 1)
+        return false;
+    return status != GLINT_RAY_OK ||
+           (hypot(ray->stop_x_mm, ray->stop_y_mm) < 1.02 * stop &&
+            hypot(ray->sensor_x_mm, ray->sensor_y_mm) < h->field_mm);
+}
+
+/* Rays at angles of their own: a barrel may cut between any two, and there
+ * only. */
+static void run_survey(const struct glint_zone *z,
+                       const struct glint_visible *h, struct survey *survey)
+{
+    static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
+                                GLINT_VISIBLE_WAVES - 1};
+    struct glint_ray_batch t;
+
+    survey->n = 0;
+    survey->n_events = h->path[0].n_events;
+    for (int k = 0; k < GLINT_SURVEY_RAYS / GLINT_RAY_BATCH; k++) {
+        const int wave = waves[k % 3];
+        double x[GLINT_VARIABLES];
+
+        t.path = &h->position_path[wave];
+        for (t.n = 0; t.n < GLINT_RAY_BATCH;) {
+            glint_ray_batch_scatter(k * GLINT_RAY_BATCH + t.n, x);
+            x[1] = fabs(x[1]);
+            x[3] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
+            glint_ray_batch_add(&t, z, x);
+        }
+        glint_ray_batch_trace(&t);
+        for (int i = 0; i < GLINT_RAY_BATCH; i++)
+            survey->n += survey_ray(h, t.path, t.status[i], &t.ray[i],
+                                    glint_ray_batch_hits(&t, i),
+                                    survey->radius[survey->n]);
+    }
+}
+
+/* How far ray RAY gets past the barrels that are not among the N CHOSEN, the
+ * relative radius beyond 1; 0 if one of them stops it. */
+static double escape(const struct survey *s, int ray, const int *chosen, int n)
+{
+    const double *r = s->radius[ray];
+    double most = 0;
+
+    for (int k = 0; k < n; k++)
+        if (r[chosen[k]] > 1)
+            return 0;
+    for (int k = 0; k < s->n_events; k++)
+        most = fmax(most, r[k] - 1);
+    return fmin(most, 0.3);
+}
+
+/* What escapes with barrel K as the last of N: sum, and the largest. */
+static double escapes(const struct survey *s, int *chosen, int n, double *most)
+{
+    double sum = 0;
+
+    *most = 0;
+    for (int i = 0; i < s->n; i++) {
+        const double e = escape(s, i, chosen, n);
+
+        sum += e;
+        *most = fmax(*most, e);
+    }
+    return sum;
+}
+
+/* Takes barrels, the most useful first, until no ray gets farther past the
+ * others than SHOWS. */
+static void choose_barrels(const struct survey *s, double shows,
+                           struct glint_zone_rays *rays)
+{
+    double most;
+
+    rays->n_barrels = 0;
+    escapes(s, rays->barrel, 0, &most);
+    while (most > shows && rays->n_barrels < GLINT_MAX_BARRELS) {
+        const int n = rays->n_barrels;
+        double least = HUGE_VAL;
+        int best = 0;
+
+        for (int k = 0; k < s->n_events; k++) {
+            double sum;
+
+            rays->barrel[n] = k;
+            sum = escapes(s, rays->barrel, n + 1, &most);
+            if (sum < least) {
+                least = sum;
+                best = k;
+            }
+        }
+        rays->barrel[n] = best;
+        rays->n_barrels++;
+        escapes(s, rays->barrel, n + 1, &most);
+    }
+    rays->missed_cut = most;
+}
+
+void glint_zone_survey_barrels(const struct glint_zone *zone,
+                               const struct glint_visible *visible,
+                               double shows, glint_zone_survey *survey,
+                               struct glint_zone_rays *rays)
+{
+    struct survey s = {.radius = *survey};
+
+    run_survey(zone, visible, &s);
+    choose_barrels(&s, shows, rays);
+}

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/zone_rays.h"
+
+#include <math.h>
+
+#include "bake/fit/ray_batch.h"
+#include "bake/trace/degrees.h"
+
+static void add_ray(const struct glint_visible *h,
+                    const struct glint_path *path,
+                    const double x[GLINT_VARIABLES],
+                    const struct glint_ray *ray, double (*hits)[2],
+                    struct glint_zone_rays *rays)
+{
+    const double stop = h->setup->optics.stop_radius_mm;
+    const int i = rays->n++;
+
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        rays->x[k][i] = x[k];
+    rays->at[RAY_SENSOR_X][i] = ray->sensor_x_mm;
+    rays->at[RAY_SENSOR_Y][i] = ray->sensor_y_mm;
+    rays->at[RAY_STOP_X][i] = ray->stop_x_mm / stop;
+    rays->at[RAY_STOP_Y][i] = ray->stop_y_mm / stop;
+    rays->at[RAY_ENERGY][i] = ray->energy;
+    rays->at[RAY_EXCESS][i] =
+        fmax(ray->rel_radius, hypot(ray->stop_x_mm, ray->stop_y_mm) / stop);
+    rays->at[RAY_FIELD][i] =
+        hypot(ray->sensor_x_mm, ray->sensor_y_mm) / h->field_mm;
+    for (int k = 0; k < rays->n_barrels; k++) {
+        const int e = rays->barrel[k];
+
+        rays->radius[k][i] =
+            hypot(hits[e][0], hits[e][1]) / path->event[e].semi_mm;
+    }
+}
+
+/* More nodes than powers in every variable, or a fit would be perfect at the
+ * nodes and nowhere else. */
+enum { SINES = 9, ACROSS = 24, DOWN = 12 };
+
+/* Rays at one angle and wavelength. Every third of those far outside of what is
+ * seen is enough. */
+static void trace_plane(const struct glint_zone *zone,
+                        const struct glint_visible *visible, int sine, int wave,
+                        int stride, struct glint_zone_rays *rays)
+{
+    const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
+    struct glint_ray_batch t;
+
+    t.path = &visible->path[wave];
+    for (int j = 0; j <= DOWN; j += stride) {
+        t.n = 0;
+        for (int i = 0; i <= ACROSS; i += stride) {
+            const double x[GLINT_VARIABLES] = {
+                glint_zone_node(i, ACROSS + 1),
+                zone->annulus ? 0.5 + 0.5 * glint_zone_node(j, DOWN + 1)
+                              : sin(0.5 * GLINT_PI * j / DOWN),
+                glint_zone_node(sine, SINES),
+                glint_zone_node(wave, GLINT_VISIBLE_WAVES)};
+
+            glint_ray_batch_add(&t, zone, x);
+        }
+        glint_ray_batch_trace(&t);
+        for (int i = 0; i < t.n && rays->n < full; i++) {
+            if (t.status[i] != GLINT_RAY_OK)
+                continue;
+            add_ray(visible, t.path, t.x[i], &t.ray[i],
+                    glint_ray_batch_hits(&t, i), rays);
+            if (stride == 1 && (i + j) % 3 &&
+                fmax(rays->at[RAY_EXCESS][rays->n - 1],
+                     rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
+                rays->n--;
+        }
+    }
+}
+
+static int count_visible(const struct glint_zone_rays *rays)
+{
+    int n = 0;
+
+    for (int i = 0; i < rays->n; i++)
+        n += glint_zone_rays_seen(rays, i);
+    return n;
+}
+
+/* Positions are tame in w: four wavelengths at each angle, in turn, are enough.
+ * A coarse grid first; a fine one where few of its rays got through.
+ */
+static void trace_positions(const struct glint_zone *zone,
+                            const struct glint_visible *visible,
+                            struct glint_zone_rays *rays)
+{
+    static const int shift[] = {0, 3, 5, 8};
+
+    for (int stride = 2; stride > 0; stride--) {
+        rays->n = 0;
+        for (int k = 0; k < 4 * SINES; k++)
+            trace_plane(zone, visible, k / 4,
+                        (k / 4 + shift[k % 4]) % GLINT_VISIBLE_WAVES, stride,
+                        rays);
+        if (count_visible(rays) > 500)
+            break;
+    }
+}
+
+double glint_zone_rays_spread(const struct glint_zone_rays *rays)
+{
+    double least = HUGE_VAL, most = 0, spread = 1;
+
+    for (int i = 0; i < rays->n; i++) {
+        if (i == 0 || rays->x[2][i] != rays->x[2][i - 1] ||
+            rays->x[3][i] != rays->x[3][i - 1]) {
+            least = HUGE_VAL;
+            most = 0;
+        }
+        if (!glint_zone_rays_seen(rays, i))
+            continue;
+        least = fmin(least, rays->at[RAY_ENERGY][i]);
+        most = fmax(most, rays->at[RAY_ENERGY][i]);
+        spread = fmax(spread, most / least);
+    }
+    return spread;
+}
+
+/* Energy hardly changes over the pupil, but films make it swing with the
+ * wavelength. Towards total reflection it is STEEP: a finer grid then, and at
+ * each angle five wavelengths in turn. */
+static void trace_energies(const struct glint_zone *zone,
+                           const struct glint_visible *visible, bool steep,
+                           struct glint_zone_rays *rays)
+{
+    static const int shift[] = {0, 2, 4, 6, 9};
+
+    rays->n = 0;
+    for (int k = 0; k < SINES * GLINT_VISIBLE_WAVES && !steep; k++)
+        trace_plane(zone, visible, k / GLINT_VISIBLE_WAVES,
+                    k % GLINT_VISIBLE_WAVES, 4, rays);
+    for (int k = 0; k < 5 * SINES && steep; k++)
+        trace_plane(zone, visible, k / 5,
+                    (k / 5 + shift[k % 5]) % GLINT_VISIBLE_WAVES, 2, rays);
+}
+
+void glint_zone_trace(const struct glint_zone *zone,
+                      const struct glint_visible *visible,
+                      struct glint_zone_rays *rays,
+                      struct glint_zone_rays *energies)
+{
+    trace_positions(zone, visible, rays);
+    energies->n_barrels = 0;
+    trace_energies(zone, visible, glint_zone_rays_spread(rays) > GLINT_STEEP,
+                   energies);
+}
+
+void glint_zone_check(const struct glint_zone *zone,
+                      const struct glint_visible *visible,
+                      struct glint_zone_rays *rays)
+{
+    enum { BUNDLES = 24, RAYS = 16 };
+    double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
+    struct glint_path path;
+    struct glint_ray_batch t;
+
+    t.path = &path;
+    rays->n = rays->n_barrels = 0;
+    for (int k = 0; k < BUNDLES; k++) {
+        glint_ray_batch_scatter(k, bundle);
+        glint_visible_path(visible, bundle[3], &path);
+        path.places_only = true;
+        for (t.n = 0; t.n < RAYS;) {
+            glint_ray_batch_scatter(k * RAYS + t.n, x);
+            x[1] = fabs(x[1]);
+            x[2] = bundle[2];
+            x[3] = bundle[3];
+            glint_ray_batch_add(&t, zone, x);
+        }
+        glint_ray_batch_trace(&t);
+        for (int i = 0; i < RAYS; i++)
+            if (t.status[i] == GLINT_RAY_OK)
+                add_ray(visible, &path, t.x[i], &t.ray[i],
+                        glint_ray_batch_hits(&t, i), rays);
+    }
+}

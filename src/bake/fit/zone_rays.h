@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The rays that polynomials of a zone are fitted to.
+ *
+ *   in   a zone, a ghost's paths at a few wavelengths
+ *   out  rays in the zone's coordinates: where they land, their energy, how
+ *        near they come to the barrels that cut
+ */
+#ifndef GLINT_BAKE_FIT_ZONE_RAYS_H
+#define GLINT_BAKE_FIT_ZONE_RAYS_H
+
+#include "bake/fit/zone.h"
+
+enum { GLINT_ZONE_RAYS = 36 * 120, GLINT_MAX_BARRELS = 4 };
+
+/* Channels of a sample. */
+enum {
+    RAY_SENSOR_X, /* mm */
+    RAY_SENSOR_Y,
+    RAY_STOP_X, /* stop radii */
+    RAY_STOP_Y,
+    RAY_ENERGY,
+    RAY_EXCESS, /* the largest of all relative radii, the stop's too */
+    RAY_FIELD,  /* distance from the sensor's centre, fields */
+    RAY_CHANNELS
+};
+
+struct glint_zone_rays {
+    int n;
+    double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
+    double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
+    /* relative radius at each barrel that limits the zone */
+    int n_barrels;
+    int barrel[GLINT_MAX_BARRELS]; /* events of the path */
+    double radius[GLINT_MAX_BARRELS][GLINT_ZONE_RAYS];
+    double missed_cut; /* how far past a barrel that is not among them a ray
+                          gets at most, relative */
+};
+
+static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
+                                        int ray)
+{
+    return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
+}
+
+/* The most energy over the least of what is seen at one angle and wavelength,
+ * and what is much: films make all of it swing with the wavelength. */
+double glint_zone_rays_spread(const struct glint_zone_rays *rays);
+#define GLINT_STEEP 8
+
+/* Room for the survey that chooses the barrels. */
+enum { GLINT_SURVEY_RAYS = 6000 };
+typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
+
+/* Chooses the barrels of RAYS: no ray gets farther past the others than SHOWS,
+ * a relative radius. */
+void glint_zone_survey_barrels(const struct glint_zone *zone,
+                               const struct glint_visible *visible,
+                               double shows, glint_zone_survey *survey,
+                               struct glint_zone_rays *rays);
+
+/* Traces the samples: RAYS for positions and barrels, ENERGIES at fewer places
+ * but more wavelengths. */
+void glint_zone_trace(const struct glint_zone *zone,
+                      const struct glint_visible *visible,
+                      struct glint_zone_rays *rays,
+                      struct glint_zone_rays *energies);
+
+/* Random rays of the zone, at angles and wavelengths between those of the
+ * samples. Barrels are not looked at. Deterministic. */
+void glint_zone_check(const struct glint_zone *zone,
+                      const struct glint_visible *visible,
+                      struct glint_zone_rays *rays);
+
+#endif
