@@ -44,10 +44,10 @@ include tools/make/target.mk
 # below. src/README.md says what each is for.
 CORE      := base image kernels lens lamps follow tile flare/edges flare
 PUBLISHED := published
-ENGINE    := engine
+ENGINE    := engine engine/frame
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats video panel linux jpeg oiio sdl
-TOOLS     := engine options model overlay command live lab
+TOOLS     := options model overlay command live lab
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 

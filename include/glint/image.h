@@ -62,6 +62,12 @@ size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);
  * after the other without padding; format, width and height are set already. */
 void glint_image_place(struct glint_image *image, void *mem);
 
+/* Linear light, BT.709 primaries, 1 = display white. */
+struct glint_float_image {
+    int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
+    float *rgb;        /* [height][width][3], the top row first */
+};
+
 #ifdef __cplusplus
 }
 #endif

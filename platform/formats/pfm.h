@@ -21,12 +21,6 @@
 #include "glint/status.h"
 #include "posix/output.h"
 
-/* Linear light, BT.709 primaries, 1 = display white. */
-struct glint_float_image {
-    int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
-    float *rgb;        /* [height][width][3], the top row first */
-};
-
 /* Whether DATA begins like a PFM. */
 bool glint_pfm_matches(const void *data, size_t bytes);
 

@@ -80,7 +80,7 @@ static bool add_error(struct sweep *s, const struct glint_lamp *lamp,
     const size_t n = 3 * (size_t)s->o.width * (size_t)s->o.height;
 
     s->test.frame.cfg.dither = dither;
-    frame_retune(&s->test.frame);
+    glint_frame_retune(&s->test.frame);
     memset(s->codes, 0, n);
     if (!stage_codes(&s->test, lamp, 1, s->codes))
         return false;

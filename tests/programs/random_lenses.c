@@ -80,13 +80,13 @@ static void keep_pictures(struct outcome *o, const struct stage *s,
     uint8_t *codes;
 
     memcpy(copy, exact, sizeof copy);
-    exposure = measure_exposure(&image);
-    codes = measure_encode(&image, exposure);
+    exposure = glint_measure_exposure(&image);
+    codes = glint_measure_encode(&image, exposure);
     if (codes)
         memcpy(o->exact, codes, sizeof o->exact);
     free(codes);
     memcpy(copy, model, sizeof copy);
-    codes = measure_encode(&image, exposure);
+    codes = glint_measure_encode(&image, exposure);
     if (codes)
         memcpy(o->model, codes, sizeof o->model);
     free(codes);
@@ -97,7 +97,7 @@ static void compare(struct outcome *o, struct stage *s,
                     const struct glint_lamp *lamp, const float *model)
 {
     static float exact[3 * WIDTH * HEIGHT];
-    struct measure m;
+    struct glint_measure m;
 
     o->grid = o->n_ghosts > MANY_GHOSTS ? 64 : 128;
     if (!stage_exact(s, lamp, 1, o->grid, exact))

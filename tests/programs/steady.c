@@ -33,12 +33,12 @@ struct steady {
 static double light_of(struct steady *s, const struct glint_lamp *lamps,
                        double scale)
 {
-    struct response_light light;
+    struct glint_response_light light;
 
-    if (response_draw(&s->tool, &s->look.scene, s->look.view, lamps,
-                      s->look.n_lamps, &light) != GLINT_OK)
+    if (glint_response_draw(&s->look.frame, lamps, s->look.n_lamps, &light) !=
+        GLINT_OK)
         exit(EXIT_RUNTIME);
-    return scale * strength_largest(light.mean);
+    return scale * glint_strength_largest(light.mean);
 }
 
 /* By how much STEP exceeds what lies between none and OWN, both logarithms. */

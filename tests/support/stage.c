@@ -110,15 +110,16 @@ bool stage_model(struct stage *stage, double tolerance, double max_deg)
 void stage_view(struct stage *stage, int width, int height, double sensor_mm)
 {
     if (stage->framed)
-        frame_finish(&stage->frame);
+        glint_frame_finish(&stage->frame);
     stage->view = sensor_mm > 0
                       ? (struct glint_view){width, height, sensor_mm}
                       : glint_view_fit(width, height, stage->lens.film_width_mm,
                                        stage->lens.film_height_mm);
-    frame_init(&stage->frame,
-               stage->file.data ? &stage->of_model : &stage->setup, stage->view,
-               stage->workers);
+    glint_frame_init(&stage->frame,
+                     stage->file.data ? &stage->of_model : &stage->setup,
+                     stage->view, stage->workers);
     stage->frame.lens = stage->file.data ? &stage->file.lens : NULL;
+    stage->frame.trace = &glint_frame_traces;
     stage->frame.dials.irradiance_steps = 69;
     stage->frame.cfg.sets = glint_sets_here();
     stage->framed = true;
@@ -127,8 +128,8 @@ void stage_view(struct stage *stage, int width, int height, double sensor_mm)
 bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
                   float *rgb)
 {
-    return frame_draw_alone(&stage->frame, lamps, n, 1, rgb, &stage->drawn) ==
-               GLINT_OK ||
+    return glint_frame_draw_alone(&stage->frame, lamps, n, 1, rgb,
+                                  &stage->drawn) == GLINT_OK ||
            refuse("no picture in linear light");
 }
 
@@ -162,16 +163,16 @@ bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
                                 .height = stage->view.height};
 
     glint_image_place(&image, codes);
-    return frame_draw(&stage->frame, lamps, n, 1, &image, &stage->drawn) ==
-               GLINT_OK ||
+    return glint_frame_draw(&stage->frame, lamps, n, 1, &image,
+                            &stage->drawn) == GLINT_OK ||
            refuse("no picture in codes");
 }
 
-struct measure stage_compare(const struct stage *stage, const float *reference,
-                             const float *test)
+struct glint_measure stage_compare(const struct stage *stage,
+                                   const float *reference, const float *test)
 {
     const int w = stage->view.width, h = stage->view.height;
-    struct measure m = {0};
+    struct glint_measure m = {0};
     float *copies = malloc(6 * sizeof(float) * (size_t)w * (size_t)h);
     const size_t n = 3 * (size_t)w * (size_t)h;
 
@@ -179,9 +180,9 @@ struct measure stage_compare(const struct stage *stage, const float *reference,
         return m;
     memcpy(copies, reference, n * sizeof(float));
     memcpy(copies + n, test, n * sizeof(float));
-    if (!measure_compare(&(struct glint_float_image){w, h, copies},
-                         &(struct glint_float_image){w, h, copies + n}, false,
-                         &m))
+    if (!glint_measure_compare(&(struct glint_float_image){w, h, copies},
+                               &(struct glint_float_image){w, h, copies + n},
+                               false, &m))
         refuse("no memory to compare");
     free(copies);
     return m;
@@ -197,7 +198,7 @@ double stage_power(struct stage *stage, const struct glint_lamp *lamp)
 
     one.power = 1;
     if (image.rgb && stage_linear(stage, &one, 1, image.rgb))
-        power = measure_exposure(&image);
+        power = glint_measure_exposure(&image);
     free(image.rgb);
     return power;
 }
@@ -235,7 +236,7 @@ double stage_flux(const struct stage *stage, const float *rgb)
 void stage_close(struct stage *stage)
 {
     if (stage->framed)
-        frame_finish(&stage->frame);
+        glint_frame_finish(&stage->frame);
     model_file_close(&stage->file);
     *stage = (struct stage){.framed = false};
 }

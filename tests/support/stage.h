@@ -17,7 +17,7 @@
 
 #include <stdbool.h>
 
-#include "engine/frame.h"
+#include "engine/frame/frame.h"
 #include "engine/measure.h"
 #include "model/model_file.h"
 
@@ -28,9 +28,9 @@ struct stage {
     struct model_file file;          /* closed: rays are exact */
     struct glint_bake_report report; /* of the bake */
     struct glint_view view;
-    struct frame frame;
+    struct glint_frame frame;
     bool framed;
-    struct frame_report drawn; /* the last picture */
+    struct glint_frame_report drawn; /* the last picture */
 };
 
 /* Reads lenses/NAME.lens, from the root of the tree. */
@@ -62,8 +62,8 @@ bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
                  uint8_t *codes);
 
 /* TEST against REFERENCE, as in measure.h. */
-struct measure stage_compare(const struct stage *stage, const float *reference,
-                             const float *test);
+struct glint_measure stage_compare(const struct stage *stage,
+                                   const float *reference, const float *test);
 
 /* The power at which LAMP's flare is well exposed, as in measure.h. */
 double stage_power(struct stage *stage, const struct glint_lamp *lamp);

@@ -49,7 +49,7 @@ static bool is_identical(const struct glint_float_image image[2])
     return memcmp(image[0].rgb, image[1].rgb, n * sizeof(float)) == 0;
 }
 
-static void print_json(const struct measure *m, bool identical)
+static void print_json(const struct glint_measure *m, bool identical)
 {
     if (m->psnr_db == 999)
         printf("{\"psnr_db\": null, ");
@@ -61,7 +61,7 @@ static void print_json(const struct measure *m, bool identical)
            identical ? "true" : "false");
 }
 
-static void print(const struct measure *m, bool identical)
+static void print(const struct glint_measure *m, bool identical)
 {
     const char *words = identical           ? "identical: "
                         : m->psnr_db == 999 ? "differ in nothing that can be "
@@ -101,7 +101,7 @@ static double exposure_for(const struct asked *a,
 
     if (a->has_ev)
         return exp2(a->ev);
-    return codes && !a->is_auto ? 1 : measure_exposure(reference);
+    return codes && !a->is_auto ? 1 : glint_measure_exposure(reference);
 }
 
 static int measure(const struct tool *tool, const struct asked *a,
@@ -109,11 +109,11 @@ static int measure(const struct tool *tool, const struct asked *a,
 {
     const double exposure = exposure_for(a, &image[0]);
     const bool identical = is_identical(image);
-    struct measure m;
+    struct glint_measure m;
 
     if (a->exposed)
         unexpose(&image[1], exposure);
-    if (!measure_at(&image[0], &image[1], a->fit, exposure, &m))
+    if (!glint_measure_at(&image[0], &image[1], a->fit, exposure, &m))
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (tool->json)
         print_json(&m, identical);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/explain.h"
+#include "command/explain.h"
 #include "overlay/look.h"
 #include "engine/measure.h"
 #include "options/takes.h"
@@ -172,12 +172,13 @@ static enum glint_status draw_linear(struct explain_command *c)
     look_lamps(look, &c->image, 0);
     light.rgb = calloc(3 * n, sizeof *light.rgb);
     if (light.rgb)
-        status = frame_draw_alone(&look->frame, look->lamp, look->n_lamps,
-                                  scene_scale(&look->scene), light.rgb,
-                                  &look->report);
+        status = glint_frame_draw_alone(&look->frame, look->lamp, look->n_lamps,
+                                        scene_scale(&look->scene), light.rgb,
+                                        &look->report);
     if (status == GLINT_OK) {
-        codes = measure_encode(
-            &light, look->scene.has_exposure ? 1 : measure_exposure(&light));
+        codes = glint_measure_encode(
+            &light,
+            look->scene.has_exposure ? 1 : glint_measure_exposure(&light));
         if (codes)
             memcpy(c->image.plane[0], codes, 3 * n);
         else
@@ -192,7 +193,7 @@ static enum glint_status draw_linear(struct explain_command *c)
  */
 
 static int save(struct tool *tool, const struct explain_command *c,
-                struct explain *e, const struct explain_title *title)
+                struct glint_explain *e, const struct explain_title *title)
 {
     struct glint_error error = {""};
     struct glint_image marked = {.plane = {NULL}};
@@ -211,14 +212,15 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
                                         .lamp = look->lamp,
                                         .n_lamps = look->n_lamps,
                                         .linear = linear,
-                                        .order = (enum explain_order)c->order,
+                                        .order =
+                                            (enum glint_explain_order)c->order,
                                         .top = c->top,
                                         .report = &look->report};
     const double unit = linear && look->frame.scale > 0
                             ? scene_scale(&look->scene) / look->frame.scale
                             : 1;
-    struct explain e;
-    const enum glint_status status = explain_open(&e, &look->frame, unit);
+    struct glint_explain e;
+    const enum glint_status status = glint_explain_open(&e, &look->frame, unit);
     int code = EXIT_OK;
 
     if (status != GLINT_OK)
@@ -229,7 +231,7 @@ static int tell(struct tool *tool, struct explain_command *c, bool linear)
         explain_print(&e, &title);
     if (code == EXIT_OK && c->output)
         code = save(tool, c, &e, &title);
-    explain_close(&e);
+    glint_explain_close(&e);
     return code;
 }
 

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/area.h"
-#include "engine/lamps.h"
+#include "engine/frame/area.h"
+#include "options/lamp_list.h"
 #include "engine/measure.h"
 #include "formats/picture.h"
 #include "posix/error.h"
@@ -144,21 +144,21 @@ static struct glint_lamp *points_of(const struct render *r, int *n)
     const double pixels = fabs(r->scene.setup.optics.focal_mm) * view.width /
                           view.sensor_width_mm;
     struct glint_lamp *points;
-    struct area area;
+    struct glint_area area;
     int total;
-    const struct area_rule rule =
-        area_rule_of(r->lamp, r->n_lamps, pixels,
-                     r->scene.area_samples_asked ? r->scene.area_samples_asked
-                                                 : r->scene.dials.area_points,
-                     INT_MAX, &total);
+    const struct glint_area_rule rule = glint_area_rule_of(
+        r->lamp, r->n_lamps, pixels,
+        r->scene.area_samples_asked ? r->scene.area_samples_asked
+                                    : r->scene.dials.area_points,
+        INT_MAX, &total);
 
     *n = 0;
     points = malloc(((size_t)total + 1) * sizeof *points);
     for (int lamp = 0; points && lamp < r->n_lamps; lamp++) {
-        const int more = area_plan(&area, &r->lamp[lamp], &rule);
+        const int more = glint_area_plan(&area, &r->lamp[lamp], &rule);
 
         for (int i = 0; i < more; i++)
-            points[(*n)++] = area_point(&area, i);
+            points[(*n)++] = glint_area_point(&area, i);
     }
     return points;
 }
@@ -203,7 +203,7 @@ static int render_exact(struct tool *tool, struct render *r)
 }
 
 static void say_lights(const struct tool *tool,
-                       const struct frame_report *report)
+                       const struct glint_frame_report *report)
 {
     char lights[64];
 
@@ -218,21 +218,21 @@ static void say_lights(const struct tool *tool,
 
 static int render_model(struct tool *tool, struct render *r)
 {
-    struct frame_report report = {.lights = 0};
+    struct glint_frame_report report = {.lights = 0};
     enum glint_status status;
-    struct frame frame;
+    struct glint_frame frame;
     int code = scene_frame(tool, &r->scene,
                            scene_view(&r->scene, r->width, r->height), &frame);
 
     if (code == EXIT_OK) {
         status = r->reserve_bytes && r->n_lamps > 0
-                     ? frame_reserve(&frame, r->reserve_bytes, r->n_lamps,
-                                     frame.dials.max_lights)
+                     ? glint_frame_reserve(&frame, NULL, r->reserve_bytes,
+                                           r->n_lamps, frame.dials.max_lights)
                      : GLINT_OK;
         if (status == GLINT_OK)
-            status =
-                frame_draw_alone(&frame, r->lamp, r->n_lamps,
-                                 scene_scale(&r->scene), r->image.rgb, &report);
+            status = glint_frame_draw_alone(&frame, r->lamp, r->n_lamps,
+                                            scene_scale(&r->scene),
+                                            r->image.rgb, &report);
         if (status != GLINT_OK)
             code = tool_fail(tool, status, NULL);
     }
@@ -243,7 +243,7 @@ static int render_model(struct tool *tool, struct render *r)
     }
     if (code == EXIT_OK)
         say_lights(tool, &report);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     return code;
 }
 
@@ -260,8 +260,9 @@ static int save(struct tool *tool, struct render *r)
     if (r->linear)
         status = glint_picture_save_float(r->output, &r->image, &error);
     else {
-        mem = measure_encode(
-            &r->image, r->scene.has_exposure ? 1 : measure_exposure(&r->image));
+        mem = glint_measure_encode(
+            &r->image,
+            r->scene.has_exposure ? 1 : glint_measure_exposure(&r->image));
         if (!mem)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
         glint_image_place(&codes, mem);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/explain.h"
+#include "command/explain.h"
 #include "overlay/paint.h"
 
 enum { PALETTE = 14, MOST_LABELS = 256, COLUMN = 152 };
@@ -23,7 +23,7 @@ struct label {
 };
 
 struct marking {
-    struct explain *explain;
+    struct glint_explain *explain;
     const struct glint_image *image; /* the new one */
     int width, height;               /* of the frame, which is its upper part */
     int scale;                       /* of lines and letters */
@@ -75,12 +75,12 @@ static void shade(const struct marking *m, int x0, int y0, int side,
 
 static void shade_tiles(struct marking *m)
 {
-    const struct frame *f = m->explain->frame;
+    const struct glint_frame *f = m->explain->frame;
     const int side = 1 << f->cfg.tile_log2;
     int tile = 0;
 
     if (m->explain->n_beams)
-        explain_draw(m->explain, -1);
+        glint_explain_draw(m->explain, -1);
     for (int y = 0; y < m->height; y += side)
         for (int x = 0; x < m->width; x += side, tile++)
             shade(m, x, y, side,
@@ -175,12 +175,13 @@ static void outline(const struct marking *m, int k)
 /* ---------------------------------------------------------------------- legend
  */
 
-static int n_marked(const struct explain *e, const struct explain_title *t)
+static int n_marked(const struct glint_explain *e,
+                    const struct explain_title *t)
 {
     int n = 0;
 
     for (int i = 0; i < e->n_ghosts; i++)
-        n += explain_drawn(&e->ghost[i]) > 0;
+        n += glint_explain_drawn(&e->ghost[i]) > 0;
     return n < t->top ? n : t->top;
 }
 
@@ -215,7 +216,7 @@ static void put_title(const struct marking *m, const struct explain_title *t)
 static void put_entry(const struct marking *m, int k, int ghost)
 {
     struct paint p = {.image = m->image, .line = m->scale};
-    const struct explain_part *part = &m->explain->ghost[ghost];
+    const struct glint_explain_part *part = &m->explain->ghost[ghost];
     const int x = k % columns(m) * COLUMN * p.line + 4 * p.line;
     const int y = m->height + (3 + 8 * (1 + k / columns(m))) * p.line;
     char text[64];
@@ -251,7 +252,8 @@ static enum glint_status make(const struct glint_image *picture, int legend,
     return GLINT_OK;
 }
 
-enum glint_status explain_mark(struct explain *e, const struct explain_title *t,
+enum glint_status explain_mark(struct glint_explain *e,
+                               const struct explain_title *t,
                                const struct glint_image *picture,
                                struct glint_image *marked)
 {
@@ -266,21 +268,21 @@ enum glint_status explain_mark(struct explain *e, const struct explain_title *t,
     status = make(picture, (8 * legend_rows(&m, t) + 3) * m.scale, marked);
     if (status != GLINT_OK)
         return status;
-    explain_sort(e, t->order, ghosts);
+    glint_explain_sort(e, t->order, ghosts);
     shade_tiles(&m);
     put_title(&m, t);
     for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
-        if (explain_drawn(&e->ghost[ghosts[i]]) == 0)
+        if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
             continue;
-        explain_draw(e, ghosts[i]);
+        glint_explain_draw(e, ghosts[i]);
         outline(&m, n);
         put_entry(&m, n++, ghosts[i]);
     }
     n = 0;
     for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
-        if (explain_drawn(&e->ghost[ghosts[i]]) == 0)
+        if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
             continue;
-        explain_draw(e, ghosts[i]);
+        glint_explain_draw(e, ghosts[i]);
         put_label(&m, n++, ghosts[i]);
     }
     return GLINT_OK;

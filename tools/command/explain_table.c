@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/explain.h"
+#include "command/explain.h"
 #include "options/tool.h"
 
 enum { WIDE = 100 };
@@ -41,19 +41,19 @@ static double degrees(double y, double x)
     return atan2(y, x) * 180 / 3.14159265358979323846;
 }
 
-static double model_degrees(const struct explain *e)
+static double model_degrees(const struct glint_explain *e)
 {
     return asin(e->frame->lens->header->sine_hi_q30 * 0x1p-30) * 180 /
            3.14159265358979323846;
 }
 
 /* Ghosts of which something is drawn. */
-static int ghosts_drawn(const struct explain *e)
+static int ghosts_drawn(const struct glint_explain *e)
 {
     int n = 0;
 
     for (int i = 0; i < e->n_ghosts; i++)
-        n += explain_drawn(&e->ghost[i]) > 0;
+        n += glint_explain_drawn(&e->ghost[i]) > 0;
     return n;
 }
 
@@ -69,7 +69,7 @@ static void print_percent(double x)
 }
 
 /* What each row of all tables ends with. */
-static void print_costs(const struct explain_part *p)
+static void print_costs(const struct glint_explain_part *p)
 {
     printf(" %9lld %8lld %9lld %8d %5d", p->vertices, p->edges, p->rows, p->lit,
            p->tiles);
@@ -85,11 +85,12 @@ static void print_head(const char *what)
            "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
 }
 
-static void print_title(const struct explain *e, const struct explain_title *t)
+static void print_title(const struct glint_explain *e,
+                        const struct explain_title *t)
 {
-    static const char *const stages[EXPLAIN_STAGES] = {
+    static const char *const stages[GLINT_EXPLAIN_STAGES] = {
         "looking", "vertices", "edges", "rows", "lit pixels"};
-    const struct explain_part *all = &e->all;
+    const struct glint_explain_part *all = &e->all;
 
     printf("%s, %dx%d, %s\n", t->lens, e->frame->view.width,
            e->frame->view.height, t->linear ? "linear light" : "codes");
@@ -98,66 +99,67 @@ static void print_title(const struct explain *e, const struct explain_title *t)
                                    : "drawn: lights %d of %d",
            e->n_beams, t->n_lamps);
     printf(", ghosts %d of %d, bundles %d of %d, tiles %d of %d\n",
-           ghosts_drawn(e), e->n_ghosts, explain_drawn(all),
-           explain_bundles(all), all->tiles, e->n_tiles);
+           ghosts_drawn(e), e->n_ghosts, glint_explain_drawn(all),
+           glint_explain_bundles(all), all->tiles, e->n_tiles);
     printf("barrels that cut: ");
-    for (int k = 0, some = 0; k < EXPLAIN_BARRELS; k++)
+    for (int k = 0, some = 0; k < GLINT_EXPLAIN_BARRELS; k++)
         if (e->barrels[k])
             printf("%s%d in %d bundles", some++ ? ", " : "", k, e->barrels[k]);
     printf("\nterms of a ray: %.1f in the mean\n",
            all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
     printf("work: about %.1f M instructions\n     ", 1e-6 * all->work);
-    for (int i = 0; i < EXPLAIN_STAGES && all->work > 0; i++)
+    for (int i = 0; i < GLINT_EXPLAIN_STAGES && all->work > 0; i++)
         printf("%s %s %.1f %%", i ? "," : "", stages[i],
                100 * e->stage[i] / all->work);
     printf("\n");
 }
 
-static void print_lights(const struct explain *e, const struct explain_title *t)
+static void print_lights(const struct glint_explain *e,
+                         const struct explain_title *t)
 {
     print_head("light    angle azimuth bundles");
     for (int i = 0; i < e->n_beams && i < t->top; i++) {
         const struct glint_light *b = &e->frame->beam[i];
 
-        printf("%5d %8.3f %7.1f %7d", i + 1,
-               degrees(b->sine_q30, b->cosine_q30),
-               degrees(b->sin_q30, b->cos_q30), explain_drawn(&e->beam[i]));
+        printf(
+            "%5d %8.3f %7.1f %7d", i + 1, degrees(b->sine_q30, b->cosine_q30),
+            degrees(b->sin_q30, b->cos_q30), glint_explain_drawn(&e->beam[i]));
         print_costs(&e->beam[i]);
     }
     if (e->n_beams > t->top)
         printf("      and %d more (--top)\n", e->n_beams - t->top);
 }
 
-static void print_waves(const struct explain *e)
+static void print_waves(const struct glint_explain *e)
 {
     print_head("wavelength             bundles");
     for (int i = 0; i < e->n_waves; i++) {
         if (e->frame->rays.sets)
             printf("%-3d for a ghost %14d", e->frame->rays.sets->size[i],
-                   explain_drawn(&e->wave[i]));
+                   glint_explain_drawn(&e->wave[i]));
         else
             printf("%7.1f nm %19d", e->frame->setup->wavelength_nm[i],
-                   explain_drawn(&e->wave[i]));
+                   glint_explain_drawn(&e->wave[i]));
         print_costs(&e->wave[i]);
     }
 }
 
-static void print_ghosts(const struct explain *e, const struct explain_title *t,
-                         const int *ghosts)
+static void print_ghosts(const struct glint_explain *e,
+                         const struct explain_title *t, const int *ghosts)
 {
     int n = 0;
 
     print_head("ghost   pair bundles terms cut");
     for (int i = 0; i < e->n_ghosts; i++) {
-        const struct explain_part *p = &e->ghost[ghosts[i]];
+        const struct glint_explain_part *p = &e->ghost[ghosts[i]];
         const struct glint_ghost *g = &e->frame->setup->ghost[ghosts[i]];
         char pair[32], bundles[32];
 
-        if (explain_drawn(p) == 0 || n++ >= t->top)
+        if (glint_explain_drawn(p) == 0 || n++ >= t->top)
             continue;
         snprintf(pair, sizeof pair, "%d-%d", g->i, g->j);
-        snprintf(bundles, sizeof bundles, "%d/%d", explain_drawn(p),
-                 explain_bundles(p));
+        snprintf(bundles, sizeof bundles, "%d/%d", glint_explain_drawn(p),
+                 glint_explain_bundles(p));
         printf("%5d %6s %7s %5d %3d", ghosts[i], pair, bundles, p->terms,
                p->barrels);
         print_costs(p);
@@ -167,7 +169,7 @@ static void print_ghosts(const struct explain *e, const struct explain_title *t,
 }
 
 /* The numbers of ghosts that FATE befell, as many as the line has room for. */
-static void print_numbers(const struct explain *e, enum glint_fate fate,
+static void print_numbers(const struct glint_explain *e, enum glint_fate fate,
                           int room)
 {
     for (int i = 0; i < e->n_ghosts; i++) {
@@ -186,7 +188,7 @@ static void print_numbers(const struct explain *e, enum glint_fate fate,
     printf("\n");
 }
 
-static void print_left_out(const struct explain *e)
+static void print_left_out(const struct glint_explain *e)
 {
     printf("\n%-41s %7s %7s\n", "left out", "bundles", "ghosts");
     for (int fate = GLINT_FATE_EMPTY; fate < GLINT_FATES; fate++) {
@@ -201,15 +203,15 @@ static void print_left_out(const struct explain *e)
     }
 }
 
-static void print_lost_lights(const struct explain *e,
+static void print_lost_lights(const struct glint_explain *e,
                               const struct explain_title *t)
 {
-    const struct frame_report *r = t->report;
+    const struct glint_frame_report *r = t->report;
     const double most = model_degrees(e);
     int n = 0, dark = 0;
 
     for (int i = 0; i < t->n_lamps; i++) {
-        if (frame_is_beyond(e->frame, &t->lamp[i])) {
+        if (glint_frame_is_beyond(e->frame, &t->lamp[i])) {
             if (n++ < t->top)
                 printf("light at %.3f degrees: beyond the model, which ends at "
                        "%.1f (bake --max-angle)\n",
@@ -234,11 +236,11 @@ static void print_lost_lights(const struct explain *e,
                r->apart_lights, r->drawn_lights);
 }
 
-void explain_print(const struct explain *e, const struct explain_title *t)
+void explain_print(const struct glint_explain *e, const struct explain_title *t)
 {
     int ghosts[GLINT_MAX_GHOSTS];
 
-    explain_sort(e, t->order, ghosts);
+    glint_explain_sort(e, t->order, ghosts);
     print_title(e, t);
     if (e->n_beams) {
         print_lights(e, t);
@@ -252,10 +254,10 @@ void explain_print(const struct explain *e, const struct explain_title *t)
 /* ------------------------------------------------------------------------ JSON
  */
 
-static void json_part(const struct explain_part *p)
+static void json_part(const struct glint_explain_part *p)
 {
     printf("\"bundles\": %d, \"drawn\": %d, \"left_out\": {",
-           explain_bundles(p), explain_drawn(p));
+           glint_explain_bundles(p), glint_explain_drawn(p));
     for (int fate = GLINT_FATE_EMPTY, n = 0; fate < GLINT_FATES; fate++)
         if (p->of[fate])
             printf("%s\"%s\": %d", n++ ? ", " : "", fates[fate].word,
@@ -268,7 +270,8 @@ static void json_part(const struct explain_part *p)
            p->refs, p->lit, p->tiles, p->flux, p->share, p->brightest, p->cost);
 }
 
-static void json_lights(const struct explain *e, const struct explain_title *t)
+static void json_lights(const struct glint_explain *e,
+                        const struct explain_title *t)
 {
     int n = 0;
 
@@ -284,18 +287,18 @@ static void json_lights(const struct explain *e, const struct explain_title *t)
     }
     printf("], \"beyond_model_deg\": [");
     for (int i = 0; i < t->n_lamps; i++)
-        if (frame_is_beyond(e->frame, &t->lamp[i]))
+        if (glint_frame_is_beyond(e->frame, &t->lamp[i]))
             printf("%s%.6g", n++ ? ", " : "", t->lamp[i].theta_deg);
     printf("], \"model_max_deg\": %.6g", model_degrees(e));
 }
 
-void explain_json(const struct explain *e, const struct explain_title *t)
+void explain_json(const struct glint_explain *e, const struct explain_title *t)
 {
-    static const char *const stages[EXPLAIN_STAGES] = {
+    static const char *const stages[GLINT_EXPLAIN_STAGES] = {
         "looking", "vertices", "edges", "rows", "pixels"};
     int ghosts[GLINT_MAX_GHOSTS];
 
-    explain_sort(e, t->order, ghosts);
+    glint_explain_sort(e, t->order, ghosts);
     printf("{\"lens\": ");
     tool_json_string(stdout, t->lens);
     printf(", \"width\": %d, \"height\": %d, \"picture\": \"%s\", "
@@ -307,11 +310,11 @@ void explain_json(const struct explain *e, const struct explain_title *t)
            e->n_tiles, t->report->stats.held_cells, t->report->held_samples);
     json_part(&e->all);
     printf("}, \"work\": {\"instructions\": %.0f", e->all.work);
-    for (int i = 0; i < EXPLAIN_STAGES; i++)
+    for (int i = 0; i < GLINT_EXPLAIN_STAGES; i++)
         printf(", \"%s\": %.6g", stages[i],
                e->all.work > 0 ? e->stage[i] / e->all.work : 0);
     printf("}, \"barrels\": [");
-    for (int n = 0; n < EXPLAIN_BARRELS; n++)
+    for (int n = 0; n < GLINT_EXPLAIN_BARRELS; n++)
         printf("%s%d", n ? ", " : "", e->barrels[n]);
     printf("], ");
     json_lights(e, t);

@@ -27,7 +27,7 @@ struct bench_canvas {
 struct test {
     const struct scene *scene;
     struct bench_canvas *canvas;
-    struct frame frame;
+    struct glint_frame frame;
     struct glint_lamp *lamp;
     int n_lamps, threads;
     const char *kernels;
@@ -35,7 +35,7 @@ struct test {
     const char *series;                    /* of growth, or NULL */
     struct glint_lens some;                /* lens with some ghosts only, */
     struct glint_model_ghost *some_ghosts; /* unless this is NULL */
-    struct frame_report report;
+    struct glint_frame_report report;
     double cpu_ms; /* of growth: of all threads, the least of a frame; or 0 */
     double ms[STAGES][MAX_ROUNDS];
     double wrong[MAX_ROUNDS]; /* with a budget: predicted over measured - 1 */

@@ -66,10 +66,10 @@ static enum glint_status expose(struct test *t)
     enum glint_status status = GLINT_E_MEMORY;
 
     if (flare.rgb)
-        status = frame_draw_alone(&t->frame, t->lamp, t->n_lamps, 1, flare.rgb,
-                                  &t->report);
+        status = glint_frame_draw_alone(&t->frame, t->lamp, t->n_lamps, 1,
+                                        flare.rgb, &t->report);
     if (status == GLINT_OK)
-        t->scale = measure_exposure(&flare);
+        t->scale = glint_measure_exposure(&flare);
     free(flare.rgb);
     return status;
 }
@@ -159,8 +159,9 @@ static int add_budgets(struct bench *b, const struct scene *scene)
         code = bench_add_one(b, scene, 0, 0, 1);
         if (b->n_tests == n || code != EXIT_OK)
             break;
-        budget_init(&t->frame.budget, b->budget_ms[i]);
-        code = scene_calibrate(b->tool, scene, t->frame.view, &t->frame.budget);
+        glint_budget_init(&t->frame.budget, b->budget_ms[i]);
+        if (glint_frame_calibrate(&t->frame) != GLINT_OK)
+            code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
         for (int k = 0; k < SETTLING && code == EXIT_OK; k++)
             if (bench_run(t, 0) != GLINT_OK)
                 code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
@@ -213,8 +214,8 @@ enum glint_status bench_run(struct test *t, int round)
     if (t->series) /* a system call would cool the caches of small frames */
         cpu0 = clock();
     t0 = tool_seconds();
-    status = frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale, &c->image,
-                        &t->report);
+    status = glint_frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale,
+                              &c->image, &t->report);
     t->ms[WHOLE][round] = 1e3 * (tool_seconds() - t0);
     cpu_ms = t->series ? 1e3 * (double)(clock() - cpu0) / CLOCKS_PER_SEC : 0;
     if (t->cpu_ms == 0 || cpu_ms < t->cpu_ms)
@@ -241,20 +242,20 @@ int bench_psnr(struct bench *b, struct test *t)
     uint8_t *want_codes = NULL, *got = malloc(n);
     enum glint_status status = GLINT_E_MEMORY;
     double exposure;
-    struct measure m;
+    struct glint_measure m;
 
     if (want.rgb && got)
         status =
             yardstick_exact(b->tool, t->scene, t->lamp, t->n_lamps, 128, &want);
     if (status == GLINT_OK) {
-        exposure = measure_exposure(&want);
-        want_codes = measure_encode(&want, exposure);
+        exposure = glint_measure_exposure(&want);
+        want_codes = glint_measure_encode(&want, exposure);
         status = want_codes ? yardstick_codes(&t->frame, t->lamp, t->n_lamps,
                                               exposure, got, &t->report)
                             : GLINT_E_MEMORY;
     }
     if (status == GLINT_OK) {
-        measure_codes(want_codes, got, w, h, &m);
+        glint_measure_codes(want_codes, got, w, h, &m);
         t->psnr_db = m.psnr_db;
     }
     free(want.rgb);

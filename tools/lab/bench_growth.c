@@ -119,7 +119,7 @@ static int add_quanta(struct bench *b, const struct scene *scene)
 
     for (size_t i = 0; i < sizeof steps / sizeof *steps && code == EXIT_OK;
          i++) {
-        struct frame *f = &b->test[b->n_tests].frame;
+        struct glint_frame *f = &b->test[b->n_tests].frame;
         const int at = b->n_tests;
 
         code = add(b, scene, "quantum", 0, 0, 1);

@@ -126,7 +126,7 @@ static void close_bench(struct bench *b)
     for (int i = 0; i < MAX_CASES; i++)
         free(b->test[i].lamp);
     for (int i = 0; i < b->n_tests; i++) {
-        frame_finish(&b->test[i].frame);
+        glint_frame_finish(&b->test[i].frame);
         free(b->test[i].some_ghosts);
     }
     for (int i = 0; i < b->n_canvases; i++)

@@ -6,9 +6,9 @@
 #ifndef GLINT_TOOLS_LAB_SWEEP_H
 #define GLINT_TOOLS_LAB_SWEEP_H
 
-#include "engine/cost.h"
+#include "engine/frame/cost.h"
 #include "options/dials.h"
-#include "engine/quality.h"
+#include "engine/frame/quality.h"
 #include "formats/pfm.h"
 #include "lab/yardstick.h"
 
@@ -39,9 +39,9 @@ struct sweep_point {
     double ms, floor_ms, ratio, instructions;
     size_t arena_bytes, model_bytes;
     double psnr_db, ssim, p99, flux_error;
-    struct frame_report report;
-    struct cost cost; /* as the plan tells it */
-    bool front;       /* no other of its case is both cheaper and better */
+    struct glint_frame_report report;
+    struct glint_cost cost; /* as the plan tells it */
+    bool front; /* no other of its case is both cheaper and better */
     int picture;
 };
 
@@ -88,10 +88,10 @@ enum glint_status sweep_plan(struct sweep *s);
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
 
 /* frame_draw, in a function of its own that tools/report/sweep-insn counts. */
-enum glint_status sweep_frame(struct frame *frame,
+enum glint_status sweep_frame(struct glint_frame *frame,
                               const struct glint_lamp *lamp, int n,
                               double exposure, const struct glint_image *image,
-                              struct frame_report *report);
+                              struct glint_frame_report *report);
 
 /* What a frame of POINT costs: times the memory floor, or with
  * by_instructions millions of these. NAN: not measured. */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/sweep.h"
 
-enum glint_status sweep_frame(struct frame *frame,
+enum glint_status sweep_frame(struct glint_frame *frame,
                               const struct glint_lamp *lamp, int n,
                               double exposure, const struct glint_image *image,
-                              struct frame_report *report)
+                              struct glint_frame_report *report)
 {
-    return frame_draw(frame, lamp, n, exposure, image, report);
+    return glint_frame_draw(frame, lamp, n, exposure, image, report);
 }

@@ -16,7 +16,7 @@ enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
 struct run {
     struct sweep_point *point;
     const struct scene *scene;
-    struct frame frame;
+    struct glint_frame frame;
     double ms[SWEEP_ROUNDS];
     int n;
     double spent_ms;
@@ -92,12 +92,12 @@ static int make_run(struct bay *b, struct run *r)
  * picture's white. */
 static enum glint_status expose(struct bay *b)
 {
-    struct frame_report report;
-    const enum glint_status status = frame_draw_alone(
+    struct glint_frame_report report;
+    const enum glint_status status = glint_frame_draw_alone(
         &b->run[0].frame, b->lamp, b->c->n_lamps, 1, b->got.rgb, &report);
 
     if (status == GLINT_OK)
-        b->exposure = measure_exposure(&b->got);
+        b->exposure = glint_measure_exposure(&b->got);
     return status;
 }
 
@@ -128,7 +128,7 @@ static int make_bay(struct bay *b)
 static void free_bay(struct bay *b)
 {
     for (int i = 0; b->run && i < b->c->n; i++)
-        frame_finish(&b->run[i].frame);
+        glint_frame_finish(&b->run[i].frame);
     for (int i = 0; i < b->n_open; i++)
         scene_close(&b->open[i]);
     canvas_finish(&b->canvas);
@@ -151,8 +151,8 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
 
     canvas_fresh(&b->canvas);
     if (round < 0)
-        return frame_draw(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
-                          &b->canvas.image, &p->report);
+        return glint_frame_draw(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
+                                &b->canvas.image, &p->report);
     if (b->s->counter >= 0)
         n0 = glint_instructions_read(b->s->counter);
     if (b->s->count_only)
@@ -185,13 +185,13 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
     }
     for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
         struct run *r = &b->run[i];
-        const struct cost_plan plan = frame_plan(&r->frame);
+        const struct glint_cost_plan plan = glint_frame_plan(&r->frame);
 
         r->point->ms = yardstick_median(r->ms, r->n);
         r->point->floor_ms = yardstick_median(b->floor_ms, n);
         r->point->ratio = r->point->ms / r->point->floor_ms;
         r->point->arena_bytes = r->point->report.peak_bytes;
-        r->point->cost = cost_of(&plan, &plan.dials);
+        r->point->cost = glint_cost_of(&plan, &plan.dials);
     }
     return status;
 }
@@ -218,15 +218,15 @@ static enum glint_status measure_flux(struct bay *b, struct run *r)
                                 .width = b->c->width,
                                 .height = b->c->height};
     int32_t *linear_q20 = calloc(n, sizeof *linear_q20);
-    struct frame_report report;
+    struct glint_frame_report report;
     enum glint_status status = GLINT_E_MEMORY;
     double sum = 0;
 
     if (linear_q20) {
         glint_image_place(&layer, linear_q20);
         r->frame.for_codes = true;
-        status = frame_draw(&r->frame, b->lamp, b->c->n_lamps, b->exposure,
-                            &layer, &report);
+        status = glint_frame_draw(&r->frame, b->lamp, b->c->n_lamps,
+                                  b->exposure, &layer, &report);
         r->frame.for_codes = false;
         for (size_t i = 0; i < n; i++)
             sum += linear_q20[i] * 0x1p-20;
@@ -321,14 +321,14 @@ static enum glint_status measure_point(struct bay *b, struct run *r,
                                        const uint8_t *exact_codes,
                                        double exposure, uint8_t *codes)
 {
-    struct frame_report report;
-    struct measure m;
+    struct glint_frame_report report;
+    struct glint_measure m;
     const enum glint_status status = yardstick_codes(
         &r->frame, b->lamp, b->c->n_lamps, exposure, codes, &report);
 
     if (status != GLINT_OK)
         return status;
-    measure_codes(exact_codes, codes, b->c->width, b->c->height, &m);
+    glint_measure_codes(exact_codes, codes, b->c->width, b->c->height, &m);
     r->point->psnr_db = m.psnr_db;
     r->point->ssim = m.ssim;
     r->point->p99 = m.p99;
@@ -350,9 +350,9 @@ static enum glint_status measure_all(struct bay *b,
         status = sweep_exact(b->s->tool, &b->open[0], b->lamp, b->c->n_lamps,
                              b->s->grid, &b->exact);
     if (status == GLINT_OK) {
-        const double exposure = measure_exposure(&b->exact);
+        const double exposure = glint_measure_exposure(&b->exact);
 
-        exact_codes = measure_encode(&b->exact, exposure);
+        exact_codes = glint_measure_encode(&b->exact, exposure);
         if (!exact_codes || !keep_picture(b, NULL, exact_codes, NULL))
             status = GLINT_E_MEMORY;
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {

@@ -135,10 +135,10 @@ enum glint_status yardstick_exact(const struct tool *tool,
     return status;
 }
 
-enum glint_status yardstick_codes(struct frame *frame,
+enum glint_status yardstick_codes(struct glint_frame *frame,
                                   const struct glint_lamp *lamp, int n_lamps,
                                   double exposure, uint8_t *codes,
-                                  struct frame_report *report)
+                                  struct glint_frame_report *report)
 {
     struct glint_image layer = {.format = GLINT_RGB24,
                                 .width = frame->cfg.width,
@@ -146,7 +146,7 @@ enum glint_status yardstick_codes(struct frame *frame,
 
     memset(codes, 0, 3 * (size_t)layer.width * (size_t)layer.height);
     glint_image_place(&layer, codes);
-    return frame_draw(frame, lamp, n_lamps, exposure, &layer, report);
+    return glint_frame_draw(frame, lamp, n_lamps, exposure, &layer, report);
 }
 
 static int by_size(const void *a, const void *b)

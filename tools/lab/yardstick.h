@@ -42,10 +42,10 @@ enum glint_status yardstick_exact(const struct tool *tool,
 
 /* The flare alone as codes on black, [height][width][3], exposed: what a frame
  * draws for codes is not what it draws in linear light. */
-enum glint_status yardstick_codes(struct frame *frame,
+enum glint_status yardstick_codes(struct glint_frame *frame,
                                   const struct glint_lamp *lamp, int n_lamps,
                                   double exposure, uint8_t *codes,
-                                  struct frame_report *report);
+                                  struct glint_frame_report *report);
 
 /* Of N values, which stay as they are; N is 1 to YARDSTICK_MAX. */
 enum { YARDSTICK_MAX = 1000 };

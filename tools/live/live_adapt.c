@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/quality.h"
+#include "engine/frame/quality.h"
 
 #define TIGHT      0.9  /* of a period: a step down */
 #define SPARE      0.55 /* of a period: a step up, later */

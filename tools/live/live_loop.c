@@ -69,7 +69,7 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
         return status;
     l->time_us = 0;
     if (l->o->look.sized)
-        lamp_finder_restart(&l->o->look.finder);
+        glint_lamp_detector_restart(&l->o->look.finder);
     l->had_signal = l->in.source->has_signal;
     take_format(l);
     return GLINT_OK;

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * In place of scene_table.c and frame_feed.c, for programs without the offline
+ * In place of scene_table.c, for programs without the offline
  * half: a lens is a baked model, and frames are drawn from one.
  */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "engine/frame_feed.h"
 #include "options/scene_table.h"
 
 int scene_open_table(const struct tool *tool, struct scene *scene,
@@ -44,22 +43,7 @@ enum glint_status scene_table_setup(struct scene *scene,
     return GLINT_E_LENS;
 }
 
-enum glint_status frame_feed_draw(struct frame *frame,
-                                  const struct glint_lamp *lamps, int n_lamps,
-                                  double scale, const struct glint_image *image,
-                                  struct glint_flare_stats *stats,
-                                  double times[5])
+const struct glint_frame_rays *scene_table_rays(void)
 {
-    (void)frame, (void)lamps, (void)n_lamps, (void)scale, (void)image;
-    (void)stats, (void)times;
-    return GLINT_E_LENS;
-}
-
-enum glint_status frame_feed_scale(struct frame *frame,
-                                   const struct glint_lamp *lamps, int n_lamps,
-                                   struct frame_scale *scale)
-{
-    (void)frame, (void)lamps, (void)n_lamps;
-    *scale = (struct frame_scale){0, 0};
-    return GLINT_E_LENS;
+    return NULL;
 }

@@ -189,12 +189,12 @@ bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
 
 /* The ids of FRAME; returns how many. */
 static int ids_of(const struct lamp_list *list, int frame,
-                  uint32_t id[LAMP_FINDER_MAX])
+                  uint32_t id[GLINT_LAMP_DETECTOR_MAX])
 {
     struct lamp_row row;
     int n = 0;
 
-    for (int i = 0; i < list->n && n < LAMP_FINDER_MAX; i++)
+    for (int i = 0; i < list->n && n < GLINT_LAMP_DETECTOR_MAX; i++)
         if (list->row[i].id && lamp_keys_at(list, i, frame, &row))
             id[n++] = row.id;
     return n;
@@ -218,7 +218,7 @@ void lamp_keys_ids(const struct lamp_list *list, int frame, uint32_t *id)
 
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame)
 {
-    uint32_t now[LAMP_FINDER_MAX], before[LAMP_FINDER_MAX];
+    uint32_t now[GLINT_LAMP_DETECTOR_MAX], before[GLINT_LAMP_DETECTOR_MAX];
     const int n = ids_of(list, frame, now);
     const int m = n && frame > 0 ? ids_of(list, frame - 1, before) : 0;
 

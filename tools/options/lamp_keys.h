@@ -18,7 +18,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "engine/lamps.h"
+#include "options/lamp_list.h"
 
 /* The fields "id" and, only by a heading, "shape", "turn" and "level". */
 enum { LAMP_ID = 8, LAMP_SHAPE, LAMP_TURN, LAMP_LEVEL, LAMP_COLUMNS };

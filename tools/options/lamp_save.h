@@ -12,7 +12,7 @@
 #ifndef GLINT_TOOLS_OPTIONS_LAMP_SAVE_H
 #define GLINT_TOOLS_OPTIONS_LAMP_SAVE_H
 
-#include "engine/lamps.h"
+#include "options/lamp_list.h"
 #include "posix/output.h"
 
 struct lamp_save {

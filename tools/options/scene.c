@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/area.h"
-#include "engine/lamps.h"
-#include "engine/cost.h"
+#include "engine/frame/area.h"
+#include "options/lamp_list.h"
 #include "options/scene_table.h"
 #include "options/scene_waves.h"
 #include "options/takes.h"
@@ -20,7 +19,7 @@ void scene_defaults(struct scene *scene)
                             .gain = 1,
                             .tolerance = 1,
                             .only_ghost = -1,
-                            .apart_px = FRAME_APART_PX,
+                            .apart_px = GLINT_FRAME_APART_PX,
                             .tile_log2 = 6,
                             .weights = GLINT_WEIGHTS_WACHSPRESS,
                             .quantum = 1,
@@ -230,7 +229,7 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_MAX_LIGHTS:
         return tool_integer(value, 1, 1 << 20, &s->max_lights);
     case OPT_AREA_SAMPLES:
-        return tool_integer(value, 1, AREA_MOST_SAMPLES,
+        return tool_integer(value, 1, GLINT_AREA_MOST_SAMPLES,
                             &s->area_samples_asked);
     case OPT_APART:
         return tool_number(value, &s->apart_px) && s->apart_px >= 0 &&
@@ -282,7 +281,7 @@ bool scene_lamp(const char *text, struct glint_lamp *lamp)
                                 .phi_deg = v[1],
                                 .power = v[2],
                                 .rgb = {v[3], v[4], v[5]}};
-    area_set_round(lamp, tan(v[6] * 3.14159265358979323846 / 180));
+    glint_area_set_round(lamp, tan(v[6] * 3.14159265358979323846 / 180));
     return true;
 }
 
@@ -414,11 +413,13 @@ struct glint_view scene_view(const struct scene *scene, int width, int height)
 }
 
 int scene_frame(const struct tool *tool, const struct scene *scene,
-                struct glint_view view, struct frame *frame)
+                struct glint_view view, struct glint_frame *frame)
 {
-    frame_init(frame, &scene->setup, view, tool->workers);
+    glint_frame_init(frame, &scene->setup, view, tool->workers);
     frame->cfg.sets = tool_sets(tool);
     frame->lens = scene->model.data ? &scene->model.lens : NULL;
+    frame->trace = scene_table_rays();
+    frame->clock = tool_seconds;
     frame->dials = scene->dials;
     frame->uniform = scene->uniform;
     frame->only_ghost = scene->only_ghost;
@@ -427,6 +428,7 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
         frame->dials.area_points = scene->area_samples_asked;
     if (scene->max_lights)
         frame->dials.max_lights = scene->max_lights;
+    frame->asked = frame->dials;
     frame->cfg.tile_log2 = scene->tile_log2;
     /* no larger than the small ones: one level, and the same picture */
     frame->cfg.coarse_log2 =
@@ -438,66 +440,16 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     frame->cfg.antialias = scene->antialias;
     frame->cfg.dither = scene->dither;
     if (scene->mask_nodes &&
-        frame_use_mask(frame, scene->mask_nodes) != GLINT_OK)
+        glint_frame_use_mask(frame, &glint_raster_cells, scene->mask_nodes) !=
+            GLINT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     if (scene->budget_ms > 0 && frame->lens) {
-        budget_init(&frame->budget, scene->budget_ms);
-        frame->dials = budget_dials(&frame->budget, &frame->dials);
-        return scene_calibrate(tool, scene, view, &frame->budget);
+        glint_budget_init(&frame->budget, scene->budget_ms);
+        frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
+        if (glint_frame_calibrate(frame) != GLINT_OK)
+            return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }
     return EXIT_OK;
-}
-
-/* The angle that a model ends at, without asin(): that is 25 KB of glint-live.
- */
-static double widest_deg(const struct glint_model_header *h)
-{
-    const double sine = h->sine_hi_q30 * 0x1p-30;
-
-    return 22.5 / atan(1) * atan2(sine, sqrt(1 - sine * sine));
-}
-
-int scene_calibrate(const struct tool *tool, const struct scene *scene,
-                    struct glint_view view, struct budget *budget)
-{
-    struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}, {0, 0}, 0};
-    struct glint_image image = {
-        .format = GLINT_YUYV, .width = view.width, .height = view.height};
-    struct scene plain = *scene;
-    struct frame_report report = {0};
-    struct frame frame;
-    void *mem =
-        calloc(1, glint_image_bytes(GLINT_YUYV, view.width, view.height));
-    double least_ms = 1e9;
-    struct cost_plan plan;
-    struct cost cost;
-    int code;
-
-    plain.budget_ms = 0;
-    plain.dials.dispersion_q8 = 0;
-    plain.mask_nodes = 0;
-    plain.only_ghost = -1;
-    code = scene_frame(tool, &plain, view, &frame);
-    if (frame.lens) /* whose model may end before */
-        lamp.theta_deg = fmin(lamp.theta_deg, widest_deg(frame.lens->header));
-    for (int i = 0; i < 4 && mem && code == EXIT_OK; i++) {
-        glint_image_place(&image, mem);
-        if (frame_draw(&frame, &lamp, 1, 1, &image, &report) != GLINT_OK)
-            code = tool_fail(tool, GLINT_E_MEMORY, NULL);
-        /* the first one takes memory */
-        if (i > 0)
-            least_ms =
-                fmin(least_ms, report.plan_ms + report.bin_ms + report.draw_ms);
-    }
-    if (mem && code == EXIT_OK && report.stats.bundles > 0) {
-        plan = frame_plan(&frame);
-        cost = cost_of(&plan, &plan.dials);
-        budget->calibrated_minsn = cost_minsn(&cost);
-        budget->ms_per_minsn = least_ms / budget->calibrated_minsn;
-    }
-    frame_finish(&frame);
-    free(mem);
-    return code;
 }
 
 double scene_scale(const struct scene *scene)
@@ -505,7 +457,7 @@ double scene_scale(const struct scene *scene)
     return scene->gain * exp2(scene->exposure_ev);
 }
 
-void scene_json(const struct frame_report *r)
+void scene_json(const struct glint_frame_report *r)
 {
     printf("\"lights\": %d, \"beyond_lights\": %d, \"apart_lights\": %d, "
            "\"drawn_lights\": %d, "
@@ -528,7 +480,7 @@ void scene_json(const struct frame_report *r)
                r->quality, r->predicted_ms, r->calibrated_minsn);
 }
 
-void scene_lights_text(const struct frame_report *r, char text[64])
+void scene_lights_text(const struct glint_frame_report *r, char text[64])
 {
     if (r->drawn_lights < r->lights - r->beyond_lights)
         snprintf(text, 64, "%d lights, %d after merging", r->lights,
@@ -547,7 +499,8 @@ bool scene_memory(const char *text, size_t *bytes)
     return true;
 }
 
-void scene_warn_lights(const struct tool *tool, const struct frame_report *r)
+void scene_warn_lights(const struct tool *tool,
+                       const struct glint_frame_report *r)
 {
     if (!tool->quiet && r->beyond_lights > 0)
         fprintf(stderr,

@@ -6,8 +6,8 @@
 #define GLINT_TOOLS_OPTIONS_SCENE_H
 
 #include "options/coating.h"
-#include "engine/frame.h"
-#include "engine/quality.h"
+#include "engine/frame/frame.h"
+#include "engine/frame/quality.h"
 #include "model/model_file.h"
 #include "options/tool.h"
 
@@ -270,7 +270,7 @@ struct glint_view scene_view(const struct scene *scene, int width, int height);
 
 /* Makes FRAME as the options say. Returns an exit code. */
 int scene_frame(const struct tool *tool, const struct scene *scene,
-                struct glint_view view, struct frame *frame);
+                struct glint_view view, struct glint_frame *frame);
 
 /* Sets the dials of SCENE for QUALITY, 0 to 1; 0.5 is what it has by default.
  */
@@ -289,23 +289,18 @@ bool scene_memory(const char *text, size_t *bytes);
     "left\n"                                                                 \
     "                      out, with a word\n"
 
-/* Draws a lamp with SCENE's lens a few times, as large as VIEW, to see what an
- * instruction takes here. */
-int scene_calibrate(const struct tool *tool, const struct scene *scene,
-                    struct glint_view view, struct budget *budget);
-
 /* gain * 2^EV */
 double scene_scale(const struct scene *scene);
 
 /* Prints the report of a frame as JSON members, without braces. */
-void scene_json(const struct frame_report *report);
+void scene_json(const struct glint_frame_report *report);
 
 /* How many lights there were and are drawn, as text. */
-void scene_lights_text(const struct frame_report *report, char text[64]);
+void scene_lights_text(const struct glint_frame_report *report, char text[64]);
 
 /* Says on standard error if lights merged only because they were too many, and,
  * however quiet, if a part of the flare is missing. */
 void scene_warn_lights(const struct tool *tool,
-                       const struct frame_report *report);
+                       const struct glint_frame_report *report);
 
 #endif

@@ -50,6 +50,11 @@ int scene_open_table(const struct tool *tool, struct scene *scene,
                               &scene->model);
 }
 
+const struct glint_frame_rays *scene_table_rays(void)
+{
+    return &glint_frame_traces;
+}
+
 enum glint_status scene_table_setup(struct scene *s, struct glint_error *error)
 {
     return glint_setup_init(&s->setup, &s->lens, s->n_blades,

@@ -20,4 +20,7 @@ struct glint_bake_options scene_bake_options(const struct scene *scene);
 enum glint_status scene_table_setup(struct scene *scene,
                                     struct glint_error *error);
 
+/* What traces its rays where there is no model. */
+const struct glint_frame_rays *scene_table_rays(void);
+
 #endif

@@ -131,8 +131,8 @@ static void say_frame(const struct overlay *o)
             o->look.report.stats.primitives);
 }
 
-static void note_worst(struct frame_report *worst,
-                       const struct frame_report *report)
+static void note_worst(struct glint_frame_report *worst,
+                       const struct glint_frame_report *report)
 {
     const int dropped =
         worst->stats.dropped_bundles > report->stats.dropped_bundles
@@ -187,8 +187,8 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
         return tool_fail(tool, status, NULL);
     o->find_ms += look->find_ms;
     o->flare_ms += look->flare_ms;
-    o->peak = fmax(o->peak, strength_largest(look->strength.light.peak));
-    o->mean_sum += strength_largest(look->strength.light.mean);
+    o->peak = fmax(o->peak, glint_strength_largest(look->strength.light.peak));
+    o->mean_sum += glint_strength_largest(look->strength.light.mean);
     if (look->n_lamps > o->most_lights)
         o->most_lights = look->n_lamps;
     if (look->report.peak_bytes > o->peak_bytes)
@@ -256,7 +256,7 @@ static void print_result(const struct tool *tool, const struct overlay *o)
     scene_warn_lights(tool, &o->worst);
     if (tool->quiet && !json)
         return;
-    light = overlay_light(tool, o);
+    light = overlay_light(o);
     if (json)
         print_json(o, &light);
     else

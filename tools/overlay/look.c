@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "options/lamp_keys.h"
-#include "engine/area.h"
+#include "engine/frame/area.h"
 #include "overlay/show_lights.h"
 #include "options/takes.h"
 
@@ -21,7 +21,7 @@ void look_defaults(struct look *look)
     scene_defaults(&look->scene);
     look->scene.coating.kind = COATING_MIXED;
     look->scene.waves = SCENE_WAVES_AUTO;
-    strength_defaults(&look->strength);
+    glint_strength_defaults(&look->strength);
 }
 
 /* Stops by which a region extends below what makes it a lamp, if not told. */
@@ -180,7 +180,7 @@ int look_open(const struct tool *tool, struct look *look)
         status = lamp_save_open(&look->save, look->save_file, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    n = (size_t)look->n_hand + (size_t)look->list.n + LAMP_FINDER_MAX;
+    n = (size_t)look->n_hand + (size_t)look->list.n + GLINT_LAMP_DETECTOR_MAX;
     look->lamp = malloc(n * sizeof *look->lamp);
     look->level = malloc(n * sizeof *look->level);
     look->id = malloc(n * sizeof *look->id);
@@ -194,14 +194,14 @@ static int finder_max(const struct look *look)
 {
     const int asked = look->scene.max_lights ? look->scene.max_lights : 16;
 
-    return asked < LAMP_FINDER_MAX ? asked : LAMP_FINDER_MAX;
+    return asked < GLINT_LAMP_DETECTOR_MAX ? asked : GLINT_LAMP_DETECTOR_MAX;
 }
 
 static void unsize(struct look *look)
 {
     if (look->sized) {
-        lamp_finder_close(&look->finder);
-        frame_finish(&look->frame);
+        glint_lamp_detector_close(&look->finder);
+        glint_frame_finish(&look->frame);
     }
     look->sized = false;
 }
@@ -215,7 +215,7 @@ static enum glint_status open_finder(struct look *look, int width, int height)
     cfg.threshold_low_q8 = (int32_t)floor(256 * look->threshold_ev[1] + 0.5);
     look->finder.headroom_ev = look->headroom_ev;
     look->finder.max = finder_max(look);
-    return lamp_finder_open(&look->finder, &cfg);
+    return glint_lamp_detector_open(&look->finder, &cfg);
 }
 
 /* While lamps change places, those that fade are drawn with those that rise. */
@@ -223,9 +223,9 @@ static enum glint_status reserve(struct look *look)
 {
     const int n_by_hand = look->n_hand + look->list.n;
 
-    return frame_reserve(&look->frame, look->reserve_bytes,
-                         n_by_hand + LAMP_FINDER_MAX,
-                         n_by_hand + 2 * look->finder.max);
+    return glint_frame_reserve(&look->frame, NULL, look->reserve_bytes,
+                               n_by_hand + GLINT_LAMP_DETECTOR_MAX,
+                               n_by_hand + 2 * look->finder.max);
 }
 
 int look_size(const struct tool *tool, struct look *look, int width, int height)
@@ -236,14 +236,14 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
     unsize(look);
     look->view = scene_view(&look->scene, width, height);
     look->strength.follows = false;
-    code = response_measure(tool, &look->scene, look->view, look->reserve_bytes,
-                            &look->response);
-    if (code == EXIT_OK)
-        code = scene_frame(tool, &look->scene, look->view, &look->frame);
+    code = scene_frame(tool, &look->scene, look->view, &look->frame);
     if (code != EXIT_OK)
         return code;
     look->sized = true;
-    status = open_finder(look, width, height);
+    status = glint_response_measure(&look->frame, look->reserve_bytes,
+                                    &look->response);
+    if (status == GLINT_OK)
+        status = open_finder(look, width, height);
     if (tool->verbose && !tool->quiet && !look->is_listed && look->n_hand == 0)
         fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
                 tool->name, look->threshold_ev[0], look->threshold_ev[1]);
@@ -353,9 +353,9 @@ static int set_lamps(struct look *look, const struct glint_image *image,
     look->is_followed = elapsed_us > 0 && !look->no_tracking;
     if (look->is_listed || n > 0)
         return n;
-    n = lamp_finder_frame(&look->finder, image,
-                          look->no_tracking ? 0 : elapsed_us, &look->view,
-                          focal, look->lamp);
+    n = glint_lamp_detector_frame(&look->finder, image,
+                                  look->no_tracking ? 0 : elapsed_us,
+                                  &look->view, focal, look->lamp);
     for (int i = 0; i < n; i++) {
         look->level[i] = look->finder.track[i].level_q15 / 32768.0;
         look->id[i] = look->finder.track[i].id;
@@ -444,16 +444,16 @@ void look_expose(struct look *look, int32_t elapsed_us)
         look->no_tracking ||
         (look->is_listed ? lamp_keys_is_cut(&look->list, look->n_frames)
                          : glint_lamp_tracker_was_cut(look->finder.tracks));
-    const struct strength_lamps lamps = {look->lamp, look->level, look->n_lamps,
-                                         (double)look->view.width *
-                                             look->view.height * look->white};
+    const struct glint_strength_lamps lamps = {
+        look->lamp, look->level, look->n_lamps,
+        (double)look->view.width * look->view.height * look->white};
 
     save_lamps(look);
     look->strength.is_physical = look->scene.has_exposure;
     look->strength.exposure_ev = look->scene.exposure_ev;
     look->strength.gain = look->scene.gain;
-    strength_expose(&look->strength, &look->response, &lamps,
-                    is_new ? 0 : elapsed_us);
+    glint_strength_expose(&look->strength, &look->response, &lamps,
+                          is_new ? 0 : elapsed_us);
 }
 
 void look_find(struct look *look, const struct glint_image *image,
@@ -466,7 +466,7 @@ void look_find(struct look *look, const struct glint_image *image,
     /* there is time for a picture by itself */
     if (elapsed_us == 0 && !scene->area_samples_asked && scene->budget_ms == 0)
         look->frame.dials.area_points =
-            1 + AREA_STILL * (scene->dials.area_points - 1);
+            1 + GLINT_AREA_STILL * (scene->dials.area_points - 1);
     look->find_ms = 1e3 * (tool_seconds() - start);
 }
 
@@ -481,9 +481,9 @@ enum glint_status look_draw(struct look *look, const struct glint_image *image,
     found = tool_seconds();
     if (look->flare_only)
         blacken(image);
-    status = frame_draw(&look->frame, look->lamp,
-                        look_scale(look) > 0 ? look->n_lamps : 0,
-                        look_scale(look), image, &look->report);
+    status = glint_frame_draw(&look->frame, look->lamp,
+                              look_scale(look) > 0 ? look->n_lamps : 0,
+                              look_scale(look), image, &look->report);
     look->report.lights = look->n_lamps;
     look->flare_ms = 1e3 * (tool_seconds() - found);
     if (look->show_lights)

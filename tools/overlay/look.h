@@ -13,7 +13,7 @@
 #define GLINT_TOOLS_OVERLAY_LOOK_H
 
 #include "options/lamp_save.h"
-#include "engine/lamps.h"
+#include "options/lamp_list.h"
 #include "options/scene.h"
 #include "engine/strength.h"
 
@@ -30,29 +30,30 @@ struct look {
     size_t reserve_bytes; /* unless 0: all the memory that frames will take */
     int n_hand;
     struct glint_lamp hand[SCENE_MAX_LAMPS];
-    struct strength strength; /* how bright, and the scale of each frame */
+    struct glint_strength
+        strength; /* how bright, and the scale of each frame */
     int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
 
     /* Made by open and size. */
     bool is_listed; /* lights come from a file; its name is not needed more */
     struct lamp_list list; /* with those by pixel */
     struct lamp_save save;
-    struct lamp_finder finder;
+    struct glint_lamp_detector finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
     double *level;           /* of each, its share in its power: struct
                                 strength_lamps */
     uint32_t *id;            /* of each, as it is saved */
-    struct response response;
+    struct glint_response response;
     double white; /* light of the picture's white, 1 by default */
     struct glint_view view;
-    struct frame frame;
+    struct glint_frame frame;
     bool sized;
 
     /* Of the last frame. */
     bool is_followed; /* as a frame of a video */
     int n_frames, n_lamps;
     double find_ms, flare_ms;
-    struct frame_report report;
+    struct glint_frame_report report;
 };
 
 enum look_option_code {

@@ -154,8 +154,8 @@ static enum glint_status draw_as_for_codes(struct look *look, float *rgb)
     memset(rgb, 0, n * sizeof *rgb);
     glint_image_place(&layer, rgb); /* becomes floats in place */
     look->frame.for_codes = true;
-    status = frame_draw(&look->frame, look->lamp, look->n_lamps,
-                        look_scale(look), &layer, &look->report);
+    status = glint_frame_draw(&look->frame, look->lamp, look->n_lamps,
+                              look_scale(look), &layer, &look->report);
     look->frame.for_codes = false;
     for (size_t i = 0; i < n; i++) {
         int32_t light_q20;
@@ -172,8 +172,8 @@ enum glint_status look_draw_layer(struct look *look, bool is_deep, float *rgb)
     enum glint_status status;
 
     if (is_deep && look->n_lamps > 0)
-        status = frame_draw_alone(&look->frame, look->lamp, look->n_lamps,
-                                  look_scale(look), rgb, &look->report);
+        status = glint_frame_draw_alone(&look->frame, look->lamp, look->n_lamps,
+                                        look_scale(look), rgb, &look->report);
     else
         status = draw_as_for_codes(look, rgb);
     look->flare_ms = 1e3 * (tool_seconds() - start);

@@ -21,8 +21,8 @@ struct overlay {
     bool is_video;
     const char *encode; /* options for ffmpeg, or NULL */
 
-    struct frame_report worst; /* its lights: of the frame with most too many,
-                                  and most beyond the model */
+    struct glint_frame_report worst; /* its lights: of the frame with most too
+                                  many, and most beyond the model */
     int most_lights;
     double find_ms, flare_ms, started, told; /* seconds; of progress */
     double peak, mean_sum; /* of the flare, 1 = white: the brightest of all

@@ -11,20 +11,21 @@ static const double well_seen = 0.25;
 /* ---------------------------------------------------------------- the light
  */
 
-struct overlay_light overlay_light(const struct tool *tool,
-                                   const struct overlay *o)
+struct overlay_light overlay_light(const struct overlay *o)
 {
     const struct look *look = &o->look;
     const int n = look->n_frames;
     struct overlay_light light = {o->peak, n ? o->mean_sum / n : 0};
-    struct response_light drawn;
+    struct glint_response_light drawn;
 
     if (n != 1 || look->n_lamps == 0 || look->strength.scale <= 0 ||
-        response_draw(tool, &look->scene, look->view, look->lamp, look->n_lamps,
-                      &drawn) != GLINT_OK)
+        glint_response_draw(&look->frame, look->lamp, look->n_lamps, &drawn) !=
+            GLINT_OK)
         return light;
-    light.peak = look_scale(look) / look->white * strength_largest(drawn.peak);
-    light.mean = look_scale(look) / look->white * strength_largest(drawn.mean);
+    light.peak =
+        look_scale(look) / look->white * glint_strength_largest(drawn.peak);
+    light.mean =
+        look_scale(look) / look->white * glint_strength_largest(drawn.mean);
     return light;
 }
 

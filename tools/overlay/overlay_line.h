@@ -17,8 +17,7 @@ struct overlay_light {
 
 /* Of a single picture the flare is drawn once more, small, and looked at; of
  * more it is what the lens's response says. */
-struct overlay_light overlay_light(const struct tool *tool,
-                                   const struct overlay *o);
+struct overlay_light overlay_light(const struct overlay *o);
 
 /* One line, or two where nothing can be seen. */
 void overlay_say(const struct overlay *o, const struct overlay_light *light,

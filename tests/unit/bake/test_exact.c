@@ -13,8 +13,9 @@
 
 #include <cmocka.h>
 
-#include "engine/frame.h"
+#include "engine/frame/frame.h"
 #include "engine/measure.h"
+#include "formats/pfm.h"
 #include "posix/input.h"
 #include "posix/workers.h"
 #include "support/lens_check.h"
@@ -71,9 +72,9 @@ static double psnr(const double *a, const double *b, struct glint_view view)
 {
     const struct glint_float_image x = as_floats(a, 0, view);
     const struct glint_float_image y = as_floats(b, 1, view);
-    struct measure m;
+    struct glint_measure m;
 
-    assert_true(measure_compare(&x, &y, false, &m));
+    assert_true(glint_measure_compare(&x, &y, false, &m));
     return m.psnr_db;
 }
 
@@ -109,7 +110,7 @@ static void compare_golden(const struct golden *g)
     const struct glint_view view = {480, 270, 36};
     const struct glint_lamp lamp = lamp_at(g->theta, g->phi);
     struct glint_float_image want, got;
-    struct measure m;
+    struct glint_measure m;
 
     if (!load_golden(g->name, &want)) {
         print_message("no golden picture of %s here\n", g->name);
@@ -118,7 +119,7 @@ static void compare_golden(const struct golden *g)
     load_setup(&setup, &lens, g->name);
     render(rgb, view, &lamp, 1, g->grid);
     got = as_floats(rgb, 0, view);
-    assert_true(measure_compare(&want, &got, true, &m));
+    assert_true(glint_measure_compare(&want, &got, true, &m));
     print_message("%s: %.1f dB\n", g->name, m.psnr_db);
     free(want.rgb);
     assert_true(m.psnr_db >= 50);
@@ -254,17 +255,20 @@ static void test_threads_do_not_matter(void **state)
  */
 
 static void integers(struct glint_view view, const struct glint_lamp *lamps,
-                     int n_lamps, double *out, struct frame_report *report)
+                     int n_lamps, double *out,
+                     struct glint_frame_report *report)
 {
     static float linear[3 * MAX_PIXELS];
-    struct frame frame;
+    struct glint_frame frame;
 
-    frame_init(&frame, &setup, view, workers);
+    glint_frame_init(&frame, &setup, view, workers);
+    frame.trace = &glint_frame_traces;
     assert_int_equal(
-        frame_draw_alone(&frame, lamps, n_lamps, 1, linear, report), GLINT_OK);
+        glint_frame_draw_alone(&frame, lamps, n_lamps, 1, linear, report),
+        GLINT_OK);
     for (int i = 0; i < 3 * view.width * view.height; i++)
         out[i] = (double)linear[i];
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 static void test_integers_match(void **state)
@@ -277,7 +281,7 @@ static void test_integers_match(void **state)
 
     (void)state;
     for (int i = 0; i < 4; i++) {
-        struct frame_report report;
+        struct glint_frame_report report;
         double db;
 
         load_setup(&setup, &lens, names[i / 2]);
@@ -300,7 +304,7 @@ static void test_faint_colour_keeps_steps(void **state)
     const struct glint_view view = {480, 270, 36};
     const struct glint_lamp green = {5.3, 33, 0.01, {0, 1, 0}, {0, 0}, 0};
     const struct glint_lamp reddish = {5.3, 33, 1, {1, 0.01, 0}, {0, 0}, 0};
-    struct frame_report report;
+    struct glint_frame_report report;
     double apart = 0, sum = 0;
 
     (void)state;

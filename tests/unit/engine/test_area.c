@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "engine/area.h"
+#include "engine/frame/area.h"
 
 static const double degree = 3.14159265358979323846 / 180;
 
@@ -36,16 +36,16 @@ static void place_of(const struct glint_lamp *lamp, double *u, double *v)
 static int sums_of(const struct glint_lamp *lamp, double thinning,
                    double sum[5])
 {
-    struct area area;
-    const struct area_rule rule = {PIXELS, MOST, lamp->power, thinning};
-    const int n = area_plan(&area, lamp, &rule);
+    struct glint_area area;
+    const struct glint_area_rule rule = {PIXELS, MOST, lamp->power, thinning};
+    const int n = glint_area_plan(&area, lamp, &rule);
     double u0, v0, u, v;
 
     place_of(lamp, &u0, &v0);
     for (int i = 0; i < 5; i++)
         sum[i] = 0;
     for (int i = 0; i < n; i++) {
-        const struct glint_lamp p = area_point(&area, i);
+        const struct glint_lamp p = glint_area_point(&area, i);
         const double c = cos(lamp->turn_deg * degree);
         const double s = sin(lamp->turn_deg * degree);
 
@@ -65,15 +65,15 @@ static int sums_of(const struct glint_lamp *lamp, double thinning,
 static void test_a_point_stays_one(void **state)
 {
     const struct glint_lamp lamp = lamp_of(0, 0);
-    struct area area;
+    struct glint_area area;
     struct glint_lamp point;
     int total;
-    const struct area_rule rule =
-        area_rule_of(&lamp, 1, PIXELS, MOST, 100, &total);
+    const struct glint_area_rule rule =
+        glint_area_rule_of(&lamp, 1, PIXELS, MOST, 100, &total);
 
     (void)state;
-    assert_int_equal(area_plan(&area, &lamp, &rule), 1);
-    point = area_point(&area, 0);
+    assert_int_equal(glint_area_plan(&area, &lamp, &rule), 1);
+    point = glint_area_point(&area, 0);
     assert_true(point.theta_deg == lamp.theta_deg); /* to the bit */
     assert_true(point.phi_deg == lamp.phi_deg);
     assert_true(point.power == lamp.power);
@@ -124,19 +124,20 @@ static void test_all_have_room(void **state)
     for (int i = 0; i < 10; i++)
         lamps[i] = lamp_of(3 * i, 2 * i);
     for (int room = 1; room < 700; room++) {
-        const struct area_rule rule =
-            area_rule_of(lamps, 10, PIXELS, MOST, room, &total);
+        const struct glint_area_rule rule =
+            glint_area_rule_of(lamps, 10, PIXELS, MOST, room, &total);
         int n = 0;
 
         for (int i = 0; i < 10; i++) {
-            struct area area;
+            struct glint_area area;
 
-            n += area_plan(&area, &lamps[i], &rule);
+            n += glint_area_plan(&area, &lamps[i], &rule);
         }
         assert_true(n <= total);
         assert_true(total <= (room > 10 ? room : 10));
     }
-    assert_true(area_rule_of(lamps, 1, PIXELS, MOST, 0, &total).thinning == 1);
+    assert_true(
+        glint_area_rule_of(lamps, 1, PIXELS, MOST, 0, &total).thinning == 1);
     assert_int_equal(total, 1);
 }
 
@@ -144,15 +145,16 @@ static void test_all_have_room(void **state)
 static void test_faint_lamps_get_fewer(void **state)
 {
     struct glint_lamp lamps[2] = {lamp_of(30, 30), lamp_of(30, 30)};
-    struct area area;
-    struct area_rule rule;
+    struct glint_area area;
+    struct glint_area_rule rule;
     int total;
 
     (void)state;
     lamps[1].power = lamps[0].power / 16;
-    rule = area_rule_of(lamps, 2, PIXELS, MOST, 1000, &total);
-    assert_int_equal(area_plan(&area, &lamps[0], &rule), MOST);
-    assert_int_equal(area_plan(&area, &lamps[1], &rule), 1 + (MOST - 1) / 4);
+    rule = glint_area_rule_of(lamps, 2, PIXELS, MOST, 1000, &total);
+    assert_int_equal(glint_area_plan(&area, &lamps[0], &rule), MOST);
+    assert_int_equal(glint_area_plan(&area, &lamps[1], &rule),
+                     1 + (MOST - 1) / 4);
     assert_true(total >= MOST + 1 + (MOST - 1) / 4);
 }
 

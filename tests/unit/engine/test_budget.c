@@ -12,8 +12,8 @@
 #include <string.h>
 
 #include "support/rng.h"
-#include "engine/cost.h"
-#include "engine/quality.h"
+#include "engine/frame/cost.h"
+#include "engine/frame/quality.h"
 #include "options/scene.h"
 #include "options/tool.h"
 
@@ -27,7 +27,7 @@ static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
 
 /* What a frame takes, by the dials that it was drawn with; three intervals. */
 static struct machine {
-    const struct frame *frame;
+    const struct glint_frame *frame;
     double base_ms, cells_ms, power, steps_ms;
     double now_s;
     uint32_t noise;
@@ -54,23 +54,24 @@ double __wrap_tool_seconds(void)
 }
 
 /* The last of some frames under a budget. */
-static struct frame_report run(struct frame *frame, double budget_ms, int n)
+static struct glint_frame_report run(struct glint_frame *frame,
+                                     double budget_ms, int n)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct frame_report report;
+    struct glint_frame_report report;
 
     glint_image_place(&image, px);
-    budget_init(&frame->budget, budget_ms);
-    frame->dials = budget_dials(&frame->budget, &frame->dials);
+    glint_budget_init(&frame->budget, budget_ms);
+    frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
     for (int i = 0; i < n; i++)
-        assert_int_equal(frame_draw(frame, lamps, 3, 1, &image, &report),
+        assert_int_equal(glint_frame_draw(frame, lamps, 3, 1, &image, &report),
                          GLINT_OK);
     return report;
 }
 
-static void make(struct frame *frame)
+static void make(struct glint_frame *frame)
 {
     assert_int_equal(
         scene_frame(&tool, &scene, scene_view(&scene, WIDTH, HEIGHT), frame),
@@ -95,8 +96,8 @@ static void test_keeps_to_it(void **state)
         double last = 0;
 
         for (size_t i = 0; i < 4; i++) {
-            struct frame_report report;
-            struct frame frame;
+            struct glint_frame_report report;
+            struct glint_frame frame;
             double took;
 
             machine = machines[m];
@@ -110,7 +111,7 @@ static void test_keeps_to_it(void **state)
             assert_true(took > 0.8 * budget_ms[i]);
             assert_true(fabs(report.predicted_ms / took - 1) < 0.15);
             last = report.quality;
-            frame_finish(&frame);
+            glint_frame_finish(&frame);
         }
     }
 }
@@ -123,8 +124,8 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct frame_report report;
-    struct frame frame;
+    struct glint_frame_report report;
+    struct glint_frame frame;
     int n_whole = 0;
 
     machine = (struct machine){NULL, 4, 1, 1.3, 0.5, 0, 0};
@@ -136,12 +137,12 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     for (int i = from; i < GLINT_QUALITY_LEVELS; i++)
         frame.budget.octaves[i] = frame.budget.octaves[0] + octaves;
     for (int i = 0; i < n; i++) {
-        frame_draw(&frame, lamps, 3, 1, &image, &report);
+        glint_frame_draw(&frame, lamps, 3, 1, &image, &report);
         n_whole += !glint_dials_half(&frame.dials);
     }
     *last = !glint_dials_half(&frame.dials);
     machine.frame = NULL;
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     return n_whole;
 }
 
@@ -174,7 +175,7 @@ static void test_tries_next(void **state)
 
 static void test_ends(void **state)
 {
-    struct frame frame;
+    struct glint_frame frame;
 
     (void)state;
     machine = machines[0];
@@ -185,7 +186,7 @@ static void test_ends(void **state)
     /* back at once, not after it has been late for long */
     assert_true(run(&frame, 0.1, 2).quality == 0);
     machine.frame = NULL;
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 /* A light more or less is in the plan: no frame is late for it. */
@@ -194,23 +195,24 @@ static void test_new_lights(void **state)
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct frame_report one, three;
-    struct frame frame;
+    struct glint_frame_report one, three;
+    struct glint_frame frame;
 
     (void)state;
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
     glint_image_place(&image, px);
-    budget_init(&frame.budget, 3);
+    glint_budget_init(&frame.budget, 3);
     frame.budget.ms_per_minsn = 0.1; /* and time stands still */
-    frame.dials = budget_dials(&frame.budget, &frame.dials);
+    frame.dials = glint_budget_dials(&frame.budget, &frame.dials);
     for (int i = 0; i < 4; i++)
-        assert_int_equal(frame_draw(&frame, lamps, 1, 1, &image, &one),
+        assert_int_equal(glint_frame_draw(&frame, lamps, 1, 1, &image, &one),
                          GLINT_OK);
-    assert_int_equal(frame_draw(&frame, lamps, 3, 1, &image, &three), GLINT_OK);
+    assert_int_equal(glint_frame_draw(&frame, lamps, 3, 1, &image, &three),
+                     GLINT_OK);
     assert_true(one.predicted_ms <= 3 && three.predicted_ms <= 3);
     assert_true(three.quality < one.quality);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 /* The counts are those of the plan, and scale as it would. */
@@ -219,53 +221,55 @@ static void test_counts(void **state)
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
-    struct frame_report report;
-    struct cost coarse, fine, told;
-    struct frame frame;
+    struct glint_frame_report report;
+    struct glint_cost coarse, fine, told;
+    struct glint_frame frame;
     struct glint_dials then;
-    struct cost_plan plan;
+    struct glint_cost_plan plan;
 
     (void)state;
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make(&frame);
     glint_image_place(&image, px);
     frame.dials.fineness = 64;
-    frame_draw(&frame, lamps, 1, 1, &image, &report);
-    plan = frame_plan(&frame);
-    coarse = cost_of(&plan, &plan.dials);
+    glint_frame_draw(&frame, lamps, 1, 1, &image, &report);
+    plan = glint_frame_plan(&frame);
+    coarse = glint_cost_of(&plan, &plan.dials);
     then = plan.dials;
     then.fineness = 128;
-    told = cost_of(&plan, &then);
+    told = glint_cost_of(&plan, &then);
     /* the last ones may turn out to have no edges */
-    assert_true(coarse.count[COST_BUNDLES] >= report.stats.bundles);
-    assert_true(coarse.count[COST_BUNDLES] <=
+    assert_true(coarse.count[GLINT_COST_BUNDLES] >= report.stats.bundles);
+    assert_true(coarse.count[GLINT_COST_BUNDLES] <=
                 scene.setup.n_ghosts * scene.setup.n_wavelengths);
-    assert_true(coarse.count[COST_LIT] <= WIDTH * HEIGHT);
+    assert_true(coarse.count[GLINT_COST_LIT] <= WIDTH * HEIGHT);
     then = plan.dials;
     then.irradiance_steps = 0;
-    assert_true(cost_of(&plan, &then).count[COST_EDGES] >
-                coarse.count[COST_EDGES]);
+    assert_true(glint_cost_of(&plan, &then).count[GLINT_COST_EDGES] >
+                coarse.count[GLINT_COST_EDGES]);
     frame.dials.fineness = 128;
-    frame_draw(&frame, lamps, 1, 1, &image, &report);
-    plan = frame_plan(&frame);
-    fine = cost_of(&plan, &plan.dials);
-    for (int k = 0; k < COST_KINDS; k++) {
+    glint_frame_draw(&frame, lamps, 1, 1, &image, &report);
+    plan = glint_frame_plan(&frame);
+    fine = glint_cost_of(&plan, &plan.dials);
+    for (int k = 0; k < GLINT_COST_KINDS; k++) {
         assert_true(fabs(told.count[k] / fine.count[k] - 1) < 0.25);
     }
-    assert_true(cost_minsn(&fine) > cost_minsn(&coarse));
+    assert_true(glint_cost_minsn(&fine) > glint_cost_minsn(&coarse));
     /* of half as many pixels each way: told, and planned */
     then = plan.dials;
     then.flags |= GLINT_DIAL_HALF;
-    told = cost_of(&plan, &then);
+    told = glint_cost_of(&plan, &then);
     frame.dials.flags |= GLINT_DIAL_HALF;
-    frame_draw(&frame, lamps, 1, 1, &image, &report);
-    plan = frame_plan(&frame);
-    coarse = cost_of(&plan, &plan.dials);
-    for (int k = 0; k < COST_KINDS; k++)
+    glint_frame_draw(&frame, lamps, 1, 1, &image, &report);
+    plan = glint_frame_plan(&frame);
+    coarse = glint_cost_of(&plan, &plan.dials);
+    for (int k = 0; k < GLINT_COST_KINDS; k++)
         assert_true(fabs(told.count[k] / coarse.count[k] - 1) < 0.5);
-    assert_true(coarse.count[COST_LIT] < 0.6 * fine.count[COST_LIT]);
-    assert_true(fabs(told.count[COST_LIT] / coarse.count[COST_LIT] - 1) < 0.05);
-    frame_finish(&frame);
+    assert_true(coarse.count[GLINT_COST_LIT] <
+                0.6 * fine.count[GLINT_COST_LIT]);
+    assert_true(fabs(told.count[GLINT_COST_LIT] / coarse.count[GLINT_COST_LIT] -
+                     1) < 0.05);
+    glint_frame_finish(&frame);
 }
 
 static int open_lens(void **state)

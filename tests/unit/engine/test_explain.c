@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/explain.h"
+#include "command/explain.h"
 #include "options/scene.h"
 #include "options/tool.h"
 
@@ -35,7 +35,7 @@ static const struct glint_lamp lamps[] = {{12, 20, 3e6, {1, 1, 1}, {0, 0}, 0},
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make(struct frame *frame)
+static void make(struct glint_frame *frame)
 {
     const struct glint_view view = scene_view(&scene, WIDTH, HEIGHT);
 
@@ -43,14 +43,15 @@ static void make(struct frame *frame)
     frame->cfg.tile_log2 = 4;
 }
 
-static void draw(struct frame *frame, const struct glint_lamp *lamp, int n,
-                 struct frame_report *report)
+static void draw(struct glint_frame *frame, const struct glint_lamp *lamp,
+                 int n, struct glint_frame_report *report)
 {
     memset(rgb, 0, sizeof rgb);
-    assert_int_equal(frame_draw(frame, lamp, n, 1, &image, report), GLINT_OK);
+    assert_int_equal(glint_frame_draw(frame, lamp, n, 1, &image, report),
+                     GLINT_OK);
 }
 
-static double sum(const struct explain_part *part, int n, int cost)
+static double sum(const struct glint_explain_part *part, int n, int cost)
 {
     double s = 0;
 
@@ -59,26 +60,26 @@ static double sum(const struct explain_part *part, int n, int cost)
     return s;
 }
 
-static int ghosts_drawn(const struct explain *e)
+static int ghosts_drawn(const struct glint_explain *e)
 {
     int n = 0;
 
     for (int i = 0; i < e->n_ghosts; i++)
-        n += explain_drawn(&e->ghost[i]) > 0;
+        n += glint_explain_drawn(&e->ghost[i]) > 0;
     return n;
 }
 
 /* All that must be so whatever the frame. */
-static void assert_agrees(const struct explain *e,
-                          const struct frame_report *report)
+static void assert_agrees(const struct glint_explain *e,
+                          const struct glint_frame_report *report)
 {
-    const double pixels = e->stage[EXPLAIN_PIXELS] / e->all.work;
-    const struct explain_part *parts[3] = {e->ghost, e->beam, e->wave};
+    const double pixels = e->stage[GLINT_EXPLAIN_PIXELS] / e->all.work;
+    const struct glint_explain_part *parts[3] = {e->ghost, e->beam, e->wave};
     const int n[3] = {e->n_ghosts, e->n_beams, e->n_waves};
 
     assert_int_equal(e->all.edges, report->stats.primitives);
     assert_int_equal(e->all.refs, report->stats.refs);
-    assert_int_equal(explain_drawn(&e->all), report->stats.bundles);
+    assert_int_equal(glint_explain_drawn(&e->all), report->stats.bundles);
     assert_int_equal(e->all.of[GLINT_FATE_NO_ROOM],
                      report->stats.dropped_bundles);
     assert_int_equal(e->all.tiles, report->tiles);
@@ -92,13 +93,13 @@ static void assert_agrees(const struct explain *e,
         for (int i = 0; i < n[by]; i++) {
             edges += parts[by][i].edges;
             vertices += parts[by][i].vertices;
-            bundles += explain_bundles(&parts[by][i]);
+            bundles += glint_explain_bundles(&parts[by][i]);
             assert_true(parts[by][i].lit <= e->all.lit);
             assert_true(parts[by][i].brightest <= e->all.brightest);
         }
         assert_int_equal(edges, e->all.edges);
         assert_int_equal(vertices, e->all.vertices);
-        assert_int_equal(bundles, explain_bundles(&e->all));
+        assert_int_equal(bundles, glint_explain_bundles(&e->all));
     }
 }
 
@@ -109,35 +110,35 @@ static void assert_agrees(const struct explain *e,
  */
 static void test_frame(void **state)
 {
-    struct frame_report report;
-    struct frame frame;
-    struct explain e;
+    struct glint_frame_report report;
+    struct glint_frame frame;
+    struct glint_explain e;
 
     (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
-    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
     assert_agrees(&e, &report);
     assert_int_equal(e.n_beams, 2);
-    assert_int_equal(explain_bundles(&e.all), 2 * 13 * 3);
+    assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
     for (int i = 0; i < N_LAMPS; i++)
-        assert_int_equal(frame_is_beyond(&frame, &lamps[i]), i == 2);
+        assert_int_equal(glint_frame_is_beyond(&frame, &lamps[i]), i == 2);
     /* 5 and 7 let nothing through at 12 degrees; at 8 they do, but 5 beside
      * the picture */
     assert_int_equal(e.beam[0].of[GLINT_FATE_CLOSED], 2 * 3);
     assert_int_equal(e.ghost[5].of[GLINT_FATE_CLOSED], 3);
     assert_int_equal(e.ghost[5].of[GLINT_FATE_OUTSIDE], 3);
     assert_int_equal(e.ghost[7].of[GLINT_FATE_CLOSED], 3);
-    explain_close(&e);
-    frame_finish(&frame);
+    glint_explain_close(&e);
+    glint_frame_finish(&frame);
 }
 
 /* The brightest pixel is what codes say it is, and light is linear in UNIT. */
 static void test_light(void **state)
 {
-    struct frame_report report;
-    struct explain e, twice;
-    struct frame frame;
+    struct glint_frame_report report;
+    struct glint_explain e, twice;
+    struct glint_frame frame;
     int most = 0;
 
     (void)state;
@@ -150,16 +151,16 @@ static void test_light(void **state)
                    ? rgb[i] + rgb[i + 1] + rgb[i + 2]
                    : most;
     assert_true(most > 60);
-    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
-    assert_int_equal(explain_open(&twice, &frame, 2), GLINT_OK);
+    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_open(&twice, &frame, 2), GLINT_OK);
     assert_true(e.all.brightest > 0.001 && e.all.brightest < 0.2);
     assert_true(fabs(twice.all.brightest - 2 * e.all.brightest) < 1e-12);
     assert_true(fabs(twice.all.flux - 2 * e.all.flux) < 1e-6 * e.all.flux);
     assert_true(e.ghost[11].share == 1);
     assert_int_equal(e.all.of[GLINT_FATE_OTHER], 12 * 3);
-    explain_close(&e);
-    explain_close(&twice);
-    frame_finish(&frame);
+    glint_explain_close(&e);
+    glint_explain_close(&twice);
+    glint_frame_finish(&frame);
 }
 
 /* Each reason but beyond and room, in a frame of its own; then a frame for
@@ -178,75 +179,76 @@ static void test_reasons(void **state)
         {{12, 20, 1e5, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_FAINT},
         {{25, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_OUTSIDE},
     };
-    struct frame_report report;
-    struct frame frame;
-    struct explain e;
+    struct glint_frame_report report;
+    struct glint_frame frame;
+    struct glint_explain e;
 
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         make(&frame);
         frame.only_ghost = cases[i].only_ghost;
         draw(&frame, &cases[i].lamp, 1, &report);
-        assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+        assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
         assert_true(e.all.of[cases[i].fate] > 0);
         if (e.all.edges)
             assert_agrees(&e, &report);
-        explain_close(&e);
-        frame_finish(&frame);
+        glint_explain_close(&e);
+        glint_frame_finish(&frame);
     }
     make(&frame);
     draw(&frame, &lamps[2], 1, &report);
-    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
-    assert_int_equal(explain_bundles(&e.all), 0);
+    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_bundles(&e.all), 0);
     assert_true(e.all.flux == 0);
-    explain_close(&e);
-    frame_finish(&frame);
+    glint_explain_close(&e);
+    glint_frame_finish(&frame);
 }
 
 static void test_room(void **state)
 {
-    struct frame_report report;
-    struct frame frame;
-    struct explain e;
+    struct glint_frame_report report;
+    struct glint_frame frame;
+    struct glint_explain e;
     size_t need;
 
     (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
     need = report.peak_bytes;
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     make(&frame);
-    assert_int_equal(frame_reserve(&frame, need * 9 / 10, N_LAMPS, N_LAMPS),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_frame_reserve(&frame, NULL, need * 9 / 10, N_LAMPS, N_LAMPS),
+        GLINT_OK);
     draw(&frame, lamps, N_LAMPS, &report);
     assert_true(report.stats.dropped_bundles > 0);
-    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
     assert_agrees(&e, &report);
-    explain_close(&e);
-    frame_finish(&frame);
+    glint_explain_close(&e);
+    glint_frame_finish(&frame);
 }
 
 static void test_order(void **state)
 {
     int at[3][GLINT_MAX_GHOSTS];
-    struct frame_report report;
-    struct frame frame;
-    struct explain e;
+    struct glint_frame_report report;
+    struct glint_frame frame;
+    struct glint_explain e;
 
     (void)state;
     make(&frame);
     draw(&frame, lamps, N_LAMPS, &report);
-    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
-    explain_sort(&e, EXPLAIN_LIGHT, at[0]);
-    explain_sort(&e, EXPLAIN_WORK, at[1]);
-    explain_sort(&e, EXPLAIN_NUMBER, at[2]);
+    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
+    glint_explain_sort(&e, GLINT_EXPLAIN_LIGHT, at[0]);
+    glint_explain_sort(&e, GLINT_EXPLAIN_WORK, at[1]);
+    glint_explain_sort(&e, GLINT_EXPLAIN_NUMBER, at[2]);
     for (int i = 1; i < e.n_ghosts; i++) {
         assert_true(e.ghost[at[0][i]].flux <= e.ghost[at[0][i - 1]].flux);
         assert_true(e.ghost[at[1][i]].work <= e.ghost[at[1][i - 1]].work);
         assert_int_equal(at[2][i], i);
     }
-    explain_close(&e);
-    frame_finish(&frame);
+    glint_explain_close(&e);
+    glint_frame_finish(&frame);
 }
 
 /* Whether most of the tile at (X, Y) is the shade of a touched one, black. */
@@ -267,9 +269,9 @@ static void test_picture(void **state)
 {
     struct explain_title title = {.lens = "heliar", .top = 20};
     struct glint_image marked, unmarked;
-    struct frame_report report;
-    struct frame frame;
-    struct explain e;
+    struct glint_frame_report report;
+    struct glint_frame frame;
+    struct glint_explain e;
     int n = 0, outlined = 0;
 
     (void)state;
@@ -278,7 +280,7 @@ static void test_picture(void **state)
     draw(&frame, (struct glint_lamp[]){{12, 20, 1e8, {1, 1, 1}, {0, 0}, 0}}, 1,
          &report);
     assert_true(report.tiles > 10 && report.tiles < 200);
-    assert_int_equal(explain_open(&e, &frame, 1), GLINT_OK);
+    assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
     memset(rgb, 0, sizeof rgb);
     assert_int_equal(explain_mark(&e, &title, &image, &marked), GLINT_OK);
     assert_int_equal(marked.width, WIDTH);
@@ -296,8 +298,8 @@ static void test_picture(void **state)
     assert_true(outlined > 100 && outlined < WIDTH * HEIGHT / 8);
     free(marked.plane[0]);
     free(unmarked.plane[0]);
-    explain_close(&e);
-    frame_finish(&frame);
+    glint_explain_close(&e);
+    glint_frame_finish(&frame);
 }
 
 static int enter(void **state)

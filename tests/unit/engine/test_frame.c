@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/frame.h"
+#include "engine/frame/frame.h"
 #include "options/scene.h"
 #include "options/tool.h"
 
@@ -76,7 +76,7 @@ static const struct glint_lamp lamps[] = {
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make_of(const struct scene *of, struct frame *frame)
+static void make_of(const struct scene *of, struct glint_frame *frame)
 {
     const struct glint_view view = scene_view(of, WIDTH, HEIGHT);
 
@@ -84,13 +84,13 @@ static void make_of(const struct scene *of, struct frame *frame)
     frame->dials.fineness = 16;
 }
 
-static void make(struct frame *frame)
+static void make(struct glint_frame *frame)
 {
     make_of(&scene, frame);
 }
 
-static void draw(struct frame *frame, int n, uint8_t rgb[BYTES],
-                 struct frame_report *report)
+static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
+                 struct glint_frame_report *report)
 {
     struct glint_image image = {.format = GLINT_RGB24,
                                 .width = WIDTH,
@@ -99,7 +99,8 @@ static void draw(struct frame *frame, int n, uint8_t rgb[BYTES],
 
     memset(rgb, 20, BYTES);
     glint_image_place(&image, rgb);
-    assert_int_equal(frame_draw(frame, lamps, n, 1, &image, report), GLINT_OK);
+    assert_int_equal(glint_frame_draw(frame, lamps, n, 1, &image, report),
+                     GLINT_OK);
 }
 
 static int n_different(const uint8_t *a, const uint8_t *b)
@@ -125,13 +126,14 @@ static void test_same_as_grown(void **state)
 {
     static const int n_of[] = {1, 5, 0, 2, 5, 3};
     static uint8_t want[BYTES], got[BYTES];
-    struct frame reserved, grown;
-    struct frame_report report, other;
+    struct glint_frame reserved, grown;
+    struct glint_frame_report report, other;
 
     (void)state;
     make(&reserved);
-    assert_int_equal(frame_reserve(&reserved, 8 << 20, N_LAMPS, N_LAMPS),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_frame_reserve(&reserved, NULL, 8 << 20, N_LAMPS, N_LAMPS),
+        GLINT_OK);
     assert_true(reserved.bytes <= 8 << 20);
     for (size_t i = 0; i < sizeof n_of / sizeof *n_of; i++) {
         n_asked = 0;
@@ -146,11 +148,11 @@ static void test_same_as_grown(void **state)
         assert_int_equal(report.ghosts, other.ghosts);
         if (n_of[i])
             assert_true(report.peak_bytes <= reserved.bytes);
-        frame_finish(&grown);
+        glint_frame_finish(&grown);
     }
     draw(&reserved, 0, want, &report);
     assert_int_not_equal(n_different(want, got), 0);
-    frame_finish(&reserved);
+    glint_frame_finish(&reserved);
 }
 
 /* With ever less memory ever less is drawn, all of it counted; and what is left
@@ -158,8 +160,8 @@ static void test_same_as_grown(void **state)
 static void test_too_little(void **state)
 {
     static uint8_t full[BYTES], got[BYTES];
-    struct frame frame;
-    struct frame_report report;
+    struct glint_frame frame;
+    struct glint_frame_report report;
     size_t bytes;
     int n_lost = 0, n_darker = 0;
 
@@ -167,13 +169,14 @@ static void test_too_little(void **state)
     make(&frame);
     draw(&frame, N_LAMPS, full, &report);
     bytes = report.peak_bytes;
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     for (; bytes > 50000; bytes -= bytes / 32) {
         int lost;
 
         make(&frame);
-        if (frame_reserve(&frame, bytes, N_LAMPS, N_LAMPS) != GLINT_OK) {
-            frame_finish(&frame);
+        if (glint_frame_reserve(&frame, NULL, bytes, N_LAMPS, N_LAMPS) !=
+            GLINT_OK) {
+            glint_frame_finish(&frame);
             break;
         }
         assert_true(frame.bytes <= bytes);
@@ -185,34 +188,34 @@ static void test_too_little(void **state)
         assert_int_equal(n_brighter(full, got), 0);
         n_darker += n_different(full, got) > 0;
         n_lost += lost > 0;
-        frame_finish(&frame);
+        glint_frame_finish(&frame);
     }
     assert_true(n_lost >= 5);
     assert_true(n_darker >= 5);
     make(&frame);
-    assert_int_equal(frame_reserve(&frame, 1000, N_LAMPS, N_LAMPS),
+    assert_int_equal(glint_frame_reserve(&frame, NULL, 1000, N_LAMPS, N_LAMPS),
                      GLINT_E_MEMORY);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 /* More lamps than were reserved for: merged as ever, no more memory. */
 static void test_more_lamps(void **state)
 {
     static uint8_t got[BYTES];
-    struct frame frame;
-    struct frame_report report;
+    struct glint_frame frame;
+    struct glint_frame_report report;
 
     (void)state;
     make(&frame);
     frame.dials.max_lights = 2;
-    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS, N_LAMPS),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS), GLINT_OK);
     n_asked = 0;
     draw(&frame, N_LAMPS, got, &report);
     assert_int_equal(n_asked, 0);
     assert_int_equal(report.drawn_lights, 2);
     assert_int_equal(report.stats.dropped_bundles, 0);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 /* Settings that changed on the way give the picture of a frame that had them
@@ -228,16 +231,16 @@ static void test_retune(void **state)
                    {16, 0, 5, 0},
                    {16, 69, 128, .125}};
     static uint8_t want[BYTES], got[BYTES];
-    struct frame_report report;
-    struct frame frame, fresh;
+    struct glint_frame_report report;
+    struct glint_frame frame, fresh;
     int n_changed = 0;
 
     (void)state;
     make(&frame);
-    assert_int_equal(frame_reserve(&frame, 8 << 20, N_LAMPS, N_LAMPS),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_frame_reserve(&frame, NULL, 8 << 20, N_LAMPS, N_LAMPS), GLINT_OK);
     for (size_t i = 0; i < sizeof setting / sizeof *setting; i++) {
-        struct frame *const both[2] = {&frame, &fresh};
+        struct glint_frame *const both[2] = {&frame, &fresh};
 
         make(&fresh);
         for (int k = 0; k < 2; k++) {
@@ -253,10 +256,10 @@ static void test_retune(void **state)
         n_changed += i > 0 && n_different(want, got) > 0;
         draw(&fresh, N_LAMPS, want, &report);
         assert_int_equal(n_different(want, got), 0);
-        frame_finish(&fresh);
+        glint_frame_finish(&fresh);
     }
     assert_int_equal(n_changed, 4);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 /* Whichever allocation fails, a flare alone is whole or refused, never drawn as
@@ -266,8 +269,8 @@ static void test_no_memory(void **state)
     static float want[BYTES], got[BYTES];
     (void)state;
     for (int exact = 0; exact < 2; exact++) {
-        struct frame_report report;
-        struct frame frame;
+        struct glint_frame_report report;
+        struct glint_frame frame;
         int n_refused = 0;
 
         for (int nth = 0; nth < 100; nth++) {
@@ -278,10 +281,10 @@ static void test_no_memory(void **state)
             frame.dials.max_lights = 2; /* so that some merge */
             n_asked = 0;
             fail_at = nth;
-            status = frame_draw_alone(&frame, lamps, 3, 1, nth ? got : want,
-                                      &report);
+            status = glint_frame_draw_alone(&frame, lamps, 3, 1,
+                                            nth ? got : want, &report);
             fail_at = 0;
-            frame_finish(&frame);
+            glint_frame_finish(&frame);
             n_refused += status == GLINT_E_MEMORY;
             assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
             if (status == GLINT_OK)
@@ -301,8 +304,8 @@ static void test_too_many_feeds(void **state)
     struct glint_lamp *many = malloc(N * sizeof *many);
     static float rgb[BYTES];
     struct glint_setup crowd;
-    struct frame_report report;
-    struct frame frame;
+    struct glint_frame_report report;
+    struct glint_frame frame;
 
     (void)state;
     assert_non_null(many);
@@ -316,9 +319,9 @@ static void test_too_many_feeds(void **state)
     frame.setup = &crowd;
     frame.dials.max_lights = N;
     frame.apart_px = 0;
-    assert_int_equal(frame_draw_alone(&frame, many, N, 1, rgb, &report),
+    assert_int_equal(glint_frame_draw_alone(&frame, many, N, 1, rgb, &report),
                      GLINT_E_MEMORY);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     free(many);
 }
 

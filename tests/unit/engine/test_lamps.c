@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "engine/lamps.h"
+#include "options/lamp_list.h"
 #include "support/lens_check.h"
 
 enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
@@ -25,9 +25,9 @@ static void test_found_lamp(void **state)
                                 .width = WIDTH,
                                 .height = HEIGHT,
                                 .range = GLINT_RANGE_FULL};
-    struct lamp_finder finder = {.headroom_ev = 3, .max = 8};
+    struct glint_lamp_detector finder = {.headroom_ev = 3, .max = 8};
     struct glint_lamp_finder_config cfg;
-    static struct glint_lamp lamp[LAMP_FINDER_MAX];
+    static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     double x, y;
 
     (void)state;
@@ -35,9 +35,10 @@ static void test_found_lamp(void **state)
     for (int i = 0; i < SIDE; i++)
         memset(rgb + 3 * ((Y0 + i) * WIDTH + X0), 255, 3 * SIDE);
     glint_lamp_finder_defaults(&cfg, WIDTH, HEIGHT);
-    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
-    assert_int_equal(lamp_finder_frame(&finder, &image, 0, &view, 50, lamp), 1);
-    lamp_finder_close(&finder);
+    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
+    assert_int_equal(
+        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, lamp), 1);
+    glint_lamp_detector_close(&finder);
     glint_view_to_pixel(&view, 50, &lamp[0], &x, &y);
     assert_near(x, 225, 0.02);
     assert_near(y, 45, 0.02);
@@ -62,46 +63,48 @@ static void draw_square(struct glint_image *image, int x0, int y0, int side)
 static void test_tracked_lamps(void **state)
 {
     static uint8_t grey[W * H];
-    static struct glint_lamp lamp[LAMP_FINDER_MAX], still[LAMP_FINDER_MAX];
+    static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX],
+        still[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(W, H, 36, 24);
     struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
-    struct lamp_finder finder = {.headroom_ev = 12, .max = 8};
+    struct glint_lamp_detector finder = {.headroom_ev = 12, .max = 8};
     struct glint_lamp_finder_config cfg;
 
     (void)state;
     glint_image_place(&image, grey);
     draw_square(&image, 50, 60, 9);
     glint_lamp_finder_defaults(&cfg, W, H);
-    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
     for (int frame = 0; frame < 5; frame++)
         assert_int_equal(
-            lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp), 1);
-    assert_int_equal(lamp_finder_frame(&finder, &image, 0, &view, 50, still),
-                     1);
+            glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp),
+            1);
+    assert_int_equal(
+        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, still), 1);
     assert_memory_equal(lamp, still, sizeof *lamp);
 
     draw_square(&image, 200, 100, 9);
-    assert_int_equal(lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp),
-                     2);
+    assert_int_equal(
+        glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 2);
     assert_int_equal(finder.n_tracks, 2);
     assert_near(lamp[1].power, still[0].power / 5, 10); /* 40 of 200 ms */
     assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
-    lamp_finder_restart(&finder);
-    lamp_finder_frame(&finder, &image, 40000, &view, 50, lamp);
+    glint_lamp_detector_restart(&finder);
+    glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp);
     assert_true(lamp[1].power == still[0].power);
-    lamp_finder_close(&finder);
-    lamp_finder_close(&finder);
+    glint_lamp_detector_close(&finder);
+    glint_lamp_detector_close(&finder);
 }
 
 /* Twelve lamps and four wanted, tracked and not: the four largest. */
 static void test_most_lamps(void **state)
 {
     static uint8_t grey[W * H];
-    static struct glint_lamp lamp[LAMP_FINDER_MAX];
+    static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(W, H, 36, 24);
     struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
-    struct lamp_finder finder = {.headroom_ev = 0, .max = 4};
+    struct glint_lamp_detector finder = {.headroom_ev = 0, .max = 4};
     struct glint_lamp_finder_config cfg;
 
     (void)state;
@@ -110,14 +113,14 @@ static void test_most_lamps(void **state)
         draw_square(&image, 20 + 50 * (i % 6), 40 + 100 * (i / 6),
                     3 + i * 5 % 12);
     glint_lamp_finder_defaults(&cfg, W, H);
-    assert_int_equal(lamp_finder_open(&finder, &cfg), GLINT_OK);
+    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
     for (int us = 0; us <= 40000; us += 40000) {
         assert_int_equal(
-            lamp_finder_frame(&finder, &image, us, &view, 50, lamp), 4);
+            glint_lamp_detector_frame(&finder, &image, us, &view, 50, lamp), 4);
         for (int i = 0; i < 4; i++)
             assert_true(lamp[i].power == (14 - i) * (14 - i));
     }
-    lamp_finder_close(&finder);
+    glint_lamp_detector_close(&finder);
 }
 
 static void read_text(struct lamp_list *list, const char *text)

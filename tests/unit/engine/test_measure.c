@@ -26,12 +26,12 @@ static void fill(float value)
 
 static void test_equal(void **state)
 {
-    struct measure m;
+    struct glint_measure m;
 
     (void)state;
     for (int i = 0; i < N; i++)
         a[i] = b[i] = (float)(i % 37);
-    assert_true(measure_compare(&image_a, &image_b, false, &m));
+    assert_true(glint_measure_compare(&image_a, &image_b, false, &m));
     assert_true(m.psnr_db == 999 && m.p99 == 0 && m.flux == 1);
     assert_true(fabs(m.ssim - 1) < 1e-12);
 }
@@ -39,36 +39,36 @@ static void test_equal(void **state)
 /* White against linear 0.5, which is sRGB code 188: 67 codes apart. */
 static void test_known_difference(void **state)
 {
-    struct measure m;
+    struct glint_measure m;
 
     (void)state;
     fill(2);
     for (int i = 0; i < N; i++)
         b[i] = 1;
-    assert_true(measure_compare(&image_a, &image_b, false, &m));
+    assert_true(glint_measure_compare(&image_a, &image_b, false, &m));
     assert_true(fabs(m.exposure - 0.5) < 1e-6);
     assert_true(fabs(m.psnr_db - 20 * log10(255.0 / 67)) < 1e-9);
     assert_true(m.p99 == 67 && fabs(m.flux - 0.5) < 1e-6);
-    assert_true(measure_compare(&image_a, &image_b, true, &m));
+    assert_true(glint_measure_compare(&image_a, &image_b, true, &m));
     assert_true(m.psnr_db == 999 && fabs(m.factor - 2) < 1e-6);
 }
 
 /* What rounding to codes hides is not nothing. */
 static void test_less_than_a_code(void **state)
 {
-    struct measure m;
+    struct glint_measure m;
 
     (void)state;
     fill(0.5f);
     b[0] = 0.50001f;
-    assert_true(measure_at(&image_a, &image_b, false, 1, &m));
+    assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db > 100 && m.psnr_db < 999);
     b[0] = 0.6f;
-    assert_true(measure_at(&image_a, &image_b, false, 1, &m));
+    assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(!m.same_codes && m.psnr_db < 100);
     fill(1.5f); /* beyond white nothing is seen */
     b[0] = 2;
-    assert_true(measure_at(&image_a, &image_b, false, 1, &m));
+    assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db == 999);
 }
 
@@ -79,9 +79,9 @@ static void test_exposure_is_a_percentile(void **state)
     fill(0.25f);
     for (int i = 0; i < 3 * 4; i++) /* 4 of 4096 pixels */
         a[i] = 1000;
-    assert_true(fabs(measure_exposure(&image_a) - 4) < 1e-6);
+    assert_true(fabs(glint_measure_exposure(&image_a) - 4) < 1e-6);
     fill(0);
-    assert_true(measure_exposure(&image_a) == 1);
+    assert_true(glint_measure_exposure(&image_a) == 1);
 }
 
 int main(void)

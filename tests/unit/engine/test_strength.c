@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "engine/strength.h"
+#include "options/scene.h"
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
@@ -23,9 +24,9 @@ static const double common = PIXELS / 8.0;
 
 /* A lens whose flare falls by SLOPE stops from the axis to 20 degrees; its
  * mean is MEAN stops below its peak. */
-static struct response response_of(double slope, double mean)
+static struct glint_response response_of(double slope, double mean)
 {
-    struct response r = {.n = 3, .theta_deg = {0, 10, 20}};
+    struct glint_response r = {.n = 3, .theta_deg = {0, 10, 20}};
 
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++) {
@@ -41,23 +42,23 @@ static struct glint_lamp lamp_of(double theta_deg, double power)
 }
 
 /* The peak that N lamps are brought to, each at its LEVEL. */
-static double peak_of(struct strength *s, const struct response *r,
+static double peak_of(struct glint_strength *s, const struct glint_response *r,
                       struct glint_lamp *lamps, const double *level, int n,
                       int us)
 {
-    const struct strength_lamps all = {lamps, level, n, PIXELS};
+    const struct glint_strength_lamps all = {lamps, level, n, PIXELS};
 
-    strength_expose(s, r, &all, us);
-    return strength_largest(s->light.peak);
+    glint_strength_expose(s, r, &all, us);
+    return glint_strength_largest(s->light.peak);
 }
 
-static double still(double asked, const struct response *r, double theta,
+static double still(double asked, const struct glint_response *r, double theta,
                     double power)
 {
     struct glint_lamp lamp = lamp_of(theta, power);
-    struct strength s;
+    struct glint_strength s;
 
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     s.asked = asked;
     return peak_of(&s, r, &lamp, NULL, 1, 0);
 }
@@ -66,7 +67,7 @@ static double still(double asked, const struct response *r, double theta,
 
 static void test_a_quarter_of_white_by_default(void **state)
 {
-    const struct response r = response_of(0, 7);
+    const struct glint_response r = response_of(0, 7);
 
     (void)state;
     assert_true(fabs(still(0.5, &r, 5, common) - 0.25) < 1e-4);
@@ -77,7 +78,7 @@ static void test_a_quarter_of_white_by_default(void **state)
 
 static void test_rises_with_strength(void **state)
 {
-    const struct response r = response_of(3, 4);
+    const struct glint_response r = response_of(3, 4);
     double last = 0;
 
     (void)state;
@@ -93,7 +94,7 @@ static void test_rises_with_strength(void **state)
  */
 static void test_any_power_is_seen(void **state)
 {
-    const struct response r = response_of(8, 7);
+    const struct glint_response r = response_of(8, 7);
     double last = 0;
 
     (void)state;
@@ -108,42 +109,42 @@ static void test_any_power_is_seen(void **state)
 
 static void test_a_veil_is_held_by_its_mean(void **state)
 {
-    const struct response r = response_of(0, 0.5);
+    const struct glint_response r = response_of(0, 0.5);
     struct glint_lamp lamp = lamp_of(5, PIXELS);
-    const struct strength_lamps all = {&lamp, NULL, 1, PIXELS};
-    struct strength s;
+    const struct glint_strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    struct glint_strength s;
 
     (void)state;
-    strength_defaults(&s);
-    strength_expose(&s, &r, &all, 0);
-    assert_true(strength_largest(s.light.mean) < 0.081);
-    assert_true(strength_largest(s.light.peak) > 1 / 16.0);
+    glint_strength_defaults(&s);
+    glint_strength_expose(&s, &r, &all, 0);
+    assert_true(glint_strength_largest(s.light.mean) < 0.081);
+    assert_true(glint_strength_largest(s.light.peak) > 1 / 16.0);
 }
 
 static void test_ratios_between_lamps_stay(void **state)
 {
-    const struct response r = response_of(5, 7);
+    const struct glint_response r = response_of(5, 7);
     struct glint_lamp lamps[2] = {lamp_of(5, 1e6), lamp_of(9, 1e3)};
-    const struct strength_lamps all = {lamps, NULL, 2, PIXELS};
-    struct strength s;
+    const struct glint_strength_lamps all = {lamps, NULL, 2, PIXELS};
+    struct glint_strength s;
 
     (void)state;
-    strength_defaults(&s);
-    strength_expose(&s, &r, &all, 0);
+    glint_strength_defaults(&s);
+    glint_strength_expose(&s, &r, &all, 0);
     assert_true(lamps[0].power == 1e6 && lamps[1].power == 1e3);
 }
 
 static void test_many_equal_lamps_share(void **state)
 {
-    const struct response r = response_of(0, 9);
+    const struct glint_response r = response_of(0, 9);
     struct glint_lamp lamps[16];
-    struct strength s;
+    struct glint_strength s;
     double one, each;
 
     (void)state;
     for (int i = 0; i < 16; i++)
         lamps[i] = lamp_of(i, 1e4);
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     one = still(0.5, &r, 1, 1e4);
     each = peak_of(&s, &r, lamps, NULL, 16, 0) / 2; /* 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
@@ -151,41 +152,41 @@ static void test_many_equal_lamps_share(void **state)
 
 static void test_by_hand(void **state)
 {
-    const struct response r = response_of(0, 7);
+    const struct glint_response r = response_of(0, 7);
     struct glint_lamp lamp = lamp_of(5, common);
-    const struct strength_lamps all = {&lamp, NULL, 1, PIXELS};
-    struct strength s;
+    const struct glint_strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    struct glint_strength s;
 
     (void)state;
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     s.is_physical = true;
     s.exposure_ev = 3;
     s.gain = 0.5;
-    strength_expose(&s, &r, &all, 0);
+    glint_strength_expose(&s, &r, &all, 0);
     assert_true(s.scale == 4);
-    assert_true(fabs(strength_largest(s.light.peak) - 0.125) < 1e-9);
+    assert_true(fabs(glint_strength_largest(s.light.peak) - 0.125) < 1e-9);
     s.gain = 0;
-    strength_expose(&s, &r, &all, 0);
+    glint_strength_expose(&s, &r, &all, 0);
     assert_true(s.scale == 0);
-    s = (struct strength){.asked = 0.5, .gain = 2};
-    strength_expose(&s, &r, &all, 0);
-    assert_true(fabs(strength_largest(s.light.peak) - 0.5) < 1e-3);
+    s = (struct glint_strength){.asked = 0.5, .gain = 2};
+    glint_strength_expose(&s, &r, &all, 0);
+    assert_true(fabs(glint_strength_largest(s.light.peak) - 0.5) < 1e-3);
 }
 
 static void test_lamps_without_light(void **state)
 {
-    const struct response r = response_of(0, 7);
+    const struct glint_response r = response_of(0, 7);
     struct glint_lamp lamp = lamp_of(5, 0);
-    const struct strength_lamps all = {&lamp, NULL, 1, PIXELS};
-    const struct strength_lamps none = {NULL, NULL, 0, PIXELS};
-    struct strength s;
+    const struct glint_strength_lamps all = {&lamp, NULL, 1, PIXELS};
+    const struct glint_strength_lamps none = {NULL, NULL, 0, PIXELS};
+    struct glint_strength s;
 
     (void)state;
-    strength_defaults(&s);
-    strength_expose(&s, &r, &all, 0);
+    glint_strength_defaults(&s);
+    glint_strength_expose(&s, &r, &all, 0);
     assert_true(isfinite(s.scale));
-    assert_true(strength_largest(s.light.peak) == 0);
-    strength_expose(&s, &r, &none, 0);
+    assert_true(glint_strength_largest(s.light.peak) == 0);
+    glint_strength_expose(&s, &r, &none, 0);
     assert_true(s.scale == 0);
 }
 
@@ -195,12 +196,12 @@ static void test_lamps_without_light(void **state)
  * no more than its own response and a frame's step of the factor. */
 static void test_a_lamp_that_crosses(void **state)
 {
-    const struct response r = response_of(7, 7);
-    struct strength s;
+    const struct glint_response r = response_of(7, 7);
+    struct glint_strength s;
     double last = 0;
 
     (void)state;
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     for (int i = 0; i <= 200; i++) {
         struct glint_lamp lamp = lamp_of(fabs(20 - i * 0.2), 1e5);
         const double peak = peak_of(&s, &r, &lamp, NULL, 1, FRAME_US);
@@ -215,12 +216,12 @@ static void test_a_lamp_that_crosses(void **state)
 /* A sun comes among lamps: their factor falls gently, the sun is held. */
 static void test_a_lamp_that_rises(void **state)
 {
-    const struct response r = response_of(0, 7);
-    struct strength s;
+    const struct glint_response r = response_of(0, 7);
+    struct glint_strength s;
     double scale = 0;
 
     (void)state;
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     for (int i = 0; i < 250; i++) {
         struct glint_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
         const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
@@ -241,12 +242,12 @@ static void test_a_lamp_that_rises(void **state)
 /* And leaves: the others come back, slower. */
 static void test_a_lamp_that_leaves(void **state)
 {
-    const struct response r = response_of(0, 7);
-    struct strength s;
+    const struct glint_response r = response_of(0, 7);
+    struct glint_strength s;
     double scale, first;
 
     (void)state;
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     {
         struct glint_lamp lamps[2] = {lamp_of(5, 1e3), lamp_of(8, 1e6)};
 
@@ -266,12 +267,12 @@ static void test_a_lamp_that_leaves(void **state)
 /* The level of a lamp alone is what its flare has: no gain makes up for it. */
 static void test_rising_alone(void **state)
 {
-    const struct response r = response_of(0, 7);
-    struct strength s;
+    const struct glint_response r = response_of(0, 7);
+    struct glint_strength s;
     double last = 0;
 
     (void)state;
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
         struct glint_lamp lamp = lamp_of(5, level * common);
@@ -286,12 +287,12 @@ static void test_rising_alone(void **state)
 /* After a cut, and where no lamp was, at once. */
 static void test_begins_anew(void **state)
 {
-    const struct response r = response_of(0, 7);
+    const struct glint_response r = response_of(0, 7);
     struct glint_lamp faint = lamp_of(5, 10), bright = lamp_of(5, common);
-    struct strength s;
+    struct glint_strength s;
 
     (void)state;
-    strength_defaults(&s);
+    glint_strength_defaults(&s);
     peak_of(&s, &r, &faint, NULL, 1, FRAME_US);
     assert_true(peak_of(&s, &r, &bright, NULL, 1, FRAME_US) > 0.3);
     assert_true(bright.power < common);
@@ -308,30 +309,33 @@ static void test_begins_anew(void **state)
 static void check_lens(const char *lens, double corner_deg)
 {
     struct scene scene;
-    struct response r;
-    struct glint_view view;
+    struct glint_response r;
+    struct glint_frame frame;
 
     scene_defaults(&scene);
     assert_int_equal(scene_open(&tool, &scene, lens), EXIT_OK);
-    view = scene_view(&scene, 640, 360);
-    assert_int_equal(response_measure(&tool, &scene, view, 0, &r), EXIT_OK);
-    assert_true(r.n == RESPONSE_ANGLES);
+    assert_int_equal(
+        scene_frame(&tool, &scene, scene_view(&scene, 640, 360), &frame),
+        EXIT_OK);
+    assert_int_equal(glint_response_measure(&frame, 0, &r), GLINT_OK);
+    assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
         struct glint_lamp lamp =
             lamp_of(corner_deg * i / 6, exp2(5 * i - 4) * 100);
-        const struct strength_lamps all = {&lamp, NULL, 1, 640 * 360};
-        struct response_light drawn;
-        struct strength s;
+        const struct glint_strength_lamps all = {&lamp, NULL, 1, 640 * 360};
+        struct glint_response_light drawn;
+        struct glint_strength s;
 
         lamp.phi_deg = 29 + 180 * (i % 2); /* within the picture */
-        strength_defaults(&s);
-        strength_expose(&s, &r, &all, 0);
-        assert_int_equal(response_draw(&tool, &scene, view, &lamp, 1, &drawn),
+        glint_strength_defaults(&s);
+        glint_strength_expose(&s, &r, &all, 0);
+        assert_int_equal(glint_response_draw(&frame, &lamp, 1, &drawn),
                          GLINT_OK);
-        assert_true(s.scale * strength_largest(drawn.peak) > 1 / 16.0);
-        assert_true(s.scale * strength_largest(drawn.peak) < 1);
-        assert_true(s.scale * strength_largest(drawn.mean) < 0.1);
+        assert_true(s.scale * glint_strength_largest(drawn.peak) > 1 / 16.0);
+        assert_true(s.scale * glint_strength_largest(drawn.peak) < 1);
+        assert_true(s.scale * glint_strength_largest(drawn.mean) < 0.1);
     }
+    glint_frame_finish(&frame);
     scene_close(&scene);
 }
 
@@ -347,17 +351,19 @@ static void test_lenses(void **state)
 static void test_little_memory(void **state)
 {
     struct scene scene;
-    struct response r, free;
-    struct glint_view view;
+    struct glint_response r, free;
+    struct glint_frame frame;
 
     (void)state;
     scene_defaults(&scene);
     assert_int_equal(scene_open(&tool, &scene, "lenses/heliar-tronnier.lens"),
                      EXIT_OK);
-    view = scene_view(&scene, 640, 360);
-    assert_int_equal(response_measure(&tool, &scene, view, 2 << 20, &r),
-                     EXIT_OK);
-    assert_int_equal(response_measure(&tool, &scene, view, 0, &free), EXIT_OK);
+    assert_int_equal(
+        scene_frame(&tool, &scene, scene_view(&scene, 640, 360), &frame),
+        EXIT_OK);
+    assert_int_equal(glint_response_measure(&frame, 2 << 20, &r), GLINT_OK);
+    assert_int_equal(glint_response_measure(&frame, 0, &free), GLINT_OK);
+    glint_frame_finish(&frame);
     for (int i = 0; i < r.n; i++)
         assert_memory_equal(&r.log2_of[i], &free.log2_of[i],
                             sizeof r.log2_of[i]);
@@ -366,23 +372,23 @@ static void test_little_memory(void **state)
 
 static void test_interpolates(void **state)
 {
-    const struct response r = response_of(4, 6);
-    struct response_light light;
+    const struct glint_response r = response_of(4, 6);
+    struct glint_response_light light;
 
     (void)state;
-    response_at(&r, 10, &light);
+    glint_response_at(&r, 10, &light);
     assert_true(fabs(log2(light.peak[0]) + 4) < 1e-9);
-    response_at(&r, 15, &light);
+    glint_response_at(&r, 15, &light);
     assert_true(fabs(log2(light.peak[1]) + 5) < 1e-9);
     assert_true(fabs(log2(light.mean[1]) + 11) < 1e-9);
-    response_at(&r, 60, &light);
+    glint_response_at(&r, 60, &light);
     assert_true(fabs(log2(light.peak[2]) + 6) < 1e-9);
 }
 
 static void test_looks(void **state)
 {
     float rgb[3 * 4000];
-    struct response_light light;
+    struct glint_response_light light;
 
     (void)state;
     for (int i = 0; i < 4000; i++) {
@@ -390,7 +396,7 @@ static void test_looks(void **state)
         rgb[3 * i + 1] = i == 7 ? 8 : 0;
         rgb[3 * i + 2] = 2;
     }
-    response_look(rgb, 4000, &light); /* the brightest four */
+    glint_response_look(rgb, 4000, &light); /* the brightest four */
     assert_true(light.peak[0] == 3997.5 && light.mean[0] == 1999.5);
     assert_true(light.peak[1] == 2 && light.mean[1] == 0.002);
     assert_true(light.peak[2] == 2 && light.mean[2] == 2);

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "engine/frame.h"
+#include "engine/frame/frame.h"
 #include "options/scene_waves.h"
 
 enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
@@ -23,15 +23,16 @@ static struct scene chosen, three, all;
 static const struct glint_lamp lamp = {
     .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
 
-static struct frame_report drawn(struct frame *frame, const struct scene *scene,
-                                 int width, double power, uint8_t *rgb)
+static struct glint_frame_report drawn(struct glint_frame *frame,
+                                       const struct scene *scene, int width,
+                                       double power, uint8_t *rgb)
 {
     struct glint_lamp light = lamp;
     struct glint_image image = {.format = GLINT_RGB24,
                                 .width = width,
                                 .height = width * 9 / 16,
                                 .range = GLINT_RANGE_FULL};
-    struct frame_report report;
+    struct glint_frame_report report;
 
     light.power *= power;
     assert_int_equal(scene_frame(&tool, scene,
@@ -40,13 +41,13 @@ static struct frame_report drawn(struct frame *frame, const struct scene *scene,
                      EXIT_OK);
     memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
     glint_image_place(&image, rgb);
-    assert_int_equal(frame_draw(frame, &light, 1, 1, &image, &report),
+    assert_int_equal(glint_frame_draw(frame, &light, 1, 1, &image, &report),
                      GLINT_OK);
     return report;
 }
 
 /* Waves that GHOST takes in FRAME, and how many of these are drawn. */
-static int waves_of(struct frame *frame, int ghost, int *n_drawn)
+static int waves_of(struct glint_frame *frame, int ghost, int *n_drawn)
 {
     int n = 0;
 
@@ -62,8 +63,8 @@ static int waves_of(struct frame *frame, int ghost, int *n_drawn)
 }
 
 /* Counts ghosts by the number of their waves. */
-static void count(struct frame *frame, int ghosts[GLINT_MAX_WAVELENGTHS + 1],
-                  int *bundles)
+static void count(struct glint_frame *frame,
+                  int ghosts[GLINT_MAX_WAVELENGTHS + 1], int *bundles)
 {
     memset(ghosts, 0, (GLINT_MAX_WAVELENGTHS + 1) * sizeof *ghosts);
     *bundles = 0;
@@ -86,8 +87,8 @@ static uint8_t picture[SAMPLES], other[SAMPLES], truth[SAMPLES];
 static void test_small_picture(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles;
-    struct frame frame;
-    struct frame_report report;
+    struct glint_frame frame;
+    struct glint_frame_report report;
 
     (void)state; /* of 32 pixels no outline moves by one */
     report = drawn(&frame, &chosen, 32, 1, picture);
@@ -95,14 +96,14 @@ static void test_small_picture(void **state)
     assert_true(ghosts[4] > 0);
     assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
     assert_int_equal(bundles, report.stats.bundles);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 static void test_large_picture(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, more;
-    struct frame frame;
-    struct frame_report report;
+    struct glint_frame frame;
+    struct glint_frame_report report;
 
     (void)state;
     report = drawn(&frame, &chosen, WIDTH, 100, picture);
@@ -111,20 +112,20 @@ static void test_large_picture(void **state)
     assert_true(ghosts[4] > 0 && more > 0); /* each its own */
     assert_int_equal(bundles, report.stats.bundles);
     assert_int_equal(report.stats.dropped_bundles, 0);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     /* faint ones need no more */
     drawn(&frame, &chosen, WIDTH, 0.01, other);
     count(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
     assert_int_equal(ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28], 0);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 static void test_dial(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], least, bundles, before = 0;
     struct scene scene = chosen;
-    struct frame frame;
+    struct glint_frame frame;
 
     (void)state;
     scene.setup.lens = &chosen.lens;
@@ -135,7 +136,7 @@ static void test_dial(void **state)
         assert_true(bundles >= before);
         least = before ? least : bundles;
         before = bundles;
-        frame_finish(&frame);
+        glint_frame_finish(&frame);
     }
     assert_true(before > 2 * least);
 }
@@ -144,14 +145,14 @@ static void test_dial(void **state)
 static void test_off(void **state)
 {
     struct scene scene = chosen;
-    struct frame frame;
+    struct glint_frame frame;
 
     (void)state;
     scene.dials.dispersion_q8 = 0;
     drawn(&frame, &scene, WIDTH, 1, picture);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     drawn(&frame, &three, WIDTH, 1, other);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     assert_memory_equal(picture, other, SAMPLES);
 }
 
@@ -159,7 +160,7 @@ static void test_off(void **state)
 static void test_one_set(void **state)
 {
     struct scene scene = chosen, list = three;
-    struct frame frame;
+    struct glint_frame frame;
 
     (void)state;
     scene.setup.n_sets = 1;
@@ -175,9 +176,9 @@ static void test_one_set(void **state)
         list.setup.unit_flux[i] = scene.setup.set_wave[i].unit_flux;
     }
     drawn(&frame, &scene, WIDTH, 10, picture);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     drawn(&frame, &list, WIDTH, 10, other);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     assert_memory_equal(picture, other, SAMPLES);
 }
 
@@ -187,7 +188,7 @@ static void test_little_room(void **state)
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
     struct glint_flare_stats stats;
     struct scene scene = chosen;
-    struct frame frame;
+    struct glint_frame frame;
     size_t bytes;
     void *mem;
 
@@ -212,7 +213,7 @@ static void test_little_room(void **state)
     count(&frame, ghosts, &bundles);
     assert_int_equal(bundles, stats.bundles);
     assert_true(ghosts[4] > 0);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
 }
 
 /* Whoever plans them, and however many lamps there are. */
@@ -231,8 +232,8 @@ static void test_same_bits(void **state)
                                     .width = WIDTH,
                                     .height = HEIGHT,
                                     .range = GLINT_RANGE_FULL};
-        struct frame_report report;
-        struct frame frame;
+        struct glint_frame_report report;
+        struct glint_frame frame;
 
         tool.workers = i ? NULL : pool;
         assert_int_equal(scene_frame(&tool, &chosen,
@@ -241,9 +242,9 @@ static void test_same_bits(void **state)
                          EXIT_OK);
         memset(rgb[i], 0, SAMPLES);
         glint_image_place(&image, rgb[i]);
-        assert_int_equal(frame_draw(&frame, lamps, 3, 1, &image, &report),
+        assert_int_equal(glint_frame_draw(&frame, lamps, 3, 1, &image, &report),
                          GLINT_OK);
-        frame_finish(&frame);
+        glint_frame_finish(&frame);
     }
     tool.workers = pool;
     assert_memory_equal(picture, other, SAMPLES);
@@ -298,17 +299,17 @@ static double psnr(const uint8_t *rgb)
 static void test_outlines(void **state)
 {
     static uint8_t few[SAMPLES];
-    struct frame frame;
+    struct glint_frame frame;
     double db[2];
     int step[2];
 
     (void)state;
     drawn(&frame, &all, WIDTH, 20, truth);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     drawn(&frame, &three, WIDTH, 20, few);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     drawn(&frame, &chosen, WIDTH, 20, picture);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     db[0] = psnr(few), db[1] = psnr(picture);
     step[0] = hue_step(few), step[1] = hue_step(picture);
     print_message("three: %.1f dB, step %d; chosen: %.1f dB, step %d\n", db[0],
@@ -354,8 +355,8 @@ static void test_white(void **state)
     static float rgb[SAMPLES];
     static struct scene bare;
     double sum[3] = {0, 0, 0};
-    struct frame_report report;
-    struct frame frame;
+    struct glint_frame_report report;
+    struct glint_frame frame;
 
     (void)state;
     scene_defaults(&bare);
@@ -366,14 +367,14 @@ static void test_white(void **state)
     assert_int_equal(
         scene_frame(&tool, &bare, scene_view(&bare, WIDTH, HEIGHT), &frame),
         EXIT_OK);
-    assert_int_equal(frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report),
+    assert_int_equal(glint_frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report),
                      GLINT_OK);
     for (int i = 0; i < SAMPLES; i++)
         sum[i % 3] += (double)rgb[i];
     print_message("uncoated: %.3f 1 %.3f\n", sum[0] / sum[1], sum[2] / sum[1]);
     assert_true(fabs(sum[0] / sum[1] - 1) < 0.06);
     assert_true(fabs(sum[2] / sum[1] - 1) < 0.06);
-    frame_finish(&frame);
+    glint_frame_finish(&frame);
     scene_close(&bare);
 }
 

@@ -62,7 +62,8 @@ static void scatter(int n_seekers, int n_spots, int side_q8)
 }
 
 /* As the header says it; -1: out of reach. */
-static int64_t cost_of(const struct glint_seeker *s, const struct glint_spot *p)
+static int64_t glint_cost_of(const struct glint_seeker *s,
+                             const struct glint_spot *p)
 {
     const int64_t dx = p->x_q8 - s->x_q8, dy = p->y_q8 - s->y_q8;
     const int64_t d2 = dx * dx + dy * dy;
@@ -90,7 +91,7 @@ static int match_slowly(int n_spots, int32_t *partner)
 
         for (int i = 0; i < match.n_seekers; i++)
             for (int j = 0; j < n_spots && partner[i] < 0; j++) {
-                const int64_t cost = cost_of(&match.seeker[i], &spot[j]);
+                const int64_t cost = glint_cost_of(&match.seeker[i], &spot[j]);
 
                 if (!taken[j] && cost >= 0 && cost < best)
                     best = cost, seeker = i, at = j;
@@ -134,9 +135,9 @@ static int count_nearer(const struct glint_seeker *s, int at)
     int n = 0;
 
     for (int j = 0; j < MAX; j++) {
-        const int64_t cost = cost_of(s, &spot[j]);
+        const int64_t cost = glint_cost_of(s, &spot[j]);
 
-        n += cost >= 0 && cost < cost_of(s, &spot[at]);
+        n += cost >= 0 && cost < glint_cost_of(s, &spot[at]);
     }
     return n;
 }

@@ -192,7 +192,7 @@ static void test_point(void **state)
 static void test_huge(void **state)
 {
     const struct glint_lamp lamp = stage_lamp(2, 33, 1);
-    struct measure m;
+    struct glint_measure m;
 
     (void)state;
     open_singlet(90, 16);

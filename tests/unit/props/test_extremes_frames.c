@@ -61,7 +61,7 @@ static void draw(enum glint_pixel_format format, int width, int height,
     stage_view(&heliar, width, height, width / px_mm);
     glint_image_place(&image, bytes);
     assert_int_equal(
-        frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
+        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
         GLINT_OK);
 }
 
@@ -194,7 +194,7 @@ static int strided(enum glint_pixel_format format, int pad, int down)
     memset(want, 90, sizeof want);
     glint_image_place(&plain, want);
     assert_int_equal(
-        frame_draw(&heliar.frame, &lamp, 1, 1, &plain, &heliar.drawn),
+        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &plain, &heliar.drawn),
         GLINT_OK);
     memset(got, 90, sizeof got);
     for (int p = 0; p < glint_image_planes(format); p++) {
@@ -208,7 +208,7 @@ static int strided(enum glint_pixel_format format, int pad, int down)
     }
     assert_true(at < got + ROOM);
     assert_int_equal(
-        frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
+        glint_frame_draw(&heliar.frame, &lamp, 1, 1, &image, &heliar.drawn),
         GLINT_OK);
     for (int p = 0; p < glint_image_planes(format); p++)
         for (int y = 0; y < glint_image_plane_height(format, p, H); y++) {

@@ -42,7 +42,7 @@ static struct worst fresh(void)
 static void compare(struct worst *worst, const struct glint_lamp *lamp,
                     const char *what, double value)
 {
-    struct measure m;
+    struct glint_measure m;
 
     assert_true(stage_linear(&stage, lamp, 1, test));
     assert_true(stage_exact(&stage, lamp, 1, 128, exact));
@@ -463,7 +463,7 @@ static void test_two_thousand_ghosts(void **state)
     assert_true(stage_linear(&stage, &lamp, 1, test));
     assert_true(stage_exact(&stage, &lamp, 1, 48, exact));
     {
-        const struct measure m = stage_compare(&stage, exact, test);
+        const struct glint_measure m = stage_compare(&stage, exact, test);
 
         worst = (struct worst){m.psnr_db, fabs(m.flux - 1)};
         assert_int_equal(stage.drawn.stats.dropped_bundles, 0);

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "engine/quality.h"
+#include "engine/frame/quality.h"
 #include "support/extreme.h"
 #include "support/stage.h"
 
@@ -106,7 +106,7 @@ static void add_ghost(struct offsets *o)
 static void look_at(double theta_deg, struct offsets *o)
 {
     const struct glint_lamp lamp = stage_lamp(theta_deg, 33, 1);
-    struct frame *f = &stage.frame;
+    struct glint_frame *f = &stage.frame;
 
     for (int ghost = 0; ghost < stage.of_model.n_ghosts; ghost++) {
         f->only_ghost = ghost;

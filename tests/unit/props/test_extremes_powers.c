@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "engine/lamps.h"
+#include "options/lamp_list.h"
 #include "support/extreme.h"
 #include "support/stage.h"
 

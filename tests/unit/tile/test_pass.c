@@ -116,7 +116,7 @@ static struct glint_light light_of(const struct triangle *t)
     return light;
 }
 
-struct frame {
+struct glint_frame {
     struct glint_image image;
     struct triangle triangle;
     struct glint_flare_config cfg;
@@ -124,7 +124,7 @@ struct frame {
     uint32_t order;
 };
 
-static const struct frame first = {
+static const struct glint_frame first = {
     .image = {.width = WIDTH, .height = HEIGHT},
     .triangle = {.on = 1,
                  .corner = {{20, 12}, {28, 104}, {131, 60}},
@@ -139,7 +139,7 @@ static const struct frame first = {
     .n_workers = 1,
     .n_lights = 1};
 
-static void draw_passes(struct frame *f, struct glint_flare *flare)
+static void draw_passes(struct glint_frame *f, struct glint_flare *flare)
 {
     static struct glint_blend_rows rows[MAX_WORKERS];
     struct on_row at[MAX_WORKERS];
@@ -159,7 +159,7 @@ static uint8_t ground_of(int i)
     return (uint8_t)(40 + i * 7 / 2 % 90);
 }
 
-static void draw(struct frame f, uint8_t *px)
+static void draw(struct glint_frame f, uint8_t *px)
 {
     const struct glint_wave wave = {
         MODEL_WAVE_LO_Q24, {16384, 12000, 5000}, real_of(1, 0)};
@@ -220,7 +220,7 @@ static void test_same_bits(void **state)
 
     (void)state;
     for (int i = 0; i < 2 * N_FORMATS; i++) {
-        struct frame f = first;
+        struct glint_frame f = first;
 
         f.image.format = formats[i / 2];
         f.half = i % 2;
@@ -241,7 +241,7 @@ static void test_off(void **state)
 {
     (void)state;
     for (int i = 0; i < 2 * N_FORMATS; i++) {
-        struct frame f = first;
+        struct glint_frame f = first;
 
         f.image.format = formats[i / 2];
         f.half = i % 2;
@@ -260,7 +260,7 @@ static void test_off(void **state)
  * stays; the flare lies over both. */
 static void test_sets(void **state)
 {
-    struct frame f = first;
+    struct glint_frame f = first;
     int n_set = 0, n_kept = 0, n_lit = 0;
 
     (void)state;

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#include "engine/quality.h"
+#include "engine/frame/quality.h"
 #include "live/live_adapt.h"
 
 #define PERIOD_MS (1000. / 30)

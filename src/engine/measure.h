@@ -7,14 +7,15 @@
  * bits; metrics are taken on the codes, PSNR of equal codes on what they were
  * before rounding. Flux is compared before clipping.
  */
-#ifndef GLINT_TOOLS_ENGINE_MEASURE_H
-#define GLINT_TOOLS_ENGINE_MEASURE_H
+#ifndef GLINT_ENGINE_MEASURE_H
+#define GLINT_ENGINE_MEASURE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-#include "formats/pfm.h"
+#include "glint/image.h"
 
-struct measure {
+struct glint_measure {
     double psnr_db;  /* over the three channels; 999 where nothing that can be
                         seen differs */
     double ssim;     /* of luma, 8 x 8 blocks every 4 pixels */
@@ -26,24 +27,25 @@ struct measure {
 };
 
 /* What makes the 99.9th percentile of luminance 1; 1 for a black picture. */
-double measure_exposure(const struct glint_float_image *image);
+double glint_measure_exposure(const struct glint_float_image *image);
 
 /* LINEAR times EXPOSURE as sRGB codes, [height][width][3]; NULL: no memory. */
-uint8_t *measure_encode(const struct glint_float_image *image, double exposure);
+uint8_t *glint_measure_encode(const struct glint_float_image *image,
+                              double exposure);
 
 /* The PSNR, SSIM and p99 of codes, [height][width][3]; else RESULT stays. */
-void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
-                   int height, struct measure *result);
+void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
+                         int width, int height, struct glint_measure *result);
 
 /* Compares TEST with REFERENCE, of one size. FIT: times the factor that fits
  * best in the squares first. False: no memory. */
-bool measure_compare(const struct glint_float_image *reference,
-                     const struct glint_float_image *test, bool fit,
-                     struct measure *result);
+bool glint_measure_compare(const struct glint_float_image *reference,
+                           const struct glint_float_image *test, bool fit,
+                           struct glint_measure *result);
 
 /* The same at EXPOSURE. */
-bool measure_at(const struct glint_float_image *reference,
-                const struct glint_float_image *test, bool fit, double exposure,
-                struct measure *result);
+bool glint_measure_at(const struct glint_float_image *reference,
+                      const struct glint_float_image *test, bool fit,
+                      double exposure, struct glint_measure *result);
 
 #endif

@@ -8,21 +8,20 @@
  * the last of them has the rest of the power, and all move smoothly as the
  * lamp grows. Nothing steps in a video.
  */
-#ifndef GLINT_TOOLS_ENGINE_AREA_H
-#define GLINT_TOOLS_ENGINE_AREA_H
+#ifndef GLINT_ENGINE_FRAME_AREA_H
+#define GLINT_ENGINE_FRAME_AREA_H
 
 #include "glint/glint.h"
 
-#define AREA_SAMPLES                                        \
-    7 /* points of the brightest lamp at most, unless asked \
-       */
-#define AREA_STILL      10 /* times as many of those in a picture by itself */
-#define AREA_SPACING_PX 4  /* a point for each square of so many pixels */
-
-enum { AREA_MOST_SAMPLES = 4096 };
+enum {
+    GLINT_AREA_SAMPLES = 7,    /* points of the brightest lamp, unless asked */
+    GLINT_AREA_STILL = 10,     /* times as many of those in a single picture */
+    GLINT_AREA_SPACING_PX = 4, /* a point for so many pixels squared */
+    GLINT_AREA_MOST_SAMPLES = 4096
+};
 
 /* Points of one lamp. */
-struct area {
+struct glint_area {
     struct glint_lamp lamp;
     double points;             /* >= 1 */
     double centre[2];          /* of their pattern, whose place is the lamp's */
@@ -33,7 +32,7 @@ struct area {
 
 /* How many points lamps get. The steps between them show less of faint lamps,
  * so these get fewer, by the root of their power. */
-struct area_rule {
+struct glint_area_rule {
     double pixels_per_tangent;
     double most;      /* of the brightest lamp */
     double brightest; /* power of it */
@@ -42,18 +41,18 @@ struct area_rule {
 
 /* The rule for LAMPS by which there are at most ROOM points, or one each where
  * there are more lamps. MOST: of one lamp. TOTAL: no more than so many. */
-struct area_rule area_rule_of(const struct glint_lamp *lamps, int n,
-                              double pixels_per_tangent, double most, int room,
-                              int *total);
+struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
+                                          double pixels_per_tangent,
+                                          double most, int room, int *total);
 
 /* Plans the points of LAMP. Returns how many. */
-int area_plan(struct area *area, const struct glint_lamp *lamp,
-              const struct area_rule *rule);
+int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
+                    const struct glint_area_rule *rule);
 
 /* Point I of them, with its share of the power; a lamp without extent. */
-struct glint_lamp area_point(const struct area *area, int i);
+struct glint_lamp glint_area_point(const struct glint_area *area, int i);
 
 /* Makes a round lamp of the RMS radius TANGENT. */
-void area_set_round(struct glint_lamp *lamp, double tangent);
+void glint_area_set_round(struct glint_lamp *lamp, double tangent);
 
 #endif

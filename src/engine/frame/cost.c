@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/cost.h"
+#include "engine/frame/cost.h"
 
 #include <math.h>
 
-#include "engine/quality.h"
+#include "engine/frame/quality.h"
 #include "glint/bake.h"
 
 /* Octaves that light typically varies over within a ghost. */
@@ -16,13 +16,14 @@
  * and canon-zoom-mid at 640x360 and 1280x720, along an earlier ladder. Off by 6
  * percent in the median, by 19 nine times of ten, by 35 at most, where a
  * ghost's pixels are misjudged. */
-static const double thousand_of[COST_KINDS] = {75, 0.6, 0.03, 0.0275, 0.02};
+static const double thousand_of[GLINT_COST_KINDS] = {75, 0.6, 0.03, 0.0275,
+                                                     0.02};
 
-double cost_minsn(const struct cost *cost)
+double glint_cost_minsn(const struct glint_cost *cost)
 {
     double sum = 0;
 
-    for (int k = 0; k < COST_KINDS; k++)
+    for (int k = 0; k < GLINT_COST_KINDS; k++)
         sum += thousand_of[k] * cost->count[k];
     return 1e-3 * sum;
 }
@@ -46,7 +47,8 @@ static double steps_at(int steps, double octaves)
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
 }
 
-struct cost cost_of(const struct cost_plan *p, const struct glint_dials *then)
+struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
+                                const struct glint_dials *then)
 {
     const bool half = glint_dials_half(then) && p->can_half;
     const bool was_half = glint_dials_half(&p->dials) && p->can_half;
@@ -55,7 +57,7 @@ struct cost cost_of(const struct cost_plan *p, const struct glint_dials *then)
     const double finer = (double)then->fineness / p->dials.fineness;
     const double larger = pow(4, was_half - half); /* pixels planned for */
     const int steps = then->irradiance_steps;
-    struct cost cost = {{1, p->n_looked_at}};
+    struct glint_cost cost = {{1, p->n_looked_at}};
     struct glint_planned b;
     double covered = 0;
 
@@ -68,13 +70,13 @@ struct cost cost_of(const struct cost_plan *p, const struct glint_dials *then)
             steps ? 2 + VARIATION * steps_at(steps, -log2(light)) : n;
         const double across = fmin(n, levels);
 
-        cost.count[COST_BUNDLES]++;
-        cost.count[COST_VERTICES] += (n + 1) * (n + 1);
-        cost.count[COST_EDGES] += n * across;
-        cost.count[COST_ROWS] += rows * across;
+        cost.count[GLINT_COST_BUNDLES]++;
+        cost.count[GLINT_COST_VERTICES] += (n + 1) * (n + 1);
+        cost.count[GLINT_COST_EDGES] += n * across;
+        cost.count[GLINT_COST_ROWS] += rows * across;
         covered += fmin(1, area / (width * height));
     }
-    cost.count[COST_LIT] =
+    cost.count[GLINT_COST_LIT] =
         width * height * (1 - exp(-covered)) * (half ? QUAD : 1);
     return cost;
 }

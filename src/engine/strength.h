@@ -3,7 +3,8 @@
  * How much the light of lamps is multiplied by, so that a flare is seen and
  * believed: the automatic exposure behind --strength.
  *
- *     strength_expose(&strength, &response, &lit, elapsed_us);  each frame
+ *     glint_strength_expose(&strength, &response, &lit, elapsed_us);  each
+ * frame
  *
  * From scene to code. A lamp of power P (white times pixels: what the picture
  * shows of it, and what it would show beyond white) gives a flare of
@@ -35,13 +36,13 @@
  * bright for the factor until that has followed is held to 1.5 times what it
  * would be by itself.
  */
-#ifndef GLINT_TOOLS_ENGINE_STRENGTH_H
-#define GLINT_TOOLS_ENGINE_STRENGTH_H
+#ifndef GLINT_ENGINE_STRENGTH_H
+#define GLINT_ENGINE_STRENGTH_H
 
 #include "engine/response.h"
 
 /* The lamps of a frame. */
-struct strength_lamps {
+struct glint_strength_lamps {
     struct glint_lamp *lamp; /* [n]; their powers are those to be drawn */
     const double *level;     /* [n], above 0, at most 1: how far each has risen;
                                 a part of its power. NULL: all 1 */
@@ -49,7 +50,7 @@ struct strength_lamps {
     double pixels; /* of the picture, times the light of its white */
 };
 
-struct strength {
+struct glint_strength {
     /* Options. */
     double asked;     /* 0 .. 100, 0.5 by default */
     bool is_physical; /* the factor is 2^EV alone */
@@ -58,7 +59,7 @@ struct strength {
     /* Of the last frame. */
     double scale; /* what the powers of lamps are to be multiplied by; 0: there
                      is nothing to draw */
-    struct response_light light; /* what the flare comes to with it */
+    struct glint_response_light light; /* what the flare comes to with it */
 
     /* Private: the factor without gain, followed. */
     double factor_log2;
@@ -66,21 +67,23 @@ struct strength {
 };
 
 /* STRENGTH 0.5, gain 1. */
-void strength_defaults(struct strength *strength);
+void glint_strength_defaults(struct glint_strength *strength);
 
 /* Sets the scale and the light for LAMPS. ELAPSED_US since the frame before; 0:
  * it has nothing to do with this one. Lowers the powers of lamps that are too
  * bright yet. */
-void strength_expose(struct strength *strength, const struct response *response,
-                     const struct strength_lamps *lamps, int32_t elapsed_us);
+void glint_strength_expose(struct glint_strength *strength,
+                           const struct glint_response *response,
+                           const struct glint_strength_lamps *lamps,
+                           int32_t elapsed_us);
 
 /* The light of the flare of N lamps behind RESPONSE, as its pixels' channels
  * come to, at scale 1. */
-void strength_light(const struct response *response,
-                    const struct strength_lamps *lamps,
-                    struct response_light *light);
+void glint_strength_light(const struct glint_response *response,
+                          const struct glint_strength_lamps *lamps,
+                          struct glint_response_light *light);
 
 /* Of the channels, the largest. */
-double strength_largest(const double rgb[3]);
+double glint_strength_largest(const double rgb[3]);
 
 #endif

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where the lamps of a frame come from: a list in a file, or the picture.
+ * Lamps of frames as a list in a file.
  */
-#ifndef GLINT_TOOLS_ENGINE_LAMPS_H
-#define GLINT_TOOLS_ENGINE_LAMPS_H
+#ifndef GLINT_TOOLS_OPTIONS_LAMP_LIST_H
+#define GLINT_TOOLS_OPTIONS_LAMP_LIST_H
 
 #include <stdbool.h>
 
+#include "engine/detector.h"
 #include "glint/glint.h"
 
-enum { LAMP_LIST_MAX_ROWS = 1 << 20, LAMP_FINDER_MAX = 1024 };
+enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
 
 #define LAMP_MAX_POWER 1e30 /* of a lamp: still finite in every output */
 
@@ -56,45 +57,5 @@ enum glint_status lamp_list_add(struct lamp_list *list,
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
                     struct glint_lamp *lamps, double *level, int max);
-
-/* Finds lamps in pictures of one size, and follows them where these are a
- * video. What it needs is taken by open. */
-struct lamp_finder {
-    double headroom_ev; /* how far over white clipped pixels really are; below
-                           0: as the profile of each lamp has it */
-    int max;            /* lamps a picture, 1 .. LAMP_FINDER_MAX */
-
-    /* Of the last frame, as found, the strongest first; untracked ones are
-     * numbered from 1. */
-    struct glint_lamp_track *track;
-    int n_tracks;
-
-    /* Private. */
-    struct glint_lamp_finder *lights;
-    struct glint_lamp_tracker *tracks;
-    struct glint_profile *profile;
-    double scale;            /* of the power of tracks */
-    struct glint_spot *spot; /* [LAMP_FINDER_MAX] */
-    int max_tracks;
-    void *mem;
-};
-
-/* Sets headroom_ev and max before. CFG says what a light is; keep_faint is the
- * finder's own. */
-enum glint_status lamp_finder_open(struct lamp_finder *finder,
-                                   const struct glint_lamp_finder_config *cfg);
-void lamp_finder_close(struct lamp_finder *finder);
-
-/* Writes the lamps of IMAGE, which comes ELAPSED_US after the one before:
- * rising and fading as glint/lamp_tracker.h has it, so a few more than max may
- * be there for a while. 0: a picture by itself. LAMPS has room for
- * LAMP_FINDER_MAX. */
-int lamp_finder_frame(struct lamp_finder *finder,
-                      const struct glint_image *image, int32_t elapsed_us,
-                      const struct glint_view *view, double focal_mm,
-                      struct glint_lamp *lamps);
-
-/* The next frame has nothing to do with the last: another camera, a jump. */
-void lamp_finder_restart(struct lamp_finder *finder);
 
 #endif

@@ -2,13 +2,12 @@
  *
  * A frame of exact rays: planned, traced and handed over bundle by bundle.
  */
-#include "engine/frame_feed.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "options/tool.h"
+#include "engine/frame/block.h"
+#include "engine/frame/frame_parts.h"
 
 /* What one frame may take: 65535 bundles, 0.8 GB of vertices. */
 enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
@@ -19,12 +18,20 @@ enum { MAX_FEEDS = 1 << 24 };
 
 /* --------------------------------------------------------------------- plan */
 
+struct traced {
+    struct glint_feed *feed;
+    int n_feeds, max_feeds;
+    int n_dropped;                  /* bundles beyond what a frame may take */
+    struct glint_vertex **vertices; /* of each feed, in the flare's block */
+};
+
 struct job {
-    struct frame *frame;
+    struct glint_frame *frame;
     struct glint_feed_config cfg;
 };
 
-static struct glint_feed_config feed_config(const struct frame *f, double scale)
+static struct glint_feed_config feed_config(const struct glint_frame *f,
+                                            double scale)
 {
     return (struct glint_feed_config){f->setup, f->view, scale,
                                       f->dials.fineness, f->uniform};
@@ -34,8 +41,9 @@ static struct glint_feed_config feed_config(const struct frame *f, double scale)
 static void plan_job(void *ctx, int job, int worker)
 {
     struct job *j = ctx;
+    const struct traced *const t = j->frame->traced;
     const int waves = j->frame->setup->n_wavelengths, middle = waves / 2;
-    struct glint_feed *feed = &j->frame->feed[job * waves];
+    struct glint_feed *feed = &t->feed[job * waves];
 
     (void)worker;
     glint_feed_plan(&j->cfg, &feed[middle], NULL);
@@ -45,38 +53,45 @@ static void plan_job(void *ctx, int job, int worker)
 }
 
 /* N of them, of which MAX_FEEDS are as many as can be numbered and held. */
-static enum glint_status reserve_feeds(struct frame *f, uint64_t n)
+static enum glint_status reserve_feeds(struct glint_frame *f, uint64_t n)
 {
+    struct traced *const t = f->traced;
     struct glint_feed *feed;
     struct glint_vertex **vertices;
 
-    if (n <= (uint64_t)f->max_feeds)
+    if (n <= (uint64_t)t->max_feeds)
         return GLINT_OK;
     if (n > MAX_FEEDS)
         return GLINT_E_MEMORY;
-    feed = realloc(f->feed, (size_t)n * sizeof *feed);
+    feed = realloc(t->feed, (size_t)n * sizeof *feed);
     if (!feed)
         return GLINT_E_MEMORY;
-    f->feed = feed;
-    vertices = realloc(f->vertices, (size_t)n * sizeof *vertices);
+    t->feed = feed;
+    vertices = realloc(t->vertices, (size_t)n * sizeof *vertices);
     if (!vertices)
         return GLINT_E_MEMORY;
-    f->vertices = vertices;
-    f->max_feeds = (int)n;
+    t->vertices = vertices;
+    t->max_feeds = (int)n;
     return GLINT_OK;
 }
 
-/* Ghost or part GHOST is ghost NUMBER. */
-static bool is_ghost(const struct glint_setup *s, int ghost, int number)
+static bool begin(struct glint_frame *f)
 {
-    return s->ghost[ghost].i == s->ghost[number].i &&
-           s->ghost[ghost].j == s->ghost[number].j;
+    if (!f->traced)
+        f->traced = calloc(1, sizeof(struct traced));
+    return f->traced;
+}
+
+static double now(const struct glint_frame *f)
+{
+    return f->clock ? f->clock() : 0;
 }
 
 /* Every ghost, lamp and wavelength that reaches the picture. */
-static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
-                              int n_lamps)
+static enum glint_status plan(struct glint_frame *f,
+                              const struct glint_lamp *lamps, int n_lamps)
 {
+    struct traced *const t = f->traced;
     const struct glint_setup *s = f->setup;
     struct job job = {f, feed_config(f, 1)};
     const enum glint_status status =
@@ -89,20 +104,22 @@ static enum glint_status plan(struct frame *f, const struct glint_lamp *lamps,
     for (int lamp = 0; lamp < n_lamps; lamp++)
         for (int ghost = 0; ghost < s->n_ghosts; ghost++)
             for (int wave = 0; wave < s->n_wavelengths; wave++)
-                if (f->only_ghost < 0 || is_ghost(s, ghost, f->only_ghost))
-                    f->feed[n++] = (struct glint_feed){.lamp = &lamps[lamp],
+                if (f->only_ghost < 0 ||
+                    glint_frame_is_ghost(s, ghost, f->only_ghost))
+                    t->feed[n++] = (struct glint_feed){.lamp = &lamps[lamp],
                                                        .ghost = ghost,
                                                        .wavelength = wave};
     glint_workers_run(f->cfg.workers, n / s->n_wavelengths, plan_job, &job);
     for (int i = 0; i < n; i++)
-        if (f->feed[i].n_cells > 0)
-            f->feed[kept++] = f->feed[i];
-    f->n_feeds = kept;
+        if (t->feed[i].n_cells > 0)
+            t->feed[kept++] = t->feed[i];
+    t->n_feeds = kept;
     return GLINT_OK;
 }
 
 /* What a feed's pupil sends, display white times pixels at scale 1. */
-static double flux_of(const struct frame *f, const struct glint_feed *feed)
+static double flux_of(const struct glint_frame *f,
+                      const struct glint_feed *feed)
 {
     const struct glint_pupil *p = &feed->pupil;
     const double area = (p->x1_mm - p->x0_mm) * 2 * p->y1_mm;
@@ -112,7 +129,8 @@ static double flux_of(const struct frame *f, const struct glint_feed *feed)
 }
 
 /* Pixels of the box that its light falls in. */
-static double pixels_of(const struct frame *f, const struct glint_feed *feed)
+static double pixels_of(const struct glint_frame *f,
+                        const struct glint_feed *feed)
 {
     const double *s = feed->pupil.sensor_mm;
     const double pixel = f->view.sensor_width_mm / f->view.width;
@@ -120,25 +138,27 @@ static double pixels_of(const struct frame *f, const struct glint_feed *feed)
     return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
 }
 
-enum glint_status frame_feed_scale(struct frame *frame,
+static enum glint_status set_scale(struct glint_frame *frame,
                                    const struct glint_lamp *lamps, int n_lamps,
-                                   struct frame_scale *scale)
+                                   struct glint_frame_scale *scale)
 {
-    const enum glint_status status = plan(frame, lamps, n_lamps);
+    const enum glint_status status =
+        begin(frame) ? plan(frame, lamps, n_lamps) : GLINT_E_MEMORY;
+    const struct traced *const t = frame->traced;
     double brightest = 0, together = 0;
 
-    *scale = (struct frame_scale){0, 0};
+    *scale = (struct glint_frame_scale){0, 0};
     if (status != GLINT_OK)
         return status;
-    for (int i = 0; i < frame->n_feeds; i++) {
-        const double flux = flux_of(frame, &frame->feed[i]);
+    for (int i = 0; i < t->n_feeds; i++) {
+        const double flux = flux_of(frame, &t->feed[i]);
 
-        brightest = fmax(brightest, flux / pixels_of(frame, &frame->feed[i]));
+        brightest = fmax(brightest, flux / pixels_of(frame, &t->feed[i]));
         together += flux;
     }
     if (brightest > 0)
-        *scale = frame_scale_of((int)ceil(log2(brightest)),
-                                (int)ceil(log2(together)));
+        *scale = glint_frame_scale_of((int)ceil(log2(brightest)),
+                                      (int)ceil(log2(together)));
     return GLINT_OK;
 }
 
@@ -150,31 +170,33 @@ static int larger(int a, int b)
 }
 
 /* A new block of exactly what was needed so far; the vertices move over. */
-static enum glint_status regrow(struct frame *f,
+static enum glint_status regrow(struct glint_frame *f,
                                 const struct glint_feed_config *cfg)
 {
+    struct traced *const t = f->traced;
     const size_t bytes = glint_flare_bytes(&f->cfg);
     struct glint_flare *flare;
     enum glint_status status;
-    void *mem = NULL;
+    void *mem, *const block = glint_block_take(bytes, &mem);
 
-    if (bytes == 0 || posix_memalign(&mem, 64, bytes) != 0)
+    if (!block)
         return GLINT_E_MEMORY;
-    status = glint_flare_init(&flare, &f->cfg, mem, bytes);
-    for (int i = 0; i < f->n_feeds && status == GLINT_OK; i++) {
-        const int nodes = f->feed[i].n_cells + 1;
+    status = glint_flare_init(&flare, &f->cfg, block, bytes);
+    for (int i = 0; i < t->n_feeds && status == GLINT_OK; i++) {
+        const int nodes = t->feed[i].n_cells + 1;
         struct glint_bundle bundle;
         struct glint_vertex *to;
 
-        glint_feed_bundle(cfg, &f->feed[i], &bundle);
+        glint_feed_bundle(cfg, &t->feed[i], &bundle);
         to = glint_flare_add(flare, &bundle);
-        if (f->vertices[i])
-            memcpy(to, f->vertices[i],
+        if (t->vertices[i])
+            memcpy(to, t->vertices[i],
                    (size_t)nodes * (size_t)nodes * sizeof *to);
-        f->vertices[i] = to;
+        t->vertices[i] = to;
     }
     free(f->mem);
     f->mem = mem;
+    f->block = block;
     f->bytes = bytes;
     f->flare = flare;
     return status;
@@ -185,47 +207,49 @@ static enum glint_status regrow(struct frame *f,
 static void trace_job(void *ctx, int job, int worker)
 {
     struct job *j = ctx;
+    const struct traced *const t = j->frame->traced;
 
     (void)worker;
-    glint_feed_trace(&j->cfg, &j->frame->feed[job], j->frame->vertices[job]);
+    glint_feed_trace(&j->cfg, &t->feed[job], t->vertices[job]);
 }
 
 /* Takes all bundles in; makes room first where there is too little. */
-static enum glint_status add_bundles(struct frame *f,
+static enum glint_status add_bundles(struct glint_frame *f,
                                      const struct glint_feed_config *cfg)
 {
+    struct traced *const t = f->traced;
     int vertices = 0;
 
-    f->n_dropped = 0;
-    for (int i = 0; i < f->n_feeds; i++) {
-        const int n = f->feed[i].n_cells + 1;
+    t->n_dropped = 0;
+    for (int i = 0; i < t->n_feeds; i++) {
+        const int n = t->feed[i].n_cells + 1;
 
         if (i == MAX_BUNDLES || n * n > MAX_VERTICES - vertices) {
-            f->n_dropped = f->n_feeds - i; /* the weakest lamps come last */
-            f->n_feeds = i;
+            t->n_dropped = t->n_feeds - i; /* the weakest lamps come last */
+            t->n_feeds = i;
             break;
         }
-        f->vertices[i] = NULL;
+        t->vertices[i] = NULL;
         vertices += n * n;
     }
-    if (!f->mem || f->n_feeds > f->cfg.max_bundles ||
+    if (!f->block || t->n_feeds > f->cfg.max_bundles ||
         vertices > f->cfg.max_vertices) {
-        f->cfg.max_bundles = larger(f->cfg.max_bundles, f->n_feeds);
+        f->cfg.max_bundles = larger(f->cfg.max_bundles, t->n_feeds);
         f->cfg.max_vertices = larger(f->cfg.max_vertices, vertices);
         return regrow(f, cfg);
     }
     glint_flare_begin(f->flare);
-    for (int i = 0; i < f->n_feeds; i++) {
+    for (int i = 0; i < t->n_feeds; i++) {
         struct glint_bundle bundle;
 
-        glint_feed_bundle(cfg, &f->feed[i], &bundle);
-        f->vertices[i] = glint_flare_add(f->flare, &bundle);
+        glint_feed_bundle(cfg, &t->feed[i], &bundle);
+        t->vertices[i] = glint_flare_add(f->flare, &bundle);
     }
     return GLINT_OK;
 }
 
 /* Bins, and where something did not fit, once more with room for it. */
-static enum glint_status bin(struct frame *f,
+static enum glint_status bin(struct glint_frame *f,
                              const struct glint_feed_config *cfg,
                              struct glint_flare_stats *s)
 {
@@ -249,31 +273,60 @@ static enum glint_status bin(struct frame *f,
 
 /* -------------------------------------------------------------------- frame */
 
-enum glint_status frame_feed_draw(struct frame *frame,
-                                  const struct glint_lamp *lamps, int n_lamps,
-                                  double scale, const struct glint_image *image,
-                                  struct glint_flare_stats *stats,
-                                  double times[5])
+static enum glint_status draw(struct glint_frame *frame,
+                              const struct glint_lamp *lamps, int n_lamps,
+                              double scale, const struct glint_image *image,
+                              struct glint_flare_stats *stats, double times[5])
 {
     struct job job = {frame, feed_config(frame, scale)};
     enum glint_status status;
+    const struct traced *t;
 
-    times[0] = tool_seconds();
-    status = plan(frame, lamps, n_lamps);
-
+    times[0] = now(frame);
+    status = begin(frame) ? plan(frame, lamps, n_lamps) : GLINT_E_MEMORY;
+    t = frame->traced;
     if (status == GLINT_OK)
         status = add_bundles(frame, &job.cfg);
     if (status != GLINT_OK)
         return status;
-    times[1] = tool_seconds();
-    glint_workers_run(frame->cfg.workers, frame->n_feeds, trace_job, &job);
-    times[2] = tool_seconds();
+    times[1] = now(frame);
+    glint_workers_run(frame->cfg.workers, t->n_feeds, trace_job, &job);
+    times[2] = now(frame);
     status = bin(frame, &job.cfg, stats);
     if (status != GLINT_OK)
         return status;
-    times[3] = tool_seconds();
+    times[3] = now(frame);
     glint_flare_draw(frame->flare, image);
-    times[4] = tool_seconds();
-    stats->dropped_bundles += frame->n_dropped;
+    times[4] = now(frame);
+    stats->dropped_bundles += t->n_dropped;
     return GLINT_OK;
 }
+
+static int n_bundles(const struct glint_frame *frame)
+{
+    const struct traced *const t = frame->traced;
+
+    return t->n_feeds;
+}
+
+static int ghost(const struct glint_frame *frame, int bundle)
+{
+    const struct traced *const t = frame->traced;
+
+    return t->feed[bundle].ghost;
+}
+
+static void finish(struct glint_frame *frame)
+{
+    struct traced *const t = frame->traced;
+
+    if (t) {
+        free(t->feed);
+        free(t->vertices);
+    }
+    free(t);
+    frame->traced = NULL;
+}
+
+const struct glint_frame_rays glint_frame_traces = {draw, set_scale, n_bundles,
+                                                    ghost, finish};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/lamps.h"
+#include "options/lamp_list.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/area.h"
+#include "engine/frame/area.h"
 #include "options/lamp_keys.h"
 #include "posix/error.h"
 #include "posix/input.h"
@@ -274,7 +274,7 @@ static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
 {
     const double major = r->size * tangent / sqrt(1 + r->shape * r->shape);
 
-    area_set_round(lamp, r->size * tangent);
+    glint_area_set_round(lamp, r->size * tangent);
     if (r->shape == 1)
         return;
     lamp->axis[0] = major;
@@ -302,182 +302,4 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
         n++;
     }
     return n;
-}
-
-/* ------------------------------------------------------------------- finder */
-
-/* Some more tracks than are shown, so that those that come up are known. */
-static int tracks_for(int max)
-{
-    const int wanted = max < 64 ? 128 : 2 * max;
-
-    return wanted < LAMP_FINDER_MAX ? wanted : LAMP_FINDER_MAX;
-}
-
-/* BYTES rounded up to what init wants its memory aligned to. */
-static size_t padded(size_t bytes)
-{
-    return (bytes + 63) & ~(size_t)63;
-}
-
-/* Takes one block and places everything in it. */
-static enum glint_status place(struct lamp_finder *f,
-                               const struct glint_lamp_finder_config *lights,
-                               const struct glint_lamp_tracker_config *tracks)
-{
-    const size_t lights_bytes = padded(glint_lamp_finder_bytes(lights));
-    const size_t tracks_bytes = padded(glint_lamp_tracker_bytes(tracks));
-    const size_t profile_bytes = padded(glint_profile_bytes());
-    const size_t spot_bytes = padded(LAMP_FINDER_MAX * sizeof *f->spot);
-    enum glint_status status;
-    uint8_t *at;
-
-    if (lights_bytes == 0 || tracks_bytes == 0)
-        return GLINT_E_ARGUMENT;
-    if (posix_memalign(&f->mem, 64,
-                       lights_bytes + tracks_bytes + profile_bytes +
-                           spot_bytes +
-                           (size_t)f->max_tracks * sizeof *f->track) != 0)
-        return GLINT_E_MEMORY;
-    at = f->mem;
-    status = glint_lamp_finder_init(&f->lights, lights, at, lights_bytes);
-    if (status == GLINT_OK)
-        status = glint_lamp_tracker_init(&f->tracks, tracks, at + lights_bytes,
-                                         tracks_bytes);
-    at += lights_bytes + tracks_bytes;
-    if (status == GLINT_OK)
-        status = glint_profile_init(&f->profile, at, profile_bytes);
-    at += profile_bytes;
-    f->spot = (struct glint_spot *)(void *)at;
-    f->track = (struct glint_lamp_track *)(void *)(at + spot_bytes);
-    return status;
-}
-
-enum glint_status lamp_finder_open(struct lamp_finder *finder,
-                                   const struct glint_lamp_finder_config *cfg)
-{
-    struct glint_lamp_finder_config lights = *cfg;
-    struct glint_lamp_tracker_config tracks;
-    enum glint_status status;
-
-    finder->mem = NULL;
-    finder->n_tracks = 0;
-    finder->max_tracks = tracks_for(finder->max);
-    lights.keep_faint = 1;
-    glint_lamp_tracker_defaults(&tracks, cfg->width, cfg->height);
-    tracks.max_tracks = finder->max_tracks;
-    tracks.max_shown = finder->max;
-    status = place(finder, &lights, &tracks);
-    if (status != GLINT_OK)
-        lamp_finder_close(finder);
-    return status;
-}
-
-void lamp_finder_close(struct lamp_finder *finder)
-{
-    free(finder->mem);
-    finder->mem = NULL;
-}
-
-void lamp_finder_restart(struct lamp_finder *finder)
-{
-    glint_lamp_tracker_restart(finder->tracks);
-}
-
-static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
-{
-    return (struct glint_lamp_track){
-        .id = id,
-        .state = GLINT_LAMP_STEADY,
-        .x_q8 = spot->x_q8,
-        .y_q8 = spot->y_q8,
-        .size_q8 = spot->size_q8,
-        .level_q15 = 1 << 15,
-        .flux_q16 = spot->flux_q16,
-        .power_q16 = spot->power_q16,
-        .axis_q8 = {spot->axis_q8[0], spot->axis_q8[1]},
-        .cos_q15 = spot->cos_q15,
-        .sin_q15 = spot->sin_q15,
-        .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
-}
-
-/* Clipped pixels count 2^headroom: in units of 2^8 below that, for tracks hold
- * no more than 2^42. */
-static void set_power(struct lamp_finder *f, struct glint_spot *spot)
-{
-    const double each = 65536 * (exp2(f->headroom_ev) - 1);
-
-    f->scale = exp2(fmax(f->headroom_ev - 8, 0));
-    spot->power_q16 = (int64_t)fmin(
-        ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
-}
-
-/* Finds spots, and what is behind as many of the strongest as are followed: in
- * a city by night a thousand would cost several times what finding them does.
- */
-static int find(struct lamp_finder *f, const struct glint_image *image, int max)
-{
-    const int n = glint_lamp_finder_find(f->lights, image, f->spot, max);
-
-    glint_profile_measure(f->profile, image, f->spot,
-                          n < f->max_tracks ? n : f->max_tracks);
-    f->scale = 1;
-    for (int i = 0; i < n && f->headroom_ev >= 0; i++)
-        set_power(f, &f->spot[i]);
-    return n;
-}
-
-/* The lights of IMAGE by itself. */
-static int find_still(struct lamp_finder *f, const struct glint_image *image)
-{
-    const int n = find(f, image, f->max);
-    int n_lights = 0;
-
-    for (; n_lights < n && !f->spot[n_lights].faint; n_lights++)
-        f->track[n_lights] = still(&f->spot[n_lights], (uint32_t)n_lights + 1);
-    return n_lights;
-}
-
-static double power_of(const struct lamp_finder *f,
-                       const struct glint_lamp_track *track)
-{
-    return track->level_q15 / 32768.0 * (double)track->power_q16 / 65536 *
-           f->scale;
-}
-
-static void set_extent(struct glint_lamp *lamp,
-                       const struct glint_lamp_track *track, double tangent)
-{
-    for (int k = 0; k < 2; k++)
-        lamp->axis[k] = track->axis_q8[k] / 256.0 * tangent;
-    lamp->turn_deg =
-        atan2(-track->sin_q15, track->cos_q15) * 180 / 3.14159265358979323846;
-}
-
-int lamp_finder_frame(struct lamp_finder *finder,
-                      const struct glint_image *image, int32_t elapsed_us,
-                      const struct glint_view *view, double focal_mm,
-                      struct glint_lamp *lamps)
-{
-    struct lamp_finder *f = finder;
-
-    if (elapsed_us > 0) {
-        const int n = find(f, image, LAMP_FINDER_MAX);
-
-        f->n_tracks = glint_lamp_tracker_step(f->tracks, f->spot, n, elapsed_us,
-                                              f->track, f->max_tracks);
-    } else {
-        f->n_tracks = find_still(f, image);
-    }
-    for (int i = 0; i < f->n_tracks; i++) {
-        const struct glint_lamp_track *track = &f->track[i];
-
-        glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
-                             track->y_q8 / 256.0, &lamps[i]);
-        set_extent(&lamps[i], track, tangent_of_pixel(view, focal_mm));
-        lamps[i].power = power_of(f, track);
-        for (int c = 0; c < 3; c++)
-            lamps[i].rgb[c] = track->rgb_q15[c] / 32768.0;
-    }
-    return f->n_tracks;
 }

@@ -3,8 +3,8 @@
  * One dial for all: quality 0 to 1 along the measured front of accuracy over
  * time, as a table of levels.
  */
-#ifndef GLINT_ENGINE_QUALITY_H
-#define GLINT_ENGINE_QUALITY_H
+#ifndef GLINT_ENGINE_FRAME_QUALITY_H
+#define GLINT_ENGINE_FRAME_QUALITY_H
 
 #include <stdbool.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/budget.h"
+#include "engine/frame/budget.h"
 
 #include <math.h>
 
@@ -18,18 +18,18 @@ enum { MAX_TRIES = 3 };
 
 enum { TRIALS = 4 }; /* frames of a quality that is told to take too long */
 
-void budget_init(struct budget *b, double ms)
+void glint_budget_init(struct glint_budget *b, double ms)
 {
-    *b = (struct budget){
-        .ms = ms, .ms_per_minsn = 0.1, .step = BUDGET_STEPS / 2};
+    *b = (struct glint_budget){
+        .ms = ms, .ms_per_minsn = 0.1, .step = GLINT_BUDGET_STEPS / 2};
 }
 
-double budget_quality(const struct budget *b)
+double glint_budget_quality(const struct glint_budget *b)
 {
-    return (double)b->step / BUDGET_STEPS;
+    return (double)b->step / GLINT_BUDGET_STEPS;
 }
 
-void budget_begin(struct budget *b)
+void glint_budget_begin(struct glint_budget *b)
 {
     b->n_tries = 0;
     b->n_frames += b->n_frames < 2;
@@ -38,7 +38,8 @@ void budget_begin(struct budget *b)
 /* No cost model covers sets of wavelengths, so a budget draws with three. */
 static struct glint_dials dials_at(int step, const struct glint_dials *asked)
 {
-    struct glint_dials d = glint_quality_at((double)step / BUDGET_STEPS).dials;
+    struct glint_dials d =
+        glint_quality_at((double)step / GLINT_BUDGET_STEPS).dials;
 
     d.dispersion_q8 = 0;
     d.max_lights = asked->max_lights;
@@ -46,18 +47,18 @@ static struct glint_dials dials_at(int step, const struct glint_dials *asked)
     return d;
 }
 
-struct glint_dials budget_dials(const struct budget *b,
-                                const struct glint_dials *asked)
+struct glint_dials glint_budget_dials(const struct glint_budget *b,
+                                      const struct glint_dials *asked)
 {
     return dials_at(b->step, asked);
 }
 
 static double place_of(int step)
 {
-    return glint_quality_place((double)step / BUDGET_STEPS);
+    return glint_quality_place((double)step / GLINT_BUDGET_STEPS);
 }
 
-static double octaves_at(const struct budget *b, int step)
+static double octaves_at(const struct glint_budget *b, int step)
 {
     const double at = place_of(step);
     const int below =
@@ -68,20 +69,21 @@ static double octaves_at(const struct budget *b, int step)
 }
 
 /* Of PLAN, at another quality. */
-static double predict(const struct budget *b, const struct cost_plan *plan,
-                      int step)
+static double predict(const struct glint_budget *b,
+                      const struct glint_cost_plan *plan, int step)
 {
     const struct glint_dials then = dials_at(step, &plan->dials);
-    const struct cost cost = cost_of(plan, &then);
+    const struct glint_cost cost = glint_cost_of(plan, &then);
 
-    return b->ms_per_minsn * cost_minsn(&cost) *
+    return b->ms_per_minsn * glint_cost_minsn(&cost) *
            exp2(octaves_at(b, step) + (b->n_frames > 1 ? 0 : FIRST));
 }
 
 /* The best within the budget, or the coarsest. */
-static int best_step(const struct budget *b, const struct cost_plan *plan)
+static int best_step(const struct glint_budget *b,
+                     const struct glint_cost_plan *plan)
 {
-    int low = 0, high = BUDGET_STEPS;
+    int low = 0, high = GLINT_BUDGET_STEPS;
 
     while (low < high) {
         const int middle = (low + high + 1) / 2;
@@ -97,11 +99,12 @@ static int best_step(const struct budget *b, const struct cost_plan *plan)
 /* Where no rung lies between STEP, which leaves much of the budget, and the
  * next, which is told to miss it by little, the latter for a few frames in all:
  * it may have been told too much. */
-static int try_next(struct budget *b, const struct cost_plan *plan, int step)
+static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
+                    int step)
 {
     const int is_gap = place_of(step + 1) - place_of(step) >= 1;
 
-    if (step == BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
+    if (step == GLINT_BUDGET_STEPS || !is_gap || b->n_trials == TRIALS ||
         predict(b, plan, step) >= SPARE * b->ms ||
         predict(b, plan, step + 1) > TRY * b->ms)
         return step;
@@ -110,15 +113,16 @@ static int try_next(struct budget *b, const struct cost_plan *plan, int step)
     return step + 1;
 }
 
-bool budget_choose(struct budget *b, const struct cost_plan *plan,
-                   struct glint_dials *dials)
+bool glint_budget_choose(struct glint_budget *b,
+                         const struct glint_cost_plan *plan,
+                         struct glint_dials *dials)
 {
     int step;
 
     b->predicted_ms = predict(b, plan, b->step);
     if (++b->n_tries >= MAX_TRIES ||
         (b->predicted_ms <= b->ms &&
-         (b->predicted_ms >= SPARE * b->ms || b->step == BUDGET_STEPS)))
+         (b->predicted_ms >= SPARE * b->ms || b->step == GLINT_BUDGET_STEPS)))
         return false;
     step = try_next(b, plan, best_step(b, plan));
     if (step == b->step)
@@ -133,7 +137,7 @@ bool budget_choose(struct budget *b, const struct cost_plan *plan,
  * of that holds for all, as when the machine has become slower. What was
  * learned of others long ago is forgotten, lest one slow frame keeps a rung
  * from ever being tried again. */
-void budget_note(struct budget *b, double ms)
+void glint_budget_note(struct glint_budget *b, double ms)
 {
     const double at = place_of(b->step);
     const double part = at - floor(at);

@@ -3,8 +3,8 @@
  * What a frame will take, from its plan: counts that the plan knows or tells
  * cheaply, times what each takes.
  */
-#ifndef GLINT_TOOLS_ENGINE_COST_H
-#define GLINT_TOOLS_ENGINE_COST_H
+#ifndef GLINT_ENGINE_FRAME_COST_H
+#define GLINT_ENGINE_FRAME_COST_H
 
 #include <stdbool.h>
 
@@ -12,21 +12,22 @@
 #include "glint/flare.h"
 
 /* Counts of what is worked through. */
-enum cost_kind {
-    COST_BUNDLES,  /* that are drawn: a few rays, and a polynomial each row */
-    COST_VERTICES, /* of grids */
-    COST_EDGES,    /* across which light changes */
-    COST_ROWS,     /* of pixels that these cross */
-    COST_LIT,      /* pixels with any light */
-    COST_KINDS
+enum glint_cost_kind {
+    GLINT_COST_BUNDLES, /* that are drawn: a few rays, and a polynomial each row
+                         */
+    GLINT_COST_VERTICES, /* of grids */
+    GLINT_COST_EDGES,    /* across which light changes */
+    GLINT_COST_ROWS,     /* of pixels that these cross */
+    GLINT_COST_LIT,      /* pixels with any light */
+    GLINT_COST_KINDS
 };
 
-struct cost {
-    double count[COST_KINDS];
+struct glint_cost {
+    double count[GLINT_COST_KINDS];
 };
 
 /* A frame that was planned, not yet binned. */
-struct cost_plan {
+struct glint_cost_plan {
     const struct glint_flare *flare;
     int width, height;        /* of the picture */
     double n_looked_at;       /* bundles */
@@ -36,11 +37,11 @@ struct cost_plan {
 
 /* Of the bundles of PLAN, if dials were THEN. Of fineness within a factor of 4
  * of the planned one, or grids at the limits are misjudged. */
-struct cost cost_of(const struct cost_plan *plan,
-                    const struct glint_dials *then);
+struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
+                                const struct glint_dials *then);
 
 /* Instructions, in millions, of a processor with 8 lanes of 32 bits; times what
  * one takes on this machine it is time. Fitted to counts of callgrind. */
-double cost_minsn(const struct cost *cost);
+double glint_cost_minsn(const struct glint_cost *cost);
 
 #endif

@@ -20,12 +20,12 @@ static const double settle_s = 0.3;
 
 static const double overshoot = 0.5; /* of a lamp that came */
 
-void strength_defaults(struct strength *strength)
+void glint_strength_defaults(struct glint_strength *strength)
 {
-    *strength = (struct strength){.asked = 0.5, .gain = 1};
+    *strength = (struct glint_strength){.asked = 0.5, .gain = 1};
 }
 
-double strength_largest(const double rgb[3])
+double glint_strength_largest(const double rgb[3])
 {
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
@@ -34,24 +34,24 @@ double strength_largest(const double rgb[3])
  */
 
 /* Light by channel of lamp I, of all its power. */
-static void light_of(const struct response *response,
-                     const struct strength_lamps *lamps, int i,
-                     struct response_light *light)
+static void light_of(const struct glint_response *response,
+                     const struct glint_strength_lamps *lamps, int i,
+                     struct glint_response_light *light)
 {
     const struct glint_lamp *l = &lamps->lamp[i];
     const double power =
         l->power / lamps->pixels / (lamps->level ? lamps->level[i] : 1);
-    const double softening = response_softening(response, l);
+    const double softening = glint_response_softening(response, l);
 
-    response_at(response, l->theta_deg, light);
+    glint_response_at(response, l->theta_deg, light);
     for (int c = 0; c < 3; c++) {
         light->peak[c] *= power * softening * l->rgb[c];
         light->mean[c] *= power * l->rgb[c];
     }
 }
 
-static void add(struct response_light *sum, const struct response_light *light,
-                double level)
+static void add(struct glint_response_light *sum,
+                const struct glint_response_light *light, double level)
 {
     for (int c = 0; c < 3; c++) {
         sum->peak[c] += pow(level * light->peak[c], norm);
@@ -59,19 +59,19 @@ static void add(struct response_light *sum, const struct response_light *light,
     }
 }
 
-static void finish(struct response_light *sum)
+static void finish(struct glint_response_light *sum)
 {
     for (int c = 0; c < 3; c++)
         sum->peak[c] = pow(sum->peak[c], 1 / norm);
 }
 
-void strength_light(const struct response *response,
-                    const struct strength_lamps *lamps,
-                    struct response_light *light)
+void glint_strength_light(const struct glint_response *response,
+                          const struct glint_strength_lamps *lamps,
+                          struct glint_response_light *light)
 {
-    *light = (struct response_light){{0}, {0}};
+    *light = (struct glint_response_light){{0}, {0}};
     for (int i = 0; i < lamps->n; i++) {
-        struct response_light one;
+        struct glint_response_light one;
 
         light_of(response, lamps, i, &one);
         add(light, &one, lamps->level ? lamps->level[i] : 1);
@@ -85,11 +85,11 @@ static double together(double a, double b)
 }
 
 /* The factor that LIGHT asks for, in stops. */
-static double target_log2(const struct strength *s,
-                          const struct response_light *light)
+static double target_log2(const struct glint_strength *s,
+                          const struct glint_response_light *light)
 {
-    const double peak = fmax(strength_largest(light->peak), 1e-60);
-    const double mean = strength_largest(light->mean) / mean_most;
+    const double peak = fmax(glint_strength_largest(light->peak), 1e-60);
+    const double mean = glint_strength_largest(light->mean) / mean_most;
     const double more =
         compression * (log2(together(peak, mean)) - common_log2);
 
@@ -116,8 +116,9 @@ static double held(double times)
 }
 
 /* Holds lamp I to what it would come to by itself; LIGHT is its own. */
-static void hold(const struct strength *s, const struct strength_lamps *lamps,
-                 int i, struct response_light *light)
+static void hold(const struct glint_strength *s,
+                 const struct glint_strength_lamps *lamps, int i,
+                 struct glint_response_light *light)
 {
     const double times = exp2(s->factor_log2 - target_log2(s, light));
     const double by = held(times);
@@ -129,7 +130,7 @@ static void hold(const struct strength *s, const struct strength_lamps *lamps,
     }
 }
 
-static void follow(struct strength *s, double target, int32_t elapsed_us)
+static void follow(struct glint_strength *s, double target, int32_t elapsed_us)
 {
     if (elapsed_us > 0 && s->follows)
         s->factor_log2 += step(target - s->factor_log2, 1e-6 * elapsed_us);
@@ -139,15 +140,15 @@ static void follow(struct strength *s, double target, int32_t elapsed_us)
 }
 
 /* As many lamps as there are, each with all its power. */
-static double target_of(const struct strength *s,
-                        const struct response *response,
-                        const struct strength_lamps *lamps)
+static double target_of(const struct glint_strength *s,
+                        const struct glint_response *response,
+                        const struct glint_strength_lamps *lamps)
 {
-    struct strength_lamps full = *lamps;
-    struct response_light light = {{0}, {0}};
+    struct glint_strength_lamps full = *lamps;
+    struct glint_response_light light = {{0}, {0}};
 
     for (int i = 0; i < full.n; i++) {
-        struct response_light one;
+        struct glint_response_light one;
 
         light_of(response, &full, i, &one);
         add(&light, &one, 1);
@@ -156,12 +157,13 @@ static double target_of(const struct strength *s,
     return target_log2(s, &light);
 }
 
-static void expose(struct strength *s, const struct response *response,
-                   const struct strength_lamps *lamps, int32_t elapsed_us)
+static void expose(struct glint_strength *s,
+                   const struct glint_response *response,
+                   const struct glint_strength_lamps *lamps, int32_t elapsed_us)
 {
     follow(s, target_of(s, response, lamps), elapsed_us);
     for (int i = 0; i < lamps->n; i++) {
-        struct response_light one;
+        struct glint_response_light one;
 
         light_of(response, lamps, i, &one);
         hold(s, lamps, i, &one);
@@ -171,19 +173,21 @@ static void expose(struct strength *s, const struct response *response,
     s->scale = s->gain * exp2(s->factor_log2);
 }
 
-void strength_expose(struct strength *strength, const struct response *response,
-                     const struct strength_lamps *lamps, int32_t elapsed_us)
+void glint_strength_expose(struct glint_strength *strength,
+                           const struct glint_response *response,
+                           const struct glint_strength_lamps *lamps,
+                           int32_t elapsed_us)
 {
-    struct strength *s = strength;
+    struct glint_strength *s = strength;
 
-    s->light = (struct response_light){{0}, {0}};
+    s->light = (struct glint_response_light){{0}, {0}};
     s->scale = 0;
     if (lamps->n == 0) {
         s->follows = false;
         return;
     }
     if (s->is_physical) {
-        strength_light(response, lamps, &s->light);
+        glint_strength_light(response, lamps, &s->light);
         s->scale = s->gain * exp2(s->exposure_ev);
     } else if (s->asked > 0) {
         expose(s, response, lamps, elapsed_us);

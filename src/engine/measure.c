@@ -54,7 +54,7 @@ static double luminance_at(const struct glint_float_image *image, size_t rank)
     return value_of(key);
 }
 
-double measure_exposure(const struct glint_float_image *image)
+double glint_measure_exposure(const struct glint_float_image *image)
 {
     const size_t n = samples(image) / 3;
     const double at = luminance_at(image, (size_t)((double)(n - 1) * 0.999));
@@ -70,7 +70,8 @@ static double encode(double x)
     return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055);
 }
 
-uint8_t *measure_encode(const struct glint_float_image *image, double exposure)
+uint8_t *glint_measure_encode(const struct glint_float_image *image,
+                              double exposure)
 {
     const size_t n = samples(image);
     uint8_t *codes = calloc(n, 1);
@@ -102,7 +103,7 @@ static double sum(const struct glint_float_image *image)
 }
 
 static void difference(const uint8_t *a, const uint8_t *b, size_t n,
-                       struct measure *m)
+                       struct glint_measure *m)
 {
     size_t count[256] = {0}, seen = 0;
     double squares = 0;
@@ -162,8 +163,8 @@ static double ssim(const uint8_t *a, const uint8_t *b, int width, int height)
     return n ? total / n : 1;
 }
 
-void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
-                   int height, struct measure *result)
+void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
+                         int width, int height, struct glint_measure *result)
 {
     difference(reference, test, 3 * (size_t)width * (size_t)height, result);
     result->ssim = ssim(reference, test, width, height);
@@ -172,7 +173,7 @@ void measure_codes(const uint8_t *reference, const uint8_t *test, int width,
 /* What rounding to codes hides. */
 static double fine_db(const struct glint_float_image *reference,
                       const struct glint_float_image *test,
-                      const struct measure *m)
+                      const struct glint_measure *m)
 {
     const size_t n = samples(reference);
     double squares = 0;
@@ -186,9 +187,9 @@ static double fine_db(const struct glint_float_image *reference,
     return squares > 0 ? 10 * log10(255.0 * 255.0 * (double)n / squares) : 999;
 }
 
-bool measure_at(const struct glint_float_image *reference,
-                const struct glint_float_image *test, bool fit, double exposure,
-                struct measure *result)
+bool glint_measure_at(const struct glint_float_image *reference,
+                      const struct glint_float_image *test, bool fit,
+                      double exposure, struct glint_measure *result)
 {
     const double total = sum(reference);
     uint8_t *a, *b;
@@ -196,10 +197,10 @@ bool measure_at(const struct glint_float_image *reference,
     result->exposure = exposure;
     result->factor = fit ? best_factor(reference, test) : 1;
     result->flux = total > 0 ? result->factor * sum(test) / total : 1;
-    a = measure_encode(reference, result->exposure);
-    b = measure_encode(test, result->exposure * result->factor);
+    a = glint_measure_encode(reference, result->exposure);
+    b = glint_measure_encode(test, result->exposure * result->factor);
     if (a && b)
-        measure_codes(a, b, reference->width, reference->height, result);
+        glint_measure_codes(a, b, reference->width, reference->height, result);
     result->same_codes = a && b && result->psnr_db == 999;
     if (result->same_codes)
         result->psnr_db = fine_db(reference, test, result);
@@ -208,10 +209,10 @@ bool measure_at(const struct glint_float_image *reference,
     return a && b;
 }
 
-bool measure_compare(const struct glint_float_image *reference,
-                     const struct glint_float_image *test, bool fit,
-                     struct measure *result)
+bool glint_measure_compare(const struct glint_float_image *reference,
+                           const struct glint_float_image *test, bool fit,
+                           struct glint_measure *result)
 {
-    return measure_at(reference, test, fit, measure_exposure(reference),
-                      result);
+    return glint_measure_at(reference, test, fit,
+                            glint_measure_exposure(reference), result);
 }

@@ -16,25 +16,25 @@
 #define PER_PIXEL  80.0
 
 /* All but pixels, which are nobody's own. */
-static double work_of(const struct explain_part *p, double *stage)
+static double work_of(const struct glint_explain_part *p, double *stage)
 {
     double work = 0;
 
-    stage[EXPLAIN_LOOKING] = PER_RAY * (double)p->surveyed;
-    stage[EXPLAIN_VERTICES] = PER_VERTEX * (double)p->vertices;
-    stage[EXPLAIN_EDGES] = PER_EDGE * (double)p->edges;
-    stage[EXPLAIN_ROWS] = PER_ROW * (double)p->rows;
-    for (int i = 0; i < EXPLAIN_PIXELS; i++)
+    stage[GLINT_EXPLAIN_LOOKING] = PER_RAY * (double)p->surveyed;
+    stage[GLINT_EXPLAIN_VERTICES] = PER_VERTEX * (double)p->vertices;
+    stage[GLINT_EXPLAIN_EDGES] = PER_EDGE * (double)p->edges;
+    stage[GLINT_EXPLAIN_ROWS] = PER_ROW * (double)p->rows;
+    for (int i = 0; i < GLINT_EXPLAIN_PIXELS; i++)
         work += stage[i];
     return work;
 }
 
-int explain_drawn(const struct explain_part *p)
+int glint_explain_drawn(const struct glint_explain_part *p)
 {
     return p->of[GLINT_FATE_DRAWN] + p->of[GLINT_FATE_EMPTY];
 }
 
-int explain_bundles(const struct explain_part *p)
+int glint_explain_bundles(const struct glint_explain_part *p)
 {
     int n = 0;
 
@@ -46,7 +46,7 @@ int explain_bundles(const struct explain_part *p)
 /* ------------------------------------------------------------------- accounts
  */
 
-static void add(struct explain_part *p, const struct glint_account *a)
+static void add(struct glint_explain_part *p, const struct glint_account *a)
 {
     p->surveyed += a->surveyed;
     if (a->fate == GLINT_FATE_OTHER_SET) /* drawn all the same */
@@ -65,7 +65,7 @@ static void add(struct explain_part *p, const struct glint_account *a)
 }
 
 /* Which part wave WAVE is of. */
-static int part_of(const struct explain *e, int wave)
+static int part_of(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->rays.sets;
     int part = wave;
@@ -76,7 +76,7 @@ static int part_of(const struct explain *e, int wave)
     return part;
 }
 
-static void take_accounts(struct explain *e)
+static void take_accounts(struct glint_explain *e)
 {
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
     const int n_waves = e->frame->rays.n_waves;
@@ -100,7 +100,7 @@ static void take_accounts(struct explain *e)
 /* ---------------------------------------------------------------------- light
  */
 
-static void draw(struct explain *e, int ghost, int beam, int wave)
+static void draw(struct glint_explain *e, int ghost, int beam, int wave)
 {
     const struct glint_view *view = &e->frame->view;
     struct glint_image image = {.format = GLINT_LINEAR_Q20,
@@ -115,13 +115,13 @@ static void draw(struct explain *e, int ghost, int beam, int wave)
     glint_flare_draw(e->frame->flare, &image);
 }
 
-void explain_draw(struct explain *explain, int ghost)
+void glint_explain_draw(struct glint_explain *explain, int ghost)
 {
     draw(explain, ghost, -1, -1);
 }
 
 /* What PART gives to the picture, just drawn. */
-static void measure(struct explain *e, struct explain_part *part)
+static void measure(struct glint_explain *e, struct glint_explain_part *part)
 {
     const struct glint_view *view = &e->frame->view;
     const size_t n = (size_t)view->width * (size_t)view->height;
@@ -140,7 +140,7 @@ static void measure(struct explain *e, struct explain_part *part)
     part->brightest = (double)most / 3 * 0x1p-20 * e->unit;
 }
 
-static void measure_parts(struct explain *e)
+static void measure_parts(struct glint_explain *e)
 {
     for (int i = 0; i < e->n_ghosts; i++)
         if (e->ghost[i].edges) {
@@ -163,10 +163,10 @@ static void measure_parts(struct explain *e)
     }
 }
 
-static void set_shares(const struct explain *e, struct explain_part *part,
-                       int n)
+static void set_shares(const struct glint_explain *e,
+                       struct glint_explain_part *part, int n)
 {
-    double stage[EXPLAIN_STAGES];
+    double stage[GLINT_EXPLAIN_STAGES];
 
     for (int i = 0; i < n; i++) {
         part[i].work = work_of(&part[i], stage);
@@ -179,7 +179,7 @@ static void set_shares(const struct explain *e, struct explain_part *part,
  */
 
 /* Parts have the pair of surfaces of the ghost that they are parts of. */
-static void set_pairs(struct explain *e)
+static void set_pairs(struct glint_explain *e)
 {
     const struct glint_setup *s = e->frame->setup;
 
@@ -194,7 +194,7 @@ static void set_pairs(struct explain *e)
     }
 }
 
-static int tiles_of(const struct frame *f)
+static int tiles_of(const struct glint_frame *f)
 {
     const int side = 1 << f->cfg.tile_log2;
 
@@ -202,17 +202,18 @@ static int tiles_of(const struct frame *f)
            ((f->view.height + side - 1) / side);
 }
 
-enum glint_status explain_open(struct explain *e, struct frame *frame,
-                               double unit)
+enum glint_status glint_explain_open(struct glint_explain *e,
+                                     struct glint_frame *frame, double unit)
 {
     const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
 
-    *e = (struct explain){.frame = frame,
-                          .n_beams = frame->n_beams,
-                          .n_waves = frame->rays.sets ? frame->rays.sets->n_sets
-                                                      : frame->rays.n_waves,
-                          .unit = unit,
-                          .n_tiles = tiles_of(frame)};
+    *e = (struct glint_explain){.frame = frame,
+                                .n_beams = frame->n_beams,
+                                .n_waves = frame->rays.sets
+                                               ? frame->rays.sets->n_sets
+                                               : frame->rays.n_waves,
+                                .unit = unit,
+                                .n_tiles = tiles_of(frame)};
     e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
     e->ghost = calloc(n_all, sizeof *e->ghost);
     e->beam = calloc((size_t)e->n_beams + 1, sizeof *e->beam);
@@ -225,8 +226,8 @@ enum glint_status explain_open(struct explain *e, struct frame *frame,
     set_pairs(e);
     take_accounts(e);
     measure_parts(e);
-    e->stage[EXPLAIN_PIXELS] = PER_PIXEL * e->all.lit;
-    e->all.work = work_of(&e->all, e->stage) + e->stage[EXPLAIN_PIXELS];
+    e->stage[GLINT_EXPLAIN_PIXELS] = PER_PIXEL * e->all.lit;
+    e->all.work = work_of(&e->all, e->stage) + e->stage[GLINT_EXPLAIN_PIXELS];
     e->all.share = e->all.flux > 0;
     e->all.cost = 1;
     set_shares(e, e->ghost, e->n_ghosts);
@@ -235,7 +236,7 @@ enum glint_status explain_open(struct explain *e, struct frame *frame,
     return GLINT_OK;
 }
 
-void explain_close(struct explain *e)
+void glint_explain_close(struct glint_explain *e)
 {
     free(e->ghost_of);
     free(e->ghost);
@@ -247,17 +248,18 @@ void explain_close(struct explain *e)
 /* ----------------------------------------------------------------------- order
  */
 
-static double key(const struct explain *e, enum explain_order order, int ghost)
+static double key(const struct glint_explain *e, enum glint_explain_order order,
+                  int ghost)
 {
-    const struct explain_part *p = &e->ghost[ghost];
+    const struct glint_explain_part *p = &e->ghost[ghost];
 
-    return order == EXPLAIN_LIGHT  ? p->flux
-           : order == EXPLAIN_WORK ? p->work
-                                   : -ghost;
+    return order == GLINT_EXPLAIN_LIGHT  ? p->flux
+           : order == GLINT_EXPLAIN_WORK ? p->work
+                                         : -ghost;
 }
 
-void explain_sort(const struct explain *e, enum explain_order order,
-                  int *ghosts)
+void glint_explain_sort(const struct glint_explain *e,
+                        enum glint_explain_order order, int *ghosts)
 {
     for (int i = 0; i < e->n_ghosts; i++) {
         int at = i;

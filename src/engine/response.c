@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/area.h"
+#include "engine/frame/area.h"
 
 /* The pictures that are drawn: so many pixels are enough for a thousandth of
  * them, and cost little. */
@@ -49,7 +49,8 @@ static double peak_of(const float *rgb, size_t n, int channel)
     return sum / n_top;
 }
 
-void response_look(const float *rgb, size_t n, struct response_light *light)
+void glint_response_look(const float *rgb, size_t n,
+                         struct glint_response_light *light)
 {
     for (int c = 0; c < 3; c++) {
         double sum = 0;
@@ -74,53 +75,41 @@ static struct glint_view proxy_of(struct glint_view view)
     return view;
 }
 
-/* SCENE as far as brightness goes. */
-static struct scene plain_of(const struct scene *scene)
-{
-    struct scene plain = *scene;
-
-    plain.budget_ms = 0;
-    plain.mask_nodes = 0;
-    plain.only_ghost = -1;
-    plain.raster = 0;
-    plain.uniform = false;
-    plain.dials.fineness = scene->model.data ? GRID : EXACT_GRID;
-    return plain;
-}
-
-/* A frame for proxies of VIEW and its picture; it has to be closed either way.
- */
+/* A frame for proxies of another's view and its picture; it has to be closed
+ * either way. */
 struct proxy {
-    struct scene plain;
     struct glint_view view;
-    struct frame frame;
+    struct glint_frame frame;
     int32_t *linear_q20;
     float *rgb;
 };
 
-static int open_proxy(const struct tool *tool, const struct scene *scene,
-                      struct glint_view view, size_t bytes, struct proxy *p)
+/* LIKE as far as brightness goes. */
+static enum glint_status open_proxy(const struct glint_frame *like,
+                                    size_t bytes, struct proxy *p)
 {
     size_t samples;
-    int code;
 
-    *p = (struct proxy){.plain = plain_of(scene), .view = proxy_of(view)};
+    *p = (struct proxy){.view = proxy_of(like->view)};
+    glint_frame_like(&p->frame, like, p->view);
+    p->frame.cfg.raster = NULL;
+    p->frame.only_ghost = -1;
+    p->frame.uniform = false;
+    p->frame.dials.fineness = like->lens ? GRID : EXACT_GRID;
+    p->frame.for_codes = true;
     samples = 3 * (size_t)p->view.width * (size_t)p->view.height;
     p->rgb = malloc(samples * sizeof *p->rgb);
     p->linear_q20 = malloc(samples * sizeof *p->linear_q20);
     if (!p->rgb || !p->linear_q20)
-        return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = scene_frame(tool, &p->plain, p->view, &p->frame);
-    p->frame.for_codes = true;
-    if (code == EXIT_OK && bytes &&
-        frame_reserve(&p->frame, bytes, 1, AREA_SAMPLES) != GLINT_OK)
-        code = tool_fail(tool, GLINT_E_MEMORY, NULL);
-    return code;
+        return GLINT_E_MEMORY;
+    return bytes ? glint_frame_reserve(&p->frame, NULL, bytes, 1,
+                                       GLINT_AREA_SAMPLES)
+                 : GLINT_OK;
 }
 
 static void close_proxy(struct proxy *p)
 {
-    frame_finish(&p->frame);
+    glint_frame_finish(&p->frame);
     free(p->linear_q20);
     free(p->rgb);
 }
@@ -133,29 +122,30 @@ static double largest(const double rgb[3])
 /* Draws and looks once, all times 2^BY. */
 static enum glint_status draw_once(struct proxy *p,
                                    const struct glint_lamp *lamps, int n,
-                                   double by, struct response_light *light)
+                                   double by,
+                                   struct glint_response_light *light)
 {
     const size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
     struct glint_image layer = {.format = GLINT_LINEAR_Q20,
                                 .width = p->view.width,
                                 .height = p->view.height};
     const double unit = exp2(-20 - by);
-    struct frame_report report;
+    struct glint_frame_report report;
     enum glint_status status;
 
     glint_image_place(&layer, p->linear_q20);
     memset(p->linear_q20, 0, 3 * pixels * sizeof *p->linear_q20);
-    status = frame_draw(&p->frame, lamps, n, exp2(by), &layer, &report);
+    status = glint_frame_draw(&p->frame, lamps, n, exp2(by), &layer, &report);
     for (size_t i = 0; i < 3 * pixels; i++)
         p->rgb[i] = (float)(p->linear_q20[i] * unit);
-    response_look(p->rgb, pixels, light);
+    glint_response_look(p->rgb, pixels, light);
     return status;
 }
 
 /* *PEAK_LOG2 is what the brightest should come to, and what it came to. */
 static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
                               int n, double *peak_log2,
-                              struct response_light *light)
+                              struct glint_response_light *light)
 {
     enum glint_status status = GLINT_OK;
 
@@ -184,7 +174,8 @@ static double corner_deg(struct glint_view view, double focal_mm)
 
 /* The angles that are looked at, denser near the axis, where ghosts lie on top
  * of each other; none where the model has ended. */
-static void set_angles(struct response *r, int n, double corner, double end)
+static void set_angles(struct glint_response *r, int n, double corner,
+                       double end)
 {
     r->n = 0;
     for (int i = 0; i < n; i++) {
@@ -201,7 +192,7 @@ static double log2_or_none(double value)
     return value > 0 ? fmax(log2(value), none_log2) : none_log2;
 }
 
-static void take_logs(struct response_light *light)
+static void take_logs(struct glint_response_light *light)
 {
     for (int c = 0; c < 3; c++) {
         light->peak[c] = log2_or_none(light->peak[c]);
@@ -209,7 +200,7 @@ static void take_logs(struct response_light *light)
     }
 }
 
-static double model_end_deg(const struct frame *frame)
+static double model_end_deg(const struct glint_frame *frame)
 {
     const double degree = 3.14159265358979323846 / 180;
 
@@ -219,20 +210,22 @@ static double model_end_deg(const struct frame *frame)
 }
 
 /* Lamps as LAMP, of up to an eighth of the picture's diagonal. */
-static enum glint_status measure_extents(struct proxy *p, struct response *r,
+static enum glint_status measure_extents(struct proxy *p,
+                                         struct glint_response *r,
                                          struct glint_lamp lamp)
 {
     const double diagonal =
-        2 * tan(corner_deg(p->view, p->plain.setup.optics.focal_mm) *
+        2 * tan(corner_deg(p->view, p->frame.setup->optics.focal_mm) *
                 3.14159265358979323846 / 180);
     double point_log2 = 0, peak_log2 = 0;
 
-    for (int i = 0; i < RESPONSE_EXTENTS; i++) {
-        struct response_light light;
+    for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++) {
+        struct glint_response_light light;
         enum glint_status status;
 
-        r->extent[i] = i ? diagonal / (1 << (RESPONSE_EXTENTS + 2 - i)) : 0;
-        area_set_round(&lamp, r->extent[i]);
+        r->extent[i] =
+            i ? diagonal / (1 << (GLINT_RESPONSE_EXTENTS + 2 - i)) : 0;
+        glint_area_set_round(&lamp, r->extent[i]);
         status = draw(p, &lamp, 1, &peak_log2, &light);
         if (status != GLINT_OK)
             return status;
@@ -243,7 +236,7 @@ static enum glint_status measure_extents(struct proxy *p, struct response *r,
     return GLINT_OK;
 }
 
-static enum glint_status measure(struct proxy *p, struct response *r)
+static enum glint_status measure(struct proxy *p, struct glint_response *r)
 {
     const double azimuth = /* from the middle into the corner */
         atan2(p->view.height, p->view.width) * 180 / 3.14159265358979323846;
@@ -252,8 +245,8 @@ static enum glint_status measure(struct proxy *p, struct response *r)
         .phi_deg = azimuth, .power = all, .rgb = {1, 1, 1}};
     double peak_log2 = 0;
 
-    set_angles(r, p->frame.lens ? RESPONSE_ANGLES : EXACT_ANGLES,
-               corner_deg(p->view, p->plain.setup.optics.focal_mm),
+    set_angles(r, p->frame.lens ? GLINT_RESPONSE_ANGLES : EXACT_ANGLES,
+               corner_deg(p->view, p->frame.setup->optics.focal_mm),
                model_end_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
         enum glint_status status;
@@ -268,19 +261,19 @@ static enum glint_status measure(struct proxy *p, struct response *r)
     return measure_extents(p, r, lamp);
 }
 
-int response_measure(const struct tool *tool, const struct scene *scene,
-                     struct glint_view view, size_t bytes,
-                     struct response *response)
+enum glint_status glint_response_measure(const struct glint_frame *like,
+                                         size_t bytes,
+                                         struct glint_response *response)
 {
-    const double start = tool_seconds();
+    const double start = like->clock ? like->clock() : 0;
     struct proxy proxy;
-    int code = open_proxy(tool, scene, view, bytes, &proxy);
+    enum glint_status status = open_proxy(like, bytes, &proxy);
 
-    if (code == EXIT_OK && measure(&proxy, response) != GLINT_OK)
-        code = tool_fail(tool, GLINT_E_MEMORY, NULL);
-    response->ms = 1e3 * (tool_seconds() - start);
+    if (status == GLINT_OK)
+        status = measure(&proxy, response);
+    response->ms = like->clock ? 1e3 * (like->clock() - start) : 0;
     close_proxy(&proxy);
-    return code;
+    return status;
 }
 
 static double mix(double a, double b, double part)
@@ -288,8 +281,8 @@ static double mix(double a, double b, double part)
     return exp2(a + part * (b - a));
 }
 
-void response_at(const struct response *r, double theta_deg,
-                 struct response_light *light)
+void glint_response_at(const struct glint_response *r, double theta_deg,
+                       struct glint_response_light *light)
 {
     const double *const theta = r->theta_deg;
     int i = 0;
@@ -310,14 +303,14 @@ void response_at(const struct response *r, double theta_deg,
     }
 }
 
-double response_softening(const struct response *r,
-                          const struct glint_lamp *lamp)
+double glint_response_softening(const struct glint_response *r,
+                                const struct glint_lamp *lamp)
 {
     const double extent = hypot(lamp->axis[0], lamp->axis[1]);
     int i = 0;
     double part;
 
-    while (i + 2 < RESPONSE_EXTENTS && r->extent[i + 1] < extent)
+    while (i + 2 < GLINT_RESPONSE_EXTENTS && r->extent[i + 1] < extent)
         i++;
     if (!(r->extent[i + 1] > r->extent[i]))
         return 1; /* nothing was measured */
@@ -328,30 +321,29 @@ double response_softening(const struct response *r,
 /* ------------------------------------------------------------ what was drawn
  */
 
-enum glint_status response_draw(const struct tool *tool,
-                                const struct scene *scene,
-                                struct glint_view view,
-                                const struct glint_lamp *lamps, int n,
-                                struct response_light *light)
+enum glint_status glint_response_draw(const struct glint_frame *like,
+                                      const struct glint_lamp *lamps, int n,
+                                      struct glint_response_light *light)
 {
     struct glint_lamp *small = malloc((size_t)(n ? n : 1) * sizeof *small);
     struct proxy p;
-    enum glint_status status = GLINT_E_MEMORY;
+    enum glint_status status = GLINT_OK;
     double by, peak_log2 = 0;
 
-    *light = (struct response_light){{0}, {0}};
+    *light = (struct glint_response_light){{0}, {0}};
     if (!small)
         return GLINT_E_MEMORY;
-    if (n && open_proxy(tool, scene, view, 0, &p) == EXIT_OK) {
+    if (n) {
+        status = open_proxy(like, 0, &p);
         by = (double)p.view.width * p.view.height /
-             ((double)view.width * view.height);
+             ((double)like->view.width * like->view.height);
         memcpy(small, lamps, (size_t)n * sizeof *small);
         for (int i = 0; i < n; i++)
             small[i].power *= by;
-        status = draw(&p, small, n, &peak_log2, light);
-    }
-    if (n)
+        if (status == GLINT_OK)
+            status = draw(&p, small, n, &peak_log2, light);
         close_proxy(&p);
+    }
     free(small);
-    return n ? status : GLINT_OK;
+    return status;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/quality.h"
+#include "engine/frame/quality.h"
 
 #include <math.h>
 #include <stddef.h>

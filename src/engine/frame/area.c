@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "engine/area.h"
+#include "engine/frame/area.h"
 
 #include <math.h>
 
@@ -13,9 +13,9 @@ static double power_of(const struct glint_lamp *lamp)
 /* Before thinning. A uniform ellipse has twice its RMS semi-axes for semi-axes.
  */
 static double points_of(const struct glint_lamp *lamp,
-                        const struct area_rule *rule)
+                        const struct glint_area_rule *rule)
 {
-    const double spacing = AREA_SPACING_PX / rule->pixels_per_tangent;
+    const double spacing = GLINT_AREA_SPACING_PX / rule->pixels_per_tangent;
     const double area = 180 * degree * 4 * lamp->axis[0] * lamp->axis[1];
     const double share =
         rule->brightest > 0 ? power_of(lamp) / rule->brightest : 1;
@@ -24,11 +24,11 @@ static double points_of(const struct glint_lamp *lamp,
                     fmax(rule->most - 1, 0) * sqrt(fmin(share, 1)));
 }
 
-struct area_rule area_rule_of(const struct glint_lamp *lamps, int n,
-                              double pixels_per_tangent, double most, int room,
-                              int *total)
+struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
+                                          double pixels_per_tangent,
+                                          double most, int room, int *total)
 {
-    struct area_rule rule = {pixels_per_tangent, most, 0, 1};
+    struct glint_area_rule rule = {pixels_per_tangent, most, 0, 1};
     double more = 0;
     int n_wide = 0;
 
@@ -49,7 +49,7 @@ struct area_rule area_rule_of(const struct glint_lamp *lamps, int n,
 }
 
 /* Point I of the sunflower within a circle of radius 1. */
-static double at(const struct area *a, int i, double place[2])
+static double at(const struct glint_area *a, int i, double place[2])
 {
     const double golden = 2.39996322972865332;
     const double weight = fmin(a->points - i, 1);
@@ -62,7 +62,7 @@ static double at(const struct area *a, int i, double place[2])
 
 /* Few points lie beside the middle and too close together; one cannot be
  * spread, and two to four are so by and by. */
-static void set_pattern(struct area *a, int n)
+static void set_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);
     double square = 0, place[2];
@@ -80,15 +80,15 @@ static void set_pattern(struct area *a, int n)
         a->spread += part * (sqrt(0.5 / square) - 1);
 }
 
-int area_plan(struct area *area, const struct glint_lamp *lamp,
-              const struct area_rule *rule)
+int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
+                    const struct glint_area_rule *rule)
 {
     const double t = tan(lamp->theta_deg * degree);
     const double c = cos(lamp->turn_deg * degree);
     const double s = sin(lamp->turn_deg * degree);
     int n;
 
-    *area = (struct area){.lamp = *lamp, .points = 1};
+    *area = (struct glint_area){.lamp = *lamp, .points = 1};
     area->points += rule->thinning * (points_of(lamp, rule) - 1);
     n = (int)ceil(area->points);
     if (n == 1)
@@ -103,7 +103,7 @@ int area_plan(struct area *area, const struct glint_lamp *lamp,
     return n;
 }
 
-struct glint_lamp area_point(const struct area *area, int i)
+struct glint_lamp glint_area_point(const struct glint_area *area, int i)
 {
     struct glint_lamp point = area->lamp;
     double place[2], u, v;
@@ -121,7 +121,7 @@ struct glint_lamp area_point(const struct area *area, int i)
     return point;
 }
 
-void area_set_round(struct glint_lamp *lamp, double tangent)
+void glint_area_set_round(struct glint_lamp *lamp, double tangent)
 {
     lamp->axis[0] = lamp->axis[1] = tangent / sqrt(2);
     lamp->turn_deg = 0;

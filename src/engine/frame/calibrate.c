@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/frame/frame.h"
+
+/* The angle that a model ends at, without asin(): that is 25 KB of glint-live.
+ */
+static double widest_deg(const struct glint_model_header *h)
+{
+    const double sine = h->sine_hi_q30 * 0x1p-30;
+
+    return 22.5 / atan(1) * atan2(sine, sqrt(1 - sine * sine));
+}
+
+/* What the quickest of a few frames of FRAME takes, in LEAST_MS. */
+static enum glint_status draw_some(struct glint_frame *frame,
+                                   const struct glint_image *image,
+                                   struct glint_frame_report *report,
+                                   double *least_ms)
+{
+    struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}, {0, 0}, 0};
+    enum glint_status status = GLINT_OK;
+
+    if (frame->lens) /* whose model may end before */
+        lamp.theta_deg = fmin(lamp.theta_deg, widest_deg(frame->lens->header));
+    for (int i = 0; i < 4 && status == GLINT_OK; i++) {
+        status = glint_frame_draw(frame, &lamp, 1, 1, image, report);
+        if (i > 0) /* the first one takes memory */
+            *least_ms = fmin(*least_ms, report->plan_ms + report->bin_ms +
+                                            report->draw_ms);
+    }
+    return status;
+}
+
+enum glint_status glint_frame_calibrate(struct glint_frame *frame)
+{
+    struct glint_image image = {.format = GLINT_YUYV,
+                                .width = frame->view.width,
+                                .height = frame->view.height};
+    void *mem =
+        calloc(1, glint_image_bytes(GLINT_YUYV, image.width, image.height));
+    struct glint_budget *b = &frame->budget;
+    struct glint_frame_report report = {.lights = 0};
+    double least_ms = 1e9;
+    struct glint_frame plain;
+    enum glint_status status = GLINT_E_MEMORY;
+
+    glint_frame_like(&plain, frame, frame->view);
+    plain.only_ghost = -1;
+    plain.dials.dispersion_q8 = 0;
+    if (mem) {
+        glint_image_place(&image, mem);
+        status = draw_some(&plain, &image, &report, &least_ms);
+    }
+    if (status == GLINT_OK && report.stats.bundles > 0) {
+        const struct glint_cost_plan plan = glint_frame_plan(&plain);
+        const struct glint_cost cost = glint_cost_of(&plan, &plan.dials);
+
+        b->calibrated_minsn = glint_cost_minsn(&cost);
+        b->ms_per_minsn = least_ms / b->calibrated_minsn;
+    }
+    glint_frame_finish(&plain);
+    free(mem);
+    return status;
+}

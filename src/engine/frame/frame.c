@@ -1,0 +1,474 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/frame/frame.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame/area.h"
+#include "engine/frame/frame_parts.h"
+#include "engine/frame/light.h"
+#include "engine/frame/quality.h"
+
+void glint_frame_init(struct glint_frame *frame,
+                      const struct glint_setup *setup, struct glint_view view,
+                      struct glint_workers *workers)
+{
+    *frame = (struct glint_frame){.setup = setup,
+                                  .view = view,
+                                  .cfg = {.workers = workers,
+                                          .width = view.width,
+                                          .height = view.height,
+                                          .tile_log2 = 6,
+                                          .weights = GLINT_WEIGHTS_WACHSPRESS,
+                                          .antialias = 1},
+                                  .dials = glint_dials_at(1 << 14),
+                                  .asked = glint_dials_at(1 << 14),
+                                  .apart_px = GLINT_FRAME_APART_PX,
+                                  .only_ghost = -1};
+    glint_setup_stop(setup, &frame->cfg.stop);
+}
+
+void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
+                      struct glint_view view)
+{
+    glint_frame_init(frame, like->setup, view, like->cfg.workers);
+    frame->lens = like->lens;
+    frame->trace = like->trace;
+    frame->clock = like->clock;
+    frame->dials = frame->asked = like->asked;
+    frame->apart_px = like->apart_px;
+    frame->for_codes = like->for_codes;
+    frame->uniform = like->uniform;
+    frame->only_ghost = like->only_ghost;
+    frame->cfg.sets = like->cfg.sets;
+    frame->cfg.tile_log2 = like->cfg.tile_log2;
+    frame->cfg.coarse_log2 = like->cfg.coarse_log2;
+    frame->cfg.raster = like->mask ? NULL : like->cfg.raster;
+    frame->cfg.weights = like->cfg.weights;
+    frame->cfg.merge_steps = like->cfg.merge_steps;
+    frame->cfg.merge_gamma_q16 = like->cfg.merge_gamma_q16;
+    frame->cfg.antialias = like->cfg.antialias;
+    frame->cfg.dither = like->cfg.dither;
+}
+
+enum glint_status glint_frame_use_mask(struct glint_frame *frame,
+                                       const struct glint_raster *raster,
+                                       int nodes)
+{
+    const double span = 1.25;
+
+    frame->mask = malloc((size_t)nodes * (size_t)nodes * sizeof *frame->mask);
+    if (!frame->mask)
+        return GLINT_E_MEMORY;
+    glint_setup_mask(frame->setup, frame->mask, nodes, span);
+    frame->cfg.raster = raster;
+    frame->cfg.stop.mask_q13 = frame->mask;
+    frame->cfg.stop.mask_nodes = nodes;
+    frame->cfg.stop.mask_span_q16 = (int32_t)(span * 65536);
+    return GLINT_OK;
+}
+
+void glint_frame_finish(struct glint_frame *frame)
+{
+    free(frame->mask);
+    if (frame->trace)
+        frame->trace->finish(frame);
+    free(frame->beam);
+    free(frame->merged);
+    free(frame->seen);
+    free(frame->mem);
+}
+
+/* Of all sets together. */
+static int all_waves(const struct glint_setup *s)
+{
+    int n = 0;
+
+    for (int i = 0; i < s->n_sets; i++)
+        n += s->set_size[i];
+    return n;
+}
+
+static void set_waves(struct glint_frame *f)
+{
+    const struct glint_setup *s = f->setup;
+    const struct glint_set_wave *w = s->set_wave;
+
+    f->sets = (struct glint_wave_sets){.planner = &glint_wave_planner,
+                                       .n_sets = s->n_sets,
+                                       .apart_q8 = f->dials.dispersion_q8};
+    for (int i = 0; i < s->n_sets; i++)
+        f->sets.size[i] = s->set_size[i];
+    if (glint_frame_has_sets(f))
+        for (int i = 0; i < all_waves(s); i++)
+            f->wave[i] = glint_wave_of(w[i].nm, w[i].rgb, w[i].unit_flux);
+    else
+        for (int i = 0; i < s->n_wavelengths; i++)
+            f->wave[i] =
+                glint_wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
+}
+
+static double now(const struct glint_frame *f)
+{
+    return f->clock ? f->clock() : 0;
+}
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static double pixels_per_tangent(const struct glint_frame *f)
+{
+    return fabs(f->setup->optics.focal_mm * f->view.width /
+                f->view.sensor_width_mm);
+}
+
+/* The angle in which lights are one. */
+static int32_t near_q30(const struct glint_frame *f)
+{
+    const double pixels = pixels_per_tangent(f);
+
+    return (int32_t)lrint(fmin(1, f->apart_px / pixels) * 0x1p30);
+}
+
+bool glint_frame_is_beyond(const struct glint_frame *frame,
+                           const struct glint_lamp *lamp)
+{
+    const struct glint_light b = glint_light_of(lamp, 1);
+
+    return glint_light_is_beyond(frame->lens, &b);
+}
+
+/* Beams that give nothing must not be merged with others into one that does.
+ * Appends the beams of LAMP's points that the model reaches; WITHIN are there
+ * already. Returns how many there are then. */
+static int add_beams(struct glint_frame *f, const struct glint_lamp *lamp,
+                     const struct glint_area_rule *rule, double scale,
+                     int within)
+{
+    struct glint_area area;
+    const int n = glint_area_plan(&area, lamp, rule);
+
+    for (int i = 0; i < n; i++) {
+        const struct glint_lamp point = glint_area_point(&area, i);
+
+        f->beam[within] = glint_light_of(&point, scale);
+        within += !glint_light_is_beyond(f->lens, &f->beam[within]);
+    }
+    return within;
+}
+
+/* Makes F's beams of LAMPS, those merged that are too many. */
+static enum glint_status set_beams(struct glint_frame *f,
+                                   const struct glint_lamp *lamps, int n,
+                                   double scale)
+{
+    const int room = f->reserved ? smaller(f->dials.max_lights, f->max_beams)
+                                 : f->dials.max_lights;
+    int within = 0, total;
+    const struct glint_area_rule rule = glint_area_rule_of(
+        lamps, n, pixels_per_tangent(f), f->dials.area_points, room, &total);
+
+    if (glint_frame_hold_beams(f, total) != GLINT_OK)
+        return GLINT_E_MEMORY;
+    f->n_beyond = 0;
+    for (int i = 0; i < n; i++) {
+        const int before = within;
+
+        within = add_beams(f, &lamps[i], &rule, scale, within);
+        f->n_beyond += within == before;
+    }
+    f->n_more = within - (n - f->n_beyond);
+    f->n_beams = glint_lights_merge(f->beam, within, near_q30(f),
+                                    f->dials.max_lights, &f->n_apart);
+    return GLINT_OK;
+}
+
+static bool is_in_codes(const struct glint_frame *f,
+                        const struct glint_image *image)
+{
+    return image->format != GLINT_LINEAR_Q20 || f->for_codes;
+}
+
+/* The light of CODES near black; 0: the picture is linear. */
+static double light_of(const struct glint_frame *f,
+                       const struct glint_image *image, double codes)
+{
+    return !image || !is_in_codes(f, image)
+               ? 0
+               : codes / 255 /
+                     (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
+}
+
+/* IMAGE: NULL for a linear one. */
+static struct glint_flare_frame rays_of(struct glint_frame *f,
+                                        const struct glint_image *image)
+{
+    set_waves(f);
+    f->sets.step = glint_real_of(light_of(f, image, GLINT_FRAME_STEP_CODES));
+    return (struct glint_flare_frame){
+        .lens = f->lens,
+        .wave = f->wave,
+        .n_waves = glint_frame_has_sets(f) ? all_waves(f->setup)
+                                           : f->setup->n_wavelengths,
+        .sets = glint_frame_has_sets(f) ? &f->sets : NULL,
+        .pixels_per_mm = glint_real_of(f->view.width / f->view.sensor_width_mm),
+        .fineness = f->dials.fineness,
+        .uniform = f->uniform,
+        .only_ghost = f->only_ghost,
+        .faintest = glint_real_of(light_of(f, image, f->dials.cull_codes)),
+        .whole_codes_q8 = f->dials.snap_codes_q8,
+        .half =
+            glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL};
+}
+
+void glint_frame_retune(struct glint_frame *f)
+{
+    f->cfg.irradiance_steps = f->dials.irradiance_steps;
+    if (f->block)
+        glint_flare_init(&f->flare, &f->cfg, f->block, f->bytes);
+}
+
+/* The flare has the steps of the dials. */
+static void follow_dials(struct glint_frame *f)
+{
+    if (f->cfg.irradiance_steps != f->dials.irradiance_steps)
+        glint_frame_retune(f);
+}
+
+/* Plans, with room for all bundles there can be. */
+static enum glint_status plan(struct glint_frame *f,
+                              const struct glint_flare_frame *rays)
+{
+    const int bundles = glint_frame_bundles(f, f->n_beams);
+
+    follow_dials(f);
+    if (!f->reserved && (!f->block || bundles > f->cfg.max_bundles)) {
+        enum glint_status status;
+
+        f->cfg.max_bundles = larger(bundles, f->cfg.max_bundles);
+        status = glint_frame_regrow(f);
+        if (status != GLINT_OK)
+            return status;
+    }
+    glint_flare_plan(f->flare, rays, f->beam, f->n_beams);
+    return GLINT_OK;
+}
+
+bool glint_frame_is_ghost(const struct glint_setup *s, int ghost, int number)
+{
+    return s->ghost[ghost].i == s->ghost[number].i &&
+           s->ghost[ghost].j == s->ghost[number].j;
+}
+
+/* Returns whether it is the first of its ghost in the frame. */
+static bool note_ghost(struct glint_frame *frame, int ghost)
+{
+    const struct glint_setup *s = frame->setup;
+    int number = ghost;
+
+    if (ghost >= s->n_ghosts - s->n_parts)
+        for (number = 0; !glint_frame_is_ghost(s, ghost, number);)
+            number++;
+    if (frame->seen[number])
+        return false;
+    return frame->seen[number] = true;
+}
+
+/* How many ghosts the last frame has, of N bundles. */
+static int count_ghosts(struct glint_frame *frame, int n)
+{
+    int n_ghosts = 0;
+
+    memset(frame->seen, 0,
+           (size_t)frame->setup->n_ghosts * sizeof *frame->seen);
+    for (int i = 0; i < n; i++)
+        n_ghosts +=
+            note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
+                                          : frame->trace->ghost(frame, i));
+    return n_ghosts;
+}
+
+/* What F has planned, for telling what it takes. */
+struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
+{
+    return (struct glint_cost_plan){.flare = f->flare,
+                                    .width = f->cfg.width,
+                                    .height = f->cfg.height,
+                                    .n_looked_at = (double)f->n_beams *
+                                                   f->setup->n_ghosts *
+                                                   f->setup->n_wavelengths,
+                                    .can_half = f->can_half,
+                                    .dials = f->dials};
+}
+
+/* Whether dials were turned and the frame has to be planned anew. */
+static bool choose(struct glint_frame *f)
+{
+    const struct glint_cost_plan plan = glint_frame_plan(f);
+
+    return glint_budget_choose(&f->budget, &plan, &f->dials);
+}
+
+static enum glint_status
+draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
+           double scale, const struct glint_image *image,
+           struct glint_flare_stats *stats, double times[5])
+{
+    enum glint_status status;
+
+    f->can_half = is_in_codes(f, image) && !f->cfg.raster;
+    f->rays = rays_of(f, image);
+    f->scale = scale;
+    glint_budget_begin(&f->budget);
+    times[0] = now(f);
+    status = set_beams(f, lamps, n_lamps, scale);
+    while (status == GLINT_OK) {
+        status = plan(f, &f->rays);
+        if (status != GLINT_OK)
+            return status;
+        if (f->budget.ms > 0 && choose(f)) {
+            f->rays = rays_of(f, image);
+            continue;
+        }
+        times[1] = times[2] = now(f);
+        glint_flare_bin(f->flare, stats);
+        if (glint_frame_is_served(f, stats))
+            break;
+        status = glint_frame_regrow(f);
+    }
+    if (status != GLINT_OK)
+        return status;
+    times[3] = now(f);
+    glint_flare_draw(f->flare, image);
+    times[4] = now(f);
+    return GLINT_OK;
+}
+
+/* For exact rays: what LAMPS are after merging, N of them. NULL: no memory. */
+static const struct glint_lamp *
+merged_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
+{
+    struct glint_lamp *merged;
+
+    if (set_beams(f, lamps, *n, 1) != GLINT_OK)
+        return NULL;
+    if (f->n_beams == *n && f->n_more == 0)
+        return lamps;
+    *n = f->n_beams;
+    merged = realloc(f->merged, ((size_t)*n + 1) * sizeof *merged);
+    if (!merged)
+        return NULL;
+    f->merged = merged;
+    for (int i = 0; i < *n; i++)
+        merged[i] = glint_lamp_of(&f->beam[i]);
+    return merged;
+}
+
+static enum glint_status
+draw_exact(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
+           double scale, const struct glint_image *image,
+           struct glint_flare_stats *stats, double times[5])
+{
+    const struct glint_lamp *merged = merged_lamps(f, lamps, &n_lamps);
+
+    follow_dials(f);
+    return merged
+               ? f->trace->draw(f, merged, n_lamps, scale, image, stats, times)
+               : GLINT_E_MEMORY;
+}
+
+static enum glint_status model_scale(struct glint_frame *frame,
+                                     const struct glint_lamp *lamps,
+                                     int n_lamps,
+                                     struct glint_frame_scale *scale)
+{
+    struct glint_real brightest, together;
+    struct glint_flare_frame rays;
+    enum glint_status status = set_beams(frame, lamps, n_lamps, 1);
+
+    frame->can_half = false;
+    rays = rays_of(frame, NULL);
+    if (status == GLINT_OK)
+        status = plan(frame, &rays);
+    if (status != GLINT_OK)
+        return status;
+    glint_flare_light(frame->flare, &brightest, &together);
+    if (brightest.mantissa)
+        *scale = glint_frame_scale_of(brightest.exponent + 31,
+                                      together.exponent + 31);
+    return GLINT_OK;
+}
+
+enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
+                                         const struct glint_lamp *lamps,
+                                         int n_lamps,
+                                         struct glint_frame_scale *scale)
+{
+    *scale = (struct glint_frame_scale){0, 0};
+    if (frame->lens)
+        return model_scale(frame, lamps, n_lamps, scale);
+    lamps = merged_lamps(frame, lamps, &n_lamps);
+    return lamps ? frame->trace->scale(frame, lamps, n_lamps, scale)
+                 : GLINT_E_MEMORY;
+}
+
+/* Bundles whose ghosts are known. */
+static int n_drawn(const struct glint_frame *f,
+                   const struct glint_frame_report *r)
+{
+    return f->lens ? r->stats.bundles : f->trace->n_bundles(f);
+}
+
+enum glint_status glint_frame_draw(struct glint_frame *frame,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   double scale,
+                                   const struct glint_image *image,
+                                   struct glint_frame_report *report)
+{
+    double times[5] = {0, 0, 0, 0, 0};
+    const size_t bytes = frame->bytes;
+    enum glint_status status;
+
+    *report = (struct glint_frame_report){.lights = n_lamps, .quality = -1};
+    if (n_lamps == 0) { /* the picture is not so much as looked at */
+        report->arena_bytes = frame->bytes;
+        return GLINT_OK;
+    }
+    if (!frame->seen)
+        frame->seen = calloc(GLINT_MAX_GHOSTS, sizeof *frame->seen);
+    if (!frame->seen)
+        return GLINT_E_MEMORY;
+    status = (frame->lens ? draw_model : draw_exact)(
+        frame, lamps, n_lamps, scale, image, &report->stats, times);
+    if (status != GLINT_OK)
+        return status;
+    report->plan_ms = 1e3 * (times[1] - times[0]);
+    report->trace_ms = 1e3 * (times[2] - times[1]);
+    report->bin_ms = 1e3 * (times[3] - times[2]);
+    report->draw_ms = 1e3 * (times[4] - times[3]);
+    if (frame->lens && frame->budget.ms > 0) {
+        report->predicted_ms = frame->budget.predicted_ms;
+        report->calibrated_minsn = frame->budget.calibrated_minsn;
+        report->quality = glint_budget_quality(&frame->budget);
+        if (frame->bytes == bytes) /* else it made room, once */
+            glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
+    }
+    report->beyond_lights = frame->n_beyond;
+    report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
+    report->drawn_lights = larger(frame->n_beams - frame->n_more, 1);
+    report->tiles = glint_flare_tiles(frame->flare);
+    report->held_samples = glint_flare_held(frame->flare);
+    report->arena_bytes = frame->bytes;
+    report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
+    report->ghosts = count_ghosts(frame, n_drawn(frame, report));
+    return GLINT_OK;
+}

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A frame's flare, end to end: lamps -> grids of rays -> run-time half.
+ *
+ *     glint_frame_init(&frame, &setup, view, workers);    then set options
+ *     glint_frame_draw(&frame, lamps, n, scale, &image, &report);
+ *     glint_frame_finish(&frame);
+ *
+ * The run-time half gets one block of memory, exactly as large as the most
+ * demanding frame so far needed.
+ */
+#ifndef GLINT_ENGINE_FRAME_FRAME_H
+#define GLINT_ENGINE_FRAME_FRAME_H
+
+#include <stdbool.h>
+
+#include "engine/frame/budget.h"
+#include "glint/bake.h"
+#include "glint/dials.h"
+#include "glint/engine.h"
+#include "glint/flare.h"
+
+#define GLINT_FRAME_APART_PX                           \
+    0.125 /* a model is less exact than lights so near \
+           */
+#define GLINT_FRAME_STEP_CODES \
+    2.0 /* steps between wavelengths that do not show */
+
+struct glint_frame;
+
+/* Powers of two, as their logarithms. */
+struct glint_frame_scale {
+    int likely; /* brings the brightest ghost near 32 times display white, of
+                   the 2048 that a pixel may reach */
+    int most;   /* no light is cut down: together it is below 2^24 */
+};
+
+/* Of the brightest ghost's mean light and of all flux together. */
+struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
+                                              int together_log2);
+
+/* Rays that no model gives. */
+struct glint_frame_rays {
+    /* TIMES: the moments between plan, transfer, bin and draw, and before and
+     * after. */
+    enum glint_status (*draw)(struct glint_frame *frame,
+                              const struct glint_lamp *lamps, int n_lamps,
+                              double scale, const struct glint_image *image,
+                              struct glint_flare_stats *stats, double times[5]);
+    /* SCALE becomes {0, 0} where there is no light. GLINT_E_MEMORY: it is not
+     * known, or LAMPS have more bundles than can be held. */
+    enum glint_status (*scale)(struct glint_frame *frame,
+                               const struct glint_lamp *lamps, int n_lamps,
+                               struct glint_frame_scale *scale);
+    int (*n_bundles)(const struct glint_frame *frame); /* of the last frame */
+    int (*ghost)(const struct glint_frame *frame, int bundle);
+    void (*finish)(struct glint_frame *frame);
+};
+
+/* Traced for each frame: of libglint-bake, for programs that link it. */
+extern const struct glint_frame_rays glint_frame_traces;
+
+struct glint_frame {
+    const struct glint_setup *setup;
+    const struct glint_lens *lens;        /* its model, or NULL: */
+    const struct glint_frame_rays *trace; /* then this is not */
+    glint_clock_fn *clock;                /* NULL: nothing is timed */
+    struct glint_view view;
+    struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop;
+                                      capacities are the frame's own */
+    struct glint_dials dials;      /* may be turned between frames */
+    struct glint_dials asked;      /* the same before a budget turned them */
+    double apart_px;               /* lights whose images are nearer are one */
+    bool for_codes; /* a linear picture is planned as if for codes */
+    bool can_half;  /* the last picture was in codes, by edges */
+    bool uniform;   /* the same grid for all ghosts */
+    int only_ghost; /* -1: all */
+    int16_t *mask;  /* of the stop, unless NULL */
+    struct glint_budget budget; /* of models; turns the dials */
+    bool reserved;              /* memory is what it is */
+
+    struct glint_wave wave[GLINT_SET_WAVES];
+    struct glint_wave_sets sets;
+    struct glint_light *beam;
+    int n_beams, max_beams;
+    int n_apart;  /* lights that can be told apart */
+    int n_beyond; /* left out before: the model ends before them */
+    int n_more;   /* beams that are further points of a lamp */
+    struct glint_flare_frame rays; /* of the last frame, with a model */
+    double scale;                  /* by which its lights were multiplied */
+    bool *seen; /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+
+    struct glint_lamp
+        *merged;  /* lamps to trace, where some merged; [n_beams] */
+    void *traced; /* the trace's own */
+    struct glint_flare *flare;
+    void *mem, *block; /* taken, unless NULL; the aligned part of it, or what
+                          was given */
+    size_t bytes;      /* of the block */
+};
+
+struct glint_frame_report {
+    struct glint_flare_stats stats;
+    int lights;        /* as given */
+    int beyond_lights; /* of these, farther out than the model goes */
+    int apart_lights;  /* that can be told apart */
+    int drawn_lights;  /* after merging more, for their number */
+    int ghosts, tiles;
+    int held_samples;   /* of a linear picture, saturated */
+    size_t arena_bytes; /* what the run-time half was given */
+    size_t peak_bytes;  /* what its largest frame took of it */
+    double plan_ms, trace_ms, bin_ms, draw_ms;
+    double predicted_ms, quality; /* with a budget, else 0 and -1 */
+    double calibrated_minsn;      /* that predictions rest on, or 0 */
+};
+
+void glint_frame_init(struct glint_frame *frame,
+                      const struct glint_setup *setup, struct glint_view view,
+                      struct glint_workers *workers);
+
+/* The same with the options of LIKE, as they were asked for, but without its
+ * mask and its budget. */
+void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
+                      struct glint_view view);
+
+/* Takes BYTES for all frames to come, of up to N_LAMPS lamps each, of which
+ * N_DRAWN are drawn and more merge: nothing is allocated while drawing, and
+ * what does not fit is left out and counted. MEM: as many that were taken
+ * already, aligned to 64, which stay the caller's; or NULL. GLINT_E_MEMORY:
+ * there are not so many, or they do not hold one light. */
+enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
+                                      size_t bytes, int n_lamps, int n_drawn);
+
+/* Reads the stop from a mask of NODES^2 distances rather than its sides; RASTER
+ * is one that takes it. */
+enum glint_status glint_frame_use_mask(struct glint_frame *frame,
+                                       const struct glint_raster *raster,
+                                       int nodes);
+
+/* Draws a lamp a few times to see what an instruction takes here, for the
+ * budget. GLINT_E_MEMORY. */
+enum glint_status glint_frame_calibrate(struct glint_frame *frame);
+
+/* Adds the flare of LAMPS, times SCALE, to IMAGE. GLINT_E_MEMORY. */
+enum glint_status glint_frame_draw(struct glint_frame *frame,
+                                   const struct glint_lamp *lamps, int n_lamps,
+                                   double scale,
+                                   const struct glint_image *image,
+                                   struct glint_frame_report *report);
+
+/* What FRAME planned last, for glint_cost_of(). */
+struct glint_cost_plan glint_frame_plan(const struct glint_frame *frame);
+
+/* Whether LAMP is farther off the axis than FRAME's model goes. */
+bool glint_frame_is_beyond(const struct glint_frame *frame,
+                           const struct glint_lamp *lamp);
+
+/* Takes over what changed in cfg since memory was taken; no more of it is. */
+void glint_frame_retune(struct glint_frame *frame);
+
+/* Draws the flare of LAMPS alone, times GAIN, into RGB, [height][width][3],
+ * linear light. The scale within is a power of two that leaves the faint as
+ * many steps as the brightest pixel allows: where that is fainter than the plan
+ * could predict, the frame is drawn twice. GLINT_E_MEMORY. */
+enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
+                                         const struct glint_lamp *lamps,
+                                         int n_lamps, double gain, float *rgb,
+                                         struct glint_frame_report *report);
+
+void glint_frame_finish(struct glint_frame *frame);
+
+#endif

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame/frame_parts.h"
+
+struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
+                                              int together_log2)
+{
+    const int most = 23 - together_log2, likely = 5 - brightest_log2;
+
+    return (struct glint_frame_scale){likely < most ? likely : most, most};
+}
+
+/* The size of the largest of N values. */
+static uint32_t peak_of(const int32_t *linear_q20, size_t n)
+{
+    uint32_t peak = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t size = linear_q20[i] < 0 ? 0U - (uint32_t)linear_q20[i]
+                                                : (uint32_t)linear_q20[i];
+
+        peak = size > peak ? size : peak;
+    }
+    return peak;
+}
+
+/* Octaves that a picture with that PEAK should have been drawn brighter; of
+ * held light nobody knows how bright it is. A single one is not worth it. */
+static int octaves_up(uint32_t peak, struct glint_frame_scale scale)
+{
+    const int room = scale.most - scale.likely;
+    int up = 0;
+
+    if (peak >= INT32_MAX)
+        return -6;
+    for (; peak && peak < UINT32_C(1) << 29; peak *= 2)
+        up++;
+    up = up < room ? up : room;
+    return up > 1 ? up : 0;
+}
+
+enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
+                                         const struct glint_lamp *lamps,
+                                         int n_lamps, double gain, float *rgb,
+                                         struct glint_frame_report *report)
+{
+    const int width = frame->view.width, height = frame->view.height;
+    const size_t n = 3 * (size_t)width * (size_t)height;
+    struct glint_frame_scale scale;
+    struct glint_image layer = {
+        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+    int32_t *linear_q20 = malloc(n * sizeof *linear_q20);
+    enum glint_status status =
+        linear_q20 ? glint_frame_plan_scale(frame, lamps, n_lamps, &scale)
+                   : GLINT_E_MEMORY;
+    int up = 1;
+
+    glint_image_place(&layer, linear_q20);
+    for (int i = 0; i < 4 && up && status == GLINT_OK; i++) {
+        memset(linear_q20, 0, n * sizeof *linear_q20);
+        status = glint_frame_draw(frame, lamps, n_lamps, exp2(scale.likely),
+                                  &layer, report);
+        up = octaves_up(peak_of(linear_q20, n), scale);
+        scale.likely += i < 3 ? up : 0;
+    }
+    for (size_t i = 0; i < n && status == GLINT_OK; i++)
+        rgb[i] = (float)(linear_q20[i] * exp2(-20 - scale.likely) * gain);
+    free(linear_q20);
+    return status;
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the files of a frame share: its memory, lights and a block for the
+ * run-time half that grows to what frames need (frame_room.c), and what drawing
+ * alone (frame_alone.c) asks of the plan.
+ */
+#ifndef GLINT_ENGINE_FRAME_FRAME_PARTS_H
+#define GLINT_ENGINE_FRAME_FRAME_PARTS_H
+
+#include "engine/frame/frame.h"
+
+/* Whether ghosts choose among the setup's sets of wavelengths. */
+bool glint_frame_has_sets(const struct glint_frame *frame);
+
+/* Room for N beams. GLINT_E_MEMORY. */
+enum glint_status glint_frame_hold_beams(struct glint_frame *frame, int n);
+
+/* A new block for the capacities there are, in which the flare begins. */
+enum glint_status glint_frame_regrow(struct glint_frame *frame);
+
+/* Bundles that N_BEAMS need; with sets, to choose from these. */
+int glint_frame_bundles(const struct glint_frame *frame, int n_beams);
+
+/* Whether all fitted; asks for more room where it did not. */
+bool glint_frame_is_served(struct glint_frame *frame,
+                           const struct glint_flare_stats *stats);
+
+/* What the frame took, by the same measure that sized the block. */
+size_t glint_frame_bytes_used(const struct glint_frame *frame,
+                              const struct glint_flare_stats *stats);
+
+/* Of LAMPS, as the plan predicts without drawing anything; {0, 0}: there is no
+ * light. GLINT_E_MEMORY. */
+enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
+                                         const struct glint_lamp *lamps,
+                                         int n_lamps,
+                                         struct glint_frame_scale *scale);
+
+/* Whether ghost or part GHOST of SETUP is ghost NUMBER. */
+bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
+                          int number);
+
+#endif

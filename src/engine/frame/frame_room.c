@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/frame/frame_parts.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/frame/block.h"
+
+/* What one frame may take, by edges and by other rasters. */
+enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+bool glint_frame_has_sets(const struct glint_frame *f)
+{
+    return f->lens && f->setup->n_sets && f->dials.dispersion_q8 > 0;
+}
+
+enum glint_status glint_frame_hold_beams(struct glint_frame *f, int n)
+{
+    struct glint_light *beam;
+
+    if (n <= f->max_beams)
+        return GLINT_OK;
+    beam = realloc(f->beam, (size_t)n * sizeof *f->beam);
+    if (!beam)
+        return GLINT_E_MEMORY;
+    f->beam = beam;
+    f->max_beams = n;
+    return GLINT_OK;
+}
+
+enum glint_status glint_frame_regrow(struct glint_frame *f)
+{
+    const size_t bytes = glint_flare_bytes(&f->cfg);
+
+    free(f->mem);
+    f->bytes = 0;
+    f->block = glint_block_take(bytes, &f->mem);
+    if (!f->block)
+        return GLINT_E_MEMORY;
+    f->bytes = bytes;
+    return glint_flare_init(&f->flare, &f->cfg, f->block, bytes);
+}
+
+static bool is_by_edges(const struct glint_frame *f)
+{
+    return !f->cfg.raster || f->cfg.raster == &glint_raster_edges;
+}
+
+/* What a frame may take of N bundles. */
+static int bundles_within(const struct glint_frame *f, double n)
+{
+    const int most = is_by_edges(f) ? MAX_BUNDLES : MAX_BUNDLES_OTHER;
+
+    return n < most ? (int)n : most;
+}
+
+int glint_frame_bundles(const struct glint_frame *f, int n_beams)
+{
+    const struct glint_setup *s = f->setup;
+
+    return bundles_within(
+        f, (double)n_beams * s->n_ghosts *
+               (glint_frame_has_sets(f) ? s->set_size[0] : s->n_wavelengths));
+}
+
+bool glint_frame_is_served(struct glint_frame *f,
+                           const struct glint_flare_stats *s)
+{
+    struct glint_flare_config *c = &f->cfg;
+
+    const int bundles = bundles_within(f, s->need_bundles);
+
+    if (f->reserved)
+        return true;
+    if (bundles <= c->max_bundles && s->need_vertices <= c->max_vertices &&
+        s->need_primitives <= c->max_primitives &&
+        s->need_refs <= c->max_refs && s->need_tile_refs <= c->max_tile_refs)
+        return true;
+    c->max_bundles = larger(c->max_bundles, bundles);
+    c->max_vertices = larger(c->max_vertices, s->need_vertices);
+    /* workers' shares are never quite even */
+    c->max_primitives = larger(
+        c->max_primitives,
+        (int)fmin(INT_MAX,
+                  s->need_primitives *
+                      (glint_workers_count(c->workers) > 1 ? 1.5 : 1.0)));
+    c->max_refs = larger(c->max_refs, s->need_refs);
+    c->max_tile_refs = larger(c->max_tile_refs, s->need_tile_refs);
+    return false;
+}
+
+/* References for each primitive, and vertices by cells: rather too many. */
+static size_t bytes_for(struct glint_frame *f, int primitives)
+{
+    const bool by_edges = is_by_edges(f);
+
+    f->cfg.max_primitives = primitives;
+    f->cfg.max_refs = 2 * primitives;
+    f->cfg.max_vertices = by_edges ? 0 : 2 * primitives;
+    f->cfg.max_tile_refs = f->cfg.coarse_log2 ? primitives : 0;
+    return glint_flare_bytes(&f->cfg);
+}
+
+/* The capacities that BYTES have room for. False: none. */
+static bool fit(struct glint_frame *f, size_t bytes)
+{
+    int most = 0;
+
+    for (int step = 1 << 24; step > 0; step /= 2) {
+        const size_t need = bytes_for(f, most + step);
+
+        if (need != 0 && need <= bytes)
+            most += step;
+    }
+    return most > 0 && bytes_for(f, most) <= bytes;
+}
+
+enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
+                                      size_t bytes, int n_lamps, int n_drawn)
+{
+    f->dials.max_lights =
+        smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
+    /* not all ghosts are seen, and few take the largest set */
+    f->cfg.max_bundles =
+        bundles_within(f, (glint_frame_has_sets(f) ? 2. : 1) *
+                              glint_frame_bundles(f, f->dials.max_lights));
+    if (!fit(f, bytes))
+        return GLINT_E_MEMORY;
+    if (!f->seen)
+        f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
+    if (!f->seen || glint_frame_hold_beams(f, n_lamps) != GLINT_OK)
+        return GLINT_E_MEMORY;
+    f->reserved = true;
+    if (!mem)
+        return glint_frame_regrow(f);
+    f->block = mem;
+    f->bytes = bytes;
+    return glint_flare_init(&f->flare, &f->cfg, mem, bytes);
+}
+
+size_t glint_frame_bytes_used(const struct glint_frame *f,
+                              const struct glint_flare_stats *s)
+{
+    struct glint_flare_config used = f->cfg;
+
+    used.max_bundles = smaller(s->need_bundles, f->cfg.max_bundles);
+    used.max_vertices = s->vertices;
+    used.max_primitives = s->primitives;
+    used.max_refs = s->refs;
+    used.max_tile_refs = s->tile_refs;
+    return glint_flare_bytes(&used);
+}
