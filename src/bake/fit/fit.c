@@ -38,14 +38,14 @@ enum {
 
 struct fitter {
     const struct glint_visible *visible;
+    const struct glint_tolerance *tolerance;
     struct glint_fitted_ghost *out;
-    struct glint_zone_fit fit;
+    struct glint_zone_buffers buffers;
     glint_zone_survey survey;
     struct glint_visible_profile profile;
     struct glint_visible in_band, in_part;
     struct glint_visible_profile band_profile;
     double profiled[4]; /* what it is of: angles and band */
-    double wanders;     /* the box with the colour, half widths */
     int n_parts;        /* of the zone so far */
 };
 
@@ -126,123 +126,152 @@ static const struct glint_visible_profile *profile_of(struct fitter *f,
     return &f->band_profile;
 }
 
-static void cut_out(struct fitter *f, const struct pending *p,
-                    struct glint_zone *zone)
+/* Returns what is visible in the band of P's part, to which ZONE is cut. */
+static const struct glint_visible *
+cut_out(struct fitter *f, const struct pending *p, struct glint_zone *zone)
 {
     const struct glint_zone_part *part = &p->part;
     const struct glint_visible *band =
         is_whole_band(p->w0, p->w1) ? f->visible : &f->in_band;
 
     glint_zone_cut(zone, part);
-    f->fit.visible = band;
-    if (!is_whole_band(part->w0, part->w1)) {
-        glint_visible_narrow(&f->in_part, band, part->w0, part->w1);
-        f->fit.visible = &f->in_part;
-    }
+    if (is_whole_band(part->w0, part->w1))
+        return band;
+    glint_visible_narrow(&f->in_part, band, part->w0, part->w1);
+    return &f->in_part;
 }
 
 /* Cuts P out of ZONE. A thorough fit leaves off what is not seen: a ghost
  * that comes through here in red and there in blue leaves much. */
-static void set_part(struct fitter *f, struct pending *p,
-                     struct glint_zone *zone)
+static const struct glint_visible *set_part(struct fitter *f, struct pending *p,
+                                            struct glint_zone *zone)
 {
     const struct glint_zone uncropped = *zone;
+    const struct glint_visible *band = cut_out(f, p, zone);
     double rest = p->thorough ? 0 : 1;
 
-    cut_out(f, p, zone);
     for (int round = 0; round < CROPS && rest < WORTH_CROP; round++) {
-        rest = glint_zone_crop(zone, f->fit.visible, &p->part);
+        rest = glint_zone_crop(zone, band, &p->part);
         *zone = uncropped;
-        cut_out(f, p, zone);
+        band = cut_out(f, p, zone);
     }
+    return band;
 }
 
-/* How far off places of the zone may be, in tolerances. */
-static double bearable(const struct fitter *f)
+/* How far off places of a zone may be, in tolerances. */
+static double bearable(const struct glint_zone_aim *aim)
 {
-    return PART_LEFT * fmin(f->fit.hidden, MOST_HIDDEN);
+    return PART_LEFT * fmin(aim->hidden, MOST_HIDDEN);
 }
 
 /* Times that P's box may be halved. */
 static int most_depth(const struct fitter *f, const struct pending *p)
 {
-    return p->lo <= 0 ? f->fit.tolerance->axis_depth : GLINT_PART_DEPTH;
+    return p->lo <= 0 ? f->tolerance->axis_depth : GLINT_PART_DEPTH;
 }
 
 /* What is left of P that will be halved or parted, whatever comes of it. The
  * halves of wide zones are not yet at the end of halving, where what is left
  * has to be known. */
-static double hopeless(const struct fitter *f, const struct pending *p)
+static double hopeless(const struct fitter *f, const struct pending *p,
+                       const struct glint_zone_aim *aim)
 {
     if (p->thorough)
-        return p->depth < most_depth(f, p) ? HOPELESS * bearable(f) : 0;
+        return p->depth < most_depth(f, p) ? HOPELESS * bearable(aim) : 0;
     return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
 }
 
-/* Fits a zone; *LEFT becomes how bad it is: at most 1 if good. A part that
- * nothing comes through has no outputs afterwards. P's part may shrink. */
+/* How the fit of a zone went. */
+struct attempt {
+    struct glint_zone_aim aim;
+    struct glint_zone_errors errors; /* at most 1 if good; worst HUGE_VAL: it
+                                        was not tried */
+    double wanders;                  /* the box with the colour, half widths */
+};
+
+/* Traces and fits ZONE, in BAND. A part that nothing comes through has no
+ * outputs afterwards. */
+static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
+                                  const struct glint_zone *zone,
+                                  const struct glint_visible *band,
+                                  struct glint_fitted_system *system,
+                                  struct attempt *a)
+{
+    struct glint_zone_buffers *buffers = &f->buffers;
+    struct glint_zone_task task = {.zone = zone,
+                                   .visible = band,
+                                   .barrel = f->tolerance->barrel,
+                                   .thorough = p->thorough};
+    enum glint_status status;
+
+    glint_zone_trace(zone, band, &buffers->rays, &buffers->energies);
+    a->errors.worst = 0;
+    if ((p->depth > 0 || !is_whole_band(p->w0, p->w1)) &&
+        glint_zone_rays_dark(&buffers->rays))
+        return GLINT_OK;
+    status = set_box(system, zone);
+    a->aim = glint_zone_aim_of(f->tolerance, zone, &buffers->rays);
+    task.hopeless = hopeless(f, p, &a->aim);
+    if (status == GLINT_OK)
+        status = glint_zone_fit(&task, &a->aim, buffers, system, &a->errors);
+    system->met = a->errors.worst <= 1;
+    return status;
+}
+
+/* Fits P, unless its box or its barrels say that it is too wide. P's part may
+ * shrink. */
 static enum glint_status try_zone(struct fitter *f, struct pending *p,
                                   struct glint_fitted_system *system,
-                                  double *left)
+                                  struct attempt *a)
 {
     const struct glint_visible_profile *profile = profile_of(f, p);
-    enum glint_status status;
+    const struct glint_visible *band;
     struct glint_zone zone;
 
     *system = (struct glint_fitted_system){.ghost = f->visible->ghost,
                                            .annulus = p->part.annulus,
                                            .sine_lo = p->lo,
                                            .sine_hi = p->hi};
-    f->fit.thorough = p->thorough;
-    *left = f->fit.off = 0;
+    *a = (struct attempt){.wanders = 0};
     if (profile->n == 0)
         return GLINT_OK;
-    *left = HUGE_VAL;
+    a->errors.worst = HUGE_VAL;
     glint_zone_init(&zone, profile, p->lo, p->hi, p->thorough);
-    f->wanders = (fabs(zone.middle[GLINT_BOX_POWERS]) +
+    a->wanders = (fabs(zone.middle[GLINT_BOX_POWERS]) +
                   fabs(zone.half_x[GLINT_BOX_POWERS])) /
                  zone.half_x[0];
     if (!p->thorough && zone.fill < LEAST_FILL &&
         degrees_between(p->lo, p->hi) > FILL_DEG)
         return GLINT_OK;
-    set_part(f, p, &zone);
-    system->wave_lo = f->fit.visible->wave_lo;
-    system->wave_hi = f->fit.visible->wave_hi;
-    glint_zone_survey_barrels(&zone, f->fit.visible, f->fit.tolerance->escape,
-                              &f->survey, &f->fit.rays);
-    if (f->fit.rays.n_barrels > 2 && degrees_between(p->lo, p->hi) > CROWD_DEG)
+    band = set_part(f, p, &zone);
+    system->wave_lo = band->wave_lo;
+    system->wave_hi = band->wave_hi;
+    glint_zone_survey_barrels(&zone, band, f->tolerance->escape, &f->survey,
+                              &f->buffers.rays);
+    if (f->buffers.rays.n_barrels > 2 &&
+        degrees_between(p->lo, p->hi) > CROWD_DEG)
         return GLINT_OK;
-    glint_zone_trace(&zone, f->fit.visible, &f->fit.rays, &f->fit.energies);
-    *left = 0;
-    if ((p->depth > 0 || !is_whole_band(p->w0, p->w1)) &&
-        glint_zone_fit_is_dark(&f->fit))
-        return GLINT_OK;
-    status = set_box(system, &zone);
-    glint_zone_fit_begin(&f->fit, &zone);
-    f->fit.hopeless = hopeless(f, p);
-    if (status == GLINT_OK)
-        status = glint_zone_fit_run(&f->fit, &zone, system, left);
-    system->met = *left <= 1;
-    return status;
+    return fit_zone(f, p, &zone, band, system, a);
 }
 
-/* What to do about a zone that is left with LEFT. Halves of bright ones are
- * worth more. */
+/* What to do about a zone after attempt A. Halves of bright ones are worth
+ * more. */
 enum next { KEEP, HALVE, THOROUGH, BANDS, PART };
 
 static enum next next_step(const struct fitter *f, const struct pending *p,
-                           double left)
+                           const struct attempt *a)
 {
+    const double left = a->errors.worst;
     const bool helped = left <= STUCK * p->before;
     const double width =
-        degrees_between(p->lo, p->hi) * (f->fit.ease < BRIGHT_EASE ? 2 : 1);
-    const double least = p->lo <= 0 ? f->fit.tolerance->axis : 1;
+        degrees_between(p->lo, p->hi) * (a->aim.ease < BRIGHT_EASE ? 2 : 1);
+    const double least = p->lo <= 0 ? f->tolerance->axis : 1;
     const bool stuck =
         width < least * LEAST_DEG || (!helped && width < least * STUCK_DEG);
 
-    if (p->thorough && f->fit.off <= bearable(f))
+    if (p->thorough && a->errors.places <= bearable(&a->aim))
         return KEEP;
-    if (p->thorough && p->depth == 0 && f->wanders > WANDERS &&
+    if (p->thorough && p->depth == 0 && a->wanders > WANDERS &&
         p->w1 - p->w0 > LEAST_BAND)
         return BANDS;
     if (p->thorough)
@@ -293,12 +322,12 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
     while (n > 0 && status == GLINT_OK) {
         struct pending p = stack[--n];
         struct glint_fitted_system system;
+        struct attempt attempt;
         enum next next = KEEP;
-        double left;
 
-        status = try_zone(f, &p, &system, &left);
+        status = try_zone(f, &p, &system, &attempt);
         if (status == GLINT_OK)
-            next = n + 2 > DEEP ? KEEP : next_step(f, &p, left);
+            next = n + 2 > DEEP ? KEEP : next_step(f, &p, &attempt);
         if (p.depth == 0 && p.w0 <= -1)
             f->n_parts = 0;
         system.part = f->n_parts;
@@ -308,7 +337,7 @@ static enum glint_status fit_range(struct fitter *f, const double range[2])
         } else {
             system_finish(&system);
         }
-        p.before = left;
+        p.before = attempt.errors.worst;
         if (next == THOROUGH) {
             p.thorough = true;
             stack[n++] = p;
@@ -332,19 +361,19 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
     if (!f)
         return status;
     f->visible = visible;
-    f->fit.tolerance = tolerance;
+    f->tolerance = tolerance;
     f->profiled[0] = HUGE_VAL; /* of nothing yet */
     f->out = out;
-    f->fit.scratch =
-        malloc(glint_regress_doubles(GLINT_ZONE_RAYS) * sizeof *f->fit.scratch);
-    if (f->fit.scratch) {
+    f->buffers.scratch = malloc(glint_regress_doubles(GLINT_ZONE_RAYS) *
+                                sizeof *f->buffers.scratch);
+    if (f->buffers.scratch) {
         const int n = glint_visible_ranges(visible, max_deg, range);
 
         status = GLINT_OK;
         for (int k = 0; k < n && status == GLINT_OK; k++)
             status = fit_range(f, range[k]);
     }
-    free(f->fit.scratch);
+    free(f->buffers.scratch);
     free(f);
     return status;
 }

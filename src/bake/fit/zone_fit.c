@@ -37,6 +37,14 @@ static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .total = 12,
                                                    .terms = MANY_TERMS};
 
+/* One fit: what was given to it, and how it goes. */
+struct fit {
+    const struct glint_zone_task *task;
+    const struct glint_zone_aim *aim;
+    struct glint_zone_buffers *buffers;
+    struct glint_zone_errors *errors;
+};
+
 /* Full weight a little past the edge, where cells straddle it; hardly any where
  * nothing is seen, which only has to stay unseen. */
 static double weight_past_edge(double excess)
@@ -48,130 +56,23 @@ static double weight_past_edge(double excess)
 
 /* Light beyond the field only has to stay there: it may be off by a fifth of
  * how far it is out. */
-static double weight_past_field(const struct glint_zone_fit *f, double fields)
+static double weight_past_field(const struct fit *f, double fields)
 {
-    const double out_mm = (fields - 1.01) * f->visible->field_mm;
+    const double out_mm = (fields - 1.01) * f->task->visible->field_mm;
 
-    return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->sensor_mm);
+    return out_mm <= 0 ? 1 : 1 / (1 + 0.2 * out_mm / f->aim->sensor_mm);
 }
 
-/* The rays of one angle and wavelength from FIRST on: what is seen of them. */
-struct sight {
-    int n, n_all;
-    double low[2], high[2]; /* on the sensor */
-    double energy;          /* mean */
-};
-
-static struct sight look(const struct glint_zone_rays *r, int first)
+static void set_weights(struct fit *f)
 {
-    struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
-                      .high = {-HUGE_VAL, -HUGE_VAL}};
-
-    for (int i = first; i < r->n && r->x[2][i] == r->x[2][first] &&
-                        r->x[3][i] == r->x[3][first];
-         i++, s.n_all++) {
-        if (!glint_zone_rays_seen(r, i))
-            continue;
-        for (int k = 0; k < 2; k++) {
-            s.low[k] = fmin(s.low[k], r->at[RAY_SENSOR_X + k][i]);
-            s.high[k] = fmax(s.high[k], r->at[RAY_SENSOR_X + k][i]);
-        }
-        s.energy += r->at[RAY_ENERGY][i];
-        s.n++;
-    }
-    s.energy /= s.n > 0 ? s.n : 1;
-    return s;
-}
-
-/* How bright the ghost is at its brightest in the zone, as a share of what is
- * as bright as counts. */
-static double share_of(const struct glint_zone_fit *f,
-                       const struct glint_zone *zone)
-{
-    enum { FEW = 4 }; /* rays have no area to speak of */
-    const struct glint_zone_rays *r = &f->rays;
-    double most = 0;
-
-    for (int i = 0, next; i < r->n; i = next) {
-        const struct sight v = look(r, i);
-        const double s = r->x[2][i], w = r->x[3][i];
-        const double pupil = 4 * (1 - glint_zone_rim(zone->annulus)) *
-                             glint_zone_at(zone->half_x, s, w) *
-                             glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
-        const double level = glint_brightness_at(
-            f->tolerance->brightness,
-            0.5 * (zone->lo + zone->hi) + 0.5 * s * (zone->hi - zone->lo));
-        const double y = fmax(fabs(v.low[1]), fabs(v.high[1])); /* mirrored */
-
-        next = i + v.n_all;
-        if (v.n >= FEW)
-            most = fmax(most, v.energy * pupil /
-                                  fmax(1e-9, (v.high[0] - v.low[0]) * 1.6 * y) /
-                                  fmax(level, 1e-30));
-    }
-    return most;
-}
-
-/* Sensor millimetres for a unit of the place A, B (or A alone), root mean
- * square over neighbours; of barrels only where they cut. */
-static double stretch_of(const struct glint_zone_rays *r, const double *a,
-                         const double *b, double near)
-{
-    double moved2 = 0, change2 = 0;
-
-    for (int i = 1; i < r->n; i++) {
-        const double *x = r->at[RAY_SENSOR_X], *y = r->at[RAY_SENSOR_Y];
-
-        if (r->x[1][i] != r->x[1][i - 1] || r->x[2][i] != r->x[2][i - 1] ||
-            r->x[3][i] != r->x[3][i - 1] || !glint_zone_rays_seen(r, i) ||
-            !glint_zone_rays_seen(r, i - 1) || a[i] < near)
-            continue;
-        moved2 += (x[i] - x[i - 1]) * (x[i] - x[i - 1]) +
-                  (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
-        change2 += (a[i] - a[i - 1]) * (a[i] - a[i - 1]);
-        if (b)
-            change2 += (b[i] - b[i - 1]) * (b[i] - b[i - 1]);
-    }
-    return change2 > 0 ? sqrt(moved2 / change2) : 0;
-}
-
-/* What an outline may be off, in units of which STRETCH_MM are a millimetre. */
-static double outline_tolerance(const struct glint_zone_fit *f, double most,
-                                double stretch_mm)
-{
-    return fmax(0.06 * most, fmin(most, f->edge_mm / fmax(1e-12, stretch_mm)));
-}
-
-static void set_tolerances(struct glint_zone_fit *f,
-                           const struct glint_zone *zone)
-{
-    const struct glint_tolerance *t = f->tolerance;
-    const struct glint_zone_rays *r = &f->rays;
-    const double share = share_of(f, zone);
-    const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
-    const double ease = fmin(t->ease, shows);
-    const double axis = zone->lo <= 0 ? t->axis : 1;
-
-    f->ease = ease;
-    f->edge_mm = ease * t->edge_mm;
-    f->sensor_mm = axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm);
-    f->hidden = shows * t->sensor_mm / f->sensor_mm;
-    f->stop = outline_tolerance(
-        f, t->stop,
-        stretch_of(r, r->at[RAY_STOP_X], r->at[RAY_STOP_Y], -HUGE_VAL));
-    f->energy = ease * t->energy;
-}
-
-static void set_weights(struct glint_zone_fit *f)
-{
-    const struct glint_zone_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->buffers->rays;
 
     for (int i = 0; i < r->n; i++) {
-        f->weight[i] = weight_past_edge(r->at[RAY_EXCESS][i]);
-        f->sensor_weight[i] =
-            f->weight[i] * weight_past_field(f, r->at[RAY_FIELD][i]);
+        f->buffers->weight[i] = weight_past_edge(r->at[RAY_EXCESS][i]);
+        f->buffers->sensor_weight[i] =
+            f->buffers->weight[i] * weight_past_field(f, r->at[RAY_FIELD][i]);
         if (r->at[RAY_FIELD][i] > 1.05)
-            f->weight[i] *= 0.1;
+            f->buffers->weight[i] *= 0.1;
     }
 }
 
@@ -198,14 +99,13 @@ static bool leaks(const struct glint_zone_rays *r, int i,
 
 /* Gives rays that leak a weight that they are heard with. Returns whether there
  * are any. */
-static bool stop_leaks(struct glint_zone_fit *f,
-                       const struct glint_fitted_system *system)
+static bool stop_leaks(struct fit *f, const struct glint_fitted_system *system)
 {
     bool any = false;
 
-    for (int i = 0; i < f->rays.n; i++)
-        if (leaks(&f->rays, i, system, f->visible->field_mm)) {
-            f->weight[i] = fmax(f->weight[i], 0.1);
+    for (int i = 0; i < f->buffers->rays.n; i++)
+        if (leaks(&f->buffers->rays, i, system, f->task->visible->field_mm)) {
+            f->buffers->weight[i] = fmax(f->buffers->weight[i], 0.1);
             any = true;
         }
     return any;
@@ -232,29 +132,30 @@ static enum glint_status keep(struct glint_fitted_system *system,
 }
 
 /* Fits VALUE over RAYS with CHANNEL_WEIGHT; returns what is left. */
-static double fit_poly(struct glint_zone_fit *f,
-                       const struct glint_zone_rays *r, enum glint_channel kind,
-                       double rms, struct glint_poly *poly)
+static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
+                       enum glint_channel kind, double rms,
+                       struct glint_poly *poly)
 {
     const struct glint_regress_samples samples = {
-        r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->channel_weight};
+        r->n, {r->x[0], r->x[1], r->x[2], r->x[3]}, f->buffers->channel_weight};
     struct glint_degrees degrees =
         kind != GLINT_OUT_ENERGY ? position_degrees
-        : f->thorough && glint_zone_rays_spread(&f->rays) > GLINT_STEEP
+        : f->task->thorough &&
+                glint_zone_rays_spread(&f->buffers->rays) > GLINT_STEEP
             ? steep_degrees
             : energy_degrees;
 
-    if (f->thorough && kind != GLINT_OUT_ENERGY)
+    if (f->task->thorough && kind != GLINT_OUT_ENERGY)
         degrees.terms = MANY_TERMS;
-    degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->hopeless;
+    degrees.hopeless = kind == GLINT_OUT_ENERGY ? 0 : f->task->hopeless;
     degrees.patience = PATIENCE;
     degrees.parity = kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y;
-    return glint_regress_fit(f->scratch, &samples, f->value, &degrees, rms,
-                             PEAK * rms, poly);
+    return glint_regress_fit(f->buffers->scratch, &samples, f->buffers->value,
+                             &degrees, rms, PEAK * rms, poly);
 }
 
 /* *WORST becomes what is left, if larger. */
-static enum glint_status fit_output(struct glint_zone_fit *f,
+static enum glint_status fit_output(struct fit *f,
                                     const struct glint_zone_rays *r,
                                     enum glint_channel kind, double rms,
                                     struct glint_fitted_system *system,
@@ -267,18 +168,19 @@ static enum glint_status fit_output(struct glint_zone_fit *f,
     return keep(system, kind, &poly, rms, left <= 1);
 }
 
-static enum glint_status fit_channel(struct glint_zone_fit *f, int channel,
-                                     double rms,
+static enum glint_status fit_channel(struct fit *f, int channel, double rms,
                                      struct glint_fitted_system *system,
                                      double *worst)
 {
-    const size_t bytes = (size_t)f->rays.n * sizeof *f->value;
+    const size_t bytes = (size_t)f->buffers->rays.n * sizeof *f->buffers->value;
 
-    memcpy(f->value, f->rays.at[channel], bytes);
-    memcpy(f->channel_weight,
-           channel <= RAY_SENSOR_Y ? f->sensor_weight : f->weight, bytes);
-    return fit_output(f, &f->rays, (enum glint_channel)channel, rms, system,
-                      worst);
+    memcpy(f->buffers->value, f->buffers->rays.at[channel], bytes);
+    memcpy(f->buffers->channel_weight,
+           channel <= RAY_SENSOR_Y ? f->buffers->sensor_weight
+                                   : f->buffers->weight,
+           bytes);
+    return fit_output(f, &f->buffers->rays, (enum glint_channel)channel, rms,
+                      system, worst);
 }
 
 /* Least and most energy of what is seen. */
@@ -295,9 +197,8 @@ static void energies_of(const struct glint_zone_rays *r, double *least,
 /* Sets VALUE to the energy, or its fourth root, and CHANNEL_WEIGHT, so that
  * energy counts by its share, down to a two-hundredth of MOST. Returns the
  * largest weight. */
-static double set_energies(struct glint_zone_fit *f,
-                           const struct glint_zone_rays *r, double most,
-                           bool root)
+static double set_energies(struct fit *f, const struct glint_zone_rays *r,
+                           double most, bool root)
 {
     double largest = 0;
 
@@ -307,10 +208,11 @@ static double set_energies(struct glint_zone_fit *f,
         const double share = fmax(energy, 0.005 * most);
 
         /* an error of the root is a quarter of the energy's */
-        f->value[i] = root ? sqrt(sqrt(energy)) : energy;
-        f->channel_weight[i] = fmax(weight_past_edge(out), 0.001) /
-                               (root ? 0.25 * sqrt(sqrt(share)) : share);
-        largest = fmax(largest, f->channel_weight[i]);
+        f->buffers->value[i] = root ? sqrt(sqrt(energy)) : energy;
+        f->buffers->channel_weight[i] =
+            fmax(weight_past_edge(out), 0.001) /
+            (root ? 0.25 * sqrt(sqrt(share)) : share);
+        largest = fmax(largest, f->buffers->channel_weight[i]);
     }
     return largest;
 }
@@ -318,25 +220,26 @@ static double set_energies(struct glint_zone_fit *f,
 /* Towards total reflection energy grows a thousandfold; its fourth root is as
  * tame as a position. Where a coating lets all light of some colour through,
  * the root has a cusp and energy itself is tame. */
-static enum glint_status fit_energy(struct glint_zone_fit *f,
-                                    struct glint_fitted_system *system,
-                                    double *worst)
+static enum glint_status
+fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
 {
-    const struct glint_zone_rays *r = f->energies.n ? &f->energies : &f->rays;
+    const struct glint_zone_rays *r =
+        f->buffers->energies.n ? &f->buffers->energies : &f->buffers->rays;
     struct glint_fitted_output *o = &system->output[system->n_outputs];
     double least = HUGE_VAL, most = 1e-30, left, grain;
     struct glint_poly poly, other;
     bool root;
 
     energies_of(r, &least, &most);
-    energies_of(&f->rays, &least, &most);
-    root = f->thorough && most > WIDE_ENERGY * least;
-    grain = f->energy / set_energies(f, r, most, root);
-    left = fit_poly(f, r, GLINT_OUT_ENERGY, f->energy, &poly);
+    energies_of(&f->buffers->rays, &least, &most);
+    root = f->task->thorough && most > WIDE_ENERGY * least;
+    grain = f->aim->energy / set_energies(f, r, most, root);
+    left = fit_poly(f, r, GLINT_OUT_ENERGY, f->aim->energy, &poly);
     if (root && left > 1) {
-        const double other_grain = f->energy / set_energies(f, r, most, false);
+        const double other_grain =
+            f->aim->energy / set_energies(f, r, most, false);
         const double other_left =
-            fit_poly(f, r, GLINT_OUT_ENERGY, f->energy, &other);
+            fit_poly(f, r, GLINT_OUT_ENERGY, f->aim->energy, &other);
 
         if (other_left < left) {
             root = false;
@@ -348,29 +251,30 @@ static enum glint_status fit_energy(struct glint_zone_fit *f,
     o->roots = root ? 2 : 0;
     o->most = least > most ? 0 : root ? sqrt(sqrt(most)) : most;
     *worst = fmax(*worst, left);
-    return keep(system, GLINT_OUT_ENERGY, &poly, fmin(grain, f->energy),
+    return keep(system, GLINT_OUT_ENERGY, &poly, fmin(grain, f->aim->energy),
                 left <= 1);
 }
 
 /* Where the barrel cuts is what counts. */
-static enum glint_status fit_barrel(struct glint_zone_fit *f, int barrel,
+static enum glint_status fit_barrel(struct fit *f, int barrel,
                                     struct glint_fitted_system *system,
                                     double *worst)
 {
-    const struct glint_zone_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->buffers->rays;
     double stretch;
 
     for (int i = 0; i < r->n; i++) {
         const double radius = r->radius[barrel][i];
         const double off = (radius - 1) / 0.15;
 
-        f->value[i] = 0.5 * (1 + radius * radius);
-        f->channel_weight[i] = f->weight[i] * fmax(0.05, 1 / (1 + off * off));
+        f->buffers->value[i] = 0.5 * (1 + radius * radius);
+        f->buffers->channel_weight[i] =
+            f->buffers->weight[i] * fmax(0.05, 1 / (1 + off * off));
     }
-    stretch = stretch_of(r, f->value, NULL, 0.8);
+    stretch = glint_zone_aim_stretch(r, f->buffers->value, NULL, 0.8);
     system->output[system->n_outputs].event = r->barrel[barrel];
     return fit_output(f, r, (enum glint_channel)(GLINT_OUT_BARREL_0 + barrel),
-                      outline_tolerance(f, f->tolerance->barrel, stretch),
+                      glint_zone_aim_outline(f->aim, f->task->barrel, stretch),
                       system, worst);
 }
 
@@ -380,30 +284,31 @@ static void drop_outputs(struct glint_fitted_system *system)
         free(system->output[--system->n_outputs].coef);
 }
 
-static bool is_hopeless(const struct glint_zone_fit *f)
+static bool is_hopeless(const struct fit *f)
 {
-    return f->hopeless > 0 && f->off > f->hopeless;
+    return f->task->hopeless > 0 && f->errors->places > f->task->hopeless;
 }
 
-static enum glint_status fit_outputs(struct glint_zone_fit *f,
-                                     struct glint_fitted_system *system,
-                                     double *worst)
+static enum glint_status fit_outputs(struct fit *f,
+                                     struct glint_fitted_system *system)
 {
     enum glint_status status = GLINT_OK;
+    double *const worst = &f->errors->worst;
 
     *worst = 0;
     for (int c = RAY_SENSOR_X; c <= RAY_STOP_Y && status == GLINT_OK; c++) {
-        status = fit_channel(f, c, c <= RAY_SENSOR_Y ? f->sensor_mm : f->stop,
-                             system, worst);
-        f->off = *worst;
+        status = fit_channel(
+            f, c, c <= RAY_SENSOR_Y ? f->aim->sensor_mm : f->aim->stop, system,
+            worst);
+        f->errors->places = *worst;
         if (is_hopeless(f))
             return status;
     }
     if (status == GLINT_OK)
         status = fit_energy(f, system, worst);
-    for (int b = 0; b < f->rays.n_barrels && status == GLINT_OK; b++)
-        status = fit_barrel(f, b, system, &f->off);
-    *worst = fmax(*worst, f->off);
+    for (int b = 0; b < f->buffers->rays.n_barrels && status == GLINT_OK; b++)
+        status = fit_barrel(f, b, system, &f->errors->places);
+    *worst = fmax(*worst, f->errors->places);
     return status;
 }
 
@@ -414,11 +319,11 @@ static enum glint_status fit_outputs(struct glint_zone_fit *f,
 
 /* The root mean square error of one output over the rays that get through, in
  * units of RMS. */
-static double check_output(const struct glint_zone_fit *f,
+static double check_output(const struct fit *f,
                            const struct glint_fitted_output *o,
                            const double *value, double rms)
 {
-    const struct glint_zone_rays *r = &f->rays;
+    const struct glint_zone_rays *r = &f->buffers->rays;
     double sum2 = 0;
     int n = 0;
 
@@ -438,57 +343,45 @@ static double check_output(const struct glint_zone_fit *f,
 
 /* How much worse than it may be the zone is at rays between those that were
  * fitted: a fit can be good at every node and nowhere else. */
-static double check_zone(struct glint_zone_fit *f,
-                         const struct glint_zone *zone,
+static double check_zone(struct fit *f,
                          const struct glint_fitted_system *system)
 {
     double worst = 0;
 
-    glint_zone_check(zone, f->visible, &f->rays);
+    glint_zone_check(f->task->zone, f->task->visible, &f->buffers->rays);
     for (int k = 0; k < system->n_outputs; k++) {
         const struct glint_fitted_output *o = &system->output[k];
 
         if (o->kind <= GLINT_OUT_STOP_Y)
-            worst = fmax(worst, check_output(f, o, f->rays.at[o->kind],
+            worst = fmax(worst, check_output(f, o, f->buffers->rays.at[o->kind],
                                              o->kind <= GLINT_OUT_SENSOR_Y
-                                                 ? f->sensor_mm
-                                                 : f->stop));
+                                                 ? f->aim->sensor_mm
+                                                 : f->aim->stop));
     }
     return worst / CHECK_RMS;
 }
 
 /* --------------------------------------------------------------------- all */
 
-bool glint_zone_fit_is_dark(const struct glint_zone_fit *f)
+enum glint_status glint_zone_fit(const struct glint_zone_task *task,
+                                 const struct glint_zone_aim *aim,
+                                 struct glint_zone_buffers *buffers,
+                                 struct glint_fitted_system *system,
+                                 struct glint_zone_errors *errors)
 {
-    for (int i = 0; i < f->rays.n; i++)
-        if (glint_zone_rays_seen(&f->rays, i))
-            return false;
-    return true;
-}
+    struct fit f = {task, aim, buffers, errors};
+    enum glint_status status;
 
-void glint_zone_fit_begin(struct glint_zone_fit *f,
-                          const struct glint_zone *zone)
-{
-    set_tolerances(f, zone);
-    set_weights(f);
-}
-
-enum glint_status glint_zone_fit_run(struct glint_zone_fit *f,
-                                     const struct glint_zone *zone,
-                                     struct glint_fitted_system *system,
-                                     double *left)
-{
-    enum glint_status status = fit_outputs(f, system, left);
-
-    if (status != GLINT_OK || is_hopeless(f))
+    set_weights(&f);
+    status = fit_outputs(&f, system);
+    if (status != GLINT_OK || is_hopeless(&f))
         return status;
-    if ((f->thorough || *left <= 1) && stop_leaks(f, system)) {
+    if ((task->thorough || errors->worst <= 1) && stop_leaks(&f, system)) {
         drop_outputs(system);
-        status = fit_outputs(f, system, left);
+        status = fit_outputs(&f, system);
     }
     if (status == GLINT_OK)
-        f->off = fmax(f->off, check_zone(f, zone, system));
-    *left = fmax(*left, f->off);
+        errors->places = fmax(errors->places, check_zone(&f, system));
+    errors->worst = fmax(errors->worst, errors->places);
     return status;
 }

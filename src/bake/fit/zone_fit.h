@@ -5,9 +5,9 @@
  *   in   rays of the zone, tolerances for its ghost
  *   out  a sparse polynomial of each output, and how far off they are
  *
- *     glint_zone_trace(&zone, visible, &fit->rays, &fit->energies);
- *     glint_zone_fit_begin(fit, &zone);
- *     status = glint_zone_fit_run(fit, &zone, &system, &left);
+ *     glint_zone_trace(&zone, visible, &buffers->rays, &buffers->energies);
+ *     aim = glint_zone_aim_of(tolerance, &zone, &buffers->rays);
+ *     status = glint_zone_fit(&task, &aim, buffers, &system, &errors);
  *
  * Errors count where they show: past the edge of what is seen, and past the
  * field, a ray only has to stay out. Rays that the polynomials would let pass
@@ -16,38 +16,37 @@
 #ifndef GLINT_BAKE_FIT_ZONE_FIT_H
 #define GLINT_BAKE_FIT_ZONE_FIT_H
 
-#include "bake/fit/fit.h"
-#include "bake/fit/zone_rays.h"
+#include "bake/fit/zone_aim.h"
 
-struct glint_zone_fit {
-    /* to be set */
+struct glint_zone_task {
+    const struct glint_zone *zone;
     const struct glint_visible *visible; /* in the band of the zone */
-    const struct glint_tolerance *tolerance;
-    double *scratch; /* glint_regress_doubles(GLINT_ZONE_RAYS) */
-    struct glint_zone_rays rays, energies;
+    double barrel;   /* tolerance of barrels: as of struct glint_tolerance */
     bool thorough;   /* a root of the energy, and more terms */
-    double hopeless; /* left of what is not worth to be fitted to the end, in
-                        tolerances; 0: everything is */
-    /* of this zone: tolerances, and how far they are below what its ghost would
-     * show */
-    double ease, sensor_mm, edge_mm, stop, energy, hidden;
-    double off; /* how far places are off, in tolerances */
+    double hopeless; /* errors with which a zone is not worth to be fitted to
+                        the end, in tolerances; 0: every zone is */
+};
+
+/* Memory for the fit of one zone after the other. */
+struct glint_zone_buffers {
+    double *scratch; /* glint_regress_doubles(GLINT_ZONE_RAYS) */
+    struct glint_zone_rays rays, energies; /* in; they are overwritten */
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
     double channel_weight[GLINT_ZONE_RAYS], value[GLINT_ZONE_RAYS];
 };
 
-/* Whether nothing of the rays is seen. */
-bool glint_zone_fit_is_dark(const struct glint_zone_fit *fit);
+/* How far off a fit is, in tolerances. */
+struct glint_zone_errors {
+    double places; /* the worst place or barrel */
+    double worst;  /* that, or the energy */
+};
 
-/* Sets tolerances and weights. */
-void glint_zone_fit_begin(struct glint_zone_fit *fit,
-                          const struct glint_zone *zone);
-
-/* Fits the outputs of SYSTEM, which has none. *LEFT: how far off the worst is,
- * in tolerances; beyond hopeless not all outputs are there. GLINT_E_MEMORY. */
-enum glint_status glint_zone_fit_run(struct glint_zone_fit *fit,
-                                     const struct glint_zone *zone,
-                                     struct glint_fitted_system *system,
-                                     double *left);
+/* Fits the outputs of SYSTEM, which has none. With places beyond
+ * TASK->hopeless not all outputs are there. GLINT_E_MEMORY. */
+enum glint_status glint_zone_fit(const struct glint_zone_task *task,
+                                 const struct glint_zone_aim *aim,
+                                 struct glint_zone_buffers *buffers,
+                                 struct glint_fitted_system *system,
+                                 struct glint_zone_errors *errors);
 
 #endif

@@ -103,6 +103,14 @@ static void trace_positions(const struct glint_zone *zone,
     }
 }
 
+bool glint_zone_rays_dark(const struct glint_zone_rays *rays)
+{
+    for (int i = 0; i < rays->n; i++)
+        if (glint_zone_rays_seen(rays, i))
+            return false;
+    return true;
+}
+
 double glint_zone_rays_spread(const struct glint_zone_rays *rays)
 {
     double least = HUGE_VAL, most = 0, spread = 1;

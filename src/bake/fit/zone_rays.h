@@ -43,6 +43,9 @@ static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
     return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
 }
 
+/* Whether nothing of them is seen. */
+bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
+
 /* The most energy over the least of what is seen at one angle and wavelength,
  * and what is much: films make all of it swing with the wavelength. */
 double glint_zone_rays_spread(const struct glint_zone_rays *rays);

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/fit/zone_aim.h"
+
+#include <math.h>
+
+/* The rays of one angle and wavelength from FIRST on: what is seen of them. */
+struct sight {
+    int n, n_all;
+    double low[2], high[2]; /* on the sensor */
+    double energy;          /* mean */
+};
+
+static struct sight look(const struct glint_zone_rays *r, int first)
+{
+    struct sight s = {.low = {HUGE_VAL, HUGE_VAL},
+                      .high = {-HUGE_VAL, -HUGE_VAL}};
+
+    for (int i = first; i < r->n && r->x[2][i] == r->x[2][first] &&
+                        r->x[3][i] == r->x[3][first];
+         i++, s.n_all++) {
+        if (!glint_zone_rays_seen(r, i))
+            continue;
+        for (int k = 0; k < 2; k++) {
+            s.low[k] = fmin(s.low[k], r->at[RAY_SENSOR_X + k][i]);
+            s.high[k] = fmax(s.high[k], r->at[RAY_SENSOR_X + k][i]);
+        }
+        s.energy += r->at[RAY_ENERGY][i];
+        s.n++;
+    }
+    s.energy /= s.n > 0 ? s.n : 1;
+    return s;
+}
+
+/* How bright the ghost is at its brightest in the zone, as a share of what is
+ * as bright as counts. */
+static double share_of(const struct glint_tolerance *tolerance,
+                       const struct glint_zone *zone,
+                       const struct glint_zone_rays *r)
+{
+    enum { FEW = 4 }; /* rays have no area to speak of */
+    double most = 0;
+
+    for (int i = 0, next; i < r->n; i = next) {
+        const struct sight v = look(r, i);
+        const double s = r->x[2][i], w = r->x[3][i];
+        const double pupil = 4 * (1 - glint_zone_rim(zone->annulus)) *
+                             glint_zone_at(zone->half_x, s, w) *
+                             glint_zone_at(zone->half_y, s, w) * v.n / v.n_all;
+        const double level = glint_brightness_at(
+            tolerance->brightness,
+            0.5 * (zone->lo + zone->hi) + 0.5 * s * (zone->hi - zone->lo));
+        const double y = fmax(fabs(v.low[1]), fabs(v.high[1])); /* mirrored */
+
+        next = i + v.n_all;
+        if (v.n >= FEW)
+            most = fmax(most, v.energy * pupil /
+                                  fmax(1e-9, (v.high[0] - v.low[0]) * 1.6 * y) /
+                                  fmax(level, 1e-30));
+    }
+    return most;
+}
+
+double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
+                              const double *a, const double *b, double near)
+{
+    double moved2 = 0, change2 = 0;
+
+    for (int i = 1; i < rays->n; i++) {
+        const double *x = rays->at[RAY_SENSOR_X], *y = rays->at[RAY_SENSOR_Y];
+
+        if (rays->x[1][i] != rays->x[1][i - 1] ||
+            rays->x[2][i] != rays->x[2][i - 1] ||
+            rays->x[3][i] != rays->x[3][i - 1] ||
+            !glint_zone_rays_seen(rays, i) ||
+            !glint_zone_rays_seen(rays, i - 1) || a[i] < near)
+            continue;
+        moved2 += (x[i] - x[i - 1]) * (x[i] - x[i - 1]) +
+                  (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
+        change2 += (a[i] - a[i - 1]) * (a[i] - a[i - 1]);
+        if (b)
+            change2 += (b[i] - b[i - 1]) * (b[i] - b[i - 1]);
+    }
+    return change2 > 0 ? sqrt(moved2 / change2) : 0;
+}
+
+double glint_zone_aim_outline(const struct glint_zone_aim *aim, double most,
+                              double stretch_mm)
+{
+    return fmax(0.06 * most,
+                fmin(most, aim->edge_mm / fmax(1e-12, stretch_mm)));
+}
+
+struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
+                                        const struct glint_zone *zone,
+                                        const struct glint_zone_rays *rays)
+{
+    const struct glint_tolerance *t = tolerance;
+    const double share = share_of(t, zone, rays);
+    const double shows = fmax(1, pow(fmax(share, 1e-9), -0.42));
+    const double ease = fmin(t->ease, shows);
+    const double axis = zone->lo <= 0 ? t->axis : 1;
+    struct glint_zone_aim aim = {
+        .sensor_mm = axis * fmin(ease * t->sensor_mm, t->faint_sensor_mm),
+        .edge_mm = ease * t->edge_mm,
+        .energy = ease * t->energy,
+        .ease = ease};
+
+    aim.hidden = shows * t->sensor_mm / aim.sensor_mm;
+    aim.stop = glint_zone_aim_outline(
+        &aim, t->stop,
+        glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X], rays->at[RAY_STOP_Y],
+                               -HUGE_VAL));
+    return aim;
+}
