@@ -1,38 +1,67 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/sort.h"
 
-static void swap(int32_t *a, int32_t *b)
+void glint_heap_sift(const struct glint_heap *heap, int at, int n)
 {
-    const int32_t old = *a;
+    void *const things = heap->things;
 
-    *a = *b;
-    *b = old;
-}
-
-/* Restores the heap order[0 .. n - 1], the last one first, below AT. */
-static void sift_down(int32_t *order, int at, int n, glint_sort_fn *before,
-                      const void *ctx)
-{
     for (;;) {
         int child = 2 * at + 1;
 
         if (child >= n)
             return;
-        if (child + 1 < n && before(ctx, order[child], order[child + 1]))
+        if (child + 1 < n && heap->before(things, child, child + 1))
             child++;
-        if (!before(ctx, order[at], order[child]))
+        if (!heap->before(things, at, child))
             return;
-        swap(&order[child], &order[at]);
+        heap->swap(things, at, child);
         at = child;
     }
 }
 
-void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx)
+void glint_heap_make(const struct glint_heap *heap, int n)
 {
     for (int i = n / 2 - 1; i >= 0; i--)
-        sift_down(order, i, n, before, ctx);
+        glint_heap_sift(heap, i, n);
+}
+
+void glint_heap_sort(const struct glint_heap *heap, int n)
+{
+    glint_heap_make(heap, n);
     for (int end = n - 1; end > 0; end--) {
-        swap(&order[0], &order[end]);
-        sift_down(order, 0, end, before, ctx);
+        heap->swap(heap->things, 0, end);
+        glint_heap_sift(heap, 0, end);
     }
+}
+
+/* ------------------------------------------------------------------ numbers */
+
+struct numbers {
+    int32_t *order;
+    glint_sort_fn *before;
+    const void *ctx;
+};
+
+static int is_before(const void *things, int a, int b)
+{
+    const struct numbers *const n = things;
+
+    return n->before(n->ctx, n->order[a], n->order[b]);
+}
+
+static void swap(void *things, int a, int b)
+{
+    const struct numbers *const n = things;
+    const int32_t old = n->order[a];
+
+    n->order[a] = n->order[b];
+    n->order[b] = old;
+}
+
+void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx)
+{
+    struct numbers numbers = {order, before, ctx};
+    const struct glint_heap heap = {is_before, swap, &numbers};
+
+    glint_heap_sort(&heap, n);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sorts numbers of things: in place, without memory of its own, n log n at
- * worst.
+ * Heaps and heap sort: in place, without memory of its own, n log n at worst.
+ *
+ *     glint_sort(order, n, before, ctx);       numbers of things, or
+ *     glint_heap_sort(&heap, n);               things that swap places
  */
 #ifndef GLINT_BASE_SORT_H
 #define GLINT_BASE_SORT_H
@@ -13,5 +15,22 @@
 typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
+
+/* Things at places 0, 1 and so on. In a heap none comes after the one at half
+ * its place, so that the last of all is at place 0. */
+struct glint_heap {
+    int (*before)(const void *things, int a, int b); /* those at A and B */
+    void (*swap)(void *things, int a, int b);
+    void *things;
+};
+
+/* Makes a heap of places 0 .. N - 1. */
+void glint_heap_make(const struct glint_heap *heap, int n);
+
+/* Makes it one again after what is at place AT has changed to something that
+ * comes earlier. */
+void glint_heap_sift(const struct glint_heap *heap, int at, int n);
+
+void glint_heap_sort(const struct glint_heap *heap, int n);
 
 #endif

@@ -24,6 +24,7 @@
  */
 #include "base/q.h"
 #include "base/real.h"
+#include "base/sort.h"
 #include "glint/flare.h"
 
 enum {
@@ -93,7 +94,9 @@ static void set_direction(struct glint_light *b, const struct direction *d)
 /* --------------------------------------------------------------------- order
  */
 
+/* The lights, and how they are sorted. */
 struct order {
+    struct glint_light *light;
     int by_power;    /* the brightest first; else along a curve */
     uint32_t x0, y0; /* where it begins, 2^-30 below -1 */
 };
@@ -129,9 +132,10 @@ static uint32_t along(int32_t v_q30, uint32_t zero)
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
 }
 
-static int is_before(const struct order *o, const struct glint_light *a,
-                     const struct glint_light *b)
+static int is_before(const void *order, int i, int j)
 {
+    const struct order *const o = order;
+    const struct glint_light *const a = &o->light[i], *const b = &o->light[j];
     const struct direction p = direction_of(a), q = direction_of(b);
     const uint32_t px = along(p.x_q30, o->x0), qx = along(q.x_q30, o->x0);
     const uint32_t py = along(p.y_q30, o->y0), qy = along(q.y_q30, o->y0);
@@ -143,48 +147,30 @@ static int is_before(const struct order *o, const struct glint_light *a,
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
 }
 
-/* Restores the heap b[0 .. n - 1], the last of the order first, below AT. */
-static void sift_down(const struct order *o, struct glint_light *b, int at,
-                      int n)
+static void swap(void *order, int i, int j)
 {
-    const struct glint_light moved = b[at];
+    const struct order *const o = order;
+    const struct glint_light old = o->light[i];
 
-    for (;;) {
-        int child = 2 * at + 1;
-
-        if (child >= n)
-            break;
-        if (child + 1 < n && is_before(o, &b[child], &b[child + 1]))
-            child++;
-        if (!is_before(o, &moved, &b[child]))
-            break;
-        b[at] = b[child];
-        at = child;
-    }
-    b[at] = moved;
+    o->light[i] = o->light[j];
+    o->light[j] = old;
 }
 
-static void sort(const struct order *o, struct glint_light *b, int n)
+static void sort(struct order *o, int n)
 {
-    for (int i = n / 2 - 1; i >= 0; i--)
-        sift_down(o, b, i, n);
-    for (int end = n - 1; end > 0; end--) {
-        const struct glint_light last = b[0];
+    const struct glint_heap heap = {is_before, swap, o};
 
-        b[0] = b[end];
-        b[end] = last;
-        sift_down(o, b, 0, end);
-    }
+    glint_heap_sort(&heap, n);
 }
 
 /* Multiples of irrational numbers: no two rounds part the same neighbours. */
 static void sort_along(struct glint_light *b, int n, int round)
 {
     const uint32_t k = (uint32_t)round;
-    const struct order o = {0, k * UINT32_C(1640531527) >> 2,
-                            k * UINT32_C(2654435769) % UINT32_C(0x3fffffff)};
+    struct order o = {b, 0, k * UINT32_C(1640531527) >> 2,
+                      k * UINT32_C(2654435769) % UINT32_C(0x3fffffff)};
 
-    sort(&o, b, n);
+    sort(&o, n);
 }
 
 /* ------------------------------------------------------------------- merging
@@ -297,12 +283,12 @@ static int take_in(struct glint_light *b, int n)
 
 static void give_out(struct glint_light *b, int n)
 {
-    const struct order brightest_first = {.by_power = 1};
+    struct order brightest_first = {.light = b, .by_power = 1};
 
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
             b[i].rgb_q14[c] = q_narrow(q_shift(b[i].rgb_q14[c], HELD));
-    sort(&brightest_first, b, n);
+    sort(&brightest_first, n);
 }
 
 int glint_lights_merge(struct glint_light *lights, int n_lights,

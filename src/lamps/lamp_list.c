@@ -3,6 +3,7 @@
  * Candidates for lights: held by flux, merged where they are near, capped.
  */
 #include "base/q.h"
+#include "base/sort.h"
 #include "lamps/lamp_finder.h"
 
 #define JOIN_REACH 4 /* what exceeds MAX joins within so many merge radii */
@@ -17,51 +18,39 @@ static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
                                         : p->sum.first < q->sum.first;
 }
 
-static void swap(int32_t *a, int32_t *b)
+static int is_before(const void *finder, int a, int b)
 {
-    const int32_t old = *a;
+    const struct glint_lamp_finder *const f = finder;
 
-    *a = *b;
-    *b = old;
+    return is_brighter(f, f->order[a], f->order[b]);
 }
 
-/* Restores the heap order[0 .. n - 1], the faintest first, below AT. */
-static void sift_down(struct glint_lamp_finder *f, int at, int n)
+static void swap(void *finder, int a, int b)
 {
-    int32_t *order = f->order;
+    const struct glint_lamp_finder *const f = finder;
+    const int32_t old = f->order[a];
 
-    for (;;) {
-        int child = 2 * at + 1;
-
-        if (child >= n)
-            return;
-        if (child + 1 < n && is_brighter(f, order[child], order[child + 1]))
-            child++;
-        if (is_brighter(f, order[child], order[at]))
-            return;
-        swap(&order[child], &order[at]);
-        at = child;
-    }
+    f->order[a] = f->order[b];
+    f->order[b] = old;
 }
 
-static void make_heap(struct glint_lamp_finder *f, int n)
+/* The faintest first. */
+static struct glint_heap heap_of(struct glint_lamp_finder *f)
 {
-    for (int i = n / 2 - 1; i >= 0; i--)
-        sift_down(f, i, n);
+    return (struct glint_heap){is_before, swap, f};
 }
 
 static void sort_by_flux(struct glint_lamp_finder *f)
 {
-    make_heap(f, f->n);
-    for (int end = f->n - 1; end > 0; end--) {
-        swap(&f->order[0], &f->order[end]);
-        sift_down(f, 0, end);
-    }
+    const struct glint_heap heap = heap_of(f);
+
+    glint_heap_sort(&heap, f->n);
 }
 
 void glint_lamps_hold(struct glint_lamp_finder *f,
                       const struct glint_candidate *candidate)
 {
+    const struct glint_heap heap = heap_of(f);
     struct glint_candidate *last = &f->candidate[LIGHT_CANDIDATES];
 
     if (f->n < LIGHT_CANDIDATES) {
@@ -69,7 +58,7 @@ void glint_lamps_hold(struct glint_lamp_finder *f,
         f->order[f->n] = f->n;
         f->n++;
         if (f->n == LIGHT_CANDIDATES)
-            make_heap(f, f->n);
+            glint_heap_make(&heap, f->n);
         return;
     }
     *last = *candidate;
@@ -78,7 +67,7 @@ void glint_lamps_hold(struct glint_lamp_finder *f,
 
         f->candidate[f->order[0]] = *last;
         *last = out;
-        sift_down(f, 0, f->n);
+        glint_heap_sift(&heap, 0, f->n);
     }
     f->dropped += !last->faint;
 }
