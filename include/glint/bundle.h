@@ -14,7 +14,8 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_CELLS 1024 /* of a ray grid, per side */
+#define GLINT_MAX_CELLS   1024 /* of a ray grid, per side */
+#define GLINT_LEAST_CELLS 8    /* of one that a plan has chosen the size of */
 
 /* Where one ray of a grid went. */
 struct glint_vertex {

@@ -9,6 +9,8 @@
 extern "C" {
 #endif
 
+#define GLINT_PI 3.14159265358979323846
+
 /* A light at infinity. */
 struct glint_lamp {
     double theta_deg; /* off the axis, 0 .. 89.9 */

@@ -83,6 +83,17 @@ static inline uint32_t q_root(uint64_t x)
     return (uint32_t)root;
 }
 
+/* The smaller and the larger of two. */
+static inline int32_t q_smaller(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
+static inline int32_t q_larger(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+
 /* X held to LO .. HI: for light, never for geometry. */
 static inline int32_t q_clamp_sat(int64_t x, int32_t lo, int32_t hi)
 {

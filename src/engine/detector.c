@@ -159,8 +159,7 @@ static void set_extent(struct glint_lamp *lamp,
 {
     for (int k = 0; k < 2; k++)
         lamp->axis[k] = track->axis_q8[k] / 256.0 * tangent;
-    lamp->turn_deg =
-        atan2(-track->sin_q15, track->cos_q15) * 180 / 3.14159265358979323846;
+    lamp->turn_deg = atan2(-track->sin_q15, track->cos_q15) * 180 / GLINT_PI;
 }
 
 int glint_lamp_detector_frame(struct glint_lamp_detector *detector,

@@ -169,7 +169,7 @@ static double corner_deg(struct glint_view view, double focal_mm)
     const double half =
         0.5 * view.sensor_width_mm * hypot(1, (double)view.height / view.width);
 
-    return atan(half / fabs(focal_mm)) * 180 / 3.14159265358979323846;
+    return atan(half / fabs(focal_mm)) * 180 / GLINT_PI;
 }
 
 /* The angles that are looked at, denser near the axis, where ghosts lie on top
@@ -202,7 +202,7 @@ static void take_logs(struct glint_response_light *light)
 
 static double model_end_deg(const struct glint_frame *frame)
 {
-    const double degree = 3.14159265358979323846 / 180;
+    const double degree = GLINT_PI / 180;
 
     return frame->lens ? asin(frame->lens->header->sine_hi_q30 * 0x1p-30) /
                              degree * (1 - 1e-6)
@@ -216,7 +216,7 @@ static enum glint_status measure_extents(struct proxy *p,
 {
     const double diagonal =
         2 * tan(corner_deg(p->view, p->frame.setup->optics.focal_mm) *
-                3.14159265358979323846 / 180);
+                GLINT_PI / 180);
     double point_log2 = 0, peak_log2 = 0;
 
     for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++) {
@@ -239,7 +239,7 @@ static enum glint_status measure_extents(struct proxy *p,
 static enum glint_status measure(struct proxy *p, struct glint_response *r)
 {
     const double azimuth = /* from the middle into the corner */
-        atan2(p->view.height, p->view.width) * 180 / 3.14159265358979323846;
+        atan2(p->view.height, p->view.width) * 180 / GLINT_PI;
     const double all = (double)p->view.width * p->view.height;
     struct glint_lamp lamp = {
         .phi_deg = azimuth, .power = all, .rgb = {1, 1, 1}};

@@ -4,11 +4,9 @@
 #include "base/divide.h"
 #include "base/q.h"
 #include "base/real.h"
+#include "lens/grid.h"
 
-enum {
-    LEAST = 8, /* cells a side */
-    FOLD_OCTAVES = 3
-};
+enum { FOLD_OCTAVES = 3 };
 
 /* Root of SUM / N, of differences whose squares were taken over 2^10 more. */
 static int64_t root_mean(uint64_t sum, int n)
@@ -71,7 +69,7 @@ static int cells_for_codes(const struct glint_probe *s,
 
     if (!folded)
         n -= n / 4;
-    for (; octaves > 0 && n > LEAST; octaves--)
+    for (; octaves > 0 && n > GLINT_LEAST_CELLS; octaves--)
         n -= n / 8;
     return n;
 }
@@ -86,15 +84,13 @@ static int outline_over_light(const struct glint_plan *p,
     return p->round || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* As many cells as keep what is straight between rays within a hundredth of a
- * pixel of what bends, at fineness 64, and outlines within a tenth: light piles
- * up along folds, but not along cuts. */
+/* By the rule of lens/grid.h, from what the survey saw. */
 static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
                     const struct glint_transfer *t,
                     struct glint_real irradiance)
 {
     const struct glint_flare_frame *r = p->frame;
-    const int folds = (s->n_up && s->n_down ? 4 : 2) * r->fineness;
+    const int folds = glint_grid_most(r->fineness, s->n_up && s->n_down);
     const int most = folds < GLINT_MAX_CELLS ? folds : GLINT_MAX_CELLS;
     int64_t bend = bend_of(s, GLINT_OUT_SENSOR_X, GLINT_OUT_SENSOR_Y);
     int64_t outline = bend_of(s, GLINT_OUT_STOP_X, GLINT_OUT_STOP_Y);
@@ -127,8 +123,8 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
         14);
     if (r->faintest.mantissa)
         n = cells_for_codes(s, irradiance, n);
-    n = n < LEAST ? LEAST : n;
-    n = (n + 3) / 4 * 4;
+    n = n < GLINT_LEAST_CELLS ? GLINT_LEAST_CELLS : n;
+    n = glint_grid_fours(n);
     return n < most ? n : most;
 }
 

@@ -8,16 +8,6 @@
 
 /* --------------------------------------------------------------------- sums */
 
-static int32_t smaller(int32_t a, int32_t b)
-{
-    return a < b ? a : b;
-}
-
-static int32_t larger(int32_t a, int32_t b)
-{
-    return a > b ? a : b;
-}
-
 /* 0 + 1 + 4 + ... + (n - 1)^2 */
 static int64_t squares_below(int64_t n)
 {
@@ -43,10 +33,10 @@ void glint_region_add_pixels(struct glint_region *sum,
 void glint_region_add_run(struct glint_region *sum, int x0, int x1, int y)
 {
     sum->area += x1 - x0;
-    sum->x0 = smaller(sum->x0, x0);
-    sum->x1 = larger(sum->x1, x1);
-    sum->y0 = smaller(sum->y0, y);
-    sum->y1 = larger(sum->y1, y + 1);
+    sum->x0 = q_smaller(sum->x0, x0);
+    sum->x1 = q_larger(sum->x1, x1);
+    sum->y0 = q_smaller(sum->y0, y);
+    sum->y1 = q_larger(sum->y1, y + 1);
 }
 
 void glint_region_absorb(struct glint_region *sum,
@@ -57,10 +47,10 @@ void glint_region_absorb(struct glint_region *sum,
     sum->area += other->area;
     sum->n_seeds += other->n_seeds;
     sum->n_clipped += other->n_clipped;
-    sum->x0 = smaller(sum->x0, other->x0);
-    sum->x1 = larger(sum->x1, other->x1);
-    sum->y0 = smaller(sum->y0, other->y0);
-    sum->y1 = larger(sum->y1, other->y1);
+    sum->x0 = q_smaller(sum->x0, other->x0);
+    sum->x1 = q_larger(sum->x1, other->x1);
+    sum->y0 = q_smaller(sum->y0, other->y0);
+    sum->y1 = q_larger(sum->y1, other->y1);
     sum->w_q14 += other->w_q14;
     sum->wx_q14 += other->wx_q14;
     sum->wy_q14 += other->wy_q14;

@@ -3,11 +3,6 @@
 
 #include "base/q.h"
 
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 /* LIGHT behind what covers COVER_Q8 of it. */
 static int64_t behind(int64_t light, int cover_q8)
 {
@@ -101,10 +96,10 @@ static void hide(const struct glint_tiles *tiles, struct glint_box tile, int y,
     struct glint_cover_rows *wide = &scratch->blend->next;
 
     for (int at = tile.x0; at < tile.x1; at += PART) {
-        const int part = smaller(PART, tile.x1 - at);
+        const int part = q_smaller(PART, tile.x1 - at);
         const int x = at << tiles->half, top = y << tiles->half;
-        const int n_x = smaller(part << tiles->half, tiles->width - x);
-        const int n_y = smaller(1 + tiles->half, tiles->height - top);
+        const int n_x = q_smaller(part << tiles->half, tiles->width - x);
+        const int n_y = q_smaller(1 + tiles->half, tiles->height - top);
         const uint16_t *from_q8 =
             scratch->blend->cover.cover_q8[0] + at - tile.x0;
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "tile/pass.h"
 
+#include "base/q.h"
 #include "tile/blend.h"
 
 /* One tile, and who draws in it. */
@@ -13,11 +14,6 @@ struct visit {
     struct glint_box tile;
     struct glint_tile_scratch *scratch;
 };
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
 
 /* Has all passes draw ROWS; returns what they give together. */
 static enum glint_given gather(const struct visit *v,
@@ -60,7 +56,7 @@ static void draw_linear(const struct visit *v)
     const struct glint_tiles *t = v->tiles;
     const int n = v->tile.x1 - v->tile.x0, twice = 2 << t->tile_log2;
     const int x = v->tile.x0 << t->half;
-    const int n_x = smaller(n << t->half, t->width - x);
+    const int n_x = q_smaller(n << t->half, t->width - x);
     int32_t *first = v->scratch->light_q20;
     enum glint_given given;
     struct glint_pass_rows rows = {
@@ -68,7 +64,7 @@ static void draw_linear(const struct visit *v)
 
     for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y++) {
         const int y = rows.y << t->half;
-        const int end = smaller(y + 1 + t->half, t->height);
+        const int end = q_smaller(y + 1 + t->half, t->height);
 
         given = gather(v, &rows);
         if (given == GLINT_GIVES_NOTHING)
@@ -107,7 +103,7 @@ static void draw_codes(const struct visit *v)
     for (rows.y = v->tile.y0; rows.y < v->tile.y1; rows.y += 2) {
         enum glint_given given;
 
-        rows.n = smaller(2, v->tile.y1 - rows.y);
+        rows.n = q_smaller(2, v->tile.y1 - rows.y);
         given = gather(v, &rows);
         if (given != GLINT_GIVES_NOTHING && v->tiles->image)
             resolve_rows(v, given, &rows);
@@ -121,19 +117,19 @@ static void resolve_quads(const struct visit *v,
                           const struct glint_pass_rows *rows)
 {
     const struct glint_tiles *t = v->tiles;
-    const int n_y = smaller(2, t->height - 2 * rows->y);
+    const int n_y = q_smaller(2, t->height - 2 * rows->y);
 
     for (int at = v->tile.x0; at < v->tile.x1; at += QUADS) {
         const int first = at - v->tile.x0;
-        const int part = smaller(QUADS, v->tile.x1 - at);
+        const int part = q_smaller(QUADS, v->tile.x1 - at);
         const uint16_t *const light_q16[3] = {
             rows->light->rgb_q16[0][0] + first,
             rows->light->rgb_q16[1][0] + first,
             rows->light->rgb_q16[2][0] + first};
 
         t->quads->resolve(t->resolve, t->image, 2 * at, 2 * rows->y,
-                          smaller(2 * part, t->width - 2 * at), n_y, light_q16,
-                          v->scratch->codes);
+                          q_smaller(2 * part, t->width - 2 * at), n_y,
+                          light_q16, v->scratch->codes);
     }
 }
 
@@ -189,13 +185,13 @@ void glint_tile_rows(const struct glint_tiles *tiles,
         .tiles = tiles, .pass = pass, .n_passes = n_passes, .scratch = scratch};
 
     b.y0 += row * side;
-    b.y1 = smaller(b.y1, b.y0 + side);
+    b.y1 = q_smaller(b.y1, b.y0 + side);
     for (int i = 0; i < n_passes; i++)
         v.state[i] = pass[i].begin(pass[i].self, b, worker);
     for (int x = b.x0; x < b.x1; x += side) {
         v.tile = b;
         v.tile.x0 = x;
-        v.tile.x1 = smaller(b.x1, x + side);
+        v.tile.x1 = q_smaller(b.x1, x + side);
         draw_tile(&v);
     }
 }

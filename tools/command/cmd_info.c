@@ -99,7 +99,7 @@ static void print_coatings(const struct glint_prescription *l)
                    100 * glint_reflectance(
                              k ? glint_index(before->nd, before->vd, nm[i]) : 1,
                              glint_index(s->nd, s->vd, nm[i]), 1, s->coating_n,
-                             3.14159265358979323846 * s->coating_nm / nm[i]));
+                             GLINT_PI * s->coating_nm / nm[i]));
         if (s->coating_nm > 0)
             printf("    %g nm, index %g\n", s->coating_nm, s->coating_n);
         else

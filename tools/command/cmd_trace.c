@@ -34,8 +34,6 @@ static const char help[] =
     "                   where none does\n" COATING_HELP
     "  --csv            the format above; there is no other\n";
 
-#define PI 3.14159265358979323846
-
 struct options {
     const char *model;
     struct coating coating;
@@ -101,7 +99,7 @@ struct tracer {
 static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
                                         double py_mm, struct glint_ray *ray)
 {
-    const double angle = t->angle_deg * PI / 180;
+    const double angle = t->angle_deg * GLINT_PI / 180;
     const double direction[3] = {sin(angle), 0, cos(angle)};
 
     return glint_trace(&t->path, px_mm, py_mm, direction, ray, NULL);
@@ -225,7 +223,7 @@ static int prepare_model(const struct tool *tool, const struct options *o,
     tracer->stop_radius_mm = model_real_of(h->stop_radius_mm);
     if (prepare_parts(
             model, (uint32_t)o->ghost,
-            (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * PI / 180), 30)),
+            (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * GLINT_PI / 180), 30)),
             wave_q24, tracer) != GLINT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     return EXIT_OK;

@@ -38,13 +38,12 @@ const char *explain_word(enum glint_fate fate)
 
 static double degrees(double y, double x)
 {
-    return atan2(y, x) * 180 / 3.14159265358979323846;
+    return atan2(y, x) * 180 / GLINT_PI;
 }
 
 static double model_degrees(const struct glint_explain *e)
 {
-    return asin(e->frame->lens->header->sine_hi_q30 * 0x1p-30) * 180 /
-           3.14159265358979323846;
+    return asin(e->frame->lens->header->sine_hi_q30 * 0x1p-30) * 180 / GLINT_PI;
 }
 
 /* Ghosts of which something is drawn. */

@@ -20,7 +20,6 @@
 #include "model/model_file.h"
 #include "options/tool.h"
 
-#define PI        3.14159265358979323846
 #define FAR       1e3
 #define SENSOR_PX 0.25 /* that 99 of 100 rays should be within */
 #define STOP_RMS  8e-4
@@ -149,7 +148,7 @@ static void find_parts(const struct task *t, int ghost, double angle_deg,
                        double nm, struct parts *parts)
 {
     const int32_t sine_q30 =
-        (int32_t)lrint(ldexp(sin(angle_deg * PI / 180), 30));
+        (int32_t)lrint(ldexp(sin(angle_deg * GLINT_PI / 180), 30));
     const int32_t wave_q24 = (int32_t)lrint(ldexp(1e6 / (nm * nm), 24));
     const struct glint_lens *l = &t->model.lens;
 
@@ -215,7 +214,7 @@ static void compare_bundle(const struct task *t, int ghost, double angle_deg,
                            double nm, struct tally *tally)
 {
     static struct parts parts;
-    const double angle = angle_deg * PI / 180;
+    const double angle = angle_deg * GLINT_PI / 180;
     struct glint_row row = {.n = ACROSS + 1,
                             .direction = {sin(angle), 0, cos(angle)}};
     struct glint_ray ray[ACROSS + 1];
@@ -338,7 +337,7 @@ static void compare_all(const struct task *t)
 static void add_angle(struct task *t, double angle_deg)
 {
     const double most =
-        asin(fmin(1, ldexp(t->header->sine_hi_q30, -30))) * (180 / PI);
+        asin(fmin(1, ldexp(t->header->sine_hi_q30, -30))) * (180 / GLINT_PI);
 
     if (angle_deg <= most && t->n_angles < MOST_ANGLES)
         t->angle[t->n_angles++] = angle_deg;

@@ -24,7 +24,7 @@ const char *model_basis_name(const struct glint_lens *lens)
 
 double model_degrees(int32_t sine_q30)
 {
-    return asin(fmin(1, ldexp(sine_q30, -30))) * (180 / 3.14159265358979323846);
+    return asin(fmin(1, ldexp(sine_q30, -30))) * (180 / GLINT_PI);
 }
 
 double model_nanometres(int32_t wave_q24)

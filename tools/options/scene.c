@@ -281,7 +281,7 @@ bool scene_lamp(const char *text, struct glint_lamp *lamp)
                                 .phi_deg = v[1],
                                 .power = v[2],
                                 .rgb = {v[3], v[4], v[5]}};
-    glint_area_set_round(lamp, tan(v[6] * 3.14159265358979323846 / 180));
+    glint_area_set_round(lamp, tan(v[6] * GLINT_PI / 180));
     return true;
 }
 

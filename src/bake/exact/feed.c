@@ -8,6 +8,7 @@
 #include "bake/trace/degrees.h"
 #include "bake/trace/survey.h"
 #include "glint/traced_bundle.h"
+#include "lens/grid.h"
 
 enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
 /* where the survey finds fewer rays, cells a stop radius */
@@ -51,9 +52,7 @@ static void add_rim(const struct glint_feed_config *cfg,
     s[3] *= 1 + 2 * y;
 }
 
-/* As many cells as keep what is straight between rays within a hundredth of a
- * pixel of what bends, at 64, and outlines within a tenth: light piles up along
- * folds, but not along cuts. And none that could step over the stop: where a
+/* By the rule of lens/grid.h. And none that could step over the stop: where a
  * rim next to total reflection comes through as well, the pupil is the whole
  * front, of which the opening may be a hundredth. */
 static int cells_of(const struct glint_feed_config *cfg,
@@ -64,16 +63,17 @@ static int cells_of(const struct glint_feed_config *cfg,
     const double outline = fmax(s->outline_mm, round);
     const double bend = fmax(s->bend_mm, 0.1 * outline);
     const double finer = cfg->max_cells / 64.0;
-    const double most = (s->folds ? 4 : 2) * cfg->max_cells;
+    const double most = glint_grid_most(cfg->max_cells, s->folds);
     const double n = fmin(most, finer * sqrt(bend * pixels / (8 * 0.01)));
     const double least =
         s->n_inside < FEW_INSIDE
             ? fmin(4 * cfg->max_cells, CELLS_A_RADIUS * s->step)
-            : 8;
+            : GLINT_LEAST_CELLS;
 
     if (cfg->uniform)
         return cfg->max_cells;
-    return (int)ceil(fmin(GLINT_MAX_CELLS, fmax(fmax(8, least), n)) / 4) * 4;
+    return glint_grid_fours((int)ceil(
+        fmin(GLINT_MAX_CELLS, fmax(fmax(GLINT_LEAST_CELLS, least), n))));
 }
 
 static void light_direction(const struct glint_feed *feed, double direction[3])

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#define GLINT_PI 3.14159265358979323846
+#include "glint/view.h"
 
 static inline double glint_sin_deg(double degrees)
 {

@@ -20,8 +20,7 @@
 #include "base/compiler.h"
 #include "bake/table/prescription.h"
 #include "glint/trace.h"
-
-static const double pi = 3.14159265358979323846;
+#include "glint/view.h"
 
 /* ------------------------------------------------------------------- paths */
 
@@ -75,8 +74,8 @@ static void append(struct route *route, int e, enum glint_event_kind kind,
     if (route->lens->surface[k].coating_nm > 0.0) {
         event->film_n = route->lens->surface[k].coating_n;
         /* A quarter wave thick: 4 pi n d / wavelength, n d = design / 4. */
-        event->film_phase =
-            pi * route->lens->surface[k].coating_nm / route->wavelength_nm;
+        event->film_phase = GLINT_PI * route->lens->surface[k].coating_nm /
+                            route->wavelength_nm;
     }
 }
 

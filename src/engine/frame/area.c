@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = GLINT_PI / 180;
 
 static double power_of(const struct glint_lamp *lamp)
 {

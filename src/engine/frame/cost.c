@@ -28,17 +28,16 @@ double glint_cost_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* The least that a plan takes, and what those that have it could have done
- * with. */
-enum { LEAST_CELLS = 8, LESS_CELLS = 6 };
+/* What grids of the least cells that a plan takes could have done with. */
+enum { LESS_CELLS = 6 };
 
-/* What the plan would have chosen, see cells_of in src/flare/plan.c. */
+/* What the plan would have chosen for grids FINER times as fine. */
 static double cells_at(int planned, double finer)
 {
     const double free =
-        planned > LEAST_CELLS || finer <= 1 ? planned : LESS_CELLS;
+        planned > GLINT_LEAST_CELLS || finer <= 1 ? planned : LESS_CELLS;
 
-    return fmax(LEAST_CELLS, fmin(free * finer, GLINT_MAX_CELLS));
+    return fmax(GLINT_LEAST_CELLS, fmin(free * finer, GLINT_MAX_CELLS));
 }
 
 /* Steps an octave of a ghost that is OCTAVES below white, in codes. */

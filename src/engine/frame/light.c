@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = GLINT_PI / 180;
 
 static struct glint_real largest_of(const double rgb[3], int32_t rgb_q14[3])
 {

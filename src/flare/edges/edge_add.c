@@ -207,8 +207,8 @@ static inline struct part part_of(const struct glint_edge_sums *s,
                                   int64_t light, int channel)
 {
     const struct glint_box *t = &s->tile;
-    const int32_t end_q8 = edge_sooner(e->end_y_q8, t->y1 * 256);
-    const int32_t y_q8 = edge_later(e->y_q8, t->y0 * 256);
+    const int32_t end_q8 = q_smaller(e->end_y_q8, t->y1 * 256);
+    const int32_t y_q8 = q_larger(e->y_q8, t->y0 * 256);
     const int row = (y_q8 >> 8) - t->y0;
     const ptrdiff_t at =
         (ptrdiff_t)((channel << s->tile_log2) + row) * s->stride - t->x0;
@@ -228,7 +228,7 @@ static inline struct part part_of(const struct glint_edge_sums *s,
 /* Of the row that P begins in, the part of it; not a whole one. */
 static inline int32_t height_of(const struct part *p)
 {
-    return edge_sooner((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
+    return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
 }
 
 /* All its rows. */

@@ -6,6 +6,7 @@
 #ifndef GLINT_FLARE_EDGE_AT_H
 #define GLINT_FLARE_EDGE_AT_H
 
+#include "base/q.h"
 #include "flare/edges/edges.h"
 
 /* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
@@ -13,16 +14,6 @@
 static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
 {
     return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);
-}
-
-static inline int32_t edge_later(int32_t a, int32_t b)
-{
-    return a > b ? a : b;
-}
-
-static inline int32_t edge_sooner(int32_t a, int32_t b)
-{
-    return a < b ? a : b;
 }
 
 #endif

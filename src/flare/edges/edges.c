@@ -65,8 +65,8 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
 {
     const struct glint_box *r = &bins->region;
     const int log2 = bins->tile_log2, last = r->x1 - 1 - r->x0;
-    const int32_t end_q8 = edge_sooner(e->end_y_q8, r->y1 * 256);
-    int32_t y_q8 = edge_later(e->y_q8, r->y0 * 256);
+    const int32_t end_q8 = q_smaller(e->end_y_q8, r->y1 * 256);
+    int32_t y_q8 = q_larger(e->y_q8, r->y0 * 256);
     const int row = ((y_q8 >> 8) - r->y0) >> log2;
     int32_t floor_q8 = (r->y0 + ((row + 1) * (1 << log2))) * 256;
     int32_t *start = bins->start + (ptrdiff_t)row * bins->tiles_x;
@@ -74,10 +74,10 @@ static WHOLLY_INLINE int each_tile(const struct glint_edge *e,
     int n = 0;
 
     while (y_q8 < end_q8) {
-        const int32_t next_q8 = edge_sooner(end_q8, floor_q8);
+        const int32_t next_q8 = q_smaller(end_q8, floor_q8);
         const int64_t next_q40 = x_q40 + e->slope_q40 * (next_q8 - y_q8);
         const int x = (int)(x_q40 >> 40), next_x = (int)(next_q40 >> 40);
-        const int low = edge_sooner(x, next_x), high = edge_later(x, next_x);
+        const int low = q_smaller(x, next_x), high = q_larger(x, next_x);
 
         if (low <= last)
             for (int k = tile_of(low, last, log2);
