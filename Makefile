@@ -44,7 +44,7 @@ include tools/make/target.mk
 # below. src/README.md says what each is for.
 CORE      := base image kernels lens lamps follow tile flare/edges flare
 PUBLISHED := published
-ENGINE    := engine engine/frame
+ENGINE    := engine engine/frame engine/setup
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats video panel linux jpeg oiio sdl
 TOOLS     := options model overlay command live lab

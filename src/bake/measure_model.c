@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "bake/fit/zone_rays.h"
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 #include "glint/transfer.h"
 
 enum { RAYS = 400, TRIES = 1600, PER_BUNDLE = 16 };

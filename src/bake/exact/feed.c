@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 #include "bake/trace/survey.h"
 #include "glint/traced_bundle.h"
 #include "lens/grid.h"

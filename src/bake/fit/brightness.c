@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 #include "glint/trace.h"
 
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN };

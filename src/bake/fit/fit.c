@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 #include "bake/fit/zone_fit.h"
 
 #define LEAST_FILL 0.33 /* of a box; below it the grids waste their cells */

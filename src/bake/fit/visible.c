@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 
 enum {
     ACROSS = 64, /* cells of the finest grid */

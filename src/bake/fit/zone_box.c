@@ -3,7 +3,7 @@
 
 #include "bake/fit/ray_batch.h"
 #include "bake/fit/regress.h"
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 
 /* Of a box; a fuller one is not worth the higher powers of s it takes, which
  * everything that is seen through it has to undo. */

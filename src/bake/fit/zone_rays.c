@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "bake/fit/ray_batch.h"
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 
 static void add_ray(const struct glint_visible *h,
                     const struct glint_path *path,

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 #include "bake/fit/visible.h"
 #include "bake/published/shared_basis.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "bake/trace/survey.h"
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 
 enum { SURVEY = 96 }; /* rays a side that decide which barrels matter */
 

@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-#include "bake/trace/degrees.h"
+#include "engine/setup/degrees.h"
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
 

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "bake/trace/spectrum.h"
+#include "engine/setup/spectrum.h"
 #include "glint/bake.h"
 
 enum { ALL = 31 };

@@ -3,8 +3,8 @@
  * Sine and cosine of degrees, exact at multiples of 90, so that a light on an
  * axis gives a picture that is symmetric to the bit.
  */
-#ifndef GLINT_BAKE_TRACE_DEGREES_H
-#define GLINT_BAKE_TRACE_DEGREES_H
+#ifndef GLINT_ENGINE_SETUP_DEGREES_H
+#define GLINT_ENGINE_SETUP_DEGREES_H
 
 #include <math.h>
 

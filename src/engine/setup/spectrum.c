@@ -12,7 +12,7 @@
  * (sum of squares of the colour over 1 / wavelength^2)^(1/3) make the squares
  * of the differences to the smooth edge least.
  */
-#include "bake/trace/spectrum.h"
+#include "engine/setup/spectrum.h"
 
 #include <math.h>
 

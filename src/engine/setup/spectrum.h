@@ -2,8 +2,8 @@
  *
  * The colours of wavelengths.
  */
-#ifndef GLINT_BAKE_TRACE_SPECTRUM_H
-#define GLINT_BAKE_TRACE_SPECTRUM_H
+#ifndef GLINT_ENGINE_SETUP_SPECTRUM_H
+#define GLINT_ENGINE_SETUP_SPECTRUM_H
 
 /* Linear BT.709 of light of NM, by the CIE 1931 observer; negative where it is
  * more saturated than any mixture of the primaries. */

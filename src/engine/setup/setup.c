@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lens, stop and wavelengths, made ready once: colours of the wavelengths and
+ * the flux of the direct image that everything is measured by.
+ */
+#include "engine/setup/setup.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/setup/degrees.h"
+#include "engine/setup/spectrum.h"
+#include "glint/model.h"
+
+/* Scales each channel to the sum 1, so that a flat spectrum is white. A channel
+ * that the wavelengths hardly excite, or excite negatively, takes them all
+ * alike: few wavelengths make a grey picture rather than a wrong one. */
+static void normalise(struct glint_setup *s)
+{
+    const int n = s->n_wavelengths;
+
+    for (int c = 0; c < 3; c++) {
+        double sum = 0, size = 0;
+
+        for (int i = 0; i < n; i++) {
+            sum += s->rgb[i][c];
+            size += fabs(s->rgb[i][c]);
+        }
+        for (int i = 0; i < n; i++)
+            s->rgb[i][c] =
+                sum > 0.2 * size && sum > 0.05 ? s->rgb[i][c] / sum : 1.0 / n;
+    }
+}
+
+static void set_colours(struct glint_setup *s)
+{
+    for (int i = 0; i < s->n_wavelengths; i++) {
+        glint_observer_rgb(s->wavelength_nm[i], s->rgb[i]);
+        for (int c = 0; s->n_wavelengths == 3 && c < 3; c++)
+            s->rgb[i][c] = c == i;
+    }
+    if (s->n_wavelengths != 3)
+        normalise(s);
+}
+
+enum glint_status glint_setup_check(int n_blades, double rotation_deg,
+                                    const double *wavelength_nm, int n,
+                                    struct glint_error *error)
+{
+    if (n_blades != 0 && (n_blades < 3 || n_blades > GLINT_MAX_BLADES))
+        snprintf(error->text, sizeof error->text,
+                 "a stop has 3 to %d blades, not %d", GLINT_MAX_BLADES,
+                 n_blades);
+    else if (!isfinite(rotation_deg))
+        snprintf(error->text, sizeof error->text,
+                 "the rotation of the stop must be a finite angle");
+    else if (n < 1 || n > GLINT_MAX_WAVELENGTHS)
+        snprintf(error->text, sizeof error->text,
+                 "1 to %d wavelengths can be drawn, not %d",
+                 GLINT_MAX_WAVELENGTHS, n);
+    else {
+        for (int i = 0; i < n; i++)
+            if (!(wavelength_nm[i] >= 300 && wavelength_nm[i] <= 1100)) {
+                snprintf(error->text, sizeof error->text,
+                         "a wavelength must be 300 to 1100 nm, not %g",
+                         wavelength_nm[i]);
+                return GLINT_E_ARGUMENT;
+            }
+        return GLINT_OK;
+    }
+    return GLINT_E_ARGUMENT;
+}
+
+void glint_setup_common(struct glint_setup *s, int n_blades,
+                        double rotation_deg, const double *wavelength_nm, int n)
+{
+    s->n_blades = n_blades;
+    s->blade_rotation_deg = rotation_deg;
+    s->n_sets = 0;
+    s->n_wavelengths = n;
+    memcpy(s->wavelength_nm, wavelength_nm, (size_t)n * sizeof *wavelength_nm);
+    set_colours(s);
+}
+
+enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
+                                    struct glint_error *error)
+{
+    const int n = s->n_wavelengths;
+    double mean = 0;
+
+    for (int i = 0; i < n; i++) {
+        if (!(s->direct_flux[i] > 0)) {
+            snprintf(error->text, sizeof error->text,
+                     "%s: no light of %g nm gets through to the sensor", name,
+                     s->wavelength_nm[i]);
+            return GLINT_E_LENS;
+        }
+        mean += s->direct_flux[i] / n;
+    }
+    for (int i = 0; i < n; i++)
+        s->unit_flux[i] = mean;
+    return GLINT_OK;
+}
+
+/* Area of the stop as a share of its circle's: the direct light is even enough
+ * over it for a ten-thousandth. */
+static double opening(int n_blades)
+{
+    return n_blades ? 0.5 * n_blades * sin(2 * GLINT_PI / n_blades) / GLINT_PI
+                    : 1;
+}
+
+/* What the model's polynomial gives for a wavelength held to its band. */
+static double model_flux(const struct glint_model_header *h, double nm)
+{
+    const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;
+    const double wave = 0x1p24 * 1e6 / (nm * nm);
+    const double w = fmax(-1, fmin(1, (2 * wave - lo - hi) / fmax(1, hi - lo)));
+    const int n = (int)(sizeof h->direct_flux / sizeof *h->direct_flux);
+    double flux = 0;
+
+    for (int k = n - 1; k >= 0; k--)
+        flux = flux * w + glint_real_value(h->direct_flux[k]);
+    return flux;
+}
+
+enum glint_status glint_setup_from_model(struct glint_setup *setup,
+                                         const struct glint_lens *lens,
+                                         int n_blades,
+                                         double blade_rotation_deg,
+                                         const double *wavelength_nm, int n,
+                                         struct glint_error *error)
+{
+    const struct glint_model_header *h = lens->header;
+    const enum glint_status status = glint_setup_check(
+        n_blades, blade_rotation_deg, wavelength_nm, n, error);
+
+    if (status != GLINT_OK)
+        return status;
+    if (h->n_ghosts > GLINT_MAX_GHOSTS) {
+        snprintf(error->text, sizeof error->text, "%s has %lu ghosts", h->name,
+                 (unsigned long)h->n_ghosts);
+        return GLINT_E_LENS;
+    }
+    setup->lens = NULL;
+    setup->optics = (struct glint_optics){
+        .focal_mm = glint_real_value(h->focal_mm),
+        .back_focal_mm = glint_real_value(h->back_focal_mm),
+        .entrance_radius_mm = glint_real_value(h->entrance_radius_mm),
+        .stop_radius_mm = glint_real_value(h->stop_radius_mm)};
+    setup->n_ghosts = (int)h->n_ghosts;
+    setup->n_parts = (int)h->n_parts;
+    for (int k = 0; k < setup->n_ghosts; k++)
+        setup->ghost[k] =
+            (struct glint_ghost){(int)lens->ghost[k].i, (int)lens->ghost[k].j};
+    glint_setup_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
+    for (int i = 0; i < n; i++)
+        setup->direct_flux[i] =
+            opening(n_blades) * model_flux(h, wavelength_nm[i]);
+    return glint_setup_units(setup, h->name, error);
+}
+
+void glint_setup_weigh(struct glint_setup *setup)
+{
+    const int n = setup->n_wavelengths;
+    double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS], mean = 0;
+
+    glint_spectrum(n, nm, setup->rgb, share);
+    for (int i = 0; i < n; i++)
+        mean += share[i] * setup->direct_flux[i];
+    for (int i = 0; i < n; i++)
+        setup->unit_flux[i] = mean;
+}
+
+void glint_setup_spread(struct glint_setup *setup,
+                        const struct glint_lens *lens)
+{
+    static const int sizes[] = {4, 6, 10, 17, 28};
+    enum { N_SETS = sizeof sizes / sizeof *sizes };
+    struct glint_set_wave *wave = setup->set_wave;
+
+    setup->n_sets = N_SETS;
+    for (int s = 0; s < N_SETS; wave += sizes[s++]) {
+        double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS];
+        double rgb[GLINT_MAX_WAVELENGTHS][3], mean = 0;
+
+        setup->set_size[s] = sizes[s];
+        glint_spectrum(sizes[s], nm, rgb, share);
+        for (int i = 0; i < sizes[s]; i++) {
+            wave[i].nm = nm[i];
+            memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
+            wave[i].direct_flux =
+                opening(setup->n_blades) * model_flux(lens->header, nm[i]);
+            mean += share[i] * wave[i].direct_flux;
+        }
+        for (int i = 0; i < sizes[s]; i++)
+            wave[i].unit_flux = mean;
+    }
+}
+
+void glint_setup_balance(struct glint_setup *setup)
+{
+    int n = 0;
+
+    for (int i = 0; i < setup->n_wavelengths; i++)
+        setup->unit_flux[i] = setup->direct_flux[i];
+    for (int s = 0; s < setup->n_sets; s++)
+        n += setup->set_size[s];
+    for (int i = 0; i < n; i++)
+        setup->set_wave[i].unit_flux = setup->set_wave[i].direct_flux;
+}
