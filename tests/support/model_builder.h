@@ -12,10 +12,7 @@
 #ifndef GLINT_TESTS_MODEL_BUILDER_H
 #define GLINT_TESTS_MODEL_BUILDER_H
 
-#include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "glint/model.h"
 
@@ -43,44 +40,13 @@ struct model_polynomial {
 };
 
 /* Appends BYTES bytes, padded to whole words; returns where they are. */
-static inline uint32_t model_put(struct model_image *m, const void *items,
-                                 size_t bytes)
-{
-    const uint32_t at = m->bytes;
+uint32_t model_put(struct model_image *m, const void *items, size_t bytes);
 
-    if (at + bytes + 4 > MODEL_ROOM)
-        abort();
-    memcpy(m->data + at, items, bytes);
-    m->bytes += (uint32_t)(bytes + 3) / 4 * 4;
-    return at;
-}
+struct glint_model_header *model_header(const struct model_image *m);
 
-static inline struct glint_model_header *
-model_header(const struct model_image *m)
-{
-    return (struct glint_model_header *)(void *)m->data;
-}
+void model_seal(struct model_image *m);
 
-static inline void model_seal(struct model_image *m)
-{
-    struct glint_model_header *h = model_header(m);
-
-    h->bytes = m->bytes;
-    h->crc32 = glint_model_crc32(m->data + 16, m->bytes - 16);
-}
-
-static inline struct glint_real model_real(double x)
-{
-    struct glint_real real = {0, 0};
-    int exponent;
-    const double mantissa = frexp(x, &exponent);
-
-    if (x != 0) {
-        real.mantissa = (int32_t)(mantissa * 0x1p31);
-        real.exponent = exponent - 31;
-    }
-    return real;
-}
+struct glint_real model_real(double x);
 
 /* Wavelengths of 800 and 400 nm. */
 enum {
@@ -89,219 +55,29 @@ enum {
     MODEL_ONE_Q30 = 1 << 30
 };
 
-static inline void model_begin(struct model_image *m, enum glint_basis basis,
-                               const char *name)
-{
-    struct glint_model_header h = {.magic = GLINT_MODEL_MAGIC,
-                                   .version = GLINT_MODEL_VERSION,
-                                   .basis = basis};
-
-    h.key[0] = 7;
-    strcpy(h.name, name);
-    h.focal_mm = model_real(50);
-    h.back_focal_mm = model_real(37.5);
-    h.entrance_radius_mm = model_real(12.5);
-    h.stop_radius_mm = model_real(8);
-    h.f_number = model_real(2);
-    h.film_width_mm = model_real(36);
-    h.film_height_mm = model_real(24);
-    h.field_mm = model_real(30);
-    h.front_mm = model_real(15);
-    h.wave_lo_q24 = MODEL_WAVE_LO_Q24;
-    h.wave_hi_q24 = MODEL_WAVE_HI_Q24;
-    h.sine_hi_q30 = MODEL_ONE_Q30 / 2;
-    h.direct_flux[0] = model_real(400);
-    h.direct_flux[1] = model_real(-3);
-    h.n_surfaces = 4;
-    m->data = calloc(1, MODEL_ROOM);
-    m->bytes = 0;
-    if (!m->data)
-        abort();
-    model_put(m, &h, sizeof h);
-}
+void model_begin(struct model_image *m, enum glint_basis basis,
+                 const char *name);
 
 /* Writes the tables of N polynomials, coefficients halved HALVED times. */
-static inline void model_outputs(struct model_image *m,
-                                 struct glint_model_system *s,
-                                 const struct model_polynomial *p, uint32_t n,
-                                 int halved)
-{
-    const uint32_t n_sets = s->n_knots ? s->n_knots : 1;
-    struct glint_model_output o[GLINT_OUT_KINDS] = {{0}};
-
-    for (uint32_t k = 0; k < n; k++) {
-        int32_t coef[MODEL_KNOTS * MODEL_TERMS];
-        uint32_t n_coefs = 0;
-
-        for (uint32_t set = 0; set < n_sets; set++)
-            for (uint32_t t = 0; t < p[k].n_terms; t++)
-                coef[n_coefs++] = p[k].coef[set][t] / (1 << halved);
-        o[k].kind = p[k].kind;
-        o[k].n_terms = p[k].n_terms;
-        o[k].exponent = p[k].exponent;
-        o[k].term_at = model_put(m, p[k].power, 2 * p[k].n_terms);
-        o[k].coef_at = model_put(m, coef, 4 * n_coefs);
-        o[k].bound = 1 << 29;
-        o[k].rounding_q8 = 384;
-        o[k].rms = MODEL_ERROR(1536, 9 - halved); /* 0.75, 0.375 */
-        o[k].p50 = MODEL_ERROR(1024, 8);
-        o[k].p99 = MODEL_ERROR(1024, 10 + halved);
-        o[k].max = MODEL_ERROR(1024, 11 + halved);
-    }
-    s->n_outputs = (uint8_t)n;
-    s->output_at = model_put(m, o, n * sizeof *o);
-}
+void model_outputs(struct model_image *m, struct glint_model_system *s,
+                   const struct model_polynomial *p, uint32_t n, int halved);
 
 /* Of the auto basis. Halves 4 - s mm and 3 mm about 1 + s / 2 mm. */
-static inline struct glint_model_system
-model_auto_system(struct model_image *m, int32_t sine_lo_q30,
-                  int32_t sine_hi_q30, int32_t wave_lo_q24, int32_t wave_hi_q24,
-                  int halved)
-{
-    static const struct model_polynomial outputs[] = {
-        /* 0.25 + 0.5 u - 0.125 v^2 s mm */
-        {GLINT_OUT_SENSOR_X,
-         3,
-         -28,
-         {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(1, 0, 0, 0),
-          MODEL_POWER(0, 2, 1, 0)},
-         {{1 << 26, 1 << 27, -(1 << 25)}}},
-        /* 0.5 v + 0.25 u v mm */
-        {GLINT_OUT_SENSOR_Y,
-         2,
-         -28,
-         {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(1, 1, 0, 0)},
-         {{1 << 27, 1 << 26}}},
-        /* 0.5 u^3 */
-        {GLINT_OUT_STOP_X, 1, -29, {MODEL_POWER(3, 0, 0, 0)}, {{1 << 28}}},
-        /* 0.5 v - 0.125 v^3 */
-        {GLINT_OUT_STOP_Y,
-         2,
-         -29,
-         {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(0, 3, 0, 0)},
-         {{1 << 28, -(1 << 26)}}},
-        /* 0.5 + 0.25 w, in 2^-6 */
-        {GLINT_OUT_ENERGY,
-         2,
-         -35,
-         {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(0, 0, 0, 1)},
-         {{1 << 28, 1 << 27}}},
-        /* 0.5 + u^2 / 2 */
-        {GLINT_OUT_BARREL_0,
-         2,
-         -28,
-         {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(2, 0, 0, 0)},
-         {{1 << 27, 1 << 27}}},
-    };
-    static const int32_t box[3][3] = {
-        {1 << 20, 1 << 19, 0}, {1 << 22, -(1 << 20), 0}, {3 << 20, 0, 0}};
-    struct glint_model_system s = {.sine_lo_q30 = sine_lo_q30,
-                                   .sine_hi_q30 = sine_hi_q30,
-                                   .wave_lo_q24 = wave_lo_q24,
-                                   .wave_hi_q24 = wave_hi_q24,
-                                   .box_exponent = -20,
-                                   .box_terms = MODEL_BOX_TERMS};
+struct glint_model_system model_auto_system(struct model_image *m,
+                                            int32_t sine_lo_q30,
+                                            int32_t sine_hi_q30,
+                                            int32_t wave_lo_q24,
+                                            int32_t wave_hi_q24, int halved);
 
-    s.box_at = model_put(m, box, sizeof box);
-    model_outputs(m, &s, outputs, sizeof outputs / sizeof *outputs, halved);
-    return s;
-}
-
-static inline void model_end(struct model_image *m,
-                             const struct glint_model_ghost *ghosts,
-                             uint32_t n_ghosts,
-                             const struct glint_model_system *systems,
-                             uint32_t n_systems)
-{
-    const uint32_t ghost_at = model_put(m, ghosts, n_ghosts * sizeof *ghosts);
-    const uint32_t system_at =
-        model_put(m, systems, n_systems * sizeof *systems);
-    struct glint_model_header *h = model_header(m);
-
-    h->n_ghosts = n_ghosts;
-    h->ghost_at = ghost_at;
-    h->n_systems = n_systems;
-    h->system_at = system_at;
-    model_seal(m);
-}
+void model_end(struct model_image *m, const struct glint_model_ghost *ghosts,
+               uint32_t n_ghosts, const struct glint_model_system *systems,
+               uint32_t n_systems);
 
 /* Ghost 0 has two ranges of angles, sines 0 .. 1/4 .. 1/2, the second with
  * halved coefficients; ghost 1 is never seen; ghost 2 has two bands. */
-static inline struct model_image model_auto(void)
-{
-    static const struct glint_model_ghost ghosts[] = {
-        {0, 1, 0, 2}, {0, 2, 0, 0}, {1, 3, 2, 2}};
-    const int32_t lo = MODEL_WAVE_LO_Q24, hi = MODEL_WAVE_HI_Q24;
-    const int32_t one = MODEL_ONE_Q30, middle = lo + (hi - lo) / 2;
-    struct glint_model_system s[4];
-    struct model_image m;
-
-    model_begin(&m, GLINT_BASIS_AUTO, "auto");
-    s[0] = model_auto_system(&m, 0, one / 4, lo, hi, 0);
-    s[1] = model_auto_system(&m, one / 4, one / 2, lo, hi, 1);
-    s[2] = model_auto_system(&m, one / 8, one / 2, lo, middle, 0);
-    s[3] = model_auto_system(&m, one / 8, one / 2, middle, hi, 1);
-    model_end(&m, ghosts, 3, s, 4);
-    return m;
-}
+struct model_image model_auto(void);
 
 /* One ghost, knots at the sines 0, 1/4 and 1/2. */
-static inline struct model_image model_sparse(void)
-{
-    static const struct model_polynomial outputs[] = {
-        /* a x + r / 4 mm, a = 1/2, 1/4, 0 at the knots */
-        {GLINT_OUT_SENSOR_X,
-         2,
-         -28,
-         {MODEL_POWER(1, 0, 0, 0), MODEL_POWER(0, 0, 1, 0)},
-         {{1 << 27, 1 << 26}, {1 << 26, 1 << 26}, {0, 1 << 26}}},
-        /* y / 2 mm */
-        {GLINT_OUT_SENSOR_Y,
-         1,
-         -28,
-         {MODEL_POWER(0, 1, 0, 0)},
-         {{1 << 27}, {1 << 27}, {1 << 27}}},
-        /* x (1 - r) */
-        {GLINT_OUT_STOP_X,
-         1,
-         -29,
-         {MODEL_POWER(1, 0, 0, 1)},
-         {{1 << 29}, {1 << 29}, {1 << 29}}},
-        {GLINT_OUT_STOP_Y,
-         1,
-         -29,
-         {MODEL_POWER(0, 1, 0, 1)},
-         {{1 << 29}, {1 << 29}, {1 << 29}}},
-        {GLINT_OUT_ENERGY,
-         1,
-         -35,
-         {MODEL_POWER(0, 0, 0, 0)},
-         {{1 << 29}, {1 << 28}, {1 << 27}}},
-        /* r */
-        {GLINT_OUT_RADIUS,
-         1,
-         -28,
-         {MODEL_POWER(0, 0, 1, 0)},
-         {{1 << 28}, {1 << 28}, {1 << 28}}},
-    };
-    static const struct glint_model_ghost ghost = {0, 1, 0, 1};
-    const int32_t one = MODEL_ONE_Q30;
-    const int32_t knots_q30[MODEL_KNOTS] = {0, one / 4, one / 2};
-    const int32_t box[MODEL_KNOTS][3] = {
-        {0, one, one}, {one / 2, one / 2, one}, {one / 4, one / 2, one / 2}};
-    struct glint_model_system s = {.sine_hi_q30 = one / 2,
-                                   .wave_lo_q24 = MODEL_WAVE_LO_Q24,
-                                   .wave_hi_q24 = MODEL_WAVE_LO_Q24,
-                                   .n_knots = MODEL_KNOTS,
-                                   .box_exponent = -27};
-    struct model_image m;
-
-    model_begin(&m, GLINT_BASIS_SPARSE, "sparse");
-    s.knot_at = model_put(&m, knots_q30, sizeof knots_q30);
-    s.box_at = model_put(&m, box, sizeof box);
-    model_outputs(&m, &s, outputs, sizeof outputs / sizeof *outputs, 0);
-    model_end(&m, &ghost, 1, &s, 1);
-    return m;
-}
+struct model_image model_sparse(void);
 
 #endif

@@ -1,7 +1,7 @@
 # Tests, sanitizers, analysis.
 
-# What tests share.
-$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c))
+# What tests share, but for fakes, which answer calls of those that want them.
+$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/support/fake_%.c,$(wildcard tests/support/*.c)))
 
 # Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
@@ -33,6 +33,8 @@ $(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
         -Wl,--wrap=realloc,--wrap=posix_memalign
 $(OUT)/tests/unit/test_budget: LDFLAGS += -Wl,--wrap=tool_seconds
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
+$(fake_bins): $(OUT)/tests/support/fake_camera.o
+$(OUT)/tests/unit/test_fbdev: $(OUT)/tests/support/fake_fb.o
 extreme_bins := $(EXTREMES:%=$(OUT)/tests/unit/test_extremes_%)
 $(foreach c,$(unit_c),$(eval $(OUT)/tests/unit/$(notdir $(basename $(c))): $(OUT)/$(c:.c=.o)))
 $(test_bins): $(OUT)/libglint-tests.a $(libs)

@@ -16,6 +16,7 @@
 #include <cmocka.h>
 
 #include "support/night.h"
+#include "support/rng.h"
 
 enum { FPS30 = 33333, FPS60 = 16667, FULL = 32768 };
 
@@ -185,7 +186,7 @@ static double turns_of(double degrees)
     assert_true(night_open(&night));
     for (int frame = 0; frame < 300; frame++) {
         const double angle =
-            (degrees + (night_random(&night, 1201) - 600) / 100.0) * 3.14159 /
+            (degrees + (rng_below(&night.seed, 1201) - 600) / 100.0) * 3.14159 /
             180;
         const struct glint_spot spot = {
             .x_q8 = 160 << 8,
@@ -245,8 +246,8 @@ static double sparkle_moves(int every, uint32_t seed)
         for (int y = 0; y < 8; y++)
             memset(corner + 320 * y, 43, 8);
         if (frame > 0 && frame % every == 0)
-            corner[320 * night_random(&night, 8) + night_random(&night, 8)] =
-                255;
+            corner[320 * rng_below(&night.seed, 8) +
+                   rng_below(&night.seed, 8)] = 255;
         night_track(&night, FPS30);
         t = only_track();
         furthest =
@@ -281,7 +282,7 @@ static void test_hysteresis(void **state)
     (void)state;
     open_night(320, 200, 0);
     for (int frame = 0; frame < 100; frame++) {
-        const int code = frame == 0 ? 255 : 246 + night_random(&night, 4);
+        const int code = frame == 0 ? 255 : 246 + rng_below(&night.seed, 4);
 
         memset(night.image.plane[0], 5, 320 * 200);
         for (int y = 0; y < 6; y++)
@@ -377,8 +378,8 @@ static void test_repeated_pictures_are_met_exactly(void **state)
         night.seed = (uint32_t)k;
         for (int frame = 0; frame < 10; frame++) {
             for (int i = 0; i < 3; i++) {
-                lamp[i].x += night_random(&night, 7) - 3;
-                lamp[i].light *= 0.8 + night_random(&night, 5) * 0.1;
+                lamp[i].x += rng_below(&night.seed, 7) - 3;
+                lamp[i].light *= 0.8 + rng_below(&night.seed, 5) * 0.1;
             }
             night_step(&night, lamp, 3, us);
         }
@@ -839,35 +840,35 @@ static void test_more_lights_than_tracks(void **state)
 static struct glint_spot any_spot(void)
 {
     static const int32_t extremes[] = {INT32_MIN, -1, 0, 1, INT32_MAX};
-    struct glint_spot s = {.x_q8 = night_random(&night, 640 << 8),
-                           .y_q8 = night_random(&night, 480 << 8),
-                           .size_q8 = night_random(&night, 40 << 8),
-                           .area = night_random(&night, 4000),
-                           .n_clipped = night_random(&night, 2000),
-                           .flux_q16 = night_random(&night, 1 << 24) * 64,
-                           .power_q16 = night_random(&night, 1 << 24) * 64,
-                           .axis_q8 = {night_random(&night, 40 << 8),
-                                       night_random(&night, 40 << 8)},
-                           .cos_q15 = night_random(&night, 32769),
-                           .sin_q15 = night_random(&night, 65537) - 32768,
-                           .faint = night_random(&night, 3) == 0};
+    struct glint_spot s = {.x_q8 = rng_below(&night.seed, 640 << 8),
+                           .y_q8 = rng_below(&night.seed, 480 << 8),
+                           .size_q8 = rng_below(&night.seed, 40 << 8),
+                           .area = rng_below(&night.seed, 4000),
+                           .n_clipped = rng_below(&night.seed, 2000),
+                           .flux_q16 = rng_below(&night.seed, 1 << 24) * 64,
+                           .power_q16 = rng_below(&night.seed, 1 << 24) * 64,
+                           .axis_q8 = {rng_below(&night.seed, 40 << 8),
+                                       rng_below(&night.seed, 40 << 8)},
+                           .cos_q15 = rng_below(&night.seed, 32769),
+                           .sin_q15 = rng_below(&night.seed, 65537) - 32768,
+                           .faint = rng_below(&night.seed, 3) == 0};
 
     for (int i = 0; i < 3; i++)
-        s.rgb_q15[i] = night_random(&night, 1 << 17);
-    if (night_random(&night, 10) == 0)
-        s.flux_q16 = night_random(&night, 2) ? INT64_MAX : INT64_MIN;
-    if (night_random(&night, 10) == 0)
-        s.power_q16 = night_random(&night, 2) ? INT64_MAX : INT64_MIN;
-    if (night_random(&night, 10) == 0)
+        s.rgb_q15[i] = rng_below(&night.seed, 1 << 17);
+    if (rng_below(&night.seed, 10) == 0)
+        s.flux_q16 = rng_below(&night.seed, 2) ? INT64_MAX : INT64_MIN;
+    if (rng_below(&night.seed, 10) == 0)
+        s.power_q16 = rng_below(&night.seed, 2) ? INT64_MAX : INT64_MIN;
+    if (rng_below(&night.seed, 10) == 0)
         s.axis_q8[0] = s.axis_q8[1] = s.cos_q15 = s.sin_q15 =
-            extremes[night_random(&night, 5)];
-    if (night_random(&night, 10) == 0)
-        s.x_q8 = extremes[night_random(&night, 5)];
-    if (night_random(&night, 10) == 0)
-        s.y_q8 = extremes[night_random(&night, 5)];
-    if (night_random(&night, 10) == 0)
+            extremes[rng_below(&night.seed, 5)];
+    if (rng_below(&night.seed, 10) == 0)
+        s.x_q8 = extremes[rng_below(&night.seed, 5)];
+    if (rng_below(&night.seed, 10) == 0)
+        s.y_q8 = extremes[rng_below(&night.seed, 5)];
+    if (rng_below(&night.seed, 10) == 0)
         s.size_q8 = s.area = s.n_clipped = s.rgb_q15[1] =
-            extremes[night_random(&night, 5)];
+            extremes[rng_below(&night.seed, 5)];
     return s;
 }
 
@@ -876,7 +877,7 @@ static int32_t any_time(void)
     static const int32_t times[] = {0,     1,       1000,      FPS60,
                                     FPS30, 1000000, INT32_MAX, -1};
 
-    return times[night_random(&night, 8)];
+    return times[rng_below(&night.seed, 8)];
 }
 
 static void assert_sound(int n)
@@ -911,8 +912,8 @@ static void test_order_of_spots_changes_nothing(void **state)
 
         night_init(&night, 640, 480);
         night.seed = (uint32_t)round;
-        night.cfg.max_tracks = 1 + night_random(&night, 64);
-        night.cfg.max_shown = 1 + night_random(&night, night.cfg.max_tracks);
+        night.cfg.max_tracks = 1 + rng_below(&night.seed, 64);
+        night.cfg.max_shown = 1 + rng_below(&night.seed, night.cfg.max_tracks);
         assert_true(night_open(&night));
         assert_int_equal(
             posix_memalign(&mem, 64, glint_lamp_tracker_bytes(&night.cfg)), 0);
@@ -923,20 +924,21 @@ static void test_order_of_spots_changes_nothing(void **state)
             GLINT_OK);
         for (int step = 0; step < 50; step++) {
             const int32_t us = any_time();
-            const int n_new = night_random(&night, round % 4 ? 100 : NIGHT_MAX);
+            const int n_new =
+                rng_below(&night.seed, round % 4 ? 100 : NIGHT_MAX);
             int n_tracks;
 
             for (int i = 0; i < n_new; i++) {
-                if (i >= n || night_random(&night, 4) == 0)
+                if (i >= n || rng_below(&night.seed, 4) == 0)
                     spot[i] = any_spot();
                 else if (spot[i].x_q8 > 0 && spot[i].x_q8 < 600 << 8)
-                    spot[i].x_q8 += night_random(&night, 2048);
+                    spot[i].x_q8 += rng_below(&night.seed, 2048);
             }
             n = n_new;
             if (n > 3) /* the same twice; and the same but for one number */
                 spot[1] = spot[0], spot[2] = spot[0], spot[2].faint ^= 1;
             for (int i = 0; i < n; i++) {
-                const int j = night_random(&night, i + 1);
+                const int j = rng_below(&night.seed, i + 1);
 
                 mixed[i] = mixed[j];
                 mixed[j] = spot[i];
@@ -949,7 +951,7 @@ static void test_order_of_spots_changes_nothing(void **state)
             assert_memory_equal(track, night.track,
                                 (size_t)n_tracks * sizeof *track);
             assert_sound(n_tracks);
-            if (night_random(&night, 20) == 0) {
+            if (rng_below(&night.seed, 20) == 0) {
                 glint_lamp_tracker_restart(night.tracks);
                 glint_lamp_tracker_restart(other);
             }

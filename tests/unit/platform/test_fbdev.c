@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -33,7 +34,7 @@ static void reset(void)
     uint8_t old[256];
     int fd;
 
-    *fake = (struct fake){
+    *fake_fb = (struct fake_fb){
         .fix = {.id = "fake",
                 .smem_len = FB_BYTES - 4096,
                 .type = FB_TYPE_PACKED_PIXELS,
@@ -53,26 +54,26 @@ static void reset(void)
         .yoffset_at_text = 99,
     };
     memset(old, 0xaa, sizeof old);
-    fd = open(fb_path, O_WRONLY | O_TRUNC);
+    fd = open(fake_fb_path, O_WRONLY | O_TRUNC);
     for (int i = 0; i < FB_BYTES; i += (int)sizeof old)
         assert_int_equal(write(fd, old, sizeof old), sizeof old);
     close(fd);
-    n_calls = fail_at = n_maps = 0;
+    fake_fb_calls = fake_fb_fail_at = fake_fb_maps = 0;
 }
 
 /* As of vc4: two screens, panned line by line. */
 static void reset_pages(void)
 {
     reset();
-    fake->var.yres_virtual = 12;
-    fake->fix.ypanstep = 1;
-    fake->can_pan = true;
+    fake_fb->var.yres_virtual = 12;
+    fake_fb->fix.ypanstep = 1;
+    fake_fb->can_pan = true;
 }
 
 static const uint8_t *memory(void)
 {
     static uint8_t mem[FB_BYTES];
-    const int fd = open(fb_path, O_RDONLY);
+    const int fd = open(fake_fb_path, O_RDONLY);
 
     assert_int_equal(read(fd, mem, sizeof mem), sizeof mem);
     close(fd);
@@ -81,7 +82,7 @@ static const uint8_t *memory(void)
 
 static void scribble(off_t at, uint8_t value)
 {
-    const int fd = open(fb_path, O_WRONLY);
+    const int fd = open(fake_fb_path, O_WRONLY);
 
     assert_int_equal(pwrite(fd, &value, 1, at), 1);
     close(fd);
@@ -106,7 +107,7 @@ static void must_open(struct glint_fbdev *fb,
     static const struct glint_fbdev_options none;
     struct glint_error error;
 
-    if (glint_fbdev_open(fb, fb_path, options ? options : &none, &error))
+    if (glint_fbdev_open(fb, fake_fb_path, options ? options : &none, &error))
         fail_msg("%s", error.text);
 }
 
@@ -153,7 +154,7 @@ static void test_draws(void **state)
     fb.sink.close(&fb.sink);
     fb.sink.close(&fb.sink);
     assert_int_equal(fb.fd, -1);
-    assert_int_equal(n_maps, 0);
+    assert_int_equal(fake_fb_maps, 0);
 }
 
 /* What is not the picture's is black, whatever the last one covered. */
@@ -182,7 +183,7 @@ static void test_odd_start(void **state)
 
     (void)state;
     reset();
-    fake->fix.smem_start = 0xfd000064;
+    fake_fb->fix.smem_start = 0xfd000064;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 77));
     expect_screen(0x64, 77);
@@ -190,14 +191,14 @@ static void test_odd_start(void **state)
     fb.sink.close(&fb.sink);
     /* a console that scrolled: what is looked at begins lower down */
     reset();
-    fake->var.yres_virtual = 20;
-    fake->var.yoffset = 5;
+    fake_fb->var.yres_virtual = 20;
+    fake_fb->var.yoffset = 5;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 78));
     expect_screen(5 * 40, 78);
     assert_int_equal(memory()[5 * 40 - 1], 0xaa);
     must_put(&fb, grey(8, 2, 78));
-    fake->var.yoffset = 14;
+    fake_fb->var.yoffset = 14;
     must_put(&fb, grey(8, 2, 79));
     assert_int_equal(memory()[14 * 40], 0);
     assert_int_equal(memory()[16 * 40], 79);
@@ -212,24 +213,24 @@ static void test_pages(void **state)
     reset_pages();
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 2);
-    assert_int_equal(fake->var.yoffset, 0);
+    assert_int_equal(fake_fb->var.yoffset, 0);
     for (int i = 1; i <= 5; i++) {
         const uint32_t shown = i % 2 ? 6 : 0;
         const int before = memory()[(6 - shown) * 40];
 
         must_put(&fb, grey(8, 6, 10 * i));
-        assert_int_equal(fake->var.yoffset, shown);
+        assert_int_equal(fake_fb->var.yoffset, shown);
         assert_int_equal(memory()[shown * 40], 10 * i);
         assert_int_equal(memory()[(6 - shown) * 40], before);
     }
     fb.sink.close(&fb.sink);
-    assert_int_equal(fake->var.yoffset, 0);
+    assert_int_equal(fake_fb->var.yoffset, 0);
     /* one of us was killed with the second in view */
-    fake->var.yoffset = 6;
+    fake_fb->var.yoffset = 6;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 1));
     fb.sink.close(&fb.sink);
-    assert_int_equal(fake->var.yoffset, 0);
+    assert_int_equal(fake_fb->var.yoffset, 0);
 }
 
 static void test_no_pages(void **state)
@@ -238,7 +239,7 @@ static void test_no_pages(void **state)
 
     (void)state;
     reset_pages();
-    fake->can_pan = false;
+    fake_fb->can_pan = false;
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     must_put(&fb, grey(8, 6, 9));
@@ -246,14 +247,14 @@ static void test_no_pages(void **state)
     fb.sink.close(&fb.sink);
 
     reset_pages();
-    fake->fix.smem_len = 11 * 40; /* less than it says */
+    fake_fb->fix.smem_len = 11 * 40; /* less than it says */
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
-    assert_int_equal(fake->n_pan, 0);
+    assert_int_equal(fake_fb->n_pan, 0);
     fb.sink.close(&fb.sink);
 
     reset_pages();
-    fake->fix.ypanstep = 4; /* 6 lines are no multiple */
+    fake_fb->fix.ypanstep = 4; /* 6 lines are no multiple */
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
@@ -261,12 +262,12 @@ static void test_no_pages(void **state)
     reset_pages(); /* it could, and now it cannot */
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 9));
-    fake->can_pan = false;
-    fake->n_pan = 0;
+    fake_fb->can_pan = false;
+    fake_fb->n_pan = 0;
     must_put(&fb, grey(8, 6, 11));
-    assert_int_equal(memory()[fake->var.yoffset * 40], 11);
+    assert_int_equal(memory()[fake_fb->var.yoffset * 40], 11);
     must_put(&fb, grey(8, 6, 12));
-    assert_int_equal(fake->n_pan, 1); /* tried no more */
+    assert_int_equal(fake_fb->n_pan, 1); /* tried no more */
     fb.sink.close(&fb.sink);
 }
 
@@ -280,19 +281,19 @@ static void test_vsync(void **state)
     must_open(&fb, &options);
     for (int i = 0; i < 3; i++)
         must_put(&fb, grey(8, 6, i));
-    assert_int_equal(fake->n_vsync, 1); /* and never again */
+    assert_int_equal(fake_fb->n_vsync, 1); /* and never again */
     fb.sink.close(&fb.sink);
     reset();
-    fake->vsync_errno = 0;
+    fake_fb->vsync_errno = 0;
     must_open(&fb, &options);
     for (int i = 0; i < 3; i++)
         must_put(&fb, grey(8, 6, i));
-    assert_int_equal(fake->n_vsync, 3);
+    assert_int_equal(fake_fb->n_vsync, 3);
     fb.sink.close(&fb.sink);
-    fake->n_vsync = 0;
+    fake_fb->n_vsync = 0;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 1));
-    assert_int_equal(fake->n_vsync, 0);
+    assert_int_equal(fake_fb->n_vsync, 0);
     fb.sink.close(&fb.sink);
 }
 
@@ -304,16 +305,16 @@ static void test_goes_away(void **state)
 
     (void)state;
     reset();
-    snprintf(want, sizeof want, "%s: the framebuffer went away", fb_path);
+    snprintf(want, sizeof want, "%s: the framebuffer went away", fake_fb_path);
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 5));
-    fake->gone = true;
+    fake_fb->gone = true;
     assert_int_equal(fb.sink.put(&fb.sink, grey(8, 6, 6), &error),
                      GLINT_E_DEVICE);
     assert_string_equal(error.text, want);
     assert_int_equal(memory()[0], 5);
     fb.sink.close(&fb.sink);
-    assert_int_equal(n_maps, 0);
+    assert_int_equal(fake_fb_maps, 0);
 }
 
 /* Another program sets 16 bits, and two screens, and back. */
@@ -326,12 +327,12 @@ static void test_mode_changes(void **state)
     reset();
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 255));
-    fake->var.bits_per_pixel = 16;
-    fake->var.red = (struct fb_bitfield){11, 5, 0};
-    fake->var.green = (struct fb_bitfield){5, 6, 0};
-    fake->var.blue = (struct fb_bitfield){0, 5, 0};
-    fake->var.xres = 4;
-    fake->fix.line_length = 64;
+    fake_fb->var.bits_per_pixel = 16;
+    fake_fb->var.red = (struct fb_bitfield){11, 5, 0};
+    fake_fb->var.green = (struct fb_bitfield){5, 6, 0};
+    fake_fb->var.blue = (struct fb_bitfield){0, 5, 0};
+    fake_fb->var.xres = 4;
+    fake_fb->fix.line_length = 64;
     must_put(&fb, grey(4, 6, 255));
     assert_int_equal(fb.width, 4);
     mem = memory();
@@ -342,7 +343,7 @@ static void test_mode_changes(void **state)
     must_put(&fb, grey(8, 6, 3));
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(memory()[6 * 40], 3);
-    assert_int_equal(n_maps, 0); /* one more and one fewer */
+    assert_int_equal(fake_fb_maps, 0); /* one more and one fewer */
     fb.sink.close(&fb.sink);
 }
 
@@ -354,12 +355,12 @@ static void test_no_fields(void **state)
 
     (void)state;
     reset();
-    fake->var.red = fake->var.green = fake->var.blue = none;
+    fake_fb->var.red = fake_fb->var.green = fake_fb->var.blue = none;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 100));
     expect_screen(0, 100);
     fb.sink.close(&fb.sink);
-    fake->var.bits_per_pixel = 16;
+    fake_fb->var.bits_per_pixel = 16;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 255));
     assert_int_equal(fb.layout.green.length, 6);
@@ -375,13 +376,13 @@ static void expect_refused(const char *part)
     struct glint_fbdev fb;
     struct glint_error error = {""};
 
-    assert_int_equal(glint_fbdev_open(&fb, fb_path, &options, &error),
+    assert_int_equal(glint_fbdev_open(&fb, fake_fb_path, &options, &error),
                      GLINT_E_DEVICE);
     if (!strstr(error.text, part))
         fail_msg("\"%s\" is not in \"%s\"", part, error.text);
     assert_int_equal(fb.fd, -1);
-    assert_int_equal(n_maps, 0);
-    assert_int_equal(fake->tty_mode, KD_TEXT);
+    assert_int_equal(fake_fb_maps, 0);
+    assert_int_equal(fake_fb->tty_mode, KD_TEXT);
 }
 
 static void test_refuses(void **state)
@@ -392,40 +393,40 @@ static void test_refuses(void **state)
 
     (void)state;
     reset();
-    fake->open_errno = ENOENT;
+    fake_fb->open_errno = ENOENT;
     expect_refused("there is no framebuffer");
-    fake->open_errno = EACCES;
+    fake_fb->open_errno = EACCES;
     expect_refused("usermod -aG video");
     reset();
-    fake->fix.visual = FB_VISUAL_PSEUDOCOLOR;
-    fake->var.bits_per_pixel = 8;
+    fake_fb->fix.visual = FB_VISUAL_PSEUDOCOLOR;
+    fake_fb->var.bits_per_pixel = 8;
     expect_refused("pixels of 8 bits (type 0, visual 3) are not packed");
     reset();
-    fake->fix.type = FB_TYPE_PLANES;
+    fake_fb->fix.type = FB_TYPE_PLANES;
     expect_refused("not packed true colour");
     reset();
-    fake->var.grayscale = 1;
+    fake_fb->var.grayscale = 1;
     expect_refused("not packed true colour");
     reset();
-    fake->var.bits_per_pixel = 4000000000;
+    fake_fb->var.bits_per_pixel = 4000000000;
     expect_refused("not packed true colour");
     reset();
-    fake->fix.line_length = 31;
+    fake_fb->fix.line_length = 31;
     expect_refused("too few for 8 x 6");
     reset();
-    fake->fix.line_length = 0;
+    fake_fb->fix.line_length = 0;
     expect_refused("too few for 8 x 6");
     reset();
-    fake->fix.smem_len = 6 * 40 - 1;
+    fake_fb->fix.smem_len = 6 * 40 - 1;
     expect_refused("too few for 8 x 6");
     reset();
-    fake->var.yres = 0;
+    fake_fb->var.yres = 0;
     expect_refused("is 8 x 0 pixels large");
     reset();
-    fake->var.xres = 100000;
+    fake_fb->var.xres = 100000;
     expect_refused("is 100000 x 6 pixels large");
     reset();
-    fake->gone = true;
+    fake_fb->gone = true;
     expect_refused("went away");
     assert_int_equal(glint_fbdev_open(&fb, "/dev/null", &none, &error),
                      GLINT_E_DEVICE);
@@ -440,7 +441,7 @@ static void test_names(void **state)
 
     (void)state;
     reset();
-    setenv("FRAMEBUFFER", fb_path, 1);
+    setenv("FRAMEBUFFER", fake_fb_path, 1);
     assert_int_equal(glint_fbdev_open(&fb, NULL, &none, &error), GLINT_OK);
     fb.sink.close(&fb.sink);
     setenv("FRAMEBUFFER", "/nowhere/fb", 1);
@@ -459,10 +460,10 @@ static void check_console(bool taken, int during, int after)
 
     must_open(&fb, &options);
     assert_int_equal(fb.has_note, !taken);
-    assert_int_equal(fake->tty_mode, during);
+    assert_int_equal(fake_fb->tty_mode, during);
     must_put(&fb, grey(8, 6, 1));
     fb.sink.close(&fb.sink);
-    assert_int_equal(fake->tty_mode, after);
+    assert_int_equal(fake_fb->tty_mode, after);
     if (!taken)
         assert_non_null(strstr(fb.note.text, "may show in the picture"));
 }
@@ -472,13 +473,13 @@ static void test_console(void **state)
     (void)state;
     reset();
     check_console(true, KD_GRAPHICS, KD_TEXT);
-    fake->tty_mode = KD_GRAPHICS; /* left behind */
+    fake_fb->tty_mode = KD_GRAPHICS; /* left behind */
     check_console(true, KD_GRAPHICS, KD_TEXT);
-    fake->tty_mode = KD_GRAPHICS; /* of an X server */
-    fake->tty_switching = VT_PROCESS;
+    fake_fb->tty_mode = KD_GRAPHICS; /* of an X server */
+    fake_fb->tty_switching = VT_PROCESS;
     check_console(false, KD_GRAPHICS, KD_GRAPHICS);
     reset();
-    fake->tty_errno = EACCES;
+    fake_fb->tty_errno = EACCES;
     check_console(false, KD_TEXT, KD_TEXT);
 }
 
@@ -493,14 +494,14 @@ static void test_let_go(void **state)
     child = fork();
     if (child == 0) {
         check_console(true, KD_GRAPHICS, KD_TEXT);
-        fake->tty_mode = KD_GRAPHICS;
-        while (open(tty_path, O_RDWR) < 20)
+        fake_fb->tty_mode = KD_GRAPHICS;
+        while (open(fake_tty_path, O_RDWR) < 20)
             ;
         exit(0);
     }
     assert_int_equal(waitpid(child, &how, 0), child);
     assert_int_equal(how, 0);
-    assert_int_equal(fake->tty_mode, KD_GRAPHICS);
+    assert_int_equal(fake_fb->tty_mode, KD_GRAPHICS);
 }
 
 /* Ends by HOW after an odd number of frames, the second screen in view. */
@@ -515,13 +516,13 @@ static void end_child(int how)
     fb.sink.close(&fb.sink);
     must_open(&fb, &options);
     must_put(&fb, grey(8, 6, 1));
-    if (fake->tty_mode != KD_GRAPHICS || fake->var.yoffset != 6)
+    if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
         _exit(99);
     if (fork() == 0)
         exit(0); /* a child of its own changes nothing */
     while (wait(NULL) < 0)
         ;
-    if (fake->tty_mode != KD_GRAPHICS || fake->var.yoffset != 6)
+    if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
         _exit(98);
     if (how == 0)
         exit(0);
@@ -548,9 +549,9 @@ static void test_every_end(void **state)
             assert_int_equal(how, 0);
         else
             assert_int_equal(WTERMSIG(how), ends[i]);
-        assert_int_equal(fake->tty_mode, KD_TEXT);
-        assert_int_equal(fake->var.yoffset, 0);
-        assert_int_equal(fake->yoffset_at_text, 0); /* that first */
+        assert_int_equal(fake_fb->tty_mode, KD_TEXT);
+        assert_int_equal(fake_fb->var.yoffset, 0);
+        assert_int_equal(fake_fb->yoffset_at_text, 0); /* that first */
     }
 }
 
@@ -575,7 +576,8 @@ static bool live(void)
                                                        .vsync = true};
     struct glint_error error = {""};
     struct glint_fbdev fb;
-    enum glint_status status = glint_fbdev_open(&fb, fb_path, &options, &error);
+    enum glint_status status =
+        glint_fbdev_open(&fb, fake_fb_path, &options, &error);
 
     if (!status) {
         status = fb.sink.put(&fb.sink, grey(8, 6, 1), &error);
@@ -583,7 +585,7 @@ static bool live(void)
             status = fb.sink.put(&fb.sink, grey(8, 6, 2), &error);
         if (!status)
             status = fb.sink.put(&fb.sink, grey(4, 6, 3), &error);
-        fail_at = 0;
+        fake_fb_fail_at = 0;
         fb.sink.close(&fb.sink);
     }
     assert_int_equal(fb.fd, -1);
@@ -605,14 +607,14 @@ static void check_failures(bool pages)
             reset_pages();
         else
             reset();
-        fail_at = n;
+        fake_fb_fail_at = n;
         n_failed += !live();
-        n_last = n_calls;
-        fail_at = 0;
-        assert_int_equal(n_maps, 0);
+        n_last = fake_fb_calls;
+        fake_fb_fail_at = 0;
+        assert_int_equal(fake_fb_maps, 0);
         assert_int_equal(n_fds(), fds);
-        assert_int_equal(fake->tty_mode, KD_TEXT);
-        assert_int_equal(fake->var.yoffset, 0);
+        assert_int_equal(fake_fb->tty_mode, KD_TEXT);
+        assert_int_equal(fake_fb->var.yoffset, 0);
     } while (n <= n_last);
     assert_true(n_failed >= 8); /* and some calls may fail unnoticed */
     assert_true(n > 15);
@@ -628,17 +630,17 @@ static void test_every_failure(void **state)
 static int enter(void **state)
 {
     (void)state;
-    close(mkstemp(fb_path));
-    close(mkstemp(tty_path));
-    fake = __real_mmap64(NULL, sizeof *fake, PROT_READ | PROT_WRITE,
-                         MAP_SHARED | 0x20 /* MAP_ANONYMOUS */, -1, 0);
-    return fake == MAP_FAILED;
+    close(mkstemp(fake_fb_path));
+    close(mkstemp(fake_tty_path));
+    fake_fb = mmap(NULL, sizeof *fake_fb, PROT_READ | PROT_WRITE,
+                   MAP_SHARED | 0x20 /* MAP_ANONYMOUS */, -1, 0);
+    return fake_fb == MAP_FAILED;
 }
 
 static int leave(void **state)
 {
     (void)state;
-    return unlink(fb_path) | unlink(tty_path);
+    return unlink(fake_fb_path) | unlink(fake_tty_path);
 }
 
 int main(void)

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/fake_fb.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+
+#include <linux/kd.h>
+#include <linux/vt.h>
+
+char fake_fb_path[] = "/tmp/glint-test-fb-XXXXXX";
+char fake_tty_path[] = "/tmp/glint-test-tty-XXXXXX";
+struct fake_fb *fake_fb;
+int fake_fb_calls, fake_fb_fail_at, fake_fb_maps;
+
+static bool fails(void)
+{
+    return ++fake_fb_calls == fake_fb_fail_at;
+}
+
+/* -------------------------------------------------------- what is called */
+
+int __real_open64(const char *path, int flags, ...);
+int __wrap_open64(const char *path, int flags, ...);
+int __real_ioctl(int fd, unsigned long request, ...);
+int __wrap_ioctl(int fd, unsigned long request, ...);
+void *__real_mmap64(void *at, size_t bytes, int how, int flags, int fd,
+                    off_t offset);
+void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
+                    off_t offset);
+int __real_munmap(void *at, size_t bytes);
+int __wrap_munmap(void *at, size_t bytes);
+void *__real_malloc(size_t bytes);
+void *__wrap_malloc(size_t bytes);
+
+static int refuse(int number)
+{
+    errno = number;
+    return -1;
+}
+
+int __wrap_open64(const char *path, int flags, ...)
+{
+    const bool is_tty = !strcmp(path, "/dev/tty") || !strcmp(path, "/dev/tty0");
+
+    if (strcmp(path, fake_fb_path) != 0 && !is_tty)
+        return __real_open64(path, flags);
+    if (fails())
+        return refuse(EMFILE);
+    if (!strcmp(path, "/dev/tty"))
+        return refuse(ENXIO); /* as of a daemon */
+    if (is_tty)
+        return fake_fb->tty_errno ? refuse(fake_fb->tty_errno)
+                                  : __real_open64(fake_tty_path, flags);
+    return fake_fb->open_errno ? refuse(fake_fb->open_errno)
+                               : __real_open64(path, flags);
+}
+
+static int answer_pan(const struct fb_var_screeninfo *to)
+{
+    const struct fb_var_screeninfo *const v = &fake_fb->var;
+
+    fake_fb->n_pan++;
+    if (!fake_fb->can_pan || to->yoffset > v->yres_virtual - v->yres)
+        return refuse(EINVAL);
+    fake_fb->var.yoffset = to->yoffset;
+    return 0;
+}
+
+static int answer_fb(unsigned long request, void *arg)
+{
+    if (fake_fb->gone)
+        return refuse(ENODEV);
+    switch (request) {
+    case FBIOGET_FSCREENINFO:
+        memcpy(arg, &fake_fb->fix, sizeof fake_fb->fix);
+        return 0;
+    case FBIOGET_VSCREENINFO:
+        memcpy(arg, &fake_fb->var, sizeof fake_fb->var);
+        return 0;
+    case FBIOPAN_DISPLAY:
+        return answer_pan(arg);
+    case FBIOBLANK:
+        return refuse(EINVAL);
+    case FBIO_WAITFORVSYNC:
+        fake_fb->n_vsync++;
+        return fake_fb->vsync_errno ? refuse(fake_fb->vsync_errno) : 0;
+    }
+    fail_msg("ioctl %lx", request); /* FBIOPUT_VSCREENINFO above all */
+    return -1;
+}
+
+static int answer_tty(unsigned long request, void *arg, int mode)
+{
+    switch (request) {
+    case KDGETMODE:
+        *(int *)arg = fake_fb->tty_mode;
+        return 0;
+    case KDSETMODE:
+        fake_fb->tty_mode = mode;
+        if (mode == KD_TEXT)
+            fake_fb->yoffset_at_text = fake_fb->var.yoffset;
+        return 0;
+    case VT_GETMODE:
+        *(struct vt_mode *)arg =
+            (struct vt_mode){.mode = (char)fake_fb->tty_switching};
+        return 0;
+    }
+    return refuse(ENOTTY);
+}
+
+static bool is_file(int fd, const char *path)
+{
+    struct stat a, b;
+
+    return fstat(fd, &a) == 0 && stat(path, &b) == 0 && a.st_ino == b.st_ino;
+}
+
+int __wrap_ioctl(int fd, unsigned long request, ...)
+{
+    const bool is_fb = is_file(fd, fake_fb_path),
+               is_tty = is_file(fd, fake_tty_path);
+    unsigned long arg;
+    va_list args;
+
+    va_start(args, request);
+    arg = va_arg(args, unsigned long);
+    va_end(args);
+    if (!is_fb && !is_tty)
+        return __real_ioctl(fd, request, arg);
+    if (!(request == KDSETMODE && arg == KD_TEXT) && fails())
+        return refuse(EIO);
+    return is_fb ? answer_fb(request, (void *)arg) /* NOLINT */
+                 : answer_tty(request, (void *)arg, (int)arg);
+}
+
+void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
+                    off_t offset)
+{
+    void *got = MAP_FAILED;
+
+    if (fd < 0 || !is_file(fd, fake_fb_path))
+        return __real_mmap64(at, bytes, how, flags, fd, offset);
+    if (fails())
+        errno = ENOMEM;
+    else
+        got = __real_mmap64(at, bytes, how, flags, fd, offset);
+    fake_fb_maps += got != MAP_FAILED;
+    return got;
+}
+
+int __wrap_munmap(void *at, size_t bytes)
+{
+    fake_fb_maps--;
+    return __real_munmap(at, bytes);
+}
+
+void *__wrap_malloc(size_t bytes)
+{
+    return fails() ? NULL : __real_malloc(bytes);
+}
