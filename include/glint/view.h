@@ -21,7 +21,7 @@ struct glint_lamp {
     double axis[2];   /* RMS semi-axes of its extent, the major one first, in
                          tangents of angles off the axis: image over focal
                          length; 0 0: a point. Here for who makes many points
-                         of it; the picture and the feed take it for one. */
+                         of it; the picture and traced bundles take it for one. */
     double turn_deg;  /* of the major one, 0 = +x, 90 = up */
 };
 

@@ -14,27 +14,28 @@ enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
 
 /* Bundles that are looked at before most of them turn out to miss the picture:
  * 2.3 GB of them. */
-enum { MAX_FEEDS = 1 << 24 };
+enum { MAX_PLANNED = 1 << 24 };
 
 /* --------------------------------------------------------------------- plan */
 
 struct traced {
-    struct glint_feed *feed;
-    int n_feeds, max_feeds;
-    int n_dropped;                  /* bundles beyond what a frame may take */
-    struct glint_vertex **vertices; /* of each feed, in the flare's block */
+    struct glint_traced_bundle *bundle;
+    int n_bundles, max_bundles;
+    int n_dropped; /* bundles beyond what a frame may take */
+    struct glint_vertex *
+        *vertices; /* of each traced bundle, in the flare's block */
 };
 
 struct job {
     struct glint_frame *frame;
-    struct glint_feed_config cfg;
+    struct glint_traced_bundle_config cfg;
 };
 
-static struct glint_feed_config feed_config(const struct glint_frame *f,
-                                            double scale)
+static struct glint_traced_bundle_config
+traced_config(const struct glint_frame *f, double scale)
 {
-    return (struct glint_feed_config){f->setup, f->view, scale,
-                                      f->dials.fineness, f->uniform};
+    return (struct glint_traced_bundle_config){f->setup, f->view, scale,
+                                               f->dials.fineness, f->uniform};
 }
 
 /* All wavelengths of one ghost and lamp. */
@@ -43,35 +44,35 @@ static void plan_job(void *ctx, int job, int worker)
     struct job *j = ctx;
     const struct traced *const t = j->frame->traced;
     const int waves = j->frame->setup->n_wavelengths, middle = waves / 2;
-    struct glint_feed *feed = &t->feed[job * waves];
+    struct glint_traced_bundle *traced = &t->bundle[job * waves];
 
     (void)worker;
-    glint_feed_plan(&j->cfg, &feed[middle], NULL);
+    glint_traced_bundle_plan(&j->cfg, &traced[middle], NULL);
     for (int wave = 0; wave < waves; wave++)
         if (wave != middle)
-            glint_feed_plan(&j->cfg, &feed[wave], &feed[middle]);
+            glint_traced_bundle_plan(&j->cfg, &traced[wave], &traced[middle]);
 }
 
-/* N of them, of which MAX_FEEDS are as many as can be numbered and held. */
+/* N of them, of which MAX_PLANNED are as many as can be numbered and held. */
 static enum glint_status reserve_feeds(struct glint_frame *f, uint64_t n)
 {
     struct traced *const t = f->traced;
-    struct glint_feed *feed;
+    struct glint_traced_bundle *traced;
     struct glint_vertex **vertices;
 
-    if (n <= (uint64_t)t->max_feeds)
+    if (n <= (uint64_t)t->max_bundles)
         return GLINT_OK;
-    if (n > MAX_FEEDS)
+    if (n > MAX_PLANNED)
         return GLINT_E_MEMORY;
-    feed = realloc(t->feed, (size_t)n * sizeof *feed);
-    if (!feed)
+    traced = realloc(t->bundle, (size_t)n * sizeof *traced);
+    if (!traced)
         return GLINT_E_MEMORY;
-    t->feed = feed;
+    t->bundle = traced;
     vertices = realloc(t->vertices, (size_t)n * sizeof *vertices);
     if (!vertices)
         return GLINT_E_MEMORY;
     t->vertices = vertices;
-    t->max_feeds = (int)n;
+    t->max_bundles = (int)n;
     return GLINT_OK;
 }
 
@@ -93,7 +94,7 @@ static enum glint_status plan(struct glint_frame *f,
 {
     struct traced *const t = f->traced;
     const struct glint_setup *s = f->setup;
-    struct job job = {f, feed_config(f, 1)};
+    struct job job = {f, traced_config(f, 1)};
     const enum glint_status status =
         reserve_feeds(f, (uint64_t)n_lamps * (uint64_t)s->n_ghosts *
                              (uint64_t)s->n_wavelengths);
@@ -106,33 +107,34 @@ static enum glint_status plan(struct glint_frame *f,
             for (int wave = 0; wave < s->n_wavelengths; wave++)
                 if (f->only_ghost < 0 ||
                     glint_frame_is_ghost(s, ghost, f->only_ghost))
-                    t->feed[n++] = (struct glint_feed){.lamp = &lamps[lamp],
-                                                       .ghost = ghost,
-                                                       .wavelength = wave};
+                    t->bundle[n++] =
+                        (struct glint_traced_bundle){.lamp = &lamps[lamp],
+                                                     .ghost = ghost,
+                                                     .wavelength = wave};
     glint_workers_run(f->cfg.workers, n / s->n_wavelengths, plan_job, &job);
     for (int i = 0; i < n; i++)
-        if (t->feed[i].n_cells > 0)
-            t->feed[kept++] = t->feed[i];
-    t->n_feeds = kept;
+        if (t->bundle[i].n_cells > 0)
+            t->bundle[kept++] = t->bundle[i];
+    t->n_bundles = kept;
     return GLINT_OK;
 }
 
-/* What a feed's pupil sends, display white times pixels at scale 1. */
+/* What a traced bundle's pupil sends, display white times pixels at scale 1. */
 static double flux_of(const struct glint_frame *f,
-                      const struct glint_feed *feed)
+                      const struct glint_traced_bundle *traced)
 {
-    const struct glint_pupil *p = &feed->pupil;
+    const struct glint_pupil *p = &traced->pupil;
     const double area = (p->x1_mm - p->x0_mm) * 2 * p->y1_mm;
 
-    return feed->lamp->power * p->energy * area /
-           f->setup->unit_flux[feed->wavelength];
+    return traced->lamp->power * p->energy * area /
+           f->setup->unit_flux[traced->wavelength];
 }
 
 /* Pixels of the box that its light falls in. */
 static double pixels_of(const struct glint_frame *f,
-                        const struct glint_feed *feed)
+                        const struct glint_traced_bundle *traced)
 {
-    const double *s = feed->pupil.sensor_mm;
+    const double *s = traced->pupil.sensor_mm;
     const double pixel = f->view.sensor_width_mm / f->view.width;
 
     return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
@@ -150,10 +152,10 @@ static enum glint_status set_scale(struct glint_frame *frame,
     *scale = (struct glint_frame_scale){0, 0};
     if (status != GLINT_OK)
         return status;
-    for (int i = 0; i < t->n_feeds; i++) {
-        const double flux = flux_of(frame, &t->feed[i]);
+    for (int i = 0; i < t->n_bundles; i++) {
+        const double flux = flux_of(frame, &t->bundle[i]);
 
-        brightest = fmax(brightest, flux / pixels_of(frame, &t->feed[i]));
+        brightest = fmax(brightest, flux / pixels_of(frame, &t->bundle[i]));
         together += flux;
     }
     if (brightest > 0)
@@ -171,7 +173,7 @@ static int larger(int a, int b)
 
 /* A new block of exactly what was needed so far; the vertices move over. */
 static enum glint_status regrow(struct glint_frame *f,
-                                const struct glint_feed_config *cfg)
+                                const struct glint_traced_bundle_config *cfg)
 {
     struct traced *const t = f->traced;
     const size_t bytes = glint_flare_bytes(&f->cfg);
@@ -182,12 +184,12 @@ static enum glint_status regrow(struct glint_frame *f,
     if (!block)
         return GLINT_E_MEMORY;
     status = glint_flare_init(&flare, &f->cfg, block, bytes);
-    for (int i = 0; i < t->n_feeds && status == GLINT_OK; i++) {
-        const int nodes = t->feed[i].n_cells + 1;
+    for (int i = 0; i < t->n_bundles && status == GLINT_OK; i++) {
+        const int nodes = t->bundle[i].n_cells + 1;
         struct glint_bundle bundle;
         struct glint_vertex *to;
 
-        glint_feed_bundle(cfg, &t->feed[i], &bundle);
+        glint_traced_bundle_make(cfg, &t->bundle[i], &bundle);
         to = glint_flare_add(flare, &bundle);
         if (t->vertices[i])
             memcpy(to, t->vertices[i],
@@ -210,39 +212,39 @@ static void trace_job(void *ctx, int job, int worker)
     const struct traced *const t = j->frame->traced;
 
     (void)worker;
-    glint_feed_trace(&j->cfg, &t->feed[job], t->vertices[job]);
+    glint_traced_bundle_trace(&j->cfg, &t->bundle[job], t->vertices[job]);
 }
 
 /* Takes all bundles in; makes room first where there is too little. */
-static enum glint_status add_bundles(struct glint_frame *f,
-                                     const struct glint_feed_config *cfg)
+static enum glint_status
+add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
 {
     struct traced *const t = f->traced;
     int vertices = 0;
 
     t->n_dropped = 0;
-    for (int i = 0; i < t->n_feeds; i++) {
-        const int n = t->feed[i].n_cells + 1;
+    for (int i = 0; i < t->n_bundles; i++) {
+        const int n = t->bundle[i].n_cells + 1;
 
         if (i == MAX_BUNDLES || n * n > MAX_VERTICES - vertices) {
-            t->n_dropped = t->n_feeds - i; /* the weakest lamps come last */
-            t->n_feeds = i;
+            t->n_dropped = t->n_bundles - i; /* the weakest lamps come last */
+            t->n_bundles = i;
             break;
         }
         t->vertices[i] = NULL;
         vertices += n * n;
     }
-    if (!f->block || t->n_feeds > f->cfg.max_bundles ||
+    if (!f->block || t->n_bundles > f->cfg.max_bundles ||
         vertices > f->cfg.max_vertices) {
-        f->cfg.max_bundles = larger(f->cfg.max_bundles, t->n_feeds);
+        f->cfg.max_bundles = larger(f->cfg.max_bundles, t->n_bundles);
         f->cfg.max_vertices = larger(f->cfg.max_vertices, vertices);
         return regrow(f, cfg);
     }
     glint_flare_begin(f->flare);
-    for (int i = 0; i < t->n_feeds; i++) {
+    for (int i = 0; i < t->n_bundles; i++) {
         struct glint_bundle bundle;
 
-        glint_feed_bundle(cfg, &t->feed[i], &bundle);
+        glint_traced_bundle_make(cfg, &t->bundle[i], &bundle);
         t->vertices[i] = glint_flare_add(f->flare, &bundle);
     }
     return GLINT_OK;
@@ -250,7 +252,7 @@ static enum glint_status add_bundles(struct glint_frame *f,
 
 /* Bins, and where something did not fit, once more with room for it. */
 static enum glint_status bin(struct glint_frame *f,
-                             const struct glint_feed_config *cfg,
+                             const struct glint_traced_bundle_config *cfg,
                              struct glint_flare_stats *s)
 {
     for (;;) {
@@ -278,7 +280,7 @@ static enum glint_status draw(struct glint_frame *frame,
                               double scale, const struct glint_image *image,
                               struct glint_flare_stats *stats, double times[5])
 {
-    struct job job = {frame, feed_config(frame, scale)};
+    struct job job = {frame, traced_config(frame, scale)};
     enum glint_status status;
     const struct traced *t;
 
@@ -290,7 +292,7 @@ static enum glint_status draw(struct glint_frame *frame,
     if (status != GLINT_OK)
         return status;
     times[1] = now(frame);
-    glint_workers_run(frame->cfg.workers, t->n_feeds, trace_job, &job);
+    glint_workers_run(frame->cfg.workers, t->n_bundles, trace_job, &job);
     times[2] = now(frame);
     status = bin(frame, &job.cfg, stats);
     if (status != GLINT_OK)
@@ -306,14 +308,14 @@ static int n_bundles(const struct glint_frame *frame)
 {
     const struct traced *const t = frame->traced;
 
-    return t->n_feeds;
+    return t->n_bundles;
 }
 
 static int ghost(const struct glint_frame *frame, int bundle)
 {
     const struct traced *const t = frame->traced;
 
-    return t->feed[bundle].ghost;
+    return t->bundle[bundle].ghost;
 }
 
 static void finish(struct glint_frame *frame)
@@ -321,7 +323,7 @@ static void finish(struct glint_frame *frame)
     struct traced *const t = frame->traced;
 
     if (t) {
-        free(t->feed);
+        free(t->bundle);
         free(t->vertices);
     }
     free(t);

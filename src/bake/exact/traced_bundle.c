@@ -16,14 +16,14 @@ enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
 
 /* The ghost's box on the sensor, turned by the light's azimuth, meets the
  * picture. */
-static bool in_view(const struct glint_feed_config *cfg,
-                    const struct glint_feed *feed)
+static bool in_view(const struct glint_traced_bundle_config *cfg,
+                    const struct glint_traced_bundle *traced)
 {
-    const double *s = feed->pupil.sensor_mm;
+    const double *s = traced->pupil.sensor_mm;
     const double half_w = 0.5 * cfg->view.sensor_width_mm;
     const double half_h = half_w * cfg->view.height / cfg->view.width;
-    const double c = glint_cos_deg(feed->lamp->phi_deg);
-    const double d = glint_sin_deg(feed->lamp->phi_deg);
+    const double c = glint_cos_deg(traced->lamp->phi_deg);
+    const double d = glint_sin_deg(traced->lamp->phi_deg);
     const double x = 0.5 * (s[0] + s[1]);
     const double w = 0.5 * (s[1] - s[0]), h = s[3];
 
@@ -33,10 +33,10 @@ static bool in_view(const struct glint_feed_config *cfg,
 
 /* Grows the pupil by what a pixel is worth on each side: a pixel whose centre
  * lies just outside of the ghost still gets the light on its inner half. */
-static void add_rim(const struct glint_feed_config *cfg,
-                    struct glint_feed *feed)
+static void add_rim(const struct glint_traced_bundle_config *cfg,
+                    struct glint_traced_bundle *traced)
 {
-    struct glint_pupil *p = &feed->pupil;
+    struct glint_pupil *p = &traced->pupil;
     double *s = p->sensor_mm;
     const double pixel = cfg->view.sensor_width_mm / cfg->view.width;
     const double x = fmin(0.5, pixel / (s[1] - s[0] + 1e-9));
@@ -55,7 +55,7 @@ static void add_rim(const struct glint_feed_config *cfg,
 /* By the rule of lens/grid.h. And none that could step over the stop: where a
  * rim next to total reflection comes through as well, the pupil is the whole
  * front, of which the opening may be a hundredth. */
-static int cells_of(const struct glint_feed_config *cfg,
+static int cells_of(const struct glint_traced_bundle_config *cfg,
                     const struct glint_survey *s)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
@@ -76,18 +76,21 @@ static int cells_of(const struct glint_feed_config *cfg,
         fmin(GLINT_MAX_CELLS, fmax(fmax(GLINT_LEAST_CELLS, least), n))));
 }
 
-static void light_direction(const struct glint_feed *feed, double direction[3])
+static void light_direction(const struct glint_traced_bundle *traced,
+                            double direction[3])
 {
-    direction[0] = glint_sin_deg(feed->lamp->theta_deg);
+    direction[0] = glint_sin_deg(traced->lamp->theta_deg);
     direction[1] = 0;
-    direction[2] = glint_cos_deg(feed->lamp->theta_deg);
+    direction[2] = glint_cos_deg(traced->lamp->theta_deg);
 }
 
 /* The barrels that cut, the one that is most of the outline first: the maximum
  * over the others may have kinks. */
-static void choose_cuts(struct glint_feed *feed, struct glint_survey *survey)
+static void choose_cuts(struct glint_traced_bundle *traced,
+                        struct glint_survey *survey)
 {
-    for (feed->n_cuts = 0; feed->n_cuts < GLINT_FEED_CUTS; feed->n_cuts++) {
+    for (traced->n_cuts = 0; traced->n_cuts < GLINT_TRACED_CUTS;
+         traced->n_cuts++) {
         int most = 0;
 
         for (int k = 1; k < survey->n_cuts; k++)
@@ -96,45 +99,46 @@ static void choose_cuts(struct glint_feed *feed, struct glint_survey *survey)
         if (survey->n_cuts == 0 || survey->cut_weight[most] == 0)
             break;
         survey->cut_weight[most] = 0;
-        feed->cut_event[feed->n_cuts] = survey->cut_event[most];
+        traced->cut_event[traced->n_cuts] = survey->cut_event[most];
     }
 }
 
-void glint_feed_plan(const struct glint_feed_config *cfg,
-                     struct glint_feed *feed, const struct glint_feed *near)
+void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
+                              struct glint_traced_bundle *traced,
+                              const struct glint_traced_bundle *near)
 {
     const struct glint_setup *s = cfg->setup;
     struct glint_survey survey;
     struct glint_path path;
     double direction[3];
 
-    glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
-                    s->wavelength_nm[feed->wavelength]);
-    feed->n_cells = 0;
-    feed->found = glint_pupil_find(&feed->pupil, &path, feed->lamp->theta_deg,
-                                   s->optics.stop_radius_mm,
-                                   near && near->found ? &near->pupil : NULL);
+    glint_path_init(&path, s->lens, &s->ghost[traced->ghost],
+                    s->wavelength_nm[traced->wavelength]);
+    traced->n_cells = 0;
+    traced->found = glint_pupil_find(
+        &traced->pupil, &path, traced->lamp->theta_deg,
+        s->optics.stop_radius_mm, near && near->found ? &near->pupil : NULL);
     /* some head-room over what the search for the pupil saw */
-    feed->energy_unit = 1.5 * feed->pupil.energy;
-    if (feed->found && in_view(cfg, feed)) {
-        light_direction(feed, direction);
-        glint_survey_run(&survey, &path, &feed->pupil, direction,
+    traced->energy_unit = 1.5 * traced->pupil.energy;
+    if (traced->found && in_view(cfg, traced)) {
+        light_direction(traced, direction);
+        glint_survey_run(&survey, &path, &traced->pupil, direction,
                          s->optics.stop_radius_mm, SURVEY);
-        choose_cuts(feed, &survey);
-        feed->n_cells = cells_of(cfg, &survey);
-        add_rim(cfg, feed);
+        choose_cuts(traced, &survey);
+        traced->n_cells = cells_of(cfg, &survey);
+        add_rim(cfg, traced);
     }
 }
 
 /* The colour of the bundle, and what it takes to bring its largest channel to
  * 1: saturated lamps exceed the range of the format by far. */
 static double colour_of(const struct glint_setup *s,
-                        const struct glint_feed *feed, double rgb[3])
+                        const struct glint_traced_bundle *traced, double rgb[3])
 {
     double largest = 0;
 
     for (int c = 0; c < 3; c++) {
-        rgb[c] = s->rgb[feed->wavelength][c] * feed->lamp->rgb[c];
+        rgb[c] = s->rgb[traced->wavelength][c] * traced->lamp->rgb[c];
         largest = fmax(largest, fabs(rgb[c]));
     }
     for (int c = 0; c < 3 && largest > 0; c++)
@@ -142,24 +146,24 @@ static double colour_of(const struct glint_setup *s,
     return largest;
 }
 
-void glint_feed_bundle(const struct glint_feed_config *cfg,
-                       const struct glint_feed *feed,
-                       struct glint_bundle *bundle)
+void glint_traced_bundle_make(const struct glint_traced_bundle_config *cfg,
+                              const struct glint_traced_bundle *traced,
+                              struct glint_bundle *bundle)
 {
     const struct glint_setup *s = cfg->setup;
-    const struct glint_pupil *p = &feed->pupil;
-    const double n = feed->n_cells;
+    const struct glint_pupil *p = &traced->pupil;
+    const double n = traced->n_cells;
     const double area = (p->x1_mm - p->x0_mm) / n * (2 * p->y1_mm / n);
     double rgb[3];
-    const double flux = colour_of(s, feed, rgb) * cfg->scale *
-                        feed->lamp->power *
-                        glint_cos_deg(feed->lamp->theta_deg) * area *
-                        feed->energy_unit / s->unit_flux[feed->wavelength];
+    const double flux = colour_of(s, traced, rgb) * cfg->scale *
+                        traced->lamp->power *
+                        glint_cos_deg(traced->lamp->theta_deg) * area *
+                        traced->energy_unit / s->unit_flux[traced->wavelength];
     int exponent = 0;
     const double mantissa =
         flux > 0 && isfinite(flux) ? frexp(flux, &exponent) : 0;
 
-    bundle->n_cells = feed->n_cells;
+    bundle->n_cells = traced->n_cells;
     bundle->flux_q31 = (int32_t)floor(mantissa * 0x1p31);
     bundle->flux_exponent = exponent;
     for (int c = 0; c < 3; c++)
@@ -176,15 +180,15 @@ static double barrel_value(const struct glint_path *path, int k,
     return 0.5 * (1 + x * x + y * y);
 }
 
-static void barrel_values(const struct glint_feed *feed,
+static void barrel_values(const struct glint_traced_bundle *traced,
                           const struct glint_path *path, double (*hits)[2],
                           double value[2])
 {
     value[0] = value[1] = 0;
-    for (int k = 0; k < feed->n_cuts; k++) {
+    for (int k = 0; k < traced->n_cuts; k++) {
         double *into = &value[k > 0];
 
-        *into = fmax(*into, barrel_value(path, feed->cut_event[k], hits));
+        *into = fmax(*into, barrel_value(path, traced->cut_event[k], hits));
     }
 }
 
@@ -217,14 +221,14 @@ static void quantise(const struct landing *l, struct glint_vertex *v)
 
 /* From the light's frame to the picture; MIRROR -1 is the ray on the other side
  * of the light's plane. */
-static struct landing land(const struct glint_feed_config *cfg,
-                           const struct glint_feed *feed,
+static struct landing land(const struct glint_traced_bundle_config *cfg,
+                           const struct glint_traced_bundle *traced,
                            const struct glint_ray *ray, double mirror)
 {
     const double scale = cfg->view.width / cfg->view.sensor_width_mm;
     const double stop = cfg->setup->optics.stop_radius_mm;
-    const double c = glint_cos_deg(feed->lamp->phi_deg);
-    const double s = glint_sin_deg(feed->lamp->phi_deg);
+    const double c = glint_cos_deg(traced->lamp->phi_deg);
+    const double s = glint_sin_deg(traced->lamp->phi_deg);
     const double sensor_y = mirror * ray->sensor_y_mm;
     const double stop_y = mirror * ray->stop_y_mm;
 
@@ -234,19 +238,20 @@ static struct landing land(const struct glint_feed_config *cfg,
                                  scale * (ray->sensor_x_mm * s + sensor_y * c),
                             .stop_x = (ray->stop_x_mm * c - stop_y * s) / stop,
                             .stop_y = (ray->stop_x_mm * s + stop_y * c) / stop,
-                            .energy = fmin(1, ray->energy / feed->energy_unit)};
+                            .energy =
+                                fmin(1, ray->energy / traced->energy_unit)};
 }
 
-static void trace_row(const struct glint_feed_config *cfg,
-                      const struct glint_feed *feed,
+static void trace_row(const struct glint_traced_bundle_config *cfg,
+                      const struct glint_traced_bundle *traced,
                       const struct glint_path *path, int j,
                       struct glint_vertex *row, struct glint_vertex *mirrored)
 {
-    const struct glint_pupil *p = &feed->pupil;
-    const int n = feed->n_cells;
+    const struct glint_pupil *p = &traced->pupil;
+    const int n = traced->n_cells;
     double direction[3];
 
-    light_direction(feed, direction);
+    light_direction(traced, direction);
     for (int i = 0; i <= n; i++) {
         double hits[GLINT_MAX_EVENTS + 1][2];
         struct landing here, there;
@@ -257,26 +262,26 @@ static void trace_row(const struct glint_feed_config *cfg,
                         p->y1_mm * (2.0 * j - n) / n, direction, &ray,
                         hits) != GLINT_RAY_OK)
             continue;
-        here = land(cfg, feed, &ray, 1);
-        there = land(cfg, feed, &ray, -1);
-        barrel_values(feed, path, hits, here.barrel);
-        barrel_values(feed, path, hits, there.barrel);
+        here = land(cfg, traced, &ray, 1);
+        there = land(cfg, traced, &ray, -1);
+        barrel_values(traced, path, hits, here.barrel);
+        barrel_values(traced, path, hits, there.barrel);
         quantise(&here, &row[i]);
         quantise(&there, &mirrored[i]);
     }
 }
 
-void glint_feed_trace(const struct glint_feed_config *cfg,
-                      const struct glint_feed *feed,
-                      struct glint_vertex *vertex)
+void glint_traced_bundle_trace(const struct glint_traced_bundle_config *cfg,
+                               const struct glint_traced_bundle *traced,
+                               struct glint_vertex *vertex)
 {
     const struct glint_setup *s = cfg->setup;
-    const int n = feed->n_cells;
+    const int n = traced->n_cells;
     struct glint_path path;
 
-    glint_path_init(&path, s->lens, &s->ghost[feed->ghost],
-                    s->wavelength_nm[feed->wavelength]);
+    glint_path_init(&path, s->lens, &s->ghost[traced->ghost],
+                    s->wavelength_nm[traced->wavelength]);
     for (int j = 0; j <= n / 2; j++)
-        trace_row(cfg, feed, &path, j, vertex + (size_t)j * (size_t)(n + 1),
+        trace_row(cfg, traced, &path, j, vertex + (size_t)j * (size_t)(n + 1),
                   vertex + (size_t)(n - j) * (size_t)(n + 1));
 }
