@@ -1,6 +1,32 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ *
+ * glint/engine.h - pictures in, pictures with flares out: lamps are found and
+ * followed, and their ghosts behind a baked lens drawn at a suitable exposure.
+ *
+ *     glint_engine_defaults(&cfg, width, height);           once
+ *     cfg.model = &lens;                                    glint_lens_open()
+ *     glint_engine_create(&engine, &cfg, &error);
+ *     n = glint_engine_find(engine, &image, elapsed_us, lamps, max);
+ *     glint_engine_draw(engine, lamps, n, &image, &report);  each picture
+ *     glint_engine_destroy(engine);
+ *
+ * This is what glint overlay and glint live draw with, for programs on
+ * machines with floating point and malloc: libglint-engine.a over libglint.a.
+ * It needs neither an operating system nor libglint-bake.a; a clock is handed
+ * in. Where there is no malloc, glint/flare.h draws by itself.
+ */
 #ifndef GLINT_ENGINE_H
 #define GLINT_ENGINE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "glint/dials.h"
+#include "glint/image.h"
+#include "glint/model.h"
+#include "glint/status.h"
+#include "glint/view.h"
+#include "glint/workers.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -8,6 +34,91 @@ extern "C" {
 
 /* Seconds since any moment, never falling. */
 typedef double glint_clock_fn(void);
+
+enum { GLINT_ENGINE_MAX_LAMPS = 1024 }; /* of one picture */
+
+struct glint_engine_config {
+    int width, height;              /* of the pictures, 1 .. GLINT_MAX_SIDE */
+    const struct glint_lens *model; /* kept; to be set */
+    struct glint_workers *workers;  /* kept; NULL: serial. Changes no output */
+    unsigned sets; /* instruction sets, as glint/flare.h has them; 0: plain C */
+    glint_clock_fn *clock; /* kept; NULL: reports have no times, and no budget
+                              is kept */
+
+    /* The camera: sides of the stop, 0 (a circle) or 3 to 64, the first corner
+     * of it, and the sensor's size; 0: the film of the model. */
+    int n_blades;
+    double blade_rotation_deg, sensor_width_mm, sensor_height_mm;
+
+    /* How a picture is searched: how bright a lamp must be and down to what it
+     * extends, in stops from the picture's white; how far clipped pixels exceed
+     * white, below 0: as the halo of each lamp has it; lamps at most. */
+    double threshold_ev[2], headroom_ev;
+    int max_found; /* 1 .. GLINT_ENGINE_MAX_LAMPS / 2 */
+
+    /* How bright the flare comes out: strength, 0 .. 100, 0.5 is a quarter of
+     * white at its brightest, whatever lamps and lens; or, where by_hand is not
+     * 0, exposure_ev stops. Either times gain. */
+    double strength, exposure_ev, gain;
+    int by_hand;
+
+    struct glint_dials dials;
+    double budget_ms; /* of a frame, which turns the dials; 0: none */
+
+    /* What drawing may take. 0 bytes: what it needs, exactly, and more as a
+     * frame needs more; else these, and what does not fit is left out and
+     * counted. ARENA, aligned to 64, is kept; NULL: they are taken. */
+    void *arena;
+    size_t arena_bytes;
+};
+
+struct glint_engine_report {
+    int lamps;           /* that were given */
+    int lamps_beyond;    /* of these, farther out than the model goes */
+    int lights;          /* drawn, after merging those too near or too many */
+    int ghosts, bundles; /* that are seen; of rays */
+    int dropped_bundles; /* for want of memory */
+    int dropped_cells;   /* of what was drawn: where rays were lost */
+    size_t bytes;        /* that drawing has */
+    size_t need_bytes;   /* that would have drawn everything, exactly */
+    double scale;        /* that powers were multiplied by */
+    double plan_ms, bin_ms, draw_ms;
+    double quality; /* that a budget chose; below 0: there is none */
+};
+
+struct glint_engine; /* opaque */
+
+/* What glint overlay draws with, but for model and workers. */
+void glint_engine_defaults(struct glint_engine_config *cfg, int width,
+                           int height);
+
+/* Makes an engine; CFG is copied. GLINT_E_ARGUMENT, GLINT_E_LENS,
+ * GLINT_E_MEMORY with ERROR. Draws small pictures to see how bright the lens
+ * answers. */
+enum glint_status glint_engine_create(struct glint_engine **engine,
+                                      const struct glint_engine_config *cfg,
+                                      struct glint_error *error);
+void glint_engine_destroy(struct glint_engine *engine); /* or NULL */
+
+/* Changes the dials for the frames to come. */
+void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials);
+
+/* Writes the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
+ * ELAPSED_US after the one before: lamps are followed from picture to picture,
+ * and rise and fade. 0: a picture by itself. The strongest first, at most MAX;
+ * returns how many. */
+int glint_engine_find(struct glint_engine *engine,
+                      const struct glint_image *image, int32_t elapsed_us,
+                      struct glint_lamp *lamps, int max);
+
+/* Adds the flare of LAMPS to IMAGE: those found last, for which the exposure
+ * follows those of the pictures before, or any others, N at most
+ * GLINT_ENGINE_MAX_LAMPS, where N 0 leaves it as it is. GLINT_E_ARGUMENT: IMAGE
+ * has another size. GLINT_E_MEMORY. */
+enum glint_status glint_engine_draw(struct glint_engine *engine,
+                                    const struct glint_lamp *lamps, int n,
+                                    const struct glint_image *image,
+                                    struct glint_engine_report *report);
 
 #ifdef __cplusplus
 }

@@ -11,7 +11,7 @@
 #include "glint/profile.h"
 #include "glint/lamp_tracker.h"
 
-enum { GLINT_LAMP_DETECTOR_MAX = 1024 };
+enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
     double headroom_ev; /* how far over white clipped pixels really are; below

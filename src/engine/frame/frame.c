@@ -469,6 +469,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->held_samples = glint_flare_held(frame->flare);
     report->arena_bytes = frame->bytes;
     report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
+    report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
     report->ghosts = count_ghosts(frame, n_drawn(frame, report));
     return GLINT_OK;
 }

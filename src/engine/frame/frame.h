@@ -108,7 +108,8 @@ struct glint_frame_report {
     int ghosts, tiles;
     int held_samples;   /* of a linear picture, saturated */
     size_t arena_bytes; /* what the run-time half was given */
-    size_t peak_bytes;  /* what its largest frame took of it */
+    size_t peak_bytes;  /* what this frame took of it */
+    size_t need_bytes;  /* what would have drawn all of it, exactly */
     double plan_ms, trace_ms, bin_ms, draw_ms;
     double predicted_ms, quality; /* with a budget, else 0 and -1 */
     double calibrated_minsn;      /* that predictions rest on, or 0 */

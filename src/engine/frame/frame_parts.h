@@ -29,6 +29,10 @@ bool glint_frame_is_served(struct glint_frame *frame,
 size_t glint_frame_bytes_used(const struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
+/* What would have drawn all of it. */
+size_t glint_frame_bytes_needed(const struct glint_frame *frame,
+                                const struct glint_flare_stats *stats);
+
 /* Of LAMPS, as the plan predicts without drawing anything; {0, 0}: there is no
  * light. GLINT_E_MEMORY. */
 enum glint_status glint_frame_plan_scale(struct glint_frame *frame,

@@ -161,3 +161,16 @@ size_t glint_frame_bytes_used(const struct glint_frame *f,
     used.max_tile_refs = s->tile_refs;
     return glint_flare_bytes(&used);
 }
+
+size_t glint_frame_bytes_needed(const struct glint_frame *f,
+                                const struct glint_flare_stats *s)
+{
+    struct glint_flare_config needed = f->cfg;
+
+    needed.max_bundles = bundles_within(f, s->need_bundles);
+    needed.max_vertices = s->need_vertices;
+    needed.max_primitives = s->need_primitives;
+    needed.max_refs = s->need_refs;
+    needed.max_tile_refs = s->need_tile_refs;
+    return glint_flare_bytes(&needed);
+}

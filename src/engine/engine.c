@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT */
+#include "glint/engine.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/detector.h"
+#include "engine/frame/area.h"
+#include "engine/frame/frame.h"
+#include "engine/strength.h"
+#include "glint/kernels.h"
+
+struct glint_engine {
+    struct glint_setup setup;
+    struct glint_frame frame;
+    struct glint_lamp_detector detector;
+    struct glint_response response;
+    struct glint_strength strength;
+    int n_found;
+    int32_t elapsed_us; /* between the pictures searched last */
+    struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
+    double level[GLINT_LAMP_DETECTOR_MAX]; /* of what was found */
+};
+
+void glint_engine_defaults(struct glint_engine_config *cfg, int width,
+                           int height)
+{
+    *cfg = (struct glint_engine_config){.width = width,
+                                        .height = height,
+                                        .sets = glint_sets_here(),
+                                        .n_blades = 8,
+                                        .threshold_ev = {-0.1, -0.15},
+                                        .headroom_ev = -1,
+                                        .max_found = 16,
+                                        .strength = 0.5,
+                                        .gain = 1,
+                                        .dials = glint_dials_at(1 << 14)};
+}
+
+/* NULL, or what is out of range. */
+static const char *check(const struct glint_engine_config *c)
+{
+    if (c->width < 1 || c->width > GLINT_MAX_SIDE || c->height < 1 ||
+        c->height > GLINT_MAX_SIDE)
+        return "pictures have 1 to 8192 pixels a side";
+    if (!c->model)
+        return "there is no model";
+    if (c->max_found < 1 || c->max_found > GLINT_ENGINE_MAX_LAMPS / 2)
+        return "1 to 512 lamps can be looked for";
+    if (!(c->strength >= 0 && c->strength <= 100) || !(c->gain >= 0) ||
+        !(fabs(c->exposure_ev) <= 100))
+        return "the exposure is out of range";
+    if (!(c->threshold_ev[0] <= 0 && c->threshold_ev[0] >= -20 &&
+          c->threshold_ev[1] >= -20 &&
+          c->threshold_ev[1] <= c->threshold_ev[0]))
+        return "the thresholds are out of range";
+    return NULL;
+}
+
+/* ------------------------------------------------------------------- making */
+
+static enum glint_status set_up(struct glint_engine *e,
+                                const struct glint_engine_config *c,
+                                struct glint_error *error)
+{
+    static const double wavelength_nm[] = {650, 532, 450};
+    const enum glint_status status =
+        glint_setup_from_model(&e->setup, c->model, c->n_blades,
+                               c->blade_rotation_deg, wavelength_nm, 3, error);
+
+    /* the sparse basis holds its three wavelengths and no others */
+    if (status == GLINT_OK && c->model->header->basis != GLINT_BASIS_SPARSE)
+        glint_setup_spread(&e->setup, c->model);
+    return status;
+}
+
+static struct glint_view view_of(const struct glint_engine_config *c)
+{
+    const struct glint_model_header *h = c->model->header;
+    const double width_mm = c->sensor_width_mm > 0
+                                ? c->sensor_width_mm
+                                : glint_real_value(h->film_width_mm);
+    const double height_mm = c->sensor_height_mm > 0
+                                 ? c->sensor_height_mm
+                                 : glint_real_value(h->film_height_mm);
+
+    return glint_view_fit(c->width, c->height, width_mm, height_mm);
+}
+
+static enum glint_status open_frame(struct glint_engine *e,
+                                    const struct glint_engine_config *c)
+{
+    struct glint_frame *f = &e->frame;
+
+    glint_frame_init(f, &e->setup, view_of(c), c->workers);
+    f->lens = c->model;
+    f->clock = c->clock;
+    f->cfg.sets = c->sets;
+    f->dials = f->asked = c->dials;
+    if (c->budget_ms <= 0 || !c->clock)
+        return GLINT_OK;
+    glint_budget_init(&f->budget, c->budget_ms);
+    f->dials = glint_budget_dials(&f->budget, &f->dials);
+    return glint_frame_calibrate(f);
+}
+
+static enum glint_status open_detector(struct glint_engine *e,
+                                       const struct glint_engine_config *c)
+{
+    struct glint_lamp_finder_config cfg;
+
+    glint_lamp_finder_defaults(&cfg, c->width, c->height);
+    cfg.threshold_high_q8 = (int32_t)floor(256 * c->threshold_ev[0] + 0.5);
+    cfg.threshold_low_q8 = (int32_t)floor(256 * c->threshold_ev[1] + 0.5);
+    e->detector.headroom_ev = c->headroom_ev;
+    e->detector.max = c->max_found;
+    return glint_lamp_detector_open(&e->detector, &cfg);
+}
+
+static enum glint_status make(struct glint_engine *e,
+                              const struct glint_engine_config *c,
+                              struct glint_error *error)
+{
+    enum glint_status status = set_up(e, c, error);
+
+    if (status != GLINT_OK)
+        return status;
+    glint_strength_defaults(&e->strength);
+    e->strength.asked = c->strength;
+    e->strength.is_physical = c->by_hand != 0;
+    e->strength.exposure_ev = c->exposure_ev;
+    e->strength.gain = c->gain;
+    status = open_frame(e, c);
+    if (status == GLINT_OK && !c->by_hand)
+        status =
+            glint_response_measure(&e->frame, c->arena_bytes, &e->response);
+    if (status == GLINT_OK)
+        status = open_detector(e, c);
+    if (status == GLINT_OK && c->arena_bytes)
+        status = glint_frame_reserve(&e->frame, c->arena, c->arena_bytes,
+                                     GLINT_ENGINE_MAX_LAMPS, 2 * c->max_found);
+    if (status != GLINT_OK)
+        snprintf(error->text, sizeof error->text, "%s",
+                 glint_status_text(status));
+    return status;
+}
+
+enum glint_status glint_engine_create(struct glint_engine **engine,
+                                      const struct glint_engine_config *cfg,
+                                      struct glint_error *error)
+{
+    const char *const wrong = check(cfg);
+    struct glint_engine *e;
+    enum glint_status status;
+
+    *engine = NULL;
+    if (wrong) {
+        snprintf(error->text, sizeof error->text, "%s", wrong);
+        return GLINT_E_ARGUMENT;
+    }
+    e = calloc(1, sizeof *e);
+    if (!e) {
+        snprintf(error->text, sizeof error->text, "no memory");
+        return GLINT_E_MEMORY;
+    }
+    status = make(e, cfg, error);
+    if (status == GLINT_OK)
+        *engine = e;
+    else
+        glint_engine_destroy(e);
+    return status;
+}
+
+void glint_engine_destroy(struct glint_engine *engine)
+{
+    if (!engine)
+        return;
+    glint_lamp_detector_close(&engine->detector);
+    glint_frame_finish(&engine->frame);
+    free(engine);
+}
+
+void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials)
+{
+    struct glint_frame *f = &engine->frame;
+
+    f->dials = f->asked = dials;
+    if (f->budget.ms > 0)
+        f->dials = glint_budget_dials(&f->budget, &dials);
+}
+
+/* ----------------------------------------------------------------- pictures */
+
+int glint_engine_find(struct glint_engine *engine,
+                      const struct glint_image *image, int32_t elapsed_us,
+                      struct glint_lamp *lamps, int max)
+{
+    struct glint_engine *e = engine;
+    const int n = glint_lamp_detector_frame(&e->detector, image, elapsed_us,
+                                            &e->frame.view,
+                                            e->setup.optics.focal_mm, e->lamp);
+
+    e->elapsed_us = elapsed_us;
+    e->n_found = n < max ? n : max;
+    for (int i = 0; i < e->n_found; i++)
+        e->level[i] = e->detector.track[i].level_q15 / 32768.0;
+    memcpy(lamps, e->lamp, (size_t)e->n_found * sizeof *lamps);
+    return e->n_found;
+}
+
+/* Whether LAMPS are those found last; their powers may have changed. */
+static bool are_found(const struct glint_engine *e,
+                      const struct glint_lamp *lamps, int n)
+{
+    for (int i = 0; i < n && n == e->n_found; i++)
+        if (lamps[i].theta_deg != e->lamp[i].theta_deg ||
+            lamps[i].phi_deg != e->lamp[i].phi_deg)
+            return false;
+    return n == e->n_found;
+}
+
+/* Sets what the powers of N lamps are multiplied by, and holds those that are
+ * too bright yet. */
+static void expose(struct glint_engine *e, int n, bool is_found)
+{
+    const double pixels = (double)e->frame.view.width * e->frame.view.height;
+    const struct glint_strength_lamps lamps = {
+        e->lamp, is_found ? e->level : NULL, n, pixels};
+    const bool is_new =
+        !is_found || glint_lamp_tracker_was_cut(e->detector.tracks);
+
+    glint_strength_expose(&e->strength, &e->response, &lamps,
+                          is_new ? 0 : e->elapsed_us);
+}
+
+static void set_report(const struct glint_engine *e,
+                       const struct glint_frame_report *r,
+                       struct glint_engine_report *report)
+{
+    *report = (struct glint_engine_report){
+        .lamps = r->lights,
+        .lamps_beyond = r->beyond_lights,
+        .lights = r->drawn_lights,
+        .ghosts = r->ghosts,
+        .bundles = r->stats.bundles,
+        .dropped_bundles = r->stats.dropped_bundles,
+        .dropped_cells = r->stats.dropped_cells,
+        .bytes = r->arena_bytes,
+        .need_bytes = r->need_bytes,
+        .scale = e->strength.scale,
+        .plan_ms = r->plan_ms,
+        .bin_ms = r->bin_ms,
+        .draw_ms = r->draw_ms,
+        .quality = r->quality};
+}
+
+enum glint_status glint_engine_draw(struct glint_engine *engine,
+                                    const struct glint_lamp *lamps, int n,
+                                    const struct glint_image *image,
+                                    struct glint_engine_report *report)
+{
+    struct glint_engine *e = engine;
+    struct glint_frame *f = &e->frame;
+    struct glint_frame_report drawn;
+    enum glint_status status;
+    bool is_found;
+
+    if (image->width != f->view.width || image->height != f->view.height ||
+        n < 0 || n > GLINT_ENGINE_MAX_LAMPS)
+        return GLINT_E_ARGUMENT;
+    is_found = are_found(e, lamps, n);
+    e->n_found = is_found ? n : 0;
+    memcpy(e->lamp, lamps, (size_t)n * sizeof *lamps);
+    expose(e, n, is_found);
+    if (f->budget.ms <= 0) /* there is time for a picture by itself */
+        f->dials.area_points =
+            is_found && e->elapsed_us
+                ? f->asked.area_points
+                : 1 + GLINT_AREA_STILL * (f->asked.area_points - 1);
+    status = glint_frame_draw(f, e->lamp, e->strength.scale > 0 ? n : 0,
+                              e->strength.scale, image, &drawn);
+    drawn.lights = n;
+    set_report(e, &drawn, report);
+    return status;
+}
