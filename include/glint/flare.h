@@ -139,7 +139,9 @@ struct glint_flare_config {
 struct glint_flare_stats {
     int bundles, vertices, primitives, refs, tile_refs; /* as drawn */
     int need_bundles, need_vertices, need_primitives, need_refs,
-        need_tile_refs;  /* what would have drawn everything */
+        need_tile_refs;  /* what would have drawn everything, exactly where
+                            there is room for need_bundles, and by cells for
+                            need_vertices and then need_primitives */
     int dropped_bundles; /* left out for want of capacity */
     int dropped_cells;   /* of bundles that were drawn: with a lost ray, a
                             vertex out of range, or no area */
@@ -151,6 +153,23 @@ struct glint_flare_stats {
 };
 
 struct glint_flare; /* opaque, in the caller's memory */
+
+/* What a newcomer should start from, for pictures of WIDTH x HEIGHT; without
+ * capacities, workers and instruction sets. */
+void glint_flare_defaults(struct glint_flare_config *cfg, int width,
+                          int height);
+
+/* Sets the capacities, by edges, for frames of N_LIGHTS through LENS in N_WAVES
+ * wavelengths: as many bundles as there can be, and edges enough for most
+ * frames. Statistics tell what would have drawn everything. */
+void glint_flare_capacities(struct glint_flare_config *cfg,
+                            const struct glint_lens *lens, int n_lights,
+                            int n_waves);
+
+/* The same for a frame through LENS of a picture in codes: waves and
+ * pixels_per_mm are to be set. */
+void glint_flare_frame_defaults(struct glint_flare_frame *frame,
+                                const struct glint_lens *lens);
 
 /* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
 size_t glint_flare_bytes(const struct glint_flare_config *cfg);

@@ -141,7 +141,18 @@ static int32_t light_limit_q8(const struct glint_flare *f)
     return (int32_t)(share_q8 < GLINT_LIMIT_Q8 ? share_q8 : GLINT_LIMIT_Q8);
 }
 
-static void emit_bundle(struct glint_flare *f, int bundle, int worker)
+static int add_refs(const struct glint_flare *f, int refs, int first, int n)
+{
+    const struct glint_edge *edge = glint_by_edges_of(f)->edge + first;
+
+    for (int k = 0; k < n; k++)
+        refs = glint_flare_add_need(refs, glint_edge_span(&edge[k], &f->bins));
+    return refs;
+}
+
+/* BINS: to count the entries of a bundle that finds no room, or NULL. */
+static void emit_bundle(struct glint_flare *f, int bundle, int worker,
+                        const struct glint_bins *bins)
 {
     const struct glint_by_edges *own = glint_by_edges_of(f);
     struct glint_plan_scratch *plan = f->worker[worker].plan;
@@ -158,7 +169,8 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker)
                                       .rows = w->rows,
                                       .edge = own->edge + w->first_edge +
                                               w->n_edges,
-                                      .max_edges = w->max_edges - w->n_edges};
+                                      .max_edges = w->max_edges - w->n_edges,
+                                      .bins = bins};
 
     if (f->plan.frame) {
         glint_plan_transfer(&f->plan, &f->planned[bundle], &plan->transfer);
@@ -174,8 +186,13 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker)
     slot->n_dropped = ghost.n_dropped;
     slot->n_held = ghost.n_held;
     slot->n_merged = 0;
-    if (ghost.n_edges > ghost.max_edges)
+    slot->refs = 0;
+    if (ghost.n_edges > ghost.max_edges) {
+        if (bins)
+            slot->refs = add_refs(f, ghost.more_refs,
+                                  w->first_edge + w->n_edges, ghost.max_edges);
         return;
+    }
     slot->first = w->first_edge + w->n_edges;
     w->n_edges += ghost.n_edges;
 }
@@ -203,7 +220,7 @@ static void emit_job(void *ctx, int job, int worker)
     struct glint_flare *f = ctx;
     const int bundle = glint_by_edges_of(f)->order[job];
 
-    emit_bundle(f, bundle, worker);
+    emit_bundle(f, bundle, worker, NULL);
     f->slot[bundle].worker = worker;
     count_bundle(f, bundle, worker);
 }
@@ -251,7 +268,7 @@ static void emit_leftovers(struct glint_flare *f)
 
             if (f->slot[i].n > w->max_edges - w->n_edges)
                 continue;
-            emit_bundle(f, i, k);
+            emit_bundle(f, i, k, NULL);
             f->slot[i].worker = k;
             count_bundle(f, i, k);
         }
@@ -266,11 +283,15 @@ static void emit_in_order(struct glint_flare *f)
     share_out(f, 1);
     clear_counts(f);
     for (int i = 0; i < f->n_bundles; i++) {
-        emit_bundle(f, i, 0);
-        f->slot[i].worker = 0;
-        full |= f->slot[i].first < 0;
+        struct glint_bundle_slot *slot = &f->slot[i];
+
+        emit_bundle(f, i, 0, &f->bins);
+        slot->worker = 0;
+        full |= slot->first < 0;
+        if (full && slot->first >= 0)
+            slot->refs = add_refs(f, 0, slot->first, slot->n);
         if (full)
-            f->slot[i].first = -1;
+            slot->first = -1;
         count_bundle(f, i, 0);
     }
 }
@@ -288,6 +309,8 @@ static void emit(struct glint_flare *f)
     for (int i = 0; i < f->n_bundles; i++) {
         f->stats.need_primitives =
             glint_flare_add_need(f->stats.need_primitives, f->slot[i].n);
+        f->stats.need_refs =
+            glint_flare_add_need(f->stats.need_refs, f->slot[i].refs);
         if (f->slot[i].first >= 0)
             f->n_drawn = i + 1;
     }
@@ -360,7 +383,8 @@ static void bin(struct glint_flare *flare)
     glint_by_edges_of(flare)->limit_q8 = light_limit_q8(flare);
     flare->n_drawn = 0;
     emit(flare);
-    s->need_refs = s->refs = place_refs(flare);
+    s->refs = place_refs(flare);
+    s->need_refs = glint_flare_add_need(s->need_refs, s->refs);
     if (s->refs > flare->cfg.max_refs) {
         drop_refs(flare);
         clear_counts(flare);

@@ -60,9 +60,9 @@ static double pixels_per_mm(const struct glint_model_header *h,
 }
 
 /* A lamp that is seen at (X, Y). */
-static struct glint_light beam_at(const struct glint_model_header *h,
-                                  const struct glint_image *image, int x, int y,
-                                  double power)
+static struct glint_light light_at(const struct glint_model_header *h,
+                                   const struct glint_image *image, int x,
+                                   int y, double power)
 {
     const double dx = x + 0.5 - image->width / 2.0;
     const double dy = image->height / 2.0 - y - 0.5;
@@ -79,31 +79,24 @@ static struct glint_light beam_at(const struct glint_model_header *h,
 }
 
 static int draw(const struct glint_lens *lens, const struct glint_image *image,
-                const struct glint_light *beam)
+                const struct glint_light *light)
 {
     struct glint_wave wave[WAVES];
-    const struct glint_flare_frame rays = {
-        .lens = lens,
-        .wave = wave,
-        .n_waves = WAVES,
-        .pixels_per_mm = real_of(pixels_per_mm(lens->header, image)),
-        .fineness = 64,
-        .only_ghost = -1,
-        .faintest = real_of(0.5 / 255 / 12.92)};
-    const struct glint_flare_config config = {
-        .sets = glint_sets_here(),
-        .width = image->width,
-        .height = image->height,
-        .tile_log2 = 6,
-        .irradiance_steps = 20,
-        .max_bundles = WAVES * (int)lens->header->n_ghosts,
-        .max_primitives = 1 << 17,
-        .max_refs = 1 << 18};
-    const size_t bytes = glint_flare_bytes(&config);
+    struct glint_flare_config config;
+    struct glint_flare_frame frame;
     struct glint_flare_stats stats;
     struct glint_flare *flare;
+    size_t bytes;
     void *mem;
 
+    glint_flare_defaults(&config, image->width, image->height);
+    glint_flare_capacities(&config, lens, 1, WAVES);
+    config.sets = glint_sets_here();
+    glint_flare_frame_defaults(&frame, lens);
+    frame.wave = wave;
+    frame.n_waves = WAVES;
+    frame.pixels_per_mm = real_of(pixels_per_mm(lens->header, image));
+    bytes = glint_flare_bytes(&config);
     if (posix_memalign(&mem, 64, bytes) != 0) {
         fprintf(stderr, "out of memory\n");
         return 1;
@@ -114,7 +107,7 @@ static int draw(const struct glint_lens *lens, const struct glint_image *image,
         free(mem);
         return 1;
     }
-    glint_flare_plan(flare, &rays, beam, 1);
+    glint_flare_plan(flare, &frame, light, 1);
     glint_flare_bin(flare, &stats);
     glint_flare_draw(flare, image);
     free(mem);
@@ -137,11 +130,11 @@ int main(int argc, char **argv)
         return 5;
     code = ppm_read(argv[2], &image);
     if (code == 0) {
-        const struct glint_light beam =
-            beam_at(lens.header, &image, atoi(argv[3]), atoi(argv[4]),
-                    exp2(atof(argv[5])));
+        const struct glint_light light =
+            light_at(lens.header, &image, atoi(argv[3]), atoi(argv[4]),
+                     exp2(atof(argv[5])));
 
-        code = draw(&lens, &image, &beam);
+        code = draw(&lens, &image, &light);
         if (code == 0)
             code = ppm_write(&image);
         free(image.plane[0]);

@@ -132,7 +132,7 @@ format:
 	$(Q)clang-format -i $(sources)
 libraries := $(OUT)/libglint.a $(OUT)/libglint-published.a
 lint: $(libraries) $(OUT)/libglint-engine.a $(OUT)/libglint-bake.a
-	@tools/lint/layers && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links
+	@tools/lint/layers && tools/lint/cycles && tools/lint/tags && tools/lint/q && tools/lint/length && tools/lint/links
 	@tools/lint/symbols $(NM) $^
 	@[ $(CONFIG) != release ] || \
 	        $(MAKE) -s --no-print-directory purity

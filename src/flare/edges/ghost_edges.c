@@ -30,6 +30,27 @@ static int is_weak(const struct glint_ghost_edges *g, int32_t light,
     return change_q20 < weak_q20 && change_q20 > -weak_q20;
 }
 
+static void make_edge(const struct glint_ghost_edges *g,
+                      struct glint_edge *edge, const int32_t a_q8[2],
+                      const int32_t b_q8[2], int32_t light, int32_t other)
+{
+    glint_edge_set(edge, a_q8, b_q8, light, other);
+    edge->bundle = g->number & 0x7fffffff;
+    if (is_weak(g, light, other))
+        glint_edge_make_whole(edge);
+}
+
+/* Edges without room: what they would take of the bins. */
+static void count_only(struct glint_ghost_edges *g, const int32_t a_q8[2],
+                       const int32_t b_q8[2], int32_t light, int32_t other)
+{
+    struct glint_edge edge;
+
+    make_edge(g, &edge, a_q8, b_q8, light, other);
+    g->more_refs +=
+        q_smaller(INT32_MAX - g->more_refs, glint_edge_span(&edge, g->bins));
+}
+
 void glint_ghost_add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
                           const int32_t b_q8[2], int32_t light, int32_t other)
 {
@@ -40,12 +61,12 @@ void glint_ghost_add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
         (a_q8[1] >= bottom_q8 && b_q8[1] >= bottom_q8) ||
         (a_q8[0] >= right_q8 && b_q8[0] >= right_q8) || a_q8[1] == b_q8[1])
         return;
-    if (g->n_edges++ >= g->max_edges)
+    if (g->n_edges++ >= g->max_edges) {
+        if (g->bins)
+            count_only(g, a_q8, b_q8, light, other);
         return;
-    glint_edge_set(&edge, a_q8, b_q8, light, other);
-    edge.bundle = g->number & 0x7fffffff;
-    if (is_weak(g, light, other))
-        glint_edge_make_whole(&edge);
+    }
+    make_edge(g, &edge, a_q8, b_q8, light, other);
     g->edge[g->n_edges - 1] = edge;
 }
 
@@ -319,6 +340,7 @@ void glint_ghost_edges_emit(struct glint_ghost_edges *ghost)
     const int n = ghost->bundle->n_cells;
 
     ghost->n_edges = ghost->n_dropped = ghost->n_held = 0;
+    ghost->more_refs = 0;
     set_steps(ghost);
     set_weak(ghost);
     glint_ghost_set_nodes(ghost, 0);

@@ -69,9 +69,12 @@ struct glint_ghost_edges {
     struct glint_ghost_rows *rows;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;
+    const struct glint_bins *bins; /* unless NULL: what finds no room is counted
+                                      in these */
     const struct glint_vertex *row[2]; /* the two at work */
     /* out */
     int n_edges;   /* all that there are; only max_edges are written */
+    int more_refs; /* entries in bins that edges without room would take */
     int n_dropped; /* cells without light for want of a corner */
     int n_held;    /* cells, or halves, with more light than limit_q8 */
 };
