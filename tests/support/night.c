@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/canvas.h"
 #include "support/rng.h"
 
 void night_init(struct night *night, int width, int height)
@@ -51,14 +52,6 @@ void night_close(struct night *night)
     free(night->mem[2]);
 }
 
-static int code_of(double light)
-{
-    const double v = light <= 0.0031308 ? 12.92 * light
-                                        : 1.055 * pow(light, 1 / 2.4) - 0.055;
-
-    return (int)(255 * fmin(v, 1) + 0.5);
-}
-
 static double light_at(const struct night *night, const struct night_lamp *lamp,
                        int n, int x, int y)
 {
@@ -78,7 +71,7 @@ static double light_at(const struct night *night, const struct night_lamp *lamp,
 static void put(struct night *night, int x, int y, double light)
 {
     const double code =
-        code_of(light) +
+        canvas_srgb_code(light) +
         night->sigma * night->noise[(night->row_noise[y] + x) % NIGHT_NOISE] /
             16.0;
 

@@ -37,4 +37,10 @@ static inline uint32_t rng_xorshift(uint32_t *seed)
     return *seed ^= *seed << 5;
 }
 
+/* -1 to less than 1, of the other generator. */
+static inline double rng_signed(uint32_t *seed)
+{
+    return rng_xorshift(seed) * 0x1p-31 - 1;
+}
+
 #endif

@@ -380,11 +380,6 @@ static void test_near_barrels(void **state)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
-static double unit(uint32_t *seed)
-{
-    return rng_xorshift(seed) * 0x1p-31 - 1;
-}
-
 /* A cut box is the box, in the part's coordinates. */
 static void test_cut(void **state)
 {
@@ -394,15 +389,16 @@ static void test_cut(void **state)
 
     (void)state;
     for (int k = 0; k < GLINT_BOX_TERMS; k++) {
-        zone.middle[k] = unit(&seed);
-        zone.half_x[k] = unit(&seed);
-        zone.half_y[k] = unit(&seed);
+        zone.middle[k] = rng_signed(&seed);
+        zone.half_x[k] = rng_signed(&seed);
+        zone.half_y[k] = rng_signed(&seed);
     }
     cut = zone;
     glint_zone_cut(&cut, &part);
     assert_int_equal(cut.annulus, 3);
     for (int k = 0; k < 100; k++) {
-        const double u = unit(&seed), s = unit(&seed), w = unit(&seed);
+        const double u = rng_signed(&seed), s = rng_signed(&seed),
+                     w = rng_signed(&seed);
         const double whole_w = 0.125 + 0.625 * w, whole_u = 0.125 + 0.375 * u;
 
         assert_near(glint_zone_at(cut.middle, s, w) +
@@ -412,44 +408,6 @@ static void test_cut(void **state)
                     1e-12);
         assert_near(glint_zone_at(cut.half_y, s, w),
                     0.75 * glint_zone_at(zone.half_y, s, whole_w), 1e-12);
-    }
-}
-
-static bool part_has(const struct glint_zone_part *p, double u, double v)
-{
-    return u >= p->u0 && u < p->u1 && v < p->top &&
-           v >= p->top * glint_zone_rim(p->annulus);
-}
-
-/* However often a box is halved, each place is in one half. */
-static void test_halves(void **state)
-{
-    enum { DEPTH = 8, PARTS = 1 << DEPTH };
-    static struct glint_zone_part part[PARTS] = {{-1, 1, 1, -1, 1, 0}};
-    uint32_t seed = 5;
-    double area = 0;
-
-    (void)state;
-    for (int depth = 0; depth < DEPTH; depth++)
-        for (int k = (1 << depth) - 1; k >= 0; k--) {
-            const struct glint_zone_part whole = part[k];
-
-            glint_zone_part_halve(&whole, depth % 2 == 0, &part[2 * k],
-                                  &part[2 * k + 1]);
-        }
-    for (int k = 0; k < PARTS; k++) {
-        assert_in_range(part[k].annulus, 0, GLINT_MAX_ANNULUS);
-        area += (part[k].u1 - part[k].u0) * part[k].top *
-                (1 - glint_zone_rim(part[k].annulus));
-    }
-    assert_near(area, 2, 1e-12);
-    for (int i = 0; i < 1000; i++) {
-        const double u = unit(&seed), v = fabs(unit(&seed));
-        int found = 0;
-
-        for (int k = 0; k < PARTS; k++)
-            found += part_has(&part[k], u, v);
-        assert_int_equal(found, 1);
     }
 }
 
@@ -481,8 +439,8 @@ static void test_crop(void **state)
     assert_in_range((long)(100 * glint_zone_crop(&zone, &visible, &part)), 10,
                     45);
     for (int k = 0; k < 4000; k++) {
-        const double u = unit(&seed), v = fabs(unit(&seed)), s = unit(&seed),
-                     w = unit(&seed);
+        const double u = rng_signed(&seed), v = fabs(rng_signed(&seed)),
+                     s = rng_signed(&seed), w = rng_signed(&seed);
         const double sine =
             0.5 * (range[0] + range[1]) + 0.5 * s * (range[1] - range[0]);
         const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
@@ -910,7 +868,6 @@ int main(void)
         cmocka_unit_test(test_parts),
         cmocka_unit_test(test_near_barrels),
         cmocka_unit_test(test_cut),
-        cmocka_unit_test(test_halves),
         cmocka_unit_test(test_crop),
         cmocka_unit_test(test_errors_are_true),
         cmocka_unit_test(test_errors_are_small),

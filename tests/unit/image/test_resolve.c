@@ -3,6 +3,7 @@
  * Light added to pictures of every coding, against the same in double: through
  * the standards' own curves and matrices, not the tables.
  */
+#include "support/canvas.h"
 #include "support/rng.h"
 #include "image/quads.h"
 
@@ -158,33 +159,15 @@ static void assert_guards_whole(void)
 
 /* --------------------------------------------------------------- reference */
 
-static double light_of(double v)
-{
-    if (v < 0)
-        return -light_of(-v);
-    if (fixture.image.transfer == GLINT_TONE_SRGB)
-        return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-    return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
-}
-
-static double code_of(double light)
-{
-    if (light < 0)
-        return -code_of(-light);
-    if (light > 1)
-        return 1;
-    if (fixture.image.transfer == GLINT_TONE_SRGB)
-        return light <= 0.0031308 ? 12.92 * light
-                                  : 1.055 * pow(light, 1 / 2.4) - 0.055;
-    return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
-}
-
 /* Change of V, 1 = white, under LIGHT. */
 static double change(double v, double light)
 {
     const double held = fmax(0, fmin(v, 1));
+    const enum glint_tone tone = fixture.image.transfer;
 
-    return light > 0 ? code_of(light_of(held) + light) - held : 0;
+    return light > 0
+               ? canvas_code(canvas_light(held, tone) + light, tone) - held
+               : 0;
 }
 
 struct coding {

@@ -3,6 +3,7 @@
  * What is bright in random pictures of every format and threshold, against
  * pixel by pixel; and how far pixels are the same.
  */
+#include "support/canvas.h"
 #include "support/rng.h"
 #include "lamps/bright.h"
 
@@ -27,17 +28,6 @@ static const enum glint_pixel_format formats[] = {
 enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 static uint32_t seed = 1;
-
-static struct glint_image new_image(enum glint_pixel_format format, int width)
-{
-    struct glint_image image = {
-        .format = format, .width = width, .height = HEIGHT};
-    void *mem = malloc(glint_image_bytes(format, width, HEIGHT));
-
-    assert_non_null(mem);
-    glint_image_place(&image, mem);
-    return image;
-}
 
 /* Random bytes, most of them low. */
 static void fill(const struct glint_image *image, int rare)
@@ -219,8 +209,8 @@ static void test_scan_against_every_pixel(void **state)
 
     (void)state;
     for (int round = 0; round < N_FORMATS * 8 * 3 * 2; round++) {
-        struct glint_image image = new_image(formats[round % N_FORMATS],
-                                             widths[round / N_FORMATS % 8]);
+        struct glint_image image = canvas_new(
+            formats[round % N_FORMATS], widths[round / N_FORMATS % 8], HEIGHT);
         struct glint_bright *b;
         void *mem;
 
@@ -240,7 +230,7 @@ static void test_scan_against_every_pixel(void **state)
 /* One pixel of exactly the threshold, anywhere, and one of a code less. */
 static void test_no_pixel_is_missed(void **state)
 {
-    struct glint_image image = new_image(GLINT_GREY, 96);
+    struct glint_image image = canvas_new(GLINT_GREY, 96, HEIGHT);
     struct glint_bright *b;
     void *mem;
 
@@ -272,7 +262,8 @@ static void test_same_pixels(void **state)
 {
     (void)state;
     for (int round = 0; round < N_FORMATS * 20; round++) {
-        struct glint_image image = new_image(formats[round % N_FORMATS], 70);
+        struct glint_image image =
+            canvas_new(formats[round % N_FORMATS], 70, HEIGHT);
         struct glint_bright *b;
         int n_long = 0;
         void *mem;

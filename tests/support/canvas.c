@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/canvas.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct glint_image canvas_new(enum glint_pixel_format format, int width,
+                              int height)
+{
+    struct glint_image image = {
+        .format = format, .width = width, .height = height};
+    void *mem = calloc(1, glint_image_bytes(format, width, height));
+
+    assert_non_null(mem);
+    glint_image_place(&image, mem);
+    return image;
+}
+
+void canvas_set_rgb(const struct glint_image *image, int x, int y, int r, int g,
+                    int b)
+{
+    uint8_t *px = image->plane[0] + y * image->stride_bytes[0] + 3 * x;
+
+    px[0] = (uint8_t)r;
+    px[1] = (uint8_t)g;
+    px[2] = (uint8_t)b;
+}
+
+void canvas_set_grey(const struct glint_image *image, int x, int y, int code)
+{
+    image->plane[0][y * image->stride_bytes[0] + x] = (uint8_t)code;
+}
+
+int canvas_get_grey(const struct glint_image *image, int x, int y)
+{
+    return image->plane[0][y * image->stride_bytes[0] + x];
+}
+
+void canvas_fill_grey(const struct glint_image *image, int x0, int y0, int x1,
+                      int y1, int code)
+{
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++)
+            canvas_set_grey(image, x, y, code);
+}
+
+double canvas_light(double v, enum glint_tone tone)
+{
+    if (v < 0)
+        return -canvas_light(-v, tone);
+    if (tone == GLINT_TONE_SRGB)
+        return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    return v < 0.081 ? v / 4.5 : pow((v + 0.099) / 1.099, 1 / 0.45);
+}
+
+double canvas_code(double light, enum glint_tone tone)
+{
+    if (light < 0)
+        return -canvas_code(-light, tone);
+    if (light > 1)
+        return 1;
+    if (tone == GLINT_TONE_SRGB)
+        return light <= 0.0031308 ? 12.92 * light
+                                  : 1.055 * pow(light, 1 / 2.4) - 0.055;
+    return light < 0.018 ? 4.5 * light : 1.099 * pow(light, 0.45) - 0.099;
+}
+
+int canvas_srgb_code(double light)
+{
+    return (int)(255 * canvas_code(light, GLINT_TONE_SRGB) + 0.5);
+}
+
+double canvas_linear(int code)
+{
+    return canvas_light(code / 255.0, GLINT_TONE_SRGB);
+}
+
+double canvas_disc_cover(int x, int y, double cx, double cy, double radius)
+{
+    int inside = 0;
+
+    for (int i = 0; i < 256; i++)
+        inside += hypot(x + (i % 16 + 0.5) / 16 - cx,
+                        y + (i / 16 + 0.5) / 16 - cy) < radius;
+    return inside / 256.0;
+}
+
+void canvas_disc(const struct glint_image *image, double cx, double cy,
+                 double radius, double light)
+{
+    for (int y = (int)(cy - radius - 1); y <= cy + radius + 1; y++)
+        for (int x = (int)(cx - radius - 1); x <= cx + radius + 1; x++) {
+            const double cover = canvas_disc_cover(x, y, cx, cy, radius);
+
+            if (cover > 0)
+                canvas_set_grey(image, x, y, canvas_srgb_code(cover * light));
+        }
+}

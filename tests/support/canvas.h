@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Pictures to draw on by hand; include after cmocka.h.
+ */
+#ifndef GLINT_TESTS_CANVAS_H
+#define GLINT_TESTS_CANVAS_H
+
+#include "glint/image.h"
+
+/* A black picture of its own memory, sRGB. */
+struct glint_image canvas_new(enum glint_pixel_format format, int width,
+                              int height);
+
+void canvas_set_rgb(const struct glint_image *image, int x, int y, int r, int g,
+                    int b);
+
+void canvas_set_grey(const struct glint_image *image, int x, int y, int code);
+
+int canvas_get_grey(const struct glint_image *image, int x, int y);
+
+void canvas_fill_grey(const struct glint_image *image, int x0, int y0, int x1,
+                      int y1, int code);
+
+/* Light of the code V, and the code of LIGHT, 1 = white; below 0 mirrored. */
+double canvas_light(double v, enum glint_tone tone);
+double canvas_code(double light, enum glint_tone tone); /* 1 at most */
+
+int canvas_srgb_code(double light); /* 0 .. 255 of 0 .. 1 */
+
+double canvas_linear(int code);
+
+/* Share of pixel (X, Y) that the disc covers, by 16 x 16 points. */
+double canvas_disc_cover(int x, int y, double cx, double cy, double radius);
+
+/* Adds a disc of LIGHT, smooth at the edge, to a grey picture. */
+void canvas_disc(const struct glint_image *image, double cx, double cy,
+                 double radius, double light);
+
+#endif

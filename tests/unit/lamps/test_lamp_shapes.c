@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Regions of every shape against a flood fill, and the colours of what is found
+ * in every format.
+ */
+#include "glint/lamps.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/canvas.h"
+#include "support/finder.h"
+#include "support/rng.h"
+
+/* ------------------------------------------------------------------- shapes */
+
+static void assert_one_region(const struct glint_image *image)
+{
+    struct glint_lamp_finder_config cfg = finder_plain(image, 200, 250);
+    int area = 0;
+
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            area += canvas_get_grey(image, x, y) == 255;
+    assert_int_equal(finder_find(&cfg, image), 1);
+    assert_int_equal(finder_spot[0].area, area);
+    free(image->plane[0]);
+}
+
+static void test_u_shape(void **state)
+{
+    struct glint_image image = canvas_new(GLINT_GREY, 20, 20);
+
+    (void)state;
+    canvas_fill_grey(&image, 2, 2, 4, 18, 255);
+    canvas_fill_grey(&image, 15, 2, 17, 18, 255);
+    canvas_fill_grey(&image, 2, 17, 17, 18, 255);
+    assert_one_region(&image);
+}
+
+/* Walls 1 wide, 1 apart, winding inwards. */
+static void test_spiral(void **state)
+{
+    static const int step[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    struct glint_image image = canvas_new(GLINT_GREY, 43, 41);
+    int x = 0, y = 0, left = 42, down = 40;
+
+    (void)state;
+    canvas_set_grey(&image, 0, 0, 255);
+    for (int turn = 0; left > 0 && down > 0; turn++) {
+        for (int n = turn & 1 ? down : left; n > 0; n--) {
+            x += step[turn & 3][0];
+            y += step[turn & 3][1];
+            canvas_set_grey(&image, x, y, 255);
+        }
+        if (turn > 0 && (turn & 1) == 0)
+            left -= 2;
+        if (turn & 1)
+            down -= 2;
+    }
+    assert_one_region(&image);
+}
+
+/* As many runs as a row can have, joined by corners alone; then as a comb, by
+ * the last row alone. */
+static void test_checkerboard_and_comb(void **state)
+{
+    (void)state;
+    for (int width = 254; width <= 255; width++) {
+        struct glint_image board = canvas_new(GLINT_GREY, width, 100);
+        struct glint_image comb = canvas_new(GLINT_GREY, width, 100);
+
+        for (int y = 0; y < 100; y++)
+            for (int x = 0; x < width; x++) {
+                canvas_set_grey(&board, x, y, (x + y) & 1 ? 255 : 0);
+                canvas_set_grey(&comb, x, y, x & 1 && y < 99 ? 0 : 255);
+            }
+        assert_one_region(&board);
+        assert_one_region(&comb);
+    }
+}
+
+/* Area of the region at (X, Y), which it clears. */
+static int flood(const struct glint_image *image, int x, int y)
+{
+    static int stack[64 * 64 * 8][2];
+    int n = 0, area = 0;
+
+    stack[n][0] = x, stack[n++][1] = y;
+    while (n > 0) {
+        x = stack[--n][0], y = stack[n][1];
+        if (x < 0 || y < 0 || x >= image->width || y >= image->height ||
+            canvas_get_grey(image, x, y) == 0)
+            continue;
+        canvas_set_grey(image, x, y, 0);
+        area++;
+        for (int k = 0; k < 9; k++)
+            if (k != 4)
+                stack[n][0] = x + k % 3 - 1, stack[n++][1] = y + k / 3 - 1;
+    }
+    return area;
+}
+
+static void check_against_flood(int width, int height, int percent)
+{
+    struct glint_image image = canvas_new(GLINT_GREY, width, height);
+    struct glint_lamp_finder_config cfg = finder_plain(&image, 250, 250);
+    int of_area[64 * 64 + 1] = {0};
+    int n, regions = 0;
+
+    for (int i = 0; i < width * height; i++)
+        image.plane[0][i] = rng_below(&finder_seed, 100) < percent ? 255 : 0;
+    n = finder_find(&cfg, &image);
+    for (int i = 0; i < n; i++)
+        of_area[finder_spot[i].area]--;
+    for (int i = 0; i < width * height; i++)
+        if (image.plane[0][i]) {
+            of_area[flood(&image, i % width, i / width)]++;
+            regions++;
+        }
+    assert_int_equal(regions, n);
+    for (int i = 0; i <= 64 * 64; i++)
+        assert_int_equal(of_area[i], 0);
+    free(image.plane[0]);
+}
+
+static void test_random_shapes(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 300; round++)
+        check_against_flood(1 + rng_below(&finder_seed, 64),
+                            1 + rng_below(&finder_seed, 64),
+                            10 + rng_below(&finder_seed, 70));
+}
+
+/* ------------------------------------------------------------------- colour */
+
+static void assert_colour(int i, double r, double g, double b)
+{
+    const int32_t *c = finder_spot[i].rgb_q15;
+
+    assert_true(fabs(c[0] / 32768.0 - r) < 0.01);
+    assert_true(fabs(c[1] / 32768.0 - g) < 0.01);
+    assert_true(fabs(c[2] / 32768.0 - b) < 0.01);
+    assert_true(fabs(0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2] - 32768) <
+                4);
+}
+
+static void fill_rgb(const struct glint_image *image, int x0, int y0, int x1,
+                     int y1, int r, int g, int b)
+{
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++)
+            canvas_set_rgb(image, x, y, r, g, b);
+}
+
+/* Linear (240, 200, 120) is (0.8714, 0.5776, 0.1878), luminance 0.6119. */
+static void test_colour_unclipped(void **state)
+{
+    struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
+    struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
+
+    (void)state;
+    fill_rgb(&image, 10, 10, 20, 20, 240, 200, 120);
+    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 61.19) < 0.05);
+    assert_colour(0, 1.4241, 0.9440, 0.3069);
+    free(image.plane[0]);
+}
+
+/* A core clipped to white in a rim of that colour, and without one. */
+static void test_colour_of_the_rim(void **state)
+{
+    struct glint_image image = canvas_new(GLINT_RGB24, 60, 40);
+    struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 200);
+
+    (void)state;
+    fill_rgb(&image, 9, 9, 21, 21, 240, 200, 120);
+    fill_rgb(&image, 10, 10, 20, 20, 255, 255, 255);
+    fill_rgb(&image, 30, 10, 39, 19, 255, 255, 255);
+    assert_int_equal(finder_find(&cfg, &image), 2);
+    assert_true(finder_spot[0].rgb_q15[0] >
+                45000); /* 1.42, white not quite out */
+    assert_true(finder_spot[0].rgb_q15[2] < 13000); /* 0.31 */
+    assert_colour(1, 1, 1, 1);
+    free(image.plane[0]);
+}
+
+/* Clipped in one channel everywhere: the mean is all there is. */
+static void test_colour_partly_clipped(void **state)
+{
+    struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
+    struct glint_lamp_finder_config cfg = finder_plain(&image, 50, 50);
+
+    (void)state;
+    fill_rgb(&image, 10, 10, 20, 20, 255, 0, 0);
+    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_colour(0, 1 / 0.2126, 0, 0);
+    free(image.plane[0]);
+}
+
+/* Limited range: 235 is white, 16 + 219 * 200 / 255 = 187.8 is code 200. */
+static void test_ycc_formats(void **state)
+{
+    static const enum glint_pixel_format formats[3] = {GLINT_I420, GLINT_I422,
+                                                       GLINT_I444};
+
+    (void)state;
+    for (int f = 0; f < 3; f++) {
+        struct glint_image image = canvas_new(formats[f], 41, 31);
+        struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+
+        image.range = GLINT_RANGE_LIMITED;
+        image.transfer = GLINT_TONE_BT709;
+        /* of codes 199.5 and 249.5: ((c / 255 + 0.099) / 1.099)^(1 / 0.45) */
+        cfg.threshold_low_q8 = (int32_t)floor(256 * log2(0.6124) + 0.5);
+        cfg.threshold_high_q8 = (int32_t)floor(256 * log2(0.9569) + 0.5);
+        canvas_fill_grey(&image, 0, 0, 41, 31, 16);
+        for (int i = 1; i < 3; i++)
+            memset(image.plane[i], 128,
+                   glint_image_row_bytes(formats[f], i, 41) *
+                       (size_t)glint_image_plane_height(formats[f], i, 31));
+        canvas_fill_grey(&image, 36, 26, 41, 31, 187); /* 199.1: not in */
+        canvas_fill_grey(&image, 38, 28, 41, 31, 188);
+        canvas_fill_grey(&image, 39, 29, 41, 31, 235);
+        assert_int_equal(finder_find(&cfg, &image), 1);
+        assert_int_equal(finder_spot[0].area, 9);
+        assert_int_equal(finder_spot[0].n_clipped, 4);
+        assert_colour(0, 1, 1, 1);
+        /* ((172 / 219 + 0.099) / 1.099)^(1 / 0.45) = 0.6171 */
+        assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 -
+                         (4 + 5 * 0.6171)) < 0.005);
+        free(image.plane[0]);
+    }
+}
+
+/* BT.601 limited Y, Cb, Cr 169, 90, 166 is R'G'B' 238.8, 162.1, 101.5. */
+static void test_ycc_colour(void **state)
+{
+    struct glint_image image = canvas_new(GLINT_I444, 20, 20);
+    struct glint_lamp_finder_config cfg = finder_plain(&image, 150, 170);
+
+    (void)state;
+    image.range = GLINT_RANGE_LIMITED;
+    for (int i = 0; i < 3; i++) {
+        struct glint_image plane = image;
+
+        plane.plane[0] = image.plane[i];
+        canvas_fill_grey(&plane, 0, 0, 20, 20, i ? 128 : 16);
+        canvas_fill_grey(&plane, 5, 5, 10, 10,
+                         i == 0   ? 169
+                         : i == 1 ? 90
+                                  : 166);
+    }
+    assert_int_equal(finder_find(&cfg, &image), 1);
+    /* linear 0.8615, 0.3620, 0.1315; luminance 0.4515 */
+    assert_colour(0, 1.908, 0.802, 0.291);
+    free(image.plane[0]);
+}
+
+static void test_negative_stride(void **state)
+{
+    struct glint_image image = canvas_new(GLINT_GREY, 40, 30);
+    struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
+
+    (void)state;
+    canvas_fill_grey(&image, 5, 2, 8, 5, 255);
+    image.plane[0] += 29 * 40;
+    image.stride_bytes[0] = -40;
+    assert_int_equal(finder_find(&cfg, &image), 1);
+    assert_true(finder_x(0) == 6.5 && finder_y(0) == 30 - 3.5);
+    free(image.plane[0] - 29 * 40);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_u_shape),
+        cmocka_unit_test(test_spiral),
+        cmocka_unit_test(test_checkerboard_and_comb),
+        cmocka_unit_test(test_random_shapes),
+        cmocka_unit_test(test_colour_unclipped),
+        cmocka_unit_test(test_colour_of_the_rim),
+        cmocka_unit_test(test_colour_partly_clipped),
+        cmocka_unit_test(test_ycc_formats),
+        cmocka_unit_test(test_ycc_colour),
+        cmocka_unit_test(test_negative_stride),
+    };
+
+    return cmocka_run_group_tests_name("lamp_shapes", tests, NULL, NULL);
+}
