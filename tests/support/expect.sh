@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# For scripts that test the command (tests/cli-*): sourced from the root of the
+# For scripts that test the command (tests/cli): sourced from the root of the
 # repository. Sets glint, dir (removed at the end) and status.
 glint=${GLINT:-build/glint}
 pan=${PAN:-}
@@ -44,4 +44,32 @@ differ() { # NAME A B: both are there and not the same
 }
 gone() { # NAME PATTERN: no such file is left
     if [ -z "$(find "$dir" -name "$2")" ]; then pass "$1"; else miss "$1"; fi
+}
+
+# what many scripts draw on, and quickly
+photo=tests/data/bridge.ppm
+# shellcheck disable=SC2034
+quick=(--grid 16 --max-lights 2)
+# shellcheck disable=SC2034
+model=tests/fuzz/corpus/model/auto
+
+# small_lens: $dir/small.lens, and bake MODEL OPTIONS... of it
+small_lens() {
+    cat >"$dir/small.lens" <<'EOT'
+name      small
+source    a cemented doublet with the stop behind it
+f-number  5.6
+film      36 24
+
+surface    61.47   6    13  1.5168  64.17
+surface   -44.64   2.5  13  1.6727  32.21
+surface  -129.94   2    13  air
+stop              93    10
+EOT
+}
+bake() { # MODEL OPTIONS...
+    local model=$1
+    shift
+    "$glint" bake "$dir/small.lens" -o "$model" --tolerance 5 \
+        --max-angle 15 "$@"
 }
