@@ -8,6 +8,7 @@
 #include "options/lamp_keys.h"
 #include "engine/frame/area.h"
 #include "overlay/show_lights.h"
+#include "model/response_cache.h"
 #include "options/takes.h"
 
 /* ------------------------------------------------------------------ options */
@@ -240,8 +241,8 @@ int look_size(const struct tool *tool, struct look *look, int width, int height)
     if (code != EXIT_OK)
         return code;
     look->sized = true;
-    status = glint_response_measure(&look->frame, look->reserve_bytes,
-                                    &look->response);
+    status = response_cached(tool, look->scene.lens.name, &look->frame,
+                             look->reserve_bytes, &look->response);
     if (status == GLINT_OK)
         status = open_finder(look, width, height);
     if (tool->verbose && !tool->quiet && !look->is_listed && look->n_hand == 0)

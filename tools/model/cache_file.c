@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/cache_file.h"
+
+#include <ctype.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "glint/prescription.h"
+#include "posix/error.h"
+#include "posix/input.h"
+#include "posix/output.h"
+#include "posix/process.h"
+
+bool cache_file_folder(char *path, size_t bytes)
+{
+    const char *cache = glint_process_setting("XDG_CACHE_HOME");
+    const char *home = glint_process_setting("HOME");
+    int n = 0;
+
+    if (cache && cache[0] == '/')
+        n = snprintf(path, bytes, "%s/glint", cache);
+    else if (home && home[0] == '/')
+        n = snprintf(path, bytes, "%s/.cache/glint", home);
+    return n > 0 && (size_t)n < bytes;
+}
+
+bool cache_file_name(char *path, size_t bytes, const char *name, uint64_t key,
+                     const char *suffix)
+{
+    const size_t used = strlen(path);
+    char safe[GLINT_NAME_BYTES];
+
+    snprintf(safe, sizeof safe, "%s", name);
+    for (char *c = safe; *c; c++)
+        if (!isalnum((unsigned char)*c) && !strchr("-_.", *c))
+            *c = '_';
+    return (size_t)snprintf(path + used, bytes - used, "/%s-%08lx%08lx.%s",
+                            safe, (unsigned long)(key >> 32),
+                            (unsigned long)(key & 0xffffffff),
+                            suffix) < bytes - used;
+}
+
+void cache_file_make_folders(char *path)
+{
+    for (char *c = path + 1; *c; c++)
+        if (*c == '/') {
+            *c = 0;
+            mkdir(path, 0755);
+            *c = '/';
+        }
+}
+
+/* A regular file that nobody could have written but us or the machine's owner.
+ */
+static bool is_ours(const struct stat *st)
+{
+    return S_ISREG(st->st_mode) &&
+           (st->st_uid == geteuid() || st->st_uid == 0) &&
+           !(st->st_mode & S_IWOTH);
+}
+
+uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
+{
+    struct glint_input in = {.fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY |
+                                                  O_NOFOLLOW | O_NONBLOCK),
+                             .name = path};
+    struct glint_error error;
+    uint8_t *data = NULL;
+    struct stat st;
+
+    *bytes = 0;
+    if (in.fd < 0)
+        return NULL;
+    if (fstat(in.fd, &st) < 0 || !is_ours(&st) ||
+        glint_input_append(&in, &data, bytes, max, &error) != GLINT_OK) {
+        free(data);
+        data = NULL;
+    }
+    glint_input_close(&in);
+    return data;
+}
+
+/* Nothing is written through links, into FIFOs and the like; a file that others
+ * may write to goes, and with it its permission bits. */
+static enum glint_status clear_way(const char *path, struct glint_error *error)
+{
+    struct stat st;
+
+    if (lstat(path, &st) < 0)
+        return GLINT_OK;
+    if (!S_ISREG(st.st_mode))
+        return glint_error_report(error, GLINT_E_OUTPUT, path,
+                                  "is no file; remove it");
+    if (!is_ours(&st))
+        unlink(path); /* if it fails, so will replacing it */
+    return GLINT_OK;
+}
+
+enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
+                                   struct glint_error *error)
+{
+    struct glint_output out;
+    enum glint_status status;
+
+    cache_file_make_folders(path);
+    status = clear_way(path, error);
+    if (status == GLINT_OK)
+        status = glint_output_open(&out, path, GLINT_OUTPUT_BINARY, error);
+    if (status == GLINT_OK)
+        status = glint_output_finish(&out, data, bytes, error);
+    return status;
+}

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/response_cache.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/cache_file.h"
+
+/* To be raised when glint_response_measure() gives other figures for the same
+ * scene: when it draws or looks otherwise, or light is drawn brighter or
+ * darker. */
+enum { REVISION = 1 };
+
+enum {
+    VALUES = 7 * GLINT_RESPONSE_ANGLES + 2 * GLINT_RESPONSE_EXTENTS,
+    MAX_BYTES = 4096
+};
+
+/* A file, in the byte order of the machine; there is no padding. */
+struct entry {
+    char magic[8];
+    uint64_t key;
+    int32_t n;
+    uint32_t crc32; /* of value */
+    double value[VALUES];
+};
+
+static const char magic[8] = "glintRS";
+
+/* ---------------------------------------------------------------------- key */
+
+/* FNV-1a over BYTES. */
+static void add_bytes(uint64_t *key, const void *data, size_t bytes)
+{
+    const uint8_t *byte = data;
+
+    for (size_t i = 0; i < bytes; i++)
+        *key = (*key ^ byte[i]) * UINT64_C(0x100000001b3);
+}
+
+static void add_values(uint64_t *key, const double *value, size_t n)
+{
+    add_bytes(key, value, n * sizeof *value);
+}
+
+/* The stop and the colours; the rest of a setup is the model's. */
+static void add_setup(uint64_t *key, const struct glint_setup *s)
+{
+    const size_t n = (size_t)s->n_wavelengths;
+    const double stop[] = {s->n_blades, s->blade_rotation_deg, s->n_wavelengths,
+                           s->n_sets};
+    const struct glint_set_wave *w = s->set_wave;
+
+    add_values(key, stop, sizeof stop / sizeof *stop);
+    add_values(key, s->wavelength_nm, n);
+    add_values(key, s->rgb[0], 3 * n);
+    add_values(key, s->unit_flux, n);
+    for (int i = 0; i < s->n_sets; i++) {
+        const double size = s->set_size[i];
+
+        add_values(key, &size, 1);
+        for (int j = 0; j < s->set_size[i]; j++, w++) {
+            add_values(key, &w->nm, 1);
+            add_values(key, w->rgb, 3);
+            add_values(key, &w->unit_flux, 1);
+        }
+    }
+}
+
+/* The dials but for those that glint_response_measure() sets. */
+static void add_dials(uint64_t *key, const struct glint_frame *like)
+{
+    const struct glint_dials *d = &like->asked;
+    const double value[] = {
+        d->irradiance_steps,   d->snap_codes_q8,   d->dispersion_q8,
+        d->max_lights,         d->flags,           d->cull_codes,
+        d->area_points,        like->apart_px,     like->cfg.tile_log2,
+        like->cfg.coarse_log2, like->cfg.antialias};
+
+    add_values(key, value, sizeof value / sizeof *value);
+}
+
+/* Pictures of one shape have one response. Of BYTES, too little memory leaves
+ * parts of the flare out. */
+static uint64_t key_of(const struct glint_frame *like, size_t bytes)
+{
+    const struct glint_model_header *h = like->lens->header;
+    const double shape[] = {(double)like->view.width / like->view.height,
+                            like->view.sensor_width_mm, (double)bytes};
+    const uint32_t model[] = {h->key[0], h->key[1], h->crc32, h->bytes,
+                              REVISION};
+    uint64_t key = UINT64_C(0xcbf29ce484222325);
+
+    add_bytes(&key, model, sizeof model);
+    add_bytes(&key, GLINT_VERSION, strlen(GLINT_VERSION));
+    add_values(&key, shape, sizeof shape / sizeof *shape);
+    add_setup(&key, like->setup);
+    add_dials(&key, like);
+    return key;
+}
+
+/* -------------------------------------------------------------------- entry */
+
+/* Where each value of R lies, in the order of an entry. */
+static void list_values(struct glint_response *r, double *at[VALUES])
+{
+    int n = 0;
+
+    for (int i = 0; i < GLINT_RESPONSE_ANGLES; i++) {
+        at[n++] = &r->theta_deg[i];
+        for (int c = 0; c < 3; c++) {
+            at[n++] = &r->log2_of[i].peak[c];
+            at[n++] = &r->log2_of[i].mean[c];
+        }
+    }
+    for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++) {
+        at[n++] = &r->extent[i];
+        at[n++] = &r->softened_log2[i];
+    }
+}
+
+static struct entry entry_of(struct glint_response *r, uint64_t key)
+{
+    struct entry e = {.key = key, .n = r->n};
+    double *at[VALUES];
+
+    memcpy(e.magic, magic, sizeof magic);
+    list_values(r, at);
+    for (int i = 0; i < VALUES; i++)
+        e.value[i] = *at[i];
+    e.crc32 = glint_model_crc32(e.value, sizeof e.value);
+    return e;
+}
+
+/* Figures that glint_response_measure() may have given, whoever wrote them. */
+static bool is_sound(const struct glint_response *r)
+{
+    if (r->n < 1 || r->n > GLINT_RESPONSE_ANGLES || r->theta_deg[0] != 0)
+        return false;
+    for (int i = 0; i < r->n; i++)
+        if (!(r->theta_deg[i] <= 90) ||
+            (i > 0 && !(r->theta_deg[i] > r->theta_deg[i - 1])))
+            return false;
+    for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++)
+        if (!(r->extent[i] <= 100) || !(r->softened_log2[i] <= 0) ||
+            !(r->softened_log2[i] >= -200) ||
+            (i > 0 && !(r->extent[i] > r->extent[i - 1])))
+            return false;
+    return true;
+}
+
+static bool take_entry(const struct entry *e, uint64_t key,
+                       struct glint_response *r)
+{
+    double *at[VALUES];
+
+    if (memcmp(e->magic, magic, sizeof magic) != 0 || e->key != key ||
+        e->crc32 != glint_model_crc32(e->value, sizeof e->value))
+        return false;
+    *r = (struct glint_response){.n = e->n};
+    list_values(r, at);
+    for (int i = 0; i < VALUES; i++) {
+        if (!(fabs(e->value[i]) <= 1000))
+            return false;
+        *at[i] = e->value[i];
+    }
+    return is_sound(r);
+}
+
+static bool read_entry(const char *path, uint64_t key, struct glint_response *r)
+{
+    size_t bytes;
+    uint8_t *data = cache_file_read(path, MAX_BYTES, &bytes);
+    struct entry e;
+    bool is_good = data && bytes == sizeof e;
+
+    if (is_good) {
+        memcpy(&e, data, sizeof e);
+        is_good = take_entry(&e, key, r);
+    }
+    free(data);
+    return is_good;
+}
+
+/* --------------------------------------------------------------------- both */
+
+static void tell(const struct tool *tool, const char *lens,
+                 const struct glint_response *r, const char *what,
+                 const char *where)
+{
+    if (tool->verbose && !tool->quiet)
+        fprintf(stderr, "glint %s: response of %s, %d angles: %s%s\n",
+                tool->name, lens, r->n, what, where);
+}
+
+static void keep(const struct tool *tool, const char *lens, char *path,
+                 uint64_t key, struct glint_response *r)
+{
+    const struct entry e = entry_of(r, key);
+    struct glint_error error = {""};
+
+    if (cache_file_write(path, &e, sizeof e, &error) == GLINT_OK)
+        tell(tool, lens, r, "measured, kept in ", path);
+    else
+        tell(tool, lens, r, "measured, not kept: ", error.text);
+}
+
+enum glint_status response_cached(const struct tool *tool, const char *lens,
+                                  const struct glint_frame *like, size_t bytes,
+                                  struct glint_response *response)
+{
+    const uint64_t key = like->lens ? key_of(like, bytes) : 0;
+    char path[CACHE_PATH_BYTES];
+    const bool kept = like->lens && cache_file_folder(path, sizeof path) &&
+                      cache_file_name(path, sizeof path, lens, key, "response");
+    enum glint_status status;
+
+    *response = (struct glint_response){.n = 0};
+    if (kept && read_entry(path, key, response)) {
+        tell(tool, lens, response, "read from ", path);
+        return GLINT_OK;
+    }
+    status = glint_response_measure(like, bytes, response);
+    if (status == GLINT_OK && kept)
+        keep(tool, lens, path, key, response);
+    else if (status == GLINT_OK)
+        tell(tool, lens, response, "measured", "");
+    return status;
+}
