@@ -37,4 +37,10 @@ static WHOLLY_INLINE uint32_t bytes_high_bits(uint64_t high)
     return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);
 }
 
+/* How many of these bits there are. */
+static WHOLLY_INLINE uint32_t bytes_count(uint64_t high)
+{
+    return (uint32_t)((high >> 7) * BYTES_EACH >> 56);
+}
+
 #endif

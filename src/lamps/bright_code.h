@@ -80,4 +80,49 @@ static WHOLLY_INLINE int bright_larger(int a, int b)
     return a > b ? a : b;
 }
 
+static WHOLLY_INLINE int bright_value_of_rgb(const struct glint_bright *b,
+                                             int x)
+{
+    int rgb[3], largest;
+
+    bright_read_rgb(b, x, rgb);
+    largest = bright_larger(rgb[0], bright_larger(rgb[1], rgb[2]));
+    return largest < BRIGHT_CLIPPED ? largest : b->beyond[bright_luma(rgb)];
+}
+
+/* What the chroma of pixel X adds to the largest channel, of full-range codes.
+ */
+static WHOLLY_INLINE int32_t bright_chroma_q16(const struct glint_bright *b,
+                                               int x)
+{
+    const int cb = code_at(b, 1, x) - 128, cr = code_at(b, 2, x) - 128;
+    const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
+    const int32_t red_q16 = cr * m_q16[0][2], blue_q16 = cb * m_q16[2][1];
+    const int32_t green_q16 = cb * m_q16[1][1] + cr * m_q16[1][2];
+
+    return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
+}
+
+static WHOLLY_INLINE int bright_value_of_luma(const struct glint_bright *b,
+                                              int code, int32_t added_q16)
+{
+    const int32_t sum_q16 =
+        (code - b->ycc.black) * b->ycc.to_rgb_q16[0][0] + added_q16;
+    const int largest = (sum_q16 + (1 << 15)) >> 16;
+
+    if (largest < BRIGHT_CLIPPED)
+        return bright_larger(largest, 0);
+    return b->beyond[b->full_luma[code]];
+}
+
+/* Brightness of pixel X of the row that B is at. */
+static WHOLLY_INLINE int bright_value_at(const struct glint_bright *b, int x)
+{
+    if (bright_is_rgb(b))
+        return bright_value_of_rgb(b, x);
+    return bright_value_of_luma(
+        b, code_at(b, 0, x),
+        b->layout->kind == GLINT_LAYOUT_YCC ? bright_chroma_q16(b, x) : 0);
+}
+
 #endif

@@ -65,19 +65,44 @@ static WHOLLY_INLINE uint64_t high_of(const uint8_t *p, int n, int code)
     return code > 128 ? high_codes(p, n, code, 1) : high_codes(p, n, code, 0);
 }
 
-/* Marks the whole blocks of a row at PX without chroma. STEP: bytes of a pixel.
+/* The bits, in each byte, of which one that is CODE or more has one at least.
  */
+static uint64_t bits_of_code(int code)
+{
+    const int highest = 1 << (bit_length((uint64_t)code) - 1);
+
+    return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
+}
+
+/* All bits that the bytes of N words at P have. Of one expression with the ORs
+ * of a load gcc makes single bytes. */
+static WHOLLY_INLINE uint64_t bits_of(const uint8_t *p, int n)
+{
+    uint64_t bits = 0;
+
+    for (int i = 0; i < n; i++) {
+        uint64_t word = bytes_load(p + 8 * i);
+
+        FORGET(word);
+        bits |= word;
+    }
+    return bits;
+}
+
+/* Marks the whole blocks of a row at PX without chroma. STEP: bytes of a pixel.
+ * Most are dark, which their bits together show. */
 static WHOLLY_INLINE int mark_blocks(struct glint_bright *b, const uint8_t *px,
                                      int step)
 {
     const uint64_t bytes = bytes_of_light(b->layout);
     const int n = b->width / BRIGHT_BLOCK, code = b->low_code;
+    const uint64_t bits = bits_of_code(code) & bytes;
+    const int n_words = BRIGHT_BLOCK / 8 * step;
     int any = 0;
 
     for (int i = 0; i < n; i++) {
-        const uint64_t found = high_of(px, BRIGHT_BLOCK / 8 * step, code);
-
-        b->block[i] = (found & bytes) != 0;
+        b->block[i] = (bits_of(px, n_words) & bits) &&
+                      (high_of(px, n_words, code) & bytes);
         any |= b->block[i];
         px += BRIGHT_BLOCK * step;
     }
@@ -126,15 +151,15 @@ static WHOLLY_INLINE uint8_t smaller(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Of N times 16 bytes at P, N 1, 2 or 4: what is short is taken twice. Written
- * so that compilers make vectors of it, which they do of loops that are in no
- * other one; what is least is most of 255 - v. */
-static NEVER_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
-                                       int n)
+/* Those of every eighth place: the greatest, and the greatest of 255 - v. Of N
+ * times 16 bytes at P, N 1, 2 or 4: what is short is taken twice. Written so
+ * that compilers make vectors of it, which they do of loops that are in no
+ * other one. */
+static NEVER_INLINE void find_halves(uint8_t half[16], const uint8_t *p, int n)
 {
     const uint8_t *q = n > 1 ? p + 16 : p;
     const uint8_t *r = n > 2 ? p + 32 : p, *s = n > 2 ? p + 48 : q;
-    uint8_t most[32], half[16];
+    uint8_t most[32];
 
     for (int i = 0; i < 16; i++)
         most[i] = larger(larger(p[i], q[i]), larger(r[i], s[i]));
@@ -145,10 +170,24 @@ static NEVER_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
         half[i] = larger(most[i], most[i + 8]);
     for (int i = 0; i < 8; i++)
         half[8 + i] = larger(most[16 + i], most[24 + i]);
+}
+
+static WHOLLY_INLINE void unite_halves(struct extremes *e,
+                                       const uint8_t half[16])
+{
     for (int i = 0; i < 4; i++)
         e->most[i] = larger(half[i], half[i + 4]);
     for (int i = 0; i < 4; i++)
         e->least[i] = (uint8_t)(255 - larger(half[8 + i], half[12 + i]));
+}
+
+static WHOLLY_INLINE void find_extremes(struct extremes *e, const uint8_t *p,
+                                        int n)
+{
+    uint8_t half[16];
+
+    find_halves(half, p, n);
+    unite_halves(e, half);
 }
 
 /* All four places as one. */
@@ -164,42 +203,105 @@ static WHOLLY_INLINE int least_of(const struct extremes *e)
                    smaller(e->least[2], e->least[3]));
 }
 
-/* Whether a pixel may be bright whose luma is MOST at most and whose chroma is
- * in LEAST .. MOST: no channel of the block can exceed that of these. A code is
- * left for what rounding does. */
-static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
-                                       const int most[2], const int least[2])
+/* What chroma in LEAST .. MOST adds to the largest channel at most. */
+static WHOLLY_INLINE int32_t most_added_q16(const struct glint_bright *b,
+                                            const int most[2],
+                                            const int least[2])
 {
     const int32_t(*m_q16)[3] = b->ycc.to_rgb_q16;
     const int32_t red_q16 = (most[1] - 128) * m_q16[0][2];
     const int32_t green_q16 =
         (least[0] - 128) * m_q16[1][1] + (least[1] - 128) * m_q16[1][2];
     const int32_t blue_q16 = (most[0] - 128) * m_q16[2][1];
-    const int32_t added_q16 =
-        bright_larger(red_q16, bright_larger(green_q16, blue_q16));
 
-    return (luma - b->ycc.black) * m_q16[0][0] + added_q16 >= b->low_sum_q16;
+    return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
 }
 
-/* Of YUYV and UYVY. */
-static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
+/* Whether a pixel may be bright whose luma is LUMA at most and whose chroma is
+ * in LEAST .. MOST: no channel of the block can exceed that of these. A code is
+ * left for what rounding does. */
+static WHOLLY_INLINE int may_be_bright(const struct glint_bright *b, int luma,
+                                       const int most[2], const int least[2])
+{
+    return (luma - b->ycc.black) * b->ycc.to_rgb_q16[0][0] +
+               most_added_q16(b, most, least) >=
+           b->low_sum_q16;
+}
+
+/* Of YUYV and UYVY, by all extremes of a block. */
+static int may_be_bright_packed(const struct glint_bright *b,
+                                const uint8_t half[16])
 {
     const int y = b->layout->sample[0].offset;
     const int cb = b->layout->sample[1].offset;
     const int cr = b->layout->sample[2].offset;
+    struct extremes e;
+
+    unite_halves(&e, half);
+    return may_be_bright(b, bright_larger(e.most[y], e.most[y + 2]),
+                         (const int[]){e.most[cb], e.most[cr]},
+                         (const int[]){e.least[cb], e.least[cr]});
+}
+
+enum { QUIET_CHROMA = 24 }; /* of most blocks, from grey */
+
+/* From here on a pixel may be bright whose chroma is quiet; 0 .. 256. */
+static int loud_luma(const struct glint_bright *b)
+{
+    const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
+    const int least[2] = {127 - QUIET_CHROMA, 127 - QUIET_CHROMA};
+    const int32_t left_q16 = b->low_sum_q16 - most_added_q16(b, most, least);
+    const int luma = b->ycc.black + left_q16 / b->ycc.to_rgb_q16[0][0];
+
+    return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
+}
+
+/* What carries into the ninth bit of each 16 that is CODE or more. */
+static uint64_t carry_from(int code)
+{
+    return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
+}
+
+/* Whether some luma, in the low bytes of pairs of MOST if Y is 0, else the
+ * high ones, is loud, or chroma there or in INVERSE. */
+static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
+                                 uint64_t luma_carry, uint64_t chroma_carry)
+{
+    const uint64_t low = UINT64_C(0x00ff00ff00ff00ff);
+    const uint64_t luma = (y ? most >> 8 : most) & low;
+    const uint64_t chroma = (y ? most : most >> 8) & low;
+    const uint64_t less = (y ? inverse : inverse >> 8) & low;
+    const uint64_t sum =
+        (luma + luma_carry) | (chroma + chroma_carry) | (less + chroma_carry);
+
+    return (sum & ~low) != 0;
+}
+
+/* Most blocks are neither bright nor of strong colours, which is seen without
+ * a look at each extreme. */
+static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
+                                    int y)
+{
+    const uint64_t luma_carry = carry_from(loud_luma(b));
+    const uint64_t chroma_carry = carry_from(129 + QUIET_CHROMA);
     int any = 0;
 
     for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
-        struct extremes e;
+        uint8_t half[16];
 
-        find_extremes(&e, px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 8);
-        b->block[i] =
-            (uint8_t)may_be_bright(b, bright_larger(e.most[y], e.most[y + 2]),
-                                   (const int[]){e.most[cb], e.most[cr]},
-                                   (const int[]){e.least[cb], e.least[cr]});
+        find_halves(half, px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 8);
+        b->block[i] = is_loud(bytes_load(half), bytes_load(half + 8), y,
+                              luma_carry, chroma_carry) &&
+                      may_be_bright_packed(b, half);
         any |= b->block[i];
     }
     return any;
+}
+
+static int mark_row_packed(struct glint_bright *b, const uint8_t *px)
+{
+    return b->layout->sample[0].offset ? mark_pairs(b, px, 1)
+                                       : mark_pairs(b, px, 0);
 }
 
 /* Of a block of planes: Y at PX, N times 16 bytes of chroma at each of C. */

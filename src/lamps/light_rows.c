@@ -5,6 +5,7 @@
  * Regions of all levels are linked first, by brightness alone; then the light
  * of a row is summed where one needs it that may still be a light.
  */
+#include "base/bytes.h"
 #include "base/q.h"
 #include "lamps/lamp_finder.h"
 
@@ -111,6 +112,32 @@ static void offer(void *finder, const struct glint_region *sum)
 
 /* --------------------------------------------------------------------- rows */
 
+/* Of N values, those that are CODE or more. */
+static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
+                                    int is_above_128)
+{
+    uint32_t found = 0;
+
+    for (; n >= 8; value += 8, n -= 8)
+        found +=
+            bytes_count(bytes_reach(bytes_load(value), code, is_above_128));
+    for (int i = 0; i < n; i++)
+        found += value[i] >= code;
+    return (int)found;
+}
+
+/* Of a run whose pixels are LEAST or more, those that are CODE or more. */
+static int count_of_run(const uint8_t *value, const struct glint_run *run,
+                        int least, int code)
+{
+    const int all = run->x1 - run->x0;
+
+    if (code <= least)
+        return all;
+    return code > 128 ? count_from(value + run->x0, all, code, 1)
+                      : count_from(value + run->x0, all, code, 0);
+}
+
 /* Adds RUN of row Y to what is known of SUM without its light. */
 static void count_run(struct glint_region *sum,
                       const struct glint_lamp_finder *f,
@@ -118,17 +145,10 @@ static void count_run(struct glint_region *sum,
 {
     const struct glint_level *level = &f->level[f->at];
     const uint8_t *value = f->bright.value;
-    const int all = run->x1 - run->x0;
-    int n_seeds = 0, n_clipped = 0;
 
     glint_region_add_run(sum, run->x0, run->x1, y);
-    if (level->low < level->seed || level->low < level->clipped)
-        for (int x = run->x0; x < run->x1; x++) {
-            n_seeds += value[x] >= level->seed;
-            n_clipped += value[x] >= level->clipped;
-        }
-    sum->n_seeds += level->low < level->seed ? n_seeds : all;
-    sum->n_clipped += level->low < level->clipped ? n_clipped : all;
+    sum->n_seeds += count_of_run(value, run, level->low, level->seed);
+    sum->n_clipped += count_of_run(value, run, level->low, level->clipped);
 }
 
 /* Lets the run of the first level, *OUTER or a later one, that RUN is in know

@@ -53,12 +53,16 @@ struct glint_region_light {
     int32_t rgb_q14[3];
 };
 
-/* Linear luminance, BT.709. */
+/* Linear luminance, BT.709; and with 15 bits more. */
+static inline int64_t region_wide_luminance(int64_t r, int64_t g, int64_t b)
+{
+    return r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
+           b * Q_CONST(0.0722, 15);
+}
+
 static inline int64_t region_luminance(int64_t r, int64_t g, int64_t b)
 {
-    return q_shift(r * Q_CONST(0.2126, 15) + g * Q_CONST(0.7152, 15) +
-                       b * Q_CONST(0.0722, 15),
-                   15);
+    return q_shift(region_wide_luminance(r, g, b), 15);
 }
 
 /* Of linear light RGB, 0 .. white. */
@@ -66,8 +70,11 @@ static inline struct glint_region_light
 region_light_of(const int32_t rgb_q20[3])
 {
     struct glint_region_light light;
+    /* rounded to _q20 and then to _q14 */
     const int64_t seen_q14 =
-        q_shift(region_luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]), 20 - 14);
+        (region_wide_luminance(rgb_q20[0], rgb_q20[1], rgb_q20[2]) + (1 << 14) +
+         (1 << 20)) >>
+        21;
 
     light.w_q14 = seen_q14 > 1 ? seen_q14 : 1;
     for (int i = 0; i < 3; i++) /* 2^14 at most */

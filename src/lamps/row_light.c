@@ -9,6 +9,7 @@ void glint_row_light_carve(struct glint_row_light *row,
                            struct glint_arena *arena, int width)
 {
     row->sum = glint_arena_take(arena, (size_t)width + 1, sizeof *row->sum);
+    row->from = glint_arena_take(arena, (size_t)width + 1, sizeof *row->from);
 }
 
 void glint_row_light_begin(struct glint_row_light *row)
@@ -47,88 +48,173 @@ static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
     next->wx2_q14 = sum->wx2_q14 + wx_q14 * x;
 }
 
-/* Linear light of CODES of pixel X, which are Y, Cb, Cr if IS_YCC. */
-static WHOLLY_INLINE void decode(const struct glint_bright *b, int x,
-                                 int32_t codes, int is_ycc, int32_t rgb_q20[3])
+/* 0 + 1 + .. + (n - 1), and the same of squares. */
+static int64_t sum_below(int64_t n)
 {
-    int32_t rgb_q7[3];
+    return n * (n - 1) / 2;
+}
 
-    if (!is_ycc) {
-        bright_read(b, x, rgb_q20);
-        return;
-    }
-    ycc_to_rgb(&b->ycc, codes & 255, codes >> 8 & 255, codes >> 16, rgb_q7);
+static int64_t squares_below(int64_t n)
+{
+    return (n - 1) * n * (2 * n - 1) / 6;
+}
+
+/* SUM, which is of the pixels left of X, and N more that are as pixel X is. */
+static void add_alike(struct glint_row_sum *at,
+                      const struct glint_row_sum *restrict sum, int x, int n)
+{
+    const struct glint_row_sum *one = sum + 1;
+    const int64_t w_q14 = one->of[ROW_LIGHT_W] - sum->of[ROW_LIGHT_W];
+
+    for (int i = 0; i < ROW_LIGHT_SUMS; i++)
+        at->of[i] = sum->of[i] + n * (one->of[i] - sum->of[i]);
+    at->wx_q14 = sum->wx_q14 + w_q14 * (sum_below(x + n) - sum_below(x));
+    at->wx2_q14 =
+        sum->wx2_q14 + w_q14 * (squares_below(x + n) - squares_below(x));
+}
+
+/* What chroma adds to each channel, of full-range codes, and a half of what is
+ * rounded off. */
+static WHOLLY_INLINE void set_chroma(const struct glint_ycc *ycc, int32_t codes,
+                                     int32_t chroma_q16[3])
+{
+    const int32_t(*m_q16)[3] = ycc->to_rgb_q16;
+    const int cb = (codes >> 8 & 255) - 128, cr = (codes >> 16) - 128;
+
+    for (int i = 0; i < 3; i++)
+        chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
+}
+
+/* Linear light of luma Y and CHROMA: what ycc_to_rgb and curve_decode make of
+ * them, the first column being the same in each row. */
+static WHOLLY_INLINE void decode_ycc(const struct glint_bright *b, int y,
+                                     const int32_t chroma_q16[3],
+                                     int32_t rgb_q20[3])
+{
+    const int32_t luma_q16 = (y - b->ycc.black) * b->ycc.to_rgb_q16[0][0];
+
     for (int i = 0; i < 3; i++) {
+        const int32_t code_q7 = (luma_q16 + chroma_q16[i]) >> 9;
         const int32_t held_q7 =
-            rgb_q7[i] < CODE_WHITE_Q7 ? rgb_q7[i] : CODE_WHITE_Q7;
+            code_q7 < CODE_WHITE_Q7 ? code_q7 : CODE_WHITE_Q7;
 
         rgb_q20[i] = curve_decode(b->curve, held_q7 > 0 ? held_q7 : 0);
     }
 }
 
-/* Sums pixels X0 .. X1 - 1, whose codes lie STEP and STEP_C bytes apart; those
- * of the second and the third are each of 1 << SHIFT pixels. */
-static WHOLLY_INLINE void sum_pixels(struct glint_row_sum *sum,
+/* How the codes of a row lie: STEP and STEP_C bytes apart; those of the second
+ * and the third are each of 1 << SHIFT pixels. */
+struct packing {
+    enum glint_layout_kind kind;
+    int step, step_c, shift;
+};
+
+static WHOLLY_INLINE int32_t codes_at(const struct glint_bright *b,
+                                      struct packing p, int x)
+{
+    const ptrdiff_t at = (ptrdiff_t)x * p.step;
+    const ptrdiff_t at_c = (ptrdiff_t)(x >> p.shift) * p.step_c;
+
+    return b->code[0].first[at] | b->code[1].first[at_c] << 8 |
+           b->code[2].first[at_c] << 16;
+}
+
+/* Sums pixels X0 .. X1 - 1. Where many are alike, only the first and the last
+ * of these sums are kept. */
+static WHOLLY_INLINE void sum_pixels(struct glint_row_light *row,
                                      const struct glint_bright *b, int x0,
-                                     int x1, int is_ycc, int step, int step_c,
-                                     int shift)
+                                     int x1, struct packing p)
 {
     const int32_t clipped_q20 = b->curve->decode_q20[BRIGHT_CLIPPED];
-    const uint8_t *c0 = b->code[0].first, *c1 = b->code[1].first;
-    const uint8_t *c2 = b->code[2].first;
-    int32_t of[ROW_LIGHT_SUMS] = {0}, codes = -1, rgb_q20[3];
+    struct glint_row_sum *sum = row->sum;
+    int32_t of[ROW_LIGHT_SUMS] = {0}, rgb_q20[3], chroma_q16[3] = {0};
+    int32_t here = x0 < x1 ? codes_at(b, p, x0) : 0, chroma = -1;
 
-    for (int x = x0; x < x1; x++) {
-        const ptrdiff_t at_c = (ptrdiff_t)(x >> shift) * step_c;
-        const int32_t here =
-            c0[(ptrdiff_t)x * step] | c1[at_c] << 8 | c2[at_c] << 16;
+    for (int x = x0; x < x1;) {
+        int next = x + 1;
 
-        if (here != codes) {
-            decode(b, x, here, is_ycc, rgb_q20);
-            set_sums(of, rgb_q20, clipped_q20);
+        if (p.kind == GLINT_LAYOUT_YCC) {
+            if (here >> 8 != chroma)
+                set_chroma(&b->ycc, here, chroma_q16);
+            chroma = here >> 8;
+            decode_ycc(b, here & 255, chroma_q16, rgb_q20);
+        } else if (p.kind == GLINT_LAYOUT_RGB) {
+            for (int i = 0; i < 3; i++)
+                rgb_q20[i] = b->curve->decode_q20[here >> 8 * i & 255];
+        } else {
+            bright_read(b, x, rgb_q20);
         }
-        codes = here;
-        add_pixel(&sum[x + 1], &sum[x], of, x);
+        set_sums(of, rgb_q20, clipped_q20);
+        add_pixel(&sum[next], &sum[x], of, x);
+        row->from[next] = (uint16_t)next;
+        for (int32_t last = here; next < x1; next++) {
+            here = codes_at(b, p, next);
+            if (here != last)
+                break;
+            row->from[next] = (uint16_t)x;
+        }
+        if (next > x + 1) {
+            add_alike(&sum[next], &sum[x], x, next - x);
+            row->from[x + 1] = (uint16_t)(x + 1);
+            row->from[next] = (uint16_t)next;
+        }
+        x = next;
     }
 }
 
 /* The same with constant steps where they are the usual ones. */
-static void sum_stretch(struct glint_row_sum *sum, const struct glint_bright *b,
-                        int x0, int x1)
+static void sum_stretch(struct glint_row_light *row,
+                        const struct glint_bright *b, int x0, int x1)
 {
     const struct glint_bright_code *c = b->code;
-    const int is_ycc = b->layout->kind == GLINT_LAYOUT_YCC;
+    const struct packing p = {b->layout->kind, c[0].step, c[1].step,
+                              c[1].shift};
 
-    if (c[0].step == 3)
-        sum_pixels(sum, b, x0, x1, 0, 3, 3, 0);
-    else if (is_ycc && c[0].step == 2)
-        sum_pixels(sum, b, x0, x1, 1, 2, 4, 1);
-    else if (is_ycc)
-        sum_pixels(sum, b, x0, x1, 1, c[0].step, c[1].step, c[1].shift);
+    if (p.kind == GLINT_LAYOUT_RGB && p.step == 3)
+        sum_pixels(row, b, x0, x1, (struct packing){GLINT_LAYOUT_RGB, 3, 3, 0});
+    else if (p.kind == GLINT_LAYOUT_YCC && p.step == 2)
+        sum_pixels(row, b, x0, x1, (struct packing){GLINT_LAYOUT_YCC, 2, 4, 1});
     else
-        sum_pixels(sum, b, x0, x1, 0, c[0].step, c[1].step, c[1].shift);
+        sum_pixels(row, b, x0, x1, p);
 }
 
 void glint_row_light_extend(struct glint_row_light *row,
                             const struct glint_bright *bright, int x0, int x1)
 {
-    if (x0 <= row->end)
+    if (x0 <= row->end) {
         x0 = row->end;
-    else
+    } else {
         row->sum[x0] = (struct glint_row_sum){.wx_q14 = 0};
-    sum_stretch(row->sum, bright, x0, x1);
+        row->from[x0] = (uint16_t)x0;
+    }
+    sum_stretch(row, bright, x0, x1);
     if (x1 > row->end)
         row->end = x1;
+}
+
+/* The sum left of X, in *ROOM if it is not kept. */
+static const struct glint_row_sum *sum_at(const struct glint_row_light *row,
+                                          int x, struct glint_row_sum *room)
+{
+    const int from = row->from[x];
+
+    if (from == x)
+        return &row->sum[x];
+    add_alike(room, &row->sum[from], from, x - from);
+    return room;
 }
 
 void glint_row_light_add(const struct glint_row_light *row,
                          struct glint_region *region, int x0, int x1, int width,
                          int y)
 {
-    const struct glint_row_sum *a = &row->sum[x0], *b = &row->sum[x1];
+    struct glint_row_sum room[4];
+    const struct glint_row_sum *a = sum_at(row, x0, &room[0]);
+    const struct glint_row_sum *b = sum_at(row, x1, &room[1]);
     const int rim0 = x0 > ROW_LIGHT_RIM ? x0 - ROW_LIGHT_RIM : 0;
     const int rim1 = x1 < width - ROW_LIGHT_RIM ? x1 + ROW_LIGHT_RIM : width;
-    const struct glint_row_sum *c = &row->sum[rim0], *d = &row->sum[rim1];
+    const struct glint_row_sum *c = sum_at(row, rim0, &room[2]);
+    const struct glint_row_sum *d = sum_at(row, rim1, &room[3]);
     const int64_t w_q14 = b->of[ROW_LIGHT_W] - a->of[ROW_LIGHT_W];
 
     region->w_q14 += w_q14;

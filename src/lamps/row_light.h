@@ -40,8 +40,11 @@ struct glint_row_sum {
 };
 
 struct glint_row_light {
-    struct glint_row_sum *sum; /* [width + 1] */
-    int end;                   /* of the last stretch; -1: there is none */
+    struct glint_row_sum *sum; /* [width + 1], where from says so */
+    uint16_t *from; /* [width + 1]: the column itself where its sum is
+                       kept, else the first of the like pixels that it
+                       is among, and so is the one before */
+    int end;        /* of the last stretch; -1: there is none */
 };
 
 void glint_row_light_carve(struct glint_row_light *row,

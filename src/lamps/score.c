@@ -184,27 +184,6 @@ static int32_t wide_q8(const struct glint_candidate *c, int32_t value_q8)
     return value_q8 * q_clamp_sat(size_q8 + 2 * WIDE_Q8, 0, WIDE_Q8) / WIDE_Q8;
 }
 
-static void look_at_rings(struct glint_candidate *c,
-                          const struct glint_score *s)
-{
-    struct ring ring[SCORE_RINGS] = {{0, 0, 0}};
-    int32_t in_q8[2];
-
-    mean_stops(&c->sum, in_q8);
-    for (int i = 0; i < SCORE_RINGS; i++) {
-        if (i > 0)
-            ring[i] = ring[i - 1];
-        look_at_ring(&ring[i], s, &c->sum, distance_of(s, &c->sum, i), in_q8);
-    }
-    c->evidence_q8[EVIDENCE_AROUND] = ring[1].lower_q8;
-    c->evidence_q8[EVIDENCE_HALO] = ring[2].mean_q8 - ring[0].mean_q8;
-    c->evidence_q8[EVIDENCE_CLOSE] = ring[0].lower_q8;
-    c->evidence_q8[EVIDENCE_SPREAD] = ring[0].upper_q8 - ring[0].lower_q8;
-    c->evidence_q8[EVIDENCE_WIDE_HALO] =
-        wide_q8(c, q_clamp_sat((int64_t)ring[2].mean_q8 - ring[0].mean_q8, 0,
-                               HALO_MOST_Q8));
-}
-
 /* -------------------------------------------------------------------- shape */
 
 /* Over 2 pi r^2; a pixel by itself has 1 / 6 of a squared pixel. */
@@ -316,34 +295,91 @@ static int32_t score_of(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
-static int is_of_rings(int measure)
+/* The first ring that says something of MEASURE; SCORE_RINGS: none does. */
+static int ring_of(int measure)
 {
-    return measure == EVIDENCE_AROUND || measure == EVIDENCE_HALO ||
-           measure == EVIDENCE_SPREAD || measure == EVIDENCE_CLOSE;
+    switch (measure) {
+    case EVIDENCE_CLOSE:
+    case EVIDENCE_SPREAD:
+        return 0;
+    case EVIDENCE_AROUND:
+        return 1;
+    case EVIDENCE_HALO:
+        return 2;
+    default:
+        return SCORE_RINGS;
+    }
 }
 
-/* What the surroundings can add to a score at most. */
-static int32_t most_of_rings(void)
+/* What rings FIRST and later can add to a score at most. */
+static int32_t most_of_rings(int first)
 {
     int32_t sum_q16 = 0;
 
     for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
         const struct term *t = &terms[i];
+        const int ring = ring_of(t->measure);
 
-        if (is_of_rings(t->measure) && t->weight_q8 > 0)
+        if (ring >= first && ring < SCORE_RINGS && t->weight_q8 > 0)
             sum_q16 += (t->most_q8 - t->least_q8) * t->weight_q8;
     }
     return (sum_q16 >> 8) + 1;
 }
 
-/* The score of C if its surroundings spoke for it as much as they can. */
-static int32_t most_of(struct glint_candidate *c, int32_t most_of_rings_q8)
+/* Makes the rings say as much for C as they can, but for what most_of_rings
+ * adds. */
+static void hope_for_rings(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
-        if (is_of_rings(i))
+        if (ring_of(i) < SCORE_RINGS)
             c->evidence_q8[i] = INT16_MIN; /* the least of each term: 0 */
     c->evidence_q8[EVIDENCE_WIDE_HALO] = wide_q8(c, HALO_MOST_Q8);
-    return score_of(c->evidence_q8) + most_of_rings_q8;
+}
+
+/* What is known once RING I has been looked at. */
+static void learn_of_ring(struct glint_candidate *c, const struct ring *ring,
+                          int i)
+{
+    int32_t *e_q8 = c->evidence_q8;
+    const int64_t halo_q8 = (int64_t)ring[i].mean_q8 - ring[0].mean_q8;
+
+    switch (i) {
+    case 0:
+        e_q8[EVIDENCE_CLOSE] = ring->lower_q8;
+        e_q8[EVIDENCE_SPREAD] = ring->upper_q8 - ring->lower_q8;
+        break;
+    case 1:
+        e_q8[EVIDENCE_AROUND] = ring[1].lower_q8;
+        break;
+    default:
+        e_q8[EVIDENCE_HALO] = q_narrow(halo_q8);
+        e_q8[EVIDENCE_WIDE_HALO] =
+            wide_q8(c, q_clamp_sat(halo_q8, 0, HALO_MOST_Q8));
+    }
+}
+
+/* The score of C, ring by ring as long as those that are left may lift it.
+ * MOST_Q8: what rings 0 .., 1 .. and 2 can add. */
+static int32_t score_by_rings(struct glint_candidate *c,
+                              const struct glint_score *s,
+                              const int32_t most_q8[SCORE_RINGS])
+{
+    struct ring ring[SCORE_RINGS] = {{0, 0, 0}};
+    int32_t in_q8[2];
+
+    hope_for_rings(c);
+    mean_stops(&c->sum, in_q8);
+    for (int i = 0; i < SCORE_RINGS; i++) {
+        const int32_t hoped_q8 = score_of(c->evidence_q8) + most_q8[i];
+
+        if (s->is_brief && hoped_q8 < -SCORE_DOUBT)
+            return hoped_q8;
+        if (i > 0)
+            ring[i] = ring[i - 1];
+        look_at_ring(&ring[i], s, &c->sum, distance_of(s, &c->sum, i), in_q8);
+        learn_of_ring(c, ring, i);
+    }
+    return score_of(c->evidence_q8);
 }
 
 static void count_crowd(struct glint_candidate *candidate, const int32_t *order,
@@ -365,9 +401,11 @@ void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n)
 {
-    const int32_t most_q8 = most_of_rings();
+    int32_t most_q8[SCORE_RINGS];
     struct dark dark;
 
+    for (int i = 0; i < SCORE_RINGS; i++)
+        most_q8[i] = most_of_rings(i);
     count_crowd(candidate, order, n);
     look_at_dark(&dark, score);
     for (int i = 0; i < n; i++) {
@@ -376,11 +414,7 @@ void glint_score_all(const struct glint_score *score,
         for (int part = 0; part < SCORE_PARTS; part++)
             c->evidence_q8[EVIDENCE_DARK_2 + part] = dark.part_q8[part];
         look_at_shape(c, score);
-        c->score_q8 = most_of(c, most_q8);
-        if (score->is_brief && c->score_q8 < -SCORE_DOUBT)
-            continue;
-        look_at_rings(c, score);
-        c->score_q8 = score_of(c->evidence_q8);
+        c->score_q8 = score_by_rings(c, score, most_q8);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "lamps/white.h"
 
 #include "base/q.h"
+#include "lamps/bright_code.h"
 
 /* With f the part after the leading bit, log2(1 + f) is within 0.002 of
  * f + f (1 - f) (0.4273 - 0.175 f). */
@@ -30,16 +31,43 @@ static int code_of_stops(const struct glint_bright *b, int32_t stops_q8)
     return code;
 }
 
+/* Where the N columns or rows of a grid lie in SIDE pixels: (2 i + 1) SIDE /
+ * (2 n), rounded down, one after the other. */
+struct grid {
+    int at, past, step, step_past, whole;
+};
+
+static struct grid grid_of(int side, int n)
+{
+    return (struct grid){side / (2 * n), side % (2 * n), side / n,
+                         2 * side % (2 * n), 2 * n};
+}
+
+static WHOLLY_INLINE void grid_next(struct grid *g)
+{
+    g->at += g->step;
+    g->past += g->step_past;
+    if (g->past >= g->whole) {
+        g->past -= g->whole;
+        g->at++;
+    }
+}
+
 static void count(struct glint_white *w, struct glint_bright *b, int height)
 {
     const int nx = b->width < WHITE_GRID_X ? b->width : WHITE_GRID_X;
     const int ny = height < WHITE_GRID_Y ? height : WHITE_GRID_Y;
+    struct grid row = grid_of(height, ny);
 
     for (int j = 0; j < ny; j++) {
-        glint_bright_go(b, (int)((2 * j + 1) * (int64_t)height / (2 * ny)));
-        for (int i = 0; i < nx; i++)
-            w->at_least[glint_bright_value_at(
-                b, (int)((2 * i + 1) * (int64_t)b->width / (2 * nx)))]++;
+        struct grid column = grid_of(b->width, nx);
+
+        glint_bright_go(b, row.at);
+        for (int i = 0; i < nx; i++) {
+            w->at_least[bright_value_at(b, column.at)]++;
+            grid_next(&column);
+        }
+        grid_next(&row);
     }
     w->n = nx * ny;
 }

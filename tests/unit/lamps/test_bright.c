@@ -256,6 +256,37 @@ static void test_no_pixel_is_missed(void **state)
     free(image.plane[0]);
 }
 
+/* Blocks of one dim grey, in which one code is another. */
+static void test_no_colour_is_missed(void **state)
+{
+    static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
+
+    (void)state;
+    for (int round = 0; round < 2000; round++) {
+        struct glint_image image = canvas_new(packed[round % 2], 64, HEIGHT);
+        const int chroma_at = round % 2 ? 0 : 1;
+        struct glint_bright *b;
+        void *mem;
+
+        b = new_bright(image.width, &mem);
+        image.range = round / 2 % 2 ? GLINT_RANGE_LIMITED : GLINT_RANGE_FULL;
+        for (int y = 0; y < HEIGHT; y++) {
+            const int luma = rng_below(&seed, 230),
+                      chroma = 100 + rng_below(&seed, 56);
+            uint8_t *row = image.plane[0] + y * image.stride_bytes[0];
+
+            for (int i = 0; i < 2 * image.width; i++)
+                row[i] = (uint8_t)(i % 2 == chroma_at ? chroma : luma);
+            row[rng_below(&seed, 2 * image.width)] =
+                (uint8_t)rng_below(&seed, 256);
+        }
+        check_scan(b, &image, 100 + rng_below(&seed, 156));
+        free(b);
+        free(mem);
+        free(image.plane[0]);
+    }
+}
+
 /* Spans of the same codes end where the light changes, or sooner where other
  * codes have the same light. */
 static void test_same_pixels(void **state)
@@ -304,6 +335,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scan_against_every_pixel),
         cmocka_unit_test(test_no_pixel_is_missed),
+        cmocka_unit_test(test_no_colour_is_missed),
         cmocka_unit_test(test_same_pixels),
     };
 

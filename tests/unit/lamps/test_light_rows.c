@@ -44,12 +44,18 @@ static void set_up(struct fixture *f, enum glint_pixel_format format)
     const int dark =
         4 * rng_below(&seed, 2); /* as around lamps, every second time */
     uint8_t *codes = malloc(bytes);
+    const size_t pixel = /* or two of them */
+        format == GLINT_RGB24 || format == GLINT_BGR24 ? 3 : 4;
+    int alike = 0; /* bytes that repeat those before */
 
     assert_non_null(codes);
-    for (size_t i = 0; i < bytes; i++)
-        codes[i] = (uint8_t)(i > 4 && rng_below(&seed, 2)
-                                 ? codes[i - 4]
+    for (size_t i = 0; i < bytes; i++, alike--) {
+        if (alike <= 0)
+            alike = rng_below(&seed, 3) ? 0 : 4 * rng_below(&seed, 16);
+        codes[i] = (uint8_t)(i >= pixel && (alike > 0 || rng_below(&seed, 2))
+                                 ? codes[i - pixel]
                                  : rng_below(&seed, 256) >> dark);
+    }
     *f = (struct fixture){
         .image = {.format = format, .width = WIDTH, .height = HEIGHT}};
     glint_image_place(&f->image, codes);
@@ -117,8 +123,13 @@ static void check_row(struct fixture *f, int y)
 
         if (x0 >= x1)
             continue;
-        glint_row_light_add(&f->row, &sum, x0, x1, WIDTH, y + 1000);
-        add_plainly(f, &plain, x0, x1, y + 1000);
+        for (int j = 0; j < 4; j++) { /* all of it, and runs of a core in it */
+            const int begin = j ? x0 + rng_below(&seed, x1 - x0) : x0;
+            const int end = j ? begin + 1 + rng_below(&seed, x1 - begin) : x1;
+
+            glint_row_light_add(&f->row, &sum, begin, end, WIDTH, y + 1000);
+            add_plainly(f, &plain, begin, end, y + 1000);
+        }
     }
     assert_memory_equal(&sum, &plain, sizeof sum);
 }
