@@ -67,7 +67,8 @@ struct glint_engine_config {
 
     /* What drawing may take. 0 bytes: what it needs, exactly, and more as a
      * frame needs more; else these, and what does not fit is left out and
-     * counted. ARENA, aligned to 64, is kept; NULL: they are taken. */
+     * counted, and at most 2 * max_found lights are drawn. ARENA, aligned to
+     * 64, is kept; NULL: they are taken. */
     void *arena;
     size_t arena_bytes;
 };
@@ -80,7 +81,8 @@ struct glint_engine_report {
     int dropped_bundles; /* for want of memory */
     int dropped_cells;   /* of what was drawn: where rays were lost */
     size_t bytes;        /* that drawing has */
-    size_t need_bytes;   /* that would have drawn everything, exactly */
+    size_t need_bytes;   /* that would have drawn everything, shared out for
+                            this very picture */
     double scale;        /* that powers were multiplied by */
     double plan_ms, bin_ms, draw_ms;
     double quality; /* that a budget chose; below 0: there is none */

@@ -100,7 +100,8 @@ static enum glint_status plan(struct glint_frame *f,
                              (uint64_t)s->n_wavelengths);
     int n = 0, kept = 0;
 
-    if (status != GLINT_OK)
+    t->n_bundles = 0;
+    if (status != GLINT_OK || !t->bundle)
         return status;
     for (int lamp = 0; lamp < n_lamps; lamp++)
         for (int ghost = 0; ghost < s->n_ghosts; ghost++)

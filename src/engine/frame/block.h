@@ -16,7 +16,7 @@ static inline void *glint_block_take(size_t bytes, void **mem)
     const uintptr_t last = 63;
 
     *mem = bytes ? malloc(bytes + last) : NULL;
-    return *mem ? (void *)(((uintptr_t)*mem + last) & ~last) : NULL;
+    return *mem ? (char *)*mem + (-(uintptr_t)*mem & last) : NULL;
 }
 
 #endif

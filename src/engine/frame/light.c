@@ -39,14 +39,14 @@ struct glint_light glint_light_of(const struct glint_lamp *l, double scale)
     return b;
 }
 
-struct glint_lamp glint_lamp_of(const struct glint_light *b)
+struct glint_lamp glint_lamp_of(const struct glint_light *light)
 {
     return (struct glint_lamp){
-        .theta_deg = atan2(b->sine_q30, b->cosine_q30) / degree,
-        .phi_deg = atan2(b->sin_q30, b->cos_q30) / degree,
-        .power = glint_real_value(b->power),
-        .rgb = {b->rgb_q14[0] * 0x1p-14, b->rgb_q14[1] * 0x1p-14,
-                b->rgb_q14[2] * 0x1p-14}};
+        .theta_deg = atan2(light->sine_q30, light->cosine_q30) / degree,
+        .phi_deg = atan2(light->sin_q30, light->cos_q30) / degree,
+        .power = glint_real_value(light->power),
+        .rgb = {light->rgb_q14[0] * 0x1p-14, light->rgb_q14[1] * 0x1p-14,
+                light->rgb_q14[2] * 0x1p-14}};
 }
 
 int glint_light_is_beyond(const struct glint_lens *lens,

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The engine as programs embed it: what it refuses, what it reports, and that
+ * memory of its own and of the caller's give the same pictures.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/engine.h"
+#include "options/scene.h"
+
+enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
+
+static struct scene scene;
+static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
+
+/* A grey picture with two lamps. */
+static struct glint_image picture(uint8_t *px)
+{
+    struct glint_image image = {
+        .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
+
+    memset(px, 40, BYTES);
+    for (int k = 0; k < 2; k++)
+        for (int y = 0; y < 4; y++)
+            memset(px + 3 * ((30 + 50 * k + y) * WIDTH + 40 + 60 * k), 255,
+                   3 * (size_t)(4 + 2 * k));
+    glint_image_place(&image, px);
+    return image;
+}
+
+static struct glint_engine *make(void *arena, size_t bytes)
+{
+    struct glint_engine_config cfg;
+    struct glint_engine *engine;
+    struct glint_error error;
+
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = &scene.model.lens;
+    cfg.arena = arena;
+    cfg.arena_bytes = bytes;
+    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    return engine;
+}
+
+/* Finds and draws into PX; returns how many lamps there are. */
+static int run(struct glint_engine *engine, int32_t us, uint8_t *px,
+               struct glint_engine_report *report)
+{
+    struct glint_lamp lamps[8];
+    const struct glint_image image = picture(px);
+    const int n = glint_engine_find(engine, &image, us, lamps, 8);
+
+    assert_int_equal(glint_engine_draw(engine, lamps, n, &image, report),
+                     GLINT_OK);
+    return n;
+}
+
+static void test_draws(void **state)
+{
+    static uint8_t px[BYTES], plain[BYTES];
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine_report report;
+
+    (void)state;
+    picture(plain);
+    assert_int_equal(run(engine, 0, px, &report), 2);
+    assert_int_equal(report.lamps, 2);
+    assert_true(report.ghosts > 0 && report.bundles > 0 && report.scale > 0);
+    assert_int_equal(report.dropped_bundles, 0);
+    assert_true(report.need_bytes > 0 && report.need_bytes <= report.bytes);
+    assert_memory_not_equal(px, plain, BYTES);
+    glint_engine_destroy(engine);
+}
+
+/* Memory is whose it may be; of too little the report says what would do. */
+static void test_arena(void **state)
+{
+    static uint8_t want[BYTES], got[BYTES];
+    struct glint_engine *engine = make(NULL, 16 << 20);
+    struct glint_engine_report full, little, report;
+    void *mem;
+
+    (void)state;
+    run(engine, 0, want, &full);
+    glint_engine_destroy(engine);
+    assert_int_equal(posix_memalign(&mem, 64, 16 << 20), 0);
+    engine = make(mem, 16 << 20);
+    run(engine, 0, got, &report);
+    glint_engine_destroy(engine);
+    assert_memory_equal(got, want, BYTES);
+    assert_int_equal(report.dropped_bundles, 0);
+    engine = make(mem, 1100 << 10);
+    run(engine, 0, got, &little);
+    glint_engine_destroy(engine);
+    assert_true(little.dropped_bundles > 0);
+    assert_int_equal(little.need_bytes, full.need_bytes);
+    free(mem);
+}
+
+/* Followed lamps rise; with the dials turned down there is less to draw. */
+static void test_follows(void **state)
+{
+    static uint8_t px[BYTES];
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine_report report;
+    int n = 0, bundles;
+
+    (void)state;
+    for (int i = 0; i < 30; i++)
+        n = run(engine, 40000, px, &report);
+    assert_int_equal(n, 2);
+    bundles = report.bundles;
+    glint_engine_turn(engine, glint_dials_coarser(glint_dials_at(1 << 14),
+                                                  glint_dials_at(1 << 12)));
+    run(engine, 40000, px, &report);
+    assert_in_range(report.bundles, 1, bundles - 1);
+    glint_engine_destroy(engine);
+}
+
+static void test_refuses(void **state)
+{
+    static uint8_t px[BYTES];
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine_config cfg;
+    struct glint_engine_report report;
+    struct glint_lamp lamp = {5, 0, 1, {1, 1, 1}, {0, 0}, 0};
+    struct glint_image image = picture(px);
+    struct glint_error error;
+
+    (void)state;
+    image.height--;
+    assert_int_equal(glint_engine_draw(engine, &lamp, 1, &image, &report),
+                     GLINT_E_ARGUMENT);
+    glint_engine_destroy(engine);
+    glint_engine_destroy(NULL);
+    for (int k = 0; k < 6; k++) {
+        glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
+        cfg.model = k == 1 ? NULL : &scene.model.lens;
+        cfg.max_found = k == 2 ? 513 : cfg.max_found;
+        cfg.strength = k == 3 ? -1 : cfg.strength;
+        cfg.threshold_ev[1] = k == 4 ? 0 : cfg.threshold_ev[1];
+        cfg.n_blades = k == 5 ? 2 : cfg.n_blades;
+        *error.text = '\0';
+        assert_int_equal(glint_engine_create(&engine, &cfg, &error),
+                         GLINT_E_ARGUMENT);
+        assert_null(engine);
+        assert_true(*error.text != '\0');
+    }
+}
+
+static int enter(void **state)
+{
+    (void)state;
+    scene_defaults(&scene);
+    return tool_start(&tool) != EXIT_OK ||
+           scene_open(&tool, &scene, "lenses/heliar-tronnier.lens") != EXIT_OK;
+}
+
+static int leave(void **state)
+{
+    (void)state;
+    scene_close(&scene);
+    tool_finish(&tool);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_draws), cmocka_unit_test(test_arena),
+        cmocka_unit_test(test_follows), cmocka_unit_test(test_refuses)};
+
+    return cmocka_run_group_tests(tests, enter, leave);
+}
