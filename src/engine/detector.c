@@ -68,7 +68,7 @@ glint_lamp_detector_open(struct glint_lamp_detector *detector,
     enum glint_status status;
 
     detector->mem = NULL;
-    detector->n_tracks = 0;
+    detector->n_tracks = detector->n_spots = 0;
     detector->max_tracks = tracks_for(detector->max);
     lights.keep_faint = 1;
     glint_lamp_tracker_defaults(&tracks, cfg->width, cfg->height);
@@ -129,6 +129,7 @@ static int find(struct glint_lamp_detector *f, const struct glint_image *image,
 
     glint_profile_measure(f->profile, image, f->spot,
                           n < f->max_tracks ? n : f->max_tracks);
+    f->n_spots = n;
     f->scale = 1;
     for (int i = 0; i < n && f->headroom_ev >= 0; i++)
         set_power(f, &f->spot[i]);
@@ -188,4 +189,25 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
             lamps[i].rgb[c] = track->rgb_q15[c] / 32768.0;
     }
     return f->n_tracks;
+}
+
+/* A disc of one light has an area of 2 pi times its RMS radius squared. */
+static int is_disc(const struct glint_spot *spot)
+{
+    const double r = spot->size_q8 / 256.0;
+
+    return spot->area >= 0.6 * 2 * GLINT_PI * r * r;
+}
+
+const struct glint_spot *
+glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector)
+{
+    for (int i = 0; i < detector->n_spots; i++) {
+        const struct glint_spot *spot = &detector->spot[i];
+
+        if (spot->faint && spot->flux_q16 >= (int64_t)spot->area << 15 &&
+            is_disc(spot))
+            return spot;
+    }
+    return NULL;
 }

@@ -29,6 +29,7 @@ struct glint_lamp_detector {
     struct glint_profile *profile;
     double scale;            /* of the power of tracks */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
+    int n_spots;             /* of the last frame, lamps and doubtful ones */
     int max_tracks;
     void *mem;
 };
@@ -48,6 +49,12 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
                               const struct glint_image *image,
                               int32_t elapsed_us, const struct glint_view *view,
                               double focal_mm, struct glint_lamp *lamps);
+
+/* The strongest place of the last frame that was taken for no lamp, yet is
+ * within a stop of white on average and about as compact as a disc; NULL: there
+ * is none. */
+const struct glint_spot *
+glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector);
 
 /* The next frame has nothing to do with the last: another camera, a jump. */
 void glint_lamp_detector_restart(struct glint_lamp_detector *detector);

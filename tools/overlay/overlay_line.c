@@ -110,6 +110,22 @@ static void say_faint(const struct overlay *o,
                 look->strength.asked * sqrt(well_seen / light->peak));
 }
 
+/* Nothing was found in all frames; of a picture by itself, what came next. */
+static void say_none(const struct look *look, FILE *to)
+{
+    const bool is_found = !look->is_listed && look->n_hand == 0;
+    const struct glint_spot *next = NULL;
+
+    if (look->sized && is_found && look->n_frames == 1)
+        next = glint_lamp_detector_doubtful(&look->finder);
+    fputs("no light was found, so nothing was drawn; ", to);
+    if (next)
+        fprintf(to, "brightest candidate: --light-at %.0f,%.0f\n",
+                next->x_q8 / 256.0, next->y_q8 / 256.0);
+    else
+        fputs("see --threshold, or give one with --light-at X,Y\n", to);
+}
+
 void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to)
 {
@@ -121,9 +137,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
     if (n != 1)
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
     if (o->most_lights == 0) {
-        fputs("no light was found, so nothing was drawn; see --threshold, or "
-              "give one with --light-at X,Y\n",
-              to);
+        say_none(look, to);
         return;
     }
     say_lights(look, o->most_lights, to);
