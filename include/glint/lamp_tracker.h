@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/lamp_tracker.h - lights over time: which spot of a picture is which
+ * glint/lamp_tracker.h - lamps over time: which spot of a picture is which
  * lamp.
  *
  *     bytes = glint_lamp_tracker_bytes(&cfg);                        once
@@ -11,7 +11,7 @@
  * A track is one lamp with a number of its own. It takes the nearest spot to
  * where it should be by now; its place, flux and colour are averaged where they
  * scatter and followed where they change, and nothing of it jumps: it rises and
- * fades in time, and what becomes of flux and place when lights merge, part or
+ * fades in time, and what becomes of flux and place when lamps merge, part or
  * are hidden is blended in. A track that lost its lamp fades, is remembered for
  * a while and has its number back when the lamp is back. After a cut all begins
  * anew, in one picture.
@@ -63,7 +63,7 @@ struct glint_lamp_tracker_config {
     int32_t match_q15;  /* of the width: how far a spot may be from where the
                            track should be */
     int32_t cut_q15;    /* of the flux: a cut is where as much of it goes and
-                           as much is new, or three lights or more go or come
+                           as much is new, or three lamps or more go or come
                            all at once; above 32768: never */
     int32_t attack_ms;  /* from 0 to full level, or to a greater flux */
     int32_t release_ms; /* the other way */

@@ -4,9 +4,9 @@
  *
  *     bytes = glint_lamp_finder_bytes(&cfg);                     once
  *     glint_lamp_finder_init(&finder, &cfg, mem, bytes);
- *     n = glint_lamp_finder_find(finder, &image, lights, 64);    each picture
+ *     n = glint_lamp_finder_find(finder, &image, spots, 64);    each picture
  *
- * Bright regions become lights: pixels above the upper threshold seed a region,
+ * Bright regions become lamps: pixels above the upper threshold seed a region,
  * pixels above the lower one belong to it. Pixels are judged by their largest
  * channel, so that a red lamp is as bright as a white one, in stops from white:
  * that is where codes clip (250 and above count as clipped). In a picture that
@@ -15,16 +15,16 @@
  * would be lamps.
  *
  * Skies, clouds, snow, paper and flowers are as bright as lamps. A region is a
- * light by what a score says of it and of what is around it: contrast, light
+ * lamp by what a score says of it and of what is around it: contrast, light
  * that falls off around it and in all directions alike, a compact shape, how
  * much else is as bright, colour; see flare/score.h. A region that is none is
  * looked at again where it clips in one channel, in nearly all, and in all: a
- * sun in a bright sky is a light by itself. At least an eighth of a region must
+ * sun in a bright sky is a lamp by itself. At least an eighth of a region must
  * be at the upper threshold.
  *
  * Everything is weighted by flux in linear light, never by the single brightest
- * pixel, so that noise does not move a light. Sizes follow the picture's, so
- * that it has the same lights at any resolution. Integers only; nothing is kept
+ * pixel, so that noise does not move a lamp. Sizes follow the picture's, so
+ * that it has the same lamps at any resolution. Integers only; nothing is kept
  * from picture to picture.
  */
 #ifndef GLINT_LAMPS_H
@@ -40,7 +40,7 @@
 extern "C" {
 #endif
 
-/* A light as the picture shows it. */
+/* A lamp as the picture shows it. */
 struct glint_spot {
     int32_t x_q8, y_q8; /* flux-weighted centroid; pixels from the top left
                            corner of the picture, pixel centres at n + 1/2 */
@@ -50,7 +50,7 @@ struct glint_spot {
                            at the picture's own white */
     int64_t flux_q16;   /* sum of linear luminance over its pixels, 1 = white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
-    int32_t faint;      /* 1: no light yet; see keep_faint */
+    int32_t faint;      /* 1: no lamp yet; see keep_faint */
 
     /* glint_profile_measure (glint/profile.h) sets these, and refines rgb;
      * until then they are the flux and the radius. */
@@ -70,10 +70,10 @@ struct glint_lamp_finder_config {
                                  the picture's own, see above */
     int min_area;             /* pixels; smaller regions are noise, >= 1 */
     int32_t max_share_q15;    /* of the picture; larger ones are sky or wall */
-    int32_t merge_q15;        /* of the width: closer lights become one */
+    int32_t merge_q15;        /* of the width: closer lamps become one */
     int32_t judge;            /* 1: by what is around them; 0: all bright
-                                 regions are lights */
-    int32_t keep_faint;       /* 1: after the lights come regions that have too
+                                 regions are lamps */
+    int32_t keep_faint;       /* 1: after the lamps come regions that have too
                                  few pixels at the upper threshold, half of
                                  min_area, or a score a little too low, marked
                                  faint; for glint/lamp_tracker.h */
@@ -95,9 +95,9 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
                        const struct glint_lamp_finder_config *cfg, void *mem,
                        size_t bytes);
 
-/* Writes the lights of IMAGE (of cfg's size, any format but LINEAR_Q20), by
+/* Writes the lamps of IMAGE (of cfg's size, any format but LINEAR_Q20), by
  * falling flux, at most MAX (1 .. 1024). What exceeds MAX joins the nearest
- * light kept where one is near, else it is dropped. Returns how many it wrote.
+ * lamp kept where one is near, else it is dropped. Returns how many it wrote.
  */
 int glint_lamp_finder_find(struct glint_lamp_finder *finder,
                            const struct glint_image *image,

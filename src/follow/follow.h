@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * One number of a light over time: noise is averaged, change is followed.
+ * One number of a lamp over time: noise is averaged, change is followed.
  *
  *   in   what each picture says, at any rate
  *   out  a number that does not scatter, lag or jump
@@ -9,7 +9,7 @@
  * without (spread). Noise drifts nowhere, so the drift is a small part of the
  * spread, and the number moves a small part of the way, as an average over the
  * pace's time does. Change drifts all one way, or is far larger than the
- * spread, and the number goes all of it at once. So the filter takes each light
+ * spread, and the number goes all of it at once. So the filter takes each lamp
  * by its own noise, and lags behind steady change by no more than five times
  * the harmless error that it is given (floor).
  *
@@ -57,7 +57,7 @@ void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
 
 enum glint_follow_as {
     GLINT_FOLLOW_JUDGED,   /* noise or change, by what it was so far */
-    GLINT_FOLLOW_REPEATED, /* all of the light is as it was */
+    GLINT_FOLLOW_REPEATED, /* all of the lamp is as it was */
     GLINT_FOLLOW_CHANGED
 };
 

@@ -23,7 +23,7 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-#define REACH_US       1000000 /* a lost light may be as far again */
+#define REACH_US       1000000 /* a lost lamp may be as far again */
 #define MAX_REACHES    3
 
 struct glint_lamp_tracker {
@@ -169,7 +169,7 @@ static void send_seekers(struct glint_lamp_tracker *t)
     }
 }
 
-/* How near a spot must be to be the same light where there are N spots: among
+/* How near a spot must be to be the same lamp where there are N spots: among
  * many there is always one in reach, by chance. */
 static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
 {
@@ -178,7 +178,7 @@ static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
     return n > FEW_SPOTS ? reach2_q16 * FEW_SPOTS / n : reach2_q16;
 }
 
-/* What spot NOW keeps of the light that was seen as BEFORE, where it should be
+/* What spot NOW keeps of the lamp that was seen as BEFORE, where it should be
  * by S. */
 static int64_t kept_of(const struct glint_seeker *s,
                        const struct glint_spot *before,
@@ -201,7 +201,7 @@ struct side {
 };
 
 /* Whether most of A is not in B. Where nothing is seen on this side, many
- * lights on the other speak for a cut: they came or went all at once. */
+ * lamps on the other speak for a cut: they came or went all at once. */
 static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                     const struct side *b)
 {
@@ -266,7 +266,7 @@ static int yields_first(const struct glint_record *p,
     return p_q16 != q_q16 ? p_q16 < q_q16 : p->id > q->id;
 }
 
-/* The place for a new light of POWER: a free one, else that of one which is not
+/* The place for a new lamp of POWER: a free one, else that of one which is not
  * shown and either lost or fainter. NULL: none. */
 static struct glint_record *place_for(struct glint_lamp_tracker *t,
                                       int64_t power_q16)

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which spot of a picture is which light of the one before.
+ * Which spot of a picture is which lamp of the one before.
  *
- *   in   spots in any order; where each light should be by now
- *   out  for each light its spot, or none; no spot twice
+ *   in   spots in any order; where each lamp should be by now
+ *   out  for each lamp its spot, or none; no spot twice
  *
  * Method: of all pairs within reach the nearest is taken, then the nearest of
- * what is left, and so on. Faint spots, and lights that were lost before, count
- * as twice as far. Each light looks at the NEAREST_SPOTS nearest only, which it
+ * what is left, and so on. Faint spots, and lamps that were lost before, count
+ * as twice as far. Each lamp looks at the NEAREST_SPOTS nearest only, which it
  * finds among spots sorted by x, so that 1024 spots cost no more than a look at
- * those in reach; a light that finds all of these taken stays without.
+ * those in reach; a lamp that finds all of these taken stays without.
  */
 #ifndef GLINT_FOLLOW_MATCH_H
 #define GLINT_FOLLOW_MATCH_H
@@ -18,7 +18,7 @@
 
 struct glint_arena;
 
-/* A light that looks for its spot. */
+/* A lamp that looks for its spot. */
 struct glint_seeker {
     uint32_t id; /* settles ties; no two have the same */
     int32_t x_q8, y_q8;

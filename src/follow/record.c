@@ -4,8 +4,8 @@
 #include "base/q.h"
 
 #define VELOCITY_US 100000 /* it is averaged over */
-#define COAST_US                                               \
-    1000000 /* in which a light whose motion is not seen loses \
+#define COAST_US                                              \
+    1000000 /* in which a lamp whose motion is not seen loses \
                1 - 1/e of it */
 #define MAX_FLUX_Q16 (INT64_C(1) << 42)
 #define FULL_Q30     (INT32_C(1) << 30)
@@ -101,7 +101,7 @@ static int is_same(const struct glint_spot *a, const struct glint_spot *b)
 }
 
 /* A flux that changes by a quarter from picture to picture is another shape:
- * lights merged, parted, or something came before them. */
+ * lamps merged, parted, or something came before them. */
 static int is_other_shape(const struct glint_spot *a,
                           const struct glint_spot *b)
 {
@@ -132,7 +132,7 @@ static void slow_down(struct glint_record *r,
 }
 
 /* The velocity is that of the value, which was BEFORE; of noise half as fast. A
- * light that crosses the picture in less than a sixteenth of a second is not
+ * lamp that crosses the picture in less than a sixteenth of a second is not
  * followed. */
 static void learn_velocity(struct glint_record *r,
                            const struct glint_record_step *step, int axis,
@@ -152,7 +152,7 @@ static void learn_velocity(struct glint_record *r,
         (now_q16 - r->velocity_q16[axis]) * part_q15 / (1 << 15);
 }
 
-/* A place that belongs to another shape is not motion. Well within the light
+/* A place that belongs to another shape is not motion. Well within the lamp
  * it is taken for noise; beyond it what is shown goes on as it went, and comes
  * round in time. */
 static void doubt_place(struct glint_record *r,
@@ -170,7 +170,7 @@ static void doubt_place(struct glint_record *r,
         glint_follow_jump(f, target_q16, ahead_q16 + f->offset);
 }
 
-/* An error of the light's own extent is no noise. */
+/* An error of the lamp's own extent is no noise. */
 static enum glint_follow_as judge_place(const struct glint_record *r,
                                         int64_t error_q16, int is_repeat)
 {
@@ -179,9 +179,9 @@ static enum glint_follow_as judge_place(const struct glint_record *r,
     return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
 }
 
-/* Whether no motion explains TARGET: twice the light's extent and an eighth of
+/* Whether no motion explains TARGET: twice the lamp's extent and an eighth of
  * the match distance from where it should be. It may be motion that begins, or
- * another light. */
+ * another lamp. */
 static int is_leap(const struct glint_record *r,
                    const struct glint_record_step *step, int axis,
                    int64_t target_q16)
@@ -214,7 +214,7 @@ static void follow_place(struct glint_record *r,
     learn_velocity(r, step, axis, before_q16, change_q15);
 }
 
-/* A light without a spot moves on; a hidden one slower and slower. */
+/* A lamp without a spot moves on; a hidden one slower and slower. */
 static void coast(struct glint_record *r, const struct glint_record_step *step)
 {
     for (int axis = 0; axis < 2; axis++) {
@@ -224,7 +224,7 @@ static void coast(struct glint_record *r, const struct glint_record_step *step)
     }
 }
 
-/* Whether the light moves out of the picture, through a border next to it. */
+/* Whether the lamp moves out of the picture, through a border next to it. */
 static int is_leaving(const struct glint_record *r,
                       const struct glint_record_step *step)
 {
@@ -257,7 +257,7 @@ static enum glint_follow_as judge_light(int64_t change, int64_t larger,
     return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
 }
 
-/* The time that all of a light takes to come or go. */
+/* The time that all of a lamp takes to come or go. */
 static int32_t blend_us(const struct glint_lamp_tracker_config *cfg,
                         int64_t change)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * One light over time: what is held of it, and what a picture makes of that.
+ * One lamp over time: what is held of it, and what a picture makes of that.
  *
  *     glint_record_begin(r, id, spot);               once
  *     glint_record_look_ahead(r, &step);             each picture
@@ -60,7 +60,7 @@ int64_t glint_record_power_q16(const struct glint_spot *spot);
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot);
 
-/* Sets where the light should be by now. */
+/* Sets where the lamp should be by now. */
 void glint_record_look_ahead(struct glint_record *r,
                              const struct glint_record_step *step);
 
@@ -68,7 +68,7 @@ void glint_record_see(struct glint_record *r,
                       const struct glint_record_step *step,
                       const struct glint_spot *spot);
 
-/* There is no spot: the light moves on, and is forgotten in time. */
+/* There is no spot: the lamp moves on, and is forgotten in time. */
 void glint_record_miss(struct glint_record *r,
                        const struct glint_record_step *step);
 

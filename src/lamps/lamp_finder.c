@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * From the regions of a picture to its lights.
+ * From the regions of a picture to its lamps.
  *
  * A region that qualifies becomes a candidate; of these the brightest
  * LIGHT_CANDIDATES are held, and only when all are found is anything merged.

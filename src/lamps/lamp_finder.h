@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the parts of the finder of lights share: light_rows.c makes candidates
+ * What the parts of the finder of lamps share: light_rows.c makes candidates
  * of a picture, lamp_list.c holds, sorts and merges them.
  */
 #ifndef GLINT_LAMPS_LAMP_FINDER_H

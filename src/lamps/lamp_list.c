@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Candidates for lights: held by flux, merged where they are near, capped.
+ * Candidates for lamps: held by flux, merged where they are near, capped.
  */
 #include "base/q.h"
 #include "base/sort.h"
