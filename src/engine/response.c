@@ -200,13 +200,16 @@ static void take_logs(struct glint_response_light *light)
     }
 }
 
+/* Without asin(), which is 25 KB of glint-live. */
 static double model_end_deg(const struct glint_frame *frame)
 {
     const double degree = GLINT_PI / 180;
+    double sine;
 
-    return frame->lens ? asin(frame->lens->header->sine_hi_q30 * 0x1p-30) /
-                             degree * (1 - 1e-6)
-                       : 89;
+    if (!frame->lens)
+        return 89;
+    sine = frame->lens->header->sine_hi_q30 * 0x1p-30;
+    return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
 }
 
 /* Lamps as LAMP, of up to an eighth of the picture's diagonal. */
