@@ -83,7 +83,7 @@ void glint_lamp_tracker_defaults(struct glint_lamp_tracker_config *cfg,
                                               .match_q15 = Q_CONST(0.06, 15),
                                               .cut_q15 = Q_CONST(0.75, 15),
                                               .attack_ms = 200,
-                                              .release_ms = 200,
+                                              .release_ms = 220,
                                               .leave_ms = 400,
                                               .memory_ms = 2000,
                                               .smooth_ms = 300};

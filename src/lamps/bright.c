@@ -101,6 +101,23 @@ void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3])
     bright_read(b, x, rgb_q20);
 }
 
+int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
+                              int32_t light_q20)
+{
+    const int lost = b->layout->kind != GLINT_LAYOUT_565 ? 0 : c == 1 ? 2 : 3;
+    const int step_q7 = 128 << lost;
+    int code_q7 = 0;
+
+    if (lost == 0)
+        return 0;
+    for (int bit = 1 << 14; bit > 0; bit >>= 1)
+        if (code_q7 + bit <= CODE_WHITE_Q7 - step_q7 &&
+            curve_decode(b->curve, code_q7 + bit) <= light_q20)
+            code_q7 += bit;
+    return curve_decode(b->curve, code_q7 + step_q7) -
+           curve_decode(b->curve, code_q7);
+}
+
 int glint_bright_same(const struct glint_bright *b, int x, int end)
 {
     int code[3];

@@ -90,6 +90,11 @@ int glint_bright_mark(struct glint_bright *b);
 /* The linear light of pixel X of the row scanned last, 0 .. white. */
 void glint_bright_read(const struct glint_bright *b, int x, int32_t rgb_q20[3]);
 
+/* How much more than LIGHT the next code of channel C is, 0 .. white, where
+ * codes have fewer than 8 bits; else 0. */
+int32_t glint_bright_step_q20(const struct glint_bright *b, int c,
+                              int32_t light_q20);
+
 /* The first of pixels X + 1 .. END - 1 that is not as X is, or END: lamps and
  * skies are white in many pixels on end. */
 int glint_bright_same(const struct glint_bright *b, int x, int end);

@@ -373,8 +373,14 @@ void glint_profile_sum(struct glint_profile_sums *sums,
     find_borders(&w, profile, spots, n, i);
     *sums = (struct glint_profile_sums){.step = w.step};
     see_ring(&w, RINGS, see_background, &sectors);
-    for (int c = 0; c < 3; c++)
-        set_background(&sums->of[c], &sectors, c);
+    for (int c = 0; c < 3; c++) {
+        struct glint_profile_channel *of = &sums->of[c];
+        int64_t step_q20;
+
+        set_background(of, &sectors, c);
+        step_q20 = glint_bright_step_q20(bright, c, of->black_q20);
+        of->step_q16 = (int32_t)(step_q20 * of->scale_q16 >> 20);
+    }
     for (int ring = 0; ring <= RINGS; ring++)
         see_ring(&w, ring, see_light, sums);
     for (int c = 0; c < 3; c++)

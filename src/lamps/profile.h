@@ -29,7 +29,7 @@
 
 enum {
     GLINT_PROFILE_RINGS = 3,
-    GLINT_PROFILE_LEVELS = 8,
+    GLINT_PROFILE_LEVELS = 7,
     GLINT_PROFILE_NEAR = 3, /* levels that the outer rings do not have */
     GLINT_PROFILE_SPOTS = 1024
 };
@@ -37,6 +37,8 @@ enum {
 struct glint_profile_channel {
     int32_t black_q20, scale_q16; /* background; 1 / (1 - that), to 16 */
     int32_t spread_q16;           /* of the background, in u */
+    int32_t step_q16; /* from the background to the next code, in u, where
+                         codes have fewer than 8 bits; else 0 */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1]; /* where u is 2^-k or more;
                                                   [0]: clipped */
     int64_t n[GLINT_PROFILE_LEVELS + 1]; /* pixels whose own level that is */

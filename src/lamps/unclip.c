@@ -3,12 +3,15 @@
 
 #include "base/divide.h"
 #include "base/log2.h"
+#include "lamps/unclip_weights.h"
 
 #define ONE_Q16       (1 << 16)
 #define MAX_POWER_Q16 (INT64_C(1) << 42)
 
 enum {
     LEVELS = GLINT_PROFILE_LEVELS,
+    FEATURES = GLINT_UNCLIP_FEATURES,
+    UNITS = GLINT_UNCLIP_UNITS,
     SHOWN = 5 /* the last level whose light counts to what is seen */
 };
 
@@ -46,12 +49,6 @@ static void set_colour(struct glint_spot *spot,
 
 /* -------------------------------------------------------------------- power */
 
-/* What a channel shows, and what it is without clipping, as log2 of pixels. */
-struct guess {
-    int32_t seen_q16, whole_q16;
-    int32_t trust_q16;
-};
-
 static int32_t log_of_q8(int64_t area_q8)
 {
     return q_log2_q16((uint64_t)(area_q8 > 0 ? area_q8 : 0) + 128) -
@@ -83,106 +80,159 @@ static int64_t flux_q16(const struct glint_profile_channel *of)
                              8);
 }
 
-static int32_t radius_q8(int64_t area_q8)
+/* The area of LEVEL in the channel that has most of it. */
+static int64_t widest_q8(const struct glint_profile_sums *sums, int level)
 {
-    return (int32_t)q_root((uint64_t)(area_q8 + 128) << 8);
+    int64_t area_q8 = sums->of[0].area_q8[level];
+
+    for (int c = 1; c < 3; c++)
+        if (sums->of[c].area_q8[level] > area_q8)
+            area_q8 = sums->of[c].area_q8[level];
+    return area_q8;
 }
 
-/* log2 of how many pixels further out than the clipped core the light reaches
- * to LEVEL, -2 .. 6. */
-static int32_t width_q16(const struct glint_profile_channel *of, int level)
+/* The clipped area of the channel that has least of it. */
+static int64_t narrowest_q8(const struct glint_profile_sums *sums)
 {
-    const int32_t width_q8 =
-        radius_q8(of->area_q8[level]) - radius_q8(of->area_q8[0]);
-    const int32_t w_q16 =
-        q_log2_q16((uint64_t)(width_q8 > 0 ? width_q8 : 0) + 64) - 8 * ONE_Q16;
+    int64_t area_q8 = sums->of[0].area_q8[0];
 
-    return q_clamp_sat(w_q16, -2 * ONE_Q16, 6 * ONE_Q16);
+    for (int c = 1; c < 3; c++)
+        if (sums->of[c].area_q8[0] < area_q8)
+            area_q8 = sums->of[c].area_q8[0];
+    return area_q8;
 }
 
-/* How many octaves more area than the core there is at LEVEL. */
-static int32_t growth_q16(const struct glint_profile_channel *of, int level)
+/* At luminance 1; of a colour that is none, white. */
+static int32_t brightest_q15(const struct glint_spot *spot)
 {
-    return q_clamp_sat(log_of_q8(of->area_q8[level]) -
-                           log_of_q8(of->area_q8[0]),
-                       0, 6 * ONE_Q16);
+    int32_t most = Q_CONST(0.5, 15);
+
+    for (int c = 0; c < 3; c++)
+        most = spot->rgb_q15[c] > most ? spot->rgb_q15[c] : most;
+    return most;
 }
 
-/* How many stops over white the clipped core is: the more the steeper the light
- * falls right beside it; the further the halo goes, above a background as even
- * as it is; and the wider the rim, for so large a core. Fitted to what
- * power_table makes (tests/programs), by least absolute error. */
-static int32_t stops_q16(const struct glint_profile_channel *of)
+/* How much of LEVEL the codes of the picture show: all of it where its least
+ * light is two steps of a code over the background, none where it is one. */
+static int32_t shown_q16(const struct glint_profile_sums *sums, int level)
 {
-    const int32_t core_q16 = log_of_q8(of->area_q8[0]);
-    const int32_t steep_q16 = growth_q16(of, 2), wide_q16 = width_q16(of, 3);
-    const int32_t even_q16 =
-        q_log2_q16((uint64_t)of->spread_q16 + 983) - 16 * ONE_Q16;
-    const int64_t s_q16 =
-        (int64_t)Q_CONST(2.846, 16) - q_mul(steep_q16, Q_CONST(3.511, 16), 16) +
-        q_mul(q_mul(steep_q16, growth_q16(of, 3), 16), Q_CONST(0.307, 16), 16) -
-        q_mul(q_mul(width_q16(of, LEVELS), even_q16, 16), Q_CONST(0.075, 16),
-              16) -
-        q_mul(core_q16, Q_CONST(0.075, 16), 16) -
-        q_mul(q_mul(core_q16, width_q16(of, 2), 16), Q_CONST(0.223, 16), 16) +
-        q_mul(q_mul(wide_q16, wide_q16, 16), Q_CONST(0.500, 16), 16);
+    int32_t step_q16 = 1;
 
-    return q_clamp_sat(s_q16, 0, 14 * ONE_Q16);
+    for (int c = 0; c < 3; c++)
+        if (sums->of[c].step_q16 > step_q16)
+            step_q16 = sums->of[c].step_q16;
+    return q_clamp_sat((16 - level) * ONE_Q16 - q_log2_q16((uint64_t)step_q16),
+                       0, ONE_Q16);
 }
 
-/* What AREA hides if it is STOPS over white: held to MAX_POWER. */
-static int64_t hidden_of_q16(int64_t area_q8, int32_t stops_q16)
+/* How many octaves more area than the core each level has. Below the codes of
+ * RGB565 what is counted is the border between two of them, anywhere: such a
+ * level grows as the one before it did. An octave lies between levels, so one
+ * at most is shown in part; sums are below 2^26. */
+static void list_growth(int32_t growth_q16[LEVELS],
+                        const struct glint_profile_sums *sums, int32_t core_q16)
 {
-    int32_t area_q16;
+    int32_t at_q16 = 0, by_q16 = 0;
 
-    if (area_q8 < 1)
-        return 0;
-    area_q16 = q_log2_q16((uint64_t)area_q8) - 8 * ONE_Q16;
-    return q_exp2_q16(
-               q_clamp_sat(area_q16 + stops_q16, -16 * ONE_Q16, 27 * ONE_Q16)) -
-           q_exp2_q16(q_clamp_sat(area_q16, -16 * ONE_Q16, 27 * ONE_Q16));
+    for (int k = 1; k <= LEVELS; k++) {
+        const int32_t seen_q16 = log_of_q8(widest_q8(sums, k)) - core_q16;
+        const int32_t on_q16 = at_q16 + by_q16;
+        const int32_t next_q16 =
+            on_q16 + q_mul(seen_q16 - on_q16, shown_q16(sums, k), 16);
+
+        by_q16 = next_q16 - at_q16;
+        at_q16 = next_q16;
+        growth_q16[k - 1] = next_q16;
+    }
 }
 
-static struct guess guess_of(const struct glint_profile_channel *of,
-                             int32_t rgb_q15)
+void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
+                           const struct glint_spot *spot,
+                           const struct glint_profile_sums *sums)
 {
-    const int32_t stops = stops_q16(of);
-    const int64_t seen_q16 = flux_q16(of);
-    const int64_t hidden_q16 = hidden_of_q16(of->area_q8[0], stops);
-    const int32_t base_q16 = q_log2_q16((uint64_t)rgb_q15 + 64) +
-                             q_log2_q16((uint64_t)of->scale_q16);
-    struct guess g;
-    int64_t far_q16;
+    const int32_t core_q16 = log_of_q8(widest_q8(sums, 0));
+    int64_t spread_q16 = 0, black_q20 = 0;
 
-    g.seen_q16 = q_log2_q16((uint64_t)seen_q16 + 1) - base_q16;
-    g.whole_q16 = q_log2_q16((uint64_t)(seen_q16 + hidden_q16) + 1) - base_q16;
-    far_q16 = g.whole_q16 - g.seen_q16 + ONE_Q16 / 8;
-    g.trust_q16 =
-        q_clamp_sat(q_divide((int64_t)rgb_q15 << 18, far_q16), 1, 1 << 26);
-    return g;
+    for (int c = 0; c < 3; c++) {
+        spread_q16 += sums->of[c].spread_q16;
+        black_q20 += sums->of[c].black_q20;
+    }
+    feature_q16[0] = core_q16;
+    feature_q16[1] = core_q16 - log_of_q8(narrowest_q8(sums));
+    list_growth(feature_q16 + 2, sums, core_q16);
+    /* means of the channels, of a thousandth and a five-hundredth at least */
+    feature_q16[2 + LEVELS] =
+        q_log2_q16((uint64_t)spread_q16 + 197) - Q_CONST(17.585, 16);
+    feature_q16[3 + LEVELS] =
+        q_log2_q16((uint64_t)black_q20 + 6291) - Q_CONST(21.585, 16);
+    feature_q16[4 + LEVELS] =
+        q_log2_q16((uint64_t)brightest_q15(spot)) - 15 * ONE_Q16;
+    feature_q16[5 + LEVELS] = log_of_q8(spot->axis_q8[1]);
 }
 
-/* The channels each tell how much more there is than is seen; the less of it is
- * hidden the more its word counts. */
+/* A feature is below 2^23 and a weight below 2^15, so that the sum of 14
+ * products is below 2^42. */
+static int64_t weighed_q26(const int16_t weight_q10[FEATURES + 1],
+                           const int32_t feature_q16[FEATURES])
+{
+    int64_t sum_q26 = (int64_t)weight_q10[FEATURES] * ONE_Q16;
+
+    for (int i = 0; i < FEATURES; i++)
+        sum_q26 += (int64_t)weight_q10[i] * q_clamp_sat(feature_q16[i],
+                                                        range_q8[i][0] * 256,
+                                                        range_q8[i][1] * 256);
+    return sum_q26;
+}
+
+/* How many stops over white the core is: a perceptron with one layer of
+ * rectified units beside a linear term. A halo means another thing beside a
+ * core of three pixels than beside one of a hundred, on an even background than
+ * among windows: products of features, which units stand for at no cost but
+ * sums. A unit is below 2^32 in _q16, times a weight 2^47, and there are six.
+ */
+static int32_t stops_q16(const int32_t feature_q16[FEATURES])
+{
+    int64_t sum_q26 = weighed_q26(linear_q10, feature_q16);
+
+    for (int i = 0; i < UNITS; i++) {
+        const int64_t unit_q26 = weighed_q26(unit_q10[i], feature_q16);
+
+        if (unit_q26 > 0)
+            sum_q26 += q_shift(unit_q26, 10) * out_q10[i];
+    }
+    return q_clamp_sat(q_shift(sum_q26, 10), -6 * ONE_Q16, 14 * ONE_Q16);
+}
+
+void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
+                        const struct glint_spot *spot,
+                        const struct glint_profile_sums *sums)
+{
+    int64_t flux[3];
+
+    for (int c = 0; c < 3; c++)
+        flux[c] = q_divide(flux_q16(&sums->of[c]) << 16, sums->of[c].scale_q16);
+    *seen_q16 = luminance(flux);
+    *core_q16 = q_divide(widest_q8(sums, 0) << 23, brightest_q15(spot));
+}
+
+/* What is seen, and behind the core what its features say. The core is below
+ * 2^47, so that the logarithm's clamp is the first to bound it. */
 static void set_power(struct glint_spot *spot,
                       const struct glint_profile_sums *sums)
 {
-    int64_t seen = 0, whole = 0, trust = 0, power_q16, flux[3];
+    int64_t seen_q16, core_q16, hidden_q16 = 0;
+    int32_t feature_q16[FEATURES];
 
-    for (int c = 0; c < 3; c++) {
-        const struct guess g = guess_of(&sums->of[c], spot->rgb_q15[c]);
-
-        seen += (int64_t)g.seen_q16 * g.trust_q16;
-        whole += (int64_t)g.whole_q16 * g.trust_q16;
-        trust += g.trust_q16;
-        flux[c] = q_divide(flux_q16(&sums->of[c]) << 16, sums->of[c].scale_q16);
-    }
-    power_q16 = luminance(flux);
-    power_q16 += q_exp2_q16((int32_t)q_divide(whole, trust) + 31 * ONE_Q16 -
-                            16 * ONE_Q16) -
-                 q_exp2_q16((int32_t)q_divide(seen, trust) + 31 * ONE_Q16 -
-                            16 * ONE_Q16);
-    spot->power_q16 = power_q16 < MAX_POWER_Q16 ? power_q16 : MAX_POWER_Q16;
+    glint_unclip_light(&seen_q16, &core_q16, spot, sums);
+    glint_unclip_features(feature_q16, spot, sums);
+    if (core_q16 > 0)
+        hidden_q16 =
+            q_exp2_q16(q_clamp_sat(q_log2_q16((uint64_t)core_q16) +
+                                       stops_q16(feature_q16) - 16 * ONE_Q16,
+                                   -16 * ONE_Q16, 27 * ONE_Q16));
+    spot->power_q16 = seen_q16 + hidden_q16 < MAX_POWER_Q16
+                          ? seen_q16 + hidden_q16
+                          : MAX_POWER_Q16;
 }
 
 /* ------------------------------------------------------------------- extent */
@@ -255,6 +305,6 @@ void glint_unclip(struct glint_spot *spot,
                   const struct glint_profile_sums *sums)
 {
     set_colour(spot, sums);
-    set_power(spot, sums);
     set_extent(spot, sums);
+    set_power(spot, sums);
 }

@@ -7,6 +7,24 @@
 
 #include "lamps/profile.h"
 
+/* What tells the power of a clipped core, as logarithms: its area; how much
+ * less the channel has that clips least; how much more area there is at each
+ * level; spread and light of the background; the brightest channel at luminance
+ * 1; the minor semi-axis, which is that of the lamp in its glare. The major one
+ * is left out: of two lamps that become one spot it is their distance. */
+enum { GLINT_UNCLIP_FEATURES = 6 + GLINT_PROFILE_LEVELS };
+
+/* Of SPOT, whose colour and extent are set. */
+void glint_unclip_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
+                           const struct glint_spot *spot,
+                           const struct glint_profile_sums *sums);
+
+/* White pixels: what the picture shows, over the background, and the clipped
+ * core if it is white in its brightest channel alone. */
+void glint_unclip_light(int64_t *seen_q16, int64_t *core_q16,
+                        const struct glint_spot *spot,
+                        const struct glint_profile_sums *sums);
+
 /* Sets power, colour and extent of SPOT. */
 void glint_unclip(struct glint_spot *spot,
                   const struct glint_profile_sums *sums);

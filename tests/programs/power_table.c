@@ -1,22 +1,33 @@
 /* SPDX-License-Identifier: MIT
  *
- * power_table [--features] [PANORAMA.pfm ...] - how well the power of clipped
- * lamps is known: rendered lamps, and those of HDR panoramas, each exposed ten
- * times down to codes of 8 bits, found and measured as a picture's are. Prints
- * errors in stops by kind, for the half that constants were fitted to and for
- * the other.
+ * power_table [--features] [--coarse] [PANORAMA.pfm ...] - how well the power
+ * of clipped lamps is known: rendered lamps, and those of HDR panoramas, each
+ * exposed ten times down to codes of 8 bits, found and measured as a picture's
+ * are. Prints errors in stops by kind, for the half that constants were fitted
+ * to and for the other. --features: what tests/power-fit fits them to, more
+ * lamps and views of the one half: group, power, light seen and of the core,
+ * features. --coarse: all pictures are RGB565.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "lamps/profile.h"
+#include "lamps/unclip.h"
 #include "glint/glint.h"
 #include "support/power_scene.h"
 #include "support/rng.h"
 
-enum { EXPOSURES = 10, LAMPS = 240, MAX_ROWS = 1 << 17, MAX_SPOTS = 64 };
+enum {
+    EXPOSURES = 10,
+    LAMPS = 240,
+    VIEWS = 16,
+    MORE_LAMPS = 3, /* times as many, and views, to fit to */
+    MORE_VIEWS = 3,
+    PANORAMA = 10000, /* groups of lamps count from here */
+    MAX_ROWS = 1 << 17,
+    MAX_SPOTS = 64
+};
 
 struct row {
     char kind[32];
@@ -25,12 +36,13 @@ struct row {
 };
 
 static struct row row[MAX_ROWS];
-static int n_rows, features;
+static int n_rows, features, coarse;
 
 /* ------------------------------------------------------------------ measure */
 
 struct camera {
-    struct glint_image image;
+    struct glint_image image, coarse; /* of 8 bits; RGB565 */
+    const struct glint_image *seen;   /* which of them */
     struct glint_lamp_finder *finder;
     struct glint_profile *profile;
     struct glint_spot spot[MAX_SPOTS];
@@ -50,6 +62,9 @@ static void open_camera(struct camera *c, int width, int height)
     c->image = (struct glint_image){
         .format = GLINT_RGB24, .width = width, .height = height};
     glint_image_place(&c->image, malloc((size_t)(3 * width * height)));
+    c->coarse = c->image;
+    c->coarse.format = GLINT_RGB565;
+    glint_image_place(&c->coarse, malloc((size_t)(2 * width * height)));
     c->mask = malloc((size_t)(width * height));
     c->stack = malloc(sizeof *c->stack * (size_t)(width * height));
     if (posix_memalign(&c->mem[0], 64, bytes) ||
@@ -62,6 +77,7 @@ static void open_camera(struct camera *c, int width, int height)
 static void close_camera(struct camera *c)
 {
     free(c->image.plane[0]);
+    free(c->coarse.plane[0]);
     free(c->mem[0]);
     free(c->mem[1]);
     free(c->mask);
@@ -139,32 +155,48 @@ static int id_of(const struct camera *c, const struct glint_spot *spot)
     return i;
 }
 
-static void print_features(struct camera *c, const char *kind, int held,
-                           double power, const struct glint_spot *spot, int id,
-                           const double *rgb)
+static void print_features(struct camera *c, int id, double power,
+                           const struct glint_spot *spot)
 {
     struct glint_profile_sums sums;
+    int32_t feature_q16[GLINT_UNCLIP_FEATURES];
+    int64_t seen_q16, core_q16;
 
     glint_profile_sum(&sums, c->profile, c->spot, c->n, id_of(c, spot));
-    printf("%s %d %d %.6g %d %.6g %.6g %.6g", kind, held, id, power,
-           spot->size_q8, rgb[0], rgb[1], rgb[2]);
-    for (int k = 0; k < 3; k++) {
-        const struct glint_profile_channel *of = &sums.of[k];
-
-        printf(" %d %d %d %lld %lld", of->black_q20, of->scale_q16,
-               of->spread_q16, (long long)of->fringe_q16,
-               (long long)of->white_q16);
-        for (int l = 0; l <= GLINT_PROFILE_LEVELS; l++)
-            printf(" %lld", (long long)of->area_q8[l]);
-    }
+    glint_unclip_light(&seen_q16, &core_q16, spot, &sums);
+    glint_unclip_features(feature_q16, spot, &sums);
+    printf("%d %.6g %.6g %.6g", id, power, (double)seen_q16 / 65536,
+           (double)core_q16 / 65536);
+    for (int i = 0; i < GLINT_UNCLIP_FEATURES; i++)
+        printf(" %.4f", feature_q16[i] / 65536.0);
     printf("\n");
 }
 
+/* Exposure K. To fit to, some pictures are RGB565. */
+static void expose(struct camera *c, const struct power_scene *scene,
+                   double gain, double sigma, int k, uint32_t *seed)
+{
+    uint8_t *px = c->image.plane[0], *to = c->coarse.plane[0];
+
+    power_expose(px, scene, gain, sigma, seed);
+    c->seen = &c->image;
+    if (!coarse && !(features && k % 4 == 3))
+        return;
+    c->seen = &c->coarse;
+    for (int i = 0; i < scene->width * scene->height; i++) {
+        const int bits =
+            px[3 * i] >> 3 << 11 | px[3 * i + 1] >> 2 << 5 | px[3 * i + 2] >> 3;
+
+        to[2 * i] = (uint8_t)(bits & 255);
+        to[2 * i + 1] = (uint8_t)(bits >> 8);
+    }
+}
+
 static void note(struct camera *c, const char *kind, int held, double power,
-                 struct glint_spot *spot, int id, const double *rgb)
+                 struct glint_spot *spot, int id)
 {
     if (features) {
-        print_features(c, kind, held, power, spot, id, rgb);
+        print_features(c, id, power, spot);
         return;
     }
     snprintf(row[n_rows].kind, sizeof row[n_rows].kind, "%s", kind);
@@ -213,6 +245,11 @@ static struct power_lamp any_lamp(int i, int width, int height, uint32_t *seed)
     return l;
 }
 
+static int is_held(int i)
+{
+    return (i / 4 + i) & 1;
+}
+
 static void rendered(int i)
 {
     static const char *const names[POWER_SHAPES] = {"disc", "square", "tube"};
@@ -235,7 +272,7 @@ static void rendered(int i)
     power_draw(light, W, H, &lamp);
     open_camera(&c, W, H);
     for (int k = 0; k < EXPOSURES; k++) {
-        const double gain = exp2(-k);
+        const double gain = exp2(-k - (features ? power_random(&seed) : 0));
 
         /* the background is exposed for itself: lamps by day and night */
         for (int p = 0; p < W * H; p++)
@@ -243,13 +280,12 @@ static void rendered(int i)
                 scene.rgb[3 * p + j] =
                     ((double)light[p] * power * lamp.rgb[j] * gain +
                      black * (1 + slope * (p % W - W / 2) / W));
-        power_expose(c.image.plane[0], &scene, 1, noise, &seed);
+        expose(&c, &scene, 1, noise, k, &seed);
         if (region_at(&c, &scene, 1, (int)lamp.x, (int)lamp.y, c.spot) > 0 &&
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
             c.n = 1;
-            glint_profile_measure(c.profile, &c.image, c.spot, c.n);
-            note(&c, names[lamp.shape], (i / 4 + i) & 1, power * gain, c.spot,
-                 i, lamp.rgb);
+            glint_profile_measure(c.profile, c.seen, c.spot, c.n);
+            note(&c, names[lamp.shape], is_held(i), power * gain, c.spot, i);
         }
     }
     close_camera(&c);
@@ -358,7 +394,6 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
     struct power_scene scene = {width, height, malloc(bytes)};
     struct power_scene truth = {width, height, malloc(bytes)};
     uint32_t seed = 99u + (uint32_t)id * 31;
-    static const double white[3] = {1, 1, 1};
     struct camera c;
     double base;
 
@@ -370,9 +405,10 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
 
-        power_expose(c.image.plane[0], &scene, gain, 1.5, &seed);
-        c.n = glint_lamp_finder_find(c.finder, &c.image, c.spot, MAX_SPOTS);
-        glint_profile_measure(c.profile, &c.image, c.spot, c.n);
+        expose(&c, &scene, gain, features ? between(0, 3, &seed) : 1.5, k,
+               &seed);
+        c.n = glint_lamp_finder_find(c.finder, c.seen, c.spot, MAX_SPOTS);
+        glint_profile_measure(c.profile, c.seen, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {
             struct glint_spot ideal;
             const double power =
@@ -380,7 +416,7 @@ static void view(const struct panorama *p, const char *kind, int held, int id,
                           c.spot[i].y_q8 >> 8, &ideal);
 
             if (power > 0 && !c.spot[i].faint)
-                note(&c, kind, held, power, &c.spot[i], id, white);
+                note(&c, kind, held, power, &c.spot[i], PANORAMA + id / 100);
         }
     }
     close_camera(&c);
@@ -402,9 +438,9 @@ static void panorama(const char *path, int id)
     for (int i = 0; i < 3 * p.width * p.height; i++)
         most = fmax(most, p.rgb[i]);
     snprintf(kind, sizeof kind, "hdr-%.*s", (int)strcspn(name, "."), name);
-    for (int k = 0; k < 16; k++)
-        view(&p, kind, id & 1, 100 * id + k, k % 8 * 3.14159265 / 4,
-             (k / 8 - 0.3) * 0.6);
+    for (int k = 0; k < VIEWS * (features ? MORE_VIEWS : 1); k++)
+        view(&p, kind, id & 1, 100 * id + k,
+             (k % 8 + k / 16 / 3.0) * 3.14159265 / 4, (k / 8 % 2 - 0.3) * 0.6);
     free(p.rgb);
 }
 
@@ -442,10 +478,15 @@ int main(int argc, char **argv)
 
     if (argc > 1 && strcmp(argv[1], "--features") == 0)
         features = first++;
-    for (int i = 0; i < LAMPS && (!features || first == argc); i++)
-        rendered(i);
+    else if (argc > 1 && strcmp(argv[1], "--coarse") == 0)
+        coarse = first++;
+    for (int i = 0; i < LAMPS * (features ? MORE_LAMPS : 1); i++)
+        if (!features || !is_held(i))
+            rendered(i);
+    /* the first panorama is held, every other one */
     for (int i = first; i < argc; i++)
-        panorama(argv[i], i - first + 1);
+        if (!features || (i - first) % 2)
+            panorama(argv[i], i - first + 1);
     if (features)
         return 0;
     printf("kind             half        n   median     p90     bias\n");

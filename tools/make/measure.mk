@@ -24,7 +24,12 @@ ray-table: all $(OUT)/ray_errors
 	@tools/report/ray-table build/bake | tools/report/write-figures rays
 power-table: $(OUT)/power_table
 	@tools/make/deps "HDR panoramas" openimageio-tools python3 npm
-	@tests/power-table $<
+	@tests/power-table $< | tools/report/write-figures power
+# The weights of src/lamps/unclip.c, from the half that is there to fit to.
+power-fit: $(OUT)/power_table
+	@tools/make/deps "HDR panoramas" openimageio-tools python3-numpy npm
+	@tests/power-table $< --features >build/features.txt
+	@tests/power-fit build/features.txt
 $(OUT)/ray_errors: $(OUT)/tools/lab/ray_errors.o $(libs)
 	$(link)
 
@@ -75,5 +80,6 @@ budget: all
 	@tools/report/budget | tools/report/write-figures arm
 
 .PHONY: video-report demo inputs table bake-table accuracy-table colour-table ray-table power-table \
+        power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet \
         bench bench-insn growth size trade memory-table budget
