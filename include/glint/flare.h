@@ -74,7 +74,7 @@ struct glint_flare_frame {
     /* Of such a picture: edges across which light changes by less than so many
      * codes, 0 .. 2^15, lie on whole pixels, which takes a fraction of the
      * time. 0: none. */
-    int whole_codes_q8;
+    int snap_codes_q8;
     /* By edges: drawn with half as many pixels each way, each of which stands
      * for four of the picture. Of Y'CbCr whose chroma is shared by pairs the
      * four are lit at once, by what light does to their mean. NULL, or
@@ -242,26 +242,29 @@ int glint_flare_held(const struct glint_flare *flare);
 /* ------------------------------------------------------------ what and why */
 
 /* What became of the rays of one ghost, light and wave. */
-enum glint_fate {
-    GLINT_FATE_DRAWN,
-    GLINT_FATE_EMPTY,   /* planned, but no edge of its grid changes a pixel */
-    GLINT_FATE_OTHER,   /* only_ghost asks for another one */
-    GLINT_FATE_BEYOND,  /* the light comes from farther out than the model goes
-                         */
-    GLINT_FATE_CLOSED,  /* of this angle the model says: no ray gets through */
-    GLINT_FATE_BLOCKED, /* the stop and the barrels take all rays looked at */
-    GLINT_FATE_DARK,    /* the light has no power in this wave */
-    GLINT_FATE_OUTSIDE, /* it lies beside the picture */
-    GLINT_FATE_FAINT,   /* no pixel can show it, of all lights together */
-    GLINT_FATE_NO_ROOM, /* a capacity is full */
-    GLINT_FATE_OTHER_SET, /* the ghost takes another set of waves */
-    GLINT_FATES
+enum glint_outcome {
+    GLINT_OUTCOME_DRAWN,
+    GLINT_OUTCOME_EMPTY,  /* planned, but no edge of its grid changes a pixel */
+    GLINT_OUTCOME_OTHER,  /* only_ghost asks for another one */
+    GLINT_OUTCOME_BEYOND, /* the light comes from farther out than the model
+                           * goes
+                           */
+    GLINT_OUTCOME_CLOSED, /* of this angle the model says: no ray gets through
+                           */
+    GLINT_OUTCOME_BLOCKED,   /* the stop and the barrels take all rays looked at
+                              */
+    GLINT_OUTCOME_DARK,      /* the light has no power in this wave */
+    GLINT_OUTCOME_OUTSIDE,   /* it lies beside the picture */
+    GLINT_OUTCOME_FAINT,     /* no pixel can show it, of all lights together */
+    GLINT_OUTCOME_NO_ROOM,   /* a capacity is full */
+    GLINT_OUTCOME_OTHER_SET, /* the ghost takes another set of waves */
+    GLINT_OUTCOMES
 };
 
-/* What it took. All but the fate is 0 unless DRAWN, EMPTY or NO_ROOM; edges to
- * tiles are 0 unless DRAWN. */
+/* What it took. All but the outcome is 0 unless DRAWN, EMPTY or NO_ROOM; edges
+ * to tiles are 0 unless DRAWN. */
 struct glint_account {
-    enum glint_fate fate;
+    enum glint_outcome outcome;
     int surveyed;         /* rays that the plan looked at */
     int cells, vertices;  /* of the grid: a side, all */
     int outputs, barrels; /* polynomials of a ray; of these, barrels that cut */

@@ -31,15 +31,15 @@ static double work_of(const struct glint_explain_part *p, double *stage)
 
 int glint_explain_drawn(const struct glint_explain_part *p)
 {
-    return p->of[GLINT_FATE_DRAWN] + p->of[GLINT_FATE_EMPTY];
+    return p->of[GLINT_OUTCOME_DRAWN] + p->of[GLINT_OUTCOME_EMPTY];
 }
 
 int glint_explain_bundles(const struct glint_explain_part *p)
 {
     int n = 0;
 
-    for (int fate = 0; fate < GLINT_FATES; fate++)
-        n += p->of[fate];
+    for (int outcome = 0; outcome < GLINT_OUTCOMES; outcome++)
+        n += p->of[outcome];
     return n;
 }
 
@@ -49,10 +49,10 @@ int glint_explain_bundles(const struct glint_explain_part *p)
 static void add(struct glint_explain_part *p, const struct glint_account *a)
 {
     p->surveyed += a->surveyed;
-    if (a->fate == GLINT_FATE_OTHER_SET) /* drawn all the same */
+    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* drawn all the same */
         return;
-    p->of[a->fate]++;
-    if (a->fate != GLINT_FATE_DRAWN && a->fate != GLINT_FATE_EMPTY)
+    p->of[a->outcome]++;
+    if (a->outcome != GLINT_OUTCOME_DRAWN && a->outcome != GLINT_OUTCOME_EMPTY)
         return;
     p->cells = a->cells > p->cells ? a->cells : p->cells;
     p->terms = a->terms > p->terms ? a->terms : p->terms;
@@ -92,7 +92,8 @@ static void take_accounts(struct glint_explain *e)
                 add(&e->ghost[e->ghost_of[ghost]], &a);
                 add(&e->beam[beam], &a);
                 add(&e->wave[part_of(e, wave)], &a);
-                if (a.fate == GLINT_FATE_DRAWN || a.fate == GLINT_FATE_EMPTY)
+                if (a.outcome == GLINT_OUTCOME_DRAWN ||
+                    a.outcome == GLINT_OUTCOME_EMPTY)
                     e->barrels[a.barrels]++;
             }
 }

@@ -18,10 +18,10 @@
 
 /* A ghost, a light or a wavelength of the frame; or all of it. */
 struct glint_explain_part {
-    int of[GLINT_FATES]; /* bundles, by what became of them */
-    int cells;           /* a side of its largest grid */
-    int terms, barrels;  /* of the bundle with most of them */
-    long long surveyed;  /* rays that the plan looked at */
+    int of[GLINT_OUTCOMES]; /* bundles, by what became of them */
+    int cells;              /* a side of its largest grid */
+    int terms, barrels;     /* of the bundle with most of them */
+    long long surveyed;     /* rays that the plan looked at */
     long long vertices, edges, rows, refs, all_terms; /* terms of vertices */
     int tiles, lit;     /* tiles drawn, pixels that get light */
     double flux, share; /* that reaches the picture; of the frame's */

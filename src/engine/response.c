@@ -49,8 +49,8 @@ static double peak_of(const float *rgb, size_t n, int channel)
     return sum / n_top;
 }
 
-void glint_response_look(const float *rgb, size_t n,
-                         struct glint_response_light *light)
+void glint_response_around(const float *rgb, size_t n,
+                           struct glint_response_light *light)
 {
     for (int c = 0; c < 3; c++) {
         double sum = 0;
@@ -138,7 +138,7 @@ static enum glint_status draw_once(struct proxy *p,
     status = glint_frame_draw(&p->frame, lamps, n, exp2(by), &layer, &report);
     for (size_t i = 0; i < 3 * pixels; i++)
         p->rgb[i] = (float)(p->linear_q20[i] * unit);
-    glint_response_look(p->rgb, pixels, light);
+    glint_response_around(p->rgb, pixels, light);
     return status;
 }
 

@@ -42,8 +42,8 @@ struct glint_response {
 };
 
 /* Looks at N pixels. */
-void glint_response_look(const float *rgb, size_t n,
-                         struct glint_response_light *light);
+void glint_response_around(const float *rgb, size_t n,
+                           struct glint_response_light *light);
 
 /* Of N lamps behind the lens of LIKE, drawn small, as many pixels as suit.
  * Powers are those of its view. GLINT_E_MEMORY. */

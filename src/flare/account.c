@@ -128,21 +128,22 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
         .ghost = ghost, .light = light, .wave = wave};
     struct glint_bundle bundle;
 
-    *account = (struct glint_account){.fate = GLINT_FATE_DRAWN};
-    account->fate = glint_plan_bundle(&flare->plan, &planned, &bundle, scratch);
+    *account = (struct glint_account){.outcome = GLINT_OUTCOME_DRAWN};
+    account->outcome =
+        glint_plan_bundle(&flare->plan, &planned, &bundle, scratch);
     account->surveyed = scratch->probe.n_rays;
     if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, light)) {
-        account->fate = GLINT_FATE_OTHER_SET;
+        account->outcome = GLINT_OUTCOME_OTHER_SET;
         account->surveyed *= wave < sets->size[0];
         return;
     }
     if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
         account->surveyed = 0; /* by the account alone, not by the plan */
-        account->fate = GLINT_FATE_NO_ROOM;
+        account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)
-        account->fate = GLINT_FATE_NO_ROOM;
-    else if (at < 0 && account->fate == GLINT_FATE_DRAWN)
-        account->fate = GLINT_FATE_FAINT;
+        account->outcome = GLINT_OUTCOME_NO_ROOM;
+    else if (at < 0 && account->outcome == GLINT_OUTCOME_DRAWN)
+        account->outcome = GLINT_OUTCOME_FAINT;
     if (at < 0)
         return;
     account->flux = flare->planned[at].flux;
@@ -150,11 +151,11 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     account->vertices = (account->cells + 1) * (account->cells + 1);
     glint_plan_transfer(&flare->plan, &planned, &scratch->transfer);
     count_outputs(&scratch->transfer, account);
-    if (account->fate == GLINT_FATE_NO_ROOM)
+    if (account->outcome == GLINT_OUTCOME_NO_ROOM)
         return;
     count_edges(flare, &flare->slot[at], account);
     if (account->edges == 0)
-        account->fate = GLINT_FATE_EMPTY;
+        account->outcome = GLINT_OUTCOME_EMPTY;
 }
 
 static int is_of(const struct glint_flare *f, const struct glint_bundle_plan *s,

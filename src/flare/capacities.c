@@ -41,5 +41,5 @@ void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                         .fineness = 64,
                                         .only_ghost = -1,
                                         .faintest = faintest,
-                                        .whole_codes_q8 = 4 << 8};
+                                        .snap_codes_q8 = 4 << 8};
 }

@@ -166,10 +166,10 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
     return g->i == only->i && g->j == only->j;
 }
 
-enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
-                                  struct glint_bundle_plan *planned,
-                                  struct glint_bundle *bundle,
-                                  struct glint_plan_scratch *scratch)
+enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
+                                     struct glint_bundle_plan *planned,
+                                     struct glint_bundle *bundle,
+                                     struct glint_plan_scratch *scratch)
 {
     const struct glint_flare_frame *r = plan->frame;
     const struct glint_light *b = &plan->light[planned->light];
@@ -181,23 +181,23 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
 
     bundle->n_cells = s->n_rays = 0;
     if (!is_wanted(r, planned->ghost))
-        return GLINT_FATE_OTHER;
+        return GLINT_OUTCOME_OTHER;
     if (glint_plan_is_beyond(r->lens, b))
-        return GLINT_FATE_BEYOND;
+        return GLINT_OUTCOME_BEYOND;
     if (!glint_transfer_init(transfer, r->lens, planned->ghost, b->sine_q30,
                              r->wave[planned->wave].wave_q24))
-        return GLINT_FATE_CLOSED;
+        return GLINT_OUTCOME_CLOSED;
     transfer->sets = plan->sets;
     colour = colour_of(&r->wave[planned->wave], b, bundle->rgb_q14);
     if (colour.mantissa == 0 || b->power.mantissa == 0)
-        return GLINT_FATE_DARK;
+        return GLINT_OUTCOME_DARK;
     glint_probe_run(s, transfer, FEW_ACROSS, FEW_DOWN);
     if (s->n_inside < FEW_INSIDE)
         glint_probe_run(s, transfer, GLINT_PROBE_ACROSS, GLINT_PROBE_DOWN);
     if (s->n_inside == 0)
-        return GLINT_FATE_BLOCKED;
+        return GLINT_OUTCOME_BLOCKED;
     if (!is_in_view(plan, b, transfer, &s->reach))
-        return GLINT_FATE_OUTSIDE;
+        return GLINT_OUTCOME_OUTSIDE;
     wide_q8 = pixels_q8(plan, transfer,
                         q_divide((s->seen.high - s->seen.low) * 3, 5)) +
               256;
@@ -209,11 +209,11 @@ enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
     planned->flux = flux_of(plan, planned, transfer, colour, exponent);
     planned->peak_q20 = peak_q20(plan, s, transfer, planned->flux);
     if (plan->n_lights == 1 && !r->sets && planned->peak_q20 < 1 << 20)
-        return GLINT_FATE_FAINT;
+        return GLINT_OUTCOME_FAINT;
     planned->irradiance = real_over(
         planned->flux, real_times(real_of(wide_q8, -7), real_of(high_q8, -7)));
     bundle->n_cells = glint_plan_cells(plan, s, transfer, planned->irradiance);
     glint_plan_sags(planned, s, transfer, bundle->n_cells, plan->round);
     set_flux(bundle, transfer, planned->flux);
-    return GLINT_FATE_DRAWN;
+    return GLINT_OUTCOME_DRAWN;
 }

@@ -53,10 +53,10 @@ int glint_plan_is_beyond(const struct glint_lens *lens,
 
 /* Plans one bundle: BUNDLE->n_cells is 0 where nothing of it can be seen, and
  * what is returned says why. PLANNED has ghost, light and wave set. */
-enum glint_fate glint_plan_bundle(const struct glint_plan *plan,
-                                  struct glint_bundle_plan *planned,
-                                  struct glint_bundle *bundle,
-                                  struct glint_plan_scratch *scratch);
+enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
+                                     struct glint_bundle_plan *planned,
+                                     struct glint_bundle *bundle,
+                                     struct glint_plan_scratch *scratch);
 
 /* The polynomials of a bundle that was planned. */
 void glint_plan_transfer(const struct glint_plan *plan,

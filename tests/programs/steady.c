@@ -13,7 +13,7 @@
 #include <getopt.h>
 #include <stdio.h>
 
-#include "overlay/look.h"
+#include "overlay/compositor.h"
 #include "video/y4m.h"
 #include "posix/error.h"
 #include "support/night.h"
@@ -22,7 +22,7 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000 };
 
 struct steady {
     struct tool tool;
-    struct look look;
+    struct compositor compositor;
     double total, own;     /* of the frame before */
     double worst, largest; /* step of ours; of any */
     int worst_frame, cuts, frames, most_lights;
@@ -35,8 +35,8 @@ static double light_of(struct steady *s, const struct glint_lamp *lamps,
 {
     struct glint_response_light light;
 
-    if (glint_response_draw(&s->look.frame, lamps, s->look.n_lamps, &light) !=
-        GLINT_OK)
+    if (glint_response_draw(&s->compositor.frame, lamps, s->compositor.n_lamps,
+                            &light) != GLINT_OK)
         exit(EXIT_RUNTIME);
     return scale * glint_strength_largest(light.mean);
 }
@@ -51,7 +51,7 @@ static double beyond(double step, double own)
 
 static void note(struct steady *s, double total, double own)
 {
-    const bool is_cut = glint_lamp_tracker_was_cut(s->look.finder.tracks);
+    const bool is_cut = glint_lamp_tracker_was_cut(s->compositor.finder.tracks);
     /* A flare below this is unseen, so it does not step when it appears. */
     const double least = 1e-6;
 
@@ -73,15 +73,15 @@ static void note(struct steady *s, double total, double own)
 static void frame(struct steady *s, const struct glint_image *image,
                   int32_t elapsed_us)
 {
-    struct look *look = &s->look;
+    struct compositor *compositor = &s->compositor;
     double own;
 
-    look_find(look, image, elapsed_us);
-    own = light_of(s, look->lamp, 1);
-    look_expose(look, elapsed_us);
-    note(s, light_of(s, look->lamp, look_scale(look)), own);
-    if (look->n_lamps > s->most_lights)
-        s->most_lights = look->n_lamps;
+    compositor_find(compositor, image, elapsed_us);
+    own = light_of(s, compositor->lamp, 1);
+    compositor_expose(compositor, elapsed_us);
+    note(s, light_of(s, compositor->lamp, compositor_scale(compositor)), own);
+    if (compositor->n_lamps > s->most_lights)
+        s->most_lights = compositor->n_lamps;
     s->frames++;
 }
 
@@ -89,7 +89,7 @@ static void begin(struct steady *s, int width, int height)
 {
     s->total = s->own = s->worst = s->largest = 0;
     s->worst_frame = s->cuts = s->frames = s->most_lights = 0;
-    if (look_size(&s->tool, &s->look, width, height) != EXIT_OK)
+    if (compositor_size(&s->tool, &s->compositor, width, height) != EXIT_OK)
         exit(EXIT_RUNTIME);
 }
 
@@ -104,7 +104,7 @@ static bool end(const struct steady *s, const char *name, double most)
 /* ------------------------------------------------------------------- scenes
  */
 
-typedef int scene_fn(struct night *night, int i, struct night_lamp *lamp);
+typedef int settings_fn(struct night *night, int i, struct night_lamp *lamp);
 
 /* Lamps of a street, all seen. */
 static int street(struct night_lamp *lamp)
@@ -176,7 +176,7 @@ static int cuts(struct night *night, int i, struct night_lamp *lamp)
 
 static const struct {
     const char *name;
-    scene_fn *scene;
+    settings_fn *settings;
 } scenes[] = {
     {"noise", noise},
     {"a sun enters", sun_alone},
@@ -187,7 +187,7 @@ static const struct {
     {"hard cuts", cuts},
 };
 
-static bool run_scene(struct steady *s, int k, double most)
+static bool run_settings(struct steady *s, int k, double most)
 {
     struct night night;
     struct night_lamp lamp[16];
@@ -233,23 +233,23 @@ int main(int argc, char **argv)
     double most = 0.1;
     int c;
 
-    look_defaults(&s.look);
+    compositor_defaults(&s.compositor);
     while ((c = getopt_long(argc, argv, "", options, NULL)) >= 0) {
         if (c == 'l')
-            s.look.lens = optarg;
+            s.compositor.lens = optarg;
         else if (c != 'm' || !tool_number(optarg, &most))
             return EXIT_USAGE;
     }
     if (tool_start(&s.tool) != EXIT_OK ||
-        look_open(&s.tool, &s.look) != EXIT_OK)
+        compositor_open(&s.tool, &s.compositor) != EXIT_OK)
         return EXIT_RUNTIME;
     puts("| scene | frames | lights | cuts | largest step, % | beside the "
          "lamps' own, % | at frame |\n|---|---|---|---|---|---|---|");
     for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
-        good = run_scene(&s, k, most) && good;
+        good = run_settings(&s, k, most) && good;
     for (int i = optind; i < argc; i++)
         good = run_video(&s, argv[i], most) && good;
-    look_close(&s.look);
+    compositor_close(&s.compositor);
     tool_finish(&s.tool);
     return good ? 0 : 1;
 }

@@ -8,7 +8,7 @@
 
 #include "engine/measure.h"
 #include "formats/picture.h"
-#include "options/scene.h"
+#include "options/settings.h"
 #include "options/takes.h"
 
 static const char help[] =

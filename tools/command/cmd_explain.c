@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "command/explain.h"
-#include "overlay/look.h"
+#include "overlay/compositor.h"
 #include "engine/measure.h"
 #include "options/takes.h"
 #include "formats/picture.h"
@@ -41,17 +41,23 @@ static const char help[] =
     "  --top N             list and mark N ghosts and lights (default 20)\n"
     "  --memory MIB        of the arena, 1 to 1024, as of glint live; "
     "default:\n"
-    "                      as much as it takes\n" LOOK_HELP;
+    "                      as much as it takes\n" COMPOSITOR_HELP;
 
-static const char help_end[] = SCENE_HELP;
+static const char help_end[] = SETTINGS_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
 
-enum { OPT_PICTURE = OPT_LOOK_LAST, OPT_SORT, OPT_TOP, OPT_MEMORY, OPT_SIZE };
+enum {
+    OPT_PICTURE = OPT_COMPOSITOR_LAST,
+    OPT_SORT,
+    OPT_TOP,
+    OPT_MEMORY,
+    OPT_SIZE
+};
 
 enum { AUTO, CODES, LINEAR };
 
 struct explain_command {
-    struct look look;
+    struct compositor compositor;
     const char *input, *output;
     int width, height; /* 0: those of the input */
     int picture, order, top;
@@ -65,7 +71,7 @@ static const struct option options[] = {
     {"sort", required_argument, NULL, OPT_SORT},
     {"top", required_argument, NULL, OPT_TOP},
     {"memory", required_argument, NULL, OPT_MEMORY},
-    LOOK_OPTIONS,
+    COMPOSITOR_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
 static bool take(struct explain_command *c, int option, const char *value)
@@ -91,23 +97,23 @@ static bool take(struct explain_command *c, int option, const char *value)
     default: /* OPT_MEMORY */
         if (!tool_integer(value, 1, 1024, &n))
             return false;
-        c->look.reserve_bytes = (size_t)n << 20;
+        c->compositor.reserve_bytes = (size_t)n << 20;
         return true;
     }
 }
 
 static int check(struct tool *tool, const struct explain_command *c)
 {
-    const struct scene *s = &c->look.scene;
+    const struct settings *s = &c->compositor.settings;
 
     if (!c->input == !c->width)
         return tool_usage(tool, "takes one picture, or --size");
     if (c->input && c->picture == LINEAR)
         return tool_usage(tool, "--picture linear goes with --size");
-    if (!c->input && c->look.n_hand == 0 && c->look.at.n == 0 &&
-        !c->look.lights_file)
+    if (!c->input && c->compositor.n_hand == 0 && c->compositor.at.n == 0 &&
+        !c->compositor.lights_file)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
-    if (s->raster || s->mask_nodes || s->rays != SCENE_RAYS_MODEL)
+    if (s->raster || s->mask_nodes || s->rays != SETTINGS_RAYS_MODEL)
         return tool_usage(tool, "explains what is drawn by edges from a model, "
                                 "not --raster cells, --mask, --rays exact");
     return -1;
@@ -120,8 +126,8 @@ static int parse(struct tool *tool, int argc, char **argv,
 
     while ((option = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                                  &index)) >= 0) {
-        code = look_option(tool, &c->look, option, optarg);
-        if (code == -2 && (option == 'o' || option >= OPT_LOOK_LAST)) {
+        code = compositor_option(tool, &c->compositor, option, optarg);
+        if (code == -2 && (option == 'o' || option >= OPT_COMPOSITOR_LAST)) {
             code = -1;
             if (!take(c, option, optarg))
                 return tool_refuse(tool, options[index].name, optarg);
@@ -163,22 +169,24 @@ static int load(struct tool *tool, struct explain_command *c)
 /* As glint render does; the picture is what it would show of it. */
 static enum glint_status draw_linear(struct explain_command *c)
 {
-    struct look *look = &c->look;
+    struct compositor *compositor = &c->compositor;
     const size_t n = (size_t)c->width * (size_t)c->height;
     struct glint_float_image light = {.width = c->width, .height = c->height};
     enum glint_status status = GLINT_E_MEMORY;
     uint8_t *codes;
 
-    look_lamps(look, &c->image, 0);
+    compositor_lamps(compositor, &c->image, 0);
     light.rgb = calloc(3 * n, sizeof *light.rgb);
     if (light.rgb)
-        status = glint_frame_draw_alone(&look->frame, look->lamp, look->n_lamps,
-                                        scene_scale(&look->scene), light.rgb,
-                                        &look->report);
+        status = glint_frame_draw_alone(&compositor->frame, compositor->lamp,
+                                        compositor->n_lamps,
+                                        settings_scale(&compositor->settings),
+                                        light.rgb, &compositor->report);
     if (status == GLINT_OK) {
-        codes = glint_measure_encode(
-            &light,
-            look->scene.has_exposure ? 1 : glint_measure_exposure(&light));
+        codes =
+            glint_measure_encode(&light, compositor->settings.has_exposure
+                                             ? 1
+                                             : glint_measure_exposure(&light));
         if (codes)
             memcpy(c->image.plane[0], codes, 3 * n);
         else
@@ -207,20 +215,22 @@ static int save(struct tool *tool, const struct explain_command *c,
 
 static int tell(struct tool *tool, struct explain_command *c, bool linear)
 {
-    struct look *look = &c->look;
-    const struct explain_title title = {.lens = look->scene.lens.name,
-                                        .lamp = look->lamp,
-                                        .n_lamps = look->n_lamps,
+    struct compositor *compositor = &c->compositor;
+    const struct explain_title title = {.lens = compositor->settings.lens.name,
+                                        .lamp = compositor->lamp,
+                                        .n_lamps = compositor->n_lamps,
                                         .linear = linear,
                                         .order =
                                             (enum glint_explain_order)c->order,
                                         .top = c->top,
-                                        .report = &look->report};
-    const double unit = linear && look->frame.scale > 0
-                            ? scene_scale(&look->scene) / look->frame.scale
-                            : 1;
+                                        .report = &compositor->report};
+    const double unit =
+        linear && compositor->frame.scale > 0
+            ? settings_scale(&compositor->settings) / compositor->frame.scale
+            : 1;
     struct glint_explain e;
-    const enum glint_status status = glint_explain_open(&e, &look->frame, unit);
+    const enum glint_status status =
+        glint_explain_open(&e, &compositor->frame, unit);
     int code = EXIT_OK;
 
     if (status != GLINT_OK)
@@ -250,17 +260,19 @@ static int run(struct tool *tool, struct explain_command *c)
         tool_fail(tool, GLINT_E_OUTPUT, error.text);
         return EXIT_OUTPUT;
     }
-    code = look_open(tool, &c->look);
+    code = compositor_open(tool, &c->compositor);
     if (code == EXIT_OK)
         code = load(tool, c);
     if (code == EXIT_OK)
-        code = look_size(tool, &c->look, c->image.width, c->image.height);
+        code = compositor_size(tool, &c->compositor, c->image.width,
+                               c->image.height);
     if (code != EXIT_OK)
         return code;
-    status = linear ? draw_linear(c) : look_draw(&c->look, &c->image, 0);
+    status =
+        linear ? draw_linear(c) : compositor_draw(&c->compositor, &c->image, 0);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
-    code = look_finish(tool, &c->look);
+    code = compositor_finish(tool, &c->compositor);
     return code == EXIT_OK ? tell(tool, c, linear) : code;
 }
 
@@ -275,7 +287,7 @@ int cmd_explain(int argc, char **argv)
 
     if (!c)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    look_defaults(&c->look);
+    compositor_defaults(&c->compositor);
     c->top = 20;
     code = parse(&tool, argc, argv, c);
     if (code < 0) {
@@ -284,7 +296,7 @@ int cmd_explain(int argc, char **argv)
             code = run(&tool, c);
         tool_finish(&tool);
     }
-    look_close(&c->look);
+    compositor_close(&c->compositor);
     free(c->image.plane[0]);
     free(c);
     return code;

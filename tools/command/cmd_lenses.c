@@ -9,10 +9,10 @@
 #include <sys/stat.h>
 
 #include "model/lens_files.h"
-#include "overlay/look.h"
+#include "overlay/compositor.h"
 #include "model/model_cache.h"
 #include "posix/output.h"
-#include "options/scene_table.h"
+#include "options/settings_table.h"
 #include "options/takes.h"
 
 static const char help[] =
@@ -42,7 +42,7 @@ struct lenses {
 };
 
 struct entry {
-    struct scene scene; /* by default */
+    struct settings settings; /* by default */
     struct glint_optics optics;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_ghosts;
@@ -50,39 +50,41 @@ struct entry {
     bool is_baked;
 };
 
-/* The scene that overlay, live and explain have without options, or PLAIN that
- * of render. */
-static int set_scene(struct scene *scene, bool plain)
+/* The settings that overlay, live and explain have without options, or PLAIN
+ * that of render. */
+static int set_settings(struct settings *settings, bool plain)
 {
-    struct look *look = plain ? NULL : calloc(1, sizeof *look);
+    struct compositor *compositor =
+        plain ? NULL : calloc(1, sizeof *compositor);
 
     if (plain) {
-        scene_defaults(scene);
+        settings_defaults(settings);
         return EXIT_OK;
     }
-    if (!look)
+    if (!compositor)
         return EXIT_RUNTIME;
-    look_defaults(look);
-    *scene = look->scene;
-    free(look);
+    compositor_defaults(compositor);
+    *settings = compositor->settings;
+    free(compositor);
     return EXIT_OK;
 }
 
-static int look_at(const struct tool *tool, const char *name, struct entry *e,
-                   bool plain)
+static int compositor_at(const struct tool *tool, const char *name,
+                         struct entry *e, bool plain)
 {
-    int code = set_scene(&e->scene, plain);
+    int code = set_settings(&e->settings, plain);
 
     if (code != EXIT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    code = tool_lens(tool, name, &e->scene.lens);
+    code = tool_lens(tool, name, &e->settings.lens);
     if (code != EXIT_OK)
         return code;
-    coating_apply(&e->scene.coating, &e->scene.lens);
-    glint_optics_of(&e->scene.lens, &e->optics);
-    e->n_ghosts = glint_ghost_list(&e->scene.lens, e->ghost, GLINT_MAX_GHOSTS);
-    e->options = scene_bake_options(&e->scene);
-    e->is_baked = model_is_cached(&e->scene.lens, &e->options);
+    coating_apply(&e->settings.coating, &e->settings.lens);
+    glint_optics_of(&e->settings.lens, &e->optics);
+    e->n_ghosts =
+        glint_ghost_list(&e->settings.lens, e->ghost, GLINT_MAX_GHOSTS);
+    e->options = settings_bake_options(&e->settings);
+    e->is_baked = model_is_cached(&e->settings.lens, &e->options);
     return EXIT_OK;
 }
 
@@ -91,7 +93,7 @@ static int look_at(const struct tool *tool, const char *name, struct entry *e,
 
 static double corner_deg(const struct entry *e)
 {
-    const struct glint_prescription *l = &e->scene.lens;
+    const struct glint_prescription *l = &e->settings.lens;
 
     return 45 / atan(1) *
            atan(0.5 * hypot(l->film_width_mm, l->film_height_mm) /
@@ -104,12 +106,12 @@ static void print_json(struct lenses *l, const char *name,
     printf("%s{\"name\": ", l->n++ ? ",\n " : "{\"lenses\": [\n ");
     tool_json_string(stdout, name);
     printf(", \"source\": ");
-    tool_json_string(stdout, e->scene.lens.source);
+    tool_json_string(stdout, e->settings.lens.source);
     printf(", \"focal_length_mm\": %.3f, \"f_number\": %g, "
            "\"film_mm\": [%g, %g], \"corner_deg\": %.2f, \"ghosts\": %d, "
            "\"baked\": %s}",
-           e->optics.focal_mm, e->scene.lens.f_number,
-           e->scene.lens.film_width_mm, e->scene.lens.film_height_mm,
+           e->optics.focal_mm, e->settings.lens.f_number,
+           e->settings.lens.film_width_mm, e->settings.lens.film_height_mm,
            corner_deg(e), e->n_ghosts, e->is_baked ? "true" : "false");
 }
 
@@ -121,10 +123,10 @@ static void print_text(struct lenses *l, const char *name,
     if (l->n++ == 0)
         printf("%-24s %9s %7s %6s  %-9s %6s  %s\n", "lens", "focal mm",
                "corner", "f/", "film mm", "ghosts", "model");
-    snprintf(film, sizeof film, "%gx%g", e->scene.lens.film_width_mm,
-             e->scene.lens.film_height_mm);
+    snprintf(film, sizeof film, "%gx%g", e->settings.lens.film_width_mm,
+             e->settings.lens.film_height_mm);
     printf("%-24s %9.1f %4.0f deg %5g  %-9s %6d  %s\n", name,
-           e->optics.focal_mm, corner_deg(e), e->scene.lens.f_number, film,
+           e->optics.focal_mm, corner_deg(e), e->settings.lens.f_number, film,
            e->n_ghosts, e->is_baked ? "baked" : "not yet");
 }
 
@@ -147,18 +149,18 @@ static int save_model(const struct tool *tool, const char *path,
 /* Bakes it, unless it lies there already or where models are kept. */
 static int put_model(const struct lenses *l, const struct entry *e)
 {
-    const uint64_t key = glint_bake_key(&e->scene.lens, &e->options);
+    const uint64_t key = glint_bake_key(&e->settings.lens, &e->options);
     struct model_file model = {.data = NULL};
     char path[1024];
     struct stat st;
     int code;
 
     if ((size_t)snprintf(path, sizeof path, "%s", l->folder) >= sizeof path ||
-        !model_cache_name(path, sizeof path, e->scene.lens.name, key))
+        !model_cache_name(path, sizeof path, e->settings.lens.name, key))
         return tool_usage(l->tool, "%s: the name is too long", l->folder);
     if (stat(path, &st) == 0)
         return EXIT_OK;
-    code = model_cached(l->tool, &e->scene.lens, e->options, &model);
+    code = model_cached(l->tool, &e->settings.lens, e->options, &model);
     if (code == EXIT_OK)
         code = save_model(l->tool, path, &model);
     if (code == EXIT_OK && !l->tool->quiet)
@@ -192,11 +194,11 @@ static bool one(void *ctx, const char *name)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
         return true;
     }
-    code = look_at(l->tool, name, e, false);
+    code = compositor_at(l->tool, name, e, false);
     if (code == EXIT_OK && l->folder) {
         code = put_model(l, e);
         if (code == EXIT_OK)
-            code = look_at(l->tool, name, e, true);
+            code = compositor_at(l->tool, name, e, true);
         if (code == EXIT_OK)
             code = put_model(l, e);
         l->n++;

@@ -13,7 +13,7 @@
 #include "engine/measure.h"
 #include "formats/picture.h"
 #include "posix/error.h"
-#include "options/scene.h"
+#include "options/settings.h"
 #include "options/takes.h"
 
 static const char help[] =
@@ -41,11 +41,11 @@ static const char help[] =
     "                      exact: the reference, every ray in "
     "double\n";
 
-static const char help_end[] = SCENE_MEMORY_HELP SCENE_HELP;
+static const char help_end[] = SETTINGS_MEMORY_HELP SETTINGS_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 struct render {
-    struct scene scene;
+    struct settings settings;
     const char *output;
     bool linear; /* the output takes floats */
     int width, height;
@@ -53,7 +53,7 @@ struct render {
     size_t reserve_bytes; /* unless 0: all the memory that the flare takes */
     const char *lights_file;
     int n_lamps;
-    struct glint_lamp *lamp; /* room for SCENE_MAX_LAMPS by hand */
+    struct glint_lamp *lamp; /* room for SETTINGS_MAX_LAMPS by hand */
     struct glint_float_image image;
     double ms;
 };
@@ -73,11 +73,11 @@ static int take(struct tool *tool, struct render *r, int c)
         return tool_usage(tool, "--size takes WxH of 1 to %d pixels, not '%s'",
                           GLINT_MAX_SIDE, optarg);
     case 'l':
-        if (r->n_lamps == SCENE_MAX_LAMPS)
-            return tool_usage(tool, "more than %d lights", SCENE_MAX_LAMPS);
-        if (scene_lamp(optarg, &r->lamp[r->n_lamps++])) {
-            r->scene.max_deg =
-                fmax(r->scene.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
+        if (r->n_lamps == SETTINGS_MAX_LAMPS)
+            return tool_usage(tool, "more than %d lights", SETTINGS_MAX_LAMPS);
+        if (settings_lamp(optarg, &r->lamp[r->n_lamps++])) {
+            r->settings.max_deg =
+                fmax(r->settings.max_deg, r->lamp[r->n_lamps - 1].theta_deg);
             return -1;
         }
         return tool_usage(
@@ -89,14 +89,14 @@ static int take(struct tool *tool, struct render *r, int c)
         r->lights_file = optarg;
         return -1;
     case 'm':
-        return scene_memory(optarg, &r->reserve_bytes)
+        return settings_memory(optarg, &r->reserve_bytes)
                    ? -1
                    : tool_refuse(tool, "memory", optarg);
     case 'e':
         word = tool_word(optarg, engines);
         r->exact = word == 1;
         if (r->exact)
-            r->scene.rays = SCENE_RAYS_EXACT;
+            r->settings.rays = SETTINGS_RAYS_EXACT;
         return word >= 0 ? -1 : tool_refuse(tool, "engine", optarg);
     default:
         return tool_option(tool, c, optarg);
@@ -112,13 +112,13 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         {"lights", required_argument, NULL, 'f'},
         {"engine", required_argument, NULL, 'e'},
         {"memory", required_argument, NULL, 'm'},
-        SCENE_OPTIONS,
+        SETTINGS_OPTIONS,
         TOOL_COMMON_OPTIONS};
     int c, code;
 
     while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             NULL)) >= 0) {
-        code = scene_option(tool, &r->scene, c, optarg);
+        code = settings_option(tool, &r->settings, c, optarg);
         if (code == -2)
             code = take(tool, r, c);
         if (code >= 0)
@@ -130,7 +130,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
         return tool_usage(tool, "needs -o OUT");
     if (r->n_lamps == 0 && !r->lights_file)
         return tool_usage(tool, "needs a --light or --lights");
-    if (r->reserve_bytes && r->scene.rays == SCENE_RAYS_EXACT)
+    if (r->reserve_bytes && r->settings.rays == SETTINGS_RAYS_EXACT)
         return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
@@ -140,16 +140,17 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
 /* All points of all lamps, N of them. NULL: no memory. */
 static struct glint_lamp *points_of(const struct render *r, int *n)
 {
-    const struct glint_view view = scene_view(&r->scene, r->width, r->height);
-    const double pixels = fabs(r->scene.setup.optics.focal_mm) * view.width /
+    const struct glint_view view =
+        settings_view(&r->settings, r->width, r->height);
+    const double pixels = fabs(r->settings.setup.optics.focal_mm) * view.width /
                           view.sensor_width_mm;
     struct glint_lamp *points;
     struct glint_area area;
     int total;
     const struct glint_area_rule rule = glint_area_rule_of(
         r->lamp, r->n_lamps, pixels,
-        r->scene.area_samples_asked ? r->scene.area_samples_asked
-                                    : r->scene.dials.area_points,
+        r->settings.area_samples_asked ? r->settings.area_samples_asked
+                                       : r->settings.dials.area_points,
         INT_MAX, &total);
 
     *n = 0;
@@ -170,16 +171,18 @@ static int render_exact(struct tool *tool, struct render *r)
     int n_points = 0;
     struct glint_lamp *points = points_of(r, &n_points);
     struct glint_exact_config cfg = {
-        .setup = &r->scene.setup,
-        .view = scene_view(&r->scene, r->width, r->height),
+        .setup = &r->settings.setup,
+        .view = settings_view(&r->settings, r->width, r->height),
         .lamps = points,
         .n_lamps = n_points,
-        .grid = r->scene.has_grid ? (r->scene.dials.fineness + 1) / 2 * 2 : 512,
-        .only_ghost = r->scene.only_ghost,
+        .grid = r->settings.has_grid ? (r->settings.dials.fineness + 1) / 2 * 2
+                                     : 512,
+        .only_ghost = r->settings.only_ghost,
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
-    const int n_ghosts = r->scene.only_ghost < 0 ? r->scene.setup.n_ghosts : 1;
+    const int n_ghosts =
+        r->settings.only_ghost < 0 ? r->settings.setup.n_ghosts : 1;
     double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -188,7 +191,7 @@ static int render_exact(struct tool *tool, struct render *r)
         status = glint_exact_render(&cfg, rgb);
     tool_progress_end(&progress);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
-        r->image.rgb[i] = (float)(rgb[i] * scene_scale(&r->scene));
+        r->image.rgb[i] = (float)(rgb[i] * settings_scale(&r->settings));
     free(rgb);
     free(points);
     if (status != GLINT_OK)
@@ -198,7 +201,7 @@ static int render_exact(struct tool *tool, struct render *r)
                "\"ghosts\": %d, \"bundles\": %" PRId64 ", \"primitives\": 0, "
                "\"tiles\": 0, \"arena_bytes\": 0, ",
                cfg.grid, r->n_lamps, n_ghosts,
-               (int64_t)r->n_lamps * n_ghosts * r->scene.n_wavelengths);
+               (int64_t)r->n_lamps * n_ghosts * r->settings.n_wavelengths);
     return EXIT_OK;
 }
 
@@ -207,10 +210,10 @@ static void say_lights(const struct tool *tool,
 {
     char lights[64];
 
-    scene_warn_lights(tool, report);
+    settings_warn_lights(tool, report);
     if (!tool->verbose || tool->quiet)
         return;
-    scene_lights_text(report, lights);
+    settings_lights_text(report, lights);
     fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
             lights, report->ghosts, report->stats.primitives,
             report->arena_bytes);
@@ -221,8 +224,9 @@ static int render_model(struct tool *tool, struct render *r)
     struct glint_frame_report report = {.lights = 0};
     enum glint_status status;
     struct glint_frame frame;
-    int code = scene_frame(tool, &r->scene,
-                           scene_view(&r->scene, r->width, r->height), &frame);
+    int code = settings_frame(tool, &r->settings,
+                              settings_view(&r->settings, r->width, r->height),
+                              &frame);
 
     if (code == EXIT_OK) {
         status = r->reserve_bytes && r->n_lamps > 0
@@ -231,14 +235,14 @@ static int render_model(struct tool *tool, struct render *r)
                      : GLINT_OK;
         if (status == GLINT_OK)
             status = glint_frame_draw_alone(&frame, r->lamp, r->n_lamps,
-                                            scene_scale(&r->scene),
+                                            settings_scale(&r->settings),
                                             r->image.rgb, &report);
         if (status != GLINT_OK)
             code = tool_fail(tool, status, NULL);
     }
     if (code == EXIT_OK && tool->json) {
         printf("{\"engine\": \"model\", ");
-        scene_json(&report);
+        settings_json(&report);
         printf(", ");
     }
     if (code == EXIT_OK)
@@ -262,7 +266,7 @@ static int save(struct tool *tool, struct render *r)
     else {
         mem = glint_measure_encode(
             &r->image,
-            r->scene.has_exposure ? 1 : glint_measure_exposure(&r->image));
+            r->settings.has_exposure ? 1 : glint_measure_exposure(&r->image));
         if (!mem)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
         glint_image_place(&codes, mem);
@@ -293,7 +297,8 @@ static int check_output(struct tool *tool, struct render *r)
 /* Adds the lamps of the file to those by hand. */
 static int read_lamps(struct tool *tool, struct render *r)
 {
-    const struct glint_view view = scene_view(&r->scene, r->width, r->height);
+    const struct glint_view view =
+        settings_view(&r->settings, r->width, r->height);
     struct glint_error error = {""};
     struct lamp_list list;
     const enum glint_status status =
@@ -307,7 +312,7 @@ static int read_lamps(struct tool *tool, struct render *r)
     if (all) {
         r->lamp = all;
         r->n_lamps +=
-            lamp_list_frame(&list, 0, &view, r->scene.setup.optics.focal_mm,
+            lamp_list_frame(&list, 0, &view, r->settings.setup.optics.focal_mm,
                             all + r->n_lamps, NULL, list.n);
     }
     lamp_list_free(&list);
@@ -320,7 +325,7 @@ static int run(struct tool *tool, struct render *r, const char *lens)
     double start;
 
     if (code == EXIT_OK)
-        code = scene_open(tool, &r->scene, lens);
+        code = settings_open(tool, &r->settings, lens);
     if (code == EXIT_OK && r->lights_file)
         code = read_lamps(tool, r);
     if (code != EXIT_OK)
@@ -350,11 +355,11 @@ int cmd_render(int argc, char **argv)
     struct render *r = calloc(1, sizeof *r);
     int code;
 
-    if (!r || !(r->lamp = malloc(SCENE_MAX_LAMPS * sizeof *r->lamp))) {
+    if (!r || !(r->lamp = malloc(SETTINGS_MAX_LAMPS * sizeof *r->lamp))) {
         free(r);
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     }
-    scene_defaults(&r->scene);
+    settings_defaults(&r->settings);
     r->width = 960;
     r->height = 540;
     code = parse(&tool, argc, argv, r);
@@ -364,7 +369,7 @@ int cmd_render(int argc, char **argv)
             code = run(&tool, r, argv[optind]);
         tool_finish(&tool);
     }
-    scene_close(&r->scene);
+    settings_close(&r->settings);
     free(r->lamp);
     free(r);
     return code;

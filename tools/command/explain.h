@@ -7,9 +7,9 @@
 
 #include "engine/explain.h"
 
-/* What FATE means, as a phrase for tables and a word for programs. */
-const char *explain_reason(enum glint_fate fate);
-const char *explain_word(enum glint_fate fate);
+/* What OUTCOME means, as a phrase for tables and a word for programs. */
+const char *explain_reason(enum glint_outcome outcome);
+const char *explain_word(enum glint_outcome outcome);
 
 /* Lights as they were given, and what the picture is. */
 struct explain_title {

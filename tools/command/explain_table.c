@@ -12,28 +12,28 @@ enum { WIDE = 100 };
 
 static const struct {
     const char *word, *reason;
-} fates[GLINT_FATES] = {
-    [GLINT_FATE_DRAWN] = {"drawn", "drawn"},
-    [GLINT_FATE_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
-    [GLINT_FATE_OTHER] = {"other", "not the ghost asked for"},
-    [GLINT_FATE_BEYOND] = {"beyond", "light beyond the model's angles"},
-    [GLINT_FATE_CLOSED] = {"closed", "no light gets through at this angle"},
-    [GLINT_FATE_BLOCKED] = {"blocked", "stop and barrels take all of it"},
-    [GLINT_FATE_DARK] = {"dark", "the light has no such colour"},
-    [GLINT_FATE_OUTSIDE] = {"outside", "outside the picture"},
-    [GLINT_FATE_FAINT] = {"faint", "too faint for any code"},
-    [GLINT_FATE_NO_ROOM] = {"no_room", "no room left in the arena"},
-    [GLINT_FATE_OTHER_SET] = {"other_set", "another set of wavelengths"},
+} outcomes[GLINT_OUTCOMES] = {
+    [GLINT_OUTCOME_DRAWN] = {"drawn", "drawn"},
+    [GLINT_OUTCOME_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
+    [GLINT_OUTCOME_OTHER] = {"other", "not the ghost asked for"},
+    [GLINT_OUTCOME_BEYOND] = {"beyond", "light beyond the model's angles"},
+    [GLINT_OUTCOME_CLOSED] = {"closed", "no light gets through at this angle"},
+    [GLINT_OUTCOME_BLOCKED] = {"blocked", "stop and barrels take all of it"},
+    [GLINT_OUTCOME_DARK] = {"dark", "the light has no such colour"},
+    [GLINT_OUTCOME_OUTSIDE] = {"outside", "outside the picture"},
+    [GLINT_OUTCOME_FAINT] = {"faint", "too faint for any code"},
+    [GLINT_OUTCOME_NO_ROOM] = {"no_room", "no room left in the arena"},
+    [GLINT_OUTCOME_OTHER_SET] = {"other_set", "another set of wavelengths"},
 };
 
-const char *explain_reason(enum glint_fate fate)
+const char *explain_reason(enum glint_outcome outcome)
 {
-    return fates[fate].reason;
+    return outcomes[outcome].reason;
 }
 
-const char *explain_word(enum glint_fate fate)
+const char *explain_word(enum glint_outcome outcome)
 {
-    return fates[fate].word;
+    return outcomes[outcome].word;
 }
 
 static double degrees(double y, double x)
@@ -167,15 +167,16 @@ static void print_ghosts(const struct glint_explain *e,
         printf("      and %d more (--top)\n", n - t->top);
 }
 
-/* The numbers of ghosts that FATE befell, as many as the line has room for. */
-static void print_numbers(const struct glint_explain *e, enum glint_fate fate,
-                          int room)
+/* The numbers of ghosts that OUTCOME befell, as many as the line has room for.
+ */
+static void print_numbers(const struct glint_explain *e,
+                          enum glint_outcome outcome, int room)
 {
     for (int i = 0; i < e->n_ghosts; i++) {
         char number[16];
         const int n = snprintf(number, sizeof number, " %d", i);
 
-        if (e->ghost[i].of[fate] == 0)
+        if (e->ghost[i].of[outcome] == 0)
             continue;
         if (n + 4 > room) {
             printf(" ...");
@@ -190,15 +191,17 @@ static void print_numbers(const struct glint_explain *e, enum glint_fate fate,
 static void print_left_out(const struct glint_explain *e)
 {
     printf("\n%-41s %7s %7s\n", "left out", "bundles", "ghosts");
-    for (int fate = GLINT_FATE_EMPTY; fate < GLINT_FATES; fate++) {
+    for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES;
+         outcome++) {
         int n = 0;
 
         for (int i = 0; i < e->n_ghosts; i++)
-            n += e->ghost[i].of[fate] > 0;
-        if (e->all.of[fate] == 0)
+            n += e->ghost[i].of[outcome] > 0;
+        if (e->all.of[outcome] == 0)
             continue;
-        printf("%-41s %7d %7d ", fates[fate].reason, e->all.of[fate], n);
-        print_numbers(e, (enum glint_fate)fate, WIDE - 58);
+        printf("%-41s %7d %7d ", outcomes[outcome].reason, e->all.of[outcome],
+               n);
+        print_numbers(e, (enum glint_outcome)outcome, WIDE - 58);
     }
 }
 
@@ -257,10 +260,11 @@ static void json_part(const struct glint_explain_part *p)
 {
     printf("\"bundles\": %d, \"drawn\": %d, \"left_out\": {",
            glint_explain_bundles(p), glint_explain_drawn(p));
-    for (int fate = GLINT_FATE_EMPTY, n = 0; fate < GLINT_FATES; fate++)
-        if (p->of[fate])
-            printf("%s\"%s\": %d", n++ ? ", " : "", fates[fate].word,
-                   p->of[fate]);
+    for (int outcome = GLINT_OUTCOME_EMPTY, n = 0; outcome < GLINT_OUTCOMES;
+         outcome++)
+        if (p->of[outcome])
+            printf("%s\"%s\": %d", n++ ? ", " : "", outcomes[outcome].word,
+                   p->of[outcome]);
     printf("}, \"cells\": %d, \"terms\": %d, \"barrels\": %d, "
            "\"vertices\": %lld, \"edges\": %lld, \"rows\": %lld, \"refs\": "
            "%lld, \"lit_pixels\": %d, \"tiles\": %d, \"flux\": %.6g, "

@@ -6,11 +6,11 @@
 #ifndef GLINT_TOOLS_LAB_BENCH_H
 #define GLINT_TOOLS_LAB_BENCH_H
 
-#include "lab/yardstick.h"
+#include "lab/canvas.h"
 
 enum {
     MAX_CASES = 256,
-    MAX_ROUNDS = YARDSTICK_MAX,
+    MAX_ROUNDS = CANVAS_MAX,
     MAX_LENSES = 16,
     MAX_BUDGETS = 16
 };
@@ -25,7 +25,7 @@ struct bench_canvas {
 };
 
 struct test {
-    const struct scene *scene;
+    const struct settings *settings;
     struct bench_canvas *canvas;
     struct glint_frame frame;
     struct glint_lamp *lamp;
@@ -43,8 +43,8 @@ struct test {
 
 struct bench {
     struct tool *tool;
-    struct scene base, scene[MAX_LENSES];
-    int n_scenes, n_canvases, n_tests, rounds;
+    struct settings base, settings[MAX_LENSES];
+    int n_settings, n_canvases, n_tests, rounds;
     struct bench_canvas canvas[8];
     struct test *test;
     struct glint_workers *one, *two;
@@ -57,16 +57,16 @@ struct bench {
     double budget_ms[MAX_BUDGETS];
 };
 
-/* Adds the cases of SCENE that are asked for, or the plain one. Returns an exit
- * code, as all here that return int. */
-int bench_add(struct bench *b, const struct scene *scene);
+/* Adds the cases of SETTINGS that are asked for, or the plain one. Returns an
+ * exit code, as all here that return int. */
+int bench_add(struct bench *b, const struct settings *settings);
 
 /* Adds one of this size, 0 as asked, and so many lights, if there is room. */
-int bench_add_one(struct bench *b, const struct scene *scene, int width,
+int bench_add_one(struct bench *b, const struct settings *settings, int width,
                   int height, int lights);
 
 /* Adds those of b->growth. */
-int bench_add_growth(struct bench *b, const struct scene *scene);
+int bench_add_growth(struct bench *b, const struct settings *settings);
 
 /* Puts the light of a case where it is in round ROUND of N, if it moves. */
 void bench_move(struct test *t, int round, int n);

@@ -74,7 +74,7 @@ static enum glint_status expose(struct test *t)
     return status;
 }
 
-static int add_test(struct bench *b, const struct scene *scene,
+static int add_test(struct bench *b, const struct settings *settings,
                     const struct variation *v)
 {
     struct test *t = &b->test[b->n_tests];
@@ -85,7 +85,7 @@ static int add_test(struct bench *b, const struct scene *scene,
 
     if (b->n_tests == MAX_CASES)
         return EXIT_OK;
-    t->scene = scene;
+    t->settings = settings;
     t->n_lamps = v->lights;
     t->canvas = canvas_of(b, width, height);
     lamp = calloc((size_t)v->lights + 1, sizeof *lamp);
@@ -93,8 +93,8 @@ static int add_test(struct bench *b, const struct scene *scene,
         free(lamp);
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     }
-    code = scene_frame(b->tool, scene, scene_view(scene, width, height),
-                       &t->frame);
+    code = settings_frame(b->tool, settings,
+                          settings_view(settings, width, height), &t->frame);
     if (code != EXIT_OK) {
         free(lamp);
         return code;
@@ -111,36 +111,36 @@ static int add_test(struct bench *b, const struct scene *scene,
     if (v->by_cells)
         t->frame.cfg.raster = &glint_raster_cells;
     t->frame.cfg.sets &= v->sets;
-    yardstick_lamps(t->lamp, v->lights, v->angle);
+    canvas_lamps(t->lamp, v->lights, v->angle);
     b->n_tests++;
     if (expose(t) != GLINT_OK)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     if (v->angle != 12) { /* exposed as if it were in the picture */
-        yardstick_lamps(t->lamp, v->lights, 12);
+        canvas_lamps(t->lamp, v->lights, 12);
         if (expose(t) != GLINT_OK)
             return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-        yardstick_lamps(t->lamp, v->lights, v->angle);
+        canvas_lamps(t->lamp, v->lights, v->angle);
     }
     return EXIT_OK;
 }
 
-int bench_add_one(struct bench *b, const struct scene *scene, int width,
+int bench_add_one(struct bench *b, const struct settings *settings, int width,
                   int height, int lights)
 {
     const struct variation v = {width, height, lights, 0, 0, NULL, ~0U, 12};
 
-    return add_test(b, scene, &v);
+    return add_test(b, settings, &v);
 }
 
 /* Of a frame and its memory. */
-static int add_sizes(struct bench *b, const struct scene *scene)
+static int add_sizes(struct bench *b, const struct settings *settings)
 {
     static const int size[][2] = {
         {640, 360}, {1280, 720}, {1920, 1080}, {3840, 2160}};
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof size / sizeof *size && code == EXIT_OK; i++)
-        code = bench_add_one(b, scene, size[i][0], size[i][1], 1);
+        code = bench_add_one(b, settings, size[i][0], size[i][1], 1);
     return code;
 }
 
@@ -148,7 +148,7 @@ static int add_sizes(struct bench *b, const struct scene *scene)
 enum { SETTLING = 12 };
 
 /* The plain case, held to each budget. */
-static int add_budgets(struct bench *b, const struct scene *scene)
+static int add_budgets(struct bench *b, const struct settings *settings)
 {
     int code = EXIT_OK;
 
@@ -156,7 +156,7 @@ static int add_budgets(struct bench *b, const struct scene *scene)
         struct test *t = &b->test[b->n_tests];
         const int n = b->n_tests;
 
-        code = bench_add_one(b, scene, 0, 0, 1);
+        code = bench_add_one(b, settings, 0, 0, 1);
         if (b->n_tests == n || code != EXIT_OK)
             break;
         glint_budget_init(&t->frame.budget, b->budget_ms[i]);
@@ -169,21 +169,21 @@ static int add_budgets(struct bench *b, const struct scene *scene)
     return code;
 }
 
-int bench_add(struct bench *b, const struct scene *scene)
+int bench_add(struct bench *b, const struct settings *settings)
 {
     const int n = b->all ? (int)(sizeof variations / sizeof *variations) : 1;
     int code = EXIT_OK;
 
     if (b->growth)
-        return bench_add_growth(b, scene);
+        return bench_add_growth(b, settings);
     if (b->n_budgets)
-        return add_budgets(b, scene);
+        return add_budgets(b, settings);
     if (b->sizes)
-        return add_sizes(b, scene);
+        return add_sizes(b, settings);
     for (int i = 0; i < n && code == EXIT_OK; i++)
         if (variations[i].sets == ~0U ||
             !(variations[i].sets & ~glint_system_sets()))
-            code = add_test(b, scene, &variations[i]);
+            code = add_test(b, settings, &variations[i]);
     return code;
 }
 
@@ -246,12 +246,12 @@ int bench_psnr(struct bench *b, struct test *t)
 
     if (want.rgb && got)
         status =
-            yardstick_exact(b->tool, t->scene, t->lamp, t->n_lamps, 128, &want);
+            canvas_exact(b->tool, t->settings, t->lamp, t->n_lamps, 128, &want);
     if (status == GLINT_OK) {
         exposure = glint_measure_exposure(&want);
         want_codes = glint_measure_encode(&want, exposure);
-        status = want_codes ? yardstick_codes(&t->frame, t->lamp, t->n_lamps,
-                                              exposure, got, &t->report)
+        status = want_codes ? canvas_codes(&t->frame, t->lamp, t->n_lamps,
+                                           exposure, got, &t->report)
                             : GLINT_E_MEMORY;
     }
     if (status == GLINT_OK) {

@@ -9,11 +9,11 @@
 #include "lab/bench.h"
 
 /* Adds a case of SERIES. */
-static int add(struct bench *b, const struct scene *scene, const char *series,
-               int width, int height, int lights)
+static int add(struct bench *b, const struct settings *settings,
+               const char *series, int width, int height, int lights)
 {
     const int n = b->n_tests,
-              code = bench_add_one(b, scene, width, height, lights);
+              code = bench_add_one(b, settings, width, height, lights);
 
     if (b->n_tests > n)
         b->test[n].series = series;
@@ -54,7 +54,7 @@ static enum glint_status keep_ghosts(struct test *t, const int *list, int n,
     return GLINT_OK;
 }
 
-/* Ghosts that the plain frame of SCENE shows, into LIST. */
+/* Ghosts that the plain frame of SETTINGS shows, into LIST. */
 static int list_seen(struct test *t, int *list)
 {
     int n = 0;
@@ -69,7 +69,7 @@ static int list_seen(struct test *t, int *list)
 
 /* All that are seen, and half of them, a quarter ... taken from four places:
  * some are large and some are not. */
-static int add_ghosts(struct bench *b, const struct scene *scene,
+static int add_ghosts(struct bench *b, const struct settings *settings,
                       struct test *plain)
 {
     static int list[GLINT_MAX_GHOSTS];
@@ -80,7 +80,7 @@ static int add_ghosts(struct bench *b, const struct scene *scene,
         for (int k = 0; k < (part < n ? 4 : 1) && code == EXIT_OK; k++) {
             const int at = b->n_tests;
 
-            code = add(b, scene, "ghosts", 0, 0, 1);
+            code = add(b, settings, "ghosts", 0, 0, 1);
             if (b->n_tests > at &&
                 keep_ghosts(&b->test[at], list, n, k * n / 4, part) != GLINT_OK)
                 code = tool_fail(b->tool, GLINT_E_MEMORY, NULL);
@@ -91,28 +91,28 @@ static int add_ghosts(struct bench *b, const struct scene *scene,
 /* --------------------------------------------------------------------- others
  */
 
-static int add_lights(struct bench *b, const struct scene *scene)
+static int add_lights(struct bench *b, const struct settings *settings)
 {
     int code = EXIT_OK;
 
     for (int n = 1; n <= 64 && code == EXIT_OK; n *= 2)
-        code = add(b, scene, "lights", 0, 0, n);
+        code = add(b, settings, "lights", 0, 0, n);
     return code;
 }
 
-static int add_sizes(struct bench *b, const struct scene *scene)
+static int add_sizes(struct bench *b, const struct settings *settings)
 {
     static const int size[][2] = {{640, 360},   {960, 540},   {1280, 720},
                                   {1920, 1080}, {2560, 1440}, {3840, 2160}};
     int code = EXIT_OK;
 
     for (size_t i = 0; i < sizeof size / sizeof *size && code == EXIT_OK; i++)
-        code = add(b, scene, "pixels", size[i][0], size[i][1], 1);
+        code = add(b, settings, "pixels", size[i][0], size[i][1], 1);
     return code;
 }
 
 /* The same rays, fewer edges: steps of irradiance of 1/4 to 10 percent. */
-static int add_quanta(struct bench *b, const struct scene *scene)
+static int add_quanta(struct bench *b, const struct settings *settings)
 {
     static const int steps[] = {277, 139, 69, 35, 14, 7};
     int code = EXIT_OK;
@@ -122,7 +122,7 @@ static int add_quanta(struct bench *b, const struct scene *scene)
         struct glint_frame *f = &b->test[b->n_tests].frame;
         const int at = b->n_tests;
 
-        code = add(b, scene, "quantum", 0, 0, 1);
+        code = add(b, settings, "quantum", 0, 0, 1);
         if (b->n_tests == at)
             break;
         f->dials.irradiance_steps = steps[i];
@@ -130,32 +130,32 @@ static int add_quanta(struct bench *b, const struct scene *scene)
     return code;
 }
 
-static int add_grids(struct bench *b, const struct scene *scene)
+static int add_grids(struct bench *b, const struct settings *settings)
 {
     int code = EXIT_OK;
 
     for (int cells = 16; cells <= 256 && code == EXIT_OK; cells *= 2) {
         const int at = b->n_tests;
 
-        code = add(b, scene, "grid", 0, 0, 1);
+        code = add(b, settings, "grid", 0, 0, 1);
         if (b->n_tests > at)
             b->test[at].frame.dials.fineness = cells;
     }
     return code;
 }
 
-int bench_add_growth(struct bench *b, const struct scene *scene)
+int bench_add_growth(struct bench *b, const struct settings *settings)
 {
     const int plain = b->n_tests;
-    int code = add_lights(b, scene);
+    int code = add_lights(b, settings);
 
     if (code == EXIT_OK)
-        code = add_sizes(b, scene);
+        code = add_sizes(b, settings);
     if (code == EXIT_OK && b->n_tests > plain)
-        code = add_ghosts(b, scene, &b->test[plain]);
+        code = add_ghosts(b, settings, &b->test[plain]);
     if (code == EXIT_OK)
-        code = add_quanta(b, scene);
+        code = add_quanta(b, settings);
     if (code == EXIT_OK)
-        code = add_grids(b, scene);
+        code = add_grids(b, settings);
     return code;
 }

@@ -15,7 +15,7 @@ static const char *raster_of(const struct test *t)
 
 static double quality_of(const struct test *t)
 {
-    return t->report.quality >= 0 ? t->report.quality : t->scene->quality;
+    return t->report.quality >= 0 ? t->report.quality : t->settings->quality;
 }
 
 /* Characters across. */
@@ -33,20 +33,21 @@ static double off_by(const struct bench *b, const struct test *t)
 
     for (int i = 0; i < b->rounds; i++)
         size[i] = fabs(t->wrong[i]);
-    return yardstick_median(size, b->rounds);
+    return canvas_median(size, b->rounds);
 }
 
 static void print_test(const struct bench *b, const struct test *t)
 {
-    const double floor_ms = yardstick_median(t->canvas->floor_ms, b->rounds);
-    const double ms = yardstick_median(t->ms[WHOLE], b->rounds);
+    const double floor_ms = canvas_median(t->canvas->floor_ms, b->rounds);
+    const double ms = canvas_median(t->ms[WHOLE], b->rounds);
 
-    printf("%-22s %4dx%-4d %5d %2d %-5s %-5s %8.3f %7.1f ", t->scene->lens.name,
-           t->canvas->of.image.width, t->canvas->of.image.height, t->n_lamps,
-           t->threads, raster_of(t), t->kernels, ms, ms / floor_ms);
+    printf("%-22s %4dx%-4d %5d %2d %-5s %-5s %8.3f %7.1f ",
+           t->settings->lens.name, t->canvas->of.image.width,
+           t->canvas->of.image.height, t->n_lamps, t->threads, raster_of(t),
+           t->kernels, ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
         printf(" %*.2f", column(s),
-               yardstick_median(t->ms[s], b->rounds) / floor_ms);
+               canvas_median(t->ms[s], b->rounds) / floor_ms);
     printf("  %7d %6.2f", t->report.stats.primitives,
            (double)t->report.peak_bytes / (1 << 20));
     if (!isnan(t->psnr_db))
@@ -62,7 +63,7 @@ static void print_test(const struct bench *b, const struct test *t)
 void bench_print(const struct bench *b)
 {
     printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
-           yardstick_median(b->canvas[0].floor_ms, b->rounds),
+           canvas_median(b->canvas[0].floor_ms, b->rounds),
            b->canvas[0].of.image.width, b->canvas[0].of.image.height,
            b->format_word, b->rounds);
     printf("%-22s %9s %5s %2s %-5s %-5s %8s %7s ", "lens", "size", "light",
@@ -76,11 +77,11 @@ void bench_print(const struct bench *b)
 
 static void json_test(const struct bench *b, const struct test *t, bool last)
 {
-    const double floor_ms = yardstick_median(t->canvas->floor_ms, b->rounds);
-    const double ms = yardstick_median(t->ms[WHOLE], b->rounds);
+    const double floor_ms = canvas_median(t->canvas->floor_ms, b->rounds);
+    const double ms = canvas_median(t->ms[WHOLE], b->rounds);
 
     printf("{\"lens\": ");
-    tool_json_string(stdout, t->scene->lens.name);
+    tool_json_string(stdout, t->settings->lens.name);
     if (t->series)
         printf(", \"series\": \"%s\", \"cpu_ms\": %.3f", t->series, t->cpu_ms);
     printf(", \"width\": %d, \"height\": %d, \"format\": \"%s\", \"lights\": "
@@ -92,7 +93,7 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
            quality_of(t), ms, ms / floor_ms);
     for (int s = 0; s < WHOLE; s++)
         printf("\"%s_ms\": %.4f, ", stage_names[s],
-               yardstick_median(t->ms[s], b->rounds));
+               canvas_median(t->ms[s], b->rounds));
     if (isnan(t->psnr_db))
         printf("\"psnr_db\": null, ");
     else
@@ -112,7 +113,7 @@ static void json_test(const struct bench *b, const struct test *t, bool last)
 void bench_print_json(const struct bench *b)
 {
     printf("{\"floor_ms\": %.5f, \"rounds\": %d, \"cases\": [\n",
-           yardstick_median(b->canvas[0].floor_ms, b->rounds), b->rounds);
+           canvas_median(b->canvas[0].floor_ms, b->rounds), b->rounds);
     for (int i = 0; i < b->n_tests; i++)
         json_test(b, &b->test[i], i + 1 == b->n_tests);
     printf("]}\n");

@@ -43,7 +43,7 @@ static const char help[] =
     "                  minutes\n"
     "  --format F      yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 | "
     "rgb565\n";
-static const char help_end[] = SCENE_HELP;
+static const char help_end[] = SETTINGS_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 static const char *const default_lenses[] = {
@@ -84,18 +84,18 @@ static int run_rounds(struct bench *b)
     return status == GLINT_OK ? EXIT_OK : tool_fail(b->tool, status, NULL);
 }
 
-static int open_scene(struct bench *b, const char *name)
+static int open_settings(struct bench *b, const char *name)
 {
-    struct scene *s = &b->scene[b->n_scenes];
+    struct settings *s = &b->settings[b->n_settings];
 
-    if (b->n_scenes == MAX_LENSES)
+    if (b->n_settings == MAX_LENSES)
         return tool_usage(b->tool, "takes %d lenses at most", MAX_LENSES);
     *s = b->base;
-    b->n_scenes++;
+    b->n_settings++;
     if (b->psnr && tool_is_model(name))
         return tool_usage(b->tool, "%s is a model: --psnr needs the lens table",
                           name);
-    return scene_open(b->tool, s, name);
+    return settings_open(b->tool, s, name);
 }
 
 static int run(struct bench *b, int n_names, const char *const *names)
@@ -106,9 +106,9 @@ static int run(struct bench *b, int n_names, const char *const *names)
         glint_pool_create(&b->two, 2) != GLINT_OK || b->two->n != 2)
         return tool_fail(b->tool, GLINT_E_MEMORY, "no threads to be had");
     for (int i = 0; i < n_names && code == EXIT_OK; i++)
-        code = open_scene(b, names[i]);
-    for (int i = 0; i < b->n_scenes && code == EXIT_OK; i++)
-        code = bench_add(b, &b->scene[i]);
+        code = open_settings(b, names[i]);
+    for (int i = 0; i < b->n_settings && code == EXIT_OK; i++)
+        code = bench_add(b, &b->settings[i]);
     for (int i = 0; i < b->n_tests && b->psnr && code == EXIT_OK; i++)
         if (b->test[i].n_lamps == 1 && b->test[i].kernels == b->tool->kernels)
             code = bench_psnr(b, &b->test[i]);
@@ -131,8 +131,8 @@ static void close_bench(struct bench *b)
     }
     for (int i = 0; i < b->n_canvases; i++)
         canvas_finish(&b->canvas[i].of);
-    for (int i = 0; i < b->n_scenes; i++)
-        scene_close(&b->scene[i]);
+    for (int i = 0; i < b->n_settings; i++)
+        settings_close(&b->settings[i]);
     glint_pool_destroy(b->one);
     glint_pool_destroy(b->two);
     free(b->test);
@@ -204,13 +204,13 @@ static int parse(struct tool *tool, int argc, char **argv, struct bench *b)
         {"size", required_argument, NULL, 's'},
         {"repeat", required_argument, NULL, 'r'},
         {"format", required_argument, NULL, 'F'},
-        SCENE_OPTIONS,
+        SETTINGS_OPTIONS,
         TOOL_COMMON_OPTIONS};
     int c, code;
 
     while ((c = getopt_long(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
            0) {
-        code = scene_option(tool, &b->base, c, optarg);
+        code = settings_option(tool, &b->base, c, optarg);
         if (code == -2)
             code = take(tool, b, c);
         if (code >= 0)
@@ -238,7 +238,7 @@ int cmd_bench(int argc, char **argv)
     b->height = 1080;
     b->format = GLINT_YUYV;
     b->format_word = "yuyv";
-    scene_defaults(&b->base);
+    settings_defaults(&b->base);
     tool.kernels = "auto";
     code = parse(&tool, argc, argv, b);
     if (code < 0)

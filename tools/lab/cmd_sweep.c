@@ -466,7 +466,7 @@ int cmd_sweep(int argc, char **argv)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->tool = &tool;
     s->counter = -1;
-    scene_defaults(&s->base);
+    settings_defaults(&s->base);
     code = parse(&tool, argc, argv, s, &asked);
     if (code < 0)
         code = tool_start(&tool);

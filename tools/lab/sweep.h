@@ -10,7 +10,7 @@
 #include "options/dials.h"
 #include "engine/frame/quality.h"
 #include "formats/pfm.h"
-#include "lab/yardstick.h"
+#include "lab/canvas.h"
 
 enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 
@@ -64,7 +64,7 @@ struct sweep_picture {
 
 struct sweep {
     struct tool *tool;
-    struct scene base;
+    struct settings base;
     const char *lens[SWEEP_LENSES];
     int n_lenses;
     struct sweep_case scase[SWEEP_CASES];

@@ -18,11 +18,11 @@ static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
 }
 
 /* Of all that the picture follows from, but for the tracer itself. */
-static uint64_t key_of(const struct scene *s, const struct glint_lamp *lamp,
+static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
                        int n_lamps, int grid,
                        const struct glint_float_image *to)
 {
-    const struct glint_view view = scene_view(s, to->width, to->height);
+    const struct glint_view view = settings_view(s, to->width, to->height);
     struct glint_bake_options options;
     uint64_t hash;
 
@@ -59,11 +59,11 @@ static bool load(const char *path, struct glint_float_image *to)
 }
 
 enum glint_status sweep_exact(const struct tool *tool,
-                              const struct scene *scene,
+                              const struct settings *settings,
                               const struct glint_lamp *lamp, int n_lamps,
                               int grid, struct glint_float_image *to)
 {
-    const uint64_t key = key_of(scene, lamp, n_lamps, grid, to);
+    const uint64_t key = key_of(settings, lamp, n_lamps, grid, to);
     struct glint_error error = {""};
     char file[64], path[1024];
     enum glint_status status;
@@ -74,7 +74,7 @@ enum glint_status sweep_exact(const struct tool *tool,
     kept = model_cache_path(path, sizeof path, file);
     if (kept && load(path, to))
         return GLINT_OK;
-    status = yardstick_exact(tool, scene, lamp, n_lamps, grid, to);
+    status = canvas_exact(tool, settings, lamp, n_lamps, grid, to);
     if (status == GLINT_OK && kept &&
         glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
         fprintf(stderr, "glint %s: the exact picture is not kept: %s\n",

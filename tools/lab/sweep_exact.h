@@ -5,11 +5,11 @@
 #ifndef GLINT_TOOLS_LAB_SWEEP_EXACT_H
 #define GLINT_TOOLS_LAB_SWEEP_EXACT_H
 
-#include "lab/yardstick.h"
+#include "lab/canvas.h"
 
-/* As yardstick_exact, or the picture that is kept; TO->rgb is the caller's. */
+/* As canvas_exact, or the picture that is kept; TO->rgb is the caller's. */
 enum glint_status sweep_exact(const struct tool *tool,
-                              const struct scene *scene,
+                              const struct settings *settings,
                               const struct glint_lamp *lamp, int n_lamps,
                               int grid, struct glint_float_image *to);
 

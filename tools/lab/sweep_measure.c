@@ -15,7 +15,7 @@ enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
 /* A point being measured. */
 struct run {
     struct sweep_point *point;
-    const struct scene *scene;
+    const struct settings *settings;
     struct glint_frame frame;
     double ms[SWEEP_ROUNDS];
     int n;
@@ -25,7 +25,7 @@ struct run {
 struct bay {
     struct sweep *s;
     const struct sweep_case *c;
-    struct scene open[MAX_OPEN];
+    struct settings open[MAX_OPEN];
     int n_open;
     struct run *run;
     struct canvas canvas;
@@ -38,16 +38,16 @@ struct bay {
 /* --------------------------------------------------------------------- making
  */
 
-static bool is_same(const struct scene *a, const struct scene *b)
+static bool is_same(const struct settings *a, const struct settings *b)
 {
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* A scene that is open for what SET asks, or NULL, said. */
-static const struct scene *scene_for(struct bay *b,
-                                     const struct sweep_setting *set, int *code)
+/* Settings that are open for what SET asks, or NULL, said. */
+static const struct settings *
+settings_for(struct bay *b, const struct sweep_setting *set, int *code)
 {
-    struct scene asked = b->s->base;
+    struct settings asked = b->s->base;
 
     for (int d = 0; d < n_dials; d++)
         if (dials[d].opens)
@@ -60,31 +60,32 @@ static const struct scene *scene_for(struct bay *b,
         return NULL;
     }
     b->open[b->n_open] = asked;
-    *code =
-        scene_open(b->s->tool, &b->open[b->n_open++], b->s->lens[b->c->lens]);
+    *code = settings_open(b->s->tool, &b->open[b->n_open++],
+                          b->s->lens[b->c->lens]);
     return *code == EXIT_OK ? &b->open[b->n_open - 1] : NULL;
 }
 
 static int make_run(struct bay *b, struct run *r)
 {
     const struct sweep_case *c = b->c;
-    struct scene asked;
+    struct settings asked;
     int code = EXIT_OK;
 
-    r->scene = scene_for(b, &r->point->set, &code);
-    if (!r->scene)
+    r->settings = settings_for(b, &r->point->set, &code);
+    if (!r->settings)
         return code;
-    asked = *r->scene;
+    asked = *r->settings;
     for (int d = 0; d < n_dials; d++)
         dial_set(&asked, &dials[d], r->point->set.value[d]);
-    code = scene_frame(b->s->tool, &asked,
-                       scene_view(&asked, c->width, c->height), &r->frame);
+    code =
+        settings_frame(b->s->tool, &asked,
+                       settings_view(&asked, c->width, c->height), &r->frame);
     /* asked is of this function only */
-    r->frame.setup = &r->scene->setup;
-    r->frame.lens = &r->scene->model.lens;
+    r->frame.setup = &r->settings->setup;
+    r->frame.lens = &r->settings->model.lens;
     r->frame.cfg.workers =
         b->s->tool->n_threads ? b->s->tool->workers : b->s->one;
-    r->point->model_bytes = r->scene->model.bytes;
+    r->point->model_bytes = r->settings->model.bytes;
     return code;
 }
 
@@ -115,7 +116,7 @@ static int make_bay(struct bay *b)
     if (!b->run || !b->lamp || !b->got.rgb ||
         canvas_init(&b->canvas, GLINT_YUYV, c->width, c->height) != GLINT_OK)
         return tool_fail(b->s->tool, GLINT_E_MEMORY, NULL);
-    yardstick_lamps(b->lamp, c->n_lamps, c->angle);
+    canvas_lamps(b->lamp, c->n_lamps, c->angle);
     for (int i = 0; i < c->n && code == EXIT_OK; i++) {
         b->run[i].point = &b->s->point[c->first + i];
         code = make_run(b, &b->run[i]);
@@ -130,7 +131,7 @@ static void free_bay(struct bay *b)
     for (int i = 0; b->run && i < b->c->n; i++)
         glint_frame_finish(&b->run[i].frame);
     for (int i = 0; i < b->n_open; i++)
-        scene_close(&b->open[i]);
+        settings_close(&b->open[i]);
     canvas_finish(&b->canvas);
     free(b->run);
     free(b->lamp);
@@ -187,8 +188,8 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
         struct run *r = &b->run[i];
         const struct glint_cost_plan plan = glint_frame_plan(&r->frame);
 
-        r->point->ms = yardstick_median(r->ms, r->n);
-        r->point->floor_ms = yardstick_median(b->floor_ms, n);
+        r->point->ms = canvas_median(r->ms, r->n);
+        r->point->floor_ms = canvas_median(b->floor_ms, n);
         r->point->ratio = r->point->ms / r->point->floor_ms;
         r->point->arena_bytes = r->point->report.peak_bytes;
         r->point->cost = glint_cost_of(&plan, &plan.dials);
@@ -323,7 +324,7 @@ static enum glint_status measure_point(struct bay *b, struct run *r,
 {
     struct glint_frame_report report;
     struct glint_measure m;
-    const enum glint_status status = yardstick_codes(
+    const enum glint_status status = canvas_codes(
         &r->frame, b->lamp, b->c->n_lamps, exposure, codes, &report);
 
     if (status != GLINT_OK)

@@ -97,15 +97,15 @@ static enum glint_status add_together(struct sweep *s, int c)
 static enum glint_status add_quality(struct sweep *s, int c, double quality)
 {
     struct sweep_setting set = standard(SWEEP_LADDER);
-    struct scene scene = s->base;
+    struct settings settings = s->base;
 
     for (int d = 0; d < n_dials; d++)
-        dial_set(&scene, &dials[d], dials[d].standard);
+        dial_set(&settings, &dials[d], dials[d].standard);
     set.quality = quality;
-    scene_set_quality(&scene, quality);
+    settings_set_quality(&settings, quality);
     for (int d = 0; d < n_dials; d++)
         if (!s->small || !dials[d].opens)
-            set.value[d] = dial_get(&scene, &dials[d]);
+            set.value[d] = dial_get(&settings, &dials[d]);
     return add(s, c, &set);
 }
 

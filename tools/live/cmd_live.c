@@ -54,13 +54,13 @@ static const char help[] =
     "  --config FILE       these options, without dashes: lens = zoom.glint\n"
     "Signals: SIGHUP reads --config and the lens again, SIGUSR1 reports now,\n"
     "SIGUSR2 saves a snapshot.\n"
-    "Lens and lights\n" LOOK_HELP;
+    "Lens and lights\n" COMPOSITOR_HELP;
 
-static const char help_end[] = SCENE_HELP;
+static const char help_end[] = SETTINGS_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 enum {
-    OPT_CONFIG = OPT_LOOK_LAST,
+    OPT_CONFIG = OPT_COMPOSITOR_LAST,
     OPT_LIST_DEVICES,
     OPT_LIST_FORMATS,
     OPT_IO,
@@ -100,7 +100,7 @@ static const struct option options[] = {
     {"memory", required_argument, NULL, OPT_MEMORY},
     {"snapshot", required_argument, NULL, OPT_SNAPSHOT},
     {"config", required_argument, NULL, OPT_CONFIG},
-    LOOK_OPTIONS,
+    COMPOSITOR_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
 /* What a reload needs to begin again. */
@@ -121,8 +121,8 @@ static void set_defaults(struct live_options *o)
                                          .n_buffers = 4},
                                .output = "fb",
                                .snapshot = "glint-%03d.ppm"};
-    look_defaults(&o->look);
-    o->look.reserve_bytes = 32 << 20;
+    compositor_defaults(&o->compositor);
+    o->compositor.reserve_bytes = 32 << 20;
 }
 
 /* "30", "30000/1001" */
@@ -209,7 +209,7 @@ static bool take_run(struct live_options *o, int option, const char *value)
     case OPT_MEMORY:
         if (!tool_integer(value, 1, 1024, &word))
             return false;
-        o->look.reserve_bytes = (size_t)word << 20;
+        o->compositor.reserve_bytes = (size_t)word << 20;
         return true;
     case OPT_SNAPSHOT:
         o->snapshot = value;
@@ -270,7 +270,8 @@ static const char *name_of(int option)
 
 static int take_any(struct line *line, int option, const char *value)
 {
-    int code = look_option(line->tool, &line->into->look, option, value);
+    int code =
+        compositor_option(line->tool, &line->into->compositor, option, value);
 
     if (code == -2)
         code = take(line->into, option, value);
@@ -312,7 +313,7 @@ static int parse(struct line *line, struct config *config,
 
         if (code != EXIT_OK)
             return code;
-        look_options_end(&into->look);
+        compositor_options_end(&into->compositor);
     }
     return parse_line(line);
 }
@@ -322,7 +323,7 @@ static int reread(void *ctx, struct tool *tool, struct live_options *into)
     struct line *line = ctx;
 
     (void)tool;
-    config_free(&line->again); /* a look that is open needs no names */
+    config_free(&line->again); /* an open compositor needs no names */
     return parse(line, &line->again, into);
 }
 
@@ -364,7 +365,7 @@ int cmd_live(int argc, char **argv)
             code = live_run(&tool, o, reread, &line);
         tool_finish(&tool);
     }
-    look_close(&o->look);
+    compositor_close(&o->compositor);
     config_free(&line.config);
     config_free(&line.again);
     free(o);

@@ -14,12 +14,12 @@
 #include "live/live_input.h"
 #include "live/live_log.h"
 #include "live/live_output.h"
-#include "overlay/look.h"
+#include "overlay/compositor.h"
 
 enum { LIVE_NAME_BYTES = 1024 }; /* of a snapshot */
 
 struct live_options {
-    struct look look; /* options only, until opened */
+    struct compositor compositor; /* options only, until opened */
     struct live_wish input;
     const char *output, *snapshot;
     enum glint_panel_fit fit;

@@ -7,7 +7,7 @@
 #define GLINT_TOOLS_LIVE_LIVE_LOG_H
 
 #include "live/live_stats.h"
-#include "overlay/look.h"
+#include "overlay/compositor.h"
 
 enum live_report {
     LIVE_REPORT_AUTO,

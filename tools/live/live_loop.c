@@ -27,7 +27,7 @@ struct live {
     struct live_copy copy; /* of frames that lie in slow memory */
 
     struct live_adapt adapt;
-    struct glint_dials asked; /* of the look's frame before it was adapted */
+    struct glint_dials asked; /* of the frame before it was adapted */
     struct live_log log;
     int n_shown, n_snapshots;
     struct glint_error why; /* the camera could not be opened, last time */
@@ -68,8 +68,8 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     if (status != GLINT_OK)
         return status;
     l->time_us = 0;
-    if (l->o->look.sized)
-        glint_lamp_detector_restart(&l->o->look.finder);
+    if (l->o->compositor.sized)
+        glint_lamp_detector_restart(&l->o->compositor.finder);
     l->had_signal = l->in.source->has_signal;
     take_format(l);
     return GLINT_OK;
@@ -122,17 +122,17 @@ static int open_output(struct live *l, const struct glint_image *image)
 /* Makes all that depends on the size of the pictures. */
 static int take_size(struct live *l, const struct glint_image *image)
 {
-    struct look *look = &l->o->look;
+    struct compositor *compositor = &l->o->compositor;
     int code;
 
-    if (look->sized && image->width == look->view.width &&
-        image->height == look->view.height)
+    if (compositor->sized && image->width == compositor->view.width &&
+        image->height == compositor->view.height)
         return EXIT_OK;
-    code = look_size(l->tool, look, image->width, image->height);
+    code = compositor_size(l->tool, compositor, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    l->asked = look->frame.dials;
-    look->frame.dials = live_adapt_dials(&l->adapt, l->asked);
+    l->asked = compositor->frame.dials;
+    compositor->frame.dials = live_adapt_dials(&l->adapt, l->asked);
     return EXIT_OK;
 }
 
@@ -170,7 +170,7 @@ static void adapt(struct live *l, int64_t busy_us, int n_missed)
         !live_adapt_note(&l->adapt, 1e-3 * (double)busy_us, period_ms(l),
                          n_missed))
         return;
-    l->o->look.frame.dials = live_adapt_dials(&l->adapt, l->asked);
+    l->o->compositor.frame.dials = live_adapt_dials(&l->adapt, l->asked);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
              l->adapt.step > before ? "lowered to hold the rate" : "raised",
              l->adapt.step, LIVE_MAX_STEP,
@@ -187,7 +187,7 @@ static int64_t us(double ms)
 static void note(struct live *l, const struct glint_source_frame *frame,
                  const int64_t *at_us)
 {
-    const struct look *look = &l->o->look;
+    const struct compositor *compositor = &l->o->compositor;
     struct live_frame_times t = {.shown = at_us != NULL,
                                  .n_dropped = frame->n_dropped,
                                  .n_late = frame->n_late,
@@ -197,14 +197,14 @@ static void note(struct live *l, const struct glint_source_frame *frame,
         t.captured_us = frame->time_us;
         t.shown_us = at_us[3];
         t.stage_us[LIVE_CONVERT] = at_us[1] - at_us[0];
-        t.stage_us[LIVE_FIND] = us(look->find_ms);
-        t.stage_us[LIVE_PLAN] = us(look->report.plan_ms);
-        t.stage_us[LIVE_BIN] = us(look->report.bin_ms);
-        t.stage_us[LIVE_DRAW] = us(look->report.draw_ms);
+        t.stage_us[LIVE_FIND] = us(compositor->find_ms);
+        t.stage_us[LIVE_PLAN] = us(compositor->report.plan_ms);
+        t.stage_us[LIVE_BIN] = us(compositor->report.bin_ms);
+        t.stage_us[LIVE_DRAW] = us(compositor->report.draw_ms);
         t.stage_us[LIVE_SHOW] = at_us[3] - at_us[2];
-        t.lights = look->report.drawn_lights;
-        t.ghosts = look->report.ghosts;
-        t.bytes = look->report.peak_bytes;
+        t.lights = compositor->report.drawn_lights;
+        t.ghosts = compositor->report.ghosts;
+        t.bytes = compositor->report.peak_bytes;
         t.quality = 1 - (double)l->adapt.step / LIVE_MAX_STEP;
     }
     live_stats_add(&l->log.stats, &t);
@@ -271,7 +271,7 @@ static int32_t elapsed_us(struct live *l, int64_t time_us)
 static int show(struct live *l, const struct glint_source_frame *frame,
                 int64_t taken_us)
 {
-    struct look *look = &l->o->look;
+    struct compositor *compositor = &l->o->compositor;
     const struct glint_image *image = &frame->image;
     struct glint_error error = {""};
     enum glint_status status;
@@ -285,10 +285,10 @@ static int show(struct live *l, const struct glint_source_frame *frame,
     if (code != EXIT_OK)
         return code;
     at_us[1] = glint_now_us();
-    status = look_draw(look, image, elapsed_us(l, frame->time_us));
+    status = compositor_draw(compositor, image, elapsed_us(l, frame->time_us));
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, NULL);
-    live_log_short(&l->log, &look->report.stats);
+    live_log_short(&l->log, &compositor->report.stats);
     if (live_signal(LIVE_SNAPSHOT))
         snapshot(l, image);
     code = open_output(l, image);
@@ -356,12 +356,12 @@ static void reload(struct live *l)
     if (!fresh)
         return;
     if (l->reread(l->ctx, l->tool, fresh) < 0 &&
-        look_open(l->tool, &fresh->look) == EXIT_OK) {
-        look_replace(&l->o->look, &fresh->look);
+        compositor_open(l->tool, &fresh->compositor) == EXIT_OK) {
+        compositor_replace(&l->o->compositor, &fresh->compositor);
         live_adapt_init(&l->adapt);
         live_log_say(&l->log, "reloaded");
     } else {
-        look_close(&fresh->look);
+        compositor_close(&fresh->compositor);
         live_log_say(&l->log, "not reloaded: all stays as it was");
     }
     free(fresh);
@@ -400,7 +400,7 @@ static int start(struct live *l)
     status = live_input_check(l->o->input.camera.device, &error);
     if (status != GLINT_OK)
         return fail_camera(l, status, &error);
-    code = look_open(l->tool, &l->o->look);
+    code = compositor_open(l->tool, &l->o->compositor);
     if (code != EXIT_OK)
         return code;
     live_signals_take(); /* until here, whoever is impatient may kill it */
@@ -426,7 +426,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
                ? EXIT_OK
                : tool_usage(tool, "-o: '%s' is no output", o->output);
     l->output.fit = o->fit;
-    l->output.dither = o->look.scene.dither;
+    l->output.dither = o->compositor.settings.dither;
     live_log_init(&l->log, tool, o->report,
                   l->output.kind == LIVE_OUTPUT_Y4M &&
                       strcmp(l->output.path, "-") == 0);
@@ -436,7 +436,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
         live_stats_start(&l->log.stats, glint_now_us());
         code = loop(l);
         if (code == EXIT_OK)
-            code = look_finish(tool, &o->look);
+            code = compositor_finish(tool, &o->compositor);
         live_log_conclude(&l->log, code == EXIT_OK, l->n_shown,
                           live_output_dropped(&l->output));
     }

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * In place of scene_table.c, for programs without the offline
+ * In place of settings_table.c, for programs without the offline
  * half: a lens is a baked model, and frames are drawn from one.
  */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "options/scene_table.h"
+#include "options/settings_table.h"
 
-int scene_open_table(const struct tool *tool, struct scene *scene,
-                     const char *name)
+int settings_open_table(const struct tool *tool, struct settings *settings,
+                        const char *name)
 {
     struct glint_error error;
 
-    (void)scene;
+    (void)settings;
     if (!tool_is_file_name(name))
         snprintf(error.text, sizeof error.text,
                  "%.120s names no file: that of a model has a slash or ends in "
@@ -33,17 +33,17 @@ int scene_open_table(const struct tool *tool, struct scene *scene,
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
-/* Every scene that opened has a model, so that what follows is not reached; it
- * would say so. */
-enum glint_status scene_table_setup(struct scene *scene,
-                                    struct glint_error *error)
+/* All settings that were opened have a model, so that what follows is not
+ * reached; it would say so. */
+enum glint_status settings_table_setup(struct settings *settings,
+                                       struct glint_error *error)
 {
-    (void)scene;
+    (void)settings;
     snprintf(error->text, sizeof error->text, "there is no model");
     return GLINT_E_LENS;
 }
 
-const struct glint_frame_rays *scene_table_rays(void)
+const struct glint_frame_rays *settings_table_rays(void)
 {
     return NULL;
 }

@@ -63,7 +63,7 @@ $(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,edges/sums 
 # Every frame of a camera goes through these on its way to a panel.
 $(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)
 # The floor that frames are measured by is as fast as can be.
-$(call of,tools/lab/yardstick,-O3)
+$(call of,tools/lab/canvas,-O3)
 # Sums in fours: the same bits.
 $(call of,src/bake/fit/regress,-O3)
 # Rays in eights: errno and traps are all that these give away.

@@ -37,7 +37,7 @@ const int n_dials = sizeof dials / sizeof *dials;
 typedef char
     glint_dials_fit[sizeof dials / sizeof *dials <= MAX_DIALS ? 1 : -1];
 
-void dial_set(struct scene *s, const struct dial *dial, double value)
+void dial_set(struct settings *s, const struct dial *dial, double value)
 {
     const int whole = (int)value;
 
@@ -82,7 +82,7 @@ void dial_set(struct scene *s, const struct dial *dial, double value)
     }
 }
 
-double dial_get(const struct scene *s, const struct dial *dial)
+double dial_get(const struct settings *s, const struct dial *dial)
 {
     switch (dial->id) {
     case DIAL_GRID:

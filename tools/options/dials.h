@@ -6,7 +6,7 @@
 #ifndef GLINT_TOOLS_OPTIONS_DIALS_H
 #define GLINT_TOOLS_OPTIONS_DIALS_H
 
-#include "options/scene.h"
+#include "options/settings.h"
 
 enum {
     MAX_DIALS = 16,
@@ -31,8 +31,8 @@ enum dial_id {
 struct dial {
     const char *name, *what; /* for tables; for plots */
     enum dial_id id;
-    double standard;  /* what a scene has by default */
-    bool opens;       /* a scene has to be opened anew for it */
+    double standard;  /* what settings have by default */
+    bool opens;       /* settings have to be opened anew for it */
     bool many_lights; /* does nothing to a single one */
     int n_values, n_together;
     double value[DIAL_VALUES], together[DIAL_TOGETHER];
@@ -41,7 +41,7 @@ struct dial {
 extern const struct dial dials[];
 extern const int n_dials;
 
-void dial_set(struct scene *scene, const struct dial *dial, double value);
-double dial_get(const struct scene *scene, const struct dial *dial);
+void dial_set(struct settings *settings, const struct dial *dial, double value);
+double dial_get(const struct settings *settings, const struct dial *dial);
 
 #endif

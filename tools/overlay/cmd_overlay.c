@@ -30,7 +30,7 @@ static const char help[] =
     "copied,\n"
     "                    rate and colours are kept\n"
     "\n"
-    "  -o, --output OUT\n" LOOK_HELP
+    "  -o, --output OUT\n" COMPOSITOR_HELP
     "  --range R           auto | full | limited codes of a video\n"
     "  --matrix M          auto | 601 | 709\n"
     "  --encode OPTIONS    of ffmpeg for the pictures it writes, in place of\n"
@@ -39,9 +39,9 @@ static const char help[] =
     "found)\n"
     "  --jpeg-quality N    1 to 100, of JPEG and WebP (default: about the "
     "input's,\n"
-    "                      else 95)\n" SCENE_MEMORY_HELP;
+    "                      else 95)\n" SETTINGS_MEMORY_HELP;
 
-static const char help_end[] = SCENE_HELP;
+static const char help_end[] = SETTINGS_HELP;
 static const char help_last[] = SPEED_HELP COMMON_HELP;
 
 /* ------------------------------------------------------------------ options */
@@ -65,7 +65,7 @@ static bool take(struct overlay *o, int option, const char *value)
     case 'Q':
         return tool_integer(value, 1, 100, &o->quality);
     case 'm':
-        return scene_memory(value, &o->look.reserve_bytes);
+        return settings_memory(value, &o->compositor.reserve_bytes);
     default: /* 'n' */
         return tool_integer(value, 0, 1000000000, &o->start_number);
     }
@@ -79,7 +79,7 @@ static const struct option options[] = {
     {"jpeg-quality", required_argument, NULL, 'Q'},
     {"encode", required_argument, NULL, 'e'},
     {"memory", required_argument, NULL, 'm'},
-    LOOK_OPTIONS,
+    COMPOSITOR_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
 static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
@@ -88,7 +88,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
 
     while ((c = getopt_long(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
-        code = look_option(tool, &o->look, c, optarg);
+        code = compositor_option(tool, &o->compositor, c, optarg);
         if (code >= 0)
             return code;
         if (code == -1)
@@ -114,7 +114,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct overlay *o)
     if (!o->output)
         return tool_usage(tool, "needs -o OUT");
     o->input = argv[optind];
-    if (o->look.reserve_bytes && o->look.scene.rays == SCENE_RAYS_EXACT)
+    if (o->compositor.reserve_bytes &&
+        o->compositor.settings.rays == SETTINGS_RAYS_EXACT)
         return tool_usage(tool, "--memory is for models, not for exact rays");
     return -1;
 }
@@ -125,10 +126,10 @@ static void say_frame(const struct overlay *o)
 {
     char lights[64];
 
-    scene_lights_text(&o->look.report, lights);
+    settings_lights_text(&o->compositor.report, lights);
     fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
-            o->look.n_frames - 1, lights, o->look.report.ghosts,
-            o->look.report.stats.primitives);
+            o->compositor.n_frames - 1, lights, o->compositor.report.ghosts,
+            o->compositor.report.stats.primitives);
 }
 
 static void note_worst(struct glint_frame_report *worst,
@@ -156,12 +157,12 @@ static void note_worst(struct glint_frame_report *worst,
     worst->beyond_lights = beyond;
 }
 
-static enum glint_status draw_in_place(void *ctx, struct look *look,
+static enum glint_status draw_in_place(void *ctx, struct compositor *compositor,
                                        const struct glint_image *image,
                                        int32_t elapsed_us)
 {
     (void)ctx;
-    return look_draw(look, image, elapsed_us);
+    return compositor_draw(compositor, image, elapsed_us);
 }
 
 int overlay_draw(struct tool *tool, struct overlay *o,
@@ -174,26 +175,27 @@ int overlay_draw_by(struct tool *tool, struct overlay *o,
                     const struct glint_image *image, overlay_draw_fn *draw,
                     void *ctx)
 {
-    struct look *look = &o->look;
+    struct compositor *compositor = &o->compositor;
     enum glint_status status;
     int code = EXIT_OK;
 
-    if (!look->sized)
-        code = look_size(tool, look, image->width, image->height);
+    if (!compositor->sized)
+        code = compositor_size(tool, compositor, image->width, image->height);
     if (code != EXIT_OK)
         return code;
-    status = draw(ctx, look, image, o->elapsed_us);
+    status = draw(ctx, compositor, image, o->elapsed_us);
     if (status != GLINT_OK)
         return tool_fail(tool, status, NULL);
-    o->find_ms += look->find_ms;
-    o->flare_ms += look->flare_ms;
-    o->peak = fmax(o->peak, glint_strength_largest(look->strength.light.peak));
-    o->mean_sum += glint_strength_largest(look->strength.light.mean);
-    if (look->n_lamps > o->most_lights)
-        o->most_lights = look->n_lamps;
-    if (look->report.peak_bytes > o->peak_bytes)
-        o->peak_bytes = look->report.peak_bytes;
-    note_worst(&o->worst, &look->report);
+    o->find_ms += compositor->find_ms;
+    o->flare_ms += compositor->flare_ms;
+    o->peak =
+        fmax(o->peak, glint_strength_largest(compositor->strength.light.peak));
+    o->mean_sum += glint_strength_largest(compositor->strength.light.mean);
+    if (compositor->n_lamps > o->most_lights)
+        o->most_lights = compositor->n_lamps;
+    if (compositor->report.peak_bytes > o->peak_bytes)
+        o->peak_bytes = compositor->report.peak_bytes;
+    note_worst(&o->worst, &compositor->report);
     if (tool->verbose && !tool->quiet)
         say_frame(o);
     return EXIT_OK;
@@ -213,7 +215,8 @@ void overlay_progress(const struct tool *tool, struct overlay *o)
             is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
                         : "glint overlay: frame %d, %.1f fps, %d "
                           "lights\n",
-            o->look.n_frames, o->look.n_frames / spent, o->look.report.lights);
+            o->compositor.n_frames, o->compositor.n_frames / spent,
+            o->compositor.report.lights);
     fflush(stderr);
 }
 
@@ -221,28 +224,29 @@ void overlay_progress(const struct tool *tool, struct overlay *o)
 
 static void print_figures(const struct overlay *o)
 {
-    const int n = o->look.n_frames ? o->look.n_frames : 1;
+    const int n = o->compositor.n_frames ? o->compositor.n_frames : 1;
 
     fprintf(stderr,
             "%dx%d (find %.1f ms, flare %.1f ms), %d ghosts; flare memory %zu "
             "bytes, peak %zu\n",
-            o->look.view.width, o->look.view.height, o->find_ms / n,
-            o->flare_ms / n, o->look.report.ghosts, o->look.report.arena_bytes,
-            o->peak_bytes);
+            o->compositor.view.width, o->compositor.view.height, o->find_ms / n,
+            o->flare_ms / n, o->compositor.report.ghosts,
+            o->compositor.report.arena_bytes, o->peak_bytes);
 }
 
 static void print_json(const struct overlay *o,
                        const struct overlay_light *light)
 {
     const double seconds = tool_seconds() - o->started;
-    const int n = o->look.n_frames ? o->look.n_frames : 1;
+    const int n = o->compositor.n_frames ? o->compositor.n_frames : 1;
 
     printf("{\"frames\": %d, \"ms\": %.3f, \"fps\": %.2f, "
            "\"find_ms\": %.3f, \"flare_ms\": %.3f, \"most_lights\": %d, ",
-           o->look.n_frames, 1e3 * seconds, o->look.n_frames / seconds,
-           o->find_ms / n, o->flare_ms / n, o->most_lights);
+           o->compositor.n_frames, 1e3 * seconds,
+           o->compositor.n_frames / seconds, o->find_ms / n, o->flare_ms / n,
+           o->most_lights);
     overlay_json(o, light, stdout);
-    scene_json(&o->look.report);
+    settings_json(&o->compositor.report);
     printf("}\n");
 }
 
@@ -253,7 +257,7 @@ static void print_result(const struct tool *tool, const struct overlay *o)
 
     if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
         fputs("\r\033[K", stderr);
-    scene_warn_lights(tool, &o->worst);
+    settings_warn_lights(tool, &o->worst);
     if (tool->quiet && !json)
         return;
     light = overlay_light(o);
@@ -325,7 +329,7 @@ static int run(struct tool *tool, struct overlay *o)
     if (code == EXIT_OK)
         code = overlay_check_apart(tool, o->input, o->output);
     if (code == EXIT_OK)
-        code = look_open(tool, &o->look);
+        code = compositor_open(tool, &o->compositor);
     if (code != EXIT_OK)
         return code;
     o->started = tool_seconds();
@@ -336,7 +340,7 @@ static int run(struct tool *tool, struct overlay *o)
     else
         code = overlay_numbered(tool, o);
     if (code == EXIT_OK)
-        code = look_finish(tool, &o->look);
+        code = compositor_finish(tool, &o->compositor);
     if (code == EXIT_OK)
         print_result(tool, o);
     return code;
@@ -353,7 +357,7 @@ int cmd_overlay(int argc, char **argv)
 
     if (!o)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    look_defaults(&o->look);
+    compositor_defaults(&o->compositor);
     o->start_number = -1;
     code = parse(&tool, argc, argv, o);
     if (code < 0) {
@@ -363,7 +367,7 @@ int cmd_overlay(int argc, char **argv)
         tool_finish(&tool);
     }
     overlay_y4m_close(o);
-    look_close(&o->look);
+    compositor_close(&o->compositor);
     free(o);
     return code;
 }

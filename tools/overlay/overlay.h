@@ -6,12 +6,12 @@
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_H
 
-#include "overlay/look.h"
+#include "overlay/compositor.h"
 
 struct overlay_y4m;
 
 struct overlay {
-    struct look look;
+    struct compositor compositor;
     struct overlay_y4m *y4m; /* of a video that is not of 8 bits */
     const char *input, *output;
     int start_number;
@@ -36,7 +36,8 @@ int overlay_draw(struct tool *tool, struct overlay *o,
                  const struct glint_image *image);
 
 /* The same where frames are not drawn in place: DRAW does it with CTX. */
-typedef enum glint_status overlay_draw_fn(void *ctx, struct look *look,
+typedef enum glint_status overlay_draw_fn(void *ctx,
+                                          struct compositor *compositor,
                                           const struct glint_image *image,
                                           int32_t elapsed_us);
 int overlay_draw_by(struct tool *tool, struct overlay *o,

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "overlay/look_layer.h"
+#include "overlay/compositor_layer.h"
 #include "formats/kept_types.h"
 
 static bool is_deep(const struct glint_samples *s)
@@ -46,24 +46,25 @@ static enum glint_status deepen(struct overlay_file *f)
 }
 
 static enum glint_status choose_way(struct overlay_file *f,
-                                    const struct look *look)
+                                    const struct compositor *compositor)
 {
     const bool to_float =
         takes_float(f->to) && !glint_kept_is_same_type(&f->kept, f->to);
     const bool has_own_layer =
-        look->flare_alpha || (look->flare_only && to_float);
+        compositor->flare_alpha || (compositor->flare_only && to_float);
 
     f->is_direct = !to_float && !has_own_layer &&
                    glint_samples_image(&f->kept.samples, &f->image);
     if (f->is_direct)
         return GLINT_OK;
-    if (to_float && !look->flare_only && deepen(f) != GLINT_OK)
+    if (to_float && !compositor->flare_only && deepen(f) != GLINT_OK)
         return GLINT_E_MEMORY;
     return glint_samples_proxy(&f->kept.samples, &f->image, &f->white);
 }
 
 int overlay_file_open(const struct tool *tool, struct overlay_file *file,
-                      const struct look *look, const char *from, const char *to)
+                      const struct compositor *compositor, const char *from,
+                      const char *to)
 {
     struct glint_error error = {""};
     enum glint_status status;
@@ -75,7 +76,7 @@ int overlay_file_open(const struct tool *tool, struct overlay_file *file,
     if (*file->kept.note && !tool->quiet)
         fprintf(stderr, "glint %s: %s: %s\n", tool->name, from,
                 file->kept.note);
-    status = choose_way(file, look);
+    status = choose_way(file, compositor);
     if (status == GLINT_OK)
         return EXIT_OK;
     overlay_file_close(file);
@@ -101,13 +102,14 @@ static struct glint_samples *drawn_on(struct overlay_file *f)
     return f->is_copied ? &f->work : &f->kept.samples;
 }
 
-static bool adds_nothing(const struct look *look)
+static bool adds_nothing(const struct compositor *compositor)
 {
-    return look->n_lamps == 0 || !(look_scale(look) > 0);
+    return compositor->n_lamps == 0 || !(compositor_scale(compositor) > 0);
 }
 
 /* Marks of lights, which are drawn over the proxy, over the samples, too. */
-static enum glint_status mark(struct overlay_file *f, struct look *look)
+static enum glint_status mark(struct overlay_file *f,
+                              struct compositor *compositor)
 {
     const size_t bytes =
         glint_image_bytes(GLINT_RGB24, f->image.width, f->image.height);
@@ -116,38 +118,42 @@ static enum glint_status mark(struct overlay_file *f, struct look *look)
     if (!before)
         return GLINT_E_MEMORY;
     memcpy(before, f->image.plane[0], bytes);
-    look_mark(look, &f->image);
+    compositor_mark(compositor, &f->image);
     glint_samples_put(drawn_on(f), &f->image, before);
     free(before);
     return GLINT_OK;
 }
 
 enum glint_status overlay_file_draw(struct overlay_file *file,
-                                    struct look *look, int32_t elapsed_us)
+                                    struct compositor *compositor,
+                                    int32_t elapsed_us)
 {
     const size_t n = 3 * (size_t)file->image.width * (size_t)file->image.height;
     enum glint_status status;
 
     if (file->is_direct)
-        return look_draw(look, &file->image, elapsed_us);
-    look_find(look, &file->image, elapsed_us);
+        return compositor_draw(compositor, &file->image, elapsed_us);
+    compositor_find(compositor, &file->image, elapsed_us);
     if (file->kept.is_float)
-        look_measure(look, &file->kept.samples, file->white);
-    look->white = file->white;
-    look_expose(look, elapsed_us);
+        compositor_measure(compositor, &file->kept.samples, file->white);
+    compositor->white = file->white;
+    compositor_expose(compositor, elapsed_us);
     file->layer = calloc(n, sizeof *file->layer);
     if (!file->layer)
         return GLINT_E_MEMORY;
-    status =
-        adds_nothing(look)
-            ? GLINT_OK
-            : look_draw_layer(look, is_deep(drawn_on(file)) || look->flare_only,
-                              file->layer);
-    if (status == GLINT_OK && !look->flare_only && !adds_nothing(look))
+    status = adds_nothing(compositor)
+                 ? GLINT_OK
+                 : compositor_draw_layer(compositor,
+                                         is_deep(drawn_on(file)) ||
+                                             compositor->flare_only,
+                                         file->layer);
+    if (status == GLINT_OK && !compositor->flare_only &&
+        !adds_nothing(compositor))
         glint_samples_add(drawn_on(file), file->layer);
-    if (status == GLINT_OK && !look->flare_only && look->show_lights)
-        status = mark(file, look);
-    look->n_frames++;
+    if (status == GLINT_OK && !compositor->flare_only &&
+        compositor->show_lights)
+        status = mark(file, compositor);
+    compositor->n_frames++;
     return status;
 }
 
@@ -155,7 +161,7 @@ enum glint_status overlay_file_draw(struct overlay_file *file,
 
 /* The flare by itself, with the input's depth or more. */
 static enum glint_status make_layer(const struct overlay_file *f,
-                                    const struct look *look,
+                                    const struct compositor *compositor,
                                     struct glint_samples *alone)
 {
     struct glint_samples like = f->kept.samples;
@@ -163,12 +169,12 @@ static enum glint_status make_layer(const struct overlay_file *f,
     enum glint_status status;
     float *to;
 
-    if (look->flare_alpha || takes_float(f->to))
+    if (compositor->flare_alpha || takes_float(f->to))
         like.colour[0].sample = GLINT_SAMPLE_FLOAT;
-    status = glint_kept_blank(alone, &like, look->flare_alpha);
+    status = glint_kept_blank(alone, &like, compositor->flare_alpha);
     if (status != GLINT_OK)
         return status;
-    if (!look->flare_alpha) {
+    if (!compositor->flare_alpha) {
         glint_samples_add(alone, f->layer);
         return GLINT_OK;
     }
@@ -187,21 +193,23 @@ static enum glint_status make_layer(const struct overlay_file *f,
     return GLINT_OK;
 }
 
-static enum glint_status write(struct overlay_file *f, const struct look *look,
+static enum glint_status write(struct overlay_file *f,
+                               const struct compositor *compositor,
                                struct glint_kept_options *options,
                                struct glint_error *error)
 {
-    const bool own_layer = look->flare_only && !f->is_direct;
+    const bool own_layer = compositor->flare_only && !f->is_direct;
     struct glint_samples alone;
     enum glint_status status;
 
-    if (adds_nothing(look) && !look->flare_only && !look->show_lights &&
-        !options->quality && glint_kept_is_same_type(&f->kept, f->to))
+    if (adds_nothing(compositor) && !compositor->flare_only &&
+        !compositor->show_lights && !options->quality &&
+        glint_kept_is_same_type(&f->kept, f->to))
         return glint_kept_copy(&f->kept, f->to, error);
     if (!own_layer)
         return glint_kept_save(&f->kept, f->to, f->is_copied ? &f->work : NULL,
                                options, error);
-    status = make_layer(f, look, &alone);
+    status = make_layer(f, compositor, &alone);
     if (status != GLINT_OK)
         return status;
     status = glint_kept_save(&f->kept, f->to, &alone, options, error);
@@ -210,11 +218,11 @@ static enum glint_status write(struct overlay_file *f, const struct look *look,
 }
 
 int overlay_file_save(const struct tool *tool, struct overlay_file *file,
-                      const struct look *look, int quality)
+                      const struct compositor *compositor, int quality)
 {
     struct glint_kept_options options = {.quality = quality};
     struct glint_error error = {""};
-    const enum glint_status status = write(file, look, &options, &error);
+    const enum glint_status status = write(file, compositor, &options, &error);
 
     if (status != GLINT_OK)
         return *error.text ? tool_fail(tool, status, error.text)

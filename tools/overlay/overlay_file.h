@@ -3,9 +3,9 @@
  * A picture file on its way through overlay: what is looked at, what is lit,
  * what is written.
  *
- *     overlay_file_open(&tool, &file, &look, "in.exr", "out.exr");
- *     overlay_file_draw(&file, &look);          in place of look_draw()
- *     overlay_file_save(&tool, &file, &look, quality);
+ *     overlay_file_open(&tool, &file, &compositor, "in.exr", "out.exr");
+ *     overlay_file_draw(&file, &compositor);          in place of
+ * compositor_draw() overlay_file_save(&tool, &file, &compositor, quality);
  *     overlay_file_close(&file);
  *
  * Opaque sRGB of 8 bits is drawn on as it is, in integers. Of everything else
@@ -16,11 +16,11 @@
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_FILE_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_FILE_H
 
-#include "overlay/look.h"
+#include "overlay/compositor.h"
 #include "formats/kept.h"
 
 struct overlay_file {
-    struct glint_image image; /* of the size that look_size wants */
+    struct glint_image image; /* of the size that compositor_size wants */
 
     /* Private. */
     const char *from, *to;
@@ -33,16 +33,17 @@ struct overlay_file {
 
 /* Opens FROM, of which TO will be made; both are kept. Returns an exit code. */
 int overlay_file_open(const struct tool *tool, struct overlay_file *file,
-                      const struct look *look, const char *from,
+                      const struct compositor *compositor, const char *from,
                       const char *to);
 
 /* Adds the flare, ELAPSED_US after the picture before. GLINT_E_MEMORY. */
 enum glint_status overlay_file_draw(struct overlay_file *file,
-                                    struct look *look, int32_t elapsed_us);
+                                    struct compositor *compositor,
+                                    int32_t elapsed_us);
 
 /* Writes it; QUALITY as of glint_kept_options. Returns an exit code. */
 int overlay_file_save(const struct tool *tool, struct overlay_file *file,
-                      const struct look *look, int quality);
+                      const struct compositor *compositor, int quality);
 
 /* Does nothing when closed. */
 void overlay_file_close(struct overlay_file *file);

@@ -13,19 +13,19 @@ static const double well_seen = 0.25;
 
 struct overlay_light overlay_light(const struct overlay *o)
 {
-    const struct look *look = &o->look;
-    const int n = look->n_frames;
+    const struct compositor *compositor = &o->compositor;
+    const int n = compositor->n_frames;
     struct overlay_light light = {o->peak, n ? o->mean_sum / n : 0};
     struct glint_response_light drawn;
 
-    if (n != 1 || look->n_lamps == 0 || look->strength.scale <= 0 ||
-        glint_response_draw(&look->frame, look->lamp, look->n_lamps, &drawn) !=
-            GLINT_OK)
+    if (n != 1 || compositor->n_lamps == 0 || compositor->strength.scale <= 0 ||
+        glint_response_draw(&compositor->frame, compositor->lamp,
+                            compositor->n_lamps, &drawn) != GLINT_OK)
         return light;
-    light.peak =
-        look_scale(look) / look->white * glint_strength_largest(drawn.peak);
-    light.mean =
-        look_scale(look) / look->white * glint_strength_largest(drawn.mean);
+    light.peak = compositor_scale(compositor) / compositor->white *
+                 glint_strength_largest(drawn.peak);
+    light.mean = compositor_scale(compositor) / compositor->white *
+                 glint_strength_largest(drawn.mean);
     return light;
 }
 
@@ -35,7 +35,7 @@ static double stops_of(const struct glint_lamp *lamp)
     return log2(fmax(lamp->power, 1e-30));
 }
 
-static double f_number_of(const struct scene *s)
+static double f_number_of(const struct settings *s)
 {
     return s->model.data ? model_real_of(s->model.lens.header->f_number)
                          : s->lens.f_number;
@@ -44,80 +44,84 @@ static double f_number_of(const struct scene *s)
 /* ----------------------------------------------------------------- the line
  */
 
-static const struct glint_lamp *brightest_of(const struct look *look)
+static const struct glint_lamp *
+brightest_of(const struct compositor *compositor)
 {
-    const struct glint_lamp *best = look->lamp;
+    const struct glint_lamp *best = compositor->lamp;
 
-    for (int i = 1; i < look->n_lamps; i++)
-        if (look->lamp[i].power > best->power)
-            best = &look->lamp[i];
+    for (int i = 1; i < compositor->n_lamps; i++)
+        if (compositor->lamp[i].power > best->power)
+            best = &compositor->lamp[i];
     return best;
 }
 
-static void say_lights(const struct look *look, int most, FILE *to)
+static void say_lights(const struct compositor *compositor, int most, FILE *to)
 {
     const struct glint_lamp *lamp;
     double x, y;
 
-    fprintf(to, "%s%d light%s", look->n_frames == 1 ? "" : "at most ", most,
-            most == 1 ? "" : "s");
-    if (look->n_lamps == 0 || look->n_frames > 1)
+    fprintf(to, "%s%d light%s", compositor->n_frames == 1 ? "" : "at most ",
+            most, most == 1 ? "" : "s");
+    if (compositor->n_lamps == 0 || compositor->n_frames > 1)
         return;
-    lamp = brightest_of(look);
-    glint_view_to_pixel(&look->view, look->scene.setup.optics.focal_mm, lamp,
-                        &x, &y);
+    lamp = brightest_of(compositor);
+    glint_view_to_pixel(&compositor->view,
+                        compositor->settings.setup.optics.focal_mm, lamp, &x,
+                        &y);
     fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
             most == 1 ? "" : "the brightest ", stops_of(lamp), x, y);
 }
 
-static void say_dial(const struct look *look, FILE *to)
+static void say_dial(const struct compositor *compositor, FILE *to)
 {
-    if (look->scene.has_exposure)
-        fprintf(to, "exposure %+g EV", look->scene.exposure_ev);
+    if (compositor->settings.has_exposure)
+        fprintf(to, "exposure %+g EV", compositor->settings.exposure_ev);
     else
-        fprintf(to, "strength %g", look->strength.asked);
-    if (look->scene.gain != 1)
-        fprintf(to, ", gain %g", look->scene.gain);
+        fprintf(to, "strength %g", compositor->strength.asked);
+    if (compositor->settings.gain != 1)
+        fprintf(to, ", gain %g", compositor->settings.gain);
 }
 
 /* What would show a flare that comes to LIGHT only. */
 static void say_faint(const struct overlay *o,
                       const struct overlay_light *light, FILE *to)
 {
-    const struct look *look = &o->look;
-    const bool is_held = look->scene.gain <= 0 || (!look->scene.has_exposure &&
-                                                   look->strength.asked <= 0);
+    const struct compositor *compositor = &o->compositor;
+    const bool is_held =
+        compositor->settings.gain <= 0 ||
+        (!compositor->settings.has_exposure && compositor->strength.asked <= 0);
 
     if (is_held)
         fprintf(to, "%s: %s draws nothing, as it says\n", o->output,
-                look->scene.gain <= 0 ? "--gain 0" : "--strength 0");
+                compositor->settings.gain <= 0 ? "--gain 0" : "--strength 0");
     else if (light->peak <= 0)
         fprintf(to,
                 "%s: no light gets through this lens into the picture; "
                 "another one (--lens) may show a flare\n",
                 o->output);
-    else if (look->scene.has_exposure)
+    else if (compositor->settings.has_exposure)
         fprintf(to,
                 "%s: that is %.1f stops below what can be seen; --strength "
                 "instead of --exposure, or --exposure %+.0f, shows it\n",
                 o->output, log2(least_seen / light->peak),
-                look->scene.exposure_ev + ceil(log2(well_seen / light->peak)));
+                compositor->settings.exposure_ev +
+                    ceil(log2(well_seen / light->peak)));
     else
         fprintf(to,
                 "%s: that is %.1f stops below what can be seen; --strength "
                 "%.2g shows it\n",
                 o->output, log2(least_seen / light->peak),
-                look->strength.asked * sqrt(well_seen / light->peak));
+                compositor->strength.asked * sqrt(well_seen / light->peak));
 }
 
 /* Nothing was found in all frames; of a picture by itself, what came next. */
-static void say_none(const struct look *look, FILE *to)
+static void say_none(const struct compositor *compositor, FILE *to)
 {
-    const bool is_found = !look->is_listed && look->n_hand == 0;
+    const bool is_found = !compositor->is_listed && compositor->n_hand == 0;
     const struct glint_spot *next = NULL;
 
-    if (look->sized && is_found && look->n_frames == 1)
-        next = glint_lamp_detector_doubtful(&look->finder);
+    if (compositor->sized && is_found && compositor->n_frames == 1)
+        next = glint_lamp_detector_doubtful(&compositor->finder);
     fputs("no light was found, so nothing was drawn; ", to);
     if (next)
         fprintf(to, "brightest candidate: --light-at %.0f,%.0f\n",
@@ -129,21 +133,21 @@ static void say_none(const struct look *look, FILE *to)
 void overlay_say(const struct overlay *o, const struct overlay_light *light,
                  FILE *to)
 {
-    const struct look *look = &o->look;
+    const struct compositor *compositor = &o->compositor;
     const double seconds = tool_seconds() - o->started;
-    const int n = look->n_frames;
+    const int n = compositor->n_frames;
 
     fprintf(to, "%s: ", o->output);
     if (n != 1)
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
     if (o->most_lights == 0) {
-        say_none(look, to);
+        say_none(compositor, to);
         return;
     }
-    say_lights(look, o->most_lights, to);
-    fprintf(to, ", %s f/%.3g, ", look->scene.lens.name,
-            f_number_of(&look->scene));
-    say_dial(look, to);
+    say_lights(compositor, o->most_lights, to);
+    fprintf(to, ", %s f/%.3g, ", compositor->settings.lens.name,
+            f_number_of(&compositor->settings));
+    say_dial(compositor, to);
     fprintf(to,
             ": the flare peaks at %.*g %% of white, %.2g %% on average; %.0f "
             "ms\n",
@@ -159,27 +163,27 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
 void overlay_json(const struct overlay *o, const struct overlay_light *light,
                   FILE *to)
 {
-    const struct look *look = &o->look;
-    const double focal = look->scene.setup.optics.focal_mm;
-    const double scale = look->strength.scale;
+    const struct compositor *compositor = &o->compositor;
+    const double focal = compositor->settings.setup.optics.focal_mm;
+    const double scale = compositor->strength.scale;
 
-    fprintf(to, "\"lens\": \"%s\", \"f_number\": %g, ", look->scene.lens.name,
-            f_number_of(&look->scene));
-    if (look->scene.has_exposure)
+    fprintf(to, "\"lens\": \"%s\", \"f_number\": %g, ",
+            compositor->settings.lens.name, f_number_of(&compositor->settings));
+    if (compositor->settings.has_exposure)
         fprintf(to, "\"strength\": null, ");
     else
-        fprintf(to, "\"strength\": %g, ", look->strength.asked);
+        fprintf(to, "\"strength\": %g, ", compositor->strength.asked);
     if (scale > 0)
         fprintf(to, "\"scale_ev\": %.3f, ", log2(scale));
     else
         fprintf(to, "\"scale_ev\": null, ");
     fprintf(to, "\"peak\": %.6g, \"mean\": %.6g, \"found\": [", light->peak,
             light->mean);
-    for (int i = 0; i < look->n_lamps; i++) {
-        const struct glint_lamp *l = &look->lamp[i];
+    for (int i = 0; i < compositor->n_lamps; i++) {
+        const struct glint_lamp *l = &compositor->lamp[i];
         double x, y;
 
-        glint_view_to_pixel(&look->view, focal, l, &x, &y);
+        glint_view_to_pixel(&compositor->view, focal, l, &x, &y);
         fprintf(to,
                 "%s{\"x\": %.2f, \"y\": %.2f, \"stops\": %.2f, "
                 "\"rgb\": [%.4g, %.4g, %.4g]}",

@@ -93,7 +93,7 @@ static int by_number(const void *a, const void *b)
 }
 
 /* Fills L with the numbers from FIRST on of the files of PATTERN. */
-static bool look_for(struct numbers *l, const char *pattern, int first)
+static bool compositor_for(struct numbers *l, const char *pattern, int first)
 {
     const char *slash = strrchr(pattern, '/');
     char folder[NAME_BYTES] = ".", name[NAME_BYTES];
@@ -179,7 +179,8 @@ static int one(struct tool *tool, struct overlay *o, const struct numbers *l,
     o->elapsed_us = l->n == 1                     ? 0
                     : gap > 1000000000 / FRAME_US ? 1000000000
                                                   : (int32_t)(gap * FRAME_US);
-    o->look.n_frames += (int)(gap - 1); /* lights of a list are by number */
+    o->compositor.n_frames +=
+        (int)(gap - 1); /* lights of a list are by number */
     code = overlay_check_apart(tool, from, to);
     if (code == EXIT_OK)
         code = overlay_picture(tool, o, from, to);
@@ -205,7 +206,7 @@ static int all(struct tool *tool, struct overlay *o, const struct numbers *l)
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = one(tool, o, l, i);
     if (code == EXIT_OK)
-        o->look.n_frames = l->n; /* without those that are missing */
+        o->compositor.n_frames = l->n; /* without those that are missing */
     return code;
 }
 
@@ -223,7 +224,7 @@ int overlay_sequence(struct tool *tool, struct overlay *o)
         return tool_usage(tool, "names of pictures have at most %d bytes",
                           NAME_BYTES - 1);
     if (strchr(percent, '/') ? walk(&l, o->input, o->start_number)
-                             : look_for(&l, o->input, o->start_number))
+                             : compositor_for(&l, o->input, o->start_number))
         code = all(tool, o, &l);
     else
         code = tool_fail(tool, GLINT_E_MEMORY, NULL);

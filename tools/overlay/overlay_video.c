@@ -201,7 +201,7 @@ static int frames(struct video *v)
         if (status != GLINT_OK)
             code = fail(v, status);
     }
-    if (code == EXIT_OK && v->o->look.n_frames == 0) {
+    if (code == EXIT_OK && v->o->compositor.n_frames == 0) {
         fprintf(stderr, "glint overlay: %s: no frames\n", v->in.name);
         code = EXIT_INPUT;
     }

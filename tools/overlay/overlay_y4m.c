@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "overlay/look_layer.h"
+#include "overlay/compositor_layer.h"
 #include "video/y4m_light.h"
 
 /* What all frames of a stream share. */
@@ -28,22 +28,23 @@ void overlay_y4m_close(struct overlay *o)
     o->y4m = NULL;
 }
 
-static enum glint_status draw(void *ctx, struct look *look,
+static enum glint_status draw(void *ctx, struct compositor *compositor,
                               const struct glint_image *image,
                               int32_t elapsed_us)
 {
     struct overlay_y4m *const y = ctx;
     enum glint_status status;
 
-    look_find(look, image, elapsed_us);
-    look_expose(look, elapsed_us);
-    look->n_frames++;
-    if (look->flare_only)
+    compositor_find(compositor, image, elapsed_us);
+    compositor_expose(compositor, elapsed_us);
+    compositor->n_frames++;
+    if (compositor->flare_only)
         glint_y4m_light_blacken(&y->light, y->planes);
-    if (look->n_lamps == 0)
+    if (compositor->n_lamps == 0)
         return GLINT_OK;
-    status = look_draw_layer(look, y->light.layout.bits > 12, y->layer);
-    if (status == GLINT_OK && look_scale(look) > 0)
+    status =
+        compositor_draw_layer(compositor, y->light.layout.bits > 12, y->layer);
+    if (status == GLINT_OK && compositor_scale(compositor) > 0)
         glint_y4m_light_add(&y->light, y->planes, y->layer);
     return status;
 }
@@ -69,7 +70,7 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
 {
     if (glint_y4m_layout_is_plain(&in->header.layout))
         return overlay_draw(tool, o, image);
-    if (o->look.show_lights)
+    if (o->compositor.show_lights)
         return tool_usage(tool,
                           "--show lights marks frames of 8 bits, and "
                           "these are C%s",

@@ -4,9 +4,9 @@
  * plan predicts, will not take longer.
  *
  *     glint_budget_init(&frame.budget, 5.0);
- *     scene_calibrate(tool, &scene, &frame.budget);      once, some frames
- *     glint_frame_draw(&frame, ...);          chooses, and learns from what it
- * took
+ *     settings_calibrate(tool, &settings, &frame.budget);      once, some
+ * frames glint_frame_draw(&frame, ...);          chooses, and learns from what
+ * it took
  */
 #ifndef GLINT_ENGINE_FRAME_BUDGET_H
 #define GLINT_ENGINE_FRAME_BUDGET_H

@@ -225,7 +225,7 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
         .uniform = f->uniform,
         .only_ghost = f->only_ghost,
         .faintest = glint_real_of(light_of(f, image, f->dials.cull_codes)),
-        .whole_codes_q8 = f->dials.snap_codes_q8,
+        .snap_codes_q8 = f->dials.snap_codes_q8,
         .half =
             glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL};
 }

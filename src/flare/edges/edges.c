@@ -40,7 +40,7 @@ int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
 }
 
 /* Adding half a pixel turns rounding to the nearest pixel into truncation. */
-void glint_edge_make_whole(struct glint_edge *edge)
+void glint_edge_make_snapped(struct glint_edge *edge)
 {
     edge->x_q8 += edge->whole ? 0 : 128;
     edge->whole = 1;

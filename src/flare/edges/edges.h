@@ -87,7 +87,7 @@ int glint_edge_set(struct glint_edge *edge, const int32_t a_q8[2],
 /* Lets the light of EDGE begin at a whole pixel in each row, the nearest one: a
  * fraction of the work, for changes that hardly show. What cancels still
  * does, as it is heights that do. */
-void glint_edge_make_whole(struct glint_edge *edge);
+void glint_edge_make_snapped(struct glint_edge *edge);
 
 /* Puts EDGE, number INDEX, into the tiles it crosses (or counts it, and returns
  * how many entries that is): glint_bins

@@ -37,7 +37,7 @@ static void make_edge(const struct glint_ghost_edges *g,
     glint_edge_set(edge, a_q8, b_q8, light, other);
     edge->bundle = g->number & 0x7fffffff;
     if (is_weak(g, light, other))
-        glint_edge_make_whole(edge);
+        glint_edge_make_snapped(edge);
 }
 
 /* Edges without room: what they would take of the bins. */
@@ -133,7 +133,7 @@ static void set_weak(struct glint_ghost_edges *g)
 
     for (int log2 = OCTAVES - 1; log2 >= 0; log2--) {
         g->rows->weak_q20[log2] =
-            q_narrow((int64_t)code_q20 * g->whole_codes_q8 >> 8);
+            q_narrow((int64_t)code_q20 * g->snap_codes_q8 >> 8);
         if (log2 <= WHITE_LOG2)
             code_q20 =
                 code_q20 * 2 / 3 > least_q20 ? code_q20 * 2 / 3 : least_q20;

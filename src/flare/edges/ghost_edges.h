@@ -65,7 +65,7 @@ struct glint_ghost_edges {
     int32_t limit_q8;  /* of a cell's light in a pixel, energy 1 */
     int steps;         /* per octave of irradiance; 0: not rounded */
     int coded; /* the picture has codes, which tell less apart of faint light */
-    int whole_codes_q8; /* see struct glint_flare_frame */
+    int snap_codes_q8; /* see struct glint_flare_frame */
     struct glint_ghost_rows *rows;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;

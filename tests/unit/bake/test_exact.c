@@ -297,8 +297,8 @@ static void test_integers_match(void **state)
     }
 }
 
-/* The hot spot of this lens is far fainter than its box makes it look, and a
- * hundredth of the light is green: it is drawn as if it were alone. */
+/* The hot spot of this lens is far fainter than its box makes it compositor,
+ * and a hundredth of the light is green: it is drawn as if it were alone. */
 static void test_faint_colour_keeps_steps(void **state)
 {
     const struct glint_view view = {480, 270, 36};

@@ -14,12 +14,12 @@
 #include "support/rng.h"
 #include "engine/frame/cost.h"
 #include "engine/frame/quality.h"
-#include "options/scene.h"
+#include "options/settings.h"
 #include "options/tool.h"
 
 enum { WIDTH = 160, HEIGHT = 120, SETTLED = 40 };
 
-static struct scene scene;
+static struct settings settings;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
@@ -73,9 +73,10 @@ static struct glint_frame_report run(struct glint_frame *frame,
 
 static void make(struct glint_frame *frame)
 {
-    assert_int_equal(
-        scene_frame(&tool, &scene, scene_view(&scene, WIDTH, HEIGHT), frame),
-        EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &settings,
+                                    settings_view(&settings, WIDTH, HEIGHT),
+                                    frame),
+                     EXIT_OK);
 }
 
 static const struct machine machines[] = {
@@ -241,7 +242,7 @@ static void test_counts(void **state)
     /* the last ones may turn out to have no edges */
     assert_true(coarse.count[GLINT_COST_BUNDLES] >= report.stats.bundles);
     assert_true(coarse.count[GLINT_COST_BUNDLES] <=
-                scene.setup.n_ghosts * scene.setup.n_wavelengths);
+                settings.setup.n_ghosts * settings.setup.n_wavelengths);
     assert_true(coarse.count[GLINT_COST_LIT] <= WIDTH * HEIGHT);
     then = plan.dials;
     then.irradiance_steps = 0;
@@ -275,10 +276,10 @@ static void test_counts(void **state)
 static int open_lens(void **state)
 {
     (void)state;
-    scene_defaults(&scene);
+    settings_defaults(&settings);
     return tool_start(&tool) == EXIT_OK &&
-                   scene_open(&tool, &scene, "lenses/heliar-tronnier.lens") ==
-                       EXIT_OK
+                   settings_open(&tool, &settings,
+                                 "lenses/heliar-tronnier.lens") == EXIT_OK
                ? 0
                : -1;
 }
@@ -286,7 +287,7 @@ static int open_lens(void **state)
 static int close_lens(void **state)
 {
     (void)state;
-    scene_close(&scene);
+    settings_close(&settings);
     tool_finish(&tool);
     return 0;
 }

@@ -13,11 +13,11 @@
 #include <string.h>
 
 #include "glint/engine.h"
-#include "options/scene.h"
+#include "options/settings.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
-static struct scene scene;
+static struct settings settings;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 /* A grey picture with two lamps. */
@@ -42,7 +42,7 @@ static struct glint_engine *make(void *arena, size_t bytes)
     struct glint_error error;
 
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &scene.model.lens;
+    cfg.model = &settings.model.lens;
     cfg.arena = arena;
     cfg.arena_bytes = bytes;
     assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
@@ -142,7 +142,7 @@ static void test_refuses(void **state)
     glint_engine_destroy(NULL);
     for (int k = 0; k < 6; k++) {
         glint_engine_defaults(&cfg, k == 0 ? 0 : WIDTH, HEIGHT);
-        cfg.model = k == 1 ? NULL : &scene.model.lens;
+        cfg.model = k == 1 ? NULL : &settings.model.lens;
         cfg.max_found = k == 2 ? 513 : cfg.max_found;
         cfg.strength = k == 3 ? -1 : cfg.strength;
         cfg.threshold_ev[1] = k == 4 ? 0 : cfg.threshold_ev[1];
@@ -158,15 +158,16 @@ static void test_refuses(void **state)
 static int enter(void **state)
 {
     (void)state;
-    scene_defaults(&scene);
+    settings_defaults(&settings);
     return tool_start(&tool) != EXIT_OK ||
-           scene_open(&tool, &scene, "lenses/heliar-tronnier.lens") != EXIT_OK;
+           settings_open(&tool, &settings, "lenses/heliar-tronnier.lens") !=
+               EXIT_OK;
 }
 
 static int leave(void **state)
 {
     (void)state;
-    scene_close(&scene);
+    settings_close(&settings);
     tool_finish(&tool);
     return 0;
 }

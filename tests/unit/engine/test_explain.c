@@ -15,12 +15,12 @@
 #include <string.h>
 
 #include "command/explain.h"
-#include "options/scene.h"
+#include "options/settings.h"
 #include "options/tool.h"
 
 enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 16 };
 
-static struct scene scene;
+static struct settings settings;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static uint8_t rgb[BYTES];
 static const struct glint_image image = {.format = GLINT_RGB24,
@@ -37,9 +37,9 @@ enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
 static void make(struct glint_frame *frame)
 {
-    const struct glint_view view = scene_view(&scene, WIDTH, HEIGHT);
+    const struct glint_view view = settings_view(&settings, WIDTH, HEIGHT);
 
-    assert_int_equal(scene_frame(&tool, &scene, view, frame), EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &settings, view, frame), EXIT_OK);
     frame->cfg.tile_log2 = 4;
 }
 
@@ -80,7 +80,7 @@ static void assert_agrees(const struct glint_explain *e,
     assert_int_equal(e->all.edges, report->stats.primitives);
     assert_int_equal(e->all.refs, report->stats.refs);
     assert_int_equal(glint_explain_drawn(&e->all), report->stats.bundles);
-    assert_int_equal(e->all.of[GLINT_FATE_NO_ROOM],
+    assert_int_equal(e->all.of[GLINT_OUTCOME_NO_ROOM],
                      report->stats.dropped_bundles);
     assert_int_equal(e->all.tiles, report->tiles);
     assert_int_equal(ghosts_drawn(e), report->ghosts);
@@ -125,10 +125,10 @@ static void test_frame(void **state)
         assert_int_equal(glint_frame_is_beyond(&frame, &lamps[i]), i == 2);
     /* 5 and 7 let nothing through at 12 degrees; at 8 they do, but 5 beside
      * the picture */
-    assert_int_equal(e.beam[0].of[GLINT_FATE_CLOSED], 2 * 3);
-    assert_int_equal(e.ghost[5].of[GLINT_FATE_CLOSED], 3);
-    assert_int_equal(e.ghost[5].of[GLINT_FATE_OUTSIDE], 3);
-    assert_int_equal(e.ghost[7].of[GLINT_FATE_CLOSED], 3);
+    assert_int_equal(e.beam[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
+    assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_CLOSED], 3);
+    assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_OUTSIDE], 3);
+    assert_int_equal(e.ghost[7].of[GLINT_OUTCOME_CLOSED], 3);
     glint_explain_close(&e);
     glint_frame_finish(&frame);
 }
@@ -157,7 +157,7 @@ static void test_light(void **state)
     assert_true(fabs(twice.all.brightest - 2 * e.all.brightest) < 1e-12);
     assert_true(fabs(twice.all.flux - 2 * e.all.flux) < 1e-6 * e.all.flux);
     assert_true(e.ghost[11].share == 1);
-    assert_int_equal(e.all.of[GLINT_FATE_OTHER], 12 * 3);
+    assert_int_equal(e.all.of[GLINT_OUTCOME_OTHER], 12 * 3);
     glint_explain_close(&e);
     glint_explain_close(&twice);
     glint_frame_finish(&frame);
@@ -170,14 +170,14 @@ static void test_reasons(void **state)
     static const struct {
         struct glint_lamp lamp;
         int only_ghost;
-        enum glint_fate fate;
+        enum glint_outcome outcome;
     } cases[] = {
-        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_DRAWN},
-        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_CLOSED},
-        {{12, 20, 1e7, {1, 1, 0}, {0, 0}, 0}, -1, GLINT_FATE_DARK},
-        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, 3, GLINT_FATE_OTHER},
-        {{12, 20, 1e5, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_FAINT},
-        {{25, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_FATE_OUTSIDE},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_OUTCOME_DRAWN},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_OUTCOME_CLOSED},
+        {{12, 20, 1e7, {1, 1, 0}, {0, 0}, 0}, -1, GLINT_OUTCOME_DARK},
+        {{12, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, 3, GLINT_OUTCOME_OTHER},
+        {{12, 20, 1e5, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_OUTCOME_FAINT},
+        {{25, 20, 1e7, {1, 1, 1}, {0, 0}, 0}, -1, GLINT_OUTCOME_OUTSIDE},
     };
     struct glint_frame_report report;
     struct glint_frame frame;
@@ -189,7 +189,7 @@ static void test_reasons(void **state)
         frame.only_ghost = cases[i].only_ghost;
         draw(&frame, &cases[i].lamp, 1, &report);
         assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
-        assert_true(e.all.of[cases[i].fate] > 0);
+        assert_true(e.all.of[cases[i].outcome] > 0);
         if (e.all.edges)
             assert_agrees(&e, &report);
         glint_explain_close(&e);
@@ -305,16 +305,16 @@ static void test_picture(void **state)
 static int enter(void **state)
 {
     (void)state;
-    scene_defaults(&scene);
+    settings_defaults(&settings);
     if (tool_start(&tool) != EXIT_OK)
         return 1;
-    return scene_open(&tool, &scene, "lenses/heliar-tronnier.lens");
+    return settings_open(&tool, &settings, "lenses/heliar-tronnier.lens");
 }
 
 static int leave(void **state)
 {
     (void)state;
-    scene_close(&scene);
+    settings_close(&settings);
     tool_finish(&tool);
     return 0;
 }

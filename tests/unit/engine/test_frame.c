@@ -14,12 +14,12 @@
 #include <string.h>
 
 #include "engine/frame/frame.h"
-#include "options/scene.h"
+#include "options/settings.h"
 #include "options/tool.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
-static struct scene scene, exact_scene;
+static struct settings settings, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static int n_asked; /* for memory, since it was set to 0 */
 static int fail_at; /* the one that is refused, from 1; 0: none */
@@ -76,17 +76,17 @@ static const struct glint_lamp lamps[] = {
 
 enum { N_LAMPS = (int)(sizeof lamps / sizeof *lamps) };
 
-static void make_of(const struct scene *of, struct glint_frame *frame)
+static void make_of(const struct settings *of, struct glint_frame *frame)
 {
-    const struct glint_view view = scene_view(of, WIDTH, HEIGHT);
+    const struct glint_view view = settings_view(of, WIDTH, HEIGHT);
 
-    assert_int_equal(scene_frame(&tool, of, view, frame), EXIT_OK);
+    assert_int_equal(settings_frame(&tool, of, view, frame), EXIT_OK);
     frame->dials.fineness = 16;
 }
 
 static void make(struct glint_frame *frame)
 {
-    make_of(&scene, frame);
+    make_of(&settings, frame);
 }
 
 static void draw(struct glint_frame *frame, int n, uint8_t rgb[BYTES],
@@ -276,7 +276,7 @@ static void test_no_memory(void **state)
         for (int nth = 0; nth < 100; nth++) {
             enum glint_status status;
 
-            make_of(exact ? &exact_scene : &scene, &frame);
+            make_of(exact ? &exact_scene : &settings, &frame);
             frame.only_ghost = 0;
             frame.dials.max_lights = 2; /* so that some merge */
             n_asked = 0;
@@ -328,21 +328,21 @@ static void test_too_many_feeds(void **state)
 static int enter(void **state)
 {
     (void)state;
-    scene_defaults(&scene);
-    scene.max_deg = 15;
-    scene_defaults(&exact_scene);
-    exact_scene.rays = SCENE_RAYS_EXACT;
+    settings_defaults(&settings);
+    settings.max_deg = 15;
+    settings_defaults(&exact_scene);
+    exact_scene.rays = SETTINGS_RAYS_EXACT;
     if (tool_start(&tool) != EXIT_OK ||
-        scene_open(&tool, &exact_scene, "lenses/heliar-tronnier.lens"))
+        settings_open(&tool, &exact_scene, "lenses/heliar-tronnier.lens"))
         return 1;
-    return scene_open(&tool, &scene, "lenses/heliar-tronnier.lens");
+    return settings_open(&tool, &settings, "lenses/heliar-tronnier.lens");
 }
 
 static int leave(void **state)
 {
     (void)state;
-    scene_close(&scene);
-    scene_close(&exact_scene);
+    settings_close(&settings);
+    settings_close(&exact_scene);
     tool_finish(&tool);
     return 0;
 }

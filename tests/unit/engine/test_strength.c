@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "engine/strength.h"
-#include "options/scene.h"
+#include "options/settings.h"
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
@@ -308,15 +308,15 @@ static void test_begins_anew(void **state)
  * for every angle and power. */
 static void check_lens(const char *lens, double corner_deg)
 {
-    struct scene scene;
+    struct settings settings;
     struct glint_response r;
     struct glint_frame frame;
 
-    scene_defaults(&scene);
-    assert_int_equal(scene_open(&tool, &scene, lens), EXIT_OK);
-    assert_int_equal(
-        scene_frame(&tool, &scene, scene_view(&scene, 640, 360), &frame),
-        EXIT_OK);
+    settings_defaults(&settings);
+    assert_int_equal(settings_open(&tool, &settings, lens), EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &settings,
+                                    settings_view(&settings, 640, 360), &frame),
+                     EXIT_OK);
     assert_int_equal(glint_response_measure(&frame, 0, &r), GLINT_OK);
     assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
@@ -336,7 +336,7 @@ static void check_lens(const char *lens, double corner_deg)
         assert_true(s.scale * glint_strength_largest(drawn.mean) < 0.1);
     }
     glint_frame_finish(&frame);
-    scene_close(&scene);
+    settings_close(&settings);
 }
 
 static void test_lenses(void **state)
@@ -350,24 +350,25 @@ static void test_lenses(void **state)
 /* Within the limits of memory that live has, too. */
 static void test_little_memory(void **state)
 {
-    struct scene scene;
+    struct settings settings;
     struct glint_response r, free;
     struct glint_frame frame;
 
     (void)state;
-    scene_defaults(&scene);
-    assert_int_equal(scene_open(&tool, &scene, "lenses/heliar-tronnier.lens"),
-                     EXIT_OK);
+    settings_defaults(&settings);
     assert_int_equal(
-        scene_frame(&tool, &scene, scene_view(&scene, 640, 360), &frame),
+        settings_open(&tool, &settings, "lenses/heliar-tronnier.lens"),
         EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &settings,
+                                    settings_view(&settings, 640, 360), &frame),
+                     EXIT_OK);
     assert_int_equal(glint_response_measure(&frame, 2 << 20, &r), GLINT_OK);
     assert_int_equal(glint_response_measure(&frame, 0, &free), GLINT_OK);
     glint_frame_finish(&frame);
     for (int i = 0; i < r.n; i++)
         assert_memory_equal(&r.log2_of[i], &free.log2_of[i],
                             sizeof r.log2_of[i]);
-    scene_close(&scene);
+    settings_close(&settings);
 }
 
 static void test_interpolates(void **state)
@@ -396,7 +397,7 @@ static void test_looks(void **state)
         rgb[3 * i + 1] = i == 7 ? 8 : 0;
         rgb[3 * i + 2] = 2;
     }
-    glint_response_look(rgb, 4000, &light); /* the brightest four */
+    glint_response_around(rgb, 4000, &light); /* the brightest four */
     assert_true(light.peak[0] == 3997.5 && light.mean[0] == 1999.5);
     assert_true(light.peak[1] == 2 && light.mean[1] == 0.002);
     assert_true(light.peak[2] == 2 && light.mean[2] == 2);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What became of a frame's bundles: every fate by a cause of its own, counts
+ * What became of a frame's bundles: every outcome by a cause of its own, counts
  * that are those of the frame that is drawn, and pictures of parts that add up
  * to the whole.
  */
@@ -109,7 +109,7 @@ static int32_t *coefficient(struct fixture *f, int system, int kind, int term)
 }
 
 struct sums {
-    int of[GLINT_FATES], n, edges, refs;
+    int of[GLINT_OUTCOMES], n, edges, refs;
     double flux;
 };
 
@@ -124,14 +124,14 @@ static struct sums accounts(struct fixture *f)
                 struct glint_account a;
 
                 glint_flare_account(f->flare, ghost, light, wave, &a);
-                sums.of[a.fate]++;
+                sums.of[a.outcome]++;
                 sums.n++;
                 sums.edges += a.edges;
                 sums.refs += a.refs;
                 sums.flux += ldexp(a.flux.mantissa, a.flux.exponent);
                 assert_int_equal(a.vertices,
                                  a.cells ? (a.cells + 1) * (a.cells + 1) : 0);
-                assert_int_equal(a.fate == GLINT_FATE_DRAWN, a.edges > 0);
+                assert_int_equal(a.outcome == GLINT_OUTCOME_DRAWN, a.edges > 0);
                 assert_true(a.rows >= a.edges);
                 if (a.cells)
                     assert_true(a.surveyed == 8 * 5 ||
@@ -145,9 +145,9 @@ static void assert_totals(struct fixture *f)
     const struct sums s = accounts(f);
     struct glint_real brightest, flux;
 
-    assert_int_equal(s.of[GLINT_FATE_DRAWN] + s.of[GLINT_FATE_EMPTY],
+    assert_int_equal(s.of[GLINT_OUTCOME_DRAWN] + s.of[GLINT_OUTCOME_EMPTY],
                      f->stats.bundles);
-    assert_int_equal(s.of[GLINT_FATE_NO_ROOM], f->stats.dropped_bundles);
+    assert_int_equal(s.of[GLINT_OUTCOME_NO_ROOM], f->stats.dropped_bundles);
     assert_int_equal(s.edges, f->stats.primitives);
     assert_int_equal(s.refs, f->stats.refs);
     glint_flare_light(f->flare, &brightest, &flux);
@@ -155,18 +155,18 @@ static void assert_totals(struct fixture *f)
                 1e-6 * s.flux);
 }
 
-/* FATE is that of so many, and they and the drawn are all there are. */
-static void assert_fate(struct fixture *f, enum glint_fate fate, int n)
+/* OUTCOME is that of so many, and they and the drawn are all there are. */
+static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
 {
     struct sums s;
 
     bin(f);
     assert_totals(f);
     s = accounts(f);
-    assert_int_equal(s.of[fate], n);
+    assert_int_equal(s.of[outcome], n);
     assert_int_equal(
-        s.of[fate] + s.of[GLINT_FATE_CLOSED] +
-            (fate == GLINT_FATE_DRAWN ? 0 : s.of[GLINT_FATE_DRAWN]),
+        s.of[outcome] + s.of[GLINT_OUTCOME_CLOSED] +
+            (outcome == GLINT_OUTCOME_DRAWN ? 0 : s.of[GLINT_OUTCOME_DRAWN]),
         s.n);
 }
 
@@ -180,10 +180,10 @@ static void test_drawn_and_closed(void **state)
 
     (void)state;
     open_fixture(&f, 3);
-    assert_fate(&f, GLINT_FATE_DRAWN, 3 * 2 * WAVES);
-    assert_int_equal(accounts(&f).of[GLINT_FATE_CLOSED], 3 * WAVES);
+    assert_outcome(&f, GLINT_OUTCOME_DRAWN, 3 * 2 * WAVES);
+    assert_int_equal(accounts(&f).of[GLINT_OUTCOME_CLOSED], 3 * WAVES);
     f.light[1].sine_q30 = 1 << 26;
-    assert_fate(&f, GLINT_FATE_DRAWN, (3 * 2 - 1) * WAVES);
+    assert_outcome(&f, GLINT_OUTCOME_DRAWN, (3 * 2 - 1) * WAVES);
     close_fixture(&f);
 }
 
@@ -194,7 +194,7 @@ static void test_other(void **state)
     (void)state;
     open_fixture(&f, 2);
     f.rays.only_ghost = 2;
-    assert_fate(&f, GLINT_FATE_OTHER, 2 * 2 * WAVES);
+    assert_outcome(&f, GLINT_OUTCOME_OTHER, 2 * 2 * WAVES);
     close_fixture(&f);
 }
 
@@ -207,7 +207,7 @@ static void test_beyond(void **state)
     for (int i = 0; i < 3; i++) {
         f.light[i].sine_q30 = 1 << 29; /* 30 degrees */
         ((struct glint_model_header *)f.m.data)->sine_hi_q30 = 1 << 28;
-        assert_fate(&f, GLINT_FATE_BEYOND, (i + 1) * 3 * WAVES);
+        assert_outcome(&f, GLINT_OUTCOME_BEYOND, (i + 1) * 3 * WAVES);
     }
     close_fixture(&f);
 }
@@ -219,9 +219,9 @@ static void test_dark(void **state)
     (void)state;
     open_fixture(&f, 2);
     f.light[1].rgb_q14[0] = 0; /* no red, which is wave 0 */
-    assert_fate(&f, GLINT_FATE_DARK, 2);
+    assert_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);
-    assert_fate(&f, GLINT_FATE_DARK, 2 + 4);
+    assert_outcome(&f, GLINT_OUTCOME_DARK, 2 + 4);
     close_fixture(&f);
 }
 
@@ -233,7 +233,7 @@ static void test_blocked(void **state)
     open_fixture(&f, 2);
     *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* 1.1 */
     *coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
-    assert_fate(&f, GLINT_FATE_BLOCKED, 2 * WAVES);
+    assert_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
     close_fixture(&f);
 }
 
@@ -247,11 +247,11 @@ static void test_outside(void **state)
     open_fixture(&f, 1);
     f.light[0].sine_q30 = 1 << 26;
     *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
-    assert_fate(&f, GLINT_FATE_OUTSIDE, WAVES);
+    assert_outcome(&f, GLINT_OUTCOME_OUTSIDE, WAVES);
     *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 469762048; /* 1.75 mm */
-    assert_fate(&f, GLINT_FATE_EMPTY, WAVES);
+    assert_outcome(&f, GLINT_OUTCOME_EMPTY, WAVES);
     *coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = 402653184; /* 1.5 mm */
-    assert_fate(&f, GLINT_FATE_DRAWN, WAVES);
+    assert_outcome(&f, GLINT_OUTCOME_DRAWN, WAVES);
     close_fixture(&f);
 }
 
@@ -264,7 +264,7 @@ static void test_faint(void **state)
     for (int n = 1; n <= MAX_BEAMS; n++) {
         open_fixture(&f, n);
         f.rays.faintest = real_of(1, 60);
-        assert_fate(&f, GLINT_FATE_FAINT, n * 2 * WAVES);
+        assert_outcome(&f, GLINT_OUTCOME_FAINT, n * 2 * WAVES);
         close_fixture(&f);
     }
 }
@@ -281,19 +281,19 @@ static void test_no_room(void **state)
     f.cfg.max_bundles = 8;
     bin(&f);
     assert_totals(&f);
-    assert_int_equal(accounts(&f).of[GLINT_FATE_NO_ROOM], 4 * 3 * WAVES - 8);
+    assert_int_equal(accounts(&f).of[GLINT_OUTCOME_NO_ROOM], 4 * 3 * WAVES - 8);
     f.cfg.max_bundles = 64;
     for (int part = 1; part < 4; part++) {
         f.cfg.max_primitives = all.primitives * part / 4;
         f.cfg.max_refs = all.refs;
         bin(&f);
         assert_totals(&f);
-        assert_true(accounts(&f).of[GLINT_FATE_NO_ROOM] > 0);
+        assert_true(accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
         f.cfg.max_primitives = all.primitives;
         f.cfg.max_refs = all.refs * part / 4;
         bin(&f);
         assert_totals(&f);
-        assert_true(accounts(&f).of[GLINT_FATE_NO_ROOM] > 0);
+        assert_true(accounts(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
     }
     close_fixture(&f);
 }
@@ -375,7 +375,7 @@ static void test_terms(void **state)
         f.light[0].sine_q30 = (1 << 27) - (off << 26);
         bin(&f);
         glint_flare_account(f.flare, 0, 0, 0, &a);
-        assert_int_equal(a.fate, GLINT_FATE_DRAWN);
+        assert_int_equal(a.outcome, GLINT_OUTCOME_DRAWN);
         assert_int_equal(a.outputs, 6);
         assert_int_equal(a.barrels, 1);
         assert_int_equal(a.terms, 2 + off + 2 + 1 + 2 + 1 + 2);
@@ -466,7 +466,7 @@ static void check_outside(int small_stop)
             f.cfg.height = HEIGHT;
             bin(&f);
             glint_flare_account(f.flare, 0, 0, 0, &a);
-            if (a.fate != GLINT_FATE_OUTSIDE) {
+            if (a.outcome != GLINT_OUTCOME_OUTSIDE) {
                 n_drawn++;
                 continue;
             }

@@ -97,7 +97,7 @@ static void add_ghost(struct glint_flare *f, const struct ghost *g)
             *v++ = ghost_vertex(g, i, j);
 }
 
-static const struct ghost scene[] = {
+static const struct ghost ghosts[] = {
     {16, 60, 60, 40, 0, 1, 0, 0, {16384, 0, 0}},
     {16, 64, 62, 42, 50, 1, 300, 0, {0, 16384, 0}},
     {32, 128, 64, 200, 120, -1, 600, 2, {0, 0, 16384}},
@@ -106,7 +106,7 @@ static const struct ghost scene[] = {
     {16, -40, 160, 90, 0, -1, 0, 1, {3000, 16384, 200}}, /* partly outside */
 };
 
-enum { N_SCENE = sizeof scene / sizeof *scene };
+enum { N_GHOSTS = sizeof ghosts / sizeof *ghosts };
 
 static struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
 {
@@ -152,7 +152,7 @@ static struct glint_flare_stats draw_list(struct glint_flare_config c,
 static struct glint_flare_stats draw_scene(struct glint_flare_config c,
                                            int32_t *out)
 {
-    return draw_list(c, scene, N_SCENE, out);
+    return draw_list(c, ghosts, N_GHOSTS, out);
 }
 
 static double total(const int32_t *p, int channel)
@@ -547,7 +547,7 @@ static void test_thin_light_arrives(void **state)
 /* Light is linear: twice the flux is twice the picture, within rounding. */
 static void test_linear_in_light(void **state)
 {
-    struct ghost g = scene[1];
+    struct ghost g = ghosts[1];
     struct glint_flare_config c = base_config();
 
     (void)state;
@@ -777,17 +777,17 @@ static void test_random_scenes(void **state)
 
 static void test_bundle_order_does_not_matter(void **state)
 {
-    struct ghost turned[N_SCENE];
+    struct ghost turned[N_GHOSTS];
 
     (void)state;
-    for (int i = 0; i < N_SCENE; i++)
-        turned[i] = scene[N_SCENE - 1 - i];
+    for (int i = 0; i < N_GHOSTS; i++)
+        turned[i] = ghosts[N_GHOSTS - 1 - i];
     for (int raster = 0; raster < 2; raster++) {
         struct glint_flare_config c = base_config();
 
         c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
         draw_scene(c, want);
-        draw_list(c, turned, N_SCENE, pixels);
+        draw_list(c, turned, N_GHOSTS, pixels);
         assert_memory_equal(pixels, want, sizeof pixels);
     }
 }
@@ -812,8 +812,8 @@ static void test_untouched_stays(void **state)
     (void)state;
     for (int i = 0; i < STRIDE * HEIGHT; i++)
         before[i] = bytes[i] = (uint8_t)(i * 7 + i / 251);
-    draw_list(c, scene, 1, want);
-    add_ghost(f, &scene[0]);
+    draw_list(c, ghosts, 1, want);
+    add_ghost(f, &ghosts[0]);
     glint_flare_bin(f, &stats);
     glint_flare_draw(f, &image);
     for (int y = 0; y < HEIGHT; y++)
@@ -847,7 +847,7 @@ static void test_into_nothing(void **state)
         c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
         f = open_flare(&c, &mem);
         for (int i = 0; i < 3; i++)
-            add_ghost(f, &scene[i]);
+            add_ghost(f, &ghosts[i]);
         glint_flare_bin(f, &stats);
         memset(bytes, 20, sizeof bytes);
         glint_image_place(&image, bytes[0]);
@@ -898,7 +898,7 @@ static void check_capacity(const struct glint_raster *raster)
 
     full.raster = raster;
     s = draw_scene(full, pixels);
-    draw_list(full, scene, N_SCENE - 1, want);
+    draw_list(full, ghosts, N_GHOSTS - 1, want);
     for (int k = 0; k < 4; k++) {
         struct glint_flare_config c = full;
 
@@ -1052,7 +1052,7 @@ static void test_counts_are_held(void **state)
     c.raster = &counting;
     f = open_flare(&c, &mem);
     for (int i = 0; i < 3; i++)
-        add_ghost(f, &scene[i]);
+        add_ghost(f, &ghosts[i]);
     glint_flare_bin(f, &stats);
     assert_int_equal(stats.dropped_cells, INT32_MAX);
     assert_int_equal(stats.merged_cells, INT32_MAX);

@@ -295,9 +295,9 @@ static void test_whole_edges(void **state)
         double flux[2] = {0, 0}, sum = 0;
 
         f.light.power = real_of(1, e);
-        f.rays.whole_codes_q8 = 0;
+        f.rays.snap_codes_q8 = 0;
         draw(&f, smooth, &s);
-        f.rays.whole_codes_q8 = 4 << 8;
+        f.rays.snap_codes_q8 = 4 << 8;
         draw(&f, whole, &s);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
             const double off = code_of(whole[i]) - code_of(smooth[i]);
@@ -447,7 +447,7 @@ static void test_same_bits(void **state)
         struct shuffle shuffle;
 
         shuffle_init(&shuffle, first ? 1 : 1 + i % 3, rng_xorshift(&seed));
-        f.rays.whole_codes_q8 = whole_q8[i / 36 % 4];
+        f.rays.snap_codes_q8 = whole_q8[i / 36 % 4];
         f.rays.half = i / 144 ? &glint_half : NULL;
         f.cfg.width = image.width;
         f.cfg.height = image.height;

@@ -14,18 +14,18 @@
 #include <cmocka.h>
 
 #include "engine/frame/frame.h"
-#include "options/scene_waves.h"
+#include "options/settings_waves.h"
 
 enum { WIDTH = 640, HEIGHT = 360, SAMPLES = 3 * WIDTH * HEIGHT };
 
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 2};
-static struct scene chosen, three, all;
+static struct settings chosen, three, all;
 static const struct glint_lamp lamp = {
     .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
 
 static struct glint_frame_report drawn(struct glint_frame *frame,
-                                       const struct scene *scene, int width,
-                                       double power, uint8_t *rgb)
+                                       const struct settings *settings,
+                                       int width, double power, uint8_t *rgb)
 {
     struct glint_lamp light = lamp;
     struct glint_image image = {.format = GLINT_RGB24,
@@ -35,10 +35,10 @@ static struct glint_frame_report drawn(struct glint_frame *frame,
     struct glint_frame_report report;
 
     light.power *= power;
-    assert_int_equal(scene_frame(&tool, scene,
-                                 scene_view(scene, width, width * 9 / 16),
-                                 frame),
-                     EXIT_OK);
+    assert_int_equal(
+        settings_frame(&tool, settings,
+                       settings_view(settings, width, width * 9 / 16), frame),
+        EXIT_OK);
     memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
     glint_image_place(&image, rgb);
     assert_int_equal(glint_frame_draw(frame, &light, 1, 1, &image, &report),
@@ -56,8 +56,9 @@ static int waves_of(struct glint_frame *frame, int ghost, int *n_drawn)
         struct glint_account a;
 
         glint_flare_account(frame->flare, ghost, 0, wave, &a);
-        n += a.fate != GLINT_FATE_OTHER_SET;
-        *n_drawn += a.fate == GLINT_FATE_DRAWN || a.fate == GLINT_FATE_EMPTY;
+        n += a.outcome != GLINT_OUTCOME_OTHER_SET;
+        *n_drawn += a.outcome == GLINT_OUTCOME_DRAWN ||
+                    a.outcome == GLINT_OUTCOME_EMPTY;
     }
     return n;
 }
@@ -124,14 +125,14 @@ static void test_large_picture(void **state)
 static void test_dial(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], least, bundles, before = 0;
-    struct scene scene = chosen;
+    struct settings settings = chosen;
     struct glint_frame frame;
 
     (void)state;
-    scene.setup.lens = &chosen.lens;
+    settings.setup.lens = &chosen.lens;
     for (double px = 8; px > 0.1; px /= 2) {
-        scene.dials.dispersion_q8 = (int)(px * 256);
-        drawn(&frame, &scene, WIDTH, 100, picture);
+        settings.dials.dispersion_q8 = (int)(px * 256);
+        drawn(&frame, &settings, WIDTH, 100, picture);
         count(&frame, ghosts, &bundles);
         assert_true(bundles >= before);
         least = before ? least : bundles;
@@ -144,12 +145,12 @@ static void test_dial(void **state)
 /* 0 is the three that there are by default, bit for bit. */
 static void test_off(void **state)
 {
-    struct scene scene = chosen;
+    struct settings settings = chosen;
     struct glint_frame frame;
 
     (void)state;
-    scene.dials.dispersion_q8 = 0;
-    drawn(&frame, &scene, WIDTH, 1, picture);
+    settings.dials.dispersion_q8 = 0;
+    drawn(&frame, &settings, WIDTH, 1, picture);
     glint_frame_finish(&frame);
     drawn(&frame, &three, WIDTH, 1, other);
     glint_frame_finish(&frame);
@@ -159,23 +160,23 @@ static void test_off(void **state)
 /* One set alone is the list of its waves. */
 static void test_one_set(void **state)
 {
-    struct scene scene = chosen, list = three;
+    struct settings settings = chosen, list = three;
     struct glint_frame frame;
 
     (void)state;
-    scene.setup.n_sets = 1;
-    scene.dials.cull_codes = list.dials.cull_codes = 0;
-    assert_true(scene_take_waves(&list, "4"));
-    scene_choose_waves(&list);
+    settings.setup.n_sets = 1;
+    settings.dials.cull_codes = list.dials.cull_codes = 0;
+    assert_true(settings_take_waves(&list, "4"));
+    settings_choose_waves(&list);
     assert_int_equal(list.n_wavelengths, 4);
     list.setup.n_wavelengths = 4;
     for (int i = 0; i < 4; i++) {
         list.setup.wavelength_nm[i] = list.wavelength_nm[i];
-        memcpy(list.setup.rgb[i], scene.setup.set_wave[i].rgb,
+        memcpy(list.setup.rgb[i], settings.setup.set_wave[i].rgb,
                sizeof list.setup.rgb[i]);
-        list.setup.unit_flux[i] = scene.setup.set_wave[i].unit_flux;
+        list.setup.unit_flux[i] = settings.setup.set_wave[i].unit_flux;
     }
-    drawn(&frame, &scene, WIDTH, 10, picture);
+    drawn(&frame, &settings, WIDTH, 10, picture);
     glint_frame_finish(&frame);
     drawn(&frame, &list, WIDTH, 10, other);
     glint_frame_finish(&frame);
@@ -187,14 +188,14 @@ static void test_little_room(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
     struct glint_flare_stats stats;
-    struct scene scene = chosen;
+    struct settings settings = chosen;
     struct glint_frame frame;
     size_t bytes;
     void *mem;
 
     (void)state;
-    scene.dials.dispersion_q8 = 64;
-    drawn(&frame, &scene, WIDTH, 100, picture);
+    settings.dials.dispersion_q8 = 64;
+    drawn(&frame, &settings, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
     assert_true(most > frame.cfg.max_bundles); /* it has grown */
@@ -236,9 +237,9 @@ static void test_same_bits(void **state)
         struct glint_frame frame;
 
         tool.workers = i ? NULL : pool;
-        assert_int_equal(scene_frame(&tool, &chosen,
-                                     scene_view(&chosen, WIDTH, HEIGHT),
-                                     &frame),
+        assert_int_equal(settings_frame(&tool, &chosen,
+                                        settings_view(&chosen, WIDTH, HEIGHT),
+                                        &frame),
                          EXIT_OK);
         memset(rgb[i], 0, SAMPLES);
         glint_image_place(&image, rgb[i]);
@@ -323,50 +324,53 @@ static void test_outlines(void **state)
 
 static void test_words(void **state)
 {
-    struct scene s;
+    struct settings s;
 
     (void)state;
-    scene_defaults(&s);
-    assert_true(s.waves == SCENE_WAVES_LIST && s.n_wavelengths == 3);
-    assert_true(scene_take_waves(&s, "auto") && s.waves == SCENE_WAVES_AUTO);
-    assert_true(scene_take_waves(&s, "9") && s.waves == SCENE_WAVES_COUNT &&
-                s.n_wavelengths == 9);
-    scene_choose_waves(&s);
+    settings_defaults(&s);
+    assert_true(s.waves == SETTINGS_WAVES_LIST && s.n_wavelengths == 3);
+    assert_true(settings_take_waves(&s, "auto") &&
+                s.waves == SETTINGS_WAVES_AUTO);
+    assert_true(settings_take_waves(&s, "9") &&
+                s.waves == SETTINGS_WAVES_COUNT && s.n_wavelengths == 9);
+    settings_choose_waves(&s);
     assert_true(s.wavelength_nm[0] > 400 && s.wavelength_nm[8] < 700);
-    assert_true(scene_take_waves(&s, "532") && s.waves == SCENE_WAVES_LIST &&
-                s.n_wavelengths == 1 && s.wavelength_nm[0] == 532);
-    assert_true(scene_take_waves(&s, "300,1100") && s.n_wavelengths == 2);
-    assert_false(scene_take_waves(&s, "0"));
-    assert_false(scene_take_waves(&s, "33"));
-    assert_false(scene_take_waves(&s, "2.5"));
-    assert_false(scene_take_waves(&s, "0.55"));
-    assert_false(scene_take_waves(&s, "650,532,1101"));
-    assert_false(scene_take_waves(&s, "9,17"));
-    assert_false(scene_take_waves(&s, ""));
-    s.waves = SCENE_WAVES_AUTO;
-    s.rays = SCENE_RAYS_EXACT; /* which choose nothing */
-    scene_choose_waves(&s);
-    assert_true(s.waves == SCENE_WAVES_COUNT && s.n_wavelengths == 9);
+    assert_true(settings_take_waves(&s, "532") &&
+                s.waves == SETTINGS_WAVES_LIST && s.n_wavelengths == 1 &&
+                s.wavelength_nm[0] == 532);
+    assert_true(settings_take_waves(&s, "300,1100") && s.n_wavelengths == 2);
+    assert_false(settings_take_waves(&s, "0"));
+    assert_false(settings_take_waves(&s, "33"));
+    assert_false(settings_take_waves(&s, "2.5"));
+    assert_false(settings_take_waves(&s, "0.55"));
+    assert_false(settings_take_waves(&s, "650,532,1101"));
+    assert_false(settings_take_waves(&s, "9,17"));
+    assert_false(settings_take_waves(&s, ""));
+    s.waves = SETTINGS_WAVES_AUTO;
+    s.rays = SETTINGS_RAYS_EXACT; /* which choose nothing */
+    settings_choose_waves(&s);
+    assert_true(s.waves == SETTINGS_WAVES_COUNT && s.n_wavelengths == 9);
 }
 
 /* Behind an uncoated lens ghosts of a white lamp are white together. */
 static void test_white(void **state)
 {
     static float rgb[SAMPLES];
-    static struct scene bare;
+    static struct settings bare;
     double sum[3] = {0, 0, 0};
     struct glint_frame_report report;
     struct glint_frame frame;
 
     (void)state;
-    scene_defaults(&bare);
-    bare.waves = SCENE_WAVES_AUTO;
+    settings_defaults(&bare);
+    bare.waves = SETTINGS_WAVES_AUTO;
     assert_int_equal(coating_take(&tool, &bare.coating, "none"), -1);
-    assert_int_equal(scene_open(&tool, &bare, "lenses/heliar-tronnier.lens"),
+    assert_int_equal(settings_open(&tool, &bare, "lenses/heliar-tronnier.lens"),
                      EXIT_OK);
-    assert_int_equal(
-        scene_frame(&tool, &bare, scene_view(&bare, WIDTH, HEIGHT), &frame),
-        EXIT_OK);
+    assert_int_equal(settings_frame(&tool, &bare,
+                                    settings_view(&bare, WIDTH, HEIGHT),
+                                    &frame),
+                     EXIT_OK);
     assert_int_equal(glint_frame_draw_alone(&frame, &lamp, 1, 1, rgb, &report),
                      GLINT_OK);
     for (int i = 0; i < SAMPLES; i++)
@@ -375,26 +379,26 @@ static void test_white(void **state)
     assert_true(fabs(sum[0] / sum[1] - 1) < 0.06);
     assert_true(fabs(sum[2] / sum[1] - 1) < 0.06);
     glint_frame_finish(&frame);
-    scene_close(&bare);
+    settings_close(&bare);
 }
 
-static int open_scene(struct scene *scene, const char *waves)
+static int open_settings(struct settings *settings, const char *waves)
 {
-    scene_defaults(scene);
-    return scene_take_waves(scene, waves)
-               ? scene_open(&tool, scene, "lenses/heliar-tronnier.lens")
+    settings_defaults(settings);
+    return settings_take_waves(settings, waves)
+               ? settings_open(&tool, settings, "lenses/heliar-tronnier.lens")
                : 1;
 }
 
 static int enter(void **state)
 {
     (void)state;
-    if (tool_start(&tool) != EXIT_OK || open_scene(&chosen, "auto") ||
-        open_scene(&three, "650,532,450") ||
-        open_scene(&all,
-                   "400,410,420,430,440,450,460,470,480,490,500,510,520,530,"
-                   "540,550,560,570,580,590,600,610,620,630,640,650,660,670,"
-                   "680,690,700"))
+    if (tool_start(&tool) != EXIT_OK || open_settings(&chosen, "auto") ||
+        open_settings(&three, "650,532,450") ||
+        open_settings(&all,
+                      "400,410,420,430,440,450,460,470,480,490,500,510,520,530,"
+                      "540,550,560,570,580,590,600,610,620,630,640,650,660,670,"
+                      "680,690,700"))
         return 1;
     all.dials.cull_codes = 0;
     return 0;
@@ -403,9 +407,9 @@ static int enter(void **state)
 static int leave(void **state)
 {
     (void)state;
-    scene_close(&chosen);
-    scene_close(&three);
-    scene_close(&all);
+    settings_close(&chosen);
+    settings_close(&three);
+    settings_close(&all);
     tool_finish(&tool);
     return 0;
 }

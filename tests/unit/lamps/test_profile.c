@@ -12,7 +12,7 @@
 
 #include "base/log2.h"
 #include "glint/glint.h"
-#include "support/power_scene.h"
+#include "support/power_picture.h"
 #include "support/rng.h"
 
 enum { W = 160, H = 120, MAX_SPOTS = 64 };
@@ -90,12 +90,12 @@ static struct glint_image picture_of(uint8_t *px, int width, int height)
 static int expose(const struct power_lamp *lamp, double power, double black,
                   double sigma)
 {
-    const struct power_scene scene = {W, H, rgb};
+    const struct power_picture settings = {W, H, rgb};
     const struct glint_image image = picture_of(codes, W, H);
 
     for (int i = 0; i < 3 * W * H; i++)
         rgb[i] = black + power * lamp->rgb[i % 3] * light[i / 3];
-    power_expose(codes, &scene, 1, sigma, &seed);
+    power_expose(codes, &settings, 1, sigma, &seed);
     return look(&image);
 }
 

@@ -19,7 +19,7 @@
 
 enum { MOST = 64 };
 
-struct scene {
+struct settings {
     int width, height;
     double *light; /* linear, three a pixel */
 };
@@ -27,10 +27,10 @@ struct scene {
 static struct glint_spot spot[MOST];
 static uint32_t seed;
 
-static struct scene new_scene(int width, int height, double light)
+static struct settings new_settings(int width, int height, double light)
 {
     const size_t n = 3 * (size_t)width * (size_t)height;
-    struct scene s = {width, height, malloc(n * sizeof *s.light)};
+    struct settings s = {width, height, malloc(n * sizeof *s.light)};
 
     assert_non_null(s.light);
     seed = 1;
@@ -41,8 +41,8 @@ static struct scene new_scene(int width, int height, double light)
 
 /* A lamp at (X, Y), both as shares of the width, whose face is LIGHT and whose
  * light falls off over FALL. */
-static void add_lamp(const struct scene *s, double x, double y, double radius,
-                     double fall, const double light[3])
+static void add_lamp(const struct settings *s, double x, double y,
+                     double radius, double fall, const double light[3])
 {
     for (int j = 0; j < s->height; j++)
         for (int i = 0; i < s->width; i++) {
@@ -56,7 +56,7 @@ static void add_lamp(const struct scene *s, double x, double y, double radius,
 }
 
 /* A box of even light, by shares of the width. */
-static void fill_box(const struct scene *s, double x0, double y0, double x1,
+static void fill_box(const struct settings *s, double x0, double y0, double x1,
                      double y1, double light)
 {
     for (int j = (int)(y0 * s->width); j < (int)(y1 * s->width); j++)
@@ -109,7 +109,7 @@ static void put(const struct glint_image *image, int x, int y,
 
 /* What is found in the scene as a picture of FORMAT, with SIGMA codes of noise.
  */
-static int find(const struct scene *s, enum glint_pixel_format format,
+static int find(const struct settings *s, enum glint_pixel_format format,
                 double sigma)
 {
     struct glint_image image = {
@@ -144,7 +144,7 @@ static int find(const struct scene *s, enum glint_pixel_format format,
     return n;
 }
 
-static void assert_at(const struct scene *s, double x, double y)
+static void assert_at(const struct settings *s, double x, double y)
 {
     double least = HUGE_VAL;
 
@@ -154,7 +154,7 @@ static void assert_at(const struct scene *s, double x, double y)
     assert_true(least < 0.01);
 }
 
-static void assert_none(struct scene *s)
+static void assert_none(struct settings *s)
 {
     for (double sigma = 0; sigma < 3; sigma += 1.5)
         assert_int_equal(find(s, GLINT_RGB24, sigma), 0);
@@ -175,7 +175,7 @@ static void test_lamps_of_every_colour(void **state)
 
     (void)state;
     for (size_t i = 0; i < sizeof colours / sizeof *colours; i++) {
-        struct scene s = new_scene(400, 260, 0.01);
+        struct settings s = new_settings(400, 260, 0.01);
 
         add_lamp(&s, 0.3, 0.35, 0.015, 0.01, colours[i]);
         for (int f = 0; f < 3; f++) {
@@ -195,7 +195,7 @@ static void test_underexposed_night(void **state)
     for (double gain = 0.5; gain <= 1.5; gain += 0.5) {
         const double light[3] = {gain * colour[0], gain * colour[1],
                                  gain * colour[2]};
-        struct scene s = new_scene(400, 260, 0.002);
+        struct settings s = new_settings(400, 260, 0.002);
 
         add_lamp(&s, 0.3, 0.35, 0.02, 0.01, light);
         add_lamp(&s, 0.8, 0.15, 0.02, 0.01, light);
@@ -209,7 +209,7 @@ static void test_underexposed_night(void **state)
 static void test_lamp_before_a_bright_wall(void **state)
 {
     static const double white[3] = {4, 4, 4};
-    struct scene s = new_scene(400, 260, 0.35);
+    struct settings s = new_settings(400, 260, 0.35);
 
     (void)state;
     add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
@@ -223,7 +223,7 @@ static void test_lamp_before_a_bright_wall(void **state)
 static void test_sun_in_haze(void **state)
 {
     static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
-    struct scene s = new_scene(400, 260, 0.25);
+    struct settings s = new_settings(400, 260, 0.25);
 
     (void)state;
     add_lamp(&s, 0.5, 0.25, 0.04, 0.02, sun);
@@ -240,7 +240,7 @@ static void test_every_resolution(void **state)
 
     (void)state;
     for (int width = 320; width <= 2000; width = width * 5 / 2) {
-        struct scene s = new_scene(width, width * 5 / 8, 0.02);
+        struct settings s = new_settings(width, width * 5 / 8, 0.02);
 
         add_lamp(&s, 0.2, 0.2, 0.008, 0.006, lamp);
         add_lamp(&s, 0.5, 0.4, 0.012, 0.008, lamp);
@@ -256,7 +256,7 @@ static void test_every_resolution(void **state)
 /* --------------------------------------------------------------- none there */
 
 /* Lines of words, dark on white or white on dark. */
-static void write_text(const struct scene *s, double light)
+static void write_text(const struct settings *s, double light)
 {
     for (int line = 0; line < 18; line++)
         for (double x = 0.05; x < 0.9; x += 0.012) {
@@ -274,9 +274,9 @@ static void write_text(const struct scene *s, double light)
 
 static void test_paper_and_text(void **state)
 {
-    struct scene page = new_scene(600, 400, 1);
-    struct scene terminal = new_scene(600, 400, 0.0);
-    struct scene desk = new_scene(600, 400, 0.12);
+    struct settings page = new_settings(600, 400, 1);
+    struct settings terminal = new_settings(600, 400, 0.0);
+    struct settings desk = new_settings(600, 400, 0.12);
 
     (void)state;
     write_text(&page, 0.02);
@@ -290,7 +290,7 @@ static void test_paper_and_text(void **state)
 /* Grains of every brightness, many of them white. */
 static void test_snow(void **state)
 {
-    struct scene s = new_scene(600, 400, 0.7);
+    struct settings s = new_settings(600, 400, 0.7);
 
     (void)state;
     for (int i = 0; i < 3 * 600 * 400; i += 3) {
@@ -304,8 +304,8 @@ static void test_snow(void **state)
 /* From blue above to white at the horizon, over dark ground; and all even. */
 static void test_skies(void **state)
 {
-    struct scene s = new_scene(600, 400, 0.03);
-    struct scene overcast = new_scene(600, 400, 0.95);
+    struct settings s = new_settings(600, 400, 0.03);
+    struct settings overcast = new_settings(600, 400, 0.95);
 
     (void)state;
     for (int y = 0; y < 260; y++)
@@ -323,7 +323,7 @@ static void test_skies(void **state)
 /* A lens cap on: noise of the dark, and a little more of it. */
 static void test_noise_in_the_dark(void **state)
 {
-    struct scene s = new_scene(600, 400, 0.001);
+    struct settings s = new_settings(600, 400, 0.001);
 
     (void)state;
     for (double sigma = 0; sigma < 10; sigma += 3)

@@ -193,7 +193,7 @@ static void test_barrels(void **state)
  */
 
 /* A model is good for its film and a tenth more; larger sensors need another,
- * as tools/options/scene.c bakes it. */
+ * as tools/options/settings.c bakes it. */
 static void test_sensors(void **state)
 {
     static const double mm[] = {1, 2.5, 6.4, 36, 100};

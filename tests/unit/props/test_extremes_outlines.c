@@ -103,7 +103,7 @@ static void add_ghost(struct offsets *o)
             }
 }
 
-static void look_at(double theta_deg, struct offsets *o)
+static void compositor_at(double theta_deg, struct offsets *o)
 {
     const struct glint_lamp lamp = stage_lamp(theta_deg, 33, 1);
     struct glint_frame *f = &stage.frame;
@@ -139,8 +139,8 @@ static void outlines(const char *lens)
     assert_true(stage_load(&stage, lens));
     assert_true(stage_prepare(&stage, 8) && stage_model(&stage, 1, 60));
     stage_view(&stage, W, H, 0);
-    look_at(5, o);
-    look_at(12, o);
+    compositor_at(5, o);
+    compositor_at(12, o);
     for (int k = 0; k < ERRORS; k++) {
         char name[100];
 

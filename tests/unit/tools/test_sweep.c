@@ -121,14 +121,14 @@ static void test_png(void **state)
 
 static void test_dials(void **state)
 {
-    struct scene scene, other;
+    struct settings settings, other;
 
     (void)state;
     for (int d = 0; d < n_dials; d++) {
         int has_standard = 0;
 
-        scene_defaults(&scene);
-        other = scene;
+        settings_defaults(&settings);
+        other = settings;
         for (int i = 0; i < dials[d].n_values; i++) {
             has_standard |= dials[d].value[i] == dials[d].standard;
             dial_set(&other, &dials[d], dials[d].value[i]);
@@ -138,51 +138,52 @@ static void test_dials(void **state)
         for (int e = 0; e < n_dials; e++) /* and no other moved */
             if (e != d)
                 assert_true(dial_get(&other, &dials[e]) ==
-                            dial_get(&scene, &dials[e]));
+                            dial_get(&settings, &dials[e]));
     }
 }
 
-static int is_half(const struct scene *scene)
+static int is_half(const struct settings *settings)
 {
-    return glint_dials_half(&scene->dials);
+    return glint_dials_half(&settings->dials);
 }
 
 /* Better is never coarser, among levels that draw all pixels and among those
- * that do not; the middle is what a scene has anyway. */
+ * that do not; the middle is what settings have anyway. */
 static void test_ladder(void **state)
 {
-    struct scene last, scene, plain;
+    struct settings last, settings, plain;
 
     (void)state;
-    scene_defaults(&plain);
-    scene_defaults(&scene);
-    scene_set_quality(&scene, 0.5);
-    assert_int_equal(scene.dials.fineness, 64);
-    assert_true(scene.quantum == plain.quantum &&
-                scene.dials.cull_codes == plain.dials.cull_codes &&
-                scene.tolerance == plain.tolerance && scene.rays == plain.rays);
-    scene_defaults(&last);
-    scene_set_quality(&last, 0);
+    settings_defaults(&plain);
+    settings_defaults(&settings);
+    settings_set_quality(&settings, 0.5);
+    assert_int_equal(settings.dials.fineness, 64);
+    assert_true(settings.quantum == plain.quantum &&
+                settings.dials.cull_codes == plain.dials.cull_codes &&
+                settings.tolerance == plain.tolerance &&
+                settings.rays == plain.rays);
+    settings_defaults(&last);
+    settings_set_quality(&last, 0);
     for (int i = 1; i <= 100; i++) {
-        scene_set_quality(&scene, i / 100.);
-        if (is_half(&scene) ==
+        settings_set_quality(&settings, i / 100.);
+        if (is_half(&settings) ==
             is_half(&last)) { /* else pixels are what is finer */
-            assert_in_range(scene.dials.fineness, last.dials.fineness,
+            assert_in_range(settings.dials.fineness, last.dials.fineness,
                             GLINT_MAX_CELLS);
-            assert_true(scene.quantum <= last.quantum);
+            assert_true(settings.quantum <= last.quantum);
         }
-        assert_true(scene.dials.cull_codes <= last.dials.cull_codes);
-        assert_true(scene.tolerance <= last.tolerance);
-        assert_true(is_half(&scene) <= is_half(&last));
-        last = scene;
+        assert_true(settings.dials.cull_codes <= last.dials.cull_codes);
+        assert_true(settings.tolerance <= last.tolerance);
+        assert_true(is_half(&settings) <= is_half(&last));
+        last = settings;
     }
-    assert_true(scene_take_quality(&scene, "0.25") &&
-                scene_take_quality(&last, "draft"));
-    assert_int_equal(scene.dials.fineness, last.dials.fineness);
-    assert_true(scene_take_quality(&scene, "exact"));
-    assert_int_equal(scene.rays, SCENE_RAYS_EXACT);
-    assert_false(scene_take_quality(&scene, "1.01"));
-    assert_false(scene_take_quality(&scene, "best"));
+    assert_true(settings_take_quality(&settings, "0.25") &&
+                settings_take_quality(&last, "draft"));
+    assert_int_equal(settings.dials.fineness, last.dials.fineness);
+    assert_true(settings_take_quality(&settings, "exact"));
+    assert_int_equal(settings.rays, SETTINGS_RAYS_EXACT);
+    assert_false(settings_take_quality(&settings, "1.01"));
+    assert_false(settings_take_quality(&settings, "best"));
 }
 
 int main(void)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/yardstick.h"
+#include "lab/canvas.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -82,7 +82,7 @@ static double power_of(int i, int n)
     return 1.0 / (n > 64 ? 1 + i : n);
 }
 
-void yardstick_lamps(struct glint_lamp *lamp, int n, double angle)
+void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
 {
     for (int i = 0; i < n; i++)
         lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
@@ -96,25 +96,25 @@ void yardstick_lamps(struct glint_lamp *lamp, int n, double angle)
 /* ------------------------------------------------------------------- pictures
  */
 
-enum glint_status yardstick_exact(const struct tool *tool,
-                                  const struct scene *s,
-                                  const struct glint_lamp *lamp, int n_lamps,
-                                  int grid, struct glint_float_image *to)
+enum glint_status canvas_exact(const struct tool *tool,
+                               const struct settings *s,
+                               const struct glint_lamp *lamp, int n_lamps,
+                               int grid, struct glint_float_image *to)
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
     double *rgb = malloc(n * sizeof *rgb);
     struct tool_progress progress;
-    struct glint_exact_config cfg = {.setup = setup,
-                                     .view =
-                                         scene_view(s, to->width, to->height),
-                                     .lamps = lamp,
-                                     .n_lamps = n_lamps,
-                                     .grid = grid,
-                                     .only_ghost = s->only_ghost,
-                                     .workers = tool->workers,
-                                     .progress = tool_progress_show,
-                                     .progress_ctx = &progress};
+    struct glint_exact_config cfg = {
+        .setup = setup,
+        .view = settings_view(s, to->width, to->height),
+        .lamps = lamp,
+        .n_lamps = n_lamps,
+        .grid = grid,
+        .only_ghost = s->only_ghost,
+        .workers = tool->workers,
+        .progress = tool_progress_show,
+        .progress_ctx = &progress};
     struct glint_error error = {""};
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -135,10 +135,10 @@ enum glint_status yardstick_exact(const struct tool *tool,
     return status;
 }
 
-enum glint_status yardstick_codes(struct glint_frame *frame,
-                                  const struct glint_lamp *lamp, int n_lamps,
-                                  double exposure, uint8_t *codes,
-                                  struct glint_frame_report *report)
+enum glint_status canvas_codes(struct glint_frame *frame,
+                               const struct glint_lamp *lamp, int n_lamps,
+                               double exposure, uint8_t *codes,
+                               struct glint_frame_report *report)
 {
     struct glint_image layer = {.format = GLINT_RGB24,
                                 .width = frame->cfg.width,
@@ -156,9 +156,9 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-double yardstick_median(const double *values, int n)
+double canvas_median(const double *values, int n)
 {
-    double sorted[YARDSTICK_MAX];
+    double sorted[CANVAS_MAX];
 
     memcpy(sorted, values, (size_t)n * sizeof *values);
     qsort(sorted, (size_t)n, sizeof *sorted, by_size);

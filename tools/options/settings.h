@@ -2,8 +2,8 @@
  *
  * The options that say what is drawn and how, for render and overlay alike.
  */
-#ifndef GLINT_TOOLS_OPTIONS_SCENE_H
-#define GLINT_TOOLS_OPTIONS_SCENE_H
+#ifndef GLINT_TOOLS_OPTIONS_SETTINGS_H
+#define GLINT_TOOLS_OPTIONS_SETTINGS_H
 
 #include "options/coating.h"
 #include "engine/frame/frame.h"
@@ -11,22 +11,22 @@
 #include "model/model_file.h"
 #include "options/tool.h"
 
-enum { SCENE_MAX_LAMPS = 1024 }; /* by hand; a file may have more */
+enum { SETTINGS_MAX_LAMPS = 1024 }; /* by hand; a file may have more */
 
 /* What the integer engine's rays come from. */
-enum scene_rays { SCENE_RAYS_MODEL, SCENE_RAYS_EXACT };
+enum settings_rays { SETTINGS_RAYS_MODEL, SETTINGS_RAYS_EXACT };
 
 /* What is drawn for light of all wavelengths. */
-enum scene_waves {
-    SCENE_WAVES_LIST,  /* wavelength_nm */
-    SCENE_WAVES_COUNT, /* n_wavelengths of glint_spectrum() */
-    SCENE_WAVES_AUTO   /* for each ghost as many as it needs */
+enum settings_waves {
+    SETTINGS_WAVES_LIST,  /* wavelength_nm */
+    SETTINGS_WAVES_COUNT, /* n_wavelengths of glint_spectrum() */
+    SETTINGS_WAVES_AUTO   /* for each ghost as many as it needs */
 };
 
-struct scene {
+struct settings {
     struct glint_prescription lens; /* of a model: name and film only */
     struct model_file model;        /* closed for exact rays */
-    enum scene_rays rays;
+    enum settings_rays rays;
     double max_deg;   /* of the lamps that a model is baked for */
     double tolerance; /* it is baked with */
     struct glint_setup setup;
@@ -36,7 +36,7 @@ struct scene {
     double blade_rotation_deg;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     int n_wavelengths;
-    enum scene_waves waves;
+    enum settings_waves waves;
     double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
     int only_ghost;
@@ -58,7 +58,7 @@ struct scene {
 };
 
 /* Long options of this file, for a command's array; all above 1000. */
-enum scene_option {
+enum settings_option {
     OPT_F_NUMBER = 1000,
     OPT_COATING,
     OPT_STOP,
@@ -95,7 +95,7 @@ enum scene_option {
     OPT_LAST
 };
 
-#define SCENE_OPTIONS                                                \
+#define SETTINGS_OPTIONS                                             \
     {"f-number", required_argument, NULL, OPT_F_NUMBER},             \
         {"coating", required_argument, NULL, OPT_COATING},           \
         {"stop", required_argument, NULL, OPT_STOP},                 \
@@ -133,7 +133,7 @@ enum scene_option {
     }
 
 /* What they do, for a command's help. */
-#define SCENE_HELP                                                             \
+#define SETTINGS_HELP                                                          \
     "The lens\n"                                                               \
     "  --f-number N        stop it to f/N (default: the "                      \
     "table's)\n" COATING_HELP                                                  \
@@ -250,57 +250,62 @@ enum scene_option {
     "random\n"                                                                \
     "  --json   -q   -v   --help   --version\n"
 
-void scene_defaults(struct scene *scene);
+void settings_defaults(struct settings *settings);
 
-/* Takes a scene option. -1: taken; -2: not one of these; else an exit code. */
-int scene_option(const struct tool *tool, struct scene *scene, int option,
-                 const char *value);
+/* Takes an option of these. -1: taken; -2: not one of these; else an exit code.
+ */
+int settings_option(const struct tool *tool, struct settings *settings,
+                    int option, const char *value);
 
 /* "THETA,PHI[,POWER[,R,G,B[,SIZE]]]" */
-bool scene_lamp(const char *text, struct glint_lamp *lamp);
+bool settings_lamp(const char *text, struct glint_lamp *lamp);
 
 /* Reads LENS, a table or a model, and prepares it. Of a table the model is
  * baked where there is none yet, unless rays are exact. Returns an exit code.
  */
-int scene_open(const struct tool *tool, struct scene *scene, const char *lens);
+int settings_open(const struct tool *tool, struct settings *settings,
+                  const char *lens);
 
-void scene_close(struct scene *scene);
+void settings_close(struct settings *settings);
 
-struct glint_view scene_view(const struct scene *scene, int width, int height);
+struct glint_view settings_view(const struct settings *settings, int width,
+                                int height);
 
 /* Makes FRAME as the options say. Returns an exit code. */
-int scene_frame(const struct tool *tool, const struct scene *scene,
-                struct glint_view view, struct glint_frame *frame);
+int settings_frame(const struct tool *tool, const struct settings *settings,
+                   struct glint_view view, struct glint_frame *frame);
 
-/* Sets the dials of SCENE for QUALITY, 0 to 1; 0.5 is what it has by default.
+/* Sets the dials of SETTINGS for QUALITY, 0 to 1; 0.5 is what it has by
+ * default.
  */
-void scene_set_quality(struct scene *scene, double quality);
+void settings_set_quality(struct settings *settings, double quality);
 
 /* The same from a number or a name; "exact" is the finest with exact rays.
  * False: neither. */
-bool scene_take_quality(struct scene *scene, const char *text);
+bool settings_take_quality(struct settings *settings, const char *text);
 
 /* TEXT of --memory, MiB, in bytes. */
-bool scene_memory(const char *text, size_t *bytes);
+bool settings_memory(const char *text, size_t *bytes);
 
-#define SCENE_MEMORY_HELP                                                    \
+#define SETTINGS_MEMORY_HELP                                                 \
     "  --memory MIB        all that drawing the flare may take, 1 to 1024\n" \
     "                      (default: what it needs); what does not fit is "  \
     "left\n"                                                                 \
     "                      out, with a word\n"
 
 /* gain * 2^EV */
-double scene_scale(const struct scene *scene);
+double settings_scale(const struct settings *settings);
 
 /* Prints the report of a frame as JSON members, without braces. */
-void scene_json(const struct glint_frame_report *report);
+void settings_json(const struct glint_frame_report *report);
 
 /* How many lights there were and are drawn, as text. */
-void scene_lights_text(const struct glint_frame_report *report, char text[64]);
+void settings_lights_text(const struct glint_frame_report *report,
+                          char text[64]);
 
 /* Says on standard error if lights merged only because they were too many, and,
  * however quiet, if a part of the flare is missing. */
-void scene_warn_lights(const struct tool *tool,
-                       const struct glint_frame_report *report);
+void settings_warn_lights(const struct tool *tool,
+                          const struct glint_frame_report *report);
 
 #endif

@@ -3,8 +3,8 @@
  * Lamps as a camera takes them, of known power: a shape, blurred by a bell
  * curve and by the glare of a lens, over a background, with noise.
  */
-#ifndef GLINT_TESTS_POWER_SCENE_H
-#define GLINT_TESTS_POWER_SCENE_H
+#ifndef GLINT_TESTS_POWER_PICTURE_H
+#define GLINT_TESTS_POWER_PICTURE_H
 
 #include <stdint.h>
 
@@ -26,7 +26,7 @@ struct power_lamp {
 };
 
 /* A picture of linear light, three numbers a pixel. */
-struct power_scene {
+struct power_picture {
     int width, height;
     double *rgb;
 };
@@ -40,8 +40,8 @@ void power_draw(double *light, int width, int height,
 void power_see(double *light, int width, int height,
                const struct power_lamp *lens, double over);
 
-/* Codes of sRGB, 8 bits, of GAIN * SCENE with noise of SIGMA codes. */
-void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
-                  double sigma, uint32_t *seed);
+/* Codes of sRGB, 8 bits, of GAIN * SETTINGS with noise of SIGMA codes. */
+void power_expose(uint8_t *rgb, const struct power_picture *settings,
+                  double gain, double sigma, uint32_t *seed);
 
 #endif

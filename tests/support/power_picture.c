@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "support/power_scene.h"
+#include "support/power_picture.h"
 #include "support/rng.h"
 
 #include <math.h>
@@ -181,13 +181,13 @@ static void make_tables(void)
         noise[i] = bell(&seed);
 }
 
-void power_expose(uint8_t *rgb, const struct power_scene *scene, double gain,
-                  double sigma, uint32_t *seed)
+void power_expose(uint8_t *rgb, const struct power_picture *settings,
+                  double gain, double sigma, uint32_t *seed)
 {
     if (code[CODES] < 1)
         make_tables();
-    for (int i = 0; i < 3 * scene->width * scene->height; i++) {
-        const double light = gain * scene->rgb[i];
+    for (int i = 0; i < 3 * settings->width * settings->height; i++) {
+        const double light = gain * settings->rgb[i];
         const double v = code[light < 1 ? (int)(light * CODES) : CODES];
 
         rng_bits(seed);

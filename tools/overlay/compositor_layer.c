@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "overlay/look_layer.h"
+#include "overlay/compositor_layer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -102,17 +102,18 @@ static struct sum seen_of(const struct glint_lamp_track *track, double white)
     return sum;
 }
 
-static void set_lamp(struct look *look, int i, const struct sum *sum)
+static void set_lamp(struct compositor *compositor, int i,
+                     const struct sum *sum)
 {
-    struct glint_lamp *const lamp = &look->lamp[i];
-    struct glint_lamp_track *const track = &look->finder.track[i];
-    const double focal = look->scene.setup.optics.focal_mm;
+    struct glint_lamp *const lamp = &compositor->lamp[i];
+    struct glint_lamp_track *const track = &compositor->finder.track[i];
+    const double focal = compositor->settings.setup.optics.focal_mm;
 
     if (!(sum->luminance > 0))
         return;
     track->x_q8 = (int32_t)lrint(256 * sum->x / sum->luminance);
     track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
-    glint_view_to_angles(&look->view, focal, track->x_q8 / 256.0,
+    glint_view_to_angles(&compositor->view, focal, track->x_q8 / 256.0,
                          track->y_q8 / 256.0, lamp);
     lamp->power =
         fmin(sum->luminance, LAMP_MAX_POWER) * track->level_q15 / 32768;
@@ -120,43 +121,46 @@ static void set_lamp(struct look *look, int i, const struct sum *sum)
         lamp->rgb[c] = sum->rgb[c] / sum->luminance;
 }
 
-void look_measure(struct look *look, const struct glint_samples *samples,
-                  double white)
+void compositor_measure(struct compositor *compositor,
+                        const struct glint_samples *samples, double white)
 {
-    const int n = look->n_lamps;
+    const int n = compositor->n_lamps;
     struct reach *all;
 
-    if (look->is_listed || look->n_hand || n == 0)
+    if (compositor->is_listed || compositor->n_hand || n == 0)
         return;
     all = malloc((size_t)n * sizeof *all);
     for (int i = 0; i < n && all; i++)
-        all[i] = reach_of(&look->finder.track[i], look->view.width,
-                          look->view.height);
+        all[i] = reach_of(&compositor->finder.track[i], compositor->view.width,
+                          compositor->view.height);
     for (int i = 0; i < n && all; i++) {
-        struct sum sum = seen_of(&look->finder.track[i], white);
+        struct sum sum = seen_of(&compositor->finder.track[i], white);
 
         add_excess(&sum, samples, all, n, i, white);
-        set_lamp(look, i, &sum);
+        set_lamp(compositor, i, &sum);
     }
     free(all);
 }
 
 /* ------------------------------------------------------------------ drawing */
 
-static enum glint_status draw_as_for_codes(struct look *look, float *rgb)
+static enum glint_status draw_as_for_codes(struct compositor *compositor,
+                                           float *rgb)
 {
-    const size_t n = 3 * (size_t)look->view.width * (size_t)look->view.height;
+    const size_t n =
+        3 * (size_t)compositor->view.width * (size_t)compositor->view.height;
     struct glint_image layer = {.format = GLINT_LINEAR_Q20,
-                                .width = look->view.width,
-                                .height = look->view.height};
+                                .width = compositor->view.width,
+                                .height = compositor->view.height};
     enum glint_status status;
 
     memset(rgb, 0, n * sizeof *rgb);
     glint_image_place(&layer, rgb); /* becomes floats in place */
-    look->frame.for_codes = true;
-    status = glint_frame_draw(&look->frame, look->lamp, look->n_lamps,
-                              look_scale(look), &layer, &look->report);
-    look->frame.for_codes = false;
+    compositor->frame.for_codes = true;
+    status = glint_frame_draw(&compositor->frame, compositor->lamp,
+                              compositor->n_lamps, compositor_scale(compositor),
+                              &layer, &compositor->report);
+    compositor->frame.for_codes = false;
     for (size_t i = 0; i < n; i++) {
         int32_t light_q20;
 
@@ -166,16 +170,18 @@ static enum glint_status draw_as_for_codes(struct look *look, float *rgb)
     return status;
 }
 
-enum glint_status look_draw_layer(struct look *look, bool is_deep, float *rgb)
+enum glint_status compositor_draw_layer(struct compositor *compositor,
+                                        bool is_deep, float *rgb)
 {
     const double start = tool_seconds();
     enum glint_status status;
 
-    if (is_deep && look->n_lamps > 0)
-        status = glint_frame_draw_alone(&look->frame, look->lamp, look->n_lamps,
-                                        look_scale(look), rgb, &look->report);
+    if (is_deep && compositor->n_lamps > 0)
+        status = glint_frame_draw_alone(
+            &compositor->frame, compositor->lamp, compositor->n_lamps,
+            compositor_scale(compositor), rgb, &compositor->report);
     else
-        status = draw_as_for_codes(look, rgb);
-    look->flare_ms = 1e3 * (tool_seconds() - start);
+        status = draw_as_for_codes(compositor, rgb);
+    compositor->flare_ms = 1e3 * (tool_seconds() - start);
     return status;
 }

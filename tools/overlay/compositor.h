@@ -3,22 +3,22 @@
  * What overlay and live put on a picture: the flare of a lens, for lamps that
  * are found in it, listed, or given by hand.
  *
- *     look_defaults(&look);               then look_option() for each
- *     look_open(&tool, &look);            lens and lists; no picture yet
- *     look_size(&tool, &look, w, h);      once, and when the size changes
- *     look_draw(&look, &image, us);       each frame
- *     look_close(&look);
+ *     compositor_defaults(&compositor);               then compositor_option()
+ * for each compositor_open(&tool, &compositor);            lens and lists; no
+ * picture yet compositor_size(&tool, &compositor, w, h);      once, and when
+ * the size changes compositor_draw(&compositor, &image, us);       each frame
+ *     compositor_close(&compositor);
  */
-#ifndef GLINT_TOOLS_OVERLAY_LOOK_H
-#define GLINT_TOOLS_OVERLAY_LOOK_H
+#ifndef GLINT_TOOLS_OVERLAY_COMPOSITOR_H
+#define GLINT_TOOLS_OVERLAY_COMPOSITOR_H
 
 #include "options/lamp_save.h"
 #include "options/lamp_list.h"
-#include "options/scene.h"
+#include "options/settings.h"
 #include "engine/strength.h"
 
-struct look {
-    struct scene scene;
+struct compositor {
+    struct settings settings;
     const char *lens, *lights_file; /* NULL: lamps are found */
     const char *save_file;          /* for lamps, or NULL */
     bool interpolate;               /* lamps of a file */
@@ -29,7 +29,7 @@ struct look {
     bool flare_alpha;     /* with flare_only, of files */
     size_t reserve_bytes; /* unless 0: all the memory that frames will take */
     int n_hand;
-    struct glint_lamp hand[SCENE_MAX_LAMPS];
+    struct glint_lamp hand[SETTINGS_MAX_LAMPS];
     struct glint_strength
         strength; /* how bright, and the scale of each frame */
     int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
@@ -56,7 +56,7 @@ struct look {
     struct glint_frame_report report;
 };
 
-enum look_option_code {
+enum compositor_option_code {
     OPT_LENS = OPT_LAST,
     OPT_LIGHTS,
     OPT_LIGHT,
@@ -69,10 +69,10 @@ enum look_option_code {
     OPT_LIGHT_AT,
     OPT_SAVE_LIGHTS,
     OPT_INTERPOLATE,
-    OPT_LOOK_LAST
+    OPT_COMPOSITOR_LAST
 };
 
-#define LOOK_OPTIONS                                               \
+#define COMPOSITOR_OPTIONS                                         \
     {"lens", required_argument, NULL, OPT_LENS},                   \
         {"lights", required_argument, NULL, OPT_LIGHTS},           \
         {"light", required_argument, NULL, OPT_LIGHT},             \
@@ -84,9 +84,9 @@ enum look_option_code {
         {"strength", required_argument, NULL, OPT_STRENGTH},       \
         {"light-at", required_argument, NULL, OPT_LIGHT_AT},       \
         {"save-lights", required_argument, NULL, OPT_SAVE_LIGHTS}, \
-        {"interpolate", no_argument, NULL, OPT_INTERPOLATE}, SCENE_OPTIONS
+        {"interpolate", no_argument, NULL, OPT_INTERPOLATE}, SETTINGS_OPTIONS
 
-#define LOOK_HELP                                                              \
+#define COMPOSITOR_HELP                                                        \
     "  --lens LENS         table or baked model (default nikon-zoom-short)\n"  \
     "  --lights auto|FILE  auto (default): found in each frame; FILE: CSV\n"   \
     "                      frame,x,y,power[,r,g,b[,size]] or JSON lines "      \
@@ -134,49 +134,53 @@ enum look_option_code {
     "EV\n"                                                                     \
     "                      instead sets it by hand\n"
 
-void look_defaults(struct look *look);
+void compositor_defaults(struct compositor *compositor);
 
-/* Takes an option of LOOK_OPTIONS. -1: taken; -2: not one of these; else an
- * exit code, said. VALUE is kept. */
-int look_option(const struct tool *tool, struct look *look, int option,
-                const char *value);
+/* Takes an option of COMPOSITOR_OPTIONS. -1: taken; -2: not one of these; else
+ * an exit code, said. VALUE is kept. */
+int compositor_option(const struct tool *tool, struct compositor *compositor,
+                      int option, const char *value);
 
 /* Reads the lens, baking it if need be, and the list. Returns an exit code. */
-int look_open(const struct tool *tool, struct look *look);
+int compositor_open(const struct tool *tool, struct compositor *compositor);
 
 /* Makes ready for pictures of WIDTH x HEIGHT. Returns an exit code. */
-int look_size(const struct tool *tool, struct look *look, int width,
-              int height);
+int compositor_size(const struct tool *tool, struct compositor *compositor,
+                    int width, int height);
 
 /* The options so far came from a file: those to come may say otherwise. */
-void look_options_end(struct look *look);
+void compositor_options_end(struct compositor *compositor);
 
-/* Sets the lamps of IMAGE, as look_draw does; returns how many there are. */
-int look_lamps(struct look *look, const struct glint_image *image,
-               int32_t elapsed_us);
+/* Sets the lamps of IMAGE, as compositor_draw does; returns how many there are.
+ */
+int compositor_lamps(struct compositor *compositor,
+                     const struct glint_image *image, int32_t elapsed_us);
 
 /* Adds the flare to IMAGE, of that size and ELAPSED_US after the one before; 0:
  * a picture by itself. GLINT_E_MEMORY. */
-enum glint_status look_draw(struct look *look, const struct glint_image *image,
-                            int32_t elapsed_us);
+enum glint_status compositor_draw(struct compositor *compositor,
+                                  const struct glint_image *image,
+                                  int32_t elapsed_us);
 
-/* The parts of look_draw, for tools/overlay/look_layer.h: sets the lamps of
- * IMAGE and their number; saves them, which may have been measured in between,
- * and sets what their light is multiplied by; and draws over IMAGE where they
- * are. */
-void look_find(struct look *look, const struct glint_image *image,
-               int32_t elapsed_us);
-void look_expose(struct look *look, int32_t elapsed_us);
-double look_scale(const struct look *look);
-void look_mark(const struct look *look, const struct glint_image *image);
+/* The parts of compositor_draw, for tools/overlay/compositor_layer.h: sets the
+ * lamps of IMAGE and their number; saves them, which may have been measured in
+ * between, and sets what their light is multiplied by; and draws over IMAGE
+ * where they are. */
+void compositor_find(struct compositor *compositor,
+                     const struct glint_image *image, int32_t elapsed_us);
+void compositor_expose(struct compositor *compositor, int32_t elapsed_us);
+double compositor_scale(const struct compositor *compositor);
+void compositor_mark(const struct compositor *compositor,
+                     const struct glint_image *image);
 
-/* Closes LOOK and moves FRESH there, which is open and not yet sized. */
-void look_replace(struct look *look, const struct look *fresh);
+/* Closes COMPOSITOR and moves FRESH there, which is open and not yet sized. */
+void compositor_replace(struct compositor *compositor,
+                        const struct compositor *fresh);
 
 /* After a run that went well: what was to be kept is put in place. Returns an
  * exit code. */
-int look_finish(const struct tool *tool, struct look *look);
+int compositor_finish(const struct tool *tool, struct compositor *compositor);
 
-void look_close(struct look *look);
+void compositor_close(struct compositor *compositor);
 
 #endif

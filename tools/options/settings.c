@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "options/scene.h"
+#include "options/settings.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,42 +7,42 @@
 
 #include "engine/frame/area.h"
 #include "options/lamp_list.h"
-#include "options/scene_table.h"
-#include "options/scene_waves.h"
+#include "options/settings_table.h"
+#include "options/settings_waves.h"
 #include "options/takes.h"
 
-void scene_defaults(struct scene *scene)
+void settings_defaults(struct settings *settings)
 {
-    *scene = (struct scene){.n_blades = 8,
-                            .wavelength_nm = {650, 532, 450},
-                            .n_wavelengths = 3,
-                            .gain = 1,
-                            .tolerance = 1,
-                            .only_ghost = -1,
-                            .apart_px = GLINT_FRAME_APART_PX,
-                            .tile_log2 = 6,
-                            .weights = GLINT_WEIGHTS_WACHSPRESS,
-                            .quantum = 1,
-                            .dials = glint_dials_at(1 << 14),
-                            .quality = 0.5,
-                            .antialias = true};
+    *settings = (struct settings){.n_blades = 8,
+                                  .wavelength_nm = {650, 532, 450},
+                                  .n_wavelengths = 3,
+                                  .gain = 1,
+                                  .tolerance = 1,
+                                  .only_ghost = -1,
+                                  .apart_px = GLINT_FRAME_APART_PX,
+                                  .tile_log2 = 6,
+                                  .weights = GLINT_WEIGHTS_WACHSPRESS,
+                                  .quantum = 1,
+                                  .dials = glint_dials_at(1 << 14),
+                                  .quality = 0.5,
+                                  .antialias = true};
 }
 
 /* "circle" or "polygon:N[,ROT]" */
-static bool parse_stop(const char *text, struct scene *scene)
+static bool parse_stop(const char *text, struct settings *settings)
 {
     double v[2] = {0, 0};
 
     if (strcmp(text, "circle") == 0) {
-        scene->n_blades = 0;
+        settings->n_blades = 0;
         return true;
     }
     if (strncmp(text, "polygon:", 8) != 0 ||
         tool_numbers(text + 8, v, 2) == 0 || v[0] != floor(v[0]) || v[0] < 3 ||
         v[0] > GLINT_MAX_BLADES)
         return false;
-    scene->n_blades = (int)v[0];
-    scene->blade_rotation_deg = v[1];
+    settings->n_blades = (int)v[0];
+    settings->blade_rotation_deg = v[1];
     return true;
 }
 
@@ -55,15 +55,15 @@ static bool parse_sensor(const char *text, double mm[2])
            mm[0] >= 0.1 && mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
 }
 
-static bool parse_merge(const char *text, struct scene *scene)
+static bool parse_merge(const char *text, struct settings *settings)
 {
     double v[2];
 
     if (tool_numbers(text, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
         v[0] > 4 || v[1] < 0 || v[1] > 1)
         return false;
-    scene->merge_steps = (int)v[0];
-    scene->merge_gamma = v[1];
+    settings->merge_steps = (int)v[0];
+    settings->merge_gamma = v[1];
     return true;
 }
 
@@ -81,17 +81,17 @@ static bool parse_side(const char *text, int low, int high, int *log2)
     return side == 0 && low > 3;
 }
 
-static bool take_error(const char *text, struct scene *s)
+static bool take_error(const char *text, struct settings *s)
 {
     double px;
 
     if (!tool_number(text, &px) || px <= 0)
         return false;
-    scene_set_quality(s, glint_quality_for_error(px));
+    settings_set_quality(s, glint_quality_for_error(px));
     return true;
 }
 
-static bool take_dispersion(const char *text, struct scene *s)
+static bool take_dispersion(const char *text, struct settings *s)
 {
     double px;
 
@@ -101,7 +101,7 @@ static bool take_dispersion(const char *text, struct scene *s)
     return true;
 }
 
-static bool take_quantum(const char *text, struct scene *s)
+static bool take_quantum(const char *text, struct settings *s)
 {
     if (!tool_number(text, &s->quantum) || s->quantum < 0 || s->quantum > 50)
         return false;
@@ -109,7 +109,7 @@ static bool take_quantum(const char *text, struct scene *s)
     return true;
 }
 
-static bool take_whole(const char *text, struct scene *s)
+static bool take_whole(const char *text, struct settings *s)
 {
     double codes;
 
@@ -119,7 +119,7 @@ static bool take_whole(const char *text, struct scene *s)
     return true;
 }
 
-void scene_set_quality(struct scene *s, double quality)
+void settings_set_quality(struct settings *s, double quality)
 {
     const struct glint_quality q = glint_quality_at(quality);
     const unsigned kept = s->dials.flags & GLINT_DIAL_ALWAYS_HALF;
@@ -132,7 +132,7 @@ void scene_set_quality(struct scene *s, double quality)
     s->has_grid = true;
 }
 
-bool scene_take_quality(struct scene *s, const char *text)
+bool settings_take_quality(struct settings *s, const char *text)
 {
     const bool exact = strcmp(text, "exact") == 0;
     const int name = tool_word(text, glint_quality_name);
@@ -141,13 +141,13 @@ bool scene_take_quality(struct scene *s, const char *text)
     if (!exact && name < 0 &&
         (!tool_number(text, &quality) || quality < 0 || quality > 1))
         return false;
-    scene_set_quality(s, quality);
+    settings_set_quality(s, quality);
     if (exact)
-        s->rays = SCENE_RAYS_EXACT;
+        s->rays = SETTINGS_RAYS_EXACT;
     return true;
 }
 
-static bool take(struct scene *s, int option, const char *value)
+static bool take(struct settings *s, int option, const char *value)
 {
     static const char *const weights[] = {"loop-derose", "wachspress", NULL};
     static const char *const rasters[] = {"edges", "cells", NULL};
@@ -161,7 +161,7 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_STOP:
         return parse_stop(value, s);
     case OPT_WAVELENGTHS:
-        return scene_take_waves(s, value);
+        return settings_take_waves(s, value);
     case OPT_DISPERSION:
         return take_dispersion(value, s);
     case OPT_SENSOR:
@@ -209,7 +209,7 @@ static bool take(struct scene *s, int option, const char *value)
     case OPT_HALF:
         return s->dials.flags |= GLINT_DIAL_ALWAYS_HALF;
     case OPT_QUALITY:
-        return scene_take_quality(s, value);
+        return settings_take_quality(s, value);
     case OPT_ERROR:
         return take_error(value, s);
     case OPT_BUDGET:
@@ -217,7 +217,7 @@ static bool take(struct scene *s, int option, const char *value)
                s->budget_ms <= 1e6;
     case OPT_RAYS:
         word = tool_word(value, rays);
-        s->rays = word == 0 ? SCENE_RAYS_MODEL : SCENE_RAYS_EXACT;
+        s->rays = word == 0 ? SETTINGS_RAYS_MODEL : SETTINGS_RAYS_EXACT;
         return word >= 0;
     case OPT_LANES: /* of a release ago */
         return strcmp(value, "32") == 0;
@@ -248,16 +248,16 @@ static void warn_lanes(const struct tool *tool)
                 tool->name);
 }
 
-int scene_option(const struct tool *tool, struct scene *scene, int option,
-                 const char *value)
+int settings_option(const struct tool *tool, struct settings *settings,
+                    int option, const char *value)
 {
-    static const struct option names[] = {SCENE_OPTIONS};
+    static const struct option names[] = {SETTINGS_OPTIONS};
 
     if (option < OPT_F_NUMBER || option >= OPT_LAST)
         return -2;
     if (option == OPT_COATING)
-        return coating_take(tool, &scene->coating, value);
-    if (take(scene, option, value)) {
+        return coating_take(tool, &settings->coating, value);
+    if (take(settings, option, value)) {
         if (option == OPT_LANES)
             warn_lanes(tool);
         return -1;
@@ -268,7 +268,7 @@ int scene_option(const struct tool *tool, struct scene *scene, int option,
     return tool_refuse(tool, names[option - OPT_F_NUMBER].name, value);
 }
 
-bool scene_lamp(const char *text, struct glint_lamp *lamp)
+bool settings_lamp(const char *text, struct glint_lamp *lamp)
 {
     double v[7] = {0, 0, 1, 1, 1, 1, 0};
     const int n = tool_numbers(text, v, 7);
@@ -287,27 +287,27 @@ bool scene_lamp(const char *text, struct glint_lamp *lamp)
 
 /* ------------------------------------------------------------------ opening */
 
-static int check_band(const struct tool *tool, const struct scene *scene)
+static int check_band(const struct tool *tool, const struct settings *settings)
 {
-    const struct glint_model_header *h = scene->model.lens.header;
+    const struct glint_model_header *h = settings->model.lens.header;
     const double lo = 1e3 / sqrt(h->wave_hi_q24 * 0x1p-24);
     const double hi = 1e3 / sqrt(h->wave_lo_q24 * 0x1p-24);
 
-    for (int i = 0; i < scene->n_wavelengths; i++)
-        if (scene->wavelength_nm[i] < lo - 0.5 ||
-            scene->wavelength_nm[i] > hi + 0.5)
+    for (int i = 0; i < settings->n_wavelengths; i++)
+        if (settings->wavelength_nm[i] < lo - 0.5 ||
+            settings->wavelength_nm[i] > hi + 0.5)
             return tool_usage(tool,
                               "%g nm lies outside of the %.0f to %.0f nm that "
                               "the model of %s was baked for (bake --band)",
-                              scene->wavelength_nm[i], lo, hi, h->name);
+                              settings->wavelength_nm[i], lo, hi, h->name);
     return EXIT_OK;
 }
 
 /* Says what the picture asks of the model that it was not baked for. */
-static void warn_field(const struct tool *tool, const struct scene *scene)
+static void warn_field(const struct tool *tool, const struct settings *settings)
 {
-    const double field = model_real_of(scene->model.lens.header->field_mm);
-    const double *mm = scene->sensor_mm;
+    const double field = model_real_of(settings->model.lens.header->field_mm);
+    const double *mm = settings->sensor_mm;
 
     if (!tool->quiet && 0.5 * hypot(mm[0], mm[1]) > field)
         fprintf(stderr,
@@ -317,34 +317,34 @@ static void warn_field(const struct tool *tool, const struct scene *scene)
                 tool->name, field);
 }
 
-static int open_model(const struct tool *tool, struct scene *scene,
+static int open_model(const struct tool *tool, struct settings *settings,
                       const char *path)
 {
     const struct glint_model_header *h;
     int code;
 
-    if (scene->rays == SCENE_RAYS_EXACT)
+    if (settings->rays == SETTINGS_RAYS_EXACT)
         return tool_usage(tool, "%s is a model: exact rays need the lens table",
                           path);
-    if (scene->f_number > 0)
+    if (settings->f_number > 0)
         return tool_usage(tool,
                           "%s is a model, baked for one f-number: "
                           "--f-number needs the lens table",
                           path);
-    code = coating_of_model(tool, &scene->coating, path);
+    code = coating_of_model(tool, &settings->coating, path);
     if (code == EXIT_OK)
-        code = tool_model(tool, path, &scene->model);
+        code = tool_model(tool, path, &settings->model);
     if (code != EXIT_OK)
         return code;
-    h = scene->model.lens.header;
-    snprintf(scene->lens.name, sizeof scene->lens.name, "%s", h->name);
-    scene->lens.film_width_mm = model_real_of(h->film_width_mm);
-    scene->lens.film_height_mm = model_real_of(h->film_height_mm);
-    warn_field(tool, scene);
+    h = settings->model.lens.header;
+    snprintf(settings->lens.name, sizeof settings->lens.name, "%s", h->name);
+    settings->lens.film_width_mm = model_real_of(h->film_width_mm);
+    settings->lens.film_height_mm = model_real_of(h->film_height_mm);
+    warn_field(tool, settings);
     return EXIT_OK;
 }
 
-static int set_up(const struct tool *tool, struct scene *s)
+static int set_up(const struct tool *tool, struct settings *s)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -352,11 +352,11 @@ static int set_up(const struct tool *tool, struct scene *s)
             ? glint_setup_from_model(&s->setup, &s->model.lens, s->n_blades,
                                      s->blade_rotation_deg, s->wavelength_nm,
                                      s->n_wavelengths, &error)
-            : scene_table_setup(s, &error);
+            : settings_table_setup(s, &error);
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    scene_weigh(s);
+    settings_weigh(s);
     if (s->balance)
         glint_setup_balance(&s->setup);
     if (s->only_ghost >= s->setup.n_ghosts - s->setup.n_parts)
@@ -367,7 +367,7 @@ static int set_up(const struct tool *tool, struct scene *s)
 }
 
 /* What only cells have is not left out in silence. */
-static int check_raster(const struct tool *tool, const struct scene *s)
+static int check_raster(const struct tool *tool, const struct settings *s)
 {
     if (s->mask_nodes && s->by_edges)
         return tool_usage(tool, "--mask is drawn by cells, not --raster edges");
@@ -377,74 +377,76 @@ static int check_raster(const struct tool *tool, const struct scene *s)
         (s->raster || s->mask_nodes))
         return tool_usage(tool, "--half is drawn by edges, not by cells");
     if ((s->dials.flags & GLINT_DIAL_ALWAYS_HALF) &&
-        s->rays == SCENE_RAYS_EXACT)
+        s->rays == SETTINGS_RAYS_EXACT)
         return tool_usage(tool, "--half is not for exact rays");
     return EXIT_OK;
 }
 
-int scene_open(const struct tool *tool, struct scene *scene, const char *lens)
+int settings_open(const struct tool *tool, struct settings *settings,
+                  const char *lens)
 {
-    int code = check_raster(tool, scene);
+    int code = check_raster(tool, settings);
 
     if (code != EXIT_OK)
         return code;
-    scene_choose_waves(scene);
-    code = tool_is_model(lens) ? open_model(tool, scene, lens)
-                               : scene_open_table(tool, scene, lens);
+    settings_choose_waves(settings);
+    code = tool_is_model(lens) ? open_model(tool, settings, lens)
+                               : settings_open_table(tool, settings, lens);
 
-    if (code == EXIT_OK && scene->model.data &&
-        scene->waves == SCENE_WAVES_LIST)
-        code = check_band(tool, scene);
-    return code == EXIT_OK ? set_up(tool, scene) : code;
+    if (code == EXIT_OK && settings->model.data &&
+        settings->waves == SETTINGS_WAVES_LIST)
+        code = check_band(tool, settings);
+    return code == EXIT_OK ? set_up(tool, settings) : code;
 }
 
-void scene_close(struct scene *scene)
+void settings_close(struct settings *settings)
 {
-    model_file_close(&scene->model);
+    model_file_close(&settings->model);
 }
 
-struct glint_view scene_view(const struct scene *scene, int width, int height)
+struct glint_view settings_view(const struct settings *settings, int width,
+                                int height)
 {
-    const double *mm = scene->sensor_mm;
+    const double *mm = settings->sensor_mm;
 
     return glint_view_fit(width, height,
-                          mm[0] > 0 ? mm[0] : scene->lens.film_width_mm,
-                          mm[0] > 0 ? mm[1] : scene->lens.film_height_mm);
+                          mm[0] > 0 ? mm[0] : settings->lens.film_width_mm,
+                          mm[0] > 0 ? mm[1] : settings->lens.film_height_mm);
 }
 
-int scene_frame(const struct tool *tool, const struct scene *scene,
-                struct glint_view view, struct glint_frame *frame)
+int settings_frame(const struct tool *tool, const struct settings *settings,
+                   struct glint_view view, struct glint_frame *frame)
 {
-    glint_frame_init(frame, &scene->setup, view, tool->workers);
+    glint_frame_init(frame, &settings->setup, view, tool->workers);
     frame->cfg.sets = tool_sets(tool);
-    frame->lens = scene->model.data ? &scene->model.lens : NULL;
-    frame->trace = scene_table_rays();
+    frame->lens = settings->model.data ? &settings->model.lens : NULL;
+    frame->trace = settings_table_rays();
     frame->clock = tool_seconds;
-    frame->dials = scene->dials;
-    frame->uniform = scene->uniform;
-    frame->only_ghost = scene->only_ghost;
-    frame->apart_px = scene->apart_px;
-    if (scene->area_samples_asked)
-        frame->dials.area_points = scene->area_samples_asked;
-    if (scene->max_lights)
-        frame->dials.max_lights = scene->max_lights;
+    frame->dials = settings->dials;
+    frame->uniform = settings->uniform;
+    frame->only_ghost = settings->only_ghost;
+    frame->apart_px = settings->apart_px;
+    if (settings->area_samples_asked)
+        frame->dials.area_points = settings->area_samples_asked;
+    if (settings->max_lights)
+        frame->dials.max_lights = settings->max_lights;
     frame->asked = frame->dials;
-    frame->cfg.tile_log2 = scene->tile_log2;
+    frame->cfg.tile_log2 = settings->tile_log2;
     /* no larger than the small ones: one level, and the same picture */
     frame->cfg.coarse_log2 =
-        scene->coarse_log2 > scene->tile_log2 ? scene->coarse_log2 : 0;
-    frame->cfg.raster = scene->raster ? &glint_raster_cells : NULL;
-    frame->cfg.weights = scene->weights;
-    frame->cfg.merge_steps = scene->merge_steps;
-    frame->cfg.merge_gamma_q16 = (int32_t)lrint(scene->merge_gamma * 65536);
-    frame->cfg.antialias = scene->antialias;
-    frame->cfg.dither = scene->dither;
-    if (scene->mask_nodes &&
-        glint_frame_use_mask(frame, &glint_raster_cells, scene->mask_nodes) !=
-            GLINT_OK)
+        settings->coarse_log2 > settings->tile_log2 ? settings->coarse_log2 : 0;
+    frame->cfg.raster = settings->raster ? &glint_raster_cells : NULL;
+    frame->cfg.weights = settings->weights;
+    frame->cfg.merge_steps = settings->merge_steps;
+    frame->cfg.merge_gamma_q16 = (int32_t)lrint(settings->merge_gamma * 65536);
+    frame->cfg.antialias = settings->antialias;
+    frame->cfg.dither = settings->dither;
+    if (settings->mask_nodes &&
+        glint_frame_use_mask(frame, &glint_raster_cells,
+                             settings->mask_nodes) != GLINT_OK)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    if (scene->budget_ms > 0 && frame->lens) {
-        glint_budget_init(&frame->budget, scene->budget_ms);
+    if (settings->budget_ms > 0 && frame->lens) {
+        glint_budget_init(&frame->budget, settings->budget_ms);
         frame->dials = glint_budget_dials(&frame->budget, &frame->dials);
         if (glint_frame_calibrate(frame) != GLINT_OK)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
@@ -452,12 +454,12 @@ int scene_frame(const struct tool *tool, const struct scene *scene,
     return EXIT_OK;
 }
 
-double scene_scale(const struct scene *scene)
+double settings_scale(const struct settings *settings)
 {
-    return scene->gain * exp2(scene->exposure_ev);
+    return settings->gain * exp2(settings->exposure_ev);
 }
 
-void scene_json(const struct glint_frame_report *r)
+void settings_json(const struct glint_frame_report *r)
 {
     printf("\"lights\": %d, \"beyond_lights\": %d, \"apart_lights\": %d, "
            "\"drawn_lights\": %d, "
@@ -480,7 +482,7 @@ void scene_json(const struct glint_frame_report *r)
                r->quality, r->predicted_ms, r->calibrated_minsn);
 }
 
-void scene_lights_text(const struct glint_frame_report *r, char text[64])
+void settings_lights_text(const struct glint_frame_report *r, char text[64])
 {
     if (r->drawn_lights < r->lights - r->beyond_lights)
         snprintf(text, 64, "%d lights, %d after merging", r->lights,
@@ -489,7 +491,7 @@ void scene_lights_text(const struct glint_frame_report *r, char text[64])
         snprintf(text, 64, "%d lights", r->lights);
 }
 
-bool scene_memory(const char *text, size_t *bytes)
+bool settings_memory(const char *text, size_t *bytes)
 {
     int mib;
 
@@ -499,8 +501,8 @@ bool scene_memory(const char *text, size_t *bytes)
     return true;
 }
 
-void scene_warn_lights(const struct tool *tool,
-                       const struct glint_frame_report *r)
+void settings_warn_lights(const struct tool *tool,
+                          const struct glint_frame_report *r)
 {
     if (!tool->quiet && r->beyond_lights > 0)
         fprintf(stderr,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "options/scene_waves.h"
+#include "options/settings_waves.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 /* Exact rays have no plan that could choose for each ghost. */
 enum { EXACT_WAVES = 9 };
 
-bool scene_take_waves(struct scene *s, const char *text)
+bool settings_take_waves(struct settings *s, const char *text)
 {
     double nm[GLINT_MAX_WAVELENGTHS];
     const int n = tool_numbers(text, nm, GLINT_MAX_WAVELENGTHS);
@@ -16,7 +16,7 @@ bool scene_take_waves(struct scene *s, const char *text)
                           nm[0] == floor(nm[0]);
 
     if (strcmp(text, "auto") == 0) {
-        s->waves = SCENE_WAVES_AUTO;
+        s->waves = SETTINGS_WAVES_AUTO;
         return true;
     }
     for (int i = 0; i < n && !is_count; i++)
@@ -24,30 +24,30 @@ bool scene_take_waves(struct scene *s, const char *text)
             return false;
     if (n == 0)
         return false;
-    s->waves = is_count ? SCENE_WAVES_COUNT : SCENE_WAVES_LIST;
+    s->waves = is_count ? SETTINGS_WAVES_COUNT : SETTINGS_WAVES_LIST;
     s->n_wavelengths = is_count ? (int)nm[0] : n;
     memcpy(s->wavelength_nm, nm, sizeof nm);
     return true;
 }
 
-void scene_choose_waves(struct scene *s)
+void settings_choose_waves(struct settings *s)
 {
     double rgb[GLINT_MAX_WAVELENGTHS][3], share[GLINT_MAX_WAVELENGTHS];
 
-    if (s->waves == SCENE_WAVES_AUTO && s->rays == SCENE_RAYS_EXACT) {
-        s->waves = SCENE_WAVES_COUNT;
+    if (s->waves == SETTINGS_WAVES_AUTO && s->rays == SETTINGS_RAYS_EXACT) {
+        s->waves = SETTINGS_WAVES_COUNT;
         s->n_wavelengths = EXACT_WAVES;
     }
-    if (s->waves == SCENE_WAVES_COUNT)
+    if (s->waves == SETTINGS_WAVES_COUNT)
         glint_spectrum(s->n_wavelengths, s->wavelength_nm, rgb, share);
 }
 
-void scene_weigh(struct scene *s)
+void settings_weigh(struct settings *s)
 {
-    if (s->waves == SCENE_WAVES_COUNT)
+    if (s->waves == SETTINGS_WAVES_COUNT)
         glint_setup_weigh(&s->setup);
     /* A model of the sparse basis holds its three wavelengths and no others. */
-    else if (s->waves == SCENE_WAVES_AUTO && s->model.data &&
+    else if (s->waves == SETTINGS_WAVES_AUTO && s->model.data &&
              s->model.lens.header->basis != GLINT_BASIS_SPARSE)
         glint_setup_spread(&s->setup, &s->model.lens);
 }

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Scenes of a lens table: a model is baked, or found where it is kept.
+ */
+#include <math.h>
+
+#include "model/model_cache.h"
+#include "options/settings_table.h"
+
+struct glint_bake_options settings_bake_options(const struct settings *settings)
+{
+    const struct glint_prescription *l = &settings->lens;
+    const double film = hypot(l->film_width_mm, l->film_height_mm);
+    const double sensor = hypot(settings->sensor_mm[0], settings->sensor_mm[1]);
+    struct glint_bake_options o;
+
+    glint_bake_defaults(&o);
+    o.tolerance = settings->tolerance;
+    for (int i = 0; i < settings->n_wavelengths; i++) {
+        const double nm = settings->wavelength_nm[i];
+
+        o.band_nm[0] = fmin(o.band_nm[0], fmax(300, 10 * floor(nm / 10)));
+        o.band_nm[1] = fmax(o.band_nm[1], fmin(1100, 10 * ceil(nm / 10)));
+    }
+    if (sensor > film)
+        o.field_mm = 0.55 * sensor;
+    if (settings->max_deg > o.max_deg)
+        o.max_deg = 89;
+    return o;
+}
+
+int settings_open_table(const struct tool *tool, struct settings *settings,
+                        const char *name)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    const int code = tool_lens(tool, name, &settings->lens);
+
+    if (code != EXIT_OK)
+        return code;
+    coating_apply(&settings->coating, &settings->lens);
+    if (settings->f_number > 0)
+        status = glint_prescription_set_f_number(&settings->lens,
+                                                 settings->f_number, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    return settings->rays == SETTINGS_RAYS_EXACT
+               ? EXIT_OK
+               : model_cached(tool, &settings->lens,
+                              settings_bake_options(settings),
+                              &settings->model);
+}
+
+const struct glint_frame_rays *settings_table_rays(void)
+{
+    return &glint_frame_traces;
+}
+
+enum glint_status settings_table_setup(struct settings *s,
+                                       struct glint_error *error)
+{
+    return glint_setup_init(&s->setup, &s->lens, s->n_blades,
+                            s->blade_rotation_deg, s->wavelength_nm,
+                            s->n_wavelengths, error);
+}

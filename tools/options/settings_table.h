@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What of the settings needs the offline half: a lens given as a table.
+ * Programs that take baked models only have models_only.c instead.
+ */
+#ifndef GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
+#define GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
+
+#include "options/settings.h"
+
+/* Reads lens NAME and finds or bakes its model, unless rays are exact. Returns
+ * an exit code; has printed on failure. */
+int settings_open_table(const struct tool *tool, struct settings *settings,
+                        const char *name);
+
+/* What a model for SETTINGS, whose lens has been read, is baked with. */
+struct glint_bake_options
+settings_bake_options(const struct settings *settings);
+
+/* Its setup where there is no model. */
+enum glint_status settings_table_setup(struct settings *settings,
+                                       struct glint_error *error);
+
+/* What traces its rays where there is no model. */
+const struct glint_frame_rays *settings_table_rays(void);
+
+#endif

@@ -1,0 +1,525 @@
+/* SPDX-License-Identifier: MIT */
+#include "overlay/compositor.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options/lamp_keys.h"
+#include "engine/frame/area.h"
+#include "overlay/show_lights.h"
+#include "model/response_cache.h"
+#include "options/takes.h"
+
+/* ------------------------------------------------------------------ options */
+
+void compositor_defaults(struct compositor *compositor)
+{
+    *compositor = (struct compositor){.lens = "nikon-zoom-short",
+                                      .headroom_ev = -1,
+                                      .threshold_ev = {-0.1, -0.15},
+                                      .white = 1};
+    settings_defaults(&compositor->settings);
+    compositor->settings.coating.kind = COATING_MIXED;
+    compositor->settings.waves = SETTINGS_WAVES_AUTO;
+    glint_strength_defaults(&compositor->strength);
+}
+
+/* Stops by which a region extends below what makes it a lamp, if not told. */
+#define EXTENDS_EV 0.05
+
+/* Of a lamp by hand, over a white pixel: a street lamp in a night picture. */
+#define DEFAULT_EV 16
+
+static bool take_threshold(const char *text, double threshold_ev[2])
+{
+    double v[2];
+    const int n = tool_numbers(text, v, 2);
+
+    if (n == 1)
+        v[1] = fmax(v[0] - EXTENDS_EV, -20);
+    if (n == 0 || !(v[0] <= 0) || !(v[1] >= -20 && v[1] <= v[0]))
+        return false;
+    memcpy(threshold_ev, v, sizeof v);
+    return true;
+}
+
+static bool take_light(struct compositor *compositor, const char *text)
+{
+    struct glint_lamp *lamp = &compositor->hand[compositor->n_hand];
+
+    if (compositor->n_hand == SETTINGS_MAX_LAMPS || !settings_lamp(text, lamp))
+        return false;
+    compositor->settings.max_deg =
+        fmax(compositor->settings.max_deg, lamp->theta_deg);
+    compositor->n_hand++;
+    return true;
+}
+
+/* "X,Y[,EV]" */
+static bool take_light_at(struct compositor *compositor, const char *text)
+{
+    double v[3] = {0, 0, DEFAULT_EV};
+    const int n = tool_numbers(text, v, 3);
+    const struct lamp_row row = {.frame = -1,
+                                 .x = v[0],
+                                 .y = v[1],
+                                 .power = exp2(v[2]),
+                                 .rgb = {1, 1, 1},
+                                 .shape = 1,
+                                 .level = 1,
+                                 .next = -1};
+
+    return n >= 2 && fabs(v[0]) <= 1e6 && fabs(v[1]) <= 1e6 && v[2] >= -40 &&
+           v[2] <= 90 && compositor->at.n < SETTINGS_MAX_LAMPS &&
+           lamp_list_add(&compositor->at, &row) == GLINT_OK;
+}
+
+static bool take(struct compositor *compositor, int option, const char *value)
+{
+    static const char *const layers[] = {"composite", "flare", "flare-alpha",
+                                         NULL};
+    static const char *const shows[] = {"lights", NULL};
+    int layer;
+
+    switch (option) {
+    case OPT_LENS:
+        compositor->lens = value;
+        return true;
+    case OPT_LIGHTS:
+        compositor->lights_file = strcmp(value, "auto") == 0 ? NULL : value;
+        return true;
+    case OPT_LIGHT:
+        return take_light(compositor, value);
+    case OPT_THRESHOLD:
+        return take_threshold(value, compositor->threshold_ev);
+    case OPT_HEADROOM:
+        return tool_number(value, &compositor->headroom_ev) &&
+               compositor->headroom_ev >= 0 && compositor->headroom_ev <= 40;
+    case OPT_NO_TRACKING:
+        return compositor->no_tracking = true;
+    case OPT_LIGHT_AT:
+        return take_light_at(compositor, value);
+    case OPT_SAVE_LIGHTS:
+        compositor->save_file = value;
+        return *value != '\0';
+    case OPT_INTERPOLATE:
+        return compositor->interpolate = true;
+    case OPT_SHOW:
+        return compositor->show_lights = tool_word(value, shows) == 0;
+    case OPT_STRENGTH:
+        compositor->settings.has_exposure = false;
+        return tool_number(value, &compositor->strength.asked) &&
+               compositor->strength.asked >= 0 &&
+               compositor->strength.asked <= 100;
+    default:
+        layer = tool_word(value, layers);
+        compositor->flare_only = layer >= 1;
+        compositor->flare_alpha = layer == 2;
+        return layer >= 0;
+    }
+}
+
+/* False: OPTION is the other dial for the same. */
+static bool take_dial(struct compositor *compositor, int option)
+{
+    if (option != OPT_STRENGTH && option != OPT_EXPOSURE)
+        return true;
+    if (compositor->dial && compositor->dial != option)
+        return false;
+    compositor->dial = option;
+    return true;
+}
+
+void compositor_options_end(struct compositor *compositor)
+{
+    compositor->dial = 0;
+}
+
+int compositor_option(const struct tool *tool, struct compositor *compositor,
+                      int option, const char *value)
+{
+    static const struct option names[] = {COMPOSITOR_OPTIONS};
+    const int code =
+        take_dial(compositor, option)
+            ? settings_option(tool, &compositor->settings, option, value)
+            : tool_usage(tool, "--strength chooses the exposure; "
+                               "give one of it and --exposure");
+
+    if (code != -2 || option < OPT_LENS || option >= OPT_COMPOSITOR_LAST)
+        return code;
+    if (take(compositor, option, value))
+        return -1;
+    return tool_refuse(tool, names[option - OPT_LENS].name, value);
+}
+
+/* ------------------------------------------------------------------- making */
+
+/* Rows of a file, those on their way, and those by pixel. */
+static enum glint_status open_list(struct compositor *compositor,
+                                   struct glint_error *error)
+{
+    enum glint_status status = GLINT_OK;
+
+    if (compositor->lights_file)
+        status =
+            lamp_list_read(&compositor->list, compositor->lights_file, error);
+    if (status == GLINT_OK && compositor->interpolate)
+        status = lamp_keys_link(&compositor->list);
+    for (int i = 0; i < compositor->at.n && status == GLINT_OK; i++)
+        status = lamp_list_add(&compositor->list, &compositor->at.row[i]);
+    compositor->is_listed = compositor->lights_file || compositor->at.n > 0;
+    return status;
+}
+
+int compositor_open(const struct tool *tool, struct compositor *compositor)
+{
+    struct glint_error error = {""};
+    enum glint_status status = GLINT_OK;
+    const int code =
+        settings_open(tool, &compositor->settings, compositor->lens);
+    size_t n;
+
+    if (code != EXIT_OK)
+        return code;
+    status = open_list(compositor, &error);
+    if (status == GLINT_OK && compositor->save_file)
+        status =
+            lamp_save_open(&compositor->save, compositor->save_file, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
+    n = (size_t)compositor->n_hand + (size_t)compositor->list.n +
+        GLINT_LAMP_DETECTOR_MAX;
+    compositor->lamp = malloc(n * sizeof *compositor->lamp);
+    compositor->level = malloc(n * sizeof *compositor->level);
+    compositor->id = malloc(n * sizeof *compositor->id);
+    return compositor->lamp && compositor->level && compositor->id
+               ? EXIT_OK
+               : tool_fail(tool, GLINT_E_MEMORY, NULL);
+}
+
+/* Lamps to look for: a picture has many that hardly show. */
+static int finder_max(const struct compositor *compositor)
+{
+    const int asked =
+        compositor->settings.max_lights ? compositor->settings.max_lights : 16;
+
+    return asked < GLINT_LAMP_DETECTOR_MAX ? asked : GLINT_LAMP_DETECTOR_MAX;
+}
+
+static void unsize(struct compositor *compositor)
+{
+    if (compositor->sized) {
+        glint_lamp_detector_close(&compositor->finder);
+        glint_frame_finish(&compositor->frame);
+    }
+    compositor->sized = false;
+}
+
+static enum glint_status open_finder(struct compositor *compositor, int width,
+                                     int height)
+{
+    struct glint_lamp_finder_config cfg;
+
+    glint_lamp_finder_defaults(&cfg, width, height);
+    cfg.threshold_high_q8 =
+        (int32_t)floor(256 * compositor->threshold_ev[0] + 0.5);
+    cfg.threshold_low_q8 =
+        (int32_t)floor(256 * compositor->threshold_ev[1] + 0.5);
+    compositor->finder.headroom_ev = compositor->headroom_ev;
+    compositor->finder.max = finder_max(compositor);
+    return glint_lamp_detector_open(&compositor->finder, &cfg);
+}
+
+/* While lamps change places, those that fade are drawn with those that rise. */
+static enum glint_status reserve(struct compositor *compositor)
+{
+    const int n_by_hand = compositor->n_hand + compositor->list.n;
+
+    return glint_frame_reserve(&compositor->frame, NULL,
+                               compositor->reserve_bytes,
+                               n_by_hand + GLINT_LAMP_DETECTOR_MAX,
+                               n_by_hand + 2 * compositor->finder.max);
+}
+
+int compositor_size(const struct tool *tool, struct compositor *compositor,
+                    int width, int height)
+{
+    enum glint_status status;
+    int code;
+
+    unsize(compositor);
+    compositor->view = settings_view(&compositor->settings, width, height);
+    compositor->strength.follows = false;
+    code = settings_frame(tool, &compositor->settings, compositor->view,
+                          &compositor->frame);
+    if (code != EXIT_OK)
+        return code;
+    compositor->sized = true;
+    status = response_cached(tool, compositor->settings.lens.name,
+                             &compositor->frame, compositor->reserve_bytes,
+                             &compositor->response);
+    if (status == GLINT_OK)
+        status = open_finder(compositor, width, height);
+    if (tool->verbose && !tool->quiet && !compositor->is_listed &&
+        compositor->n_hand == 0)
+        fprintf(stderr, "%s: lamps from %g stops of white, down to %g\n",
+                tool->name, compositor->threshold_ev[0],
+                compositor->threshold_ev[1]);
+    if (status == GLINT_OK && compositor->reserve_bytes)
+        status = reserve(compositor);
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+}
+
+void compositor_replace(struct compositor *compositor,
+                        const struct compositor *fresh)
+{
+    const struct lamp_save save = compositor->save;
+    const int n_frames = compositor->n_frames;
+
+    compositor->save.is_open = false; /* goes on */
+    compositor_close(compositor);
+    *compositor = *fresh;
+    if (save.is_open) {
+        lamp_save_abort(&compositor->save);
+        compositor->save = save;
+        compositor->n_frames = n_frames;
+    }
+    /* what is made by size points here, and is made anew */
+    if (compositor->settings.setup.lens)
+        compositor->settings.setup.lens = &compositor->settings.lens;
+}
+
+int compositor_finish(const struct tool *tool, struct compositor *compositor)
+{
+    struct glint_error error = {""};
+    const enum glint_status status =
+        lamp_save_finish(&compositor->save, &error);
+
+    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
+}
+
+void compositor_close(struct compositor *compositor)
+{
+    unsize(compositor);
+    lamp_save_abort(&compositor->save);
+    lamp_list_free(&compositor->list);
+    lamp_list_free(&compositor->at);
+    free(compositor->lamp);
+    compositor->lamp = NULL;
+    free(compositor->level);
+    compositor->level = NULL;
+    free(compositor->id);
+    compositor->id = NULL;
+    settings_close(&compositor->settings);
+}
+
+/* ------------------------------------------------------------------ drawing */
+
+/* Where lamp I is: as it was found, for what is written is read again. */
+static struct lamp_row row_of(const struct compositor *compositor, int i)
+{
+    const bool found = !compositor->is_listed && compositor->n_hand == 0;
+    const struct glint_lamp *lamp = &compositor->lamp[i];
+    const double *axis = lamp->axis;
+    const double focal = compositor->settings.setup.optics.focal_mm;
+    const double pixels = compositor->view.width * fabs(focal) /
+                          compositor->view.sensor_width_mm; /* per tangent */
+    struct lamp_row row = {.frame = compositor->n_frames,
+                           .power = lamp->power,
+                           .size = pixels * hypot(axis[0], axis[1]),
+                           .shape = axis[0] > 0 ? axis[1] / axis[0] : 1,
+                           .turn = lamp->turn_deg,
+                           .level = compositor->level[i],
+                           .id = compositor->id[i],
+                           .next = -1};
+
+    memcpy(row.rgb, lamp->rgb, sizeof row.rgb);
+    if (found) {
+        const struct glint_lamp_track *track = &compositor->finder.track[i];
+
+        row.x = track->x_q8 / 256.0;
+        row.y = track->y_q8 / 256.0;
+    } else
+        glint_view_to_pixel(&compositor->view,
+                            compositor->settings.setup.optics.focal_mm, lamp,
+                            &row.x, &row.y);
+    return row;
+}
+
+static void save_lamps(struct compositor *compositor)
+{
+    for (int i = 0; compositor->save.is_open && i < compositor->n_lamps; i++) {
+        const struct lamp_row row = row_of(compositor, i);
+
+        lamp_save_row(&compositor->save, &row);
+    }
+}
+
+static int set_lamps(struct compositor *compositor,
+                     const struct glint_image *image, int32_t elapsed_us)
+{
+    const double focal = compositor->settings.setup.optics.focal_mm;
+    int n = compositor->n_hand;
+
+    memcpy(compositor->lamp, compositor->hand,
+           (size_t)n * sizeof *compositor->lamp);
+    for (int i = 0; i < n; i++) {
+        compositor->level[i] = 1;
+        compositor->id[i] =
+            (compositor->is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i;
+    }
+    if (compositor->is_listed) {
+        lamp_keys_ids(&compositor->list, compositor->n_frames,
+                      compositor->id + n);
+        n += lamp_list_frame(&compositor->list, compositor->n_frames,
+                             &compositor->view, focal, compositor->lamp + n,
+                             compositor->level + n, compositor->list.n);
+    }
+    compositor->is_followed = elapsed_us > 0 && !compositor->no_tracking;
+    if (compositor->is_listed || n > 0)
+        return n;
+    n = glint_lamp_detector_frame(&compositor->finder, image,
+                                  compositor->no_tracking ? 0 : elapsed_us,
+                                  &compositor->view, focal, compositor->lamp);
+    for (int i = 0; i < n; i++) {
+        compositor->level[i] = compositor->finder.track[i].level_q15 / 32768.0;
+        compositor->id[i] = compositor->finder.track[i].id;
+    }
+    return n;
+}
+
+int compositor_lamps(struct compositor *compositor,
+                     const struct glint_image *image, int32_t elapsed_us)
+{
+    compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
+    save_lamps(compositor);
+    return compositor->n_lamps;
+}
+
+/* Whether codes are luma and chroma, or grey: then black may be 16. */
+static bool is_luma(enum glint_pixel_format format)
+{
+    return format != GLINT_RGB24 && format != GLINT_BGR24 &&
+           format != GLINT_XRGB8888 && format != GLINT_RGB565;
+}
+
+/* The codes of black that bytes of plane PLANE have in turn. */
+static void black_of(const struct glint_image *image, int plane,
+                     uint8_t code[2])
+{
+    const bool limited =
+        is_luma(image->format) && image->range == GLINT_RANGE_LIMITED;
+
+    code[0] = code[1] = plane > 0 ? 128 : limited ? 16 : 0;
+    if (image->format == GLINT_YUYV)
+        code[1] = 128;
+    else if (image->format == GLINT_UYVY)
+        code[0] = 128;
+}
+
+/* Black, in the codes of IMAGE. */
+static void blacken(const struct glint_image *image)
+{
+    for (int p = 0; p < glint_image_planes(image->format); p++) {
+        const int rows =
+            glint_image_plane_height(image->format, p, image->height);
+        const size_t bytes =
+            glint_image_row_bytes(image->format, p, image->width);
+        uint8_t code[2];
+
+        black_of(image, p, code);
+        for (int y = 0; y < rows; y++) {
+            uint8_t *row = image->plane[p] + y * image->stride_bytes[p];
+
+            for (size_t i = 0; i < bytes; i++)
+                row[i] = code[i & 1];
+        }
+    }
+}
+
+/* Draws the lights over IMAGE: as found, else where they are, by number. */
+void compositor_mark(const struct compositor *compositor,
+                     const struct glint_image *image)
+{
+    const bool found = !compositor->is_listed && compositor->n_hand == 0;
+
+    for (int i = 0; i < compositor->n_lamps; i++) {
+        const struct lamp_row row = row_of(compositor, i);
+        const uint32_t id = row.id < LAMP_ID_TEXT ? row.id : (uint32_t)i + 1;
+        struct glint_lamp_track track = {.id = id, .state = GLINT_LAMP_STEADY};
+
+        if (!(fabs(row.x) < 1 << 20 && fabs(row.y) < 1 << 20))
+            continue;
+        if (found)
+            track = compositor->finder.track[i];
+        track.x_q8 = (int32_t)(row.x * 256);
+        track.y_q8 = (int32_t)(row.y * 256);
+        show_light_of(image, &track, row.power);
+    }
+    show_legend(image, found && compositor->is_followed);
+}
+
+double compositor_scale(const struct compositor *compositor)
+{
+    return compositor->strength.scale;
+}
+
+void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
+{
+    const bool is_new =
+        compositor->no_tracking ||
+        (compositor->is_listed
+             ? lamp_keys_is_cut(&compositor->list, compositor->n_frames)
+             : glint_lamp_tracker_was_cut(compositor->finder.tracks));
+    const struct glint_strength_lamps lamps = {
+        compositor->lamp, compositor->level, compositor->n_lamps,
+        (double)compositor->view.width * compositor->view.height *
+            compositor->white};
+
+    save_lamps(compositor);
+    compositor->strength.is_physical = compositor->settings.has_exposure;
+    compositor->strength.exposure_ev = compositor->settings.exposure_ev;
+    compositor->strength.gain = compositor->settings.gain;
+    glint_strength_expose(&compositor->strength, &compositor->response, &lamps,
+                          is_new ? 0 : elapsed_us);
+}
+
+void compositor_find(struct compositor *compositor,
+                     const struct glint_image *image, int32_t elapsed_us)
+{
+    const struct settings *settings = &compositor->settings;
+    const double start = tool_seconds();
+
+    compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
+    /* there is time for a picture by itself */
+    if (elapsed_us == 0 && !settings->area_samples_asked &&
+        settings->budget_ms == 0)
+        compositor->frame.dials.area_points =
+            1 + GLINT_AREA_STILL * (settings->dials.area_points - 1);
+    compositor->find_ms = 1e3 * (tool_seconds() - start);
+}
+
+enum glint_status compositor_draw(struct compositor *compositor,
+                                  const struct glint_image *image,
+                                  int32_t elapsed_us)
+{
+    enum glint_status status;
+    double found;
+
+    compositor_find(compositor, image, elapsed_us);
+    compositor_expose(compositor, elapsed_us);
+    found = tool_seconds();
+    if (compositor->flare_only)
+        blacken(image);
+    status = glint_frame_draw(
+        &compositor->frame, compositor->lamp,
+        compositor_scale(compositor) > 0 ? compositor->n_lamps : 0,
+        compositor_scale(compositor), image, &compositor->report);
+    compositor->report.lights = compositor->n_lamps;
+    compositor->flare_ms = 1e3 * (tool_seconds() - found);
+    if (compositor->show_lights)
+        compositor_mark(compositor, image);
+    compositor->n_frames++;
+    return status;
+}
