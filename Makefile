@@ -47,7 +47,7 @@ PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats video panel linux jpeg oiio sdl
-TOOLS     := options model overlay command live lab
+TOOLS     := options lamp_files model overlay command live lab
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 

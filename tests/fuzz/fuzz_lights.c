@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_list.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "engine/frame/area.h"
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_list.h"
 #include "engine/measure.h"
 #include "formats/picture.h"
 #include "posix/error.h"

@@ -12,8 +12,8 @@
 #ifndef GLINT_TOOLS_OVERLAY_COMPOSITOR_H
 #define GLINT_TOOLS_OVERLAY_COMPOSITOR_H
 
-#include "options/lamp_save.h"
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_save.h"
+#include "lamp_files/lamp_list.h"
 #include "options/settings.h"
 #include "engine/strength.h"
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_list.h"
 #include "support/lens_check.h"
 
 enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_list.h"
 #include "support/extreme.h"
 #include "support/stage.h"
 

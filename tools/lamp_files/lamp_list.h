@@ -2,8 +2,8 @@
  *
  * Lamps of frames as a list in a file.
  */
-#ifndef GLINT_TOOLS_OPTIONS_LAMP_LIST_H
-#define GLINT_TOOLS_OPTIONS_LAMP_LIST_H
+#ifndef GLINT_TOOLS_LAMP_FILES_LAMP_LIST_H
+#define GLINT_TOOLS_LAMP_FILES_LAMP_LIST_H
 
 #include <stdbool.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "options/lamp_keys.h"
+#include "lamp_files/lamp_keys.h"
 
 #include <math.h>
 #include <stdlib.h>

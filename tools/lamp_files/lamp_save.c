@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "options/lamp_save.h"
+#include "lamp_files/lamp_save.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -12,13 +12,13 @@
  * x, y, size and colour go evenly from one row to its next, power by equal
  * stops, or evenly where one of both is 0.
  */
-#ifndef GLINT_TOOLS_OPTIONS_LAMP_KEYS_H
-#define GLINT_TOOLS_OPTIONS_LAMP_KEYS_H
+#ifndef GLINT_TOOLS_LAMP_FILES_LAMP_KEYS_H
+#define GLINT_TOOLS_LAMP_FILES_LAMP_KEYS_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_list.h"
 
 /* The fields "id" and, only by a heading, "shape", "turn" and "level". */
 enum { LAMP_ID = 8, LAMP_SHAPE, LAMP_TURN, LAMP_LEVEL, LAMP_COLUMNS };

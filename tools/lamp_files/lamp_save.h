@@ -9,10 +9,10 @@
  * Numbers are written so that they are read as the same. The file is whole or
  * not there.
  */
-#ifndef GLINT_TOOLS_OPTIONS_LAMP_SAVE_H
-#define GLINT_TOOLS_OPTIONS_LAMP_SAVE_H
+#ifndef GLINT_TOOLS_LAMP_FILES_LAMP_SAVE_H
+#define GLINT_TOOLS_LAMP_FILES_LAMP_SAVE_H
 
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_list.h"
 #include "posix/output.h"
 
 struct lamp_save {

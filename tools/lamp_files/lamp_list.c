@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "options/lamp_list.h"
+#include "lamp_files/lamp_list.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/frame/area.h"
-#include "options/lamp_keys.h"
+#include "lamp_files/lamp_keys.h"
 #include "posix/error.h"
 #include "posix/input.h"
 #include "options/tool.h"

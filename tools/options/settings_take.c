@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: MIT */
+#include "options/settings_take.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame/area.h"
+#include "options/settings_waves.h"
+
+/* What became of an option; false and true are the first two. */
+enum taken { WRONG, TAKEN, OTHER };
+
+/* "circle" or "polygon:N[,ROT]" */
+static bool parse_stop(const char *text, struct settings *settings)
+{
+    double v[2] = {0, 0};
+
+    if (strcmp(text, "circle") == 0) {
+        settings->n_blades = 0;
+        return true;
+    }
+    if (strncmp(text, "polygon:", 8) != 0 ||
+        tool_numbers(text + 8, v, 2) == 0 || v[0] != floor(v[0]) || v[0] < 3 ||
+        v[0] > GLINT_MAX_BLADES)
+        return false;
+    settings->n_blades = (int)v[0];
+    settings->blade_rotation_deg = v[1];
+    return true;
+}
+
+static bool parse_sensor(const char *text, double mm[2])
+{
+    char *end;
+
+    mm[0] = strtod(text, &end);
+    return end != text && *end == 'x' && tool_number(end + 1, &mm[1]) &&
+           mm[0] >= 0.1 && mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
+}
+
+static bool parse_merge(const char *text, struct settings *settings)
+{
+    double v[2];
+
+    if (tool_numbers(text, v, 2) != 2 || v[0] != floor(v[0]) || v[0] < 0 ||
+        v[0] > 4 || v[1] < 0 || v[1] > 1)
+        return false;
+    settings->merge_steps = (int)v[0];
+    settings->merge_gamma = v[1];
+    return true;
+}
+
+/* A power of two out of a short list, as its logarithm. */
+static bool parse_side(const char *text, int low, int high, int *log2)
+{
+    int side;
+
+    if (!tool_integer(text, 0, 1 << high, &side))
+        return false;
+    for (*log2 = low; *log2 <= high; ++*log2)
+        if (side == 1 << *log2)
+            return true;
+    *log2 = 0;
+    return side == 0 && low > 3;
+}
+
+static bool take_error(const char *text, struct settings *s)
+{
+    double px;
+
+    if (!tool_number(text, &px) || px <= 0)
+        return false;
+    settings_set_quality(s, glint_quality_for_error(px));
+    return true;
+}
+
+static bool take_dispersion(const char *text, struct settings *s)
+{
+    double px;
+
+    if (!tool_number(text, &px) || (px != 0 && !(px >= 0.1 && px <= 100)))
+        return false;
+    s->dials.dispersion_q8 = (int)lrint(px * 256);
+    return true;
+}
+
+static bool take_quantum(const char *text, struct settings *s)
+{
+    if (!tool_number(text, &s->quantum) || s->quantum < 0 || s->quantum > 50)
+        return false;
+    s->dials.irradiance_steps = glint_quality_steps(s->quantum);
+    return true;
+}
+
+static bool take_whole(const char *text, struct settings *s)
+{
+    double codes;
+
+    if (!tool_number(text, &codes) || codes < 0 || codes > 100)
+        return false;
+    s->dials.snap_codes_q8 = (int)lrint(codes * 256);
+    return true;
+}
+
+void settings_set_quality(struct settings *s, double quality)
+{
+    const struct glint_quality q = glint_quality_at(quality);
+    const unsigned kept = s->dials.flags & GLINT_DIAL_ALWAYS_HALF;
+
+    s->quality = quality;
+    s->dials = q.dials;
+    s->dials.flags |= kept;
+    s->quantum = q.quantum;
+    s->tolerance = q.tolerance;
+    s->has_grid = true;
+}
+
+bool settings_take_quality(struct settings *s, const char *text)
+{
+    const bool exact = strcmp(text, "exact") == 0;
+    const int name = tool_word(text, glint_quality_name);
+    double quality = exact ? 1 : glint_quality_named(name);
+
+    if (!exact && name < 0 &&
+        (!tool_number(text, &quality) || quality < 0 || quality > 1))
+        return false;
+    settings_set_quality(s, quality);
+    if (exact)
+        s->rays = SETTINGS_RAYS_EXACT;
+    return true;
+}
+
+/* Options of the lens. */
+static enum taken take_lens(struct settings *s, int option, const char *value)
+{
+    switch (option) {
+    case OPT_F_NUMBER:
+        return tool_number(value, &s->f_number) && s->f_number > 0;
+    case OPT_STOP:
+        return parse_stop(value, s);
+    case OPT_WAVELENGTHS:
+        return settings_take_waves(s, value);
+    case OPT_DISPERSION:
+        return take_dispersion(value, s);
+    case OPT_SENSOR:
+        return parse_sensor(value, s->sensor_mm);
+    case OPT_GHOST:
+        return tool_integer(value, 0, GLINT_MAX_GHOSTS, &s->only_ghost);
+    case OPT_BALANCE:
+        s->balance = true;
+        return TAKEN;
+    default:
+        return OTHER;
+    }
+}
+
+/* Options of light, and of which lights. */
+static enum taken take_light(struct settings *s, int option, const char *value)
+{
+    switch (option) {
+    case OPT_EXPOSURE:
+        s->has_exposure = true;
+        return tool_number(value, &s->exposure_ev) &&
+               fabs(s->exposure_ev) <= 100;
+    case OPT_GAIN:
+        return tool_number(value, &s->gain) && s->gain >= 0;
+    case OPT_MAX_LIGHTS:
+        return tool_integer(value, 1, 1 << 20, &s->max_lights);
+    case OPT_AREA_SAMPLES:
+        return tool_integer(value, 1, GLINT_AREA_MOST_SAMPLES,
+                            &s->area_samples_asked);
+    case OPT_APART:
+        return tool_number(value, &s->apart_px) && s->apart_px >= 0 &&
+               s->apart_px <= 1000;
+    case OPT_CULL:
+        return tool_number(value, &s->dials.cull_codes) &&
+               s->dials.cull_codes >= 0 && s->dials.cull_codes <= 16;
+    default:
+        return OTHER;
+    }
+}
+
+/* Options of the way from rays to pixels. */
+static enum taken take_way(struct settings *s, int option, const char *value)
+{
+    static const char *const weights[] = {"loop-derose", "wachspress", NULL};
+    static const char *const rasters[] = {"edges", "cells", NULL};
+    int word;
+
+    switch (option) {
+    case OPT_GRID:
+        s->has_grid = true;
+        return tool_integer(value, 4, GLINT_MAX_CELLS, &s->dials.fineness);
+    case OPT_UNIFORM:
+        s->uniform = true;
+        return TAKEN;
+    case OPT_MERGE:
+        return parse_merge(value, s);
+    case OPT_TILE:
+        return parse_side(value, 3, 6, &s->tile_log2);
+    case OPT_COARSE:
+        return parse_side(value, 6, 8, &s->coarse_log2);
+    case OPT_WEIGHTS:
+        word = tool_word(value, weights);
+        s->weights =
+            word == 0 ? GLINT_WEIGHTS_LOOP_DEROSE : GLINT_WEIGHTS_WACHSPRESS;
+        return word >= 0;
+    case OPT_RASTER:
+        word = tool_word(value, rasters);
+        s->raster = word;
+        s->by_edges = word == 0;
+        return word >= 0;
+    case OPT_MASK:
+        return tool_integer(value, 2, 4096, &s->mask_nodes);
+    case OPT_NO_ANTIALIAS:
+        s->antialias = false;
+        return TAKEN;
+    case OPT_DITHER:
+        s->dither = true;
+        return TAKEN;
+    default:
+        return OTHER;
+    }
+}
+
+/* Options that trade accuracy for time. */
+static enum taken take_dial(struct settings *s, int option, const char *value)
+{
+    static const char *const rays[] = {"model", "exact", NULL};
+    int word;
+
+    switch (option) {
+    case OPT_QUANTUM:
+        return take_quantum(value, s);
+    case OPT_WHOLE:
+        return take_whole(value, s);
+    case OPT_HALF:
+        s->dials.flags |= GLINT_DIAL_ALWAYS_HALF;
+        return TAKEN;
+    case OPT_QUALITY:
+        return settings_take_quality(s, value);
+    case OPT_ERROR:
+        return take_error(value, s);
+    case OPT_BUDGET:
+        return tool_number(value, &s->budget_ms) && s->budget_ms > 0 &&
+               s->budget_ms <= 1e6;
+    case OPT_RAYS:
+        word = tool_word(value, rays);
+        s->rays = word == 0 ? SETTINGS_RAYS_MODEL : SETTINGS_RAYS_EXACT;
+        return word >= 0;
+    case OPT_LANES: /* of a release ago */
+        return strcmp(value, "32") == 0;
+    default:
+        return OTHER;
+    }
+}
+
+bool settings_take(struct settings *settings, int option, const char *value)
+{
+    static const char *const parts[] = {"ghosts", "all", NULL};
+    enum taken taken = take_lens(settings, option, value);
+
+    if (taken == OTHER)
+        taken = take_light(settings, option, value);
+    if (taken == OTHER)
+        taken = take_way(settings, option, value);
+    if (taken == OTHER)
+        taken = take_dial(settings, option, value);
+    return taken == OTHER ? tool_word(value, parts) >= 0 : taken == TAKEN;
+}

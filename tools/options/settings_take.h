@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Values of the options of settings.h.
+ */
+#ifndef GLINT_TOOLS_OPTIONS_SETTINGS_TAKE_H
+#define GLINT_TOOLS_OPTIONS_SETTINGS_TAKE_H
+
+#include "options/settings.h"
+
+/* Takes VALUE of OPTION, one of enum settings_option but OPT_COATING. False: it
+ * is not one that this takes. */
+bool settings_take(struct settings *settings, int option, const char *value);
+
+#endif

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame/area.h"
+#include "options/takes.h"
+#include "overlay/compositor.h"
+
+void compositor_defaults(struct compositor *compositor)
+{
+    *compositor = (struct compositor){.lens = "nikon-zoom-short",
+                                      .headroom_ev = -1,
+                                      .threshold_ev = {-0.1, -0.15},
+                                      .white = 1};
+    settings_defaults(&compositor->settings);
+    compositor->settings.coating.kind = COATING_MIXED;
+    compositor->settings.waves = SETTINGS_WAVES_AUTO;
+    glint_strength_defaults(&compositor->strength);
+}
+
+/* Stops by which a region extends below what makes it a lamp, if not told. */
+#define EXTENDS_EV 0.05
+
+/* Of a lamp by hand, over a white pixel: a street lamp in a night picture. */
+#define DEFAULT_EV 16
+
+static bool take_threshold(const char *text, double threshold_ev[2])
+{
+    double v[2];
+    const int n = tool_numbers(text, v, 2);
+
+    if (n == 1)
+        v[1] = fmax(v[0] - EXTENDS_EV, -20);
+    if (n == 0 || !(v[0] <= 0) || !(v[1] >= -20 && v[1] <= v[0]))
+        return false;
+    memcpy(threshold_ev, v, sizeof v);
+    return true;
+}
+
+static bool take_light(struct compositor *compositor, const char *text)
+{
+    struct glint_lamp *lamp = &compositor->hand[compositor->n_hand];
+
+    if (compositor->n_hand == SETTINGS_MAX_LAMPS || !settings_lamp(text, lamp))
+        return false;
+    compositor->settings.max_deg =
+        fmax(compositor->settings.max_deg, lamp->theta_deg);
+    compositor->n_hand++;
+    return true;
+}
+
+/* "X,Y[,EV]" */
+static bool take_light_at(struct compositor *compositor, const char *text)
+{
+    double v[3] = {0, 0, DEFAULT_EV};
+    const int n = tool_numbers(text, v, 3);
+    const struct lamp_row row = {.frame = -1,
+                                 .x = v[0],
+                                 .y = v[1],
+                                 .power = exp2(v[2]),
+                                 .rgb = {1, 1, 1},
+                                 .shape = 1,
+                                 .level = 1,
+                                 .next = -1};
+
+    return n >= 2 && fabs(v[0]) <= 1e6 && fabs(v[1]) <= 1e6 && v[2] >= -40 &&
+           v[2] <= 90 && compositor->at.n < SETTINGS_MAX_LAMPS &&
+           lamp_list_add(&compositor->at, &row) == GLINT_OK;
+}
+
+static bool take(struct compositor *compositor, int option, const char *value)
+{
+    static const char *const layers[] = {"composite", "flare", "flare-alpha",
+                                         NULL};
+    static const char *const shows[] = {"lights", NULL};
+    int layer;
+
+    switch (option) {
+    case OPT_LENS:
+        compositor->lens = value;
+        return true;
+    case OPT_LIGHTS:
+        compositor->lights_file = strcmp(value, "auto") == 0 ? NULL : value;
+        return true;
+    case OPT_LIGHT:
+        return take_light(compositor, value);
+    case OPT_THRESHOLD:
+        return take_threshold(value, compositor->threshold_ev);
+    case OPT_HEADROOM:
+        return tool_number(value, &compositor->headroom_ev) &&
+               compositor->headroom_ev >= 0 && compositor->headroom_ev <= 40;
+    case OPT_NO_TRACKING:
+        return compositor->no_tracking = true;
+    case OPT_LIGHT_AT:
+        return take_light_at(compositor, value);
+    case OPT_SAVE_LIGHTS:
+        compositor->save_file = value;
+        return *value != '\0';
+    case OPT_INTERPOLATE:
+        return compositor->interpolate = true;
+    case OPT_SHOW:
+        return compositor->show_lights = tool_word(value, shows) == 0;
+    case OPT_STRENGTH:
+        compositor->settings.has_exposure = false;
+        return tool_number(value, &compositor->strength.asked) &&
+               compositor->strength.asked >= 0 &&
+               compositor->strength.asked <= 100;
+    default:
+        layer = tool_word(value, layers);
+        compositor->flare_only = layer >= 1;
+        compositor->flare_alpha = layer == 2;
+        return layer >= 0;
+    }
+}
+
+/* False: OPTION is the other dial for the same. */
+static bool take_dial(struct compositor *compositor, int option)
+{
+    if (option != OPT_STRENGTH && option != OPT_EXPOSURE)
+        return true;
+    if (compositor->dial && compositor->dial != option)
+        return false;
+    compositor->dial = option;
+    return true;
+}
+
+void compositor_options_end(struct compositor *compositor)
+{
+    compositor->dial = 0;
+}
+
+int compositor_option(const struct tool *tool, struct compositor *compositor,
+                      int option, const char *value)
+{
+    static const struct option names[] = {COMPOSITOR_OPTIONS};
+    const int code =
+        take_dial(compositor, option)
+            ? settings_option(tool, &compositor->settings, option, value)
+            : tool_usage(tool, "--strength chooses the exposure; "
+                               "give one of it and --exposure");
+
+    if (code != -2 || option < OPT_LENS || option >= OPT_COMPOSITOR_LAST)
+        return code;
+    if (take(compositor, option, value))
+        return -1;
+    return tool_refuse(tool, names[option - OPT_LENS].name, value);
+}
