@@ -69,7 +69,7 @@ static WHOLLY_INLINE uint64_t high_of(const uint8_t *p, int n, int code)
  */
 static uint64_t bits_of_code(int code)
 {
-    const int highest = 1 << (bit_length((uint64_t)code) - 1);
+    const int highest = (1 << bit_length((uint64_t)code)) >> 1;
 
     return (uint64_t)(256 - (highest < 128 ? highest : 128)) * BYTES_EACH;
 }

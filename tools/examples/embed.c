@@ -57,7 +57,7 @@ int main(int argc, char **argv)
         cfg.model = &lens;
         if (glint_engine_create(&engine, &cfg, &error) == GLINT_OK) {
             n = glint_engine_find(engine, &image, 0, lamps, 64);
-            bad = glint_engine_draw(engine, lamps, n, &image, &report);
+            bad = !!glint_engine_draw(engine, lamps, n, &image, &report);
         }
     }
     glint_engine_destroy(engine);

@@ -30,18 +30,21 @@ static const char magic[8] = "glintRS";
 
 /* ---------------------------------------------------------------------- key */
 
-/* FNV-1a over BYTES. */
-static void add_bytes(uint64_t *key, const void *data, size_t bytes)
+/* FNV-1a over the bytes of WORD, the lowest first. */
+static void add_word(uint64_t *key, uint64_t word)
 {
-    const uint8_t *byte = data;
-
-    for (size_t i = 0; i < bytes; i++)
-        *key = (*key ^ byte[i]) * UINT64_C(0x100000001b3);
+    for (int shift = 0; shift < 64; shift += 8)
+        *key = (*key ^ (word >> shift & 255)) * UINT64_C(0x100000001b3);
 }
 
 static void add_values(uint64_t *key, const double *value, size_t n)
 {
-    add_bytes(key, value, n * sizeof *value);
+    for (size_t i = 0; i < n; i++) {
+        uint64_t word;
+
+        memcpy(&word, &value[i], sizeof word);
+        add_word(key, word);
+    }
 }
 
 /* The stop and the colours; the rest of a setup is the model's. */
@@ -92,8 +95,10 @@ static uint64_t key_of(const struct glint_frame *like, size_t bytes)
                               REVISION};
     uint64_t key = UINT64_C(0xcbf29ce484222325);
 
-    add_bytes(&key, model, sizeof model);
-    add_bytes(&key, GLINT_VERSION, strlen(GLINT_VERSION));
+    for (size_t i = 0; i < sizeof model / sizeof *model; i++)
+        add_word(&key, model[i]);
+    for (const char *c = GLINT_VERSION; *c; c++)
+        add_word(&key, (unsigned char)*c);
     add_values(&key, shape, sizeof shape / sizeof *shape);
     add_setup(&key, like->setup);
     add_dials(&key, like);
