@@ -20,7 +20,7 @@ check-arm:
 	@tools/make/deps "ARM in an emulator" gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
 	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross gcc-arm-linux-gnueabi \
 	        libc6-dev-armel-cross qemu-user-static debian-archive-keyring
-	@$(MAKE) --no-print-directory WERROR=-Werror $(OUT)/scenes $(ARM_BAKES) \
+	@$(MAKE) --no-print-directory WERROR=-Werror all $(OUT)/scenes $(ARM_BAKES) \
 	        $(ARM_MODELS:%=build/models/%.glint)
 	@set -e; for t in $(ARM_TARGETS); do \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t purity \
