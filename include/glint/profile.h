@@ -4,8 +4,8 @@
  *
  *     bytes = glint_profile_bytes();                           once
  *     glint_profile_init(&profile, mem, bytes);
- *     n = glint_lamp_finder_find(finder, &image, spots, 1024);      each
- * picture glint_profile_measure(profile, &image, spots, n);
+ *     n = glint_lamp_finder_find(finder, &image, spots, 1024);   each picture
+ *     glint_profile_measure(profile, &image, spots, n);
  *
  * Looks once at the pixels around each spot. Where channels are clipped, their
  * power is taken from how large the clipped core is and how the light falls

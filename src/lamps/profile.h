@@ -1,67 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * The light around a spot, summed.
- *
- *   in   a picture, a spot in it
- *   out  per channel: areas by brightness, flux, clipped area; the colour of
- *        the fringe; second moments of the core
- *
- * Method: a disc about the spot, GLINT_PROFILE_RINGS times wider than its core,
- * is sampled: all pixels of the core and its rim where it is small, else every
- * s-th of every s-th row, and in each ring around, which is twice as wide, half
- * as densely. The background is that of the outermost ring: of its eight
- * sectors those in the middle, so that what is bright or dark beside the lamp
- * does not count. Light is counted over the background, as part of what is left
- * between that and white, u.
- *
- * A pixel counts to the areas by soft steps: to the area of level k by as much
- * as u goes from 2^-k to 2^(1-k), to the clipped area by as much as its light
- * goes from CLIP_FIRST to CLIP_LAST. So no sum jumps.
- *
- * Limits: weights of samples sum to 2^30 at most, the pixels of the largest
- * picture; u_q16 is 2^16 at most; offsets from the centre are below 2^15.
+ * What glint/profile.h keeps: the light around the spots of one picture.
  */
 #ifndef GLINT_LAMPS_PROFILE_H
 #define GLINT_LAMPS_PROFILE_H
 
-#include "lamps/bright.h"
 #include "glint/profile.h"
-
-enum {
-    GLINT_PROFILE_RINGS = 3,
-    GLINT_PROFILE_LEVELS = 7,
-    GLINT_PROFILE_NEAR = 3, /* levels that the outer rings do not have */
-    GLINT_PROFILE_SPOTS = 1024
-};
-
-struct glint_profile_channel {
-    int32_t black_q20, scale_q16; /* background; 1 / (1 - that), to 16 */
-    int32_t spread_q16;           /* of the background, in u */
-    int32_t step_q16; /* from the background to the next code, in u, where
-                         codes have fewer than 8 bits; else 0 */
-    int64_t area_q8[GLINT_PROFILE_LEVELS + 1]; /* where u is 2^-k or more;
-                                                  [0]: clipped */
-    int64_t n[GLINT_PROFILE_LEVELS + 1]; /* pixels whose own level that is */
-    int64_t fringe_q16; /* light of the fringe, and of what is clipped */
-    int64_t white_q16;
-};
-
-struct glint_profile_sums {
-    struct glint_profile_channel of[3];
-    /* Of the core, about the pixel in the middle of the window; in steps. */
-    int64_t w_q16, moment_q16[2], square_q16[3]; /* xx, yy, xy */
-    int step;                                    /* pixels */
-};
+#include "lamps/rings.h"
 
 struct glint_profile {
-    struct glint_bright bright;
-    int32_t by_x[GLINT_PROFILE_SPOTS];
+    struct glint_rings rings;
 };
-
-/* Sums the light around the I-th spot from the left: profile->by_x lists the N
- * SPOTS so, and its bright reads the picture. */
-void glint_profile_sum(struct glint_profile_sums *sums,
-                       struct glint_profile *profile,
-                       const struct glint_spot *spots, int n, int i);
 
 #endif

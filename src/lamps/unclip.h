@@ -5,7 +5,7 @@
 #ifndef GLINT_LAMPS_UNCLIP_H
 #define GLINT_LAMPS_UNCLIP_H
 
-#include "lamps/profile.h"
+#include "lamps/rings.h"
 
 /* What tells the power of a clipped core, as logarithms: its area; how much
  * less the channel has that clips least; how much more area there is at each

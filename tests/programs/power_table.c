@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lamps/profile.h"
 #include "lamps/unclip.h"
 #include "glint/glint.h"
 #include "support/power_picture.h"
@@ -150,7 +151,7 @@ static int id_of(const struct camera *c, const struct glint_spot *spot)
 {
     int i = 0;
 
-    while (&c->spot[c->profile->by_x[i]] != spot)
+    while (&c->spot[c->profile->rings.by_x[i]] != spot)
         i++;
     return i;
 }
@@ -162,7 +163,7 @@ static void print_features(struct camera *c, int id, double power,
     int32_t feature_q16[GLINT_UNCLIP_FEATURES];
     int64_t seen_q16, core_q16;
 
-    glint_profile_sum(&sums, c->profile, c->spot, c->n, id_of(c, spot));
+    glint_rings_sum(&sums, &c->profile->rings, c->spot, c->n, id_of(c, spot));
     glint_unclip_light(&seen_q16, &core_q16, spot, &sums);
     glint_unclip_features(feature_q16, spot, &sums);
     printf("%d %.6g %.6g %.6g", id, power, (double)seen_q16 / 65536,

@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: MIT */
+#include "lamps/rings.h"
+
+#include "base/divide.h"
+#include "base/q.h"
+#include "base/sort.h"
+
+#define WHITE_Q20     LINEAR_WHITE_Q20
+#define ONE_Q16       (1 << 16)
+#define CLIP_FIRST    Q_CONST(0.80, 20) /* about code 231 */
+#define CLIP_LAST     Q_CONST(0.98, 20) /* 253 */
+#define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
+
+enum {
+    SECTORS = 8,
+    BORDERS = 4,
+    SAMPLES = 32, /* of the core's radius, where it is not smaller */
+    RINGS = GLINT_PROFILE_RINGS,
+    LEVELS = GLINT_PROFILE_LEVELS,
+    NEAR = GLINT_PROFILE_NEAR
+};
+
+/* ------------------------------------------------------------------- window */
+
+/* A spot nearby: what lies behind the line between is its own. */
+struct border {
+    int x, y;      /* towards it, pixels */
+    int64_t limit; /* of the product with that */
+    int32_t at_q8; /* pixels off */
+};
+
+struct window {
+    struct glint_bright *bright;
+    struct border border[BORDERS]; /* the nearest */
+    int n_borders;
+    int width, height;
+    int x, y;   /* pixel in the middle */
+    int radius; /* of the inner disc; ring i ends at radius << i */
+    int step;   /* of samples there; step << i in ring i */
+};
+
+/* A pixel of the window, of which there are SHARE like it. */
+struct sample {
+    int32_t rgb_q20[3];
+    int dx, dy, share, ring;
+};
+
+typedef void sample_fn(void *ctx, const struct sample *sample);
+
+/* As far as the spot reaches if it is a disc, a tube, or a few pixels, and the
+ * rim that a lens blurs it by. */
+static struct window window_of(const struct glint_image *image,
+                               const struct glint_spot *spot)
+{
+    const int most =
+        image->width > image->height ? image->width : image->height;
+    const int64_t reach_q8 =
+        (int64_t)(spot->size_q8 > 0 ? spot->size_q8 : 0) * 2 + 3 * 256;
+    struct window w = {.width = image->width, .height = image->height};
+
+    w.x = q_clamp_sat(spot->x_q8 >> 8, 0, image->width - 1);
+    w.y = q_clamp_sat(spot->y_q8 >> 8, 0, image->height - 1);
+    w.radius = q_clamp_sat(reach_q8 >> 8, 3, most);
+    w.step = (w.radius + SAMPLES - 1) / SAMPLES;
+    return w;
+}
+
+static int is_in(const struct window *w, int dx, int dy)
+{
+    for (int i = 0; i < w->n_borders; i++) {
+        const struct border *b = &w->border[i];
+
+        if ((int64_t)dx * b->x + (int64_t)dy * b->y > b->limit)
+            return 0;
+    }
+    return 1;
+}
+
+/* Gives SEE samples X0, X0 + STEP ... X1 of the row. */
+static void see_run(const struct window *w, int x0, int x1, struct sample *at,
+                    int step, sample_fn *see, void *ctx)
+{
+    for (int dx = x0; dx <= x1; dx += step) {
+        const int x = w->x + dx;
+
+        if (x < 0 || x >= w->width || !is_in(w, dx, at->dy))
+            continue;
+        glint_bright_read(w->bright, x, at->rgb_q20);
+        at->dx = dx;
+        see(ctx, at);
+    }
+}
+
+/* The last sample of a row DY off in a disc of RADIUS, or -1. */
+static int last_in(int radius, int dy, int step)
+{
+    const int64_t left = (int64_t)radius * radius - (int64_t)dy * dy;
+
+    return left < 0 ? -1 : (int)q_root((uint64_t)left) / step * step;
+}
+
+/* The samples of ring RING, 0 for the disc in the middle. */
+static void see_ring(const struct window *w, int ring, sample_fn *see,
+                     void *ctx)
+{
+    const int step = w->step << ring, outer = w->radius << ring;
+    const int inner = ring ? w->radius << (ring - 1) : -1;
+    struct sample at = {.share = step * step, .ring = ring};
+
+    for (int dy = -(outer / step * step); dy <= outer; dy += step) {
+        const int end = last_in(outer, dy, step);
+        const int gap = inner < 0 ? -1 : last_in(inner, dy, step);
+
+        if (w->y + dy < 0 || w->y + dy >= w->height)
+            continue;
+        glint_bright_go(w->bright, w->y + dy);
+        at.dy = dy;
+        if (gap < 0) {
+            see_run(w, -end, end, &at, step, see, ctx);
+        } else {
+            see_run(w, -end, -gap - step, &at, step, see, ctx);
+            see_run(w, gap + step, end, &at, step, see, ctx);
+        }
+    }
+}
+
+/* --------------------------------------------------------------- neighbours */
+
+static int32_t reach_of_q8(const struct glint_spot *spot)
+{
+    return q_clamp_sat(spot->size_q8, 0, GLINT_MAX_SIDE << 8) * 3 / 2 + 256;
+}
+
+/* Keeps BORDER if it is among the nearest. */
+static void add_border(struct window *w, struct border border)
+{
+    int at = w->n_borders;
+
+    if (at == BORDERS && w->border[--at].at_q8 <= border.at_q8)
+        return;
+    for (; at > 0 && w->border[at - 1].at_q8 > border.at_q8; at--)
+        w->border[at] = w->border[at - 1];
+    w->border[at] = border;
+    w->n_borders += w->n_borders < BORDERS;
+}
+
+/* The line is half way between where the two spots end. */
+static void look_at(struct window *w, const struct glint_spot *spot,
+                    const struct glint_spot *other)
+{
+    const int x = (other->x_q8 >> 8) - w->x, y = (other->y_q8 >> 8) - w->y;
+    const int64_t d2 = (int64_t)x * x + (int64_t)y * y;
+    const int64_t far = (int64_t)w->radius << RINGS;
+    int64_t d_q8, at_q8;
+
+    if (other->faint || d2 == 0 || d2 >= 4 * far * far)
+        return;
+    d_q8 = q_root((uint64_t)d2 << 16);
+    at_q8 = (d_q8 + reach_of_q8(spot) - reach_of_q8(other)) / 2;
+    at_q8 = at_q8 < 256 ? 256 : at_q8 > d_q8 ? d_q8 : at_q8;
+    if (at_q8 < far << 8)
+        add_border(w,
+                   (struct border){x, y, at_q8 * d_q8 >> 16, (int32_t)at_q8});
+}
+
+static int is_left(const void *ctx, int32_t a, int32_t b)
+{
+    const struct glint_spot *spots = ctx;
+
+    return spots[a].x_q8 != spots[b].x_q8 ? spots[a].x_q8 < spots[b].x_q8
+                                          : a < b;
+}
+
+/* Looks at the spots around the I-th from the left. */
+static void find_borders(struct window *w, const struct glint_rings *rings,
+                         const struct glint_spot *spots, int n, int i)
+{
+    const struct glint_spot *spot = &spots[rings->by_x[i]];
+    const int64_t far_q8 = (int64_t)w->radius << (RINGS + 9);
+
+    for (int j = i - 1; j >= 0; j--) {
+        const struct glint_spot *other = &spots[rings->by_x[j]];
+
+        if ((int64_t)spot->x_q8 - other->x_q8 > far_q8)
+            break;
+        look_at(w, spot, other);
+    }
+    for (int j = i + 1; j < n; j++) {
+        const struct glint_spot *other = &spots[rings->by_x[j]];
+
+        if ((int64_t)other->x_q8 - spot->x_q8 > far_q8)
+            break;
+        look_at(w, spot, other);
+    }
+}
+
+/* --------------------------------------------------------------- background */
+
+struct sectors {
+    int64_t rgb_q20[SECTORS][3];
+    int64_t n[SECTORS];
+};
+
+static void see_background(void *ctx, const struct sample *s)
+{
+    struct sectors *sectors = ctx;
+    const int x = s->dx < 0 ? -s->dx : s->dx, y = s->dy < 0 ? -s->dy : s->dy;
+    const int i = (s->dx < 0) | (s->dy < 0) << 1 | (x < y) << 2;
+
+    for (int c = 0; c < 3; c++)
+        sectors->rgb_q20[i][c] += s->rgb_q20[c];
+    sectors->n[i]++;
+}
+
+/* A sector's light of a channel, and how much of the ring it is. */
+struct part {
+    int32_t mean_q20;
+    int64_t n;
+};
+
+static void sort(struct part *part, int n)
+{
+    for (int i = 1; i < n; i++)
+        for (int j = i; j > 0 && part[j - 1].mean_q20 > part[j].mean_q20; j--) {
+            const struct part old = part[j];
+
+            part[j] = part[j - 1];
+            part[j - 1] = old;
+        }
+}
+
+/* The mean of what lies between FROM and TO eighths of the ring when its PARTs
+ * are in order. */
+static int32_t mean_between(const struct part *part, int n, int64_t all,
+                            int from, int to)
+{
+    int64_t sum = 0, at = 0;
+
+    for (int i = 0; i < n; i++) {
+        const int64_t end = at + 8 * part[i].n;
+        const int64_t low = at > from * all ? at : from * all;
+        const int64_t high = end < to * all ? end : to * all;
+
+        if (high > low)
+            sum += part[i].mean_q20 * (high - low);
+        at = end;
+    }
+    return all ? (int32_t)q_divide(sum, (to - from) * all) : 0;
+}
+
+/* The middle half is the background, and what the middle quarter differs by is
+ * its spread. */
+static void set_background(struct glint_profile_channel *of,
+                           const struct sectors *sectors, int c)
+{
+    struct part part[SECTORS];
+    int64_t all = 0, apart_q20;
+    int n = 0;
+
+    for (int i = 0; i < SECTORS; i++)
+        if (sectors->n[i]) {
+            part[n].mean_q20 =
+                (int32_t)q_divide(sectors->rgb_q20[i][c], sectors->n[i]);
+            part[n++].n = sectors->n[i];
+            all += sectors->n[i];
+        }
+    sort(part, n);
+    of->black_q20 = mean_between(part, n, all, 2, 6);
+    if (of->black_q20 > MAX_BLACK_Q20)
+        of->black_q20 = MAX_BLACK_Q20;
+    of->scale_q16 =
+        (int32_t)q_divide(INT64_C(1) << 36, WHITE_Q20 - of->black_q20);
+    apart_q20 =
+        mean_between(part, n, all, 5, 6) - mean_between(part, n, all, 2, 3);
+    of->spread_q16 = (int32_t)(apart_q20 * of->scale_q16 >> 20);
+}
+
+/* --------------------------------------------------------------------- sums */
+
+static int32_t clipped_q8(int32_t light_q20)
+{
+    if (light_q20 <= CLIP_FIRST)
+        return 0;
+    return light_q20 >= CLIP_LAST ? 256
+                                  : ((light_q20 - CLIP_FIRST) >> 4) * 256 /
+                                        ((CLIP_LAST - CLIP_FIRST) >> 4);
+}
+
+/* Counts U to its own level by its part, and to those below wholly. */
+static void add_levels(struct glint_profile_channel *of, int32_t u_q16,
+                       int share, int ring)
+{
+    const int level = u_q16 >= ONE_Q16 ? 0 : 17 - bit_length((uint64_t)u_q16);
+
+    if (level > LEVELS || (ring > 1 && level <= NEAR))
+        return;
+    of->n[level] += share;
+    if (level > 0)
+        of->area_q8[level] +=
+            ((((int64_t)u_q16 << level) - ONE_Q16) >> 8) * share;
+}
+
+/* In steps: only the samples of the inner disc are taken, which are alike. */
+static void add_moments(struct glint_profile_sums *sums, int32_t u_q16,
+                        const struct sample *s)
+{
+    const int64_t w_q16 = ((int64_t)u_q16 * u_q16) >> 16;
+    const int dx = s->dx / sums->step, dy = s->dy / sums->step;
+
+    sums->w_q16 += w_q16;
+    sums->moment_q16[0] += w_q16 * dx;
+    sums->moment_q16[1] += w_q16 * dy;
+    sums->square_q16[0] += w_q16 * dx * dx;
+    sums->square_q16[1] += w_q16 * dy * dy;
+    sums->square_q16[2] += w_q16 * dx * dy;
+}
+
+static void see_light(void *ctx, const struct sample *s)
+{
+    struct glint_profile_sums *sums = ctx;
+    int32_t u_q16[3], most_q16 = 0, clip_q8 = 0;
+
+    for (int c = 0; c < 3; c++) {
+        struct glint_profile_channel *of = &sums->of[c];
+        const int32_t over_q20 = s->rgb_q20[c] - of->black_q20;
+        const int32_t clipped = clipped_q8(s->rgb_q20[c]);
+
+        u_q16[c] = (int32_t)((int64_t)over_q20 * of->scale_q16 >> 20);
+        if (s->ring == 0)
+            of->area_q8[0] += (int64_t)clipped * s->share;
+        if (u_q16[c] > 0)
+            add_levels(of, u_q16[c], s->share, s->ring);
+        clip_q8 = clipped > clip_q8 ? clipped : clip_q8;
+        most_q16 = u_q16[c] > most_q16 ? u_q16[c] : most_q16;
+    }
+    if (most_q16 <= 0)
+        return;
+    for (int c = 0; c < 3; c++) {
+        struct glint_profile_channel *of = &sums->of[c];
+        const int64_t weighed_q16 =
+            ((s->rgb_q20[c] - of->black_q20) >> 4) * (int64_t)most_q16 >> 16;
+
+        of->fringe_q16 += weighed_q16 * (256 - clip_q8) * s->share >> 8;
+        of->white_q16 += weighed_q16 * clip_q8 * s->share >> 8;
+    }
+    if (s->ring == 0)
+        add_moments(sums, most_q16, s);
+}
+
+/* Adds what is brighter to each level. */
+static void add_up(struct glint_profile_channel *of)
+{
+    int64_t n = 0;
+
+    for (int k = 1; k <= LEVELS; k++) {
+        n += of->n[k - 1];
+        of->area_q8[k] += n << 8;
+    }
+}
+
+void glint_rings_begin(struct glint_rings *rings,
+                       const struct glint_image *image,
+                       const struct glint_spot *spots, int n)
+{
+    glint_bright_begin(&rings->bright, image);
+    for (int i = 0; i < n; i++)
+        rings->by_x[i] = i;
+    glint_sort(rings->by_x, n, is_left, spots);
+}
+
+void glint_rings_sum(struct glint_profile_sums *sums, struct glint_rings *rings,
+                     const struct glint_spot *spots, int n, int i)
+{
+    struct glint_bright *bright = &rings->bright;
+    struct window w = window_of(bright->image, &spots[rings->by_x[i]]);
+    struct sectors sectors = {{{0}}, {0}};
+
+    w.bright = bright;
+    find_borders(&w, rings, spots, n, i);
+    *sums = (struct glint_profile_sums){.step = w.step};
+    see_ring(&w, RINGS, see_background, &sectors);
+    for (int c = 0; c < 3; c++) {
+        struct glint_profile_channel *of = &sums->of[c];
+        int64_t step_q20;
+
+        set_background(of, &sectors, c);
+        step_q20 = glint_bright_step_q20(bright, c, of->black_q20);
+        of->step_q16 = (int32_t)(step_q20 * of->scale_q16 >> 20);
+    }
+    for (int ring = 0; ring <= RINGS; ring++)
+        see_ring(&w, ring, see_light, sums);
+    for (int c = 0; c < 3; c++)
+        add_up(&sums->of[c]);
+}
