@@ -273,7 +273,7 @@ static void rendered(int i)
     power_draw(light, W, H, &lamp);
     open_camera(&c, W, H);
     for (int k = 0; k < EXPOSURES; k++) {
-        const double gain = exp2(-k - (features ? power_random(&seed) : 0));
+        const double gain = exp2(-k - (features ? rng_unit(&seed) : 0));
 
         /* the background is exposed for itself: lamps by day and night */
         for (int p = 0; p < W * H; p++)

@@ -56,8 +56,8 @@ check:
 	@[ $(notdir $(CC))-$(CONFIG)$(VM) != gcc-release ] || \
 	        ! tests/vm/possible $(VM_ARCHS) || \
 	        $(MAKE) --no-print-directory DEPS=no check-vm
-run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/pan $(OUT)/ray_errors $(example_bins) $(embed_bins) \
-        $(OUT)/motion $(OUT)/random_lenses
+run-check: lint $(test_bins) $(replay_bins) $(OUT)/glint $(OUT)/ray_errors $(example_bins) $(embed_bins) \
+        $(PROGRAMS)
 	@GLINT_QUICK=$(filter asan tsan,$(CONFIG)) tests/run $(test_bins) -- \
 	        $(replay_bins)
 	@[ -n "$(filter asan tsan,$(CONFIG))" ] || tests/extremes --quick
