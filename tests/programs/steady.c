@@ -11,7 +11,9 @@
  * larger than SHARE (default 0.1).
  */
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "overlay/compositor.h"
 #include "video/y4m.h"
@@ -196,7 +198,7 @@ static bool run_settings(struct steady *s, int k, double most)
     night.sigma = 1;
     begin(s, WIDTH, HEIGHT);
     for (int i = 0; i < FRAMES; i++) {
-        const int n = scenes[k].scene(&night, i, lamp);
+        const int n = scenes[k].settings(&night, i, lamp);
 
         night_draw(&night, lamp, n);
         frame(s, &night.image, FRAME_US);
