@@ -13,7 +13,7 @@ guest formats -t 300 -d bochs:640x360 -V 'n_devs=2 multiplanar=1,2' \
 bars() { # NAME OPTION...
     name=\$1
     shift
-    glint live -s 320x180 -r 30 -i 0 --lens /in/model --light 7,33 \
+    glint live -s 320x180 -r 30 -i 0 --lens /in/model --light 7,33 --exposure 0 \
         --stats json "\$@" >\$name.json 2>\$name.err &
     live=\$!
     wait_for 20 grep -q frames \$name.json
