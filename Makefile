@@ -42,7 +42,7 @@ include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
-CORE      := base image kernels lens lamps follow tile flare/edges flare
+CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare
 PUBLISHED := published
 ENGINE    := engine engine/frame engine/setup
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
@@ -57,7 +57,7 @@ sets_x86_64 := sse41 avx2
 sets_aarch64 := neon
 sets_armv7 := neon
 sets_armv7-neon := neon
-absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c))
+absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/rays/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += tools/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include "kernels/kernels.h"
+
 #include "kernels/choose.h"
 
 #define QUADS(set)                                      \

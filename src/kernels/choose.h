@@ -12,7 +12,14 @@
 #define GLINT_KERNELS_CHOOSE_H
 
 #include "glint/kernels.h"
-#include "kernels/kernels.h"
+
+/* NEON kernels are built for every ARM that may have NEON; whether this one
+ * has, its compiler or its system says. */
+#if defined(__aarch64__) || defined(__ARM_NEON) ||               \
+    (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
+     __ARM_ARCH >= 7)
+#define KERNELS_NEON 1
+#endif
 
 #if defined(__x86_64__)
 #define KERNEL_SETS(X) X(c) X(sse41) X(avx2)

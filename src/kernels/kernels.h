@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loops, and all code that differs between CPUs.
+ * The hot loops, and all code that differs between CPUs: those of pixels; of
+ * rays they are in kernels/rays/rays.h, so that a program that has only one of
+ * them links nothing of the other.
  *
  * A kernel is a pure function over arrays: no allocation, errors or globals.
  * NAME_c.c defines it; NAME_sse41.c, NAME_avx2.c and NAME_neon.c give the same
@@ -16,14 +18,6 @@
 #include <stdint.h>
 
 #include "kernels/tone.h"
-
-/* NEON kernels are built for every ARM that may have NEON; whether this one
- * has, its compiler or its system says. */
-#if defined(__aarch64__) || defined(__ARM_NEON) ||               \
-    (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
-     __ARM_ARCH >= 7)
-#define KERNELS_NEON 1
-#endif
 
 /* Adds light to N pixels of one row of Y'CbCr.
  *   luma    codes, changed in place
@@ -116,37 +110,6 @@ glint_cover_ycc_fn glint_cover_ycc_c;
 typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
                               uint16_t *light_q16, int n);
 
-/* N values of a polynomial, Horner's way: ((c[D] x + c[D - 1]) x + ...) + c[0]
- * with each product rounded to integers by a shift of 30 bits. Values of the
- * polynomial stay below 2^30 in magnitude, X within +-2^30: the caller's
- * promise.
- *   along   of one polynomial at x[0 .. N - 1]
- *   across  of N polynomials, whose coefficients C[k] begin STRIDE apart, at X
- */
-typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
-                                   const int32_t *x_q30, int n);
-typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
-                                    int degree, int32_t x_q30, int n);
-
-/* Turns points (X, Y) by an angle, and their mirror images (X, -Y):
- *   out     x cos - y sin, x sin + y cos; x cos + y sin, x sin - y cos; each
- *           over 2^shift, 0 where that is LIMIT or more in magnitude
- *   lost    of points and of images: bits all set where one of theirs is; else
- *           left as it is
- * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
- * 2^30 at most. Shifts are 1 .. 62; the C definition takes any. */
-enum { GLINT_TURNED = 8 }; /* at once */
-
-struct glint_turn {
-    int32_t cos, sin;
-    int shift;
-    int32_t limit;
-};
-
-typedef void glint_turn_fn(const struct glint_turn *turn, const int32_t *x,
-                           const int32_t *y, int32_t (*out)[GLINT_TURNED],
-                           int32_t (*lost)[GLINT_TURNED]);
-
 /* What pictures take. */
 struct glint_kernels {
     glint_add_luma_fn *add_luma;
@@ -162,25 +125,11 @@ struct glint_quad_kernels {
     glint_add_quads_packed_fn *add_packed;
 };
 
-/* What rays take: apart, so that a program that has only one of them links
- * nothing of the other. */
-struct glint_horner {
-    glint_horner_along_fn *along;
-    glint_horner_across_fn *across;
-};
-
 /* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C, but
  * for what pixels take (choose.h). */
 const struct glint_kernels *glint_kernels_of(unsigned sets);
 const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets);
-const struct glint_horner *glint_horner_of(unsigned sets);
-glint_turn_fn *glint_turn_of(unsigned sets);
 
-glint_horner_along_fn glint_horner_along_c, glint_horner_along_sse41,
-    glint_horner_along_avx2, glint_horner_along_neon;
-glint_horner_across_fn glint_horner_across_c, glint_horner_across_sse41,
-    glint_horner_across_avx2, glint_horner_across_neon;
-glint_turn_fn glint_turn_c, glint_turn_sse41, glint_turn_avx2, glint_turn_neon;
 glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,
     glint_add_luma_neon;
 glint_add_pairs_fn glint_add_pairs_c, glint_add_pairs_sse41,

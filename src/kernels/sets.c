@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "glint/kernels.h"
 
-#include "kernels/kernels.h"
+#include "kernels/choose.h"
 
 unsigned glint_sets_built(void)
 {

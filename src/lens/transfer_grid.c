@@ -11,7 +11,7 @@
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 #include "lens/terms.h"
 
 enum { RAYS = GLINT_RAYS, LIMIT_Q16 = 1 << 30 };

@@ -7,7 +7,7 @@
 #include "glint/transfer.h"
 
 #include "base/q.h"
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 #include "lens/terms.h"
 
 enum { RAYS = GLINT_RAYS };

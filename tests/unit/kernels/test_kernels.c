@@ -13,6 +13,7 @@
 #include "support/rng.h"
 #include "glint/kernels.h"
 #include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 #include "linux/sets.h"
 #include "image/mix.h"
 

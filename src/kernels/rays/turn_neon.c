@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 
 #include <arm_neon.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 
 #include <smmintrin.h>
 
@@ -9,4 +9,4 @@
 #define OP(name)     _mm_##name
 #define WHOLE(name)  _mm_##name##_si128
 
-#include "kernels/turn_x86.inc"
+#include "kernels/rays/turn_x86.inc"

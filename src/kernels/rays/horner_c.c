@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+#include "kernels/rays/rays.h"
+
 #include "base/q.h"
-#include "kernels/kernels.h"
 
 void glint_horner_along_c(int32_t *out, const int32_t *c, int degree,
                           const int32_t *x_q30, int n)

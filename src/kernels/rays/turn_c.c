@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+#include "kernels/rays/rays.h"
+
 #include "base/q.h"
-#include "kernels/kernels.h"
 
 void glint_turn_c(const struct glint_turn *t, const int32_t *x,
                   const int32_t *y, int32_t (*out)[GLINT_TURNED],

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 
 #include <immintrin.h>
 
@@ -9,4 +9,4 @@
 #define OP(name)     _mm256_##name
 #define WHOLE(name)  _mm256_##name##_si256
 
-#include "kernels/turn_x86.inc"
+#include "kernels/rays/turn_x86.inc"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 
 #include <arm_neon.h>
 
@@ -27,4 +27,4 @@ static inline W w_times(W a, struct factor by)
     return vqrdmulhq_s32(vshlq_n_s32(a, 1), by.x);
 }
 
-#include "kernels/horner_v.inc"
+#include "kernels/rays/horner_v.inc"

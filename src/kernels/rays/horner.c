@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include "kernels/rays/rays.h"
+
 #include "kernels/choose.h"
 
 #define HORNER(set)                                                        \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 
 #include <immintrin.h>
 
@@ -9,5 +9,5 @@
 #define OP(name)     _mm256_##name
 #define WHOLE(name)  _mm256_##name##_si256
 
-#include "kernels/horner_x86.inc"
-#include "kernels/horner_v.inc"
+#include "kernels/rays/horner_x86.inc"
+#include "kernels/rays/horner_v.inc"

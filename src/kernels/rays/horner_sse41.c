@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "kernels/kernels.h"
+#include "kernels/rays/rays.h"
 
 #include <smmintrin.h>
 
@@ -9,5 +9,5 @@
 #define OP(name)     _mm_##name
 #define WHOLE(name)  _mm_##name##_si128
 
-#include "kernels/horner_x86.inc"
-#include "kernels/horner_v.inc"
+#include "kernels/rays/horner_x86.inc"
+#include "kernels/rays/horner_v.inc"

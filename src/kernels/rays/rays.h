@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The hot loops of rays, for which all holds that kernels.h says.
+ */
+#ifndef GLINT_KERNELS_RAYS_RAYS_H
+#define GLINT_KERNELS_RAYS_RAYS_H
+
+#include <stdint.h>
+
+#include "base/compiler.h"
+
+/* N values of a polynomial, Horner's way: ((c[D] x + c[D - 1]) x + ...) + c[0]
+ * with each product rounded to integers by a shift of 30 bits. Values of the
+ * polynomial stay below 2^30 in magnitude, X within +-2^30: the caller's
+ * promise.
+ *   along   of one polynomial at x[0 .. N - 1]
+ *   across  of N polynomials, whose coefficients C[k] begin STRIDE apart, at X
+ */
+typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
+                                   const int32_t *x_q30, int n);
+typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
+                                    int degree, int32_t x_q30, int n);
+
+/* Turns points (X, Y) by an angle, and their mirror images (X, -Y):
+ *   out     x cos - y sin, x sin + y cos; x cos + y sin, x sin - y cos; each
+ *           over 2^shift, 0 where that is LIMIT or more in magnitude
+ *   lost    of points and of images: bits all set where one of theirs is; else
+ *           left as it is
+ * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
+ * 2^30 at most. Shifts are 1 .. 62; the C definition takes any. */
+enum { GLINT_TURNED = 8 }; /* at once */
+
+struct glint_turn {
+    int32_t cos, sin;
+    int shift;
+    int32_t limit;
+};
+
+typedef void glint_turn_fn(const struct glint_turn *turn, const int32_t *x,
+                           const int32_t *y, int32_t (*out)[GLINT_TURNED],
+                           int32_t (*lost)[GLINT_TURNED]);
+
+struct glint_horner {
+    glint_horner_along_fn *along;
+    glint_horner_across_fn *across;
+};
+
+/* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C. */
+const struct glint_horner *glint_horner_of(unsigned sets);
+glint_turn_fn *glint_turn_of(unsigned sets);
+
+glint_horner_along_fn glint_horner_along_c, glint_horner_along_sse41,
+    glint_horner_along_avx2, glint_horner_along_neon;
+glint_horner_across_fn glint_horner_across_c, glint_horner_across_sse41,
+    glint_horner_across_avx2, glint_horner_across_neon;
+glint_turn_fn glint_turn_c, glint_turn_sse41, glint_turn_avx2, glint_turn_neon;
+
+#endif
