@@ -107,8 +107,9 @@ void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials);
 
 /* Writes the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
  * ELAPSED_US after the one before: lamps are followed from picture to picture,
- * and rise and fade. 0: a picture by itself. The strongest first, at most MAX;
- * returns how many. */
+ * and rise and fade. 0: a picture by itself, whose flare is drawn small first,
+ * unless an arena or a budget was given, to see how bright it comes out. The
+ * strongest first, at most MAX; returns how many. */
 int glint_engine_find(struct glint_engine *engine,
                       const struct glint_image *image, int32_t elapsed_us,
                       struct glint_lamp *lamps, int max);

@@ -7,9 +7,8 @@
 
 #include "engine/frame/area.h"
 
-/* The pictures that are drawn: so many pixels are enough for a thousandth of
- * them, and cost little. */
-enum { PROXY_PIXELS = 192 * 108, TOP_MAX = PROXY_PIXELS / 500 };
+/* The most of the brightest that are looked for. */
+enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;
 
@@ -34,16 +33,32 @@ static float insert(float *top, int n, float value)
     return top[n - 1];
 }
 
+/* Puts the N largest of one channel of PIXELS into TOP. */
+static void find_top(const float *rgb, size_t pixels, int channel, float *top,
+                     int n)
+{
+    float least = 0;
+
+    memset(top, 0, (size_t)n * sizeof *top);
+    for (size_t i = 0; i < pixels; i++)
+        if (rgb[3 * i + (size_t)channel] > least)
+            least = insert(top, n, rgb[3 * i + (size_t)channel]);
+}
+
+/* So many are one in PARTS of N. */
+static int count_of_part(size_t n, int parts)
+{
+    return (int)fmin(fmax(floor((double)n / parts), 1), TOP_MAX);
+}
+
 /* The mean of the largest thousandth of one channel. */
 static double peak_of(const float *rgb, size_t n, int channel)
 {
-    float top[TOP_MAX] = {0}, least = 0;
-    int n_top = (int)fmin(fmax(floor((double)n / 1000), 1), TOP_MAX);
+    float top[TOP_MAX];
+    const int n_top = count_of_part(n, 1000);
     double sum = 0;
 
-    for (size_t i = 0; i < n; i++)
-        if (rgb[3 * i + (size_t)channel] > least)
-            least = insert(top, n_top, rgb[3 * i + (size_t)channel]);
+    find_top(rgb, n, channel, top, n_top);
     for (int i = 0; i < n_top; i++)
         sum += (double)top[i];
     return sum / n_top;
@@ -65,10 +80,9 @@ void glint_response_around(const float *rgb, size_t n,
 /* ------------------------------------------------------------------- drawing
  */
 
-static struct glint_view proxy_of(struct glint_view view)
+static struct glint_view proxy_of(struct glint_view view, int pixels)
 {
-    const double by =
-        sqrt((double)PROXY_PIXELS / ((double)view.width * view.height));
+    const double by = sqrt(pixels / ((double)view.width * view.height));
 
     view.width = (int)fmax(8, rint(view.width * by));
     view.height = (int)fmax(8, rint(view.height * by));
@@ -85,12 +99,12 @@ struct proxy {
 };
 
 /* LIKE as far as brightness goes. */
-static enum glint_status open_proxy(const struct glint_frame *like,
+static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
                                     size_t bytes, struct proxy *p)
 {
     size_t samples;
 
-    *p = (struct proxy){.view = proxy_of(like->view)};
+    *p = (struct proxy){.view = proxy_of(like->view, pixels)};
     glint_frame_like(&p->frame, like, p->view);
     p->frame.cfg.raster = NULL;
     p->frame.only_ghost = -1;
@@ -270,7 +284,8 @@ enum glint_status glint_response_measure(const struct glint_frame *like,
 {
     const double start = like->clock ? like->clock() : 0;
     struct proxy proxy;
-    enum glint_status status = open_proxy(like, bytes, &proxy);
+    enum glint_status status =
+        open_proxy(like, GLINT_RESPONSE_COARSE, bytes, &proxy);
 
     if (status == GLINT_OK)
         status = measure(&proxy, response);
@@ -324,8 +339,24 @@ double glint_response_softening(const struct glint_response *r,
 /* ------------------------------------------------------------ what was drawn
  */
 
+/* Sets the peak of LIGHT to what a ten thousandth of the pixels drawn last
+ * reach. */
+static void set_least_top(const struct proxy *p,
+                          struct glint_response_light *light)
+{
+    const size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
+    const int n = count_of_part(pixels, 10000);
+    float top[TOP_MAX];
+
+    for (int c = 0; c < 3; c++) {
+        find_top(p->rgb, pixels, c, top, n);
+        light->peak[c] = (double)top[n - 1];
+    }
+}
+
 enum glint_status glint_response_draw(const struct glint_frame *like,
                                       const struct glint_lamp *lamps, int n,
+                                      int pixels,
                                       struct glint_response_light *light)
 {
     struct glint_lamp *small = malloc((size_t)(n ? n : 1) * sizeof *small);
@@ -337,7 +368,7 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
     if (!small)
         return GLINT_E_MEMORY;
     if (n) {
-        status = open_proxy(like, 0, &p);
+        status = open_proxy(like, pixels, 0, &p);
         by = (double)p.view.width * p.view.height /
              ((double)like->view.width * like->view.height);
         memcpy(small, lamps, (size_t)n * sizeof *small);
@@ -345,6 +376,8 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
             small[i].power *= by;
         if (status == GLINT_OK)
             status = draw(&p, small, n, &peak_log2, light);
+        if (status == GLINT_OK)
+            set_least_top(&p, light);
         close_proxy(&p);
     }
     free(small);

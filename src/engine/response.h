@@ -22,7 +22,15 @@
 
 #include "engine/frame/frame.h"
 
-enum { GLINT_RESPONSE_ANGLES = 12, GLINT_RESPONSE_EXTENTS = 5 };
+enum {
+    GLINT_RESPONSE_ANGLES = 12,
+    GLINT_RESPONSE_EXTENTS = 5,
+    /* Pixels of what is drawn: enough for a thousandth of them, and costing
+     * little; and for a ten thousandth, as ghosts of a point may be as small.
+     */
+    GLINT_RESPONSE_COARSE = 192 * 108,
+    GLINT_RESPONSE_FINE = 640 * 360
+};
 
 /* Light of a layer that is the flare alone, by linear R, G, B. */
 struct glint_response_light {
@@ -45,10 +53,12 @@ struct glint_response {
 void glint_response_around(const float *rgb, size_t n,
                            struct glint_response_light *light);
 
-/* Of N lamps behind the lens of LIKE, drawn small, as many pixels as suit.
- * Powers are those of its view. GLINT_E_MEMORY. */
+/* Of N lamps behind the lens of LIKE, drawn small, with about PIXELS. Powers
+ * are those of its view. The peak is what a ten thousandth of the pixels reach:
+ * smaller specks do not count. GLINT_E_MEMORY. */
 enum glint_status glint_response_draw(const struct glint_frame *like,
                                       const struct glint_lamp *lamps, int n,
+                                      int pixels,
                                       struct glint_response_light *light);
 
 /* Measures frames as LIKE was asked to draw them. Takes no more than BYTES for

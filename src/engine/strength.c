@@ -173,6 +173,14 @@ static void expose(struct glint_strength *s,
     s->scale = s->gain * exp2(s->factor_log2);
 }
 
+static void scale_light(struct glint_strength *s)
+{
+    for (int c = 0; c < 3; c++) {
+        s->light.peak[c] *= s->scale;
+        s->light.mean[c] *= s->scale;
+    }
+}
+
 void glint_strength_expose(struct glint_strength *strength,
                            const struct glint_response *response,
                            const struct glint_strength_lamps *lamps,
@@ -182,6 +190,7 @@ void glint_strength_expose(struct glint_strength *strength,
 
     s->light = (struct glint_response_light){{0}, {0}};
     s->scale = 0;
+    s->is_drawn = false;
     if (lamps->n == 0) {
         s->follows = false;
         return;
@@ -192,8 +201,20 @@ void glint_strength_expose(struct glint_strength *strength,
     } else if (s->asked > 0) {
         expose(s, response, lamps, elapsed_us);
     }
-    for (int c = 0; c < 3; c++) {
-        s->light.peak[c] *= s->scale;
-        s->light.mean[c] *= s->scale;
-    }
+    scale_light(s);
+}
+
+void glint_strength_correct(struct glint_strength *strength,
+                            const struct glint_response_light *drawn)
+{
+    struct glint_strength *s = strength;
+
+    if (s->is_physical || !(s->scale > 0) ||
+        !(glint_strength_largest(drawn->peak) > 0))
+        return;
+    s->is_drawn = true;
+    s->factor_log2 = target_log2(s, drawn);
+    s->scale = s->gain * exp2(s->factor_log2);
+    s->light = *drawn;
+    scale_light(s);
 }

@@ -28,6 +28,12 @@
  * stop either way. All lamps get the same factor, so the ratios between them
  * stay.
  *
+ * The response knows one lamp at a time, along one line from the axis. For a
+ * picture by itself there is time to draw the flare small and to take p and m
+ * from that: p is then what a ten thousandth of the pixels reach. So the few
+ * small ghosts of a point, the wide ones of a candle, and lamps that the lens
+ * answers otherwise off that line come out as bright as others.
+ *
  * In a video the factor follows, by stops in proportion to the time: it falls
  * by up to 3 stops a second and rises by up to 2, no more than an eighth of
  * a stop a frame, so that it makes no step of 10 %. It starts anew after a cut
@@ -60,6 +66,7 @@ struct glint_strength {
     double scale; /* what the powers of lamps are to be multiplied by; 0: there
                      is nothing to draw */
     struct glint_response_light light; /* what the flare comes to with it */
+    bool is_drawn; /* that is of the flare as it was drawn */
 
     /* Private: the factor without gain, followed. */
     double factor_log2;
@@ -76,6 +83,13 @@ void glint_strength_expose(struct glint_strength *strength,
                            const struct glint_response *response,
                            const struct glint_strength_lamps *lamps,
                            int32_t elapsed_us);
+
+/* Of a picture by itself, after it was exposed: sets the scale and the light
+ * anew by what its flare came to when it was drawn small, DRAWN, at scale 1,
+ * rather than by the response. Nothing changes where the factor is set by hand
+ * or there is no light. */
+void glint_strength_correct(struct glint_strength *strength,
+                            const struct glint_response_light *drawn);
 
 /* The light of the flare of N lamps behind RESPONSE, as its pixels' channels
  * come to, at scale 1. */

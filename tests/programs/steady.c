@@ -38,7 +38,7 @@ static double light_of(struct steady *s, const struct glint_lamp *lamps,
     struct glint_response_light light;
 
     if (glint_response_draw(&s->compositor.frame, lamps, s->compositor.n_lamps,
-                            &light) != GLINT_OK)
+                            GLINT_RESPONSE_COARSE, &light) != GLINT_OK)
         exit(EXIT_RUNTIME);
     return scale * glint_strength_largest(light.mean);
 }

@@ -322,6 +322,24 @@ double compositor_scale(const struct compositor *compositor)
     return compositor->strength.scale;
 }
 
+/* There is time for a picture by itself. */
+static void expose_as_drawn(struct compositor *compositor)
+{
+    struct glint_response_light drawn;
+
+    if (compositor->settings.has_exposure || compositor->strength.scale <= 0 ||
+        compositor->settings.budget_ms > 0 ||
+        glint_response_draw(&compositor->frame, compositor->lamp,
+                            compositor->n_lamps, GLINT_RESPONSE_FINE,
+                            &drawn) != GLINT_OK)
+        return;
+    for (int c = 0; c < 3; c++) {
+        drawn.peak[c] /= compositor->white;
+        drawn.mean[c] /= compositor->white;
+    }
+    glint_strength_correct(&compositor->strength, &drawn);
+}
+
 void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
 {
     const bool is_new =
@@ -340,6 +358,8 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
     compositor->strength.gain = compositor->settings.gain;
     glint_strength_expose(&compositor->strength, &compositor->response, &lamps,
                           is_new ? 0 : elapsed_us);
+    if (elapsed_us == 0)
+        expose_as_drawn(compositor);
 }
 
 void compositor_find(struct compositor *compositor,

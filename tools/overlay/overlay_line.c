@@ -19,8 +19,10 @@ struct overlay_light overlay_light(const struct overlay *o)
     struct glint_response_light drawn;
 
     if (n != 1 || compositor->n_lamps == 0 || compositor->strength.scale <= 0 ||
+        compositor->strength.is_drawn ||
         glint_response_draw(&compositor->frame, compositor->lamp,
-                            compositor->n_lamps, &drawn) != GLINT_OK)
+                            compositor->n_lamps, GLINT_RESPONSE_FINE,
+                            &drawn) != GLINT_OK)
         return light;
     light.peak = compositor_scale(compositor) / compositor->white *
                  glint_strength_largest(drawn.peak);

@@ -190,6 +190,62 @@ static void test_lamps_without_light(void **state)
     assert_true(s.scale == 0);
 }
 
+/* A picture by itself whose flare is not as the response has it, by STOPS. */
+static double corrected(double asked, double stops, double mean_stops)
+{
+    const struct glint_response r = response_of(0, 7);
+    struct glint_response_light drawn = {{0}, {0}};
+    struct glint_strength s;
+    struct glint_lamp lamp = lamp_of(5, common);
+
+    glint_strength_defaults(&s);
+    s.asked = asked;
+    peak_of(&s, &r, &lamp, NULL, 1, 0);
+    assert_false(s.is_drawn);
+    drawn.peak[1] = exp2(stops - 5);
+    drawn.mean[1] = exp2(stops - 5 - mean_stops);
+    glint_strength_correct(&s, &drawn);
+    assert_true(s.is_drawn == (asked > 0));
+    assert_true(s.light.mean[1] < 0.081);
+    assert_true(asked <= 0 ||
+                fabs(s.light.peak[1] / (s.scale * drawn.peak[1]) - 1) < 1e-9);
+    return s.light.peak[1];
+}
+
+static void test_as_it_was_drawn(void **state)
+{
+    (void)state;
+    assert_true(fabs(corrected(0.5, 0, 7) - 0.25) < 1e-4);
+    for (double stops = -12; stops <= 12; stops++) {
+        const double peak = corrected(0.5, stops, 7);
+
+        assert_true(peak > 0.124 && peak < 0.501);
+        assert_true(corrected(0.5, stops, 0.5) > 1 / 16.0); /* a veil */
+    }
+    assert_true(corrected(0, 3, 7) == 0);
+}
+
+/* What is set by hand, or gives no light, stays. */
+static void test_not_as_it_was_drawn(void **state)
+{
+    const struct glint_response_light bright = {{9, 9, 9}, {1, 1, 1}};
+    const struct glint_response_light none = {{0}, {0}};
+    const struct glint_response r = response_of(0, 7);
+    struct glint_lamp lamp = lamp_of(5, common);
+    struct glint_strength s;
+    double scale;
+
+    (void)state;
+    glint_strength_defaults(&s);
+    peak_of(&s, &r, &lamp, NULL, 1, 0);
+    scale = s.scale;
+    glint_strength_correct(&s, &none);
+    assert_true(s.scale == scale && !s.is_drawn);
+    s.is_physical = true;
+    glint_strength_correct(&s, &bright);
+    assert_true(s.scale == scale && !s.is_drawn);
+}
+
 /* ------------------------------------------------------------------- videos */
 
 /* A lamp that crosses the picture in 200 frames: what is drawn of it changes by
@@ -329,10 +385,12 @@ static void check_lens(const char *lens, double corner_deg)
         lamp.phi_deg = 29 + 180 * (i % 2); /* within the picture */
         glint_strength_defaults(&s);
         glint_strength_expose(&s, &r, &all, 0);
-        assert_int_equal(glint_response_draw(&frame, &lamp, 1, &drawn),
-                         GLINT_OK);
+        assert_int_equal(
+            glint_response_draw(&frame, &lamp, 1, GLINT_RESPONSE_FINE, &drawn),
+            GLINT_OK);
+        /* a ten thousandth is brighter than the thousandth of the response */
         assert_true(s.scale * glint_strength_largest(drawn.peak) > 1 / 16.0);
-        assert_true(s.scale * glint_strength_largest(drawn.peak) < 1);
+        assert_true(s.scale * glint_strength_largest(drawn.peak) < 2);
         assert_true(s.scale * glint_strength_largest(drawn.mean) < 0.1);
     }
     glint_frame_finish(&frame);
@@ -414,6 +472,8 @@ int main(void)
         cmocka_unit_test(test_many_equal_lamps_share),
         cmocka_unit_test(test_by_hand),
         cmocka_unit_test(test_lamps_without_light),
+        cmocka_unit_test(test_as_it_was_drawn),
+        cmocka_unit_test(test_not_as_it_was_drawn),
         cmocka_unit_test(test_a_lamp_that_crosses),
         cmocka_unit_test(test_a_lamp_that_rises),
         cmocka_unit_test(test_a_lamp_that_leaves),
