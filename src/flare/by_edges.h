@@ -5,7 +5,7 @@
 #ifndef GLINT_FLARE_BY_EDGES_H
 #define GLINT_FLARE_BY_EDGES_H
 
-#include "flare/edges/edges.h"
+#include "flare/edges/edge.h"
 #include "flare/state.h"
 
 struct glint_by_edges {

@@ -56,7 +56,7 @@ $(call of,src/tile/bins src/tile/pass $(addprefix src/image/,resolve curve mix),
 $(call of,src/kernels/%,-O3)
 $(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
 $(call of,$(addprefix src/flare/edges/,ghost_edges ghost_rows ghost_alone),-O3)
-$(call of,$(addprefix src/flare/edges/,edges edge_add),-O3 -fno-tree-vectorize)# their loops are short
+$(call of,$(addprefix src/flare/edges/,edge edge_add),-O3 -fno-tree-vectorize)# their loops are short
 # Unrolling these buys nothing but bytes.
 $(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,edges/sums by_edges edges_pass) \
 	$(addprefix src/lens/,transfer transfer_rays transfer_grid),-ftree-vectorize)

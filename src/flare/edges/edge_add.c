@@ -3,7 +3,7 @@
  * The light of edges in one tile's sums: of smooth edges the area they cover in
  * each pixel, of those on whole pixels that of a row. edges.h has the formats.
  */
-#include "flare/edges/edges.h"
+#include "flare/edges/edge.h"
 
 #include <stddef.h>
 

@@ -7,7 +7,7 @@
 #define GLINT_FLARE_EDGE_AT_H
 
 #include "base/q.h"
-#include "flare/edges/edges.h"
+#include "flare/edges/edge.h"
 
 /* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
  * slope is never too large, so it never lies beyond its ends. */

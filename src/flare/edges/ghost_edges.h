@@ -27,7 +27,7 @@
 
 #include "glint/light.h"
 #include "glint/transfer.h"
-#include "flare/edges/edges.h"
+#include "flare/edges/edge.h"
 #include "flare/edges/outline.h"
 
 enum {

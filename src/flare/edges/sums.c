@@ -4,7 +4,7 @@
  */
 #include <stddef.h>
 
-#include "flare/edges/edges.h"
+#include "flare/edges/edge.h"
 
 void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
                        int32_t *light_q20)

@@ -13,7 +13,7 @@
 
 #include "support/rng.h"
 #include "kernels/kernels.h"
-#include "flare/edges/edges.h"
+#include "flare/edges/edge.h"
 
 enum { LOG2 = 3, SIDE = 1 << LOG2, STRIDE = GLINT_EDGE_STRIDE(LOG2) };
 

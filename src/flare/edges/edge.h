@@ -21,8 +21,8 @@
  * faster. The caller's limit on light keeps final sums below 2^63 (flare.c);
  * what comes in between may wrap, and wraps back.
  */
-#ifndef GLINT_FLARE_EDGES_H
-#define GLINT_FLARE_EDGES_H
+#ifndef GLINT_FLARE_EDGE_H
+#define GLINT_FLARE_EDGE_H
 
 #include <stdint.h>
 

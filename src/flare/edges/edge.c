@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "flare/edges/edges.h"
+#include "flare/edges/edge.h"
 
 #include <stddef.h>
 
