@@ -17,7 +17,7 @@
 
 #include <stdbool.h>
 
-#include "bake/table/prescription.h"
+#include "bake/table/elements.h"
 #include "bake/table/text.h"
 
 #define GLINT_MAX_FOCAL_MM 1e6 /* a longer one is no power at all */

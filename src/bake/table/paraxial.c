@@ -6,7 +6,7 @@
  * power of a surface, y gains n u times the reduced gap. A lens without power
  * has infinite focal lengths; glint_prescription_parse takes none of that kind.
  */
-#include "bake/table/prescription.h"
+#include "bake/table/elements.h"
 
 #include <stddef.h>
 

@@ -6,7 +6,7 @@
  * Reading stores values that are in range, one word at a time; the lens as a
  * whole is checked by bake/check.h when all is read.
  */
-#include "bake/table/prescription.h"
+#include "bake/table/elements.h"
 
 #include <math.h>
 #include <string.h>

@@ -18,7 +18,7 @@
 
 #include "bake/trace/coating.h"
 #include "base/compiler.h"
-#include "bake/table/prescription.h"
+#include "bake/table/elements.h"
 #include "glint/trace.h"
 #include "glint/view.h"
 

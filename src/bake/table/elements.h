@@ -3,8 +3,8 @@
  * A lens seen as a row of elements: its surfaces and, among them, the stop, in
  * the order of the table. Element E is the stop where E == lens->stop_after.
  */
-#ifndef GLINT_BAKE_TABLE_PRESCRIPTION_H
-#define GLINT_BAKE_TABLE_PRESCRIPTION_H
+#ifndef GLINT_BAKE_TABLE_ELEMENTS_H
+#define GLINT_BAKE_TABLE_ELEMENTS_H
 
 #include "glint/prescription.h"
 
