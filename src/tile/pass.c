@@ -2,7 +2,6 @@
 #include "tile/pass.h"
 
 #include "base/q.h"
-#include "tile/blend.h"
 
 /* One tile, and who draws in it. */
 struct visit {
