@@ -8,7 +8,8 @@
 #ifndef GLINT_BAKE_FIT_ZONE_AIM_H
 #define GLINT_BAKE_FIT_ZONE_AIM_H
 
-#include "bake/fit/fit.h"
+#include "bake/fit/fitted.h"
+#include "bake/fit/tolerance.h"
 #include "bake/fit/zone_rays.h"
 
 struct glint_zone_aim {

@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "bake/fit/ray_batch.h"
+#include "bake/fit/zone_batch.h"
 #include "bake/fit/zone_rays.h"
 
 /* What a ray of the survey says: how far past each barrel it is. */
@@ -48,25 +48,25 @@ static void run_survey(const struct glint_zone *z,
 {
     static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
                                 GLINT_VISIBLE_WAVES - 1};
-    struct glint_ray_batch t;
+    struct glint_zone_batch t;
 
     survey->n = 0;
     survey->n_events = h->path[0].n_events;
-    for (int k = 0; k < GLINT_SURVEY_RAYS / GLINT_RAY_BATCH; k++) {
+    for (int k = 0; k < GLINT_SURVEY_RAYS / GLINT_ZONE_BATCH; k++) {
         const int wave = waves[k % 3];
         double x[GLINT_VARIABLES];
 
         t.path = &h->position_path[wave];
-        for (t.n = 0; t.n < GLINT_RAY_BATCH;) {
-            glint_ray_batch_scatter(k * GLINT_RAY_BATCH + t.n, x);
+        for (t.n = 0; t.n < GLINT_ZONE_BATCH;) {
+            glint_zone_batch_scatter(k * GLINT_ZONE_BATCH + t.n, x);
             x[1] = fabs(x[1]);
             x[3] = glint_zone_node(wave, GLINT_VISIBLE_WAVES);
-            glint_ray_batch_add(&t, z, x);
+            glint_zone_batch_add(&t, z, x);
         }
-        glint_ray_batch_trace(&t);
-        for (int i = 0; i < GLINT_RAY_BATCH; i++)
+        glint_zone_batch_trace(&t);
+        for (int i = 0; i < GLINT_ZONE_BATCH; i++)
             survey->n += survey_ray(h, t.path, t.status[i], &t.ray[i],
-                                    glint_ray_batch_hits(&t, i),
+                                    glint_zone_batch_hits(&t, i),
                                     survey->radius[survey->n]);
     }
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <math.h>
 
-#include "bake/fit/ray_batch.h"
+#include "bake/fit/zone_batch.h"
 #include "bake/fit/regress.h"
 #include "engine/setup/degrees.h"
 
@@ -239,7 +239,7 @@ struct sighting {
 };
 
 static void sight(const struct glint_visible *h,
-                  const struct glint_ray_batch *t, struct sighting *seen)
+                  const struct glint_zone_batch *t, struct sighting *seen)
 {
     for (int i = 0; i < t->n; i++)
         if (t->status[i] == GLINT_RAY_OK && glint_visible_passes(h, &t->ray[i]))
@@ -253,11 +253,11 @@ double glint_zone_crop(const struct glint_zone *zone,
                        const struct glint_visible *visible,
                        struct glint_zone_part *part)
 {
-    enum { ANGLES = 5, COLUMNS = GLINT_RAY_BATCH, ROWS = 12 };
+    enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
     const double margin = 3.0 / COLUMNS;
     const struct glint_zone_part before = *part;
     struct sighting seen = {{9, 9, 9, 9}, {-9, -9, -9, -9}};
-    struct glint_ray_batch t;
+    struct glint_zone_batch t;
 
     for (int k = 0; k < ANGLES * GLINT_VISIBLE_WAVES * (ROWS + 1); k++) {
         const int row = k % (ROWS + 1), wave = k / (ROWS + 1) / ANGLES;
@@ -269,9 +269,9 @@ double glint_zone_crop(const struct glint_zone *zone,
                 2.0 * (k / (ROWS + 1) % ANGLES) / (ANGLES - 1) - 1,
                 glint_zone_node(wave, GLINT_VISIBLE_WAVES)};
 
-            glint_ray_batch_add(&t, zone, x);
+            glint_zone_batch_add(&t, zone, x);
         }
-        glint_ray_batch_trace(&t);
+        glint_zone_batch_trace(&t);
         sight(visible, &t, &seen);
     }
     if (seen.high[0] < seen.low[0])

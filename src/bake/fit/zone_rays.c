@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "bake/fit/ray_batch.h"
+#include "bake/fit/zone_batch.h"
 #include "engine/setup/degrees.h"
 
 static void add_ray(const struct glint_visible *h,
@@ -45,7 +45,7 @@ static void trace_plane(const struct glint_zone *zone,
                         int stride, struct glint_zone_rays *rays)
 {
     const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
-    struct glint_ray_batch t;
+    struct glint_zone_batch t;
 
     t.path = &visible->path[wave];
     for (int j = 0; j <= DOWN; j += stride) {
@@ -58,14 +58,14 @@ static void trace_plane(const struct glint_zone *zone,
                 glint_zone_node(sine, SINES),
                 glint_zone_node(wave, GLINT_VISIBLE_WAVES)};
 
-            glint_ray_batch_add(&t, zone, x);
+            glint_zone_batch_add(&t, zone, x);
         }
-        glint_ray_batch_trace(&t);
+        glint_zone_batch_trace(&t);
         for (int i = 0; i < t.n && rays->n < full; i++) {
             if (t.status[i] != GLINT_RAY_OK)
                 continue;
             add_ray(visible, t.path, t.x[i], &t.ray[i],
-                    glint_ray_batch_hits(&t, i), rays);
+                    glint_zone_batch_hits(&t, i), rays);
             if (stride == 1 && (i + j) % 3 &&
                 fmax(rays->at[RAY_EXCESS][rays->n - 1],
                      rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
@@ -166,25 +166,25 @@ void glint_zone_check(const struct glint_zone *zone,
     enum { BUNDLES = 24, RAYS = 16 };
     double x[GLINT_VARIABLES], bundle[GLINT_VARIABLES];
     struct glint_path path;
-    struct glint_ray_batch t;
+    struct glint_zone_batch t;
 
     t.path = &path;
     rays->n = rays->n_barrels = 0;
     for (int k = 0; k < BUNDLES; k++) {
-        glint_ray_batch_scatter(k, bundle);
+        glint_zone_batch_scatter(k, bundle);
         glint_visible_path(visible, bundle[3], &path);
         path.places_only = true;
         for (t.n = 0; t.n < RAYS;) {
-            glint_ray_batch_scatter(k * RAYS + t.n, x);
+            glint_zone_batch_scatter(k * RAYS + t.n, x);
             x[1] = fabs(x[1]);
             x[2] = bundle[2];
             x[3] = bundle[3];
-            glint_ray_batch_add(&t, zone, x);
+            glint_zone_batch_add(&t, zone, x);
         }
-        glint_ray_batch_trace(&t);
+        glint_zone_batch_trace(&t);
         for (int i = 0; i < RAYS; i++)
             if (t.status[i] == GLINT_RAY_OK)
                 add_ray(visible, &path, t.x[i], &t.ray[i],
-                        glint_ray_batch_hits(&t, i), rays);
+                        glint_zone_batch_hits(&t, i), rays);
     }
 }

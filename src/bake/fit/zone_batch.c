@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/fit/ray_batch.h"
+#include "bake/fit/zone_batch.h"
 
 #include <math.h>
 
-void glint_ray_batch_scatter(int k, double x[GLINT_VARIABLES])
+void glint_zone_batch_scatter(int k, double x[GLINT_VARIABLES])
 {
     const double root = 1.16730397826141868426;
     double step = 1;
@@ -21,9 +21,9 @@ static void direction_of(const struct glint_zone *z, double s, double d[3])
     d[2] = sqrt(1 - d[0] * d[0]);
 }
 
-void glint_ray_batch_add(struct glint_ray_batch *batch,
-                         const struct glint_zone *zone,
-                         const double x[GLINT_VARIABLES])
+void glint_zone_batch_add(struct glint_zone_batch *batch,
+                          const struct glint_zone *zone,
+                          const double x[GLINT_VARIABLES])
 {
     const double s = x[2], w = x[3], rim = glint_zone_rim(zone->annulus);
     struct glint_launch *from = &batch->from[batch->n];
@@ -38,7 +38,7 @@ void glint_ray_batch_add(struct glint_ray_batch *batch,
     batch->n++;
 }
 
-void glint_ray_batch_trace(struct glint_ray_batch *batch)
+void glint_zone_batch_trace(struct glint_zone_batch *batch)
 {
     for (int k = 0; k < batch->n * batch->path->n_events; k++)
         batch->hits[k][0] = batch->hits[k][1] = -1;
