@@ -8,6 +8,7 @@
 
 #include "options/coating.h"
 #include "model/model_report.h"
+#include "model/table_file.h"
 #include "posix/output.h"
 #include "options/tool.h"
 #include "options/takes.h"

@@ -7,6 +7,7 @@
 #include "options/coating.h"
 #include "model/model_file.h"
 #include "model/model_report.h"
+#include "model/table_file.h"
 #include "options/tool.h"
 
 static const char help[] =

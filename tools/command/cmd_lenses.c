@@ -11,6 +11,7 @@
 #include "model/lens_files.h"
 #include "overlay/compositor.h"
 #include "model/model_cache.h"
+#include "model/table_file.h"
 #include "posix/output.h"
 #include "options/settings_table.h"
 #include "options/takes.h"

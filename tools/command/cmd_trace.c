@@ -8,6 +8,7 @@
 
 #include "options/coating.h"
 #include "model/model_file.h"
+#include "model/table_file.h"
 #include "options/takes.h"
 #include "options/tool.h"
 

@@ -55,7 +55,7 @@ static int run_command(const struct command *command, int argc, char **argv)
 
     snprintf(name, sizeof name, "glint %s", command->name);
     argv[0] = name;
-    suggest_line(argv);
+    tool_line(argv);
     return command->run(argc, argv);
 }
 

@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "model/model_file.h"
+#include "model/table_file.h"
 #include "options/tool.h"
 
 #define FAR       1e3

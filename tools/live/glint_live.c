@@ -4,13 +4,12 @@
  * size, as it takes baked models only (models_only.c).
  */
 #include "posix/process.h"
-#include "options/suggest.h"
 #include "options/tool.h"
 
 int main(int argc, char **argv)
 {
     glint_process_hold_streams();
-    suggest_line(argv);
+    tool_line(argv);
     tool_watch_reader();
     return tool_end(cmd_live(argc, argv));
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "model/model_cache.h"
+#include "model/table_file.h"
 #include "options/settings_table.h"
 
 struct glint_bake_options settings_bake_options(const struct settings *settings)

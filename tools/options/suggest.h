@@ -13,8 +13,6 @@
 
 #include <stddef.h>
 
-#include "options/tool.h"
-
 enum { SUGGEST_CHARS = 48 };
 
 struct suggest {
@@ -35,12 +33,5 @@ void suggest_try(struct suggest *suggest, const char *candidate, size_t n);
 
 /* The nearest, if no more than a third of its letters are wrong; or NULL. */
 const char *suggest_best(const struct suggest *suggest);
-
-/* Where the options being read come from; for suggest_option. */
-void suggest_line(char **argv);
-
-/* After getopt_long has complained: prints which option of TOOL's help was
- * meant, if that can be told, and whom to ask. */
-void suggest_option(const struct tool *tool);
 
 #endif

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "options/tool.h"
 
-#include "model/lens_files.h"
-#include "model/model_file.h"
 #include "options/suggest.h"
 
 #include <errno.h>
@@ -17,7 +15,6 @@
 
 #include "linux/sets.h"
 #include "posix/error.h"
-#include "posix/input.h"
 #include "posix/output.h"
 #include "posix/utf8.h"
 #include "posix/workers.h"
@@ -87,6 +84,58 @@ static bool take_sets(struct tool *tool, const char *value)
     tool->sets_off = ~sets[word];
     tool->kernels = words[word];
     return true;
+}
+
+static char **line;
+
+void tool_line(char **argv)
+{
+    line = argv;
+}
+
+/* Offers every --word of a help text. */
+static void try_options(struct suggest *s, const char *help)
+{
+    const char *at = help;
+
+    while (at && (at = strstr(at, "--"))) {
+        const size_t n = strspn(at + 2, "abcdefghijklmnopqrstuvwxyz-");
+
+        suggest_try(s, at + 2, n);
+        at += 2 + n;
+    }
+}
+
+/* The name of the long option that getopt_long took last, without a value. */
+static bool last_option(char name[SUGGEST_CHARS])
+{
+    const char *text = line && optind > 0 ? line[optind - 1] : NULL;
+    size_t n;
+
+    if (!text || strncmp(text, "--", 2) != 0)
+        return false;
+    n = strcspn(text + 2, "=");
+    if (n == 0 || n >= SUGGEST_CHARS)
+        return false;
+    memcpy(name, text + 2, n);
+    name[n] = '\0';
+    return true;
+}
+
+static void suggest_option(const struct tool *tool)
+{
+    struct suggest s;
+    char name[SUGGEST_CHARS];
+
+    if (last_option(name)) {
+        suggest_begin(&s, name);
+        try_options(&s, tool->help);
+        try_options(&s, tool->help_end);
+        try_options(&s, tool->help_last);
+        if (suggest_best(&s) && s.distance > 0)
+            fprintf(stderr, "Did you mean --%s? ", s.best);
+    }
+    fprintf(stderr, "Try 'glint %s --help'.\n", tool->name);
 }
 
 int tool_option(struct tool *tool, int option, const char *value)
@@ -279,85 +328,6 @@ int tool_check_output(const struct tool *tool, const char *path)
         return EXIT_OK;
     tool_fail(tool, GLINT_E_OUTPUT, error.text);
     return EXIT_OUTPUT;
-}
-
-/* -------------------------------------------------------------------- lens */
-
-static bool offer(void *suggest, const char *name)
-{
-    suggest_try(suggest, name, strlen(name));
-    return true;
-}
-
-static int no_lens(const struct tool *tool, const char *name)
-{
-    struct suggest s;
-
-    if (access(name, F_OK) == 0) {
-        fprintf(stderr,
-                "glint %s: %s: no lens that comes with glint has this name; "
-                "the file is ./%s\n",
-                tool->name, name, name);
-        return EXIT_LENS;
-    }
-    suggest_begin(&s, name);
-    lens_files_each(offer, &s);
-    fprintf(stderr,
-            "glint %s: %s: neither a file nor a lens that comes with glint "
-            "(%s%s)\n",
-            tool->name, name,
-            suggest_best(&s) ? "did you mean " : "glint lenses lists them",
-            suggest_best(&s) ? s.best : "");
-    return EXIT_LENS;
-}
-
-/* Pictures and the like are no tables, which a line and column of one would
- * not say. */
-static enum glint_status parse_table(const char *file,
-                                     struct glint_prescription *lens,
-                                     struct glint_error *error)
-{
-    enum glint_status status;
-    uint8_t *text = NULL;
-    size_t bytes = 0;
-
-    status = glint_input_slurp(&text, &bytes, file, 1 << 20, error);
-    if (status == GLINT_E_UNSUPPORTED ||
-        (status == GLINT_OK && bytes > 0 && memchr(text, 0, bytes)))
-        status = glint_error_report(error, GLINT_E_FORMAT, file,
-                                    "is no lens table; glint lenses lists "
-                                    "those that come with glint");
-    else if (status == GLINT_OK)
-        status = glint_prescription_parse(lens, (const char *)text, bytes, file,
-                                          error);
-    free(text);
-    return status;
-}
-
-int tool_lens(const struct tool *tool, const char *argument,
-              struct glint_prescription *lens)
-{
-    struct glint_error error = {""};
-    char path[1024];
-    const char *file = argument;
-    enum glint_status status;
-
-    if (!tool_is_file_name(argument)) {
-        if (!lens_file_find(argument, path, sizeof path))
-            return no_lens(tool, argument);
-        file = path;
-    }
-    if (tool_is_model(file)) {
-        fprintf(stderr,
-                "glint %s: %s: a baked model; this needs the lens table\n",
-                tool->name, file);
-        return EXIT_LENS;
-    }
-    status = parse_table(file, lens, &error);
-    if (status == GLINT_OK)
-        return EXIT_OK;
-    tool_fail(tool, status, error.text);
-    return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
 }
 
 /* ----------------------------------------------------------------- progress */

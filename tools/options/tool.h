@@ -51,6 +51,10 @@ struct tool {
         NULL, 0, NULL, 0                                                       \
     }
 
+/* Where the options being read come from, so that tool_option can say which
+ * was meant. */
+void tool_line(char **argv);
+
 /* Takes a common option. Returns -1 to go on, else the exit code to leave with
  * (EXIT_OK after --help). An unknown option is a usage error. */
 int tool_option(struct tool *tool, int option, const char *value);
@@ -97,16 +101,11 @@ int tool_word(const char *text, const char *const *words);
 /* Seconds since some moment. */
 double tool_seconds(void);
 
-/* -------------------------------------------------------------------- lens */
+/* ------------------------------------------------------------------- output */
 
 /* Refuses PATH, where no file can be created, before a lens is baked: EXIT_OK
  * or EXIT_OUTPUT, said. The last part of it may be a pattern. */
 int tool_check_output(const struct tool *tool, const char *path);
-
-/* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
- * Returns an exit code; has printed on failure. */
-int tool_lens(const struct tool *tool, const char *argument,
-              struct glint_prescription *lens);
 
 /* ----------------------------------------------------------------- progress */
 

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+#include "model/table_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "model/lens_files.h"
+#include "model/model_file.h"
+#include "options/suggest.h"
+#include "posix/error.h"
+#include "posix/input.h"
+
+static bool offer(void *suggest, const char *name)
+{
+    suggest_try(suggest, name, strlen(name));
+    return true;
+}
+
+static int no_lens(const struct tool *tool, const char *name)
+{
+    struct suggest s;
+
+    if (access(name, F_OK) == 0) {
+        fprintf(stderr,
+                "glint %s: %s: no lens that comes with glint has this name; "
+                "the file is ./%s\n",
+                tool->name, name, name);
+        return EXIT_LENS;
+    }
+    suggest_begin(&s, name);
+    lens_files_each(offer, &s);
+    fprintf(stderr,
+            "glint %s: %s: neither a file nor a lens that comes with glint "
+            "(%s%s)\n",
+            tool->name, name,
+            suggest_best(&s) ? "did you mean " : "glint lenses lists them",
+            suggest_best(&s) ? s.best : "");
+    return EXIT_LENS;
+}
+
+/* Pictures and the like are no tables, which a line and column of one would
+ * not say. */
+static enum glint_status parse_table(const char *file,
+                                     struct glint_prescription *lens,
+                                     struct glint_error *error)
+{
+    enum glint_status status;
+    uint8_t *text = NULL;
+    size_t bytes = 0;
+
+    status = glint_input_slurp(&text, &bytes, file, 1 << 20, error);
+    if (status == GLINT_E_UNSUPPORTED ||
+        (status == GLINT_OK && bytes > 0 && memchr(text, 0, bytes)))
+        status = glint_error_report(error, GLINT_E_FORMAT, file,
+                                    "is no lens table; glint lenses lists "
+                                    "those that come with glint");
+    else if (status == GLINT_OK)
+        status = glint_prescription_parse(lens, (const char *)text, bytes, file,
+                                          error);
+    free(text);
+    return status;
+}
+
+int tool_lens(const struct tool *tool, const char *argument,
+              struct glint_prescription *lens)
+{
+    struct glint_error error = {""};
+    char path[1024];
+    const char *file = argument;
+    enum glint_status status;
+
+    if (!tool_is_file_name(argument)) {
+        if (!lens_file_find(argument, path, sizeof path))
+            return no_lens(tool, argument);
+        file = path;
+    }
+    if (tool_is_model(file)) {
+        fprintf(stderr,
+                "glint %s: %s: a baked model; this needs the lens table\n",
+                tool->name, file);
+        return EXIT_LENS;
+    }
+    status = parse_table(file, lens, &error);
+    if (status == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, status, error.text);
+    return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
+}

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Reading the table of a lens from its file.
+ */
+#ifndef GLINT_TOOLS_MODEL_TABLE_FILE_H
+#define GLINT_TOOLS_MODEL_TABLE_FILE_H
+
+#include "glint/prescription.h"
+#include "options/tool.h"
+
+/* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
+ * Returns an exit code; has printed on failure. */
+int tool_lens(const struct tool *tool, const char *argument,
+              struct glint_prescription *lens);
+
+#endif
