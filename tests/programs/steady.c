@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * steady [--lens LENS] [--most SHARE] [VIDEO.y4m...] - how steady the flare of
- * a video is: drawn scenes, and videos.
+ * steady [--lens LENS] [--most SHARE] [--log] [VIDEO.y4m...] - how steady the
+ * flare of a video is: drawn scenes, and videos.
  *
  * From frame to frame the total light of the flare, as it is drawn, changes
  * for what the lamps do (they move, rise, fade, are hidden: the total light at
  * an exposure that stays) and for what the exposure does. A step that lies
  * between none and the lamps' own is theirs; what goes beyond is ours. Frames
  * after a cut begin anew and are not counted. Exit code 1: a step of ours is
- * larger than SHARE (default 0.1).
+ * larger than SHARE (default 0.1). --log prints every frame to stderr.
  */
 #include <getopt.h>
 #include <math.h>
@@ -25,22 +25,22 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000 };
 struct steady {
     struct tool tool;
     struct compositor compositor;
-    double total, own;     /* of the frame before */
+    double total, own; /* of the frame before */
+    bool log;
     double worst, largest; /* step of ours; of any */
     int worst_frame, cuts, frames, most_lights;
 };
 
 /* ------------------------------------------------------------------- steps */
 
-static double light_of(struct steady *s, const struct glint_lamp *lamps,
-                       double scale)
+static double light_of(struct steady *s, const struct glint_lamp *lamps)
 {
     struct glint_response_light light;
 
     if (glint_response_draw(&s->compositor.frame, lamps, s->compositor.n_lamps,
                             GLINT_RESPONSE_COARSE, &light) != GLINT_OK)
         exit(EXIT_RUNTIME);
-    return scale * glint_strength_largest(light.mean);
+    return glint_strength_largest(light.mean);
 }
 
 /* By how much STEP exceeds what lies between none and OWN, both logarithms. */
@@ -72,16 +72,44 @@ static void note(struct steady *s, double total, double own)
     s->own = own;
 }
 
+/* The light of a frame, and its lamps: what made a step. */
+static void log_frame(const struct steady *s, double own, double drawn)
+{
+    const struct compositor *c = &s->compositor;
+
+    fprintf(stderr, "%d own %.4g drawn %.4g total %.4g%s\n", s->frames, own,
+            drawn, drawn * compositor_scale(c),
+            glint_lamp_tracker_was_cut(c->finder.tracks) ? " cut" : "");
+    for (int i = 0; i < c->n_lamps; i++) {
+        const struct glint_lamp_track *t = &c->finder.track[i];
+
+        fprintf(stderr,
+                "    %u state %d at %.1f,%.1f size %.1f level %.2f "
+                "flux %.4g power %.4g\n",
+                (unsigned)t->id, (int)t->state, t->x_q8 / 256.0,
+                t->y_q8 / 256.0, t->size_q8 / 256.0, t->level_q15 / 32768.0,
+                (double)t->flux_q16 / 65536, (double)t->power_q16 / 65536);
+    }
+}
+
 static void frame(struct steady *s, const struct glint_image *image,
                   int32_t elapsed_us)
 {
     struct compositor *compositor = &s->compositor;
-    double own;
+    double own, drawn, power = 0, held = 0;
 
     compositor_find(compositor, image, elapsed_us);
-    own = light_of(s, compositor->lamp, 1);
+    own = drawn = light_of(s, compositor->lamp);
+    for (int i = 0; i < compositor->n_lamps; i++)
+        power += compositor->lamp[i].power;
     compositor_expose(compositor, elapsed_us);
-    note(s, light_of(s, compositor->lamp, compositor_scale(compositor)), own);
+    for (int i = 0; i < compositor->n_lamps; i++)
+        held += compositor->lamp[i].power;
+    if (held < power) /* some are too bright yet */
+        drawn = light_of(s, compositor->lamp);
+    if (s->log)
+        log_frame(s, own, drawn);
+    note(s, drawn * compositor_scale(compositor), own);
     if (compositor->n_lamps > s->most_lights)
         s->most_lights = compositor->n_lamps;
     s->frames++;
@@ -100,6 +128,7 @@ static bool end(const struct steady *s, const char *name, double most)
     printf("| %s | %d | %d | %d | %.1f | %.1f | %d |\n", name, s->frames,
            s->most_lights, s->cuts, 100 * s->largest, 100 * s->worst,
            s->worst_frame);
+    fflush(stdout);
     return s->worst <= most;
 }
 
@@ -229,6 +258,7 @@ int main(int argc, char **argv)
     static const struct option options[] = {
         {"lens", required_argument, NULL, 'l'},
         {"most", required_argument, NULL, 'm'},
+        {"log", no_argument, NULL, 'v'},
         {NULL, 0, NULL, 0}};
     static struct steady s = {.tool = {.name = "steady", .quiet = true}};
     bool good = true;
@@ -239,6 +269,8 @@ int main(int argc, char **argv)
     while ((c = getopt_long(argc, argv, "", options, NULL)) >= 0) {
         if (c == 'l')
             s.compositor.lens = optarg;
+        else if (c == 'v')
+            s.log = true;
         else if (c != 'm' || !tool_number(optarg, &most))
             return EXIT_USAGE;
     }
