@@ -105,6 +105,12 @@ void glint_lamp_tracker_restart(struct glint_lamp_tracker *tracks);
  */
 int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks);
 
+/* The part of its white that the next picture of a video keeps, ELAPSED_US
+ * after the last: it may darken by a stop a second, and as it likes where no
+ * lamp is seen or remembered. For glint_lamp_finder_keep_white(). */
+int32_t glint_lamp_tracker_white_q15(const struct glint_lamp_tracker *tracks,
+                                     int32_t elapsed_us);
+
 #ifdef __cplusplus
 }
 #endif

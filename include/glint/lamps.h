@@ -25,7 +25,7 @@
  * Everything is weighted by flux in linear light, never by the single brightest
  * pixel, so that noise does not move a lamp. Sizes follow the picture's, so
  * that it has the same lamps at any resolution. Integers only; nothing is kept
- * from picture to picture.
+ * from picture to picture but white, and that where the caller says so.
  */
 #ifndef GLINT_LAMPS_H
 #define GLINT_LAMPS_H
@@ -102,6 +102,12 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 int glint_lamp_finder_find(struct glint_lamp_finder *finder,
                            const struct glint_image *image,
                            struct glint_spot *spots, int max);
+
+/* The white of the next picture is taken to be no darker than PART (0 .. 2^15)
+ * of the last one's: for a video, in which the glow of a lamp that is hidden
+ * for a moment would be white otherwise, and a lamp. Holds for one find. */
+void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
+                                  int32_t part_q15);
 
 /* Lights of the last find that were dropped because MAX was too small. */
 int glint_lamp_finder_dropped(const struct glint_lamp_finder *finder);

@@ -171,8 +171,11 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
     struct glint_lamp_detector *f = detector;
 
     if (elapsed_us > 0) {
-        const int n = find(f, image, GLINT_LAMP_DETECTOR_MAX);
+        int n;
 
+        glint_lamp_finder_keep_white(
+            f->lights, glint_lamp_tracker_white_q15(f->tracks, elapsed_us));
+        n = find(f, image, GLINT_LAMP_DETECTOR_MAX);
         f->n_tracks = glint_lamp_tracker_step(f->tracks, f->spot, n, elapsed_us,
                                               f->track, f->max_tracks);
     } else {

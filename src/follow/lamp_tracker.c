@@ -25,6 +25,7 @@ enum {
 #define MAX_ELAPSED_US 10000000
 #define REACH_US       1000000 /* a lost lamp may be as far again */
 #define MAX_REACHES    3
+#define WHITE_US       1442695 /* in which white darkens to 1/e: a stop a second */
 
 struct glint_lamp_tracker {
     struct glint_lamp_tracker_config cfg;
@@ -133,6 +134,23 @@ void glint_lamp_tracker_restart(struct glint_lamp_tracker *tracks)
 int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks)
 {
     return tracks->was_cut;
+}
+
+static int knows_any(const struct glint_lamp_tracker *tracks)
+{
+    for (int i = 0; i < tracks->cfg.max_tracks; i++)
+        if (tracks->record[i].id)
+            return 1;
+    return 0;
+}
+
+int32_t glint_lamp_tracker_white_q15(const struct glint_lamp_tracker *tracks,
+                                     int32_t elapsed_us)
+{
+    const int32_t us = q_clamp_sat(elapsed_us, 0, MAX_ELAPSED_US);
+
+    return knows_any(tracks) ? (1 << 15) - glint_pace_part_q15(us, WHITE_US)
+                             : 0;
 }
 
 /* ----------------------------------------------------------------- matching */

@@ -90,6 +90,7 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
     f->cfg = *cfg;
     glint_bright_init(&f->bright, cfg->width);
     f->n = f->dropped = 0;
+    f->white->light_q20 = f->least_white_q20 = 0;
     merge_q8 = q_shift((int64_t)cfg->width * cfg->merge_q15, 7);
     f->merge2_q16 = merge_q8 * merge_q8;
     f->max_area =
@@ -156,6 +157,12 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
     for (int i = 0; i < finder->n; i++)
         spots[i] = spot_of(&finder->candidate[finder->order[i]]);
     return finder->n;
+}
+
+void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
+                                  int32_t part_q15)
+{
+    finder->least_white_q20 = q_mul(finder->white->light_q20, part_q15, 15);
 }
 
 int glint_lamp_finder_dropped(const struct glint_lamp_finder *finder)

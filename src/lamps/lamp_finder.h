@@ -24,6 +24,7 @@ struct glint_lamp_finder {
     int64_t merge2_q16; /* squared merge distance */
     struct glint_bright bright;
     struct glint_white *white;
+    int32_t least_white_q20; /* linear, of the next picture */
     struct glint_row_light row;
     struct glint_regions regions[LIGHT_LEVELS];
     struct glint_level level[LIGHT_LEVELS]; /* of rising brightness */

@@ -66,6 +66,9 @@ static void set_levels(struct glint_lamp_finder *f)
     struct glint_bright *b = &f->bright;
 
     glint_white_measure(f->white, b, f->cfg.height);
+    if (f->white->light_q20 < f->least_white_q20)
+        f->white->light_q20 = f->least_white_q20;
+    f->least_white_q20 = 0;
     f->n_levels = 0;
     if (white_code) {
         add_level(f, b->curve->decode_q20[white_code]);

@@ -106,6 +106,8 @@ void night_draw(struct night *night, const struct night_lamp *lamp, int n)
 
 void night_track(struct night *n, int32_t elapsed_us)
 {
+    glint_lamp_finder_keep_white(
+        n->finder, glint_lamp_tracker_white_q15(n->tracks, elapsed_us));
     n->n_spots =
         glint_lamp_finder_find(n->finder, &n->image, n->spot, NIGHT_MAX);
     glint_profile_measure(n->profile, &n->image, n->spot, n->n_spots);

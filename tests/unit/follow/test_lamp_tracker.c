@@ -672,122 +672,7 @@ static void test_what_is_no_cut(void **state)
     night_close(&night);
 }
 
-/* ------------------------------------------------------------- nothing pops */
-
-/* The largest step of the energy from picture to picture, over the power of
- * the brightest that there was. */
-struct steps {
-    double last, most, largest;
-    int n;
-};
-
-static void note(struct steps *s, double energy)
-{
-    if (s->n++ > 0)
-        s->largest = fmax(s->largest, fabs(energy - s->last));
-    s->most = fmax(s->most, energy);
-    s->last = energy;
-}
-
-/* What is shown of the lamps of the lower half, and by which number. */
-static double energy_below(const struct night *n, uint32_t *id)
-{
-    double energy = 0;
-
-    for (int i = 0; i < n->n_tracks; i++) {
-        const struct glint_lamp_track *t = &n->track[i];
-
-        if (t->y_q8 < 70 * 256)
-            continue;
-        *id = *id ? *id : t->id;
-        assert_int_equal(t->id, *id);
-        energy += night_power(t);
-    }
-    return energy;
-}
-
-/* A lamp passes behind a pole of 20 pixels, which hides it for half a second
- * or more. Its energy changes by a quarter of it a frame at most, where the
- * spot's own goes by all of it, and it comes back with its number. Another
- * lamp stands still: alone, what is left of the glow would be the picture's
- * white. */
-static void test_a_pole_makes_nothing_pop(void **state)
-{
-    static const double speeds[] = {0.7, 1, 2, 4, 6};
-
-    (void)state;
-    for (int k = 0; k < 5; k++) {
-        struct steps raw = {0, 0, 0, 0}, tracked = {0, 0, 0, 0};
-        uint32_t id = 0;
-
-        open_night(320, 200, 2);
-        night.pole_x0 = 150;
-        night.pole_x1 = 170;
-        for (int frame = 0; frame * speeds[k] < 180; frame++) {
-            const struct night_lamp lamps[2] = {
-                {70.0 + speeds[k] * frame, 100, 5, 3}, {60, 30, 5, 3}};
-            double seen = 0;
-
-            night_step(&night, lamps, 2, FPS30);
-            for (int i = 0; i < night.n_spots; i++)
-                if (night.spot[i].y_q8 > 70 * 256)
-                    seen += night_spot_power(&night.spot[i]);
-            note(&raw, seen);
-            note(&tracked, energy_below(&night, &id));
-        }
-        print_message("%.1f px a frame: steps of %.2f -> %.2f\n", speeds[k],
-                      raw.largest / raw.most, tracked.largest / tracked.most);
-        assert_int_equal(night.n_tracks, 2);
-        assert_true(tracked.largest < 0.25 * tracked.most);
-        night_close(&night);
-    }
-}
-
-/* Two lamps meet and part again, closer than the finder tells apart in between.
- * The energy of both together stays within bounds, and neither jumps. */
-static void test_merging_and_splitting(void **state)
-{
-    struct steps energy = {0, 0, 0, 0};
-    double least = HUGE_VAL, both = 0, jump = 0;
-    struct glint_lamp_track last[8];
-    int n_last = 0, n_merged = 0;
-
-    (void)state;
-    night_init(&night, 640, 200);
-    night.sigma = 2;
-    night.lights.merge_q15 = 32768 * 30 / 640;
-    assert_true(night_open(&night));
-    for (int frame = 0; frame < 150; frame++) {
-        const double apart = frame < 75 ? 90.0 - frame : frame - 60.0;
-        const struct night_lamp lamp[2] = {{320 - apart / 2, 90, 4, 3},
-                                           {320 + apart / 2, 100, 5, 3}};
-
-        night_step(&night, lamp, 2, FPS30);
-        n_merged += night.n_spots == 1;
-        note(&energy, night_energy(&night));
-        both = frame < 20 ? fmax(both, night_energy(&night)) : both;
-        least = fmin(least, night_energy(&night));
-        for (int i = 0; i < night.n_tracks; i++)
-            for (int j = 0; j < n_last; j++)
-                if (night.track[i].id == last[j].id)
-                    jump =
-                        fmax(jump, hypot(night.track[i].x_q8 - last[j].x_q8,
-                                         night.track[i].y_q8 - last[j].y_q8) /
-                                       256);
-        n_last = night.n_tracks;
-        assert_in_range(n_last, 1, 2);
-        memcpy(last, night.track, (size_t)n_last * sizeof *last);
-    }
-    print_message("merged: energy %.2f to %.2f of both, steps of %.2f, "
-                  "%.1f px at most\n",
-                  least / both, energy.most / both, energy.largest / both,
-                  jump);
-    assert_in_range(n_merged, 20, 60);
-    assert_true(energy.largest < 0.15 * both);
-    assert_true(least > 0.8 * both && energy.most < 1.2 * both);
-    assert_true(jump < 5);
-    night_close(&night);
-}
+/* -------------------------------------------------------------------- many */
 
 /* Ten lamps, four shown: with noise that makes them take turns for the last
  * place in the finder's order, the same four are shown; and when another gets
@@ -874,8 +759,6 @@ int main(void)
         cmocka_unit_test(test_cut_restarts_in_one_frame),
         cmocka_unit_test(test_cut_to_the_dark),
         cmocka_unit_test(test_what_is_no_cut),
-        cmocka_unit_test(test_a_pole_makes_nothing_pop),
-        cmocka_unit_test(test_merging_and_splitting),
         cmocka_unit_test(test_cap_does_not_flicker),
         cmocka_unit_test(test_more_lights_than_tracks),
     };

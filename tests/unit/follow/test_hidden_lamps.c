@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Lamps that something hides, or that come together: the energy of what is
+ * shown does not pop, and numbers stay.
+ */
+#include "glint/lamp_tracker.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/night.h"
+
+enum { FPS30 = 33333 };
+
+static struct night night;
+
+static void open_night(int width, int height, double sigma)
+{
+    night_init(&night, width, height);
+    night.sigma = sigma;
+    assert_true(night_open(&night));
+}
+
+/* The largest step of the energy from picture to picture, over the power of
+ * the brightest that there was. */
+struct steps {
+    double last, most, largest;
+    int n;
+};
+
+static void note(struct steps *s, double energy)
+{
+    if (s->n++ > 0)
+        s->largest = fmax(s->largest, fabs(energy - s->last));
+    s->most = fmax(s->most, energy);
+    s->last = energy;
+}
+
+/* What is shown of the lamps of the lower half, and by which number. */
+static double energy_below(const struct night *n, uint32_t *id)
+{
+    double energy = 0;
+
+    for (int i = 0; i < n->n_tracks; i++) {
+        const struct glint_lamp_track *t = &n->track[i];
+
+        if (t->y_q8 < 70 * 256)
+            continue;
+        *id = *id ? *id : t->id;
+        assert_int_equal(t->id, *id);
+        energy += night_power(t);
+    }
+    return energy;
+}
+
+/* A lamp passes behind a pole of 20 pixels, which hides it for half a second
+ * or more. Its energy changes by a quarter of it a frame at most, where the
+ * spot's own goes by all of it, and it comes back with its number. Another
+ * lamp stands still, or there is none. */
+static void pass_behind_a_pole(int n_lamps)
+{
+    static const double speeds[] = {0.7, 1, 2, 4, 6};
+
+    for (int k = 0; k < 5; k++) {
+        struct steps raw = {0, 0, 0, 0}, tracked = {0, 0, 0, 0};
+        uint32_t id = 0;
+
+        open_night(320, 200, 2);
+        night.pole_x0 = 150;
+        night.pole_x1 = 170;
+        for (int frame = 0; frame * speeds[k] < 180; frame++) {
+            const struct night_lamp lamps[2] = {
+                {70.0 + speeds[k] * frame, 100, 5, 3}, {60, 30, 5, 3}};
+            double seen = 0;
+
+            night_step(&night, lamps, n_lamps, FPS30);
+            for (int i = 0; i < night.n_spots; i++)
+                if (night.spot[i].y_q8 > 70 * 256)
+                    seen += night_spot_power(&night.spot[i]);
+            note(&raw, seen);
+            note(&tracked, energy_below(&night, &id));
+        }
+        print_message("%.1f px a frame: steps of %.2f -> %.2f\n", speeds[k],
+                      raw.largest / raw.most, tracked.largest / tracked.most);
+        assert_int_equal(night.n_tracks, n_lamps);
+        assert_true(tracked.largest < 0.25 * tracked.most);
+        night_close(&night);
+    }
+}
+
+static void test_a_pole_makes_nothing_pop(void **state)
+{
+    (void)state;
+    pass_behind_a_pole(2);
+}
+
+/* What is left of the glow is not the picture's white, though nothing in the
+ * picture is brighter. */
+static void test_a_pole_hides_a_lamp_alone(void **state)
+{
+    (void)state;
+    pass_behind_a_pole(1);
+}
+
+/* White is kept while a lamp is known, for as long as it is remembered. */
+static void test_white_is_kept_for_a_while(void **state)
+{
+    const struct night_lamp lamp = {160, 100, 5, 3};
+    int frame = 0;
+
+    (void)state;
+    open_night(320, 200, 1);
+    assert_int_equal(glint_lamp_tracker_white_q15(night.tracks, FPS30), 0);
+    night_step(&night, &lamp, 1, FPS30);
+    assert_in_range(glint_lamp_tracker_white_q15(night.tracks, 1442695), 16383,
+                    16385);
+    assert_in_range(glint_lamp_tracker_white_q15(night.tracks, FPS30), 32000,
+                    32100);
+    while (frame < 200 && glint_lamp_tracker_white_q15(night.tracks, FPS30)) {
+        night_step(&night, &lamp, 0, FPS30);
+        frame++;
+    }
+    assert_in_range(frame, 58, 62);
+    night_close(&night);
+}
+
+/* Two lamps meet and part again, closer than the finder tells apart in between.
+ * The energy of both together stays within bounds, and neither jumps. */
+static void test_merging_and_splitting(void **state)
+{
+    struct steps energy = {0, 0, 0, 0};
+    double least = HUGE_VAL, both = 0, jump = 0;
+    struct glint_lamp_track last[8];
+    int n_last = 0, n_merged = 0;
+
+    (void)state;
+    night_init(&night, 640, 200);
+    night.sigma = 2;
+    night.lights.merge_q15 = 32768 * 30 / 640;
+    assert_true(night_open(&night));
+    for (int frame = 0; frame < 150; frame++) {
+        const double apart = frame < 75 ? 90.0 - frame : frame - 60.0;
+        const struct night_lamp lamp[2] = {{320 - apart / 2, 90, 4, 3},
+                                           {320 + apart / 2, 100, 5, 3}};
+
+        night_step(&night, lamp, 2, FPS30);
+        n_merged += night.n_spots == 1;
+        note(&energy, night_energy(&night));
+        both = frame < 20 ? fmax(both, night_energy(&night)) : both;
+        least = fmin(least, night_energy(&night));
+        for (int i = 0; i < night.n_tracks; i++)
+            for (int j = 0; j < n_last; j++)
+                if (night.track[i].id == last[j].id)
+                    jump =
+                        fmax(jump, hypot(night.track[i].x_q8 - last[j].x_q8,
+                                         night.track[i].y_q8 - last[j].y_q8) /
+                                       256);
+        n_last = night.n_tracks;
+        assert_in_range(n_last, 1, 2);
+        memcpy(last, night.track, (size_t)n_last * sizeof *last);
+    }
+    print_message("merged: energy %.2f to %.2f of both, steps of %.2f, "
+                  "%.1f px at most\n",
+                  least / both, energy.most / both, energy.largest / both,
+                  jump);
+    assert_in_range(n_merged, 20, 60);
+    assert_true(energy.largest < 0.15 * both);
+    assert_true(least > 0.8 * both && energy.most < 1.2 * both);
+    assert_true(jump < 5);
+    night_close(&night);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_pole_makes_nothing_pop),
+        cmocka_unit_test(test_a_pole_hides_a_lamp_alone),
+        cmocka_unit_test(test_white_is_kept_for_a_while),
+        cmocka_unit_test(test_merging_and_splitting),
+    };
+
+    return cmocka_run_group_tests_name("hidden lamps", tests, NULL, NULL);
+}
