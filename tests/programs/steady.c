@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * steady [--lens LENS] [--most SHARE] [--log] [VIDEO.y4m...] - how steady the
- * flare of a video is: drawn scenes, and videos.
+ * steady [--lens LENS] [--most SHARE] [--log] [--scene NAME] [VIDEO.y4m...] -
+ * how steady the flare of a video is: drawn scenes, all or that one (none: a
+ * name that no scene has), and videos.
  *
  * From frame to frame the total light of the flare, as it is drawn, changes
  * for what the lamps do (they move, rise, fade, are hidden: the total light at
@@ -14,6 +15,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "overlay/compositor.h"
 #include "video/y4m.h"
@@ -259,9 +261,11 @@ int main(int argc, char **argv)
         {"lens", required_argument, NULL, 'l'},
         {"most", required_argument, NULL, 'm'},
         {"log", no_argument, NULL, 'v'},
+        {"scene", required_argument, NULL, 's'},
         {NULL, 0, NULL, 0}};
     static struct steady s = {.tool = {.name = "steady", .quiet = true}};
     bool good = true;
+    const char *only = NULL;
     double most = 0.1;
     int c;
 
@@ -271,6 +275,8 @@ int main(int argc, char **argv)
             s.compositor.lens = optarg;
         else if (c == 'v')
             s.log = true;
+        else if (c == 's')
+            only = optarg;
         else if (c != 'm' || !tool_number(optarg, &most))
             return EXIT_USAGE;
     }
@@ -280,7 +286,8 @@ int main(int argc, char **argv)
     puts("| scene | frames | lights | cuts | largest step, % | beside the "
          "lamps' own, % | at frame |\n|---|---|---|---|---|---|---|");
     for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
-        good = run_settings(&s, k, most) && good;
+        if (!only || strcmp(only, scenes[k].name) == 0)
+            good = run_settings(&s, k, most) && good;
     for (int i = optind; i < argc; i++)
         good = run_video(&s, argv[i], most) && good;
     compositor_close(&s.compositor);
