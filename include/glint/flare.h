@@ -166,10 +166,31 @@ void glint_flare_capacities(struct glint_flare_config *cfg,
                             const struct glint_lens *lens, int n_lights,
                             int n_waves);
 
-/* The same for a frame through LENS of a picture in codes: waves and
- * pixels_per_mm are to be set. */
+/* What a newcomer should start from for a frame through LENS of a picture in
+ * codes; waves and pixels_per_mm are to be set. */
 void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                 const struct glint_lens *lens);
+
+/* Pixels per mm of the largest picture of WIDTH x HEIGHT that fits the film of
+ * LENS, as glint_view_fit() has it. */
+struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
+                                            int width, int height);
+
+#define GLINT_FLARE_WAVES 3
+
+/* Red, green and blue: 650, 532 and 450 nm, each measured by its own direct
+ * image through LENS, whose stop is a circle, so that white light stays white.
+ * Weights are off by 2^-24 at most. */
+void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
+                       const struct glint_lens *lens);
+
+/* The light, white and of power 1, that LENS shows at (X, Y), pixels from the
+ * top left corner, y down, of the picture of WIDTH x HEIGHT above; places
+ * beyond 2^22 pixels count as there. In integers what glint_view_to_angles() is
+ * in doubles: no sine or cosine is off by more than 2^-28. */
+struct glint_light glint_light_from_pixel(const struct glint_lens *lens,
+                                          int width, int height, int32_t x_q8,
+                                          int32_t y_q8);
 
 /* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
 size_t glint_flare_bytes(const struct glint_flare_config *cfg);

@@ -1,144 +1,139 @@
 /* SPDX-License-Identifier: MIT
  *
  * draw_flare MODEL IN.ppm X Y STOPS >OUT.ppm - the ghosts of a white lamp at a
- * pixel, so many stops brighter than white. Links of glint what draws a flare
- * of a model into 8-bit pictures, by edges.
+ * pixel, so many stops brighter than white. Written as for a board: no malloc
+ * and no floating point (make lint sees to it), all memory is static, and of
+ * glint it links what draws a flare of a model into 8-bit pictures, by edges.
  */
-#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "glint/flare.h"
 #include "glint/kernels.h"
-#include "model.h"
-#include "ppm.h"
 
-enum { WAVES = 3 };
+enum { MAX_MODEL = 2 << 20, MAX_PICTURE = 12 << 20, MAX_FLARE = 16 << 20 };
 
-static struct glint_real real_of(double x)
+/* On a board the model lies in ROM, and the picture where the camera puts it.
+ */
+static uint32_t model[MAX_MODEL / sizeof(uint32_t)];
+static uint8_t picture[MAX_PICTURE];
+#ifdef __GNUC__
+__attribute__((aligned(64)))
+#endif
+static uint8_t flare_memory[MAX_FLARE];
+
+/* Reads the file PATH into BLOCK. Returns its bytes; 0: it is not there, or
+ * does not fit. */
+static size_t load(const char *path, void *block, size_t room)
 {
-    int exponent;
-    const double mantissa = frexp(x, &exponent);
+    FILE *file = fopen(path, "rb");
+    size_t bytes = 0;
 
-    return (struct glint_real){(int32_t)(mantissa * 0x1p31), exponent - 31};
-}
-
-static double value_of(struct glint_real x)
-{
-    return ldexp(x.mantissa, x.exponent);
-}
-
-static int32_t q30(double x)
-{
-    return (int32_t)lrint(x * 0x1p30);
-}
-
-/* Red, green and blue, each a wavelength, measured by their direct images. */
-static void set_waves(const struct glint_model_header *h,
-                      struct glint_wave *wave)
-{
-    static const double wavelength_um[WAVES] = {0.650, 0.532, 0.450};
-
-    for (int i = 0; i < WAVES; i++) {
-        const double wave_q24 = 0x1p24 / (wavelength_um[i] * wavelength_um[i]);
-        const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;
-        const double w = (2 * wave_q24 - lo - hi) / fmax(1, hi - lo);
-        double flux = 0;
-
-        for (int k = 5; k >= 0; k--)
-            flux = flux * fmax(-1, fmin(1, w)) + value_of(h->direct_flux[k]);
-        wave[i] =
-            (struct glint_wave){.wave_q24 = (int32_t)lrint(wave_q24),
-                                .weight = real_of(flux > 0 ? 1 / flux : 0)};
-        wave[i].rgb_q14[i] = 1 << 14;
+    if (file) {
+        bytes = fread(block, 1, room, file);
+        if (bytes == room || ferror(file))
+            bytes = 0;
+        fclose(file);
     }
+    return bytes;
 }
 
-static double pixels_per_mm(const struct glint_model_header *h,
-                            const struct glint_image *image)
+/* Reads the number at *AT, after one blank, and moves *AT behind it. */
+static int number(const uint8_t **at)
 {
-    return fmax(image->width / value_of(h->film_width_mm),
-                image->height / value_of(h->film_height_mm));
+    int n = 0;
+
+    for (++*at; **at >= '0' && **at <= '9' && n <= GLINT_MAX_SIDE; ++*at)
+        n = 10 * n + (**at - '0');
+    return n;
 }
 
-/* A lamp that is seen at (X, Y). */
-static struct glint_light light_at(const struct glint_model_header *h,
-                                   const struct glint_image *image, int x,
-                                   int y, double power)
+/* Finds the image in the binary PPM of BYTES that the picture is. Returns
+ * whether it is one of 8 bits, without comments. */
+static int find_image(struct glint_image *image, size_t bytes)
 {
-    const double dx = x + 0.5 - image->width / 2.0;
-    const double dy = image->height / 2.0 - y - 0.5;
-    const double r = hypot(dx, dy), azimuth = atan2(dy, dx);
-    const double angle =
-        atan(r / pixels_per_mm(h, image) / value_of(h->focal_mm));
+    const uint8_t *at = picture + 2;
 
-    return (struct glint_light){.sine_q30 = q30(sin(angle)),
-                                .cosine_q30 = q30(cos(angle)),
-                                .cos_q30 = q30(cos(azimuth)),
-                                .sin_q30 = q30(sin(azimuth)),
-                                .power = real_of(power),
-                                .rgb_q14 = {1 << 14, 1 << 14, 1 << 14}};
+    if (picture[0] != 'P' || picture[1] != '6')
+        return 0;
+    *image = (struct glint_image){.format = GLINT_RGB24};
+    image->width = number(&at);
+    image->height = number(&at);
+    if (number(&at) != 255 || image->width < 1 || image->height < 1 ||
+        image->width > GLINT_MAX_SIDE || image->height > GLINT_MAX_SIDE)
+        return 0;
+    at++;
+    glint_image_place(image, picture + (at - picture));
+    return bytes == (size_t)(at - picture) +
+                        3 * (size_t)image->width * (size_t)image->height;
 }
 
+/* Adds the flare of LIGHT. Returns 0: it takes more memory than there is. */
 static int draw(const struct glint_lens *lens, const struct glint_image *image,
                 const struct glint_light *light)
 {
-    struct glint_wave wave[WAVES];
+    struct glint_wave wave[GLINT_FLARE_WAVES];
     struct glint_flare_config config;
     struct glint_flare_frame frame;
     struct glint_flare_stats stats;
     struct glint_flare *flare;
-    size_t bytes;
-    void *mem;
 
     glint_flare_defaults(&config, image->width, image->height);
-    glint_flare_capacities(&config, lens, 1, WAVES);
+    glint_flare_capacities(&config, lens, 1, GLINT_FLARE_WAVES);
     config.sets = glint_sets_here();
     glint_flare_frame_defaults(&frame, lens);
+    glint_flare_waves(wave, lens);
     frame.wave = wave;
-    frame.n_waves = WAVES;
-    frame.pixels_per_mm = real_of(pixels_per_mm(lens->header, image));
-    bytes = glint_flare_bytes(&config);
-    if (posix_memalign(&mem, 64, bytes) != 0) {
-        fprintf(stderr, "out of memory\n");
-        return 1;
-    }
-    set_waves(lens->header, wave);
-    if (glint_flare_init(&flare, &config, mem, bytes) != GLINT_OK) {
-        fprintf(stderr, "a picture of this size cannot be drawn\n");
-        free(mem);
-        return 1;
-    }
+    frame.n_waves = GLINT_FLARE_WAVES;
+    frame.pixels_per_mm =
+        glint_flare_pixels_per_mm(lens, image->width, image->height);
+    if (glint_flare_init(&flare, &config, flare_memory, sizeof flare_memory) !=
+        GLINT_OK)
+        return 0;
     glint_flare_plan(flare, &frame, light, 1);
     glint_flare_bin(flare, &stats);
     glint_flare_draw(flare, image);
-    free(mem);
-    return 0;
+    return 1;
+}
+
+/* The middle of the pixel that TEXT numbers. */
+static int32_t middle_q8(const char *text)
+{
+    const int pixel = atoi(text);
+
+    return pixel > -GLINT_MAX_SIDE && pixel < 2 * GLINT_MAX_SIDE
+               ? pixel * 256 + 128
+               : 512 * GLINT_MAX_SIDE;
+}
+
+static int failed(int code, const char *what)
+{
+    fprintf(stderr, "draw_flare: %s\n", what);
+    return code;
 }
 
 int main(int argc, char **argv)
 {
+    const char *reason = "cannot be read, or has more than 2 MiB";
+    const int stops = argc == 6 ? atoi(argv[5]) : 61;
     struct glint_lens lens;
     struct glint_image image;
-    void *model;
-    int code;
+    struct glint_light light;
+    size_t bytes;
 
-    if (argc != 6 || !(fabs(atof(argv[5])) <= 60)) {
-        fprintf(stderr, "draw_flare MODEL IN.ppm X Y STOPS >OUT.ppm\n");
-        return 2;
-    }
-    model = model_read(argv[1], &lens);
-    if (!model)
-        return 5;
-    code = ppm_read(argv[2], &image);
-    if (code == 0) {
-        const struct glint_light light =
-            light_at(lens.header, &image, atoi(argv[3]), atoi(argv[4]),
-                     exp2(atof(argv[5])));
-
-        code = draw(&lens, &image, &light);
-        if (code == 0)
-            code = ppm_write(&image);
-        free(image.plane[0]);
-    }
-    free(model);
-    return code;
+    if (stops < -60 || stops > 60)
+        return failed(2, "MODEL IN.ppm X Y STOPS >OUT.ppm");
+    bytes = load(argv[1], model, sizeof model);
+    if (!bytes || glint_lens_open(&lens, model, bytes, &reason) != GLINT_OK)
+        return failed(5, reason);
+    bytes = load(argv[2], picture, sizeof picture);
+    if (!find_image(&image, bytes))
+        return failed(3, "no binary PPM of 8 bits, or more than 12 MiB");
+    light = glint_light_from_pixel(&lens, image.width, image.height,
+                                   middle_q8(argv[3]), middle_q8(argv[4]));
+    light.power.exponent += stops;
+    if (!draw(&lens, &image, &light))
+        return failed(1, "a picture of this size takes more than 16 MiB");
+    return fwrite(picture, 1, bytes, stdout) == bytes && !fflush(stdout) ? 0
+                                                                         : 6;
 }

@@ -48,17 +48,17 @@ $(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
 $(call of,$(addprefix src/lens/,model model_system),-Os)
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
-$(call of,$(addprefix src/flare/,capacities lights plan plan_cells probe wave_sets flare draw_over account),-Os)
+$(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe wave_sets flare draw_over account),-Os)
 $(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
 $(call of,src/tile/bins src/tile/pass $(addprefix src/image/,resolve curve mix),-Os)
 
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)
 $(call of,$(addprefix src/lamps/,bright_mark bright_scan row_light),-O3)
-$(call of,$(addprefix src/flare/edges/,ghost_edges ghost_rows ghost_alone),-O3)
+$(call of,$(addprefix src/flare/edges/,ghost_edges ghost_rows),-O3)
 $(call of,$(addprefix src/flare/edges/,edge edge_add),-O3 -fno-tree-vectorize)# their loops are short
 # Unrolling these buys nothing but bytes.
-$(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,edges/sums by_edges edges_pass) \
+$(call of,$(addprefix src/image/,codes quads) $(addprefix src/flare/,edges/sums edges_pass) \
 	$(addprefix src/lens/,transfer transfer_rays transfer_grid),-ftree-vectorize)
 # Every frame of a camera goes through these on its way to a panel.
 $(call of,$(addprefix platform/panel/,split row_rgb row_pack planar),-O3)

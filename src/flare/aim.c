@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Pixels as directions of light, in integers: for programs without floating
+ * point, what glint/view.h does in doubles.
+ */
+#include "base/real.h"
+#include "glint/flare.h"
+
+enum { HALF_PIXEL_Q8 = 128, LIMIT_Q8 = 1 << 30 };
+
+struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
+                                            int width, int height)
+{
+    const struct glint_real across =
+        real_over(real_of(width, 0), lens->header->film_width_mm);
+    const struct glint_real down =
+        real_over(real_of(height, 0), lens->header->film_height_mm);
+
+    return real_less(across, down) ? down : across;
+}
+
+/* SMALL / LARGE, which is 1 at most; 0 of 0 and 0. */
+static int32_t ratio(struct glint_real small, struct glint_real large)
+{
+    struct glint_real r;
+
+    if (small.mantissa == 0)
+        return 0;
+    r = real_over(small, large);
+    return r.exponent < -60 ? 0 : r.mantissa >> (-30 - r.exponent);
+}
+
+/* Cosine and sine of the direction from (0, 0) to (X, Y), both 0 or more; (0,
+ * 0) lies to the right. */
+static void direction(struct glint_real x, struct glint_real y,
+                      int32_t *cosine_q30, int32_t *sine_q30)
+{
+    const int steep = real_less(x, y);
+    const int64_t ratio_q30 = steep ? ratio(x, y) : ratio(y, x);
+    const int64_t length_q30 =
+        q_root((UINT64_C(1) << 60) + (uint64_t)(ratio_q30 * ratio_q30));
+    const int32_t large_q30 = q_narrow(q_divide(INT64_C(1) << 60, length_q30));
+    const int32_t small_q30 = q_mul((int32_t)ratio_q30, large_q30, 30);
+
+    *cosine_q30 = steep ? small_q30 : large_q30;
+    *sine_q30 = steep ? large_q30 : small_q30;
+}
+
+struct glint_light glint_light_from_pixel(const struct glint_lens *lens,
+                                          int width, int height, int32_t x_q8,
+                                          int32_t y_q8)
+{
+    const struct glint_real one = {1 << 30, -30};
+    const struct glint_real focal = real_times(
+        lens->header->focal_mm, glint_flare_pixels_per_mm(lens, width, height));
+    const int side = focal.mantissa < 0 ? -1 : 1;
+    const int32_t x = side * q_clamp_sat(x_q8 - (int64_t)width * HALF_PIXEL_Q8,
+                                         -LIMIT_Q8, LIMIT_Q8);
+    const int32_t y = side * q_clamp_sat((int64_t)height * HALF_PIXEL_Q8 - y_q8,
+                                         -LIMIT_Q8, LIMIT_Q8);
+    struct glint_light light = {.power = one,
+                                .rgb_q14 = {1 << 14, 1 << 14, 1 << 14}};
+    int64_t distance_q38;
+
+    direction(real_of(x < 0 ? -x : x, -8), real_of(y < 0 ? -y : y, -8),
+              &light.cos_q30, &light.sin_q30);
+    light.cos_q30 = x < 0 ? -light.cos_q30 : light.cos_q30;
+    light.sin_q30 = y < 0 ? -light.sin_q30 : light.sin_q30;
+    distance_q38 = (int64_t)x * light.cos_q30 + (int64_t)y * light.sin_q30;
+    direction((struct glint_real){side * focal.mantissa, focal.exponent},
+              real_of(distance_q38, -38), &light.cosine_q30, &light.sine_q30);
+    return light;
+}
