@@ -141,7 +141,7 @@ struct glint_flare_stats {
     int need_bundles, need_vertices, need_primitives, need_refs,
         need_tile_refs;  /* what would have drawn everything, exactly where
                             there is room for need_bundles, and by cells for
-                            need_vertices and then need_primitives */
+                            need_vertices */
     int dropped_bundles; /* left out for want of capacity */
     int dropped_cells;   /* of bundles that were drawn: with a lost ray, a
                             vertex out of range, or no area */

@@ -25,8 +25,8 @@ struct glint_bundle_slot {
     int first_vertex;
     int first; /* primitive or edge; -1: it found no place */
     int n, n_dropped, n_merged, n_held;
-    int worker; /* by edges: who made it, */
-    int refs;   /* and what it would take of the bins if it found no place */
+    int worker; /* by edges: who made it */
+    int refs;   /* entries of the bins; by edges only if it found no place */
 };
 
 struct glint_flare {

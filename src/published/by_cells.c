@@ -103,15 +103,32 @@ static struct glint_ghost_grid grid_of(const struct glint_flare *f, int bundle)
     };
 }
 
+/* The index entries that the primitives of a bundle take. */
+struct span {
+    const struct glint_bins *bins;
+    int refs;
+};
+
+static void add_span(void *ctx, struct glint_box box)
+{
+    struct span *s = ctx;
+
+    s->refs = glint_flare_add_need(s->refs, glint_bins_span(s->bins, box));
+}
+
 static void count_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
     struct glint_ghost_grid grid = grid_of(f, job);
     struct glint_bundle_slot *slot = &f->slot[job];
+    struct span span = {&f->bins, 0};
 
     (void)worker;
     glint_ghost_grid_merge(&grid);
+    grid.see = add_span;
+    grid.ctx = &span;
     glint_ghost_grid_emit(&grid, job, NULL);
+    slot->refs = span.refs;
     slot->n = grid.n_primitives;
     slot->n_dropped = grid.n_dropped;
     slot->n_merged = grid.n_merged;
@@ -159,21 +176,16 @@ static struct glint_box primitive_box(const struct glint_flare *f, int index)
     return glint_primitive_box(p, &corners, f->cfg.width, f->cfg.height);
 }
 
-/* Counts the index entries bundle by bundle and keeps the bundles that fit. */
-static void count_refs(struct glint_flare *f)
+/* Keeps the bundles whose index entries fit; counts those of all. */
+static void keep_refs(struct glint_flare *f)
 {
     int full = 0, n_kept = 0;
 
-    for (int i = 0; i < f->n_drawn; i++) {
-        const struct glint_bundle_slot *slot = &f->slot[i];
-        int refs = 0;
+    for (int i = 0; i < f->n_bundles; i++) {
+        const int refs = f->slot[i].refs;
 
-        for (int k = 0; k < slot->n; k++)
-            refs = glint_flare_add_need(
-                refs,
-                glint_bins_span(&f->bins, primitive_box(f, slot->first + k)));
         f->stats.need_refs = glint_flare_add_need(f->stats.need_refs, refs);
-        full |= refs > f->cfg.max_refs - f->stats.refs;
+        full |= i >= f->n_drawn || refs > f->cfg.max_refs - f->stats.refs;
         if (full)
             continue;
         f->stats.refs += refs;
@@ -209,37 +221,73 @@ static struct glint_bins small_bins(const struct glint_flare *f, int tile,
     return bins;
 }
 
-/* The longest index list that one large tile will need. */
+/* The longest index list that one large tile will need: the lists of large
+ * tiles are there, and of all bundles. */
 static void count_tile_refs(struct glint_flare *f)
 {
     const int n = f->bins.tiles_x * f->bins.tiles_y;
 
     for (int tile = 0; tile < n; tile++) {
         const struct glint_bins bins = small_bins(f, tile, worker_of(f, 0));
-        int refs = 0;
+        struct span span = {&bins, 0};
 
         for (int k = f->bins.start[tile]; k < f->bins.start[tile + 1]; k++)
-            refs = glint_flare_add_need(
-                refs, glint_bins_span(&bins, primitive_box(f, f->bins.ref[k])));
-        if (refs > f->stats.need_tile_refs)
-            f->stats.need_tile_refs = refs;
+            add_span(&span, primitive_box(f, f->bins.ref[k]));
+        f->stats.need_tile_refs = q_larger(f->stats.need_tile_refs, span.refs);
     }
-    f->stats.tile_refs = f->stats.need_tile_refs < f->cfg.max_tile_refs
-                             ? f->stats.need_tile_refs
-                             : f->cfg.max_tile_refs;
+}
+
+/* Counts the entries for small tiles of each large tile. */
+static void add_tile_span(void *ctx, struct glint_box box)
+{
+    const struct glint_flare *f = ctx;
+    const int n = f->bins.tiles_x * f->bins.tiles_y;
+
+    for (int tile = 0; tile < n; tile++) {
+        const struct glint_bins bins = small_bins(f, tile, worker_of(f, 0));
+        struct span span = {&bins, f->bins.start[tile]};
+
+        add_span(&span, box);
+        f->bins.start[tile] = span.refs;
+    }
+}
+
+/* The same before there are lists, where bundles found no room: primitives are
+ * made once more, and dropped. Counts where the lists will begin. */
+static void count_all_tile_refs(struct glint_flare *f)
+{
+    const int n = f->bins.tiles_x * f->bins.tiles_y;
+
+    glint_bins_open(&f->bins);
+    for (int i = 0; i < f->n_bundles; i++) {
+        struct glint_ghost_grid grid = grid_of(f, i);
+
+        grid.see = add_tile_span;
+        grid.ctx = f;
+        glint_ghost_grid_emit(&grid, i, NULL);
+    }
+    for (int tile = 0; tile < n; tile++)
+        f->stats.need_tile_refs =
+            q_larger(f->stats.need_tile_refs, f->bins.start[tile]);
 }
 
 static void bin(struct glint_flare *flare)
 {
     struct glint_workers *workers = flare->cfg.workers;
+    int all;
 
     glint_workers_run(workers, flare->n_bundles, count_job, flare);
     place_primitives(flare);
     glint_workers_run(workers, flare->n_drawn, emit_job, flare);
-    count_refs(flare);
+    keep_refs(flare);
+    all = flare->n_drawn == flare->n_bundles;
+    if (flare->cfg.coarse_log2 && !all)
+        count_all_tile_refs(flare);
     fill_bins(flare);
-    if (flare->cfg.coarse_log2)
+    if (flare->cfg.coarse_log2 && all)
         count_tile_refs(flare);
+    flare->stats.tile_refs =
+        q_smaller(flare->stats.need_tile_refs, flare->cfg.max_tile_refs);
 }
 
 /* ------------------------------------------------------------------ drawing */

@@ -202,8 +202,8 @@ static int emit_point(struct glint_ghost_grid *g,
     if (glint_box_empty(glint_corners_pixel(corners, g->width, g->height)) ||
         !glint_clip_middle(corners, g->stop))
         return 0;
+    p->flags = GLINT_POINT;
     if (out) {
-        p->flags = GLINT_POINT;
         p->irradiance_q20 = held_q20(glint_irradiance_q22(
             g->bundle, p->share_log2, 1, 0, GLINT_LIMIT_Q8, &g->n_held));
         out[g->n_primitives] = *p;
@@ -245,6 +245,8 @@ static int emit_cell(struct glint_ghost_grid *g,
 static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
                     int n, int share_log2, struct glint_primitive *out)
 {
+    const int before = g->n_primitives;
+    int dropped;
     struct glint_primitive p = {.bundle = (uint16_t)bundle,
                                 .share_log2 = (int8_t)share_log2};
     struct glint_corners corners;
@@ -255,7 +257,10 @@ static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
     if (n == 3)
         p.vertex[3] = -1;
     glint_corners_gather(&corners, g->vertex, p.vertex, n);
-    return emit_cell(g, &corners, &p, out);
+    dropped = emit_cell(g, &corners, &p, out);
+    if (g->see && g->n_primitives > before)
+        g->see(g->ctx, glint_primitive_box(&p, &corners, g->width, g->height));
+    return dropped;
 }
 
 /* A cell that is no convex quad: two triangles, or the one that is left. */

@@ -36,6 +36,10 @@ struct glint_ghost_grid {
     int focused;             /* the whole ghost is a few pixels wide */
     int n_primitives, n_dropped, n_merged;
     int n_held; /* of those written: more light than a pixel gets of one */
+
+    /* Unless NULL, it is handed the box of each primitive, written or not. */
+    void (*see)(void *ctx, struct glint_box box);
+    void *ctx;
 };
 
 /* Decides which blocks of cells become one. */
