@@ -81,16 +81,16 @@ static void take_accounts(struct glint_explain *e)
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
     const int n_waves = e->frame->rays.n_waves;
 
-    for (int beam = 0; beam < e->n_beams; beam++)
+    for (int light = 0; light < e->n_lights; light++)
         for (int ghost = 0; ghost < n_ghosts; ghost++)
             for (int wave = 0; wave < n_waves; wave++) {
                 struct glint_account a;
 
-                glint_flare_account(e->frame->flare, ghost, beam, wave, &a);
+                glint_flare_account(e->frame->flare, ghost, light, wave, &a);
                 add(&e->all, &a);
                 /* NOLINTNEXTLINE: set_pairs() has set all of them */
                 add(&e->ghost[e->ghost_of[ghost]], &a);
-                add(&e->beam[beam], &a);
+                add(&e->light[light], &a);
                 add(&e->wave[part_of(e, wave)], &a);
                 if (a.outcome == GLINT_OUTCOME_DRAWN ||
                     a.outcome == GLINT_OUTCOME_EMPTY)
@@ -101,7 +101,7 @@ static void take_accounts(struct glint_explain *e)
 /* ---------------------------------------------------------------------- light
  */
 
-static void draw(struct glint_explain *e, int ghost, int beam, int wave)
+static void draw(struct glint_explain *e, int ghost, int light, int wave)
 {
     const struct glint_view *view = &e->frame->view;
     struct glint_image image = {.format = GLINT_LINEAR_Q20,
@@ -112,7 +112,7 @@ static void draw(struct glint_explain *e, int ghost, int beam, int wave)
            3 * (size_t)view->width * (size_t)view->height *
                sizeof *e->linear_q20);
     glint_image_place(&image, e->linear_q20);
-    glint_flare_keep(e->frame->flare, ghost, beam, wave);
+    glint_flare_keep(e->frame->flare, ghost, light, wave);
     glint_flare_draw(e->frame->flare, &image);
 }
 
@@ -148,17 +148,17 @@ static void measure_parts(struct glint_explain *e)
             draw(e, i, -1, -1);
             measure(e, &e->ghost[i]);
         }
-    for (int i = 0; i < e->n_beams; i++)
-        if (e->beam[i].edges) {
+    for (int i = 0; i < e->n_lights; i++)
+        if (e->light[i].edges) {
             draw(e, -1, i, -1);
-            measure(e, &e->beam[i]);
+            measure(e, &e->light[i]);
         }
     for (int i = 0; i < e->n_waves; i++)
         if (e->wave[i].edges) {
             draw(e, -1, -1, i);
             measure(e, &e->wave[i]);
         }
-    if (e->n_beams) {
+    if (e->n_lights) {
         draw(e, -1, -1, -1);
         measure(e, &e->all);
     }
@@ -209,7 +209,7 @@ enum glint_status glint_explain_open(struct glint_explain *e,
     const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
 
     *e = (struct glint_explain){.frame = frame,
-                                .n_beams = frame->n_beams,
+                                .n_lights = frame->n_lights,
                                 .n_waves = frame->rays.sets
                                                ? frame->rays.sets->n_sets
                                                : frame->rays.n_waves,
@@ -217,12 +217,12 @@ enum glint_status glint_explain_open(struct glint_explain *e,
                                 .n_tiles = tiles_of(frame)};
     e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
     e->ghost = calloc(n_all, sizeof *e->ghost);
-    e->beam = calloc((size_t)e->n_beams + 1, sizeof *e->beam);
+    e->light = calloc((size_t)e->n_lights + 1, sizeof *e->light);
     e->wave = calloc((size_t)e->n_waves, sizeof *e->wave);
     e->linear_q20 =
         calloc(3 * (size_t)frame->view.width * (size_t)frame->view.height,
                sizeof *e->linear_q20);
-    if (!e->ghost_of || !e->ghost || !e->beam || !e->wave || !e->linear_q20)
+    if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
         return GLINT_E_MEMORY;
     set_pairs(e);
     take_accounts(e);
@@ -232,7 +232,7 @@ enum glint_status glint_explain_open(struct glint_explain *e,
     e->all.share = e->all.flux > 0;
     e->all.cost = 1;
     set_shares(e, e->ghost, e->n_ghosts);
-    set_shares(e, e->beam, e->n_beams);
+    set_shares(e, e->light, e->n_lights);
     set_shares(e, e->wave, e->n_waves);
     return GLINT_OK;
 }
@@ -241,7 +241,7 @@ void glint_explain_close(struct glint_explain *e)
 {
     free(e->ghost_of);
     free(e->ghost);
-    free(e->beam);
+    free(e->light);
     free(e->wave);
     free(e->linear_q20);
 }

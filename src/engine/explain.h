@@ -44,10 +44,10 @@ enum glint_explain_stage {
 struct glint_explain {
     struct glint_frame *frame;
     int n_ghosts; /* pairs of surfaces */
-    int n_beams;
+    int n_lights;
     int n_waves;   /* wavelengths, or where ghosts choose sets of them, these */
     int *ghost_of; /* of each ghost and part of the lens: which pair it is */
-    struct glint_explain_part all, *ghost, *beam, *wave;
+    struct glint_explain_part all, *ghost, *light, *wave;
     int barrels[GLINT_EXPLAIN_BARRELS]; /* bundles that so many cut */
     double stage[GLINT_EXPLAIN_STAGES]; /* instructions, about */
     double unit;                        /* of light, over what was drawn */

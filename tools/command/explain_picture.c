@@ -79,12 +79,12 @@ static void shade_tiles(struct marking *m)
     const int side = 1 << f->cfg.tile_log2;
     int tile = 0;
 
-    if (m->explain->n_beams)
+    if (m->explain->n_lights)
         glint_explain_draw(m->explain, -1);
     for (int y = 0; y < m->height; y += side)
         for (int x = 0; x < m->width; x += side, tile++)
             shade(m, x, y, side,
-                  m->explain->n_beams &&
+                  m->explain->n_lights &&
                       (glint_flare_listed(f->flare, tile) > 0 ||
                        is_lit(m, x, y, side)));
 }

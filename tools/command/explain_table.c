@@ -94,9 +94,9 @@ static void print_title(const struct glint_explain *e,
     printf("%s, %dx%d, %s\n", t->lens, e->frame->view.width,
            e->frame->view.height, t->linear ? "linear light" : "codes");
     /* a lamp of visible extent is drawn as several points */
-    printf(e->n_beams > t->n_lamps ? "drawn: %d points of %d lights"
-                                   : "drawn: lights %d of %d",
-           e->n_beams, t->n_lamps);
+    printf(e->n_lights > t->n_lamps ? "drawn: %d points of %d lights"
+                                    : "drawn: lights %d of %d",
+           e->n_lights, t->n_lamps);
     printf(", ghosts %d of %d, bundles %d of %d, tiles %d of %d\n",
            ghosts_drawn(e), e->n_ghosts, glint_explain_drawn(all),
            glint_explain_bundles(all), all->tiles, e->n_tiles);
@@ -117,16 +117,16 @@ static void print_lights(const struct glint_explain *e,
                          const struct explain_title *t)
 {
     print_head("light    angle azimuth bundles");
-    for (int i = 0; i < e->n_beams && i < t->top; i++) {
-        const struct glint_light *b = &e->frame->beam[i];
+    for (int i = 0; i < e->n_lights && i < t->top; i++) {
+        const struct glint_light *b = &e->frame->light[i];
 
         printf(
             "%5d %8.3f %7.1f %7d", i + 1, degrees(b->sine_q30, b->cosine_q30),
-            degrees(b->sin_q30, b->cos_q30), glint_explain_drawn(&e->beam[i]));
-        print_costs(&e->beam[i]);
+            degrees(b->sin_q30, b->cos_q30), glint_explain_drawn(&e->light[i]));
+        print_costs(&e->light[i]);
     }
-    if (e->n_beams > t->top)
-        printf("      and %d more (--top)\n", e->n_beams - t->top);
+    if (e->n_lights > t->top)
+        printf("      and %d more (--top)\n", e->n_lights - t->top);
 }
 
 static void print_waves(const struct glint_explain *e)
@@ -244,7 +244,7 @@ void explain_print(const struct glint_explain *e, const struct explain_title *t)
 
     glint_explain_sort(e, t->order, ghosts);
     print_title(e, t);
-    if (e->n_beams) {
+    if (e->n_lights) {
         print_lights(e, t);
         print_waves(e);
         print_ghosts(e, t, ghosts);
@@ -279,13 +279,13 @@ static void json_lights(const struct glint_explain *e,
     int n = 0;
 
     printf("\"lights\": [");
-    for (int i = 0; i < e->n_beams; i++) {
-        const struct glint_light *b = &e->frame->beam[i];
+    for (int i = 0; i < e->n_lights; i++) {
+        const struct glint_light *b = &e->frame->light[i];
 
         printf("%s{\"angle_deg\": %.6g, \"azimuth_deg\": %.6g, ", i ? ", " : "",
                degrees(b->sine_q30, b->cosine_q30),
                degrees(b->sin_q30, b->cos_q30));
-        json_part(&e->beam[i]);
+        json_part(&e->light[i]);
         printf("}");
     }
     printf("], \"beyond_model_deg\": [");

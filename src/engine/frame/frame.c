@@ -75,7 +75,7 @@ void glint_frame_finish(struct glint_frame *frame)
     free(frame->mask);
     if (frame->trace)
         frame->trace->finish(frame);
-    free(frame->beam);
+    free(frame->light);
     free(frame->merged);
     free(frame->seen);
     free(frame->mem);
@@ -148,11 +148,11 @@ bool glint_frame_is_beyond(const struct glint_frame *frame,
 }
 
 /* Beams that give nothing must not be merged with others into one that does.
- * Appends the beams of LAMP's points that the model reaches; WITHIN are there
+ * Appends the lights of LAMP's points that the model reaches; WITHIN are there
  * already. Returns how many there are then. */
-static int add_beams(struct glint_frame *f, const struct glint_lamp *lamp,
-                     const struct glint_area_rule *rule, double scale,
-                     int within)
+static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
+                      const struct glint_area_rule *rule, double scale,
+                      int within)
 {
     struct glint_area area;
     const int n = glint_area_plan(&area, lamp, rule);
@@ -160,35 +160,36 @@ static int add_beams(struct glint_frame *f, const struct glint_lamp *lamp,
     for (int i = 0; i < n; i++) {
         const struct glint_lamp point = glint_area_point(&area, i);
 
-        f->beam[within] = glint_light_of(&point, scale);
-        within += !glint_light_is_beyond(f->lens, &f->beam[within]);
+        f->light[within] = glint_light_of(&point, scale);
+        within += !glint_light_is_beyond(f->lens, &f->light[within]);
     }
     return within;
 }
 
-/* Makes F's beams of LAMPS, those merged that are too many. */
-static enum glint_status set_beams(struct glint_frame *f,
-                                   const struct glint_lamp *lamps, int n,
-                                   double scale)
+/* Makes F's lights of LAMPS, those merged that are too many. */
+static enum glint_status set_lights(struct glint_frame *f,
+                                    const struct glint_lamp *lamps, int n,
+                                    double scale)
 {
-    const int room = f->reserved ? smaller(f->dials.max_lights, f->max_beams)
-                                 : f->dials.max_lights;
+    const int room = f->reserved
+                         ? smaller(f->dials.max_lights, f->light_capacity)
+                         : f->dials.max_lights;
     int within = 0, total;
     const struct glint_area_rule rule = glint_area_rule_of(
         lamps, n, pixels_per_tangent(f), f->dials.area_points, room, &total);
 
-    if (glint_frame_hold_beams(f, total) != GLINT_OK)
+    if (glint_frame_hold_lights(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;
     f->n_beyond = 0;
     for (int i = 0; i < n; i++) {
         const int before = within;
 
-        within = add_beams(f, &lamps[i], &rule, scale, within);
+        within = add_lights(f, &lamps[i], &rule, scale, within);
         f->n_beyond += within == before;
     }
     f->n_more = within - (n - f->n_beyond);
-    f->n_beams = glint_lights_merge(f->beam, within, near_q30(f),
-                                    f->dials.max_lights, &f->n_apart);
+    f->n_lights = glint_lights_merge(f->light, within, near_q30(f),
+                                     f->dials.max_lights, &f->n_apart);
     return GLINT_OK;
 }
 
@@ -248,7 +249,7 @@ static void follow_dials(struct glint_frame *f)
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_flare_frame *rays)
 {
-    const int bundles = glint_frame_bundles(f, f->n_beams);
+    const int bundles = glint_frame_bundles(f, f->n_lights);
 
     follow_dials(f);
     if (!f->reserved && (!f->block || bundles > f->cfg.max_bundles)) {
@@ -259,7 +260,7 @@ static enum glint_status plan(struct glint_frame *f,
         if (status != GLINT_OK)
             return status;
     }
-    glint_flare_plan(f->flare, rays, f->beam, f->n_beams);
+    glint_flare_plan(f->flare, rays, f->light, f->n_lights);
     return GLINT_OK;
 }
 
@@ -303,7 +304,7 @@ struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
     return (struct glint_cost_plan){.flare = f->flare,
                                     .width = f->cfg.width,
                                     .height = f->cfg.height,
-                                    .n_looked_at = (double)f->n_beams *
+                                    .n_looked_at = (double)f->n_lights *
                                                    f->setup->n_ghosts *
                                                    f->setup->n_wavelengths,
                                     .can_half = f->can_half,
@@ -330,7 +331,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     f->scale = scale;
     glint_budget_begin(&f->budget);
     times[0] = now(f);
-    status = set_beams(f, lamps, n_lamps, scale);
+    status = set_lights(f, lamps, n_lamps, scale);
     while (status == GLINT_OK) {
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
@@ -359,17 +360,17 @@ merged_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {
     struct glint_lamp *merged;
 
-    if (set_beams(f, lamps, *n, 1) != GLINT_OK)
+    if (set_lights(f, lamps, *n, 1) != GLINT_OK)
         return NULL;
-    if (f->n_beams == *n && f->n_more == 0)
+    if (f->n_lights == *n && f->n_more == 0)
         return lamps;
-    *n = f->n_beams;
+    *n = f->n_lights;
     merged = realloc(f->merged, ((size_t)*n + 1) * sizeof *merged);
     if (!merged)
         return NULL;
     f->merged = merged;
     for (int i = 0; i < *n; i++)
-        merged[i] = glint_lamp_of(&f->beam[i]);
+        merged[i] = glint_lamp_of(&f->light[i]);
     return merged;
 }
 
@@ -393,7 +394,7 @@ static enum glint_status model_scale(struct glint_frame *frame,
 {
     struct glint_real brightest, together;
     struct glint_flare_frame rays;
-    enum glint_status status = set_beams(frame, lamps, n_lamps, 1);
+    enum glint_status status = set_lights(frame, lamps, n_lamps, 1);
 
     frame->can_half = false;
     rays = rays_of(frame, NULL);
@@ -464,7 +465,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     }
     report->beyond_lights = frame->n_beyond;
     report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
-    report->drawn_lights = larger(frame->n_beams - frame->n_more, 1);
+    report->drawn_lights = larger(frame->n_lights - frame->n_more, 1);
     report->tiles = glint_flare_tiles(frame->flare);
     report->held_samples = glint_flare_held(frame->flare);
     report->arena_bytes = frame->bytes;

@@ -81,17 +81,17 @@ struct glint_frame {
 
     struct glint_wave wave[GLINT_SET_WAVES];
     struct glint_wave_sets sets;
-    struct glint_light *beam;
-    int n_beams, max_beams;
+    struct glint_light *light;
+    int n_lights, light_capacity;
     int n_apart;  /* lights that can be told apart */
     int n_beyond; /* left out before: the model ends before them */
-    int n_more;   /* beams that are further points of a lamp */
+    int n_more;   /* lights that are further points of a lamp */
     struct glint_flare_frame rays; /* of the last frame, with a model */
     double scale;                  /* by which its lights were multiplied */
     bool *seen; /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
 
     struct glint_lamp
-        *merged;  /* lamps to trace, where some merged; [n_beams] */
+        *merged;  /* lamps to trace, where some merged; [n_lights] */
     void *traced; /* the trace's own */
     struct glint_flare *flare;
     void *mem, *block; /* taken, unless NULL; the aligned part of it, or what

@@ -12,14 +12,14 @@
 /* Whether ghosts choose among the setup's sets of wavelengths. */
 bool glint_frame_has_sets(const struct glint_frame *frame);
 
-/* Room for N beams. GLINT_E_MEMORY. */
-enum glint_status glint_frame_hold_beams(struct glint_frame *frame, int n);
+/* Room for N lights. GLINT_E_MEMORY. */
+enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 
 /* A new block for the capacities there are, in which the flare begins. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
 
 /* Bundles that N_BEAMS need; with sets, to choose from these. */
-int glint_frame_bundles(const struct glint_frame *frame, int n_beams);
+int glint_frame_bundles(const struct glint_frame *frame, int n_lights);
 
 /* Whether all fitted; asks for more room where it did not. */
 bool glint_frame_is_served(struct glint_frame *frame,

@@ -25,17 +25,17 @@ bool glint_frame_has_sets(const struct glint_frame *f)
     return f->lens && f->setup->n_sets && f->dials.dispersion_q8 > 0;
 }
 
-enum glint_status glint_frame_hold_beams(struct glint_frame *f, int n)
+enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
 {
-    struct glint_light *beam;
+    struct glint_light *light;
 
-    if (n <= f->max_beams)
+    if (n <= f->light_capacity)
         return GLINT_OK;
-    beam = realloc(f->beam, (size_t)n * sizeof *f->beam);
-    if (!beam)
+    light = realloc(f->light, (size_t)n * sizeof *f->light);
+    if (!light)
         return GLINT_E_MEMORY;
-    f->beam = beam;
-    f->max_beams = n;
+    f->light = light;
+    f->light_capacity = n;
     return GLINT_OK;
 }
 
@@ -65,12 +65,12 @@ static int bundles_within(const struct glint_frame *f, double n)
     return n < most ? (int)n : most;
 }
 
-int glint_frame_bundles(const struct glint_frame *f, int n_beams)
+int glint_frame_bundles(const struct glint_frame *f, int n_lights)
 {
     const struct glint_setup *s = f->setup;
 
     return bundles_within(
-        f, (double)n_beams * s->n_ghosts *
+        f, (double)n_lights * s->n_ghosts *
                (glint_frame_has_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
 
@@ -139,7 +139,7 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
         return GLINT_E_MEMORY;
     if (!f->seen)
         f->seen = calloc(GLINT_MAX_GHOSTS, sizeof *f->seen);
-    if (!f->seen || glint_frame_hold_beams(f, n_lamps) != GLINT_OK)
+    if (!f->seen || glint_frame_hold_lights(f, n_lamps) != GLINT_OK)
         return GLINT_E_MEMORY;
     f->reserved = true;
     if (!mem)

@@ -74,8 +74,8 @@ static void assert_agrees(const struct glint_explain *e,
                           const struct glint_frame_report *report)
 {
     const double pixels = e->stage[GLINT_EXPLAIN_PIXELS] / e->all.work;
-    const struct glint_explain_part *parts[3] = {e->ghost, e->beam, e->wave};
-    const int n[3] = {e->n_ghosts, e->n_beams, e->n_waves};
+    const struct glint_explain_part *parts[3] = {e->ghost, e->light, e->wave};
+    const int n[3] = {e->n_ghosts, e->n_lights, e->n_waves};
 
     assert_int_equal(e->all.edges, report->stats.primitives);
     assert_int_equal(e->all.refs, report->stats.refs);
@@ -119,13 +119,13 @@ static void test_frame(void **state)
     draw(&frame, lamps, N_LAMPS, &report);
     assert_int_equal(glint_explain_open(&e, &frame, 1), GLINT_OK);
     assert_agrees(&e, &report);
-    assert_int_equal(e.n_beams, 2);
+    assert_int_equal(e.n_lights, 2);
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
     for (int i = 0; i < N_LAMPS; i++)
         assert_int_equal(glint_frame_is_beyond(&frame, &lamps[i]), i == 2);
     /* 5 and 7 let nothing through at 12 degrees; at 8 they do, but 5 beside
      * the picture */
-    assert_int_equal(e.beam[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
+    assert_int_equal(e.light[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_CLOSED], 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_OUTSIDE], 3);
     assert_int_equal(e.ghost[7].of[GLINT_OUTCOME_CLOSED], 3);
