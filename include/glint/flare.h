@@ -286,7 +286,7 @@ enum glint_outcome {
  * to tiles are 0 unless DRAWN. */
 struct glint_account {
     enum glint_outcome outcome;
-    int surveyed;         /* rays that the plan looked at */
+    int probed;           /* rays that the plan looked at */
     int cells, vertices;  /* of the grid: a side, all */
     int outputs, barrels; /* polynomials of a ray; of these, barrels that cut */
     int terms;            /* of all of them, with angle and wavelength put in */

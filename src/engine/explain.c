@@ -20,7 +20,7 @@ static double work_of(const struct glint_explain_part *p, double *stage)
 {
     double work = 0;
 
-    stage[GLINT_EXPLAIN_LOOKING] = PER_RAY * (double)p->surveyed;
+    stage[GLINT_EXPLAIN_LOOKING] = PER_RAY * (double)p->probed;
     stage[GLINT_EXPLAIN_VERTICES] = PER_VERTEX * (double)p->vertices;
     stage[GLINT_EXPLAIN_EDGES] = PER_EDGE * (double)p->edges;
     stage[GLINT_EXPLAIN_ROWS] = PER_ROW * (double)p->rows;
@@ -48,7 +48,7 @@ int glint_explain_bundles(const struct glint_explain_part *p)
 
 static void add(struct glint_explain_part *p, const struct glint_account *a)
 {
-    p->surveyed += a->surveyed;
+    p->probed += a->probed;
     if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* drawn all the same */
         return;
     p->of[a->outcome]++;

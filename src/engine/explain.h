@@ -2,8 +2,8 @@
  *
  * What a frame modelled and what it left out: by ghost, light and wavelength.
  *
- *     glint_explain_open(&explain, &frame);      of the frame drawn last, by
- * edges glint_explain_close(&explain);
+ *     glint_explain_open(&explain, &frame, 1);     drawn last, and by edges
+ *     glint_explain_close(&explain);
  *
  * Counts and reasons are the flare's own (glint_flare_account); light is
  * measured by drawing each part of the frame by itself.
@@ -21,7 +21,7 @@ struct glint_explain_part {
     int of[GLINT_OUTCOMES]; /* bundles, by what became of them */
     int cells;              /* a side of its largest grid */
     int terms, barrels;     /* of the bundle with most of them */
-    long long surveyed;     /* rays that the plan looked at */
+    long long probed;       /* rays that the plan looked at */
     long long vertices, edges, rows, refs, all_terms; /* terms of vertices */
     int tiles, lit;     /* tiles drawn, pixels that get light */
     double flux, share; /* that reaches the picture; of the frame's */

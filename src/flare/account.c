@@ -131,14 +131,14 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
     *account = (struct glint_account){.outcome = GLINT_OUTCOME_DRAWN};
     account->outcome =
         glint_plan_bundle(&flare->plan, &planned, &bundle, scratch);
-    account->surveyed = scratch->probe.n_rays;
+    account->probed = scratch->probe.n_rays;
     if (sets && glint_wave_sets_of(sets, wave) != set_of(flare, ghost, light)) {
         account->outcome = GLINT_OUTCOME_OTHER_SET;
-        account->surveyed *= wave < sets->size[0];
+        account->probed *= wave < sets->size[0];
         return;
     }
     if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
-        account->surveyed = 0; /* by the account alone, not by the plan */
+        account->probed = 0; /* by the account alone, not by the plan */
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)
         account->outcome = GLINT_OUTCOME_NO_ROOM;

@@ -84,7 +84,7 @@ static int outline_over_light(const struct glint_plan *p,
     return p->round || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* By the rule of lens/grid.h, from what the survey saw. */
+/* By the rule of lens/grid.h, from what the probe saw. */
 static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
                     const struct glint_transfer *t,
                     struct glint_real irradiance)

@@ -35,7 +35,7 @@ static const char help[] =
     "them\n"
     "  --budgets LIST  instead: held to so many milliseconds each, and how far "
     "what\n"
-    "                  was told beforehand is off\n"
+    "                  was predicted is off\n"
     "  --size WxH      default 1920x1080\n"
     "  --repeat N      rounds (default 15)\n"
     "  --moving        the first light goes from 8 to 16 degrees meanwhile\n"

@@ -21,14 +21,14 @@ enum sweep_kind {
     SWEEP_STANDARD,
     SWEEP_ALONE,
     SWEEP_TOGETHER,
-    SWEEP_LADDER, /* --quality */
-    SWEEP_GROWTH  /* standard, without an exact picture */
+    SWEEP_QUALITY, /* --quality */
+    SWEEP_GROWTH   /* standard, without an exact picture */
 };
 
 struct sweep_setting {
     enum sweep_kind kind;
     int dial;       /* of those alone, else -1 */
-    double quality; /* of the ladder */
+    double quality; /* of the quality table */
     double value[MAX_DIALS];
 };
 

@@ -105,7 +105,7 @@ static void names_row(const struct sweep *s, int c, FILE *file)
         const struct sweep_point *p = &s->point[k->first + i];
         const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 
-        if (p->set.kind == SWEEP_LADDER && at == floor(at))
+        if (p->set.kind == SWEEP_QUALITY && at == floor(at))
             fprintf(file, " %.1f; %.1f; %zu + %zu |", sweep_cost(s, p),
                     p->psnr_db, p->arena_bytes / 1024, p->model_bytes / 1024);
     }

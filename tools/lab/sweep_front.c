@@ -165,7 +165,7 @@ int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max)
     return n;
 }
 
-/* --------------------------------------------------------------------- ladder
+/* -------------------------------------------------------------------- quality
  */
 
 static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
@@ -193,7 +193,7 @@ double sweep_above(const struct sweep_mean *mean, int n, int i)
     for (int k = 0; k < n; k++) {
         const struct sweep_mean *m = &mean[k];
 
-        if (m->set->kind != SWEEP_LADDER)
+        if (m->set->kind != SWEEP_QUALITY)
             continue;
         if (m->cost <= cost)
             best = fmax(best, m->psnr_db);

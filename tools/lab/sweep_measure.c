@@ -314,7 +314,7 @@ static bool is_pictured(const struct sweep_point *p)
 {
     const double named = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 
-    return p->set.kind == SWEEP_LADDER && named == floor(named);
+    return p->set.kind == SWEEP_QUALITY && named == floor(named);
 }
 
 /* CODES is room for them. */

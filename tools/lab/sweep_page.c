@@ -49,7 +49,7 @@ static void table_of_names(const struct sweep *s, FILE *file)
         const struct sweep_case *c = &s->scase[p->of];
         const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 
-        if (p->set.kind != SWEEP_LADDER || at != floor(at))
+        if (p->set.kind != SWEEP_QUALITY || at != floor(at))
             continue;
         fprintf(file,
                 "<tr><td>%s</td><td>%dx%d, %d</td><td>%s</td><td>%.1f</td>"

@@ -4,7 +4,7 @@
 
 #include "lab/sweep.h"
 
-enum { LADDER_STEPS = 8 };
+enum { QUALITY_STEPS = 8 };
 
 /* Of --quality, between these: half as many pixels with finer grids, and the
  * default with a finer model. */
@@ -96,7 +96,7 @@ static enum glint_status add_together(struct sweep *s, int c)
 /* What --quality sets, as values of the dials. */
 static enum glint_status add_quality(struct sweep *s, int c, double quality)
 {
-    struct sweep_setting set = standard(SWEEP_LADDER);
+    struct sweep_setting set = standard(SWEEP_QUALITY);
     struct settings settings = s->base;
 
     for (int d = 0; d < n_dials; d++)
@@ -113,8 +113,8 @@ static enum glint_status add_ladder(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;
 
-    for (int i = 0; i <= LADDER_STEPS && status == GLINT_OK; i++)
-        status = add_quality(s, c, (double)i / LADDER_STEPS);
+    for (int i = 0; i <= QUALITY_STEPS && status == GLINT_OK; i++)
+        status = add_quality(s, c, (double)i / QUALITY_STEPS);
     for (int i = 0; i < 2 && !s->small && status == GLINT_OK; i++)
         status = add_quality(s, c, between_steps[i]);
     return status;

@@ -47,7 +47,7 @@ static void draw_dots(const struct plot *p, const struct dot *dot, int n,
             if (together == (pass == 0))
                 plot_mark(p, dot[i].cost, dot[i].psnr_db,
                           together                      ? '.'
-                          : set->kind == SWEEP_LADDER   ? 'D'
+                          : set->kind == SWEEP_QUALITY  ? 'D'
                           : set->kind == SWEEP_STANDARD ? 's'
                                                         : 'o',
                           together                   ? GREY

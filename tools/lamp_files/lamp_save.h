@@ -25,7 +25,7 @@ struct lamp_save {
 enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
                                  struct glint_error *error);
 
-/* What fails is told by finish. Lamps beyond what a list takes, a million
+/* What fails is reported by finish. Lamps beyond what a list takes, a million
  * pixels away, are left out. */
 void lamp_save_row(struct lamp_save *save, const struct lamp_row *row);
 

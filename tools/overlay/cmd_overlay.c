@@ -208,9 +208,9 @@ void overlay_progress(const struct tool *tool, struct overlay *o)
 
     if (tool->quiet || tool->verbose)
         return;
-    if (!is_terminal && now - fmax(o->started, o->told) < 5)
+    if (!is_terminal && now - fmax(o->started, o->reported) < 5)
         return;
-    o->told = now;
+    o->reported = now;
     fprintf(stderr,
             is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
                         : "glint overlay: frame %d, %.1f fps, %d "

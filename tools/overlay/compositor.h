@@ -122,7 +122,7 @@ enum compositor_option_code {
     "                      each light on top\n"                                \
     "  --headroom EV       stops by which clipped pixels really exceed "       \
     "white, 0 to\n"                                                            \
-    "                      40 (default: told for each lamp from its halo)\n"   \
+    "                      40 (default: for each lamp, from its halo)\n"       \
     "  --layer WHAT        composite | flare: the flare alone on black |\n"    \
     "                      flare-alpha: a picture of it with alpha, to be\n"   \
     "                      laid over others in linear light\n"                 \

@@ -19,7 +19,7 @@ void compositor_defaults(struct compositor *compositor)
     glint_strength_defaults(&compositor->strength);
 }
 
-/* Stops by which a region extends below what makes it a lamp, if not told. */
+/* Stops by which a region extends below what makes it a lamp, if not given. */
 #define EXTENDS_EV 0.05
 
 /* Of a lamp by hand, over a white pixel: a street lamp in a night picture. */

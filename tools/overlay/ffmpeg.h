@@ -3,8 +3,8 @@
  * ffmpeg.h - videos that only ffmpeg can read or write, by the user's own one.
  *
  *     ffmpeg_is_video("in.mp4");
- *     ffmpeg_probe(&video, "in.mp4");                 what it is, as far as
- * told ffmpeg_read(&child, "in.mp4", &video, &error);           y4m comes out
+ *     ffmpeg_probe(&video, "in.mp4");                     what is known of it
+ *     ffmpeg_read(&child, "in.mp4", &video, &error);           y4m comes out
  *     ffmpeg_write(&child, "out.mp4", &out, "in.mp4", ...);    y4m goes in
  *
  * ffmpeg runs beside glint, at the other end of a pipe of y4m frames. Sound is

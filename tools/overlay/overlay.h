@@ -24,7 +24,7 @@ struct overlay {
     struct glint_frame_report worst; /* its lights: of the frame with most too
                                   many, and most beyond the model */
     int most_lights;
-    double find_ms, flare_ms, started, told; /* seconds; of progress */
+    double find_ms, flare_ms, started, reported; /* seconds; of progress */
     double peak, mean_sum; /* of the flare, 1 = white: the brightest of all
                               frames; the sum of their means */
     size_t peak_bytes;

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 
 #include "engine/setup/degrees.h"
-#include "bake/trace/survey.h"
+#include "bake/trace/sampling.h"
 #include "glint/traced_bundle.h"
 #include "lens/grid.h"
 
-enum { SURVEY = 24 }; /* cells a side of what decides cuts and grid */
-/* where the survey finds fewer rays, cells a stop radius */
+enum { SAMPLING = 24 }; /* cells a side of what decides cuts and grid */
+/* where sampling finds fewer rays, cells a stop radius */
 enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
 
 /* The ghost's box on the sensor, turned by the light's azimuth, meets the
@@ -56,7 +56,7 @@ static void add_rim(const struct glint_traced_bundle_config *cfg,
  * rim next to total reflection comes through as well, the pupil is the whole
  * front, of which the opening may be a hundredth. */
 static int cells_of(const struct glint_traced_bundle_config *cfg,
-                    const struct glint_survey *s)
+                    const struct glint_sampling *s)
 {
     const double pixels = cfg->view.width / cfg->view.sensor_width_mm;
     const double round = cfg->setup->n_blades == 0 ? s->round_mm : 0;
@@ -87,19 +87,19 @@ static void light_direction(const struct glint_traced_bundle *traced,
 /* The barrels that cut, the one that is most of the outline first: the maximum
  * over the others may have kinks. */
 static void choose_cuts(struct glint_traced_bundle *traced,
-                        struct glint_survey *survey)
+                        struct glint_sampling *sampling)
 {
     for (traced->n_cuts = 0; traced->n_cuts < GLINT_TRACED_CUTS;
          traced->n_cuts++) {
         int most = 0;
 
-        for (int k = 1; k < survey->n_cuts; k++)
-            if (survey->cut_weight[k] > survey->cut_weight[most])
+        for (int k = 1; k < sampling->n_cuts; k++)
+            if (sampling->cut_weight[k] > sampling->cut_weight[most])
                 most = k;
-        if (survey->n_cuts == 0 || survey->cut_weight[most] == 0)
+        if (sampling->n_cuts == 0 || sampling->cut_weight[most] == 0)
             break;
-        survey->cut_weight[most] = 0;
-        traced->cut_event[traced->n_cuts] = survey->cut_event[most];
+        sampling->cut_weight[most] = 0;
+        traced->cut_event[traced->n_cuts] = sampling->cut_event[most];
     }
 }
 
@@ -108,7 +108,7 @@ void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
                               const struct glint_traced_bundle *near)
 {
     const struct glint_setup *s = cfg->setup;
-    struct glint_survey survey;
+    struct glint_sampling sampling;
     struct glint_path path;
     double direction[3];
 
@@ -122,10 +122,10 @@ void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
     traced->energy_unit = 1.5 * traced->pupil.energy;
     if (traced->found && in_view(cfg, traced)) {
         light_direction(traced, direction);
-        glint_survey_run(&survey, &path, &traced->pupil, direction,
-                         s->optics.stop_radius_mm, SURVEY);
-        choose_cuts(traced, &survey);
-        traced->n_cells = cells_of(cfg, &survey);
+        glint_sampling_run(&sampling, &path, &traced->pupil, direction,
+                           s->optics.stop_radius_mm, SAMPLING);
+        choose_cuts(traced, &sampling);
+        traced->n_cells = cells_of(cfg, &sampling);
         add_rim(cfg, traced);
     }
 }

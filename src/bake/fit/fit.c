@@ -41,7 +41,7 @@ struct fitter {
     const struct glint_tolerance *tolerance;
     struct glint_fitted_ghost *out;
     struct glint_zone_buffers buffers;
-    glint_zone_survey survey;
+    glint_zone_sampling sampling;
     struct glint_visible_profile profile;
     struct glint_visible in_band, in_part;
     struct glint_visible_profile band_profile;
@@ -246,7 +246,7 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
     band = set_part(f, p, &zone);
     system->wave_lo = band->wave_lo;
     system->wave_hi = band->wave_hi;
-    glint_zone_survey_barrels(&zone, band, f->tolerance->escape, &f->survey,
+    glint_zone_choose_barrels(&zone, band, f->tolerance->escape, &f->sampling,
                               &f->buffers.rays);
     if (f->buffers.rays.n_barrels > 2 &&
         degrees_between(p->lo, p->hi) > CROWD_DEG)

@@ -78,9 +78,10 @@ struct extent {
     int i0, i1, j1;
 };
 
-static bool survey(const struct glint_visible *h, const struct glint_path *path,
-                   double sine, int across, int down,
-                   const struct glint_pupil *box, struct extent *extent)
+static bool sample_box(const struct glint_visible *h,
+                       const struct glint_path *path, double sine, int across,
+                       int down, const struct glint_pupil *box,
+                       struct extent *extent)
 {
     struct glint_row row = {across + 1,
                             box->x0_mm,
@@ -114,7 +115,7 @@ static bool shrink(const struct glint_visible *h, const struct glint_path *path,
     const double dy = box->y1_mm / down, x0 = box->x0_mm;
     struct extent e;
 
-    if (!survey(h, path, sine, across, down, box, &e))
+    if (!sample_box(h, path, sine, across, down, box, &e))
         return false;
     box->x0_mm = x0 + fmax(e.i0 - 1, 0) * dx;
     box->x1_mm = x0 + fmin(e.i1 + 1, across) * dx;
@@ -133,7 +134,7 @@ static bool enclose(const struct glint_visible *h,
         const double more = 0.5 * (box->x1_mm - box->x0_mm);
         struct extent e;
 
-        if (!survey(h, path, sine, COARSE, DOWN, box, &e))
+        if (!sample_box(h, path, sine, COARSE, DOWN, box, &e))
             return false;
         if (e.i0 > 0 && e.i1 < COARSE && e.j1 < DOWN)
             return true;

@@ -7,15 +7,15 @@
 #include "bake/fit/zone_batch.h"
 #include "bake/fit/zone_rays.h"
 
-/* What a ray of the survey says: how far past each barrel it is. */
-struct survey {
+/* What a sampled ray says: how far past each barrel it is. */
+struct sampling {
     int n, n_events;
     double (*radius)[GLINT_MAX_EVENTS + 1];
 };
 
 /* Notes the ray's radius at every event if the stop and the field let it pass,
  * so that only barrels can stop it. */
-static bool survey_ray(const struct glint_visible *h,
+static bool sample_ray(const struct glint_visible *h,
                        const struct glint_path *path,
                        enum glint_ray_status status,
                        const struct glint_ray *ray, double (*hits)[2],
@@ -43,16 +43,17 @@ static bool survey_ray(const struct glint_visible *h,
 
 /* Rays at angles of their own: a barrel may cut between any two, and there
  * only. */
-static void run_survey(const struct glint_zone *z,
-                       const struct glint_visible *h, struct survey *survey)
+static void sample_rays(const struct glint_zone *z,
+                        const struct glint_visible *h,
+                        struct sampling *sampling)
 {
     static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
                                 GLINT_VISIBLE_WAVES - 1};
     struct glint_zone_batch t;
 
-    survey->n = 0;
-    survey->n_events = h->path[0].n_events;
-    for (int k = 0; k < GLINT_SURVEY_RAYS / GLINT_ZONE_BATCH; k++) {
+    sampling->n = 0;
+    sampling->n_events = h->path[0].n_events;
+    for (int k = 0; k < GLINT_SAMPLING_RAYS / GLINT_ZONE_BATCH; k++) {
         const int wave = waves[k % 3];
         double x[GLINT_VARIABLES];
 
@@ -65,15 +66,16 @@ static void run_survey(const struct glint_zone *z,
         }
         glint_zone_batch_trace(&t);
         for (int i = 0; i < GLINT_ZONE_BATCH; i++)
-            survey->n += survey_ray(h, t.path, t.status[i], &t.ray[i],
-                                    glint_zone_batch_hits(&t, i),
-                                    survey->radius[survey->n]);
+            sampling->n += sample_ray(h, t.path, t.status[i], &t.ray[i],
+                                      glint_zone_batch_hits(&t, i),
+                                      sampling->radius[sampling->n]);
     }
 }
 
 /* How far ray RAY gets past the barrels that are not among the N CHOSEN, the
  * relative radius beyond 1; 0 if one of them stops it. */
-static double escape(const struct survey *s, int ray, const int *chosen, int n)
+static double escape(const struct sampling *s, int ray, const int *chosen,
+                     int n)
 {
     const double *r = s->radius[ray];
     double most = 0;
@@ -87,7 +89,8 @@ static double escape(const struct survey *s, int ray, const int *chosen, int n)
 }
 
 /* What escapes with barrel K as the last of N: sum, and the largest. */
-static double escapes(const struct survey *s, int *chosen, int n, double *most)
+static double escapes(const struct sampling *s, int *chosen, int n,
+                      double *most)
 {
     double sum = 0;
 
@@ -103,7 +106,7 @@ static double escapes(const struct survey *s, int *chosen, int n, double *most)
 
 /* Takes barrels, the most useful first, until no ray gets farther past the
  * others than SHOWS. */
-static void choose_barrels(const struct survey *s, double shows,
+static void choose_barrels(const struct sampling *s, double shows,
                            struct glint_zone_rays *rays)
 {
     double most;
@@ -132,13 +135,13 @@ static void choose_barrels(const struct survey *s, double shows,
     rays->missed_cut = most;
 }
 
-void glint_zone_survey_barrels(const struct glint_zone *zone,
+void glint_zone_choose_barrels(const struct glint_zone *zone,
                                const struct glint_visible *visible,
-                               double shows, glint_zone_survey *survey,
+                               double shows, glint_zone_sampling *sampling,
                                struct glint_zone_rays *rays)
 {
-    struct survey s = {.radius = *survey};
+    struct sampling s = {.radius = *sampling};
 
-    run_survey(zone, visible, &s);
+    sample_rays(zone, visible, &s);
     choose_barrels(&s, shows, rays);
 }

@@ -51,15 +51,15 @@ bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
 double glint_zone_rays_spread(const struct glint_zone_rays *rays);
 #define GLINT_STEEP 8
 
-/* Room for the survey that chooses the barrels. */
-enum { GLINT_SURVEY_RAYS = 6000 };
-typedef double glint_zone_survey[GLINT_SURVEY_RAYS][GLINT_MAX_EVENTS + 1];
+/* Room for the sampling that chooses the barrels. */
+enum { GLINT_SAMPLING_RAYS = 6000 };
+typedef double glint_zone_sampling[GLINT_SAMPLING_RAYS][GLINT_MAX_EVENTS + 1];
 
 /* Chooses the barrels of RAYS: no ray gets farther past the others than SHOWS,
  * a relative radius. */
-void glint_zone_survey_barrels(const struct glint_zone *zone,
+void glint_zone_choose_barrels(const struct glint_zone *zone,
                                const struct glint_visible *visible,
-                               double shows, glint_zone_survey *survey,
+                               double shows, glint_zone_sampling *sampling,
                                struct glint_zone_rays *rays);
 
 /* Traces the samples: RAYS for positions and barrels, ENERGIES at fewer places

@@ -4,20 +4,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "bake/trace/survey.h"
+#include "bake/trace/sampling.h"
 #include "engine/setup/degrees.h"
 
-enum { SURVEY = 96 }; /* rays a side that decide which barrels matter */
+enum { SAMPLING = 96 }; /* rays a side that decide which barrels matter */
 
 static void find_cuts(struct glint_cells *c)
 {
-    struct glint_survey survey;
+    struct glint_sampling sampling;
 
-    glint_survey_run(&survey, c->path, &c->pupil, c->direction,
-                     c->setup->optics.stop_radius_mm, SURVEY);
-    c->n_cuts = survey.n_cuts < GLINT_MAX_CUTS ? survey.n_cuts : GLINT_MAX_CUTS;
+    glint_sampling_run(&sampling, c->path, &c->pupil, c->direction,
+                       c->setup->optics.stop_radius_mm, SAMPLING);
+    c->n_cuts =
+        sampling.n_cuts < GLINT_MAX_CUTS ? sampling.n_cuts : GLINT_MAX_CUTS;
     for (int k = 0; k < c->n_cuts; k++)
-        c->cut_event[k] = survey.cut_event[k];
+        c->cut_event[k] = sampling.cut_event[k];
 }
 
 bool glint_cells_init(struct glint_cells *cells,

@@ -6,7 +6,7 @@
 #define FIRST      1    /* octaves that a first frame takes more, for memory */
 #define ROOM       0.98 /* of the budget that is planned for */
 #define SPARE      0.9  /* less than so much of it: finer */
-#define TRY        1.15 /* what some frames may be told to take, to learn more */
+#define TRY        1.15 /* a frame may be predicted to take, to learn more */
 #define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
 #define MOST_WRONG 0.8  /* octaves that one frame can say */
 #define SPREAD     0.1  /* of that for other qualities, too, at least */
@@ -16,7 +16,9 @@
  * little, so one more may be needed. */
 enum { MAX_TRIES = 3 };
 
-enum { TRIALS = 4 }; /* frames of a quality that is told to take too long */
+enum {
+    TRIALS = 4
+}; /* frames of a quality that is predicted to take too long */
 
 void glint_budget_init(struct glint_budget *b, double ms)
 {
@@ -96,9 +98,9 @@ static int best_step(const struct glint_budget *b,
     return low;
 }
 
-/* Where no rung lies between STEP, which leaves much of the budget, and the
- * next, which is told to miss it by little, the latter for a few frames in all:
- * it may have been told too much. */
+/* Where no level lies between STEP, which leaves much of the budget, and the
+ * next, which is predicted to miss it by little, the latter for a few frames in
+ * all: that may have been predicted too high. */
 static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
                     int step)
 {
@@ -109,7 +111,7 @@ static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
         predict(b, plan, step + 1) > TRY * b->ms)
         return step;
     b->n_trials++;
-    b->n_tries = MAX_TRIES; /* as it is told, it would not do */
+    b->n_tries = MAX_TRIES; /* as predicted, it would not do */
     return step + 1;
 }
 
@@ -135,7 +137,7 @@ bool glint_budget_choose(struct glint_budget *b,
 /* What was learned of a quality holds for the rungs beside it, so that the same
  * prediction would be less wrong by LEARNING; the more it was wrong, the more
  * of that holds for all, as when the machine has become slower. What was
- * learned of others long ago is forgotten, lest one slow frame keeps a rung
+ * learned of others long ago is forgotten, lest one slow frame keeps a level
  * from ever being tried again. */
 void glint_budget_note(struct glint_budget *b, double ms)
 {

@@ -20,13 +20,13 @@ enum { GLINT_BUDGET_STEPS = 64 }; /* of quality */
 
 struct glint_budget {
     double ms;               /* of a frame; 0: none is kept to */
-    double calibrated_minsn; /* of a frame that told; 0: none did */
+    double calibrated_minsn; /* of a frame that was timed; 0: none was */
     double ms_per_minsn;     /* of this machine, this lens; */
     double octaves[GLINT_QUALITY_LEVELS]; /* learned beyond that, by quality */
-    int step;     /* quality of the last frame, of GLINT_BUDGET_STEPS */
-    int n_tries;  /* of the frame being planned */
-    int n_frames; /* begun, 2 at most */
-    int n_trials; /* frames drawn though they were told to take too long */
+    int step;            /* quality of the last frame, of GLINT_BUDGET_STEPS */
+    int n_tries;         /* of the frame being planned */
+    int n_frames;        /* begun, 2 at most */
+    int n_trials;        /* frames drawn though predicted to take too long */
     double predicted_ms; /* of the last frame, by its last plan */
 };
 

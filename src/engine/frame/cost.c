@@ -13,9 +13,9 @@
 
 /* Thousand instructions each: least squares of relative errors over 43 frames
  * of heliar-tronnier, double-gauss-angenieux, itoh-zoom-long, nikon-zoom-mid
- * and canon-zoom-mid at 640x360 and 1280x720, along an earlier ladder. Off by 6
- * percent in the median, by 19 nine times of ten, by 35 at most, where a
- * ghost's pixels are misjudged. */
+ * and canon-zoom-mid at 640x360 and 1280x720, along an earlier quality table.
+ * Off by 6 percent in the median, by 19 nine times of ten, by 35 at most, where
+ * a ghost's pixels are misjudged. */
 static const double thousand_of[GLINT_COST_KINDS] = {75, 0.6, 0.03, 0.0275,
                                                      0.02};
 

@@ -360,7 +360,7 @@ static void test_near_barrels(void **state)
     static struct glint_setup zoom;
     static struct glint_visible visible;
     static struct glint_visible_profile profile;
-    static glint_zone_survey survey;
+    static glint_zone_sampling sampling;
     static struct glint_zone_rays rays;
     struct glint_error error;
     struct glint_zone zone;
@@ -372,10 +372,10 @@ static void test_near_barrels(void **state)
     glint_visible_init(&visible, &zoom, 71, 23.8, band_nm);
     glint_visible_profile_find(&visible, range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
-    glint_zone_survey_barrels(&zone, &visible, 1e-3, &survey, &rays);
+    glint_zone_choose_barrels(&zone, &visible, 1e-3, &sampling, &rays);
     assert_int_equal(rays.n_barrels, 1);
     assert_true(rays.missed_cut <= 1e-3);
-    glint_zone_survey_barrels(&zone, &visible, 2.5e-4, &survey, &rays);
+    glint_zone_choose_barrels(&zone, &visible, 2.5e-4, &sampling, &rays);
     assert_int_equal(rays.n_barrels, 2);
     assert_true(rays.missed_cut <= 2.5e-4);
 }

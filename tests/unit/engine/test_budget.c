@@ -117,9 +117,9 @@ static void test_keeps_to_it(void **state)
     }
 }
 
-/* Settles at least; then there are MS, and rungs from FROM on are told to take
- * OCTAVES more. The next rung of all pixels takes 4.2. How many of N frames
- * draw all pixels, and whether the last does. */
+/* Settles at least; then there are MS, and rungs from FROM on are predicted to
+ * take OCTAVES more. The next level of all pixels takes 4.2. How many of N
+ * frames draw all pixels, and whether the last does. */
 static int draw_whole(double ms, int from, double octaves, int n, bool *last)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -157,10 +157,10 @@ static void test_tries_again(void **state)
     assert_true(last);
 }
 
-/* What is told to miss the budget by a tenth, and does not, is found out within
- * some frames where all that is told to fit is far below; what does is not
- * tried again and again (52 of these frames, were there no end to it, and 14
- * now). */
+/* What is predicted to miss the budget by a tenth, and does not, is found out
+ * within some frames where all that is predicted to fit is far below; what does
+ * is not tried again and again (52 of these frames, were there no end to it,
+ * and 14 now). */
 static void test_tries_next(void **state)
 {
     bool last;
@@ -223,7 +223,7 @@ static void test_counts(void **state)
     struct glint_image image = {
         .format = GLINT_YUYV, .width = WIDTH, .height = HEIGHT};
     struct glint_frame_report report;
-    struct glint_cost coarse, fine, told;
+    struct glint_cost coarse, fine, predicted;
     struct glint_frame frame;
     struct glint_dials then;
     struct glint_cost_plan plan;
@@ -238,7 +238,7 @@ static void test_counts(void **state)
     coarse = glint_cost_of(&plan, &plan.dials);
     then = plan.dials;
     then.fineness = 128;
-    told = glint_cost_of(&plan, &then);
+    predicted = glint_cost_of(&plan, &then);
     /* the last ones may turn out to have no edges */
     assert_true(coarse.count[GLINT_COST_BUNDLES] >= report.stats.bundles);
     assert_true(coarse.count[GLINT_COST_BUNDLES] <=
@@ -253,23 +253,24 @@ static void test_counts(void **state)
     plan = glint_frame_plan(&frame);
     fine = glint_cost_of(&plan, &plan.dials);
     for (int k = 0; k < GLINT_COST_KINDS; k++) {
-        assert_true(fabs(told.count[k] / fine.count[k] - 1) < 0.25);
+        assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
     }
     assert_true(glint_cost_minsn(&fine) > glint_cost_minsn(&coarse));
-    /* of half as many pixels each way: told, and planned */
+    /* of half as many pixels each way: predicted, and planned */
     then = plan.dials;
     then.flags |= GLINT_DIAL_HALF;
-    told = glint_cost_of(&plan, &then);
+    predicted = glint_cost_of(&plan, &then);
     frame.dials.flags |= GLINT_DIAL_HALF;
     glint_frame_draw(&frame, lamps, 1, 1, &image, &report);
     plan = glint_frame_plan(&frame);
     coarse = glint_cost_of(&plan, &plan.dials);
     for (int k = 0; k < GLINT_COST_KINDS; k++)
-        assert_true(fabs(told.count[k] / coarse.count[k] - 1) < 0.5);
+        assert_true(fabs(predicted.count[k] / coarse.count[k] - 1) < 0.5);
     assert_true(coarse.count[GLINT_COST_LIT] <
                 0.6 * fine.count[GLINT_COST_LIT]);
-    assert_true(fabs(told.count[GLINT_COST_LIT] / coarse.count[GLINT_COST_LIT] -
-                     1) < 0.05);
+    assert_true(
+        fabs(predicted.count[GLINT_COST_LIT] / coarse.count[GLINT_COST_LIT] -
+             1) < 0.05);
     glint_frame_finish(&frame);
 }
 

@@ -134,8 +134,8 @@ static struct sums accounts(struct fixture *f)
                 assert_int_equal(a.outcome == GLINT_OUTCOME_DRAWN, a.edges > 0);
                 assert_true(a.rows >= a.edges);
                 if (a.cells)
-                    assert_true(a.surveyed == 8 * 5 ||
-                                a.surveyed == 8 * 5 + 17 * 9);
+                    assert_true(a.probed == 8 * 5 ||
+                                a.probed == 8 * 5 + 17 * 9);
             }
     return sums;
 }
@@ -422,7 +422,7 @@ static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
 }
 
 /* Makes the ghost come through a round stop as a small spot of the pupil, with
- * no ray of the survey near its edge. */
+ * no ray of the probe near its edge. */
 static void shrink_stop(struct fixture *f)
 {
     const struct glint_model_output *o =

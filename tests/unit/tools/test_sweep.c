@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The parts of glint sweep that measure nothing: fronts, PNG, the ladder.
+ * The parts of glint sweep that measure nothing: fronts, PNG, the quality
+ * table.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,13 +42,13 @@ static void test_front_by_hand(void **state)
  * than all, and between rungs of which one draws half of the pixels. */
 static void test_above_the_ladder(void **state)
 {
-    struct sweep_setting rung = {.kind = SWEEP_LADDER}, halves = rung;
+    struct sweep_setting level = {.kind = SWEEP_QUALITY}, halves = level;
     const struct sweep_setting dial = {.kind = SWEEP_ALONE};
     struct sweep_mean mean[] = {
         {&dial, 0.2, 30, 30, 0, false}, {&halves, 0.5, 40, 40, 0, false},
-        {&dial, 0.7, 42, 42, 0, false}, {&rung, 1, 50, 50, 0, false},
+        {&dial, 0.7, 42, 42, 0, false}, {&level, 1, 50, 50, 0, false},
         {&dial, 1.9, 55, 55, 0, false}, {&dial, 2, 56.5, 57, 0, false},
-        {&rung, 4, 60, 60, 0, false},   {&dial, 4.05, 60.2, 60, 0, false},
+        {&level, 4, 60, 60, 0, false},  {&dial, 4.05, 60.2, 60, 0, false},
         {&dial, 9, 58, 58, 0, false},
     };
     const int n = sizeof mean / sizeof *mean;

@@ -11,14 +11,14 @@
  * ray that passes and one that does not, with a margin for what lies between
  * the rays that were asked.
  */
-#ifndef GLINT_BAKE_TRACE_SURVEY_H
-#define GLINT_BAKE_TRACE_SURVEY_H
+#ifndef GLINT_BAKE_TRACE_SAMPLING_H
+#define GLINT_BAKE_TRACE_SAMPLING_H
 
 #include "glint/trace.h"
 
-enum { GLINT_MAX_SURVEY = 96 };
+enum { GLINT_MAX_SAMPLING = 96 };
 
-struct glint_survey {
+struct glint_sampling {
     int n_cuts;
     int cut_event[GLINT_MAX_EVENTS];  /* index into the path, rising */
     int cut_weight[GLINT_MAX_EVENTS]; /* the larger, the more of the outline it
@@ -35,12 +35,12 @@ struct glint_survey {
     bool folds;        /* some light arrives turned over, some does not */
 };
 
-/* Asks a grid of SIDE cells a side (even, up to GLINT_MAX_SURVEY) over PUPIL.
+/* Asks a grid of SIDE cells a side (even, up to GLINT_MAX_SAMPLING) over PUPIL.
  */
-void glint_survey_run(struct glint_survey *survey,
-                      const struct glint_path *path,
-                      const struct glint_pupil *pupil,
-                      const double direction[3], double stop_radius_mm,
-                      int side);
+void glint_sampling_run(struct glint_sampling *sampling,
+                        const struct glint_path *path,
+                        const struct glint_pupil *pupil,
+                        const double direction[3], double stop_radius_mm,
+                        int side);
 
 #endif

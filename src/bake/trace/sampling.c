@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bake/trace/survey.h"
+#include "bake/trace/sampling.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -7,7 +7,7 @@
 /* Weight of a ray that shows a cut, against one that only suggests it. */
 enum { SHOWN = 1000 };
 
-/* A ray of the survey. */
+/* A sampled ray. */
 struct probe {
     bool traced, inside;
     double x_mm, y_mm; /* on the sensor */
@@ -141,7 +141,7 @@ static void add_bend(struct bend *bend, const struct probe *a,
     bend->n++;
 }
 
-/* What the bend of CUT is worth on the sensor, over one step of the survey. */
+/* What the bend of CUT is worth on the sensor, over one step of the grid. */
 static double on_sensor_mm(const struct bend *bend, const struct change *cut)
 {
     return cut->first > 0
@@ -191,11 +191,11 @@ static void add_turn(struct bend *bend, const struct probe *a,
     bend->down += turn < 0;
 }
 
-/* ------------------------------------------------------------------- survey
+/* ------------------------------------------------------------------- sampling
  */
 
 struct rows {
-    struct probe row[3][GLINT_MAX_SURVEY + 1]; /* the last three, in turn */
+    struct probe row[3][GLINT_MAX_SAMPLING + 1]; /* the last three, in turn */
 };
 
 static void look_back(const struct rows *r, int i, int j, int n_events,
@@ -221,10 +221,10 @@ static void look_back(const struct rows *r, int i, int j, int n_events,
         add_turn(bend, above - 1, above, here - 1);
 }
 
-void glint_survey_run(struct glint_survey *survey,
-                      const struct glint_path *path,
-                      const struct glint_pupil *p, const double direction[3],
-                      double stop_radius_mm, int side)
+void glint_sampling_run(struct glint_sampling *sampling,
+                        const struct glint_path *path,
+                        const struct glint_pupil *p, const double direction[3],
+                        double stop_radius_mm, int side)
 {
     int weight[GLINT_MAX_EVENTS + 1] = {0};
     struct bend bend = {.n = 0};
@@ -237,24 +237,24 @@ void glint_survey_run(struct glint_survey *survey,
                       p->y1_mm * 2 * j / side, direction, stop_radius_mm);
             look_back(&r, i, j, path->n_events, weight, &bend);
         }
-    survey->bend_mm = survey->outline_mm = survey->round_mm = 0;
-    survey->n_inside = bend.n;
-    survey->step = bend.n_steps ? bend.n_steps / bend.thick * side : 0;
+    sampling->bend_mm = sampling->outline_mm = sampling->round_mm = 0;
+    sampling->n_inside = bend.n;
+    sampling->step = bend.n_steps ? bend.n_steps / bend.thick * side : 0;
     if (bend.n) {
-        survey->bend_mm = sqrt(bend.sensor.second / bend.n) * side * side;
-        survey->outline_mm =
+        sampling->bend_mm = sqrt(bend.sensor.second / bend.n) * side * side;
+        sampling->outline_mm =
             outline_bend_mm(&bend, weight, path->n_events) * side * side;
         /* r^2 / 2 changes as fast as the stop position S does at its outline,
          * and bends by S'^2 */
-        survey->round_mm =
+        sampling->round_mm =
             sqrt(bend.stop.first * bend.sensor.first) / bend.n * side * side;
     }
-    survey->folds = bend.up > 0 && bend.down > 0;
-    survey->n_cuts = 0;
-    for (int k = 0; k < path->n_events && survey->n_cuts < GLINT_MAX_EVENTS;
+    sampling->folds = bend.up > 0 && bend.down > 0;
+    sampling->n_cuts = 0;
+    for (int k = 0; k < path->n_events && sampling->n_cuts < GLINT_MAX_EVENTS;
          k++)
         if (weight[k]) {
-            survey->cut_event[survey->n_cuts] = k;
-            survey->cut_weight[survey->n_cuts++] = weight[k];
+            sampling->cut_event[sampling->n_cuts] = k;
+            sampling->cut_weight[sampling->n_cuts++] = weight[k];
         }
 }
