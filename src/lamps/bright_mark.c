@@ -277,23 +277,100 @@ static WHOLLY_INLINE int is_loud(uint64_t most, uint64_t inverse, int y,
     return (sum & ~low) != 0;
 }
 
-/* Most blocks are neither bright nor of strong colours, which is seen without
- * a look at each extreme. */
+/* Blocks of YUYV or UYVY that are first looked at together. */
+enum { TOGETHER = 4 };
+
+/* By places of every sixteenth byte: the greatest, and the greatest of 255 - v,
+ * that pixels have of quiet chroma and below loud luma. */
+struct quiet {
+    uint8_t most[16], inverse[16];
+};
+
+static void set_quiet(struct quiet *quiet, int y, int loud)
+{
+    for (int i = 0; i < 16; i++) {
+        const int is_luma = (i & 1) == y;
+
+        quiet->most[i] = (uint8_t)(is_luma ? loud - 1 : 128 + QUIET_CHROMA);
+        quiet->inverse[i] = (uint8_t)(is_luma ? 255 : 128 + QUIET_CHROMA);
+    }
+}
+
+static WHOLLY_INLINE uint8_t most_of_8(const uint8_t *p)
+{
+    return larger(larger(larger(p[0], p[16]), larger(p[32], p[48])),
+                  larger(larger(p[64], p[80]), larger(p[96], p[112])));
+}
+
+static WHOLLY_INLINE uint8_t least_of_8(const uint8_t *p)
+{
+    return smaller(smaller(smaller(p[0], p[16]), smaller(p[32], p[48])),
+                   smaller(smaller(p[64], p[80]), smaller(p[96], p[112])));
+}
+
+/* Sets what is not 0 where some of TOGETHER blocks at P is above QUIET. For
+ * compilers to make vectors of, as find_halves. */
+static NEVER_INLINE void find_above(uint8_t above[restrict 16],
+                                    const uint8_t *restrict p,
+                                    const struct quiet *restrict quiet)
+{
+    uint8_t most[16], inverse[16];
+
+    for (int i = 0; i < 16; i++)
+        most[i] = larger(most_of_8(p + i), most_of_8(p + 128 + i));
+    for (int i = 0; i < 16; i++)
+        inverse[i] = (uint8_t)(255 - smaller(least_of_8(p + i),
+                                             least_of_8(p + 128 + i)));
+    for (int i = 0; i < 16; i++)
+        above[i] =
+            (uint8_t)((larger(most[i], quiet->most[i]) ^ quiet->most[i]) |
+                      (larger(inverse[i], quiet->inverse[i]) ^
+                       quiet->inverse[i]));
+}
+
+static WHOLLY_INLINE int are_quiet(const uint8_t *p, const struct quiet *quiet)
+{
+    uint8_t above[16];
+
+    find_above(above, p, quiet);
+    return bits_of(above, 2) == 0;
+}
+
+/* Y: the place of the first luma. Most blocks are neither bright nor of strong
+ * colours, which is seen of several together, and of one without a look at
+ * each extreme. Where one is not, the next ones are not either for the most
+ * part. Of loud luma 0 nothing is quiet. */
 static WHOLLY_INLINE int mark_pairs(struct glint_bright *b, const uint8_t *px,
                                     int y)
 {
-    const uint64_t luma_carry = carry_from(loud_luma(b));
+    const int n = b->width / BRIGHT_BLOCK, loud_from = loud_luma(b);
+    const uint64_t luma_carry = carry_from(loud_from);
     const uint64_t chroma_carry = carry_from(129 + QUIET_CHROMA);
-    int any = 0;
+    struct quiet quiet;
+    int any = 0, loud = loud_from == 0;
 
-    for (int i = 0; i < b->width / BRIGHT_BLOCK; i++) {
-        uint8_t half[16];
+    set_quiet(&quiet, y, loud_from > 0 ? loud_from : 1);
+    for (int i = 0; i < n;) {
+        const int end = i + TOGETHER < n ? i + TOGETHER : n;
 
-        find_halves(half, px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 8);
-        b->block[i] = is_loud(bytes_load(half), bytes_load(half + 8), y,
-                              luma_carry, chroma_carry) &&
-                      may_be_bright_packed(b, half);
-        any |= b->block[i];
+        if (!loud && end - i == TOGETHER &&
+            are_quiet(px + i * 2 * BRIGHT_BLOCK, &quiet)) {
+            for (; i < end; i++)
+                b->block[i] = 0;
+            continue;
+        }
+        loud = 0;
+        for (; i < end; i++) {
+            uint8_t half[16];
+            int is_one;
+
+            find_halves(half, px + i * 2 * BRIGHT_BLOCK, BRIGHT_BLOCK / 8);
+            is_one = is_loud(bytes_load(half), bytes_load(half + 8), y,
+                             luma_carry, chroma_carry);
+            b->block[i] = is_one && may_be_bright_packed(b, half);
+            loud |= is_one;
+            any |= b->block[i];
+        }
     }
     return any;
 }

@@ -256,14 +256,15 @@ static void test_no_pixel_is_missed(void **state)
     free(image.plane[0]);
 }
 
-/* Blocks of one dim grey, in which one code is another. */
+/* Blocks of one dim grey, in which one code is another: four that are looked at
+ * together, and one. */
 static void test_no_colour_is_missed(void **state)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
 
     (void)state;
     for (int round = 0; round < 2000; round++) {
-        struct glint_image image = canvas_new(packed[round % 2], 64, HEIGHT);
+        struct glint_image image = canvas_new(packed[round % 2], 160, HEIGHT);
         const int chroma_at = round % 2 ? 0 : 1;
         struct glint_bright *b;
         void *mem;
