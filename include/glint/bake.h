@@ -42,15 +42,15 @@ struct glint_bake_options {
 
 void glint_bake_defaults(struct glint_bake_options *options);
 
-/* What a model of LENS by OPTIONS is known by. */
+/* A model is known by this key of LENS and OPTIONS. */
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options);
 
-/* What cannot be read from a model. */
+/* The figures of a bake that its model does not tell. */
 struct glint_bake_report {
     int rays;      /* measured */
-    int intruders; /* of these, cut in truth, but passed by the model, by more
-                      than 3 % of a radius */
+    int intruders; /* so many of these rays pass the model, but are cut in
+                      truth, by more than 3 % of a radius */
     int unmet;     /* systems that the tolerance was too tight for */
 };
 

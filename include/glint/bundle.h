@@ -14,10 +14,11 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_CELLS   1024 /* of a ray grid, per side */
-#define GLINT_LEAST_CELLS 8    /* of one that a plan has chosen the size of */
+#define GLINT_MAX_CELLS 1024 /* most cells a side of a ray grid */
+#define GLINT_LEAST_CELLS \
+    8 /* fewest cells a side of a grid that a plan has chosen */
 
-/* Where one ray of a grid went. */
+/* The place where one ray of a grid went. */
 struct glint_vertex {
     int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
@@ -37,8 +38,8 @@ struct glint_vertex {
 struct glint_bundle {
     int n_cells; /* per side, 1 .. GLINT_MAX_CELLS: (n_cells + 1)^2 vertices,
                     row by row */
-    /* What one cell sends through the lens at energy 1: flux_q31 * 2^(exponent
-     * - 31), in display white times pixels. */
+    /* One cell sends flux_q31 * 2^(exponent - 31) through the lens at energy 1,
+     * in display white times pixels. */
     int32_t flux_q31; /* 2^30 .. 2^31 - 1, or 0 */
     int flux_exponent;
     int32_t rgb_q14[3]; /* colour of the wavelength times that of the light,

@@ -22,24 +22,27 @@ enum glint_dial_flag {
 };
 
 struct glint_dials {
-    int fineness;         /* of ray grids, 4 .. GLINT_MAX_CELLS; with 64 what
-                             lies between rays is off by 0.01 pixel */
+    int fineness; /* cells a side of ray grids, 4 .. GLINT_MAX_CELLS; with 64
+                     what lies between rays is off by 0.01 pixel */
     int irradiance_steps; /* an octave, 1 .. 4096; 0: not rounded */
     int snap_codes_q8;    /* codes: weaker edges lie on whole pixels; 0: none */
     int dispersion_q8;    /* pixels that outlines of neighbouring wavelengths
                              may be apart; 0: three wavelengths for all */
-    int max_lights;       /* that are drawn; more merge, the faint ones first */
-    unsigned flags;       /* enum glint_dial_flag */
-    double cull_codes;    /* codes near black that may be left out */
-    double area_points;   /* that a lamp of some extent is drawn as, at most */
+    int max_lights; /* lights are merged until there are so many, the faint ones
+                       first */
+    unsigned flags; /* enum glint_dial_flag */
+    double cull_codes;  /* codes near black that may be left out */
+    double area_points; /* points, at most, that a lamp with an extent is drawn
+                           as */
 };
 
 /* The dials at QUALITY_Q15, 0 .. 2^15, along the measured front of accuracy
  * over time; 2^14 is the default. */
 struct glint_dials glint_dials_at(int quality_q15);
 
-/* Of each dial the coarser setting of A and B. Steps of irradiance that are
- * not rounded stay so, and three wavelengths are neither coarse nor fine. */
+/* Takes each dial from A or B, whichever is coarser. Steps of irradiance that
+ * are not rounded stay so, and three wavelengths are neither coarse nor fine.
+ */
 struct glint_dials glint_dials_coarser(struct glint_dials a,
                                        struct glint_dials b);
 

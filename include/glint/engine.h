@@ -35,10 +35,10 @@ extern "C" {
 /* Seconds since any moment, never falling. */
 typedef double glint_clock_fn(void);
 
-enum { GLINT_ENGINE_MAX_LAMPS = 1024 }; /* of one picture */
+enum { GLINT_ENGINE_MAX_LAMPS = 1024 }; /* lamps of one picture, at most */
 
 struct glint_engine_config {
-    int width, height;              /* of the pictures, 1 .. GLINT_MAX_SIDE */
+    int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     const struct glint_lens *model; /* kept; to be set */
     struct glint_workers *workers;  /* kept; NULL: serial. Changes no output */
     unsigned sets; /* instruction sets, as glint/flare.h has them; 0: plain C */
@@ -63,34 +63,39 @@ struct glint_engine_config {
     int by_hand;
 
     struct glint_dials dials;
-    double budget_ms; /* of a frame, which turns the dials; 0: none */
+    double budget_ms; /* milliseconds a frame, which the dials are turned to
+                         keep; 0: no budget */
 
-    /* What drawing may take. 0 bytes: what it needs, exactly, and more as a
-     * frame needs more; else these, and what does not fit is left out and
-     * counted, and at most 2 * max_found lights are drawn. ARENA, aligned to
-     * 64, is kept; NULL: they are taken. */
+    /* Memory for drawing. With 0 bytes the engine takes exactly what a frame
+     * needs, and more as one needs more; else it keeps to these, leaves out and
+     * counts what does not fit, and draws at most 2 * max_found lights. ARENA,
+     * aligned to 64, is kept; NULL: the engine allocates. */
     void *arena;
     size_t arena_bytes;
 };
 
 struct glint_engine_report {
-    int lamps;           /* that were given */
-    int lamps_beyond;    /* of these, farther out than the model goes */
-    int lights;          /* drawn, after merging those too near or too many */
-    int ghosts, bundles; /* that are seen; of rays */
-    int dropped_bundles; /* for want of memory */
-    int dropped_cells;   /* of what was drawn: where rays were lost */
-    size_t bytes;        /* that drawing has */
-    size_t need_bytes;   /* that would have drawn everything, shared out for
-                            this very picture */
-    double scale;        /* that powers were multiplied by */
+    int lamps;        /* number of lamps given */
+    int lamps_beyond; /* lamps of these farther out than the model goes */
+    int lights;       /* drawn, after merging those too near or too many */
+    int ghosts,
+        bundles; /* number of ghosts seen, and of bundles of rays drawn */
+    int dropped_bundles; /* bundles left out for want of memory */
+    int dropped_cells;   /* cells left out of ghosts that were drawn, as rays of
+                            them were lost */
+    size_t bytes;        /* bytes that drawing has */
+    size_t need_bytes; /* bytes that would have drawn everything, shared out for
+                          this very picture */
+    double scale;      /* factor that powers of lamps were multiplied by */
     double plan_ms, bin_ms, draw_ms;
-    double quality; /* that a budget chose; below 0: there is none */
+    double quality; /* quality that the budget chose; below 0: there is no
+                       budget */
 };
 
 struct glint_engine; /* opaque */
 
-/* What glint overlay draws with, but for model and workers. */
+/* Sets CFG to what glint overlay draws with; the model and the workers are to
+ * be set. */
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                            int height);
 

@@ -56,7 +56,7 @@ struct glint_wave_sets {
                                for outlines farther apart; 0: any is seen */
 };
 
-/* What a frame is made of. */
+/* Everything that a frame is planned from, but its lights. */
 struct glint_flare_frame {
     const struct glint_lens *lens;
     const struct glint_wave *wave;
@@ -66,19 +66,21 @@ struct glint_flare_frame {
     int fineness;   /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
                        between rays is off by 0.01 px, outlines by 0.1 */
     int uniform;    /* all grids have so many cells a side */
-    int only_ghost; /* of the lens, with its parts; -1: all */
-    /* Of a picture in codes: light that no pixel shows, display white. What
-     * stays below may be left out, and the fainter a ghost, the coarser its
-     * grid and its steps of irradiance. 0: a picture in linear light. */
+    int only_ghost; /* number of the one ghost of the lens to draw, with its
+                       parts; -1: all */
+    /* Light that no pixel of a picture in codes shows, display white. Ghosts
+     * that stay below may be left out, and the fainter one is, the coarser are
+     * its grid and its steps of irradiance. 0: the picture is in linear light.
+     */
     struct glint_real faintest;
-    /* Of such a picture: edges across which light changes by less than so many
-     * codes, 0 .. 2^15, lie on whole pixels, which takes a fraction of the
-     * time. 0: none. */
+    /* Edges of a picture in codes across which light changes by less than so
+     * many codes, 0 .. 2^15, lie on whole pixels, which takes a fraction of the
+     * time. 0: no edge does. */
     int snap_codes_q8;
-    /* By edges: drawn with half as many pixels each way, each of which stands
-     * for four of the picture. Of Y'CbCr whose chroma is shared by pairs the
-     * four are lit at once, by what light does to their mean. NULL, or
-     * glint_half, which only a program that names it links. */
+    /* Only for drawing by edges: there are half as many pixels each way, each
+     * of which stands for four of the picture. In Y'CbCr whose chroma is shared
+     * by pairs the four are lit at once, by what light does to their mean.
+     * NULL, or glint_half, which only a program that names it links. */
     const struct glint_half *half;
 };
 
@@ -95,11 +97,11 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* By edges: the exact area that each cell covers, one irradiance a cell; folds
+/* Edges draw the exact area that each cell covers, one irradiance a cell; folds
  * and slivers keep their light; a primitive is an edge across which light
- * changes. By cells: interpolation at pixel centres, [Bodonyi23]; a primitive
- * is a cell; a stop with a mask takes this one, and is refused by edges. A
- * program that does not name it does not link it. */
+ * changes. Cells interpolate at pixel centres, [Bodonyi23]; a primitive is a
+ * cell; a stop with a mask takes this way, and is refused by edges. A program
+ * links only the one that it names. */
 struct glint_raster;
 extern const struct glint_raster glint_raster_edges, glint_raster_cells;
 
@@ -109,18 +111,18 @@ struct glint_flare_config {
     struct glint_workers *workers; /* kept; NULL: serial. Changes no output */
     unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
                       (kernels.h). Changes no output */
-    int width, height; /* of the picture, 1 .. GLINT_MAX_SIDE */
+    int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
     int tile_log2;     /* small tiles of 2^n pixels square, 3 .. 6 */
     const struct glint_raster *raster; /* NULL: by edges */
     int dither;             /* when encoding to 8 bits; deterministic */
     struct glint_stop stop; /* copied; its mask is kept */
 
-    /* By edges: the irradiance of a cell is rounded to so many steps an octave,
-     * 1 .. 4096, fewer for faint ghosts planned for codes, and edges between
-     * equal cells are not drawn; 0: not rounded */
+    /* For drawing by edges. The irradiance of a cell is rounded to so many
+     * steps an octave, 1 .. 4096, fewer for faint ghosts planned for codes, and
+     * edges between equal cells are not drawn; 0: it is not rounded. */
     int irradiance_steps;
 
-    /* By cells */
+    /* The rest is for drawing by cells. */
     int coarse_log2; /* large tiles, tile_log2 + 1 .. 8; 0: one level only */
     enum glint_weights weights;
     int merge_steps;         /* blocks of 2^n cells may become one, 0 .. 4 */
@@ -130,32 +132,34 @@ struct glint_flare_config {
     /* Capacities. glint_flare_bin() reports what a frame needed. */
     int max_bundles;
     int max_vertices;
-    int max_primitives; /* by edges workers begin with equal shares; half as
-                           much again keeps them from waiting */
+    int max_primitives; /* primitives of a frame; by edges each worker begins
+                           with an equal share, and half as much again keeps
+                           them from waiting */
     int max_refs;       /* entries of the index lists of the first level */
     int max_tile_refs;  /* entries for one large tile; 0 with one level */
 };
 
 struct glint_flare_stats {
-    int bundles, vertices, primitives, refs, tile_refs; /* as drawn */
+    int bundles, vertices, primitives, refs,
+        tile_refs; /* number of each that was drawn */
     int need_bundles, need_vertices, need_primitives, need_refs,
-        need_tile_refs;  /* what would have drawn everything, exactly where
-                            there is room for need_bundles, and by cells for
-                            need_vertices */
+        need_tile_refs;  /* capacities that would have drawn everything, exactly
+                            where there is room for need_bundles, and by cells
+                            for need_vertices */
     int dropped_bundles; /* left out for want of capacity */
-    int dropped_cells;   /* of bundles that were drawn: with a lost ray, a
-                            vertex out of range, or no area */
-    int merged_cells;    /* cells that went into a larger primitive */
-    int held_cells; /* of bundles that were drawn, cells or halves of one with
-                       more light than one may give a pixel (2048 times white,
-                       less if all together would pass 2^24): cut down to that
-                     */
+    int dropped_cells; /* cells left out of bundles that were drawn: they have a
+                          lost ray, a vertex out of range, or no area */
+    int merged_cells;  /* cells that went into a larger primitive */
+    int held_cells; /* cells, or halves of one, of bundles that were drawn that
+                       have more light than one may give a pixel (2048 times
+                       white, less if all together would pass 2^24), and were
+                       cut down to that */
 };
 
 struct glint_flare; /* opaque, in the caller's memory */
 
-/* What a newcomer should start from, for pictures of WIDTH x HEIGHT; without
- * capacities, workers and instruction sets. */
+/* Sets CFG to what a newcomer should start from, for pictures of WIDTH x
+ * HEIGHT; capacities, workers and instruction sets are still to be set. */
 void glint_flare_defaults(struct glint_flare_config *cfg, int width,
                           int height);
 
@@ -166,8 +170,8 @@ void glint_flare_capacities(struct glint_flare_config *cfg,
                             const struct glint_lens *lens, int n_lights,
                             int n_waves);
 
-/* What a newcomer should start from for a frame through LENS of a picture in
- * codes; waves and pixels_per_mm are to be set. */
+/* Sets FRAME to what a newcomer should start from, for a picture in codes
+ * through LENS; waves and pixels_per_mm are still to be set. */
 void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                 const struct glint_lens *lens);
 
@@ -220,12 +224,12 @@ void glint_flare_plan(struct glint_flare *flare,
                       const struct glint_flare_frame *frame,
                       const struct glint_light *lights, int n_lights);
 
-/* Which ghost of the lens bundle I of those planned is; I from 0 to the bundles
- * of the statistics. */
+/* Returns the ghost of the lens that planned bundle I belongs to; I is from 0
+ * to the bundles of the statistics. */
 int glint_flare_ghost(const struct glint_flare *flare, int i);
 
-/* What bundle I of those planned, and not yet binned, is: for telling what a
- * frame will take before it is drawn. */
+/* A bundle that was planned and is not yet binned: from these a program can
+ * tell what a frame will take before it is drawn. */
 struct glint_planned {
     int n_cells;                  /* per side */
     struct glint_real flux;       /* display white times pixels */
@@ -236,8 +240,8 @@ struct glint_planned {
 int glint_flare_planned(const struct glint_flare *flare, int i,
                         struct glint_planned *planned);
 
-/* Of what was planned, display white: the largest mean irradiance of a bundle,
- * and the flux of all, times pixels. */
+/* Gives the largest mean irradiance of the bundles planned, display white, and
+ * the flux of all, display white times pixels. */
 void glint_flare_light(const struct glint_flare *flare,
                        struct glint_real *brightest, struct glint_real *flux);
 
@@ -262,7 +266,7 @@ int glint_flare_held(const struct glint_flare *flare);
 
 /* ------------------------------------------------------------ what and why */
 
-/* What became of the rays of one ghost, light and wave. */
+/* The fate of the rays of one ghost, light and wave. */
 enum glint_outcome {
     GLINT_OUTCOME_DRAWN,
     GLINT_OUTCOME_EMPTY,  /* planned, but no edge of its grid changes a pixel */
@@ -270,8 +274,8 @@ enum glint_outcome {
     GLINT_OUTCOME_BEYOND, /* the light comes from farther out than the model
                            * goes
                            */
-    GLINT_OUTCOME_CLOSED, /* of this angle the model says: no ray gets through
-                           */
+    GLINT_OUTCOME_CLOSED, /* the model has no polynomials for this angle: no ray
+                             gets through */
     GLINT_OUTCOME_BLOCKED,   /* the stop and the barrels take all rays looked at
                               */
     GLINT_OUTCOME_DARK,      /* the light has no power in this wave */
@@ -282,19 +286,21 @@ enum glint_outcome {
     GLINT_OUTCOMES
 };
 
-/* What it took. All but the outcome is 0 unless DRAWN, EMPTY or NO_ROOM; edges
- * to tiles are 0 unless DRAWN. */
+/* The work that one bundle took. All but the outcome is 0 unless DRAWN, EMPTY
+ * or NO_ROOM; edges, rows and refs are 0 unless DRAWN. */
 struct glint_account {
     enum glint_outcome outcome;
     int probed;           /* rays that the plan looked at */
-    int cells, vertices;  /* of the grid: a side, all */
+    int cells, vertices;  /* cells a side of the grid, vertices of all of it */
     int outputs, barrels; /* polynomials of a ray; of these, barrels that cut */
-    int terms;            /* of all of them, with angle and wavelength put in */
-    int edges;    /* drawn; all edges of all bundles are the primitives */
-    int64_t rows; /* of pixels that they cross */
+    int terms; /* terms of all these polynomials, with angle and wavelength put
+                  in */
+    int edges; /* drawn; all edges of all bundles are the primitives */
+    int64_t rows; /* rows of pixels that the edges cross */
     int refs;     /* entries in the lists of tiles */
-    struct glint_real flux; /* as planned, before stop, barrels and the
-                               picture's sides: display white times pixels */
+    /* Display white times pixels, as planned, before the stop, the barrels and
+     * the sides of the picture cut. */
+    struct glint_real flux;
 };
 
 /* The account of ghost GHOST (or part) of the lens, of light LIGHT and wave
@@ -304,10 +310,9 @@ struct glint_account {
 void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account);
 
-/* Of the bundles planned and binned last, by edges, keeps in the tiles those of
- * GHOST with all its parts, LIGHT and WAVE (with sets: all waves of set WAVE),
- * each -1 for all: draw draws these alone, until the next time that this or bin
- * is called. */
+/* Restricts drawing to the bundles of GHOST with all its parts, LIGHT and WAVE
+ * (with sets: all waves of set WAVE), each -1 for all, of those planned and
+ * binned last, by edges. It holds until the next call of this or of bin. */
 void glint_flare_keep(struct glint_flare *flare, int ghost, int light,
                       int wave);
 

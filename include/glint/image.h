@@ -41,9 +41,9 @@ struct glint_image {
     int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
     uint8_t *plane[3]; /* first sample of the top row; unused ones NULL */
     ptrdiff_t stride_bytes[3];
-    enum glint_range range;   /* of the codes; RGB: always full */
-    enum glint_matrix matrix; /* of Y, Cb, Cr; ignored for RGB */
-    enum glint_tone transfer; /* from codes to linear light */
+    enum glint_range range;   /* range of the codes; RGB is always full */
+    enum glint_matrix matrix; /* matrix of Y, Cb, Cr; ignored for RGB */
+    enum glint_tone transfer; /* curve from codes to linear light */
 };
 
 /* Number of planes of FORMAT, 1 .. 3. */

@@ -17,7 +17,7 @@ enum { GLINT_SET_SSE41 = 1, GLINT_SET_AVX2 = 2, GLINT_SET_NEON = 4 };
 /* The GLINT_SET_ bits that this library has kernels for. */
 unsigned glint_sets_built(void);
 
-/* Of these those that this CPU can run, as far as it can be known without
+/* Returns those sets that this CPU can run, as far as it can be known without
  * asking an operating system: NEON is the compiler's word. Where that is not
  * given, on 32-bit ARM, a program may take NEON from glint_sets_built() when
  * its system says so; platform/linux/sets.h does. */

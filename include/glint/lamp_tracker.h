@@ -36,45 +36,49 @@ extern "C" {
 enum glint_lamp_state {
     GLINT_LAMP_RISING,
     GLINT_LAMP_STEADY, /* seen, at full level */
-    GLINT_LAMP_FADING, /* its lamp is hidden or out, or too many are brighter;
-                           moves on, slower and slower */
-    GLINT_LAMP_LEAVING /* its lamp went out of the picture, and it moves on */
+    GLINT_LAMP_FADING, /* the lamp is hidden or out, or too many are brighter:
+                          the track moves on, slower and slower */
+    GLINT_LAMP_LEAVING /* the lamp went out of the picture, and the track moves
+                          on */
 };
 
-/* What is to be drawn is LEVEL times power: the level is not in it. */
+/* A lamp over time. It is to be drawn with LEVEL times power, as the power does
+ * not contain the level. */
 struct glint_lamp_track {
     uint32_t id; /* counts from 1; no two lamps have the same */
     enum glint_lamp_state state;
-    int32_t x_q8, y_q8;       /* as of a spot; may be outside of the picture */
-    int32_t size_q8;          /* RMS radius, pixels */
-    int32_t level_q15;        /* 1 .. 32768: how far it has risen or faded */
-    int64_t flux_q16;         /* linear luminance, 1 = white pixel */
-    int64_t power_q16;        /* the same without clipping: a spot's power */
-    int32_t axis_q8[2];       /* RMS semi-axes of the core, pixels */
-    int32_t cos_q15, sin_q15; /* of the major one, to 1/4 degree; cos >= 0 */
-    int32_t rgb_q15[3];       /* mean linear colour, luminance 1 */
+    int32_t x_q8, y_q8; /* place, as of a spot; may be outside of the picture */
+    int32_t size_q8;    /* RMS radius, pixels */
+    int32_t level_q15;  /* 1 .. 32768: how far it has risen or faded */
+    int64_t flux_q16;   /* linear luminance, 1 = white pixel */
+    int64_t power_q16;  /* the same without clipping: a spot's power */
+    int32_t axis_q8[2]; /* RMS semi-axes of the core, pixels */
+    int32_t cos_q15,
+        sin_q15; /* direction of the major axis, to 1/4 degree; cos >= 0 */
+    int32_t rgb_q15[3]; /* mean linear colour, luminance 1 */
 };
 
 struct glint_lamp_tracker_config {
-    int width, height;  /* of the pictures, 1 .. GLINT_MAX_SIDE */
-    int max_tracks;     /* that are followed, 1 .. 1024 */
-    int max_shown;      /* the strongest that are seen; the others' level
-                           fades. 1 .. max_tracks */
-    int32_t match_q15;  /* of the width: how far a spot may be from where the
-                           track should be */
-    int32_t cut_q15;    /* of the flux: a cut is where as much of it goes and
-                           as much is new, or three lamps or more go or come
-                           all at once; above 32768: never */
-    int32_t attack_ms;  /* from 0 to full level, or to a greater flux */
+    int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
+    int max_tracks;    /* lamps that can be followed at a time, 1 .. 1024 */
+    int max_shown;     /* the strongest that are seen; the others' level
+                          fades. 1 .. max_tracks */
+    int32_t match_q15; /* farthest that a spot may be from where its track
+                          should be, as a share of the picture's width */
+    int32_t cut_q15; /* share of the flux, above 32768: never. A cut is where so
+                        much of it goes and as much is new, or three lamps or
+                        more go or come all at once */
+    int32_t
+        attack_ms; /* milliseconds from 0 to full level, or to a greater flux */
     int32_t release_ms; /* the other way */
     int32_t leave_ms;   /* the same for lamps that left the picture */
     int32_t memory_ms;  /* how long a lamp without a spot keeps its number */
-    int32_t smooth_ms;  /* that scatter is averaged over */
+    int32_t smooth_ms;  /* milliseconds that scatter is averaged over */
 };                      /* times 1 .. 60000 */
 
 struct glint_lamp_tracker; /* opaque, in the caller's memory */
 
-/* What a newcomer should start from, for WIDTH x HEIGHT. */
+/* Sets CFG to what a newcomer should start from, for WIDTH x HEIGHT. */
 void glint_lamp_tracker_defaults(struct glint_lamp_tracker_config *cfg,
                                  int width, int height);
 
@@ -101,8 +105,8 @@ int glint_lamp_tracker_step(struct glint_lamp_tracker *tracks,
  * once, as after init. For a caller who knows of a cut. */
 void glint_lamp_tracker_restart(struct glint_lamp_tracker *tracks);
 
-/* Whether the last step was the first, or took its picture for one after a cut.
- */
+/* Returns whether the last step was the first, or took its picture for one
+ * after a cut. */
 int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks);
 
 /* The part of its white that the next picture of a video keeps, ELAPSED_US

@@ -46,7 +46,7 @@ struct glint_spot {
                            corner of the picture, pixel centres at n + 1/2 */
     int32_t size_q8;    /* RMS radius, pixels */
     int32_t area;       /* pixels that belong to it */
-    int32_t n_clipped;  /* of these, pixels whose largest channel is clipped, or
+    int32_t n_clipped;  /* pixels of these whose largest channel is clipped, or
                            at the picture's own white */
     int64_t flux_q16;   /* sum of linear luminance over its pixels, 1 = white */
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 (BT.709 weights) */
@@ -58,30 +58,33 @@ struct glint_spot {
                            clipping, white pixels */
     int32_t axis_q8[2]; /* RMS semi-axes of its core, pixels, the major one
                            first */
-    int32_t cos_q15, sin_q15; /* of the major one, y down; cos >= 0 */
+    int32_t cos_q15,
+        sin_q15; /* direction of the major axis, y down; cos >= 0 */
 };
 
 struct glint_lamp_finder_config {
-    int width, height;         /* of the pictures, 1 .. GLINT_MAX_SIDE */
+    int width, height;         /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int32_t threshold_high_q8; /* stops from white, -20 .. 0: a region needs
                                   pixels there */
     int32_t threshold_low_q8; /* -20 .. threshold_high_q8: it extends to here */
     int white_code;           /* 8-bit full-range code of white, 1 .. 255; 0:
                                  the picture's own, see above */
     int min_area;             /* pixels; smaller regions are noise, >= 1 */
-    int32_t max_share_q15;    /* of the picture; larger ones are sky or wall */
-    int32_t merge_q15;        /* of the width: closer lamps become one */
-    int32_t judge;            /* 1: by what is around them; 0: all bright
-                                 regions are lamps */
-    int32_t keep_faint;       /* 1: after the lamps come regions that have too
-                                 few pixels at the upper threshold, half of
-                                 min_area, or a score a little too low, marked
-                                 faint; for glint/lamp_tracker.h */
+    int32_t max_share_q15;    /* share of the picture; larger regions are sky or
+                                 wall */
+    int32_t merge_q15;  /* share of the picture's width; lamps that are closer
+                           become one */
+    int32_t judge;      /* 1: by what is around them; 0: all bright
+                           regions are lamps */
+    int32_t keep_faint; /* 1: after the lamps come regions that have too
+                           few pixels at the upper threshold, half of
+                           min_area, or a score a little too low, marked
+                           faint; for glint/lamp_tracker.h */
 };
 
 struct glint_lamp_finder; /* opaque, in the caller's memory */
 
-/* What a newcomer should start from, for WIDTH x HEIGHT. */
+/* Sets CFG to what a newcomer should start from, for WIDTH x HEIGHT. */
 void glint_lamp_finder_defaults(struct glint_lamp_finder_config *cfg, int width,
                                 int height);
 

@@ -51,27 +51,27 @@ enum glint_basis {
 
 struct glint_model_header {
     uint32_t magic, version;
-    uint32_t bytes;  /* of the whole file */
-    uint32_t crc32;  /* of all after this word: polynomial 0xedb88320,
+    uint32_t bytes;  /* bytes of the whole file */
+    uint32_t crc32;  /* checksum of all after this word: polynomial 0xedb88320,
                         reflected, begun and ended with all ones */
     uint32_t basis;  /* enum glint_basis */
-    uint32_t key[2]; /* of lens table and options, low word first */
-    char name[64];   /* of the lens, terminated */
+    uint32_t key[2]; /* key of lens table and options, low word first */
+    char name[64];   /* name of the lens, terminated */
     struct glint_real focal_mm, back_focal_mm, entrance_radius_mm,
         stop_radius_mm, f_number, film_width_mm, film_height_mm;
     struct glint_real field_mm; /* light farther from the sensor's centre was
                                    not asked to be right */
     struct glint_real front_mm; /* semi-diameter of the first surface */
     int32_t wave_lo_q24, wave_hi_q24; /* the band, 1 / wavelength^2, um^-2 */
-    int32_t sine_hi_q30;              /* of the largest angle looked at; of
-                                         lights beyond nothing is drawn */
+    int32_t sine_hi_q30; /* sine of the largest angle that was baked; lights
+                            beyond it are not drawn */
     /* Flux of the direct image at angle 0 for irradiance 1 through a circular
      * stop, mm^2: coefficients of powers of w over the band. */
     struct glint_real direct_flux[6];
     uint32_t n_surfaces;
     uint32_t n_ghosts, ghost_at; /* struct glint_model_ghost */
-    uint32_t n_parts; /* so many of the ghosts, the last ones, are further parts
-                         of the pupil of some of those before them */
+    uint32_t n_parts; /* the last so many ghosts are further parts of the pupil
+                         of some of those before them */
     uint32_t n_systems, system_at; /* struct glint_model_system */
 };
 
@@ -89,7 +89,8 @@ struct glint_model_ghost {
  * so many angles, rising, and between two neighbours they are interpolated
  * linearly in the sine; the variables are those of the basis alone. */
 struct glint_model_system {
-    int32_t sine_lo_q30, sine_hi_q30; /* of the light's angle, 0 .. 2^30 */
+    int32_t sine_lo_q30,
+        sine_hi_q30; /* range of the sine of the light's angle, 0 .. 2^30 */
     int32_t wave_lo_q24, wave_hi_q24; /* the same twice: one wavelength */
     uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots] */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
@@ -107,12 +108,12 @@ struct glint_model_system {
 };
 
 enum {
-    GLINT_BOX_POWERS = 6, /* of s alone, the 0th among them */
+    GLINT_BOX_POWERS = 6, /* powers of s alone, the 0th among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
     GLINT_MAX_ANNULUS = 15,
-    GLINT_RAYS = 8,         /* that are computed at once */
-    GLINT_TABLE_WIDTH = 16, /* of a row of powers of u: whole vectors */
+    GLINT_RAYS = 8,         /* rays that are computed at once */
+    GLINT_TABLE_WIDTH = 16, /* entries in a row of powers of u: whole vectors */
     GLINT_MAX_MODEL_TERMS = 120
 };
 
@@ -135,14 +136,14 @@ enum glint_channel {
  * exponent, and so have stop x and y. */
 struct glint_model_output {
     uint8_t kind, n_terms;
-    uint8_t n_narrow; /* so many of the coefficients, the last ones, are int16
-                         instead, padded to whole words, */
-    uint8_t narrow_shift; /* and count 2^so many times as much, at most 20; with
-                             knots 0 */
-    /* Of the energy, where not 0: its polynomial P counts as at most
-     * 2^(29 - head), head at most 28, far above what it is where light gets
-     * through; the energy is P squared so many times, roots at most 2, 0 for P
-     * below 0. */
+    uint8_t n_narrow; /* the last so many of the coefficients are int16 instead,
+                         padded to whole words */
+    uint8_t narrow_shift; /* the int16 coefficients count 2^so many times as
+                             much, at most 20; with knots 0 */
+    /* Both belong to the energy. If head is not 0, its polynomial P counts as
+     * at most 2^(29 - head), far above what it is where light gets through;
+     * head is 28 at most. The energy is P squared so many times as roots says,
+     * 2 at most, and 0 for P below 0. */
     uint8_t head, roots;
     int16_t exponent; /* a polynomial's value is integer * 2^exponent */
     uint32_t term_at; /* uint16 [n_terms], padded to whole words: powers of u,

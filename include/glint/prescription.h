@@ -32,7 +32,7 @@ extern "C" {
 /* A refracting surface. The medium before surface 0 is air. */
 struct glint_surface {
     double radius_mm;    /* > 0: centre towards the sensor; 0: plane */
-    double thickness_mm; /* to the next surface, the stop, or the sensor */
+    double thickness_mm; /* mm to the next surface, the stop, or the sensor */
     double semi_mm;      /* semi-diameter of the barrel here */
     double nd;           /* index at 587.56 nm of the medium after it */
     double vd;           /* Abbe number of that medium; 0 for air */
@@ -59,13 +59,14 @@ struct glint_prescription {
     int n_surfaces; /* without the stop, 1 .. GLINT_MAX_SURFACES */
     struct glint_surface surface[GLINT_MAX_SURFACES];
     int stop_after;           /* surfaces before the stop, 0 .. n_surfaces */
-    double stop_thickness_mm; /* from the stop to the next surface (or the
+    double stop_thickness_mm; /* mm from the stop to the next surface (or the
                                  sensor); a front stop lies at z < 0 */
     double stop_semi_mm;      /* largest opening of the stop */
     double check_focal_mm;    /* stated values; 0: not stated */
     double check_back_mm;
-    /* What the table would have on its surfaces to be looked at, rather than
-     * measured; on them only after glint_prescription_coat(). */
+    /* Coatings that the table gives its surfaces by look rather than by
+     * measurement; the surfaces have them only after glint_prescription_coat().
+     */
     struct glint_film mixed[GLINT_MAX_FILMS];
     int n_mixed; /* 0: the table does not say */
 };
@@ -104,9 +105,10 @@ enum glint_status glint_films_parse(struct glint_film films[GLINT_MAX_FILMS],
 struct glint_optics {
     double focal_mm;           /* effective focal length */
     double back_focal_mm;      /* last surface to the paraxial focus */
-    double entrance_radius_mm; /* of the entrance pupil: focal / (2 N) */
-    double entrance_z_mm;      /* of the entrance pupil from the front vertex */
-    double stop_radius_mm;     /* of the aperture stop at the f-number */
+    double entrance_radius_mm; /* radius of the entrance pupil: focal / (2 N) */
+    double entrance_z_mm;      /* distance of the entrance pupil from the front
+                                  vertex */
+    double stop_radius_mm;     /* radius of the aperture stop at the f-number */
     double length_mm;          /* front vertex to sensor */
 };
 

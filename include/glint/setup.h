@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 #define GLINT_MAX_WAVELENGTHS 32
-#define GLINT_SET_WAVES       65 /* of all sets together, see below */
+#define GLINT_SET_WAVES       65 /* waves of all sets together, see _spread */
 
 /* N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that stand for light of all
  * wavelengths: WAVELENGTH_NM rises, and RGB[i] times what is at wavelength i,
@@ -34,7 +34,7 @@ void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
 /* One of a set. */
 struct glint_set_wave {
     double nm, rgb[3];
-    double direct_flux, unit_flux; /* as in struct glint_setup */
+    double direct_flux, unit_flux; /* fluxes as in struct glint_setup, mm^2 */
 };
 
 /* A lens made ready for drawing: everything that no light and no frame
@@ -43,20 +43,22 @@ struct glint_setup {
     const struct glint_prescription *lens; /* kept; NULL: made from a model */
     struct glint_optics optics;
     int n_ghosts;
-    int n_parts; /* of a model: the last so many ghosts are further parts of the
+    int n_parts; /* the last so many ghosts of a model are further parts of the
                     pupil of some of those before them */
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
-    int n_blades;              /* of the stop; 0: circle */
-    double blade_rotation_deg; /* of the first corner, from x towards y */
+    int n_blades;              /* blades of the stop; 0: circle */
+    double blade_rotation_deg; /* angle of the stop's first corner, from x
+                                  towards y */
     int n_wavelengths;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     double rgb[GLINT_MAX_WAVELENGTHS][3]; /* linear BT.709; each channel sums
                                              to 1 */
     double direct_flux[GLINT_MAX_WAVELENGTHS]; /* through the stop at angle 0
                                                   for irradiance 1, mm^2 */
-    double unit_flux[GLINT_MAX_WAVELENGTHS]; /* what light is measured by, mm^2:
-                                                the mean of direct_flux, or
-                                                itself after _balance */
+    double unit_flux[GLINT_MAX_WAVELENGTHS]; /* flux that light is measured by,
+                                                mm^2: the mean of direct_flux,
+                                                or itself after
+                                                glint_setup_balance() */
     /* After _spread: sets of wavelengths, one after the other, the smallest
      * first, of which each ghost takes its own. */
     int n_sets, set_size[GLINT_MAX_WAVE_SETS];
@@ -83,7 +85,8 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          const double *wavelength_nm, int n,
                                          struct glint_error *error);
 
-/* Of a setup for the N wavelengths of glint_spectrum(): takes its colours. */
+/* Takes the colours of glint_spectrum() for SETUP, which is for its N
+ * wavelengths. */
 void glint_setup_weigh(struct glint_setup *setup);
 
 /* Gives SETUP, made from LENS, the sets for each ghost to choose from. */

@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_EVENTS (3 * GLINT_MAX_SURFACES) /* of one path */
+#define GLINT_MAX_EVENTS (3 * GLINT_MAX_SURFACES) /* most of one path */
 
 #define GLINT_BAKE_STACK_BYTES (1 << 20)
 
@@ -55,13 +55,16 @@ void glint_path_init(struct glint_path *path,
 
 enum glint_ray_status {
     GLINT_RAY_OK = 0,
-    GLINT_RAY_MISSED = 1,          /* a surface, its equator, or the way */
-    GLINT_RAY_TOTAL_REFLECTION = 2 /* at a refraction */
+    GLINT_RAY_MISSED = 1, /* a surface, its equator, or the way */
+    GLINT_RAY_TOTAL_REFLECTION =
+        2 /* the ray was reflected wholly where it should have been refracted */
 };
 
 struct glint_ray {
-    double stop_x_mm, stop_y_mm;     /* where it crosses the stop's plane */
-    double sensor_x_mm, sensor_y_mm; /* where it hits the sensor */
+    double stop_x_mm,
+        stop_y_mm; /* point at which the ray crosses the stop's plane */
+    double sensor_x_mm,
+        sensor_y_mm;   /* point at which the ray hits the sensor */
     double energy;     /* transmittances times reflectances, 0 .. 1 */
     double rel_radius; /* largest |xy| / semi-diameter over all surfaces */
 };
@@ -75,7 +78,7 @@ enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
                                   double py_mm, const double direction[3],
                                   struct glint_ray *ray, double (*hits)[2]);
 
-/* Where a ray starts on the vertex plane of the first surface, and its
+/* The start of a ray on the vertex plane of the first surface, and its
  * direction of unit length. */
 struct glint_launch {
     double x_mm, y_mm, direction[3];

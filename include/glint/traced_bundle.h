@@ -19,7 +19,7 @@ extern "C" {
 struct glint_traced_bundle_config {
     const struct glint_setup *setup;
     struct glint_view view;
-    double scale;  /* of all light: gain times 2^EV */
+    double scale;  /* factor of all light: gain times 2^EV */
     int max_cells; /* fineness of the grids, 1 .. 1024: see
                       glint_traced_bundle_plan */
     bool uniform;  /* all ghosts get max_cells a side */

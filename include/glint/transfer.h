@@ -26,8 +26,8 @@ extern "C" {
 struct glint_transfer {
     const struct glint_model_system *system;
     uint32_t outputs; /* bit KIND is set where there is that output */
-    int32_t exponent[GLINT_OUT_KINDS]; /* of what comes out */
-    uint8_t head, roots;               /* of the energy */
+    int32_t exponent[GLINT_OUT_KINDS]; /* exponent of each output */
+    uint8_t head, roots; /* as in struct glint_model_output, for the energy */
     uint8_t energy_up; /* a vertex's energy counts 2^so many times, at most 29:
                           0 after init, for the caller to set */
     int32_t box[3];    /* middle, half width, half height at this angle */
@@ -35,7 +35,7 @@ struct glint_transfer {
     uint8_t annulus;
     enum glint_basis basis;
     union {
-        /* of u^a v^b: [b][a] */
+        /* coefficients of u^a v^b: [b][a] */
         int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
         struct {
             int32_t n_terms;
@@ -58,7 +58,7 @@ int glint_transfer_init(struct glint_transfer *transfer,
                         const struct glint_lens *lens, int ghost,
                         int32_t sine_q30, int32_t wave_q24);
 
-/* Where the ray at (U, V), each within +-2^30, goes: integers by kind, to be
+/* The outputs of one ray at (U, V), each within +-2^30: integers by kind, to be
  * scaled by 2^exponent; 0 for outputs that are not there. */
 struct glint_outputs {
     int32_t at[GLINT_OUT_KINDS];
@@ -66,15 +66,15 @@ struct glint_outputs {
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out);
 
-/* Where the rays at (U[i], V) go, by kind; kinds that are not there are left as
- * they are. IS_NEW: V is another one than in the last call. */
+/* Gives the outputs of the rays at (U[i], V) by kind; kinds that are not there
+ * are left as they are. IS_NEW: V is another one than in the last call. */
 void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS]);
 
-/* Where the bundle lies in the picture. */
+/* The place of a bundle in the picture. */
 struct glint_place {
-    int32_t cos_q30, sin_q30; /* of the light's azimuth */
+    int32_t cos_q30, sin_q30; /* cosine and sine of the light's azimuth */
     struct glint_real pixels_per_mm;
     int32_t middle_x_q8, middle_y_q8; /* the sensor's centre, pixels */
 };

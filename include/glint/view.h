@@ -15,28 +15,29 @@ extern "C" {
 struct glint_lamp {
     double theta_deg; /* off the axis, 0 .. 89.9 */
     double phi_deg;   /* about it: 0 = +x, 90 = up */
-    double power;     /* its in-focus image, spread over one pixel, would have
-                         this linear value; 1 = display white */
-    double rgb[3];    /* colour, linear BT.709; white is 1 1 1 */
-    double axis[2];   /* RMS semi-axes of its extent, the major one first, in
-                         tangents of angles off the axis: image over focal
-                         length; 0 0: a point. Here for who makes many points
-                         of it; the picture and traced bundles take it for one. */
-    double turn_deg;  /* of the major one, 0 = +x, 90 = up */
+    double power;  /* value that the lamp's in-focus image would have if it were
+                      spread over one pixel, linear; 1 = display white */
+    double rgb[3]; /* colour, linear BT.709; white is 1 1 1 */
+    double axis[2];  /* RMS semi-axes of its extent, the major one first, in
+                        tangents of angles off the axis: image over focal
+                        length; 0 0: a point. Here for who makes many points
+                        of it; the picture and traced bundles take it for one. */
+    double turn_deg; /* direction of the major axis, 0 = +x, 90 = up */
 };
 
-/* Where a picture lies on the sensor: centred, square pixels. */
+/* The place of a picture on the sensor: centred, with square pixels. */
 struct glint_view {
     int width, height;      /* pixels */
-    double sensor_width_mm; /* of the whole width */
+    double sensor_width_mm; /* mm that the whole width of the picture takes */
 };
 
 /* The largest view of WIDTH x HEIGHT that fits FILM. */
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,
                                  double film_height_mm);
 
-/* Where a light is whose image lies at pixel (X, Y) of VIEW behind a lens of
- * FOCAL_MM, and the reverse. Pixels from the top left corner, y down. */
+/* Gives the direction of a light whose image lies at pixel (X, Y) of VIEW
+ * behind a lens of FOCAL_MM, and the reverse. Pixels count from the top left
+ * corner, y down. */
 void glint_view_to_angles(const struct glint_view *view, double focal_mm,
                           double x, double y, struct glint_lamp *lamp);
 void glint_view_to_pixel(const struct glint_view *view, double focal_mm,
