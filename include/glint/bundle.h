@@ -14,9 +14,8 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_CELLS 1024 /* most cells a side of a ray grid */
-#define GLINT_LEAST_CELLS \
-    8 /* fewest cells a side of a grid that a plan has chosen */
+#define GLINT_MAX_CELLS   1024 /* most cells a side of a ray grid */
+#define GLINT_LEAST_CELLS 8    /* fewest, where a plan chooses */
 
 /* The place where one ray of a grid went. */
 struct glint_vertex {

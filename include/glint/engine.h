@@ -78,8 +78,8 @@ struct glint_engine_report {
     int lamps;        /* number of lamps given */
     int lamps_beyond; /* lamps of these farther out than the model goes */
     int lights;       /* drawn, after merging those too near or too many */
-    int ghosts,
-        bundles; /* number of ghosts seen, and of bundles of rays drawn */
+    /* Number of ghosts seen, and of bundles of rays drawn. */
+    int ghosts, bundles;
     int dropped_bundles; /* bundles left out for want of memory */
     int dropped_cells;   /* cells left out of ghosts that were drawn, as rays of
                             them were lost */

@@ -140,12 +140,11 @@ struct glint_flare_config {
 };
 
 struct glint_flare_stats {
-    int bundles, vertices, primitives, refs,
-        tile_refs; /* number of each that was drawn */
-    int need_bundles, need_vertices, need_primitives, need_refs,
-        need_tile_refs;  /* capacities that would have drawn everything, exactly
-                            where there is room for need_bundles, and by cells
-                            for need_vertices */
+    /* Number of each that was drawn. */
+    int bundles, vertices, primitives, refs, tile_refs;
+    /* Capacities that would have drawn everything, exactly where there is room
+     * for need_bundles, and by cells for need_vertices. */
+    int need_bundles, need_vertices, need_primitives, need_refs, need_tile_refs;
     int dropped_bundles; /* left out for want of capacity */
     int dropped_cells; /* cells left out of bundles that were drawn: they have a
                           lost ray, a vertex out of range, or no area */

@@ -53,8 +53,8 @@ struct glint_lamp_track {
     int64_t flux_q16;   /* linear luminance, 1 = white pixel */
     int64_t power_q16;  /* the same without clipping: a spot's power */
     int32_t axis_q8[2]; /* RMS semi-axes of the core, pixels */
-    int32_t cos_q15,
-        sin_q15; /* direction of the major axis, to 1/4 degree; cos >= 0 */
+    /* Direction of the major axis, to 1/4 degree; cos >= 0. */
+    int32_t cos_q15, sin_q15;
     int32_t rgb_q15[3]; /* mean linear colour, luminance 1 */
 };
 
@@ -68,8 +68,8 @@ struct glint_lamp_tracker_config {
     int32_t cut_q15; /* share of the flux, above 32768: never. A cut is where so
                         much of it goes and as much is new, or three lamps or
                         more go or come all at once */
-    int32_t
-        attack_ms; /* milliseconds from 0 to full level, or to a greater flux */
+    /* Milliseconds from 0 to full level, or to a greater flux. */
+    int32_t attack_ms;
     int32_t release_ms; /* the other way */
     int32_t leave_ms;   /* the same for lamps that left the picture */
     int32_t memory_ms;  /* how long a lamp without a spot keeps its number */

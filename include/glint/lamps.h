@@ -58,8 +58,8 @@ struct glint_spot {
                            clipping, white pixels */
     int32_t axis_q8[2]; /* RMS semi-axes of its core, pixels, the major one
                            first */
-    int32_t cos_q15,
-        sin_q15; /* direction of the major axis, y down; cos >= 0 */
+    /* Direction of the major axis, y down; cos >= 0. */
+    int32_t cos_q15, sin_q15;
 };
 
 struct glint_lamp_finder_config {

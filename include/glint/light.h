@@ -20,9 +20,9 @@ extern "C" {
  * f-number asks for), fixed to the camera: x right, y up. */
 struct glint_stop {
     int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
-    int32_t normal_q30[GLINT_MAX_BLADES]
-                      [2]; /* unit normal of each side, outwards */
-    int32_t apothem_q16;   /* centre to side */
+    /* Unit normal of each side, outwards. */
+    int32_t normal_q30[GLINT_MAX_BLADES][2];
+    int32_t apothem_q16; /* centre to side */
 
     /* Unless NULL, the opening is read from this mask instead: signed distance
      * to the outline, positive inside, at the nodes of a square of
@@ -34,13 +34,13 @@ struct glint_stop {
 
 /* A light as the lens sees it: parallel rays. */
 struct glint_light {
-    int32_t sine_q30,
-        cosine_q30; /* sine and cosine of the angle off the axis, 0 .. 2^30 */
+    /* Sine and cosine of the angle off the axis, 0 .. 2^30. */
+    int32_t sine_q30, cosine_q30;
     int32_t cos_q30, sin_q30; /* cosine and sine of the azimuth: 0 = right, 90
                                  degrees = up */
-    struct glint_real
-        power; /* value that the light's in-focus image would have if it were
-                  spread over one pixel; 1 = display white */
+    /* Value that the light's in-focus image would have if it were spread over
+     * one pixel; 1 = display white. */
+    struct glint_real power;
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
 };
 
@@ -48,9 +48,9 @@ struct glint_light {
 struct glint_wave {
     int32_t wave_q24;   /* 1 / wavelength^2, um^-2 */
     int32_t rgb_q14[3]; /* colour, largest channel 1 */
-    struct glint_real
-        weight; /* size of the colour, over the flux that light is measured by:
-                   that of the direct image at angle 0, mm^2 */
+    /* Size of the colour, over the flux that light is measured by: that of the
+     * direct image at angle 0, mm^2. */
+    struct glint_real weight;
 };
 
 #ifdef __cplusplus

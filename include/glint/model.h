@@ -89,8 +89,8 @@ struct glint_model_ghost {
  * so many angles, rising, and between two neighbours they are interpolated
  * linearly in the sine; the variables are those of the basis alone. */
 struct glint_model_system {
-    int32_t sine_lo_q30,
-        sine_hi_q30; /* range of the sine of the light's angle, 0 .. 2^30 */
+    /* Range of the sine of the light's angle, 0 .. 2^30. */
+    int32_t sine_lo_q30, sine_hi_q30;
     int32_t wave_lo_q24, wave_hi_q24; /* the same twice: one wavelength */
     uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots] */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.

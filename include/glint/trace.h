@@ -61,10 +61,10 @@ enum glint_ray_status {
 };
 
 struct glint_ray {
-    double stop_x_mm,
-        stop_y_mm; /* point at which the ray crosses the stop's plane */
-    double sensor_x_mm,
-        sensor_y_mm;   /* point at which the ray hits the sensor */
+    /* Point at which the ray crosses the stop's plane. */
+    double stop_x_mm, stop_y_mm;
+    /* Point at which the ray hits the sensor. */
+    double sensor_x_mm, sensor_y_mm;
     double energy;     /* transmittances times reflectances, 0 .. 1 */
     double rel_radius; /* largest |xy| / semi-diameter over all surfaces */
 };

@@ -19,29 +19,30 @@
 
 struct glint_blob_header {
     uint32_t magic, version;
-    uint32_t bytes;   /* of the whole file */
-    uint32_t crc32;   /* of all after this word: polynomial 0xedb88320,
+    uint32_t bytes;   /* bytes of the whole file */
+    uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
                          reflected, begun and ended with all ones */
-    uint32_t variant; /* of the kind, which says what it means */
-    uint32_t key[2];  /* of the source and the options, low word first */
-    char name[64];    /* of what was baked, terminated */
+    uint32_t variant; /* variant of the kind, which says what it means */
+    uint32_t key[2];  /* key of the source and the options, low word first */
+    char name[64];    /* name of the thing baked, terminated */
 };
 
 struct glint_blob_kind {
     uint32_t magic, version;
-    size_t header_bytes; /* with the fields of the kind */
+    size_t header_bytes; /* bytes of the header with the fields of its kind */
 };
 
 enum glint_blob_fault {
     GLINT_BLOB_OK,
-    GLINT_BLOB_UNALIGNED,    /* to 4 bytes */
-    GLINT_BLOB_FOREIGN,      /* another magic number, or none */
-    GLINT_BLOB_NEWER,        /* a later version */
-    GLINT_BLOB_NO_VERSION,   /* version 0, which never was */
-    GLINT_BLOB_OLDER,        /* an earlier version */
-    GLINT_BLOB_TRUNCATED,    /* bytes are missing */
-    GLINT_BLOB_LONGER,       /* there are more bytes than it says */
-    GLINT_BLOB_DAMAGED,      /* the checksum is wrong */
+    GLINT_BLOB_UNALIGNED,  /* the block does not begin at a multiple of 4 bytes
+                            */
+    GLINT_BLOB_FOREIGN,    /* another magic number, or none */
+    GLINT_BLOB_NEWER,      /* a later version */
+    GLINT_BLOB_NO_VERSION, /* version 0, which never was */
+    GLINT_BLOB_OLDER,      /* an earlier version */
+    GLINT_BLOB_TRUNCATED,  /* bytes are missing */
+    GLINT_BLOB_LONGER,     /* there are more bytes than it says */
+    GLINT_BLOB_DAMAGED,    /* the checksum is wrong */
     GLINT_BLOB_NAME_CONTROL, /* the name has a control character */
     GLINT_BLOB_NAME_FOREIGN, /* the name has a byte beyond ASCII */
     GLINT_BLOB_NAME_ENDLESS, /* the name is not terminated */

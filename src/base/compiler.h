@@ -21,7 +21,7 @@ STATIC_ASSERT((-3 >> 1) == -2);
  * anew rather than kept where there is no room. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
-/* Where a variable or field begins: a multiple of so many bytes. */
+/* A variable or field begins at a multiple of so many bytes. */
 #define ALIGNED(bytes) __attribute__((aligned(bytes)))
 
 /* Bits needed to write X: 0 for 0, 64 for UINT64_MAX. */
@@ -47,10 +47,11 @@ static inline uint32_t bits_set(uint32_t x)
     return n;
 }
 
-/* For functions that are made twice, once for wider vectors than every CPU of
- * the architecture has, and chosen when the program is loaded; the bits are the
- * same. WHOLLY_INLINE is for what they consist of. Sanitizers cannot have it,
- * and clang would name the choosers of static functions for all the program. */
+/* Functions so marked are made twice, once for wider vectors than every CPU of
+ * the architecture has; one is chosen when the program is loaded; the bits are
+ * the same. WHOLLY_INLINE is for the functions that they consist of. Sanitizers
+ * cannot have it, and clang would name the choosers of static functions for all
+ * the program. */
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
     !defined(GLINT_SANITIZED)
 #define WIDE_VECTORS __attribute__((target_clones("avx2", "default")))

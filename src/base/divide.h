@@ -46,7 +46,7 @@ static inline uint32_t q_upper(uint64_t x, int up)
 #endif
 }
 
-/* By how many bits X, not 0, is shorter than 32. */
+/* Bits by which X, not 0, is shorter than 32. */
 static inline int q_up(uint64_t x)
 {
     return 32 - bit_length(x | 1);

@@ -51,7 +51,7 @@ static inline struct glint_real real_plus(struct glint_real a,
                    big.exponent);
 }
 
-/* Whether A < B, both 0 or more. */
+/* Returns whether A < B, both 0 or more. */
 static inline int real_less(struct glint_real a, struct glint_real b)
 {
     if (a.mantissa == 0 || b.mantissa == 0)

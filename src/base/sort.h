@@ -10,8 +10,8 @@
 
 #include <stdint.h>
 
-/* Whether thing A comes before B. A total order makes the result the same
- * however the things came. */
+/* Returns whether thing A comes before B. A total order makes the result the
+ * same however the things came. */
 typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
@@ -19,7 +19,9 @@ void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 /* Things at places 0, 1 and so on. In a heap none comes after the one at half
  * its place, so that the last of all is at place 0. */
 struct glint_heap {
-    int (*before)(const void *things, int a, int b); /* those at A and B */
+    int (*before)(
+        const void *things, int a,
+        int b); /* returns whether the thing at A comes before the one at B */
     void (*swap)(void *things, int a, int b);
     void *things;
 };

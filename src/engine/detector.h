@@ -18,8 +18,8 @@ struct glint_lamp_detector {
                            0: as the profile of each lamp has it */
     int max;            /* lamps a picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
-    /* Of the last frame, as found, the strongest first; untracked ones are
-     * numbered from 1. */
+    /* The lamps of the last frame, as found, the strongest first; untracked
+     * ones are numbered from 1. */
     struct glint_lamp_track *track;
     int n_tracks;
 
@@ -27,9 +27,9 @@ struct glint_lamp_detector {
     struct glint_lamp_finder *lights;
     struct glint_lamp_tracker *tracks;
     struct glint_profile *profile;
-    double scale;            /* of the power of tracks */
+    double scale;            /* factor of the powers of tracks */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
-    int n_spots;             /* of the last frame, lamps and doubtful ones */
+    int n_spots; /* spots of the last frame, lamps and doubtful ones */
     int max_tracks;
     void *mem;
 };

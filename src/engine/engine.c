@@ -22,7 +22,7 @@ struct glint_engine {
     int n_found;
     int32_t elapsed_us; /* between the pictures searched last */
     struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
-    double level[GLINT_LAMP_DETECTOR_MAX]; /* of what was found */
+    double level[GLINT_LAMP_DETECTOR_MAX]; /* level of each lamp found */
 };
 
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
@@ -212,7 +212,7 @@ int glint_engine_find(struct glint_engine *engine,
     return e->n_found;
 }
 
-/* Whether LAMPS are those found last; their powers may have changed. */
+/* Returns whether LAMPS are those found last; their powers may have changed. */
 static bool are_found(const struct glint_engine *e,
                       const struct glint_lamp *lamps, int n)
 {

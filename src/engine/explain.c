@@ -9,10 +9,10 @@
  * of RGB and a light each of the Heliar, the Angenieux and nikon-zoom-mid,
  * whose totals these meet within an eighth. They say what is dear, and no more.
  */
-#define PER_RAY    730.0  /* that the plan looks at */
-#define PER_VERTEX 320.0  /* its polynomials, its place in stop and barrels */
-#define PER_EDGE   2020.0 /* made of cells, put into tiles, added there */
-#define PER_ROW    18.0   /* that an edge crosses */
+#define PER_RAY    730.0  /* a ray that the plan looks at */
+#define PER_VERTEX 320.0  /* one, with polynomials, stop and barrels */
+#define PER_EDGE   2020.0 /* one, made of cells, put into tiles, added there */
+#define PER_ROW    18.0   /* one that an edge crosses */
 #define PER_PIXEL  80.0
 
 /* All but pixels, which are nobody's own. */
@@ -64,7 +64,7 @@ static void add(struct glint_explain_part *p, const struct glint_account *a)
     p->refs += a->refs;
 }
 
-/* Which part wave WAVE is of. */
+/* Returns the part that wave WAVE belongs to. */
 static int part_of(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->rays.sets;
@@ -121,7 +121,7 @@ void glint_explain_draw(struct glint_explain *explain, int ghost)
     draw(explain, ghost, -1, -1);
 }
 
-/* What PART gives to the picture, just drawn. */
+/* Measures the light that PART, just drawn, gives to the picture. */
 static void measure(struct glint_explain *e, struct glint_explain_part *part)
 {
     const struct glint_view *view = &e->frame->view;

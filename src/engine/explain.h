@@ -20,24 +20,27 @@
 struct glint_explain_part {
     int of[GLINT_OUTCOMES]; /* bundles, by what became of them */
     int cells;              /* a side of its largest grid */
-    int terms, barrels;     /* of the bundle with most of them */
-    long long probed;       /* rays that the plan looked at */
+    /* Most terms and barrels that a bundle of the part has. */
+    int terms, barrels;
+    long long probed; /* rays that the plan looked at */
     long long vertices, edges, rows, refs, all_terms; /* terms of vertices */
     int tiles, lit;     /* tiles drawn, pixels that get light */
-    double flux, share; /* that reaches the picture; of the frame's */
+    double flux, share; /* light that reaches the picture, and its share of the
+                           frame's */
     double brightest;   /* pixel: mean of R, G, B */
     double work, cost;  /* instructions, about; of the frame's */
 };
 
 enum { GLINT_EXPLAIN_BARRELS = 6 };
 
-/* Where a frame's work goes. */
+/* The stages that a frame's work is counted by. */
 enum glint_explain_stage {
-    GLINT_EXPLAIN_LOOKING, /* at what might be seen */
+    GLINT_EXPLAIN_LOOKING, /* the plan follows rays to see which ghosts might be
+                              seen */
     GLINT_EXPLAIN_VERTICES,
     GLINT_EXPLAIN_EDGES,
     GLINT_EXPLAIN_ROWS,
-    GLINT_EXPLAIN_PIXELS, /* that are lit, however many ghosts share them */
+    GLINT_EXPLAIN_PIXELS, /* pixels are lit, however many ghosts share them */
     GLINT_EXPLAIN_STAGES
 };
 
@@ -46,13 +49,14 @@ struct glint_explain {
     int n_ghosts; /* pairs of surfaces */
     int n_lights;
     int n_waves;   /* wavelengths, or where ghosts choose sets of them, these */
-    int *ghost_of; /* of each ghost and part of the lens: which pair it is */
+    int *ghost_of; /* number of the pair that each ghost or part of the lens
+                      belongs to */
     struct glint_explain_part all, *ghost, *light, *wave;
     int barrels[GLINT_EXPLAIN_BARRELS]; /* bundles that so many cut */
     double stage[GLINT_EXPLAIN_STAGES]; /* instructions, about */
-    double unit;                        /* of light, over what was drawn */
-    int n_tiles;                        /* that there are */
-    int32_t *linear_q20;                /* [height][width][3]: one part */
+    double unit;         /* factor that the light drawn is multiplied by */
+    int n_tiles;         /* tiles of the picture */
+    int32_t *linear_q20; /* [height][width][3]: one part */
 };
 
 /* UNIT: what the light that was drawn is multiplied by. GLINT_E_MEMORY. */

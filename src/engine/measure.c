@@ -170,7 +170,8 @@ void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
     result->ssim = ssim(reference, test, width, height);
 }
 
-/* What rounding to codes hides. */
+/* Returns the PSNR, dB, of codes with fractions: the differences that rounding
+ * to codes hides. */
 static double fine_db(const struct glint_float_image *reference,
                       const struct glint_float_image *test,
                       const struct glint_measure *m)

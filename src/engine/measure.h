@@ -16,17 +16,19 @@
 #include "glint/image.h"
 
 struct glint_measure {
-    double psnr_db;  /* over the three channels; 999 where nothing that can be
-                        seen differs */
-    double ssim;     /* of luma, 8 x 8 blocks every 4 pixels */
+    double psnr_db; /* over the three channels; 999 where nothing that can be
+                       seen differs */
+    /* Structural similarity of luma, 8 x 8 blocks every 4 pixels. */
+    double ssim;
     double p99;      /* 99th percentile of |difference|, codes */
     double flux;     /* sum of the test's light over the reference's */
-    double factor;   /* what the test was multiplied by */
-    double exposure; /* what the reference was multiplied by */
-    bool same_codes; /* of measure_at: all codes are equal */
+    double factor;   /* factor that the test was multiplied by */
+    double exposure; /* factor that the reference was multiplied by */
+    bool same_codes; /* whether all codes are equal, as measure_at finds them */
 };
 
-/* What makes the 99.9th percentile of luminance 1; 1 for a black picture. */
+/* Returns the factor that makes the 99.9th percentile of luminance 1; 1 for a
+ * black picture. */
 double glint_measure_exposure(const struct glint_float_image *image);
 
 /* LINEAR times EXPOSURE as sRGB codes, [height][width][3]; NULL: no memory. */

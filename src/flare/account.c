@@ -7,7 +7,7 @@
 #include "flare/by_edges.h"
 #include "flare/wave_sets.h"
 
-/* Where a bundle is among all there could be. */
+/* Returns the number of a bundle among all that there could be. */
 static int64_t number_of(const struct glint_flare *f, int ghost, int light,
                          int wave)
 {
@@ -36,7 +36,7 @@ static int first_from(const struct glint_flare *f, int64_t number)
     return low;
 }
 
-/* Where it is among those planned; -1: nowhere. */
+/* Returns the index of a bundle among those planned; -1: it was not planned. */
 static int find(const struct glint_flare *f, int64_t number)
 {
     const int at = first_from(f, number);
@@ -138,7 +138,8 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
         return;
     }
     if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
-        account->probed = 0; /* by the account alone, not by the plan */
+        account->probed =
+            0; /* the account looked at these rays, not the plan */
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)
         account->outcome = GLINT_OUTCOME_NO_ROOM;

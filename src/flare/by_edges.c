@@ -109,7 +109,8 @@ static int edges_in_row(const struct glint_flare *f, int row)
 /* ------------------------------------------------------------------- bundles
  */
 
-/* What a bundle sends at energy 1, display white times pixels, held at 2^26. */
+/* Returns the flux of a bundle at energy 1, display white times pixels, held at
+ * 2^26. */
 static int64_t flux_of(const struct glint_bundle *b)
 {
     const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* 2^20 at most */
@@ -274,8 +275,8 @@ static void emit_leftovers(struct glint_flare *f)
         }
 }
 
-/* In order, into one list: what is left out does not hang on which worker came
- * first. */
+/* Takes bundles in order, into one list, so that it does not depend on which
+ * worker came first what is left out. */
 static void emit_in_order(struct glint_flare *f)
 {
     int full = 0;

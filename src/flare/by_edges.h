@@ -11,18 +11,21 @@
 struct glint_by_edges {
     struct glint_edge *edge;
     int32_t *order;   /* bundles, then rows of tiles, as they are done */
-    int32_t limit_q8; /* of a cell's light in a pixel */
+    int32_t limit_q8; /* most light of a cell in a pixel */
     int linear;       /* the picture that is drawn onto */
 };
 
-/* What one worker needs. */
+/* The state and memory of one worker. */
 struct glint_edges_worker {
     struct glint_ghost_rows *rows;
-    struct glint_edge_sums sums; /* of the row of tiles that it draws */
-    int32_t *at;                 /* its places in the bins, tile by tile */
-    int first_edge, max_edges, n_edges; /* its part of the edges */
-    const struct glint_flare *flare;    /* while it draws a row of tiles */
-    int at_tile;                        /* the next one */
+    /* Sums of the row of tiles that the worker draws. */
+    struct glint_edge_sums sums;
+    int32_t *at; /* places of the worker's entries in the bins, tile by tile */
+    /* Part of the edges that is the worker's. */
+    int first_edge, max_edges, n_edges;
+    /* Set while the worker draws a row of tiles. */
+    const struct glint_flare *flare;
+    int at_tile; /* the next one */
 };
 
 static inline struct glint_by_edges *

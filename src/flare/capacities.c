@@ -2,8 +2,8 @@
 #include "base/q.h"
 #include "glint/flare.h"
 
-/* By edges, of one light: what lenses take in linear light at 1280x720, 67000
- * entries at most, and room to spare. */
+/* Edges of one light. Lenses take 67000 entries at most in linear light at
+ * 1280x720; there is room to spare. */
 enum { EDGES = 1 << 16, EDGES_OF_BUNDLE = 1 << 10, MOST_EDGES = 1 << 24 };
 
 void glint_flare_defaults(struct glint_flare_config *cfg, int width, int height)

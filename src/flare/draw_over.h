@@ -15,9 +15,9 @@ struct glint_flare_under {
     struct glint_blend_rows *rows; /* one for each worker of the flare */
 };
 
-/* As glint_flare_draw(), but over UNDER. Passes see the flare's tiles: at half
- * resolution in pixels of twice the size, and by cells in two levels in rows
- * that end at each large tile. */
+/* Does as glint_flare_draw(), but draws over UNDER. Passes see the flare's
+ * tiles: at half resolution in pixels of twice the size, and by cells in two
+ * levels in rows that end at each large tile. */
 void glint_flare_draw_over(struct glint_flare *flare,
                            const struct glint_image *image,
                            const struct glint_flare_under *under);

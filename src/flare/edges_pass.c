@@ -4,11 +4,11 @@
  */
 #include "flare/by_edges.h"
 
-/* As many bundles lose too much light to the rounding of each to _q16: half a
- * step of each may be missing, 1/40 of a code near black. */
+/* From so many bundles on, too much light is lost to the rounding of each to
+ * _q16: half a step of each may be missing, 1/40 of a code near black. */
 enum { FINE_BUNDLES = 1024 };
 
-/* Whether light runs into the next tile's rows. */
+/* Returns whether light runs into the next tile's rows. */
 static int runs_on(const struct glint_edge_sums *s)
 {
     int64_t any = 0;

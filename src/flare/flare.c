@@ -218,9 +218,9 @@ static int stored(const struct glint_flare *f, const struct glint_bundle *b)
     return f->cfg.raster->fill ? n * n : 0;
 }
 
-/* Of many lights none may be seen by itself, but all together: a ghost is left
- * out in one wave for all lights. Sums of integers: their order is no matter.
- */
+/* Leaves out what no pixel shows of all lights together: none of many may be
+ * seen by itself, but all may. A ghost is left out in one wave for all lights.
+ * Sums are integers, so that their order does not matter. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;

@@ -28,11 +28,12 @@
 #include "glint/flare.h"
 
 enum {
-    CURVES = 3, /* to find what cannot be told apart */
-    PART = 4,   /* of what has to go goes in a round */
-    BINS = 64,  /* of costs */
+    CURVES =
+        3, /* curves along which pairs are sought that cannot be told apart */
+    PART = 4,  /* 1 / share of the lights to be merged that a round merges */
+    BINS = 64, /* bins of the histogram of costs */
     HELD = 14,
-    WORDS = 9 /* of a light */
+    WORDS = 9 /* 32-bit words that a light consists of */
 };
 
 #define ONE_Q30 (INT32_C(1) << 30)
@@ -98,7 +99,7 @@ static void set_direction(struct glint_light *b, const struct direction *d)
 struct order {
     struct glint_light *light;
     int by_power;    /* the brightest first; else along a curve */
-    uint32_t x0, y0; /* where it begins, 2^-30 below -1 */
+    uint32_t x0, y0; /* corner that the curve begins at, 2^-30 below -1 */
 };
 
 static void words_of(const struct glint_light *b, int32_t *word)
@@ -113,7 +114,7 @@ static void words_of(const struct glint_light *b, int32_t *word)
     word[8] = b->sin_q30;
 }
 
-/* Whether A comes before B by all that they hold. */
+/* Returns whether A comes before B by all that they hold. */
 static int is_brighter(const struct glint_light *a, const struct glint_light *b)
 {
     int32_t p[WORDS], q[WORDS];
@@ -215,11 +216,11 @@ static int cost_of(const struct glint_light *a, const struct glint_light *b)
         .exponent;
 }
 
-/* Which neighbours merge. */
+/* The rule by which neighbours merge. */
 struct rule {
     uint64_t near2_q60; /* all so near; or if 0 */
-    int cost;           /* what costs so much at most, */
-    int most;           /* while there are more than so many */
+    int cost;           /* otherwise, the largest cost of a merge */
+    int most;           /* number of lights at which merging ends */
 };
 
 static int may_merge(const struct rule *r, const struct glint_light *a,

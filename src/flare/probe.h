@@ -11,7 +11,8 @@
 
 #include "glint/transfer.h"
 
-/* Where light lands: least and largest x on the sensor, and largest y. */
+/* The range in which light lands: least and largest x on the sensor, and
+ * largest y. */
 struct glint_probe_extent {
     int64_t low, high, wide;
 };
@@ -21,7 +22,7 @@ enum { GLINT_PROBE_ACROSS = 16, GLINT_PROBE_DOWN = 8 };
 
 struct glint_probe_node {
     int32_t at[GLINT_OUT_KINDS];
-    int inside; /* of the stop and the barrels, and a little around */
+    int inside; /* whether the ray passes the stop and the barrels, or nearly */
 };
 
 /* How a quantity changes from ray to ray: sums of squares of differences, and
@@ -35,16 +36,18 @@ struct glint_probe {
     struct glint_probe_node row[3][GLINT_PROBE_ACROSS + 1]; /* the last three */
     struct glint_probe_change change[GLINT_OUT_KINDS];
     int across, down; /* cells */
-    int n_rays;       /* of all probes of the bundle */
+    int n_rays;       /* rays of all probes of the bundle */
     int n_bends, n_bent[2], n_inside, n_kinds;
-    uint8_t kind[GLINT_OUT_KINDS];   /* of outputs that there are, but energy */
-    int n_up, n_down;                /* cells by the way they are turned */
-    struct glint_probe_extent seen;  /* of what is inside */
-    struct glint_probe_extent reach; /* of cells that any of is, and so of what
-                                       lies between rays, too */
+    /* Kinds of outputs that there are, but energy. */
+    uint8_t kind[GLINT_OUT_KINDS];
+    int n_up, n_down;               /* cells by the way they are turned */
+    struct glint_probe_extent seen; /* range of the rays inside */
+    /* Range of the cells that have a ray inside, and so of what lies between
+     * rays, too. */
+    struct glint_probe_extent reach;
     int64_t energy;
-    uint64_t least_area;            /* of half a cell on the sensor */
-    int64_t limit[GLINT_OUT_KINDS]; /* what counts as inside */
+    uint64_t least_area; /* area of the smallest half of a cell on the sensor */
+    int64_t limit[GLINT_OUT_KINDS]; /* largest value that counts as inside */
 };
 
 enum {

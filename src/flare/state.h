@@ -14,7 +14,7 @@
 #include "tile/bins.h"
 #include "tile/pass.h"
 
-/* What one worker needs. */
+/* The memory of one worker. */
 struct glint_flare_worker {
     struct glint_tile_scratch tile;
     struct glint_plan_scratch *plan;
@@ -25,21 +25,22 @@ struct glint_bundle_slot {
     int first_vertex;
     int first; /* primitive or edge; -1: it found no place */
     int n, n_dropped, n_merged, n_held;
-    int worker; /* by edges: who made it */
+    int worker; /* worker that made it, by edges */
     int refs;   /* entries of the bins; by edges only if it found no place */
 };
 
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    int half, width, height; /* of the frame: see struct glint_flare_frame; what
-                                is drawn has this size */
-    const struct glint_half *quads;    /* if half */
-    int n_bundles, n_vertices;         /* taken in */
-    struct glint_plan plan;            /* of a lens, unless frame is NULL */
-    struct glint_bundle_plan *planned; /* of each bundle planned */
-    struct glint_real flux, brightest; /* of what was planned */
-    int n_drawn;                       /* of these, the bundles that bin kept */
+    int half, width, height; /* half resolution or not, and the size that is
+                                drawn with it: see struct glint_flare_frame */
+    const struct glint_half *quads; /* if half */
+    int n_bundles, n_vertices;      /* taken in */
+    struct glint_plan plan;         /* plan for a lens, unless frame is NULL */
+    struct glint_bundle_plan *planned; /* plan of each bundle planned */
+    struct glint_real flux, brightest; /* flux of all that was planned, and the
+                                          largest mean irradiance */
+    int n_drawn;                       /* bundles of these that bin kept */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
@@ -55,7 +56,8 @@ struct glint_raster {
     int masks;      /* takes a stop with a mask */
     int two_levels; /* tiles of tiles, if asked for */
     int halves;     /* can draw half as many pixels each way */
-    /* Its own parts of flare and worker, or NULL while A measures. */
+    /* Carves the raster's own parts of flare and worker; gives NULL while A
+     * measures. */
     void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
     void *(*carve_worker)(struct glint_arena *a,
                           const struct glint_flare_config *c);
@@ -73,7 +75,7 @@ struct glint_raster {
 /* Forgets what the last frame drew, and that anything was under it. */
 void glint_flare_forget(struct glint_flare *flare);
 
-/* What a frame is drawn onto. */
+/* Returns the tiles that a frame is drawn onto. */
 struct glint_tiles glint_flare_start(struct glint_flare *flare,
                                      const struct glint_image *image);
 

@@ -10,9 +10,9 @@ enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 struct job {
     int ghost, light;
     int set;      /* or UNSEEN */
-    int peak_q20; /* of all its waves, 2^20 at most: see struct
+    int peak_q20; /* peak of all its waves, 2^20 at most: see struct
                      glint_bundle_plan */
-    int first;    /* of its bundles */
+    int first;    /* first of its bundles */
 };
 
 typedef char
@@ -45,7 +45,8 @@ int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
 /* ----------------------------------------------------------------- the choice
  */
 
-/* Where rays of wave WAVE land, evenly over half of the box: pixels, q8. */
+/* Gives where rays of wave WAVE land, evenly over half of the box: pixels, q8.
+ */
 static void trace(const struct glint_plan *plan, const struct job *job,
                   int wave, struct glint_transfer *t,
                   int32_t at_q8[ROWS][2][GLINT_RAYS])
@@ -102,9 +103,8 @@ static int64_t span_of(const struct glint_flare_frame *r, int set)
     return span < 0 ? -span : span;
 }
 
-/* Whether no step of set SET shows of a ghost of LIGHT, whose first set is
- * APART.
- */
+/* Returns whether no step of set SET shows in a ghost of LIGHT, whose first set
+ * is APART. */
 static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
                   struct glint_real light)
 {
@@ -217,7 +217,7 @@ static void move(struct glint_flare *f, int from, int to, int n)
     }
 }
 
-/* Of N jobs those that are seen, without gaps; returns how many. */
+/* Keeps those of N jobs that are seen, without gaps; returns how many. */
 static int keep_seen(struct glint_flare *f, int n)
 {
     const int size = f->plan.frame->sets->size[0];

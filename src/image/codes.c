@@ -71,7 +71,7 @@ static void write_565(const struct glint_codes *c, uint8_t *px, int n, int row)
 /* -------------------------------------------------------------------- chroma
  */
 
-/* Where the chroma of a row of pairs lies: Cb and Cr by turns already? */
+/* Returns whether Cb and Cr alternate in a row of pairs already. */
 static int is_woven(const struct glint_layout *l)
 {
     return l->planes == 2 && l->sample[1].offset == 0;

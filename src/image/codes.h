@@ -16,8 +16,8 @@ struct glint_codes {
     /* [channel][row]: R, G, B, or Y, Cb, Cr, one for each pixel; of pictures of
      * luma alone Cb and Cr are 128 */
     uint8_t sample[3][2][GLINT_CODES_WIDTH];
-    /* Where pairs of pixels share their chroma, Cb and Cr lie here by turns; of
-     * 4:2:0 the first row serves both */
+    /* Chroma of pixels that share it in pairs, Cb and Cr by turns; in 4:2:0 the
+     * first row serves both. */
     uint8_t chroma[2][GLINT_CODES_WIDTH];
 };
 

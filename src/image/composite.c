@@ -4,7 +4,7 @@
 #include "base/arena.h"
 #include "image/resolve.h"
 
-enum { WIDTH = GLINT_CODES_WIDTH }; /* of a stretch */
+enum { WIDTH = GLINT_CODES_WIDTH }; /* pixels of a stretch */
 
 struct glint_composite {
     struct glint_resolve *resolve;

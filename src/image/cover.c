@@ -11,7 +11,8 @@ struct stretch {
     int n_x, n_y, black;
     const struct glint_cover_rows *cover;
     struct glint_codes *codes;
-    int32_t sum_q7[WIDTH]; /* of the pixels of each pair: Cb, Cr by turns */
+    /* Sums over the pixels of each pair: Cb, Cr by turns. */
+    int32_t sum_q7[WIDTH];
 };
 
 static void cover_rgb(const struct stretch *s, const struct glint_mix *mix)

@@ -19,7 +19,7 @@
 
 enum { GLINT_COVER_ALL = 256 };
 
-/* Of two rows. */
+/* The cover of two rows. */
 struct glint_cover_rows {
     ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH]; /* 0 .. 256 */
 };

@@ -23,7 +23,8 @@
 #define LINEAR_WHITE_Q20 (1 << 20)
 
 struct glint_curve {
-    int32_t decode_q20[257]; /* of whole codes; [256] only ends the last */
+    int32_t decode_q20[257]; /* light of whole codes; [256] only ends the last
+                                interval */
 };
 
 /* Fills CURVE for TRANSFER: 256 roots by bit search. */

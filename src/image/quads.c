@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/quads.h"
 
-enum { STEP = 2 * GLINT_LANES }; /* of the kernels, pixels */
+enum { STEP = 2 * GLINT_LANES }; /* pixels that kernels take at a time */
 
 /* A stretch of two rows of a picture, or of its last one alone. */
 struct stretch {

@@ -35,7 +35,8 @@ typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     struct glint_quads_rows *rows);
 glint_resolve_quads_fn glint_resolve_quads;
 
-/* So that drawing links it only where it is named. */
+/* Half resolution as an object, so that drawing links it only where it is
+ * named. */
 struct glint_half {
     glint_resolve_quads_fn *resolve;
 };

@@ -46,7 +46,9 @@ struct glint_light_rows {
 /* Scratch of a worker. */
 struct glint_resolve_rows {
     ALIGNED(32) struct glint_codes codes;
-    ALIGNED(32) int16_t change[3][GLINT_CODES_WIDTH]; /* as kernels have it */
+    ALIGNED(32)
+    int16_t change[3][GLINT_CODES_WIDTH]; /* changes of codes as kernels have
+                                             them */
     ALIGNED(32) uint16_t grey_q16[GLINT_CODES_WIDTH];
 };
 

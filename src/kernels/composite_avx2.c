@@ -119,14 +119,14 @@ static inline void v_store_mean(int16_t *p, V x)
     b_store(p, _mm256_castsi256_si128(x));
 }
 
-/* Of pairs: even pixels and odd ones, in both halves. */
+/* Returns the means of pairs: even pixels and odd ones, in both halves. */
 static inline V v_pair_mean(const V x[1])
 {
     return v_mean(x[0], turned(x[0]));
 }
 
-/* Of two blocks of quads: the means of their pairs, their chroma, and the other
- * way round, in both halves. */
+/* Joins two blocks of quads: the means of their pairs, their chroma, and the
+ * other way round, in both halves. */
 static inline V v_pairs_joined(V x[2][1])
 {
     return v_mean(_mm256_permute2x128_si256(x[0][0], x[1][0], 0x20),
@@ -154,7 +154,7 @@ static inline uint32_t w_first(V x)
     return (uint32_t)_mm256_cvtsi256_si32(x);
 }
 
-/* Of each lane and those before it. */
+/* Returns for each lane the sum of it and those before it. */
 static inline V w_sums(V x)
 {
     V low;

@@ -45,7 +45,7 @@ static int16_t encode(const struct glint_tone16 *t, uint16_t light)
     return (int16_t)(t->level[zeros] + times(z, x));
 }
 
-/* What CODE changes by. */
+/* Returns the change of CODE. */
 static int16_t change_of(const struct glint_tone16 *t, int16_t code,
                          uint16_t light_q16)
 {
@@ -55,7 +55,8 @@ static int16_t change_of(const struct glint_tone16 *t, int16_t code,
     return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Of the changes of R', G', B', Y' of a pixel, those that chroma goes by. */
+/* Indices of the changes of R', G', B', Y' of a pixel that its chroma changes
+ * by. */
 static const int kept[3] = {0, 2, 3};
 
 /* R', G', B' of a pixel whose Y', Cb, Cr are _q7. */
@@ -75,7 +76,7 @@ static WHOLLY_INLINE void full_range(int luma_q7, int cb_q7, int cr_q7,
         rgb[c] = held(2 * sum_sat(base, tint[c]), 0, GLINT_WHITE_Q15);
 }
 
-/* What R', G', B' and Y' (_q7) of one pixel change by. */
+/* Gives the changes of R', G', B' and Y' (_q7) of one pixel. */
 static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
                          const uint16_t light[3], int16_t change[4],
                          const struct glint_mix *mix)
@@ -336,7 +337,7 @@ void glint_run_sum_c(uint32_t *change_q24, uint32_t *carry_q24,
     *carry_q24 = sum_q24;
 }
 
-/* What is left of CODE, a full-range one, under COVER. */
+/* Returns what is left of CODE, a full-range one, under COVER. */
 static int16_t left_of(const struct glint_tone16 *t, int16_t code, int cover_q8)
 {
     const uint32_t light = decode(t, code) * (uint32_t)(256 - cover_q8);

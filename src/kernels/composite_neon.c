@@ -76,7 +76,7 @@ struct v_mix {
     vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
 #endif
 
-/* Where there are registers for tables they are loaded once, else whenever one
+/* Tables are loaded once where there are registers for them, else whenever one
  * is looked into. */
 #if defined(__aarch64__)
 #define TABLES(t, tone)                                     \
@@ -150,7 +150,8 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
         vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
                     vtbl4_u8(quarters, vget_high_u8(at))));
 #else
-    /* as GCC loads no four registers for it but by way of the stack */
+    /* written so, as GCC loads four registers otherwise only by way of the
+     * stack */
     uint8x8x4_t quarters;
     uint8x16_t entry;
 
@@ -250,7 +251,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 
 #define v_round_chroma v_round_pairs
 
-/* Of pairs: even pixels and odd ones. */
+/* Returns the means of pairs: even pixels and odd ones. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -298,7 +299,7 @@ void glint_run_sum_neon(uint32_t *change_q24, uint32_t *carry_q24,
         sum = vaddq_u32(all, vextq_u32(zero, all, 3));
         sum = vaddq_u32(sum, vextq_u32(zero, sum, 2));
         sum = vaddq_u32(sum, carry);
-        carry = vextq_u32(carry, sum, 3); /* what is before each four */
+        carry = vextq_u32(carry, sum, 3); /* the sum before each four */
         light.val[0] = rounded(vaddq_u32(x.val[0], carry));
         light.val[1] = rounded(vaddq_u32(x01, carry));
         light.val[2] = rounded(vaddq_u32(x012, carry));

@@ -77,7 +77,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 #define v_load_mean    v_load
 #define v_store_mean   v_store
 
-/* Of pairs: even pixels and odd ones. */
+/* Returns the means of pairs: even pixels and odd ones. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -93,7 +93,7 @@ static inline uint32_t w_first(V x)
     return (uint32_t)_mm_cvtsi128_si32(x);
 }
 
-/* Of each lane and those before it. */
+/* Returns for each lane the sum of it and those before it. */
 static inline V w_sums(V x)
 {
     x = OP(add_epi32)(x, _mm_slli_si128(x, 4));

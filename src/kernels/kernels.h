@@ -31,12 +31,12 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* What a row of pairs does with the mean changes of R', B' and Y' of its
+/* The way in which a row of pairs uses the mean changes of R', B' and Y' of its
  * pairs. */
 enum glint_pair_step {
-    GLINT_PAIRS_ALONE, /* its chroma is its own */
-    GLINT_PAIRS_FIRST, /* of two rows: keeps them */
-    GLINT_PAIRS_SECOND /* of two: chroma goes by the mean of both */
+    GLINT_PAIRS_ALONE, /* the row's chroma is its own */
+    GLINT_PAIRS_FIRST, /* the first of two rows keeps them */
+    GLINT_PAIRS_SECOND /* the second row's chroma goes by the mean of both */
 };
 
 /* Adds light to N pixels of one row of Y'CbCr whose chroma is shared by pairs.
@@ -104,13 +104,13 @@ typedef void glint_cover_ycc_fn(int16_t *const ycc_q7[3],
 glint_cover_code_fn glint_cover_code_c;
 glint_cover_ycc_fn glint_cover_ycc_c;
 
-/* From changes to light, along a row: light[i] is *CARRY plus changes 0 .. i,
+/* Turns changes into light along a row: light[i] is *CARRY plus changes 0 .. i,
  * _q24, rounded to _q16 and held to 0 .. 65535. Changes are cleared, sums may
  * wrap and wrap back; *CARRY goes on. */
 typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
                               uint16_t *light_q16, int n);
 
-/* What pictures take. */
+/* The kernels that pictures take. */
 struct glint_kernels {
     glint_add_luma_fn *add_luma;
     glint_add_pairs_fn *add_pairs;
@@ -119,7 +119,7 @@ struct glint_kernels {
     glint_run_sum_fn *run_sum;
 };
 
-/* What pictures take of which four pixels share their light. */
+/* The kernels that pictures take in which four pixels share their light. */
 struct glint_quad_kernels {
     glint_add_quads_fn *add;
     glint_add_quads_packed_fn *add_packed;

@@ -18,7 +18,7 @@ unsigned glint_sets_built(void)
 
 #include <cpuid.h>
 
-/* Whether the system saves the registers of AVX. */
+/* Returns whether the system saves the registers of AVX. */
 static int saves_avx(void)
 {
     unsigned low, high;

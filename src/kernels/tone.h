@@ -47,9 +47,9 @@ enum {
     GLINT_TONE_TOE,  /* light per code below the toe's end */
     GLINT_TONE_RISE, /* r2 */
     GLINT_TONE_TURN, /* turn1 */
-    GLINT_TONE_Q7,   /* from steps of a code, 1 / 128.5, to _q7 */
-    GLINT_TONE_ENTRY /* from entries of a table to places of their bytes; here,
-                        lest compilers make sums of the product */
+    GLINT_TONE_Q7,   /* factor from steps of a code, 1 / 128.5, to _q7 */
+    GLINT_TONE_ENTRY /* factor from entries of a table to places of their bytes;
+                        it is here lest compilers make sums of the product */
 };
 
 struct glint_tone16 {
@@ -68,17 +68,17 @@ enum { /* factors of from_ycc */
        GLINT_MIX_GREEN_CB,
        GLINT_MIX_GREEN_CR,
        GLINT_MIX_BLUE_CB, /* half of it */
-       /* of to_ycc */
-       GLINT_MIX_LUMA = 0, /* of R', G', B' */
+       /* Entries of to_ycc. */
+       GLINT_MIX_LUMA = 0, /* share of R', G', B' in Y' */
        GLINT_MIX_CB_BLUE = 3,
        GLINT_MIX_CB_LUMA,
        GLINT_MIX_CR_RED,
        GLINT_MIX_CR_LUMA
 };
 
-/* Where Newton's method begins for 1 / x, x = 0.5 .. 1: 48 / 17 - 32 / 17 x,
- * off by a seventeenth at most. The first is _q14; the second half of it, _q15,
- * as x is _q15 and the product _q14. */
+/* Newton's method for 1 / x, x = 0.5 .. 1, begins at 48 / 17 - 32 / 17 x, off
+ * by a seventeenth at most. The first is _q14; the second half of it, _q15, as
+ * x is _q15 and the product _q14. */
 enum { GLINT_SHARE_FROM = 46261, GLINT_SHARE_SLOPE = 30840 };
 
 struct glint_mix {

@@ -8,19 +8,19 @@
 #include "published/ghost_grid.h"
 #include "published/raster.h"
 
-/* What a flare that is drawn by cells holds besides. */
+/* The memory of a flare drawn by cells, besides that of any flare. */
 struct by_cells {
     uint8_t *level; /* one per vertex, what merge found */
     struct glint_primitive *primitive;
 };
 
-/* What one worker needs. */
+/* The memory of one worker. */
 struct worker {
     int64_t *acc_q20; /* [3][side * side], one small tile's sums */
     struct glint_clip *clip;
     int32_t *start; /* small tiles of one large tile */
     int32_t *ref;
-    const struct draw *draw; /* while it draws a row of tiles */
+    const struct draw *draw; /* set while the worker draws a row of tiles */
     const struct glint_bins *bins;
     int at_tile; /* the next one of them */
     struct glint_box tile;
@@ -194,7 +194,7 @@ static void keep_refs(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Of the bundles that were kept. */
+/* Makes the lists of the bundles that were kept. */
 static void fill_bins(struct glint_flare *f)
 {
     int n = 0;

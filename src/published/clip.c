@@ -46,7 +46,7 @@ static int32_t scaled(int64_t value, struct scale scale)
     return (int32_t)(x * (INT64_C(1) << scale.exponent));
 }
 
-/* From values at the corners to distances in pixels: divides by the slope,
+/* Turns values at the corners into distances in pixels: divides by the slope,
  * which follows from the two diagonals (or sides). */
 static void to_pixels(const struct glint_corners *c, const int64_t *value_q16,
                       int32_t *at_q8)

@@ -24,13 +24,13 @@ struct glint_clip {
     int32_t field_q16; /* pixels per stop radius, for the lookup */
 };
 
-/* Which cuts may matter: a set of GLINT_CUT_, or -1 where nothing of the
- * primitive is seen. */
+/* Returns the cuts that may matter: a set of GLINT_CUT_, or -1 where nothing of
+ * the primitive is seen. */
 int glint_clip_classify(const struct glint_corners *corners,
                         const struct glint_stop *stop);
 
-/* Whether the middle of CORNERS lies in the opening, for what is too small to
- * be cut. */
+/* Returns whether the middle of CORNERS lies in the opening, for cells that are
+ * too small to be cut. */
 int glint_clip_middle(const struct glint_corners *corners,
                       const struct glint_stop *stop);
 

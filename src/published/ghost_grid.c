@@ -309,7 +309,7 @@ static int emit_block(struct glint_ghost_grid *g, int bundle, int i, int j,
     return emit_one(g, bundle, q, 4, 2 * size_log2, out);
 }
 
-/* Whether all rays land within four pixels of the first. */
+/* Returns whether all rays land within four pixels of the first. */
 static int is_focused(const struct glint_ghost_grid *g)
 {
     const int n = g->bundle->n_cells;
@@ -335,8 +335,8 @@ static int is_near(const struct glint_vertex *a, const struct glint_vertex *b)
     return x < 1024 && x > -1024 && y < 1024 && y > -1024;
 }
 
-/* Whether all neighbours land within four pixels of each other: then folds have
- * rims that pixel centres cannot tell, hundreds of times white. */
+/* Returns whether all neighbours land within four pixels of each other: then
+ * folds have rims that pixel centres cannot tell, hundreds of times white. */
 static int has_small_cells(const struct glint_ghost_grid *g)
 {
     const int n = g->bundle->n_cells;

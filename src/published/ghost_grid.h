@@ -23,7 +23,7 @@
 /* A bundle in the making; counts are what the grid gave. */
 struct glint_ghost_grid {
     const struct glint_vertex *vertex; /* all bundles' */
-    int first;                         /* of this bundle */
+    int first;                         /* first vertex of this bundle */
     const struct glint_bundle *bundle;
     const struct glint_stop *stop;
     int width, height;       /* pixels of the picture */
@@ -35,7 +35,8 @@ struct glint_ghost_grid {
     int sampled;             /* all cells are that small */
     int focused;             /* the whole ghost is a few pixels wide */
     int n_primitives, n_dropped, n_merged;
-    int n_held; /* of those written: more light than a pixel gets of one */
+    int n_held; /* primitives written that had more light than a pixel gets of
+                   one */
 
     /* Unless NULL, it is handed the box of each primitive, written or not. */
     void (*see)(void *ctx, struct glint_box box);

@@ -169,7 +169,7 @@ static void add_point(const struct glint_cell_raster *raster,
               q_shift(p->irradiance_q20 * energy_q16, 16));
 }
 
-/* What the primitive adds where E stands. */
+/* Returns the light that the primitive adds at the pixel where E stands. */
 static int64_t light_at(const struct glint_cell_raster *raster,
                         const struct glint_primitive *p,
                         const struct glint_corners *c,

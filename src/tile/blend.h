@@ -10,7 +10,7 @@
 
 #include "tile/pass.h"
 
-/* What passes come together by, where glint_tiles names it. */
+/* Blends several passes, where glint_tiles names it. */
 extern const struct glint_blend glint_blend;
 
 #endif

@@ -10,7 +10,7 @@ struct glint_box {
     int x0, y0, x1, y1;
 };
 
-/* What A and B have in common. */
+/* Returns the pixels that A and B have in common. */
 static inline struct glint_box glint_box_cut(struct glint_box a,
                                              struct glint_box b)
 {

@@ -109,7 +109,7 @@ static void draw_codes(const struct visit *v)
     }
 }
 
-enum { QUADS = GLINT_CODES_WIDTH / 2 }; /* of a stretch */
+enum { QUADS = GLINT_CODES_WIDTH / 2 }; /* blocks of four pixels in a stretch */
 
 /* A row of pixels as two rows of twice as many. */
 static void resolve_quads(const struct visit *v,

@@ -28,8 +28,9 @@
 
 enum { GLINT_MAX_PASSES = 4 };
 
-/* Where a pass writes rows Y .. Y + N - 1 of its tile, from the tile's left
- * edge on: to light_q20 of a linear picture, where N is 1, else to light. */
+/* The place that a pass writes rows Y .. Y + N - 1 of its tile to, from the
+ * tile's left edge on: light_q20 of a linear picture, where N is 1, else light.
+ */
 struct glint_pass_rows {
     int y, n;
     struct glint_light_rows *light; /* _q16, padded to GLINT_LANES */
@@ -37,11 +38,11 @@ struct glint_pass_rows {
     struct glint_cover_rows *cover; /* NULL: passes are to give light alone */
 };
 
-/* What a pass has given. */
+/* The outcome of a pass for two rows. */
 enum glint_given {
     GLINT_GIVES_NOTHING,
-    GLINT_GIVES_LIGHT, /* in all three channels */
-    GLINT_GIVES_COVER  /* and light, be it 0 */
+    GLINT_GIVES_LIGHT, /* light in all three channels */
+    GLINT_GIVES_COVER  /* cover and light, even if that is 0 */
 };
 
 struct glint_pass {
@@ -57,24 +58,24 @@ struct glint_pass {
     enum glint_given (*rows)(void *state, const struct glint_pass_rows *rows);
 };
 
-/* What is drawn onto, in tiles. */
+/* The picture that is drawn onto, in tiles. */
 struct glint_tiles {
-    struct glint_box region; /* in pixels that passes see */
+    struct glint_box region; /* the whole picture, in pixels that passes see */
     int tile_log2;           /* 3 .. 6 */
     int half;          /* 1: each of these pixels is 2 x 2 of the picture */
-    int width, height; /* of the picture */
+    int width, height; /* size of the picture */
     const struct glint_image *image; /* NULL: light is dropped */
     const struct glint_resolve *resolve;
     const struct glint_half *quads;  /* if half, and the picture not linear */
     const struct glint_blend *blend; /* NULL: one pass, which gives no cover */
 };
 
-/* What a worker needs for it. */
+/* The memory that a worker needs for tiles. */
 struct glint_tile_scratch {
     struct glint_light_rows *light;
     int32_t *light_q20; /* [3][2 sides of a tile]; of linear pictures */
     struct glint_quads_rows *codes;
-    int n_tiles; /* in which something was drawn, so far */
+    int n_tiles; /* tiles in which something was drawn so far */
     int n_held;  /* samples of a linear picture at the end of their range */
     struct glint_blend_rows *blend; /* if tiles have it */
 };
@@ -95,7 +96,7 @@ struct glint_blend {
                             const struct glint_pass_rows *rows,
                             enum glint_given given, int n_x,
                             struct glint_blend_rows *scratch);
-    /* As glint_resolve_stretch(), under COVER. */
+    /* Does as glint_resolve_stretch(), under COVER. */
     void (*stretch)(const struct glint_resolve *resolve,
                     const struct glint_image *image, int x, int y, int n_x,
                     int n_y, const struct glint_cover_rows *cover,

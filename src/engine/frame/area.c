@@ -38,7 +38,7 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
         const double points = points_of(&lamps[i], &rule);
 
         more += points - 1;
-        n_wide += points > 1; /* which are rounded up */
+        n_wide += points > 1; /* numbers of points are rounded up */
     }
     if (n_wide && more > room - n - n_wide)
         rule.thinning = fmax(room - n - n_wide, 0) / more;

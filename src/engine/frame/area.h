@@ -23,10 +23,11 @@ enum {
 /* Points of one lamp. */
 struct glint_area {
     struct glint_lamp lamp;
-    double points;             /* >= 1 */
-    double centre[2];          /* of their pattern, whose place is the lamp's */
-    double spread;             /* of it, so that it has the lamp's RMS extent */
-    double u, v;               /* the lamp, tangents */
+    double points;    /* >= 1 */
+    double centre[2]; /* middle of the points' pattern, which is put where the
+                         lamp is */
+    double spread;    /* factor that gives the pattern the lamp's RMS extent */
+    double u, v;      /* the lamp, tangents */
     double major[2], minor[2]; /* semi-axes, tangents */
 };
 
@@ -34,7 +35,7 @@ struct glint_area {
  * so these get fewer, by the root of their power. */
 struct glint_area_rule {
     double pixels_per_tangent;
-    double most;      /* of the brightest lamp */
+    double most;      /* power of the brightest lamp */
     double brightest; /* power of it */
     double thinning;  /* 0: each is one point; to 1 */
 };

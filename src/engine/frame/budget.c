@@ -4,13 +4,13 @@
 #include <math.h>
 
 #define FIRST      1    /* octaves that a first frame takes more, for memory */
-#define ROOM       0.98 /* of the budget that is planned for */
+#define ROOM       0.98 /* share of the budget that is planned for */
 #define SPARE      0.9  /* less than so much of it: finer */
-#define TRY        1.15 /* a frame may be predicted to take, to learn more */
-#define LEARNING   0.5  /* of what a prediction was wrong by, in octaves */
+#define TRY        1.15 /* share that is tried now and then, to learn more */
+#define LEARNING   0.5  /* share of an error that is learned, in octaves */
 #define MOST_WRONG 0.8  /* octaves that one frame can say */
-#define SPREAD     0.1  /* of that for other qualities, too, at least */
-#define FORGETTING 0.01 /* of what those learned before, frame by frame */
+#define SPREAD     0.1  /* share of that for other qualities, at least */
+#define FORGETTING 0.01 /* share of what those learned, a frame */
 
 /* Plans of one frame; of fineness far from the one that is chosen they tell
  * little, so one more may be needed. */
@@ -70,7 +70,7 @@ static double octaves_at(const struct glint_budget *b, int step)
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
 }
 
-/* Of PLAN, at another quality. */
+/* Predicts the milliseconds that PLAN would take at another quality. */
 static double predict(const struct glint_budget *b,
                       const struct glint_cost_plan *plan, int step)
 {
@@ -98,9 +98,9 @@ static int best_step(const struct glint_budget *b,
     return low;
 }
 
-/* Where no level lies between STEP, which leaves much of the budget, and the
- * next, which is predicted to miss it by little, the latter for a few frames in
- * all: that may have been predicted too high. */
+/* If no level lies between STEP, which leaves much of the budget, and the next,
+ * which is predicted to miss it by little, takes the latter for a few frames in
+ * all: the prediction may be too high. */
 static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
                     int step)
 {
@@ -111,7 +111,7 @@ static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
         predict(b, plan, step + 1) > TRY * b->ms)
         return step;
     b->n_trials++;
-    b->n_tries = MAX_TRIES; /* as predicted, it would not do */
+    b->n_tries = MAX_TRIES; /* the prediction says that the level is too slow */
     return step + 1;
 }
 
@@ -134,10 +134,10 @@ bool glint_budget_choose(struct glint_budget *b,
     return true;
 }
 
-/* What was learned of a quality holds for the rungs beside it, so that the same
- * prediction would be less wrong by LEARNING; the more it was wrong, the more
- * of that holds for all, as when the machine has become slower. What was
- * learned of others long ago is forgotten, lest one slow frame keeps a level
+/* Learns from a frame that took MS. The same prediction would be less wrong by
+ * LEARNING. Qualities beside this one learn with it; the more the prediction
+ * was wrong, the more do all, as when the machine has become slower. What other
+ * qualities learned long ago is forgotten, lest one slow frame keeps a level
  * from ever being tried again. */
 void glint_budget_note(struct glint_budget *b, double ms)
 {

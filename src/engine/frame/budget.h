@@ -16,18 +16,21 @@
 #include "engine/frame/cost.h"
 #include "engine/frame/quality.h"
 
-enum { GLINT_BUDGET_STEPS = 64 }; /* of quality */
+enum { GLINT_BUDGET_STEPS = 64 }; /* steps of quality */
 
 struct glint_budget {
-    double ms;               /* of a frame; 0: none is kept to */
-    double calibrated_minsn; /* of a frame that was timed; 0: none was */
-    double ms_per_minsn;     /* of this machine, this lens; */
+    double ms; /* milliseconds that a frame may take; 0: there is no budget */
+    double calibrated_minsn; /* million instructions of the frame that the speed
+                                was measured with; 0: none was */
+    double ms_per_minsn; /* milliseconds a million instructions on this machine
+                            with this lens */
     double octaves[GLINT_QUALITY_LEVELS]; /* learned beyond that, by quality */
     int step;            /* quality of the last frame, of GLINT_BUDGET_STEPS */
-    int n_tries;         /* of the frame being planned */
+    int n_tries;         /* plans tried for the present frame */
     int n_frames;        /* begun, 2 at most */
     int n_trials;        /* frames drawn though predicted to take too long */
-    double predicted_ms; /* of the last frame, by its last plan */
+    double predicted_ms; /* milliseconds that its last plan predicted for the
+                            last frame */
 };
 
 void glint_budget_init(struct glint_budget *budget, double ms);
@@ -41,7 +44,8 @@ bool glint_budget_choose(struct glint_budget *budget,
                          const struct glint_cost_plan *plan,
                          struct glint_dials *dials);
 
-/* Its dials now; what is no matter of quality, as ASKED has it. */
+/* Returns the dials of the present quality; those that are no matter of quality
+ * are taken from ASKED. */
 struct glint_dials glint_budget_dials(const struct glint_budget *budget,
                                       const struct glint_dials *asked);
 

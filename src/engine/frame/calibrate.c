@@ -13,7 +13,7 @@ static double widest_deg(const struct glint_model_header *h)
     return 22.5 / atan(1) * atan2(sine, sqrt(1 - sine * sine));
 }
 
-/* What the quickest of a few frames of FRAME takes, in LEAST_MS. */
+/* Draws a few frames of FRAME, and gives what the quickest took in LEAST_MS. */
 static enum glint_status draw_some(struct glint_frame *frame,
                                    const struct glint_image *image,
                                    struct glint_frame_report *report,

@@ -28,10 +28,12 @@ double glint_cost_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* What grids of the least cells that a plan takes could have done with. */
+/* Plans take no fewer than GLINT_LEAST_CELLS a side; a grid of so few could
+ * have done with these. */
 enum { LESS_CELLS = 6 };
 
-/* What the plan would have chosen for grids FINER times as fine. */
+/* Returns the cells that the plan would have chosen for grids FINER times as
+ * fine. */
 static double cells_at(int planned, double finer)
 {
     const double free =

@@ -13,11 +13,11 @@
 
 /* Counts of what is worked through. */
 enum glint_cost_kind {
-    GLINT_COST_BUNDLES, /* that are drawn: a few rays, and a polynomial each row
-                         */
-    GLINT_COST_VERTICES, /* of grids */
+    GLINT_COST_BUNDLES, /* bundles drawn: a few rays each, and a polynomial each
+                           row */
+    GLINT_COST_VERTICES, /* vertices of grids */
     GLINT_COST_EDGES,    /* across which light changes */
-    GLINT_COST_ROWS,     /* of pixels that these cross */
+    GLINT_COST_ROWS,     /* rows of pixels that edges cross */
     GLINT_COST_LIT,      /* pixels with any light */
     GLINT_COST_KINDS
 };
@@ -29,14 +29,15 @@ struct glint_cost {
 /* A frame that was planned, not yet binned. */
 struct glint_cost_plan {
     const struct glint_flare *flare;
-    int width, height;        /* of the picture */
+    int width, height;        /* size of the picture */
     double n_looked_at;       /* bundles */
     bool can_half;            /* it is in codes, by edges */
-    struct glint_dials dials; /* that it was planned with */
+    struct glint_dials dials; /* dials that the frame was planned with */
 };
 
-/* Of the bundles of PLAN, if dials were THEN. Of fineness within a factor of 4
- * of the planned one, or grids at the limits are misjudged. */
+/* Predicts the cost of the bundles of PLAN if the dials were THEN. Fineness has
+ * to be within a factor of 4 of the planned one, or grids at the limits are
+ * misjudged. */
 struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
                                 const struct glint_dials *then);
 

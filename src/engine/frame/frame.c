@@ -81,7 +81,7 @@ void glint_frame_finish(struct glint_frame *frame)
     free(frame->mem);
 }
 
-/* Of all sets together. */
+/* Returns the number of waves of all sets together. */
 static int all_waves(const struct glint_setup *s)
 {
     int n = 0;
@@ -298,7 +298,8 @@ static int count_ghosts(struct glint_frame *frame, int n)
     return n_ghosts;
 }
 
-/* What F has planned, for telling what it takes. */
+/* The plan is handed out before it is drawn, so that its cost can be predicted.
+ */
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
 {
     return (struct glint_cost_plan){.flare = f->flare,
@@ -311,7 +312,8 @@ struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
                                     .dials = f->dials};
 }
 
-/* Whether dials were turned and the frame has to be planned anew. */
+/* Returns whether dials were turned, so that the frame has to be planned anew.
+ */
 static bool choose(struct glint_frame *f)
 {
     const struct glint_cost_plan plan = glint_frame_plan(f);
@@ -354,7 +356,8 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     return GLINT_OK;
 }
 
-/* For exact rays: what LAMPS are after merging, N of them. NULL: no memory. */
+/* Merges LAMPS for exact rays, and gives how many are left in N. NULL: no
+ * memory. */
 static const struct glint_lamp *
 merged_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {

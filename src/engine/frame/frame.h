@@ -35,7 +35,8 @@ struct glint_frame_scale {
     int most;   /* no light is cut down: together it is below 2^24 */
 };
 
-/* Of the brightest ghost's mean light and of all flux together. */
+/* Makes a scale of the brightest ghost's mean light and the flux of all
+ * together. */
 struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
                                               int together_log2);
 
@@ -52,7 +53,8 @@ struct glint_frame_rays {
     enum glint_status (*scale)(struct glint_frame *frame,
                                const struct glint_lamp *lamps, int n_lamps,
                                struct glint_frame_scale *scale);
-    int (*n_bundles)(const struct glint_frame *frame); /* of the last frame */
+    /* Returns the number of bundles of the last frame. */
+    int (*n_bundles)(const struct glint_frame *frame);
     int (*ghost)(const struct glint_frame *frame, int bundle);
     void (*finish)(struct glint_frame *frame);
 };
@@ -62,7 +64,8 @@ extern const struct glint_frame_rays glint_frame_traces;
 
 struct glint_frame {
     const struct glint_setup *setup;
-    const struct glint_lens *lens;        /* its model, or NULL: */
+    /* Model of the lens, or NULL where rays are traced: */
+    const struct glint_lens *lens;
     const struct glint_frame_rays *trace; /* then this is not */
     glint_clock_fn *clock;                /* NULL: nothing is timed */
     struct glint_view view;
@@ -75,8 +78,8 @@ struct glint_frame {
     bool can_half;  /* the last picture was in codes, by edges */
     bool uniform;   /* the same grid for all ghosts */
     int only_ghost; /* -1: all */
-    int16_t *mask;  /* of the stop, unless NULL */
-    struct glint_budget budget; /* of models; turns the dials */
+    int16_t *mask;  /* distances of the stop's outline, unless NULL */
+    struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* memory is what it is */
 
     struct glint_wave wave[GLINT_SET_WAVES];
@@ -86,33 +89,36 @@ struct glint_frame {
     int n_apart;  /* lights that can be told apart */
     int n_beyond; /* left out before: the model ends before them */
     int n_more;   /* lights that are further points of a lamp */
-    struct glint_flare_frame rays; /* of the last frame, with a model */
-    double scale;                  /* by which its lights were multiplied */
-    bool *seen; /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+    /* Frame that was planned last from a model. */
+    struct glint_flare_frame rays;
+    double scale; /* factor of the lights of the last frame */
+    bool *seen;   /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
 
-    struct glint_lamp
-        *merged;  /* lamps to trace, where some merged; [n_lights] */
+    /* Lamps to trace, where some merged; [n_lights]. */
+    struct glint_lamp *merged;
     void *traced; /* the trace's own */
     struct glint_flare *flare;
     void *mem, *block; /* taken, unless NULL; the aligned part of it, or what
                           was given */
-    size_t bytes;      /* of the block */
+    size_t bytes;      /* bytes of the block */
 };
 
 struct glint_frame_report {
     struct glint_flare_stats stats;
-    int lights;        /* as given */
-    int beyond_lights; /* of these, farther out than the model goes */
-    int apart_lights;  /* that can be told apart */
+    int lights;        /* lights given */
+    int beyond_lights; /* lights of these farther out than the model goes */
+    int apart_lights;  /* lights that can be told apart */
     int drawn_lights;  /* after merging more, for their number */
     int ghosts, tiles;
-    int held_samples;   /* of a linear picture, saturated */
-    size_t arena_bytes; /* what the run-time half was given */
-    size_t peak_bytes;  /* what this frame took of it */
-    size_t need_bytes;  /* what would have drawn all of it, exactly */
+    int held_samples;   /* samples of a linear picture that saturated */
+    size_t arena_bytes; /* bytes that the run-time half was given */
+    size_t peak_bytes;  /* bytes that this frame took of these */
+    size_t need_bytes;  /* bytes that would have drawn all of it, exactly */
     double plan_ms, trace_ms, bin_ms, draw_ms;
-    double predicted_ms, quality; /* with a budget, else 0 and -1 */
-    double calibrated_minsn;      /* that predictions rest on, or 0 */
+    /* Prediction and quality with a budget; else 0 and -1. */
+    double predicted_ms, quality;
+    double calibrated_minsn; /* million instructions that predictions rest on,
+                                or 0 */
 };
 
 void glint_frame_init(struct glint_frame *frame,
@@ -149,10 +155,10 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    const struct glint_image *image,
                                    struct glint_frame_report *report);
 
-/* What FRAME planned last, for glint_cost_of(). */
+/* Returns the last plan of FRAME, for glint_cost_of(). */
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *frame);
 
-/* Whether LAMP is farther off the axis than FRAME's model goes. */
+/* Returns whether LAMP is farther off the axis than FRAME's model goes. */
 bool glint_frame_is_beyond(const struct glint_frame *frame,
                            const struct glint_lamp *lamp);
 

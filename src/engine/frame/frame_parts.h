@@ -9,7 +9,7 @@
 
 #include "engine/frame/frame.h"
 
-/* Whether ghosts choose among the setup's sets of wavelengths. */
+/* Returns whether ghosts choose among the setup's sets of wavelengths. */
 bool glint_frame_has_sets(const struct glint_frame *frame);
 
 /* Room for N lights. GLINT_E_MEMORY. */
@@ -21,26 +21,27 @@ enum glint_status glint_frame_regrow(struct glint_frame *frame);
 /* Bundles that N_BEAMS need; with sets, to choose from these. */
 int glint_frame_bundles(const struct glint_frame *frame, int n_lights);
 
-/* Whether all fitted; asks for more room where it did not. */
+/* Returns whether all fitted; if not, asks for more room. */
 bool glint_frame_is_served(struct glint_frame *frame,
                            const struct glint_flare_stats *stats);
 
-/* What the frame took, by the same measure that sized the block. */
+/* Returns the bytes that the frame took, by the same measure that sized the
+ * block. */
 size_t glint_frame_bytes_used(const struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
-/* What would have drawn all of it. */
+/* Returns the bytes that would have drawn all of it. */
 size_t glint_frame_bytes_needed(const struct glint_frame *frame,
                                 const struct glint_flare_stats *stats);
 
-/* Of LAMPS, as the plan predicts without drawing anything; {0, 0}: there is no
- * light. GLINT_E_MEMORY. */
+/* Gives the scale of LAMPS as the plan predicts it, without drawing anything;
+ * {0, 0}: there is no light. GLINT_E_MEMORY. */
 enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps,
                                          struct glint_frame_scale *scale);
 
-/* Whether ghost or part GHOST of SETUP is ghost NUMBER. */
+/* Returns whether ghost or part GHOST of SETUP is ghost NUMBER. */
 bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
                           int number);
 

@@ -7,7 +7,7 @@
 
 #include "engine/frame/block.h"
 
-/* What one frame may take, by edges and by other rasters. */
+/* Most bundles that one frame may take, by edges and by other rasters. */
 enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
 
 static int larger(int a, int b)
@@ -57,7 +57,7 @@ static bool is_by_edges(const struct glint_frame *f)
     return !f->cfg.raster || f->cfg.raster == &glint_raster_edges;
 }
 
-/* What a frame may take of N bundles. */
+/* Returns how many of N bundles a frame may take. */
 static int bundles_within(const struct glint_frame *f, double n)
 {
     const int most = is_by_edges(f) ? MAX_BUNDLES : MAX_BUNDLES_OTHER;

@@ -18,7 +18,7 @@ struct glint_light glint_light_of(const struct glint_lamp *lamp, double scale);
 /* The reverse, a point. */
 struct glint_lamp glint_lamp_of(const struct glint_light *light);
 
-/* Whether LENS, unless NULL, ends before LIGHT. */
+/* Returns whether LENS, unless NULL, ends before LIGHT. */
 int glint_light_is_beyond(const struct glint_lens *lens,
                           const struct glint_light *light);
 

@@ -93,7 +93,8 @@ struct glint_quality glint_quality_at(double quality)
     const struct level l = level_at(quality);
 
     return (struct glint_quality){
-        .dials = {.fineness = 4 * (int)lrint(l.grid / 4), /* by fours */
+        /* Grids come in steps of four cells. */
+        .dials = {.fineness = 4 * (int)lrint(l.grid / 4),
                   .irradiance_steps = glint_quality_steps(l.quantum),
                   .snap_codes_q8 = (int)lrint(l.snap * 256),
                   .dispersion_q8 = (int)lrint(l.dispersion * 256),

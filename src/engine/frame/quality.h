@@ -13,22 +13,22 @@
 /* Names of qualities, the coarsest first. */
 enum { GLINT_QUALITY_NAMES = 5, GLINT_QUALITY_LEVELS = 10 };
 extern const char
-    *const glint_quality_name[GLINT_QUALITY_NAMES + 1]; /* and NULL */
+    *const glint_quality_name[GLINT_QUALITY_NAMES + 1]; /* the last is NULL */
 double glint_quality_named(int name);
 
-/* Where QUALITY is among the levels, 0 to GLINT_QUALITY_LEVELS - 1: between two
- * of them, but on either where one draws four pixels at once and the other does
- * not. */
+/* Returns the place of QUALITY among the levels, 0 to GLINT_QUALITY_LEVELS - 1:
+ * between two of them, but on either where one draws four pixels at once and
+ * the other does not. */
 double glint_quality_place(double quality);
 
 /* A setting, with what is no dial of a frame. */
 struct glint_quality {
     struct glint_dials dials;
     double quantum;   /* percent, which irradiance_steps are made of */
-    double tolerance; /* that a model is baked with */
+    double tolerance; /* tolerance that a model is baked with */
 };
 
-/* At QUALITY, 0 to 1; 0.5 is the default. */
+/* Returns the settings of QUALITY, 0 to 1; 0.5 is the default. */
 struct glint_quality glint_quality_at(double quality);
 
 /* The least quality whose outlines are off by PX pixels in the mean at most. */
@@ -38,7 +38,7 @@ double glint_quality_for_error(double px);
  * steps are even within an octave. */
 int glint_quality_steps(double quantum);
 
-/* Whether DIALS draw half as many pixels each way. */
+/* Returns whether DIALS draw half as many pixels each way. */
 static inline bool glint_dials_half(const struct glint_dials *dials)
 {
     return (dials->flags & (GLINT_DIAL_HALF | GLINT_DIAL_ALWAYS_HALF)) != 0;

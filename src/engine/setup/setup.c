@@ -111,7 +111,8 @@ static double opening(int n_blades)
                     : 1;
 }
 
-/* What the model's polynomial gives for a wavelength held to its band. */
+/* Returns the model's flux at a wavelength, which is held to the model's band.
+ */
 static double model_flux(const struct glint_model_header *h, double nm)
 {
     const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;

@@ -66,8 +66,8 @@ void glint_observer_rgb(double nm, double rgb[3])
     to_bt709(xyz, rgb);
 }
 
-/* What light of each of all wavelengths gives, so that a flat spectrum is
- * white. */
+/* Gives the colour of light at each of all wavelengths, scaled so that a flat
+ * spectrum is white. */
 static void all_colours(double rgb[N_ALL][3])
 {
     for (int j = 0; j < N_ALL; j++)

@@ -6,7 +6,7 @@
 #include "base/q.h"
 #include "flare/edges/outline.h"
 
-/* What cuts: side K of the stop, or barrel K - BARREL. */
+/* The number of a cut: side K of the stop, or barrel K - BARREL. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
 /* ---------------------------------------------------------------------- nodes

@@ -7,7 +7,7 @@
 
 enum {
     OCTAVES = GLINT_LIGHT_OCTAVES,
-    WHITE_LOG2 = 20 /* of display white, q20 */
+    WHITE_LOG2 = 20 /* 1 of display white, q20 */
 };
 
 typedef int32_t point_q8[2];
@@ -15,8 +15,8 @@ typedef int32_t point_q8[2];
 /* --------------------------------------------------------------------- edges
  */
 
-/* Whether a change from LIGHT to OTHER is less than what edges need to be
- * smooth for. */
+/* Returns whether a change from LIGHT to OTHER is less than what edges need to
+ * be smooth for. */
 static int is_weak(const struct glint_ghost_edges *g, int32_t light,
                    int32_t other)
 {
@@ -124,12 +124,12 @@ static void set_steps(struct glint_ghost_edges *g)
     }
 }
 
-/* What a code is worth: its change of light shrinks by 2^(7/12) with each
- * octave below white down to where codes are linear. */
+/* Sets the light that a code is worth: it shrinks by 2^(7/12) with each octave
+ * below white, down to where codes are linear. */
 static void set_weak(struct glint_ghost_edges *g)
 {
     const int32_t least_q20 = 318;
-    int32_t code_q20 = 9869; /* at white */
+    int32_t code_q20 = 9869; /* light of one code at white */
 
     for (int log2 = OCTAVES - 1; log2 >= 0; log2--) {
         g->rows->weak_q20[log2] =

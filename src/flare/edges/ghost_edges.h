@@ -31,8 +31,9 @@
 #include "flare/edges/outline.h"
 
 enum {
-    GLINT_LIGHT_OCTAVES = 45, /* of irradiance _q20 */
-    GLINT_HELD_CELLS = 64     /* of grids whose second half is held */
+    GLINT_LIGHT_OCTAVES = 45, /* octaves of irradiance _q20 */
+    GLINT_HELD_CELLS =
+        64 /* cells a side up to which the second half of a grid is held */
 };
 
 /* Scratch of a worker: of the nodes of two rows, and the cells between. */
@@ -42,13 +43,16 @@ struct glint_ghost_rows {
     /* The rows behind the middle, first to last the lower half's mirror images:
      * computed with these, if the grid is small. */
     struct glint_vertex held[GLINT_HELD_CELLS / 2][GLINT_HELD_CELLS + 1];
-    uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* of the stop: bit set = outside */
+    uint64_t sides[2][GLINT_MAX_CELLS + 1];  /* sides of the stop that each node
+                                                lies outside of, a bit each */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1]; /* the same; LOST; where beyond the
                                                 picture */
-    int32_t light[2][GLINT_MAX_CELLS];       /* of cells, packed */
-    uint16_t steps[GLINT_LIGHT_OCTAVES];     /* of irradiance, by octave */
-    int32_t weak_q20[GLINT_LIGHT_OCTAVES];   /* smaller changes of light, by its
-                                                octave: on whole pixels */
+    int32_t light[2][GLINT_MAX_CELLS]; /* irradiance of the cells of two rows,
+                                          packed */
+    /* Steps of irradiance in each octave. */
+    uint16_t steps[GLINT_LIGHT_OCTAVES];
+    int32_t weak_q20[GLINT_LIGHT_OCTAVES]; /* smaller changes of light, by its
+                                              octave: on whole pixels */
 };
 
 struct glint_ghost_edges {
@@ -59,10 +63,10 @@ struct glint_ghost_edges {
     struct glint_place place;
     const uint16_t *sag_q16; /* see struct glint_bundle_plan */
     const struct glint_bundle *bundle;
-    uint32_t number; /* of the bundle */
+    uint32_t number; /* number of the bundle */
     const struct glint_stop *stop;
-    int width, height; /* of the picture */
-    int32_t limit_q8;  /* of a cell's light in a pixel, energy 1 */
+    int width, height; /* size of the picture */
+    int32_t limit_q8;  /* most light of a cell in a pixel at energy 1 */
     int steps;         /* per octave of irradiance; 0: not rounded */
     int coded; /* the picture has codes, which tell less apart of faint light */
     int snap_codes_q8; /* see struct glint_flare_frame */

@@ -10,8 +10,9 @@
 #include "flare/edges/cuts.h"
 #include "flare/edges/ghost_edges.h"
 
-/* Of a node, beside the barrels: no ray; the sides of the picture that it lies
- * beyond, not the left one, as light runs in from there. */
+/* Bits of a node besides the barrels': there is no ray, or the node lies beyond
+ * a side of the picture. The left side has none, as light runs in from there.
+ */
 enum {
     NODE_BARRELS = 3,
     NODE_LOST = 4,
@@ -21,11 +22,11 @@ enum {
 };
 
 struct glint_ghost_cell {
-    const struct glint_vertex *corner[4]; /* in order */
+    const struct glint_vertex *corner[4]; /* corners of the cell, in order */
     struct glint_outside at[4];
 };
 
-/* Of the two rows that are there. */
+/* Returns a node of the two rows that are kept. */
 static inline const struct glint_vertex *
 ghost_node(const struct glint_ghost_edges *g, int i, int j)
 {

@@ -190,7 +190,7 @@ static void cut_stop(struct glint_outline *o,
     }
 }
 
-/* From u and v to pixels: differences below 2^29 times 2^28. */
+/* Turns u and v into pixels: differences below 2^29 times 2^28. */
 static void place(struct glint_outline *o, const struct glint_vertex *const *at)
 {
     const int64_t ux = at[1]->x_q8 - at[0]->x_q8;

@@ -48,15 +48,15 @@ enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
 struct glint_outline {
     int n; /* corners; 0: nothing is seen */
     int64_t x_q16[GLINT_OUTLINE_CORNERS], y_q16[GLINT_OUTLINE_CORNERS];
-    int32_t share_q28;  /* of the triangle, 0 .. 1 */
+    int32_t share_q28;  /* share of the triangle that the cuts leave, 0 .. 1 */
     int32_t energy_q16; /* mean of the corners */
     struct glint_uv {
         int32_t u_q28, v_q28;
     } uv[GLINT_OUTLINE_CORNERS], kept[GLINT_OUTLINE_CORNERS];
 };
 
-/* Which cuts cross the primitive: a set of GLINT_CUT_, or -1 where nothing of
- * it is seen. The stop has no mask. */
+/* Returns the cuts that cross the primitive: a set of GLINT_CUT_, or -1 where
+ * nothing of it is seen. The stop has no mask. */
 int glint_outline_classify(const struct glint_corners *corners,
                            const struct glint_stop *stop);
 
@@ -64,7 +64,8 @@ int glint_outline_classify(const struct glint_corners *corners,
 void glint_outline_whole(struct glint_outline *outline,
                          const struct glint_corners *corners);
 
-/* What the cuts CUT leave of the triangle of corners 0, K + 1, K + 2. */
+/* Makes the outline that the cuts CUT leave of the triangle of corners 0, K +
+ * 1, K + 2. */
 void glint_outline_cut(struct glint_outline *outline,
                        const struct glint_corners *corners, int k,
                        const struct glint_stop *stop, int cut);

@@ -14,11 +14,11 @@
 enum {
     GLINT_CUT_STOP = 1,     /* the outline of the stop may cross it */
     GLINT_CUT_BARREL = 2,   /* a barrel may cross it */
-    GLINT_CUT_LOWERED = 16, /* what is round was lowered by its sag */
+    GLINT_CUT_LOWERED = 16, /* round cuts were lowered by their sag */
     GLINT_POINT = 4,  /* far smaller than a pixel: all its light goes to the
                          pixel its middle lies in */
-    GLINT_SAMPLED = 8 /* of a ghost with cells of a few pixels: 4 x 4 places
-                         of each pixel are looked at */
+    GLINT_SAMPLED = 8 /* the ghost has cells of a few pixels: 4 x 4 places of
+                         each pixel are looked at */
 };
 
 struct glint_primitive {
@@ -83,7 +83,7 @@ static inline void glint_corners_set(struct glint_corners *corners,
                                             p[1]->y_q8, p[2]->x_q8, p[2]->y_q8);
 }
 
-/* Of two vectors the sum of all sizes. */
+/* Returns the sum of the sizes of all components of two vectors. */
 static inline int64_t glint_reach(const struct glint_vertex *a,
                                   const struct glint_vertex *b)
 {
@@ -101,8 +101,8 @@ static inline int glint_corners_stout(const struct glint_corners *c)
                                   glint_reach(c->at[1], c->at[3]));
 }
 
-/* Whether CORNERS are thinner than a sixteenth of a pixel; lean: the same, for
- * those that are not stout. */
+/* Returns whether CORNERS are thinner than a sixteenth of a pixel. The lean
+ * variant gives the same for corners that are not stout. */
 int glint_corners_lean(const struct glint_corners *corners);
 static inline int glint_corners_thin(const struct glint_corners *corners)
 {
@@ -115,7 +115,7 @@ void glint_corners_gather(struct glint_corners *corners,
                           const struct glint_vertex *v, const int32_t *vertex,
                           int n);
 
-/* Whether all corners lie within 1/PART of a pixel of each other. */
+/* Returns whether all corners lie within 1/PART of a pixel of each other. */
 int glint_corners_tiny(const struct glint_corners *corners, int part);
 
 /* The pixel that the mean of CORNERS lies in, as a box; empty outside. */

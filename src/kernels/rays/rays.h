@@ -28,7 +28,7 @@ typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
  *           left as it is
  * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
  * 2^30 at most. Shifts are 1 .. 62; the C definition takes any. */
-enum { GLINT_TURNED = 8 }; /* at once */
+enum { GLINT_TURNED = 8 }; /* rays that are turned at once */
 
 struct glint_turn {
     int32_t cos, sin;

@@ -26,7 +26,8 @@ static inline struct products minus(struct products a, struct products b)
                              vsubq_s64(a.high, b.high)};
 }
 
-/* To where, and what still fits. */
+/* The shift to the scale of the result, and the first value that no longer
+ * fits. */
 struct scale {
     int64x2_t up;
     int32x4_t limit;
