@@ -470,15 +470,23 @@ int32_t glint_score_least(const struct glint_score *score,
                           struct glint_candidate *candidate, int32_t *order,
                           int n)
 {
+    int32_t best_q8 = INT32_MIN;
     int n_over = 0, n_lamps = 0;
 
-    for (int i = 0; i < n; i++)
-        if (candidate[order[i]].score_q8 >= 0 && !candidate[order[i]].faint) {
+    for (int i = 0; i < n; i++) {
+        const struct glint_candidate *c = &candidate[order[i]];
+
+        if (!c->faint && c->score_q8 > best_q8)
+            best_q8 = c->score_q8;
+        if (c->score_q8 >= 0 && !c->faint) {
             const int32_t old = order[n_over];
 
             order[n_over++] = order[i];
             order[i] = old;
         }
+    }
+    if (n_over == 0)
+        return best_q8 >= -SCORE_ALONE ? best_q8 : 0;
     glint_score_choose(score, candidate, order, n_over);
     for (int i = 0; i < n_over; i++) {
         n_lamps += !candidate[order[i]].gone;

@@ -7,7 +7,8 @@
  *   out  a score of each: 0 and more speak for a lamp, 64 are a factor e of
  *        its odds; below -SCORE_DOUBT it is none even if it was one before.
  *        Lamps are seldom alone: where a picture has SCORE_SEVERAL, what is
- *        above -SCORE_COMPANY is one, too
+ *        above -SCORE_COMPANY is one, too; where it has none, the best
+ *        one is from -SCORE_ALONE on: who asks for a flare mostly has a lamp
  *
  * The score is a sum of terms, each a measure held to a range and weighed; so
  * it moves little where the picture does. Regions of the levels lie within each
@@ -34,6 +35,7 @@ enum {
     SCORE_DOUBT = 256,
     SCORE_SEVERAL = 2,
     SCORE_COMPANY = 96,
+    SCORE_ALONE = 32,
     SCORE_LEVELS = 8
 };
 
@@ -99,8 +101,8 @@ void glint_score_all(const struct glint_score *score,
                      struct glint_candidate *candidate, const int32_t *order,
                      int n);
 
-/* The score from which a candidate is a lamp: 0, or less in company. ORDER
- * comes out in another order. */
+/* The score from which a candidate is a lamp: 0, or less in company, or that of
+ * the best one where it is alone. ORDER comes out in another order. */
 int32_t glint_score_least(const struct glint_score *score,
                           struct glint_candidate *candidate, int32_t *order,
                           int n);

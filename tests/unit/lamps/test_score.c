@@ -373,6 +373,25 @@ static void test_company(void **state)
     assert_int_equal(least_of(c, 4), -SCORE_COMPANY);
 }
 
+/* Where none is sure, the best one is taken a little below: not one that is
+ * faint, nor a second, nor one beside a sure one. */
+static void test_best_one_alone(void **state)
+{
+    struct glint_candidate c[4] = {
+        one_at(0, 0, -300), one_at(10, 0, -SCORE_ALONE - 1),
+        one_at(20, 0, -SCORE_ALONE), one_at(30, 0, -SCORE_ALONE + 1)};
+
+    (void)state;
+    assert_int_equal(least_of(c, 2), 0);
+    assert_int_equal(least_of(c, 3), -SCORE_ALONE);
+    assert_int_equal(least_of(c, 4), -SCORE_ALONE + 1);
+    c[3].faint = 1;
+    assert_int_equal(least_of(c, 4), -SCORE_ALONE);
+    c[3] = one_at(30, 0, 0);
+    assert_int_equal(least_of(c, 4), 0);
+    assert_int_equal(least_of(c, 0), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -386,6 +405,7 @@ int main(void)
         cmocka_unit_test(test_skies),
         cmocka_unit_test(test_noise_in_the_dark),
         cmocka_unit_test(test_company),
+        cmocka_unit_test(test_best_one_alone),
     };
 
     return cmocka_run_group_tests_name("score", tests, NULL, NULL);
