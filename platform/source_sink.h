@@ -24,18 +24,18 @@
 /* One frame of a source, its memory lent until done. */
 struct glint_source_frame {
     struct glint_image image; /* plane[0] NULL: there is no frame yet */
-    uint32_t sequence;        /* of the device; wraps */
-    int64_t time_us;          /* CLOCK_MONOTONIC, when it was captured */
-    bool cached;              /* its memory may be drawn into at full speed */
-    int n_late;               /* frames given back unseen: it is the newest */
-    int n_dropped;            /* gap in sequence before it, without those */
-    int n_corrupt;            /* frames thrown away before it as damaged */
-    void *buffer;             /* the source's own */
+    uint32_t sequence; /* number that the device gave the frame; it wraps */
+    int64_t time_us;   /* CLOCK_MONOTONIC, when it was captured */
+    bool cached;       /* the frame's memory may be drawn into at full speed */
+    int n_late;        /* frames given back unseen: it is the newest */
+    int n_dropped;     /* gap in sequence before it, without those */
+    int n_corrupt;     /* frames thrown away before it as damaged */
+    void *buffer;      /* the source's own */
 };
 
-/* What a source delivers. */
+/* The format of the frames that a source delivers. */
 struct glint_source_format {
-    struct glint_image image; /* of a frame, without its memory */
+    struct glint_image image; /* format of a frame, without its memory */
     int fps_num, fps_den;     /* frames a second; 0: not known */
     char text[512];           /* one line about it for a person */
     const char *detail;       /* a further one; NULL: none */

@@ -10,7 +10,7 @@
 /* Exact. */
 float glint_half_decode(uint16_t half);
 
-/* To nearest, ties to even; infinite beyond 65504. */
+/* Encodes to the nearest value, ties to even; beyond 65504 it is infinite. */
 uint16_t glint_half_encode(float value);
 
 #endif

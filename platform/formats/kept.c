@@ -336,7 +336,7 @@ static void say_losses(struct glint_kept_options *options,
         glint_kept_note(options->said, "8 bits are left");
 }
 
-/* FROM as TYPE takes it; TO's memory is the caller's to free. */
+/* Converts FROM to what TYPE takes; TO's memory is the caller's to free. */
 static enum glint_status convert(struct glint_samples *to,
                                  const struct glint_samples *from,
                                  const struct glint_file_type *type)
@@ -416,7 +416,7 @@ write_by_plugin(struct glint_kept *k, struct glint_output *out,
     return status;
 }
 
-/* As another type, or another picture. */
+/* Saves the picture as another type, or another picture in its place. */
 static enum glint_status save_converted(struct glint_kept *k,
                                         struct glint_output *out,
                                         const struct glint_samples *from,

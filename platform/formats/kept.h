@@ -29,7 +29,7 @@ struct glint_kept {
     struct glint_samples samples;
     bool is_float; /* light beyond white is what it is, not clipped */
     char note[GLINT_KEPT_NOTES]; /* what glint takes otherwise than the file
-                                    means it */
+                                    means it, in words */
 
     /* Private. */
     const char *path;
@@ -39,7 +39,7 @@ struct glint_kept {
     uint8_t *native; /* the whole of a PNM or PFM */
     size_t native_bytes, header_bytes;
     bool is_pfm, is_little;
-    uint8_t *own; /* its samples in this machine's order */
+    uint8_t *own; /* the file's samples in this machine's order */
 };
 
 /* Opens PATH, which is kept. Errors as of glint_picture_load. On failure KEPT
@@ -51,7 +51,8 @@ enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
 void glint_kept_close(struct glint_kept *kept);
 
 struct glint_kept_options {
-    int quality; /* of JPEG and WebP, 1 .. 100; 0: the input's own, or 95 */
+    int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the input's own, or
+                    95 */
     bool quiet;  /* do not say what is lost */
     char said[GLINT_KEPT_NOTES]; /* out: what was lost, "" if nothing */
 };
@@ -64,8 +65,8 @@ enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
                                   struct glint_kept_options *options,
                                   struct glint_error *error);
 
-/* Whether KEPT can be written to PATH as what it is, then copying the file is
- * the same; and that. */
+/* Returns whether KEPT can be written to PATH as what it is; then copying the
+ * file gives the same. */
 bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path);
 enum glint_status glint_kept_copy(const struct glint_kept *kept,
                                   const char *path, struct glint_error *error);
@@ -77,7 +78,8 @@ enum glint_status glint_kept_blank(struct glint_samples *blank,
                                    const struct glint_samples *from,
                                    bool has_alpha);
 
-/* Whether PATH can be saved to at all; for asking before long work. */
+/* Checks whether PATH can be saved to at all, before long work is done for it.
+ */
 enum glint_status glint_kept_check(const char *path, struct glint_error *error);
 
 #endif

@@ -14,7 +14,8 @@ void glint_kept_note(char notes[GLINT_KEPT_NOTES], const char *text)
              text);
 }
 
-/* By ITU-T H.273. False: not one that is known here. */
+/* Sets colours by the numbers of ITU-T H.273. False: they are not known here.
+ */
 static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
 {
     static const double p3[4][2] = {
@@ -38,7 +39,8 @@ static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
     return cicp[0] != 12 || glint_colours_primaries(c, p3);
 }
 
-/* As OpenImageIO calls colour spaces. False: not one that is known here. */
+/* Sets colours by OpenImageIO's name of a colour space. False: it is not known
+ * here. */
 static bool set_by_name(struct glint_colours *c, const char *name)
 {
     static const double adobe[4][2] = {

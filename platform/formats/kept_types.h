@@ -23,7 +23,7 @@ struct glint_file_type {
     bool takes_u8, takes_u16, takes_half, takes_float;
 };
 
-/* By the extension of PATH; NULL: unknown. */
+/* Returns the type that the extension of PATH stands for; NULL: unknown. */
 const struct glint_file_type *glint_file_type_of(const char *path);
 
 /* The sample nearest to SAMPLE that TYPE takes. */

@@ -9,7 +9,7 @@
 
 #include "posix/error.h"
 
-#define TOKEN_CHARS 32  /* of a number in the header, with its end */
+#define TOKEN_CHARS 32  /* bytes of a number in the header, with its end */
 #define CHUNK       256 /* floats encoded at a time */
 
 static bool is_space(int c)

@@ -21,15 +21,15 @@
 #include "glint/status.h"
 #include "posix/output.h"
 
-/* Whether DATA begins like a PFM. */
+/* Returns whether DATA begins like a PFM. */
 bool glint_pfm_matches(const void *data, size_t bytes);
 
-/* What stands before the samples, the bottom row of which comes first. */
+/* The header, after which the samples follow, the bottom row first. */
 struct glint_pfm_header {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
     int channels;      /* 3 or 1 */
     bool little;       /* end first */
-    size_t bytes;      /* of the header itself */
+    size_t bytes;      /* bytes of the header itself */
 };
 
 /* Reads the header of DATA[BYTES], which has all samples. Errors as below. */

@@ -14,12 +14,13 @@
 #include "posix/input.h"
 #include "posix/output.h"
 
-/* Of a PFM with its header; nothing else that is read here is larger. */
+/* The largest PFM with its header; no other type that is read here is larger.
+ */
 #define MAX_FILE_BYTES                                             \
     (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
          ? SIZE_MAX / 4                                            \
          : (size_t)(UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE + 4096))
-#define HEAD_BYTES 12 /* that tell one file type from another */
+#define HEAD_BYTES 12 /* first bytes, which tell file types apart */
 
 /* ----------------------------------------------------------------- loading */
 

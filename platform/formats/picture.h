@@ -30,8 +30,8 @@
 
 enum glint_picture_kind { GLINT_PICTURE_8BIT, GLINT_PICTURE_FLOAT };
 
-/* Whether the extension of PATH is one of those that hold nothing but floats.
- * TIFF, which takes both, and "-" count as 8 bits. */
+/* Returns whether the extension of PATH is one of those that hold nothing but
+ * floats. TIFF, which takes both, and "-" count as 8 bits. */
 bool glint_picture_is_float(const char *path);
 
 /* Loads PATH as GLINT_RGB24, full range, sRGB; grey becomes R = G = B, alpha is
@@ -58,9 +58,9 @@ const char *glint_picture_type(const uint8_t *head, size_t bytes);
 enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
                                              struct glint_error *error);
 
-/* Whether a picture of KIND can be saved to PATH, as far as can be told before
- * there is one; for asking before long work. GLINT_E_UNSUPPORTED: the extension
- * is unknown or of the other kind, or the plug-in is not there. */
+/* Checks whether a picture of KIND can be saved to PATH, as far as can be told
+ * before there is one. GLINT_E_UNSUPPORTED: the extension is unknown or of the
+ * other kind, or the plug-in is not there. */
 enum glint_status glint_picture_check(const char *path,
                                       enum glint_picture_kind kind,
                                       struct glint_error *error);

@@ -21,15 +21,15 @@
 #include "glint/status.h"
 #include "posix/output.h"
 
-/* Whether DATA begins like a P5 or P6. */
+/* Returns whether DATA begins like a P5 or P6. */
 bool glint_pnm_matches(const void *data, size_t bytes);
 
-/* What stands before the samples. */
+/* The header, after which the samples follow. */
 struct glint_pnm_header {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
     int channels;      /* 3 or 1 */
     int maximum;       /* 1 .. 65535; above 255 in two bytes, the high first */
-    size_t bytes;      /* of the header itself */
+    size_t bytes;      /* bytes of the header itself */
 };
 
 /* Reads the header of DATA[BYTES], which has all samples. Errors as below. */

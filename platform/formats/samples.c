@@ -238,7 +238,8 @@ static double finite(double value)
     return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
 }
 
-/* What is seen of PIXEL over black, or, straight, of its colours alone. */
+/* Gives the light that is seen of PIXEL over black, or, straight, that of its
+ * colours alone. */
 static void light_of(const struct decoder *d, const uint8_t *pixel,
                      bool straight, double rgb[3])
 {

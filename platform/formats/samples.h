@@ -39,11 +39,11 @@ struct glint_sample_place {
 };
 
 struct glint_samples {
-    int width, height;                /* of the pixels that are there */
-    int x, y;                         /* of the first of them in the window */
-    int window_width, window_height;  /* what is seen, as stored */
+    int width, height; /* size of the pixels that are there */
+    int x, y;          /* place of the first of them in the window */
+    int window_width, window_height;  /* size of what is seen, as stored */
     int orientation;                  /* 1 .. 8, as of EXIF */
-    size_t pixel_bytes;               /* of all channels */
+    size_t pixel_bytes;               /* bytes of all channels of a pixel */
     int n_colours;                    /* 3, or 1: grey */
     bool has_alpha, is_premultiplied; /* the latter also without alpha */
     struct glint_sample_place colour[3], alpha; /* grey: three times the same */
@@ -60,8 +60,9 @@ bool glint_sample_is_float(enum glint_sample sample);
 int glint_samples_width(const struct glint_samples *samples);
 int glint_samples_height(const struct glint_samples *samples);
 
-/* Whether the pixels are those of a GLINT_RGB24, which IMAGE then points to:
- * opaque sRGB of 8 bits, upright, nothing beside the three channels. */
+/* Returns whether the pixels are those of a GLINT_RGB24, which IMAGE then
+ * points to: opaque sRGB of 8 bits, upright, nothing beside the three channels.
+ */
 bool glint_samples_image(const struct glint_samples *samples,
                          struct glint_image *image);
 

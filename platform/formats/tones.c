@@ -147,7 +147,8 @@ static bool to_xyz(double m[3][3], const double xy[4][2])
     return true;
 }
 
-/* From TO_XYZ of the file and that of BT.709, of the same white point. */
+/* Makes the matrices from TO_XYZ of the file and that of BT.709, which have the
+ * same white point. */
 static bool set_matrices(struct glint_colours *colours, const double file[3][3],
                          const double bt709[3][3])
 {
@@ -316,7 +317,7 @@ static bool is_srgb(const struct glint_tone_curve *t)
 
 static bool take_matrix(struct glint_colours *colours, const struct profile *p)
 {
-    /* of BT.709 under D50, as profiles have it */
+    /* The primaries of BT.709 under D50, as profiles have them. */
     static const double bt709[3][3] = {{0.43607, 0.38515, 0.14307},
                                        {0.22249, 0.71687, 0.06061},
                                        {0.01392, 0.09708, 0.71410}};

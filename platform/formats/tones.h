@@ -36,7 +36,7 @@ struct glint_tone_curve {
     uint16_t entry[GLINT_TONE_ENTRIES];
 };
 
-/* What the codes of a file's three colours are. */
+/* The meaning of the codes of a file's three colours. */
 struct glint_colours {
     struct glint_tone_curve transfer[3];
     double to_bt709[3][3];   /* linear light of the file's primaries, and */

@@ -13,7 +13,7 @@
 #include "posix/error.h"
 
 #define ALIGN     64 /* bytes, of planes and their rows */
-#define MAX_ROWS  32 /* of a plane in one row of MCUs: 4 blocks of 8 */
+#define MAX_ROWS  32 /* most of a plane in a row of MCUs: 4 blocks of 8 */
 #define N_PLANES  3
 #define MARKER    0xff
 #define SOI       0xd8
@@ -25,11 +25,11 @@
 struct glint_mjpeg {
     const char *name;
     int max_width, max_height;
-    ptrdiff_t stride_bytes; /* of all planes, for the widest frame */
+    ptrdiff_t stride_bytes; /* stride of all planes, for the widest frame */
     size_t plane_bytes;
     uint8_t *mem; /* N_PLANES of them */
 
-    /* Of the frame at hand. */
+    /* The state of the frame being decoded. */
     struct jpeg_decompress_struct jpeg;
     struct jpeg_error_mgr errors;
     struct jpeg_source_mgr source;
@@ -188,8 +188,8 @@ static bool is_bare(int marker)
     return marker == TEM || (marker >= RST_FIRST && marker <= EOI);
 }
 
-/* Where the last start of image of the header is, which may have several:
- * libjpeg takes one only. */
+/* Returns the place of the last start of image in the header, which may have
+ * several: libjpeg takes one only. */
 static size_t find_start(const uint8_t *data, size_t bytes)
 {
     size_t start = 0, at = 0;
@@ -298,7 +298,8 @@ static void start(struct glint_mjpeg *d, struct glint_image *image)
     }
     d->jpeg.out_color_space = d->jpeg.jpeg_color_space;
     d->jpeg.raw_data_out = TRUE;
-    d->jpeg.dct_method = JDCT_ISLOW; /* its SIMD gives the same bits */
+    d->jpeg.dct_method =
+        JDCT_ISLOW; /* this method's SIMD gives the same bits */
     d->in_scan = true;
     jpeg_start_decompress(&d->jpeg);
 }

@@ -33,7 +33,7 @@
 
 struct glint_mjpeg; /* opaque */
 
-/* Whether libjpeg is built in. */
+/* Returns whether libjpeg is built in. */
 bool glint_mjpeg_available(void);
 
 /* Makes a decoder for frames up to MAX_WIDTH x MAX_HEIGHT, 1 ..

@@ -13,9 +13,9 @@
 #include "posix/at_death.h"
 #include "posix/error.h"
 
-/* For the functions at death, all atomic. */
+/* The functions at death read these, which are all atomic. */
 static int held_fd = -1;
-static int held_mode; /* to go back to */
+static int held_mode; /* mode to go back to */
 static pid_t holder;  /* children that exit leave the console alone */
 
 /* Async-signal-safe: ioctl() is no more than a system call in Linux. */

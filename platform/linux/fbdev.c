@@ -172,8 +172,8 @@ static bool pan(struct glint_fbdev *fb, int page)
     return glint_ioctl(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
 }
 
-/* Whether there are two screens to change between. Tried with both black, so
- * that what the second held is not seen. */
+/* Returns whether there are two screens to change between. Both are black while
+ * that is tried, so that what the second held is not seen. */
 static bool try_pages(struct glint_fbdev *fb,
                       const struct fb_fix_screeninfo *fix)
 {
@@ -199,7 +199,8 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
     glint_panel_close(&fb->panel);
     fb->home = fb->var;
     if (fb->home.yoffset == fb->var.yres)
-        fb->home.yoffset = 0; /* as one of us left it who was killed */
+        fb->home.yoffset =
+            0; /* a glint that was killed may have left another offset */
     if (glint_ioctl(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
         return lost(fb, "FBIOGET_FSCREENINFO", error);
     status = adopt(fb, &fix, error);
@@ -276,7 +277,8 @@ static void draw(struct glint_fbdev *fb, const struct glint_image *image,
     glint_panel_draw(&fb->panel, image, mem, stride);
 }
 
-/* Where there is one screen of memory: wherever that is looked at now. */
+/* Draws, where there is memory for one screen only, to the place that is looked
+ * at now. */
 static enum glint_status draw_seen(struct glint_fbdev *fb,
                                    const struct glint_image *image,
                                    struct glint_error *error)
@@ -297,7 +299,8 @@ static enum glint_status draw_seen(struct glint_fbdev *fb,
     return GLINT_OK;
 }
 
-/* Where there are two: the one that is not looked at, and then that one is. */
+/* Draws, where there are two screens, to the one that is not looked at, and
+ * then shows it. */
 static enum glint_status draw_unseen(struct glint_fbdev *fb,
                                      const struct glint_image *image,
                                      struct glint_error *error)

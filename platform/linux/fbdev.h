@@ -40,8 +40,8 @@ struct glint_fbdev_options {
 
 struct glint_fbdev {
     struct glint_sink sink;
-    char id[17];       /* what the driver calls itself */
-    int width, height; /* of the panel */
+    char id[17];       /* name that the driver gives itself */
+    int width, height; /* size of the panel */
     struct glint_pixel_layout layout;
     int n_pages;             /* 2: frames are drawn unseen */
     bool has_note;           /* the console could not be taken: */
@@ -55,7 +55,7 @@ struct glint_fbdev {
     uint8_t *map;                       /* NULL: not mapped */
     size_t map_bytes, skip_bytes;       /* pixels begin so far into it */
     size_t stride_bytes, mem_bytes;
-    const uint8_t *cleared[2]; /* what is black around the picture */
+    const uint8_t *cleared[2]; /* screens that are black around the picture */
     bool has_vsync;
     struct glint_panel panel;
     struct glint_console console_held;

@@ -33,7 +33,7 @@ static const struct {
     {V4L2_PIX_FMT_YUV444M, GLINT_I444, 3},
 };
 
-/* As ffmpeg says it, and a few more that people type. */
+/* Names of formats as ffmpeg has them, and a few more that people type. */
 static const struct {
     const char *name;
     uint32_t fourcc;

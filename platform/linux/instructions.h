@@ -14,7 +14,7 @@
  * (/proc/sys/kernel/perf_event_paranoid above 2). */
 int glint_instructions_open(void);
 
-/* So far, or 0 where that cannot be read. */
+/* Returns the instructions counted so far, or 0 where they cannot be read. */
 uint64_t glint_instructions_read(int counter);
 
 void glint_instructions_close(int counter);

@@ -92,8 +92,8 @@ static bool is_there(const struct glint_v4l2 *v)
     return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
 }
 
-/* What is read by read(2) streams until it is closed, and takes no other format
- * before. */
+/* Opens the device anew: one that is read by read(2) streams until it is
+ * closed, and takes no other format before. */
 static enum glint_status agree_anew(struct glint_v4l2 *v,
                                     struct glint_error *error)
 {
@@ -144,7 +144,7 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
 
 /* ------------------------------------------------------------------- frames */
 
-/* What comes is another source, or the same after a pause: time to wait for it
+/* Begins to wait for another source, or the same after a pause: the time for it
  * counts from now, and so does patience. */
 static void begin_waiting(struct glint_v4l2 *v)
 {
@@ -264,7 +264,7 @@ static void place(const struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     }
 }
 
-/* Of a JPEG the planes are the decoder's, and the buffer goes back at once. */
+/* Decodes a JPEG to the decoder's planes; the buffer goes back at once. */
 static bool decode(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
                    struct glint_image *image)
 {

@@ -34,16 +34,16 @@ enum glint_v4l2_io {
 
 struct glint_v4l2_buffer {
     void *mem[3];
-    size_t bytes[3]; /* that are mapped or ours; as the driver says */
-    bool queued;     /* with the driver */
-    bool lent;       /* to the application */
+    size_t bytes[3]; /* bytes that are mapped or ours; as the driver says */
+    bool queued;     /* the driver has it */
+    bool lent;       /* the application has it */
 };
 
 struct glint_v4l2 {
     struct glint_source source;
     struct glint_v4l2_device device;
 
-    /* what came of it, for reports */
+    /* the outcome of opening, for reports */
     enum glint_v4l2_io io;
     int n_buffers;
     bool is_cached;      /* buffers are read at the speed of memory */
@@ -53,10 +53,10 @@ struct glint_v4l2 {
     enum glint_v4l2_io wish_io;
     int wish_buffers;
     struct glint_v4l2_buffer buffer[GLINT_V4L2_MAX_BUFFERS];
-    struct glint_mjpeg *jpeg; /* of JPEG streams */
+    struct glint_mjpeg *jpeg; /* decoder of JPEG streams */
     bool streams;
     int n_numbered;    /* frames since the start, up to 2 */
-    uint32_t sequence; /* of the last frame taken */
+    uint32_t sequence; /* number of the last frame taken */
     uint32_t n_read;   /* frames by read(2), which have no sequence */
     int64_t heard_us;  /* when the last frame came */
     int64_t broken_us; /* since when it has been failing; 0: it is not */

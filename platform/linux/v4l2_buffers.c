@@ -12,7 +12,7 @@
 #include "posix/clock.h"
 
 #define PAGE       4096
-#define MAX_AGE_US 5000000 /* of a frame that comes from the driver */
+#define MAX_AGE_US 5000000 /* oldest frame taken for one of the driver's */
 
 static bool is_multiplanar(const struct glint_v4l2 *v)
 {
@@ -147,7 +147,7 @@ static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
 
     if (glint_ioctl(v->device.fd, VIDIOC_REQBUFS, &r) < 0)
         return 0;
-    errno = ENOMEM; /* where there are none */
+    errno = ENOMEM; /* the driver granted none */
     return r.count < GLINT_V4L2_MAX_BUFFERS ? r.count : GLINT_V4L2_MAX_BUFFERS;
 }
 

@@ -8,7 +8,7 @@
 
 #include "linux/v4l2.h"
 
-/* What became of asking for a frame. */
+/* The outcome of asking for a frame. */
 enum glint_v4l2_outcome {
     GLINT_V4L2_TAKEN,
     GLINT_V4L2_NOTHING,
@@ -18,7 +18,8 @@ enum glint_v4l2_outcome {
 
 struct glint_v4l2_taken {
     int index;
-    size_t bytes[3], start[3]; /* of each block, and where data begin */
+    /* Bytes of each block, and the place where its data begin. */
+    size_t bytes[3], start[3];
     uint32_t sequence;
     int64_t time_us;
     bool damaged;
@@ -36,11 +37,12 @@ int glint_v4l2_queue(struct glint_v4l2 *v, int index);
 enum glint_v4l2_outcome glint_v4l2_take(struct glint_v4l2 *v,
                                         struct glint_v4l2_taken *t);
 
-/* Whether frames could be handed on without a copy; for reports alone. */
+/* Returns whether frames could be handed on without a copy; for reports alone.
+ */
 bool glint_v4l2_can_export(const struct glint_v4l2 *v);
 
-/* Whether buffers are read as fast as other memory. No driver says, so it is
- * tried. */
+/* Returns whether buffers are read as fast as other memory. No driver says, so
+ * it is tried. */
 bool glint_v4l2_is_cached(const struct glint_v4l2 *v);
 
 #endif

@@ -25,10 +25,11 @@ struct glint_v4l2_config {
     int fps_num, fps_den; /* frames a second; 0: likewise */
     uint32_t fourcc;      /* 0: the cheapest that gives size and rate */
     int input;            /* -1: likewise */
-    int range, matrix;    /* of the codes, over what the device says; -1: not */
+    /* Range and matrix to take for the device's own; -1: not. */
+    int range, matrix;
 };
 
-/* What the device delivers. */
+/* The format that the device delivers. */
 struct glint_v4l2_format {
     uint32_t fourcc;
     bool is_jpeg;
@@ -37,10 +38,10 @@ struct glint_v4l2_format {
     int n_blocks; /* pieces of memory a frame lies in, 1 .. 3 */
     size_t block_bytes[3];
     struct {
-        int block; /* that it lies in, */
+        int block; /* number of the block that the plane lies in */
         size_t offset;
         ptrdiff_t stride_bytes;
-        size_t bytes; /* and how many, from its offset on, it has */
+        size_t bytes; /* bytes of it, from its offset on */
     } plane[3];
     enum glint_range range;
     enum glint_matrix matrix;
@@ -52,7 +53,7 @@ struct glint_v4l2_device {
     char path[GLINT_V4L2_PATH];
     int fd; /* -1: closed */
     uint32_t caps;
-    uint32_t type; /* of its buffers */
+    uint32_t type; /* type of the device's buffers */
     bool is_dv;    /* the input has timings of its own: HDMI */
     bool has_signal;
     uint32_t input;
@@ -72,8 +73,8 @@ enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *device,
 enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *device,
                                               struct glint_error *error);
 
-/* Whether the device's own timings are others than before; notes whether there
- * is a signal at all. */
+/* Returns whether the device's own timings have changed; notes whether there is
+ * a signal at all. */
 bool glint_v4l2_device_retimed(struct glint_v4l2_device *device);
 
 void glint_v4l2_device_close(struct glint_v4l2_device *device);
@@ -88,10 +89,10 @@ enum glint_status glint_v4l2_list_devices(FILE *out, bool json);
 enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
                                           bool json, struct glint_error *error);
 
-/* Whether glint has a use for frames in FOURCC. */
+/* Returns whether glint has a use for frames in FOURCC. */
 bool glint_v4l2_is_read(uint32_t fourcc);
 
-/* For both lists: opens NAME and asks what it is. */
+/* Opens NAME and asks what it is, for both lists. */
 enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *device,
                                            const char *name,
                                            struct glint_error *error);

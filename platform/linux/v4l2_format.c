@@ -11,9 +11,9 @@
 #include "posix/error.h"
 #include "source_sink.h"
 
-/* From what costs the frame least to what costs it most: two bytes a pixel
- * that are drawn into where they lie, planes, RGB, and last what has to be
- * decoded first. */
+/* The formats by what they cost a frame, the least first: two bytes a pixel
+ * that are drawn into where they lie, planes, RGB, and last those that have to
+ * be decoded first. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,
@@ -103,7 +103,8 @@ static uint32_t offered(const struct glint_v4l2_device *d)
     return have;
 }
 
-/* For pictures of W x H; 0: none that glint reads. */
+/* Returns the cheapest format for pictures of W x H; 0: there is none that
+ * glint reads. */
 static uint32_t cheapest(const struct glint_v4l2_device *d, uint32_t w,
                          uint32_t h)
 {
@@ -171,12 +172,12 @@ static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
     }
 }
 
-/* Where the planes of a picture lie. One block holds them one after the other,
- * and the strides of chroma follow from that of luma. */
+/* Finds the planes of a picture. One block holds them one after the other, and
+ * the strides of chroma follow from that of luma. */
 static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
 {
     const int n = glint_image_planes(f->pixels);
-    uint64_t offset = 0; /* of 64 bits: a driver may say what it likes */
+    uint64_t offset = 0; /* 64 bits, as a driver may say what it likes */
 
     if (f->n_blocks != 1 && f->n_blocks != n)
         return false;

@@ -14,7 +14,7 @@
 #include "linux/request.h"
 #include "posix/error.h"
 
-/* WHAT failed, as errno says. */
+/* Reports that WHAT failed, with the cause in errno. */
 static enum glint_status failed(const struct glint_v4l2_sink *out,
                                 const char *what, struct glint_error *error)
 {
@@ -164,7 +164,7 @@ static uintptr_t distance(const struct glint_image *image, int plane)
     return (uintptr_t)image->plane[plane] - (uintptr_t)image->plane[0];
 }
 
-/* Whether IMAGE lies in memory just as the device wants it. */
+/* Returns whether IMAGE lies in memory just as the device wants it. */
 static bool is_laid_out(const struct glint_v4l2_sink *out,
                         const struct glint_image *image)
 {

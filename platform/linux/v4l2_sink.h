@@ -22,15 +22,15 @@
 
 struct glint_v4l2_sink {
     struct glint_sink sink;
-    char card[33];  /* what the device calls itself */
+    char card[33];  /* name that the device gives itself */
     long n_frames;  /* taken by the device */
     long n_dropped; /* not taken */
 
     /* Private. */
     const char *name;         /* kept */
     int fd;                   /* -1: closed */
-    struct glint_image frame; /* as the device wants it */
-    uint8_t *mem;             /* of that */
+    struct glint_image frame; /* picture in the device's format */
+    uint8_t *mem;             /* memory of the frame */
     size_t bytes;
 };
 

@@ -32,8 +32,8 @@
 enum glint_panel_fit { GLINT_PANEL_FIT, GLINT_PANEL_CENTRE };
 
 struct glint_panel_config {
-    int width,
-        height; /* of the panel; 1 .. GLINT_PANEL_SIDE, as the picture's */
+    /* Size of the panel, 1 .. GLINT_PANEL_SIDE, as the picture's. */
+    int width, height;
     struct glint_pixel_layout layout;
     int image_width, image_height;
     enum glint_panel_fit fit;
@@ -42,7 +42,8 @@ struct glint_panel_config {
 
 struct glint_panel {
     struct glint_panel_config cfg;
-    /* Where the picture lies on the panel, and the part of it that is seen. */
+    /* The place of the picture on the panel, and the part of it that is seen.
+     */
     struct glint_panel_area {
         int x, y, width, height;
     } shown, seen;
@@ -53,7 +54,7 @@ struct glint_panel {
     uint16_t *from_x; /* pixel of the seen part, by pixel shown; NULL: same */
     uint8_t *line;    /* packed, of the seen part */
     uint8_t *scaled;  /* packed, of what is shown */
-    void *mem;        /* of all these; NULL: closed */
+    void *mem;        /* memory of all these; NULL: closed */
 };
 
 /* GLINT_E_UNSUPPORTED: a layout that is not valid, or a size out of range.

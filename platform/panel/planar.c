@@ -39,7 +39,8 @@ static void copy_plane(const struct glint_image *to,
         memcpy(row_at(to, plane, y), row_at(from, plane, y), bytes);
 }
 
-/* Its last pair may have one pixel, whose twin is left out. */
+/* Splits a row into planes. The last pair may have one pixel, whose twin is
+ * left out. */
 static void split_row(const struct glint_image *to,
                       const struct glint_image *from, struct glint_row_rgb *row,
                       int y)

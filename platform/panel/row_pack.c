@@ -164,7 +164,7 @@ void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
 
 /* ------------------------------------------------------------------- tables */
 
-/* Which channel each byte of a pixel holds, in the order of memory. */
+/* Notes which channel each byte of a pixel holds, in the order of memory. */
 static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
 {
     const struct glint_pixel_layout *const l = &p->layout;

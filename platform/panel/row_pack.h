@@ -26,7 +26,7 @@ struct glint_pixel_field {
 };
 
 struct glint_pixel_layout {
-    int bytes; /* of a pixel: 2, 3 or 4 */
+    int bytes; /* bytes of a pixel: 2, 3 or 4 */
     struct glint_pixel_field red, green, blue, transparency;
 };
 
@@ -45,8 +45,8 @@ struct glint_row_pack {
     uint32_t opaque;
 };
 
-/* Whether LAYOUT can be written: whole bytes, fields that fit and do not
- * overlap, and all three colours. */
+/* Returns whether LAYOUT can be written: whole bytes, fields that fit and do
+ * not overlap, and all three colours. */
 bool glint_pixel_layout_is_valid(const struct glint_pixel_layout *layout);
 
 /* Bytes of memory, aligned as malloc does, for rows of up to WIDTH pixels. */

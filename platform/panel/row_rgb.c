@@ -32,7 +32,7 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* What is added to products of raw codes: the codes of zero, times the
+/* Terms to add to products of raw codes: the codes of zero, times the
  * constants, and one half. */
 struct bias {
     int32_t red, green, blue, grey;
@@ -174,7 +174,7 @@ static void read_ycc(struct glint_row_rgb *row, const struct glint_image *image,
         return;
     }
     mix_pairs(m, r, g, b, s.luma, s.cb, s.cr, n / 2);
-    if (n > even) /* its pair may have no luma */
+    if (n > even) /* the twin of the last pixel may have no luma */
         mix_pixels(m, r + even, g + even, b + even, s.luma + even,
                    s.cb + even / 2, s.cr + even / 2, 1);
 }

@@ -25,7 +25,7 @@ struct glint_row_rgb {
     const uint8_t *channel[3]; /* R', G', B' of the last read */
 
     /* Private. */
-    uint8_t *rgb[3], *luma, *cb, *cr; /* in the caller's memory */
+    uint8_t *rgb[3], *luma, *cb, *cr; /* rows in the caller's memory */
 };
 
 /* Bytes of memory for rows of up to WIDTH pixels. */

@@ -30,7 +30,7 @@ struct glint_y4m_sink {
     struct glint_image like; /* the first frame, without its memory */
     struct glint_image planes;
     struct glint_row_rgb row;
-    void *mem; /* of both; NULL: frames are written as they are */
+    void *mem; /* memory of both; NULL: frames are written as they are */
     struct glint_y4m_writer writer;
 };
 

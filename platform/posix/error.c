@@ -7,7 +7,7 @@
 
 #include "posix/utf8.h"
 
-#define FILE_CHARS 120 /* of a name, so that the cause fits behind it */
+#define FILE_CHARS 120 /* shown of a name, so that the cause fits behind */
 
 enum glint_status glint_error_report(struct glint_error *error,
                                      enum glint_status status, const char *file,

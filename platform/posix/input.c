@@ -34,7 +34,8 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
     return GLINT_OK;
 }
 
-/* Whether a read that failed is worth repeating, after waiting if need be. */
+/* Returns whether a read that failed is worth repeating, after waiting if need
+ * be. */
 static int may_retry(int fd)
 {
     struct pollfd readable = {.fd = fd, .events = POLLIN};
@@ -54,8 +55,8 @@ ptrdiff_t glint_input_some(struct glint_input *in, void *dst, size_t bytes)
     return n;
 }
 
-/* What to make room for at first: the size of a regular file and one byte more,
- * so that the end is seen without growing. */
+/* Returns the bytes to make room for at first: the size of a regular file and
+ * one byte more, so that the end is seen without growing. */
 static size_t expected_bytes(const struct glint_input *in, size_t max)
 {
     struct stat st;

@@ -19,7 +19,7 @@
 
 struct glint_input {
     int fd;           /* -1: closed */
-    const char *name; /* for errors; kept */
+    const char *name; /* name for errors; kept */
 };
 
 /* Opens PATH, which is kept. GLINT_E_IO: it cannot be opened. */

@@ -224,7 +224,8 @@ static enum glint_status report_failed(const struct glint_output *out,
         out->name, "%s", strerror(out->failed));
 }
 
-/* Whether a write that failed is worth repeating, after waiting if need be. */
+/* Returns whether a write that failed is worth repeating, after waiting if need
+ * be. */
 static bool may_retry(int fd)
 {
     struct pollfd writable = {.fd = fd, .events = POLLOUT};

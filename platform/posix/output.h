@@ -38,8 +38,9 @@ enum glint_output_kind {
 
 struct glint_output {
     int fd;           /* -1: closed */
-    const char *name; /* for errors; kept */
-    char *target;     /* what commit replaces; NULL: written straight into */
+    const char *name; /* name for errors; kept */
+    char *target;     /* file that commit replaces; NULL: it is written straight
+                         into */
     char *tmp;        /* the file being written; NULL: straight */
     uint8_t *buffer;  /* small writes gather here */
     size_t used;      /* bytes of it */
@@ -52,9 +53,9 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
                                     enum glint_output_kind kind,
                                     struct glint_error *error);
 
-/* Whether a file can be created at PATH, before there is work for it; leaves
- * nothing. What is written straight into is not touched, and is fine.
- * GLINT_E_OUTPUT: it cannot; GLINT_E_MEMORY. */
+/* Checks whether a file can be created at PATH, before there is work for it;
+ * leaves nothing. A file that is written straight into is not touched, and is
+ * fine. GLINT_E_OUTPUT: it cannot; GLINT_E_MEMORY. */
 enum glint_status glint_output_check(const char *path,
                                      struct glint_error *error);
 

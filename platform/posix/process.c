@@ -40,7 +40,7 @@ static void *do_call(void *arg)
     return NULL;
 }
 
-/* In a thread with a stack of BYTES, while this one takes no signals. */
+/* Runs C in a thread with a stack of BYTES, while this one takes no signals. */
 static bool call_apart(size_t bytes, struct call *c)
 {
     pthread_attr_t attr;

@@ -15,7 +15,7 @@
 struct live_wish {
     struct glint_v4l2_config camera; /* device, size and rate of any source */
     enum glint_v4l2_io io;           /* of a camera */
-    int n_buffers;                   /* of a camera */
+    int n_buffers;                   /* buffers of a camera */
 };
 
 struct live_input {
@@ -27,7 +27,7 @@ struct live_input {
     } as;
 };
 
-/* Whether NAME is a camera's. */
+/* Returns whether NAME is a camera's. */
 bool live_input_is_camera(const char *name);
 
 /* Tells what can be told before there is a lens. GLINT_E_DEVICE, _IO. */

@@ -18,7 +18,7 @@ void live_log_init(struct live_log *log, const struct tool *tool,
                                             : LIVE_REPORT_LINE;
 }
 
-/* Whether statistics overwrite one line of a terminal. */
+/* Returns whether statistics overwrite one line of a terminal. */
 static bool is_line(const struct live_log *log)
 {
     return log->report == LIVE_REPORT_LINE && isatty(STDERR_FILENO);

@@ -21,17 +21,18 @@ struct live {
     void *ctx;
 
     struct live_input in;
-    struct glint_source_format format; /* of the input, as of last */
-    int n_restarts;                    /* of the input, until then */
+    /* Format of the input when it was looked at last. */
+    struct glint_source_format format;
+    int n_restarts; /* restarts of the input until then */
     struct live_output output;
-    struct live_copy copy; /* of frames that lie in slow memory */
+    struct live_copy copy; /* copy of frames that lie in slow memory */
 
     struct live_adapt adapt;
-    struct glint_dials asked; /* of the frame before it was adapted */
+    struct glint_dials asked; /* dials of the frame before it was adapted */
     struct live_log log;
     int n_shown, n_snapshots;
     struct glint_error why; /* the camera could not be opened, last time */
-    int64_t time_us;        /* of the last frame */
+    int64_t time_us;        /* time of the last frame */
     int64_t retry_us; /* when a lost output is tried again; 0: never lost */
     bool had_signal;
 };
@@ -183,7 +184,8 @@ static int64_t us(double ms)
     return (int64_t)(1e3 * ms);
 }
 
-/* AT_US: taken, copied, drawn, shown; NULL: there was no frame to show. */
+/* Notes when the frame was taken, copied, drawn and shown, AT_US; NULL: there
+ * was no frame to show. */
 static void note(struct live *l, const struct glint_source_frame *frame,
                  const int64_t *at_us)
 {
@@ -212,8 +214,8 @@ static void note(struct live *l, const struct glint_source_frame *frame,
 
 /* ------------------------------------------------------------- what is lost */
 
-/* With --reconnect a device that went away is waited for; the panel keeps the
- * last picture meanwhile, and why is said. Returns -1 to go on. */
+/* Takes the loss of a device. With --reconnect it is waited for, and the panel
+ * keeps the last picture meanwhile; the cause is said. Returns -1 to go on. */
 static int lose(struct live *l, const char *what, enum glint_status status,
                 const char *why)
 {
@@ -403,7 +405,7 @@ static int start(struct live *l)
     code = compositor_open(l->tool, &l->o->compositor);
     if (code != EXIT_OK)
         return code;
-    live_signals_take(); /* until here, whoever is impatient may kill it */
+    live_signals_take(); /* an impatient user may kill it until here */
     status = open_camera(l, &error);
     if (status != GLINT_OK)
         return fail_camera(l, status, &error);

@@ -29,7 +29,7 @@ struct live_output {
     enum live_output_kind kind;
     const char *path; /* NULL: the default */
     enum glint_panel_fit fit;
-    bool dither;             /* of panels with 16 bits a pixel */
+    bool dither;             /* dither on panels with 16 bits a pixel */
     struct glint_sink *sink; /* NULL: closed */
     union {
         struct glint_fbdev fb;
@@ -43,7 +43,7 @@ struct live_output {
 /* Reads NAME, which is kept. False: it is none of the above. */
 bool live_output_parse(struct live_output *output, const char *name);
 
-/* Whether it can be opened before there is a picture. */
+/* Returns whether the output can be opened before there is a picture. */
 bool live_output_is_flexible(const struct live_output *output);
 
 /* IMAGE says format and size; of no meaning to a flexible output. */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define SECOND_US 1000000
-#define COLUMNS   79 /* of a terminal, one left for the cursor */
+#define COLUMNS   79 /* columns of a terminal, but one for the cursor */
 
 static const char *const stage_names[LIVE_N_STAGES] = {
     [LIVE_CONVERT] = "convert", [LIVE_FIND] = "find", [LIVE_PLAN] = "plan",

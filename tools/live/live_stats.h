@@ -24,7 +24,8 @@
 #include <stdint.h>
 
 enum live_stage {
-    LIVE_CONVERT, /* from what the source gives to what is drawn into */
+    LIVE_CONVERT, /* the source's format is turned into one that is drawn into
+                   */
     LIVE_FIND,    /* lights, and their tracks */
     LIVE_PLAN,
     LIVE_BIN, /* rays, edges and where they go */
@@ -34,7 +35,7 @@ enum live_stage {
 };
 
 enum {
-    LIVE_BINS = 10000,    /* of latency */
+    LIVE_BINS = 10000,    /* bins of latency */
     LIVE_BIN_US = 100,    /* the width of one */
     LIVE_STATS_TEXT = 640 /* characters that any line fits in */
 };
@@ -46,11 +47,11 @@ struct live_frame_times {
     int64_t captured_us, shown_us;
     int64_t stage_us[LIVE_N_STAGES];
     int lights, ghosts;
-    size_t bytes;   /* of the arena, in use */
+    size_t bytes;   /* bytes of the arena in use */
     double quality; /* 0 .. 1 */
 };
 
-/* Of some span of time. */
+/* The sums over some span of time. */
 struct live_sums {
     int64_t began_us;
     uint64_t frames, drops, late, corrupt;
@@ -71,7 +72,7 @@ void live_stats_start(struct live_stats *stats, int64_t now_us);
 void live_stats_add(struct live_stats *stats,
                     const struct live_frame_times *times);
 
-/* Whether a second has passed since start or next. */
+/* Returns whether a second has passed since start or next. */
 bool live_stats_due(const struct live_stats *stats, int64_t now_us);
 
 /* Begins the next second. */

@@ -31,7 +31,8 @@ static uint8_t *read_ours(const char *path, size_t *bytes)
     return cache_file_read(path, MAX_BYTES, bytes);
 }
 
-/* What was installed is as good as the program itself, whoever did it. */
+/* Reads a model that was installed, which is as good as the program itself,
+ * whoever did it. */
 static uint8_t *read_installed(const char *path, size_t *bytes)
 {
     struct glint_error error;

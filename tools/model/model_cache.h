@@ -17,14 +17,15 @@
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);
 
-/* Whether it need not be baked. */
+/* Returns whether the model is there and need not be baked. */
 bool model_is_cached(const struct glint_prescription *lens,
                      const struct glint_bake_options *options);
 
 /* Adds "/NAME-KEY.glint" to the folder in PATH. False: too long. */
 bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key);
 
-/* Where FILE is kept, whose folder is made. False: nowhere. */
+/* Gives the PATH at which FILE is kept, and makes its folder. False: there is
+ * none. */
 bool model_cache_path(char *path, size_t bytes, const char *file);
 
 #endif

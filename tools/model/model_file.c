@@ -49,7 +49,7 @@ int tool_model(const struct tool *tool, const char *path,
     *model = (struct model_file){.data = NULL};
     status =
         glint_input_slurp(&data, &model->bytes, path, MAX_MODEL_BYTES, &error);
-    model->data = data; /* of malloc, so aligned */
+    model->data = data; /* malloc aligns it */
     if (status == GLINT_OK) {
         status =
             glint_lens_open(&model->lens, model->data, model->bytes, &reason);

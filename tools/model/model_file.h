@@ -20,9 +20,9 @@ struct model_file {
     size_t bytes;
 };
 
-/* Whether ARGUMENT is the name of a file: with a slash, or ending in .lens or
- * .glint. Else it is that of a lens that comes with glint, whatever lies in the
- * current folder. */
+/* Returns whether ARGUMENT is the name of a file: with a slash, or ending in
+ * .lens or .glint. Else it is that of a lens that comes with glint, whatever
+ * lies in the current folder. */
 bool tool_is_file_name(const char *argument);
 
 /* PATH is such a name, of a file that begins as models do. */

@@ -63,7 +63,8 @@ static size_t box_words(const struct glint_model_system *s)
     return n;
 }
 
-/* What a span takes in the file, without regard to sharing. */
+/* Returns the bytes that a span takes in the file, without regard to sharing.
+ */
 size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
 {
     size_t sum = 0;
@@ -144,7 +145,7 @@ double model_terms(const struct model_summary *sum)
     return terms;
 }
 
-/* Of an output. */
+/* Returns the mean number of terms of an output. */
 double model_mean_terms(const struct model_summary *sum)
 {
     uint32_t n = 0;

@@ -17,7 +17,8 @@ extern const double model_output_targets[GLINT_OUT_KINDS];
 
 const char *model_basis_name(const struct glint_lens *lens);
 double model_degrees(int32_t sine_q30);
-double model_nanometres(int32_t wave_q24); /* from 1 / square micrometres */
+double model_nanometres(
+    int32_t wave_q24); /* Turns 1 / square micrometres into nanometres. */
 
 /* Systems that follow each other. */
 struct model_span {
@@ -32,7 +33,8 @@ const struct glint_model_output *
 model_outputs_of(const struct glint_lens *lens,
                  const struct glint_model_system *system);
 
-/* What a span takes in the file, without regard to sharing. */
+/* Returns the bytes that a span takes in the file, without regard to sharing.
+ */
 size_t model_span_bytes(const struct glint_lens *lens, struct model_span span);
 
 /* Angles that a span covers. */
@@ -52,10 +54,11 @@ struct model_summary {
 
 struct model_summary model_summary_of(const struct glint_lens *lens,
                                       struct model_span span);
-double model_terms(const struct model_summary *sum);      /* of all outputs */
-double model_mean_terms(const struct model_summary *sum); /* of an output */
+double model_terms(const struct model_summary *sum); /* terms of all outputs */
+double
+model_mean_terms(const struct model_summary *sum); /* mean terms of an output */
 
-/* Whether some output misses its target. */
+/* Returns whether some output misses its target. */
 bool model_misses(const struct model_summary *sum);
 
 /* Ghosts without the further parts of their pupils. */

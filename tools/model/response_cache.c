@@ -7,9 +7,9 @@
 
 #include "model/cache_file.h"
 
-/* To be raised when glint_response_measure() gives other figures for the same
- * scene: when it draws or looks otherwise, or light is drawn brighter or
- * darker. */
+/* Number of the figures' meaning. It is to be raised when
+ * glint_response_measure() gives other figures for the same scene: when it
+ * draws or looks otherwise, or light is drawn brighter or darker. */
 enum { REVISION = 1 };
 
 enum {
@@ -22,7 +22,7 @@ struct entry {
     char magic[8];
     uint64_t key;
     int32_t n;
-    uint32_t crc32; /* of value */
+    uint32_t crc32; /* checksum of value */
     double value[VALUES];
 };
 
@@ -107,7 +107,7 @@ static uint64_t key_of(const struct glint_frame *like, size_t bytes)
 
 /* -------------------------------------------------------------------- entry */
 
-/* Where each value of R lies, in the order of an entry. */
+/* Lists the places of R's values in the order of an entry. */
 static void list_values(struct glint_response *r, double *at[VALUES])
 {
     int n = 0;

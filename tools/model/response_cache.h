@@ -13,8 +13,8 @@
 #include "engine/response.h"
 #include "options/tool.h"
 
-/* As glint_response_measure() of LIKE, once; LENS is its name. Tells TOOL which
- * it was, if verbose. GLINT_E_MEMORY. */
+/* Gives what glint_response_measure() gives for LIKE, which is measured once;
+ * LENS is its name. Tells TOOL which it was, if verbose. GLINT_E_MEMORY. */
 enum glint_status response_cached(const struct tool *tool, const char *lens,
                                   const struct glint_frame *like, size_t bytes,
                                   struct glint_response *response);

@@ -10,7 +10,7 @@
 enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_FILMS };
 
 struct coating {
-    enum coating_kind kind; /* by default the table's own */
+    enum coating_kind kind; /* kind of coating; by default the table's own */
     bool given;             /* was asked for, not only what is done anyway */
     int n_films;
     struct glint_film film[GLINT_MAX_FILMS];

@@ -13,18 +13,18 @@
 #include "posix/error.h"
 #include "posix/input.h"
 
-#define MAX_BYTES   (1 << 20) /* of a file */
-#define MAX_OPTIONS 256       /* of a command, that have no value */
-#define NAME_CHARS  100       /* of a file, in errors */
+#define MAX_BYTES   (1 << 20) /* largest file */
+#define MAX_OPTIONS 256 /* options without a value that a command may have */
+#define NAME_CHARS  100 /* bytes of a file's name in errors */
 
 /* One pass over a file: the first checks all of it, the second takes it. */
 struct pass {
     struct config *config;
     bool taking;
     const char *name;
-    const char *at, *end; /* what is left of the text */
+    const char *at, *end; /* rest of the text */
     int line, section_line;
-    char section[64];            /* of the last entry */
+    char section[64];            /* section of the last entry */
     char where[NAME_CHARS + 32]; /* "FILE:LINE" */
     char *value;                 /* room for those to come */
     bool stated[MAX_OPTIONS];
@@ -218,7 +218,8 @@ static void run_pass(struct pass *p, const char *text, size_t bytes)
 int config_parse(struct config *config, const char *name, const char *text,
                  size_t bytes, struct glint_error *error)
 {
-    static const char mark[] = "\xef\xbb\xbf"; /* of UTF-8, by some editors */
+    static const char mark[] =
+        "\xef\xbb\xbf"; /* the mark of UTF-8 that some editors write */
     struct pass p = {.config = config, .name = name, .error = error};
 
     error->text[0] = '\0';

@@ -26,7 +26,7 @@
 
 #include "options/tool.h"
 
-#define CONFIG_LINE 190 /* what inih has room for everywhere */
+#define CONFIG_LINE 190 /* bytes of a line; inih has so many everywhere */
 
 /* Takes OPTION as from the command line; VALUE is NULL where it has none.
  * Returns -1 to go on, else an exit code, after printing why by tool_usage(),

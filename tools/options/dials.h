@@ -10,8 +10,9 @@
 
 enum {
     MAX_DIALS = 16,
-    DIAL_VALUES = 10, /* of one dial by itself */
-    DIAL_TOGETHER = 5 /* of these, in combination with the other dials' */
+    DIAL_VALUES = 10, /* values of one dial by itself */
+    DIAL_TOGETHER =
+        5 /* values of these that are combined with the other dials' */
 };
 
 enum dial_id {
@@ -29,9 +30,9 @@ enum dial_id {
 };
 
 struct dial {
-    const char *name, *what; /* for tables; for plots */
+    const char *name, *what; /* words for tables, and for plots */
     enum dial_id id;
-    double standard;  /* what settings have by default */
+    double standard;  /* default of the settings */
     bool opens;       /* settings have to be opened anew for it */
     bool many_lights; /* does nothing to a single one */
     int n_values, n_together;

@@ -156,7 +156,8 @@ static int set_up(const struct tool *tool, struct settings *s)
     return EXIT_OK;
 }
 
-/* What only cells have is not left out in silence. */
+/* Refuses options that only drawing by cells has, rather than leave them out in
+ * silence. */
 static int check_raster(const struct tool *tool, const struct settings *s)
 {
     if (s->mask_nodes && s->by_edges)

@@ -11,23 +11,24 @@
 #include "model/model_file.h"
 #include "options/tool.h"
 
-enum { SETTINGS_MAX_LAMPS = 1024 }; /* by hand; a file may have more */
+enum { SETTINGS_MAX_LAMPS = 1024 }; /* lamps by hand; a file may have more */
 
-/* What the integer engine's rays come from. */
+/* The origin of the integer engine's rays. */
 enum settings_rays { SETTINGS_RAYS_MODEL, SETTINGS_RAYS_EXACT };
 
-/* What is drawn for light of all wavelengths. */
+/* The wavelengths that are drawn for light of all. */
 enum settings_waves {
     SETTINGS_WAVES_LIST,  /* wavelength_nm */
     SETTINGS_WAVES_COUNT, /* n_wavelengths of glint_spectrum() */
-    SETTINGS_WAVES_AUTO   /* for each ghost as many as it needs */
+    SETTINGS_WAVES_AUTO   /* each ghost takes as many as it needs */
 };
 
 struct settings {
-    struct glint_prescription lens; /* of a model: name and film only */
-    struct model_file model;        /* closed for exact rays */
+    /* Lens table; of a model only its name and film. */
+    struct glint_prescription lens;
+    struct model_file model; /* closed for exact rays */
     enum settings_rays rays;
-    double max_deg;   /* of the lamps that a model is baked for */
+    double max_deg;   /* largest angle of the lamps that a model is baked for */
     double tolerance; /* it is baked with */
     struct glint_setup setup;
     struct coating coating;
@@ -40,7 +41,7 @@ struct settings {
     double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
     int only_ghost;
-    struct glint_dials dials; /* but for max_lights */
+    struct glint_dials dials; /* dials, but for max_lights */
     double quantum;           /* percent: its irradiance_steps */
     int max_lights;           /* 0: not said */
     int area_samples_asked;   /* 0: as the quality has it */
@@ -48,7 +49,7 @@ struct settings {
 
     int merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma;
-    double quality;   /* as asked for, 0.5 by default */
+    double quality;   /* quality asked for, 0.5 by default */
     double budget_ms; /* 0: none */
     int raster;       /* 0: by edges, 1: by cells */
     enum glint_weights weights;
@@ -132,7 +133,7 @@ enum settings_option {
         "apart", required_argument, NULL, OPT_APART                  \
     }
 
-/* What they do, for a command's help. */
+/* The help of a command on these options. */
 #define SETTINGS_HELP                                                          \
     "The lens\n"                                                               \
     "  --f-number N        stop it to f/N (default: the "                      \
@@ -162,7 +163,7 @@ enum settings_option {
     "as\n"                                                                     \
     "                      a camera balanced to white behind this lens\n"
 
-/* And what they give up accuracy for. */
+/* The help on options that give up accuracy for speed. */
 #define SPEED_HELP                                                             \
     "Speed and accuracy of the integer engine\n"                               \
     "  --max-lights N      lights that are drawn (default 128): more merge, "  \

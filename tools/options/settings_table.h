@@ -13,15 +13,16 @@
 int settings_open_table(const struct tool *tool, struct settings *settings,
                         const char *name);
 
-/* What a model for SETTINGS, whose lens has been read, is baked with. */
+/* Returns the options to bake a model for SETTINGS with, whose lens has been
+ * read. */
 struct glint_bake_options
 settings_bake_options(const struct settings *settings);
 
-/* Its setup where there is no model. */
+/* Makes the setup where there is no model. */
 enum glint_status settings_table_setup(struct settings *settings,
                                        struct glint_error *error);
 
-/* What traces its rays where there is no model. */
+/* Returns what traces the rays of a frame where there is no model. */
 const struct glint_frame_rays *settings_table_rays(void);
 
 #endif

@@ -8,7 +8,7 @@
 #include "engine/frame/area.h"
 #include "options/settings_waves.h"
 
-/* What became of an option; false and true are the first two. */
+/* The fate of an option; false and true are the first two. */
 enum taken { WRONG, TAKEN, OTHER };
 
 /* "circle" or "polygon:N[,ROT]" */
@@ -248,7 +248,7 @@ static enum taken take_dial(struct settings *s, int option, const char *value)
         word = tool_word(value, rays);
         s->rays = word == 0 ? SETTINGS_RAYS_MODEL : SETTINGS_RAYS_EXACT;
         return word >= 0;
-    case OPT_LANES: /* of a release ago */
+    case OPT_LANES: /* an option of the last release */
         return strcmp(value, "32") == 0;
     default:
         return OTHER;

@@ -13,7 +13,7 @@ static int least(int a, int b, int c)
 int suggest_distance(const char *a, const char *b)
 {
     const int n = (int)strlen(a), m = (int)strlen(b);
-    int rows[3][SUGGEST_CHARS]; /* of i - 2, i - 1 and i */
+    int rows[3][SUGGEST_CHARS]; /* rows i - 2, i - 1 and i */
 
     if (n >= SUGGEST_CHARS || m >= SUGGEST_CHARS)
         return SUGGEST_CHARS;

@@ -18,7 +18,7 @@ enum { SUGGEST_CHARS = 48 };
 struct suggest {
     const char *word; /* kept */
     char best[SUGGEST_CHARS];
-    int distance; /* of best */
+    int distance; /* distance of the best word */
 };
 
 /* Letters to insert, leave out, change or swap with the next to come from A to

@@ -10,7 +10,7 @@
 
 #include "options/tool.h"
 
-/* What OPTION, without dashes, of COMMAND takes, in words, or NULL. */
+/* Returns in words what OPTION, without dashes, of COMMAND takes, or NULL. */
 const char *takes_of(const char *command, const char *option);
 
 /* Says that VALUE is not something OPTION takes, and what is. Returns the code

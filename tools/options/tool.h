@@ -23,16 +23,17 @@ enum exit_code {
 };
 
 struct tool {
-    const char *name;      /* of the command */
-    const char *help;      /* its text, */
-    const char *help_end;  /* more of it, or NULL, */
-    const char *help_last; /* and more: strings of C99 end at 4095 bytes */
+    const char *name;     /* name of the command */
+    const char *help;     /* help of the command, */
+    const char *help_end; /* more of it, or NULL, */
+    /* And the rest of it: strings of C99 end at 4095 bytes. */
+    const char *help_last;
     bool json, quiet;
     int verbose;
     int n_threads;
-    int seed;            /* of all that is random: the noise of live -d test */
-    unsigned sets_off;   /* instruction sets not to use */
-    const char *kernels; /* what --kernels said, or NULL */
+    int seed; /* seed of all that is random: the noise of live -d test */
+    unsigned sets_off;             /* instruction sets not to use */
+    const char *kernels;           /* argument of --kernels, or NULL */
     struct glint_workers *workers; /* made by tool_start */
     const char *where; /* "FILE:LINE" of the option being taken, or NULL for the
                           command line */
@@ -51,7 +52,7 @@ struct tool {
         NULL, 0, NULL, 0                                                       \
     }
 
-/* Where the options being read come from, so that tool_option can say which
+/* Notes the line that options are read from, so that tool_option can say which
  * was meant. */
 void tool_line(char **argv);
 
@@ -95,7 +96,7 @@ bool tool_integer(const char *text, int low, int high, int *value);
 /* "WxH" */
 bool tool_size(const char *text, int *width, int *height);
 
-/* Which of the NULL-terminated WORDS it is, or -1. */
+/* Returns the index of TEXT in the NULL-terminated WORDS, or -1. */
 int tool_word(const char *text, const char *const *words);
 
 /* Seconds since some moment. */

@@ -17,7 +17,7 @@
 
 enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
 
-/* Those to kill when dying; async-signal-safe. */
+/* Processes to kill when dying; async-signal-safe. */
 static pid_t running[MAX_CHILDREN];
 
 static void kill_all(void)
@@ -63,8 +63,9 @@ bool child_exists(const char *name)
 
 /* ----------------------------------------------------------------- starting */
 
-/* In the child: IN and OUT become its streams; what cannot be run says why
- * through FAILED. Nothing but system calls. */
+/* Becomes another program, in the child: IN and OUT become its streams; the
+ * reason why one cannot be run is sent through FAILED. Nothing but system
+ * calls. */
 static void become(const char *const *argv, int in, int out, int failed)
 {
     sigset_t none;
@@ -83,7 +84,7 @@ static void become(const char *const *argv, int in, int out, int failed)
     _exit(NOT_FOUND);
 }
 
-/* What kept the child from running, or 0. */
+/* Returns what kept the child from running, or 0. */
 static int read_failure(int fd)
 {
     int number = 0;

@@ -19,8 +19,10 @@
 #include "glint/status.h"
 
 enum child_pipe {
-    CHILD_WRITES, /* its standard output is our FD, its input is empty */
-    CHILD_READS   /* its standard input is our FD, its output goes nowhere */
+    CHILD_WRITES, /* the child's standard output is our FD, its input is empty
+                   */
+    CHILD_READS /* the child's standard input is our FD, its output goes nowhere
+                 */
 };
 
 struct child {
@@ -28,7 +30,7 @@ struct child {
     int fd;    /* our end of the pipe; -1: closed */
 };
 
-/* Whether NAME is a program of $PATH. */
+/* Returns whether NAME is a program of $PATH. */
 bool child_exists(const char *name);
 
 /* Starts ARGV[0] of $PATH with ARGV, which ends with NULL. GLINT_E_UNSUPPORTED:

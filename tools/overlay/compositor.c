@@ -88,7 +88,8 @@ static enum glint_status open_finder(struct compositor *compositor, int width,
     return glint_lamp_detector_open(&compositor->finder, &cfg);
 }
 
-/* While lamps change places, those that fade are drawn with those that rise. */
+/* Takes room for lamps that fade together with those that rise: while they
+ * change places both are drawn. */
 static enum glint_status reserve(struct compositor *compositor)
 {
     const int n_by_hand = compositor->n_hand + compositor->list.n;
@@ -142,7 +143,7 @@ void compositor_replace(struct compositor *compositor,
         compositor->save = save;
         compositor->n_frames = n_frames;
     }
-    /* what is made by size points here, and is made anew */
+    /* a setup from a table is made by size, and so is made anew */
     if (compositor->settings.setup.lens)
         compositor->settings.setup.lens = &compositor->settings.lens;
 }
@@ -173,7 +174,8 @@ void compositor_close(struct compositor *compositor)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Where lamp I is: as it was found, for what is written is read again. */
+/* Returns the row of lamp I at the place where it was found, as the file is
+ * read again. */
 static struct lamp_row row_of(const struct compositor *compositor, int i)
 {
     const bool found = !compositor->is_listed && compositor->n_hand == 0;
@@ -254,7 +256,7 @@ int compositor_lamps(struct compositor *compositor,
     return compositor->n_lamps;
 }
 
-/* Whether codes are luma and chroma, or grey: then black may be 16. */
+/* Returns whether codes are luma and chroma, or grey: then black may be 16. */
 static bool is_luma(enum glint_pixel_format format)
 {
     return format != GLINT_RGB24 && format != GLINT_BGR24 &&

@@ -20,37 +20,37 @@
 struct compositor {
     struct settings settings;
     const char *lens, *lights_file; /* NULL: lamps are found */
-    const char *save_file;          /* for lamps, or NULL */
+    const char *save_file;          /* file for lamps, or NULL */
     bool interpolate;               /* lamps of a file */
-    struct lamp_list at;            /* by hand, by pixel */
-    double threshold_ev[2];         /* that seeds a lamp, that it extends to */
+    struct lamp_list at;            /* lamps given by hand, by pixel */
+    double threshold_ev[2]; /* thresholds that seed a lamp, and that it extends
+                               to */
     double headroom_ev;
     bool flare_only, no_tracking, show_lights;
-    bool flare_alpha;     /* with flare_only, of files */
+    bool flare_alpha;     /* alpha in files of the flare alone */
     size_t reserve_bytes; /* unless 0: all the memory that frames will take */
     int n_hand;
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
-    struct glint_strength
-        strength; /* how bright, and the scale of each frame */
+    /* How bright, and the scale of each frame. */
+    struct glint_strength strength;
     int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
 
     /* Made by open and size. */
     bool is_listed; /* lights come from a file; its name is not needed more */
-    struct lamp_list list; /* with those by pixel */
+    struct lamp_list list; /* lamps to draw, with those by pixel */
     struct lamp_save save;
     struct glint_lamp_detector finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
-    double *level;           /* of each, its share in its power: struct
-                                strength_lamps */
-    uint32_t *id;            /* of each, as it is saved */
+    double *level; /* share of each lamp in its power: struct strength_lamps */
+    uint32_t *id;  /* number that each lamp is saved under */
     struct glint_response response;
     double white; /* light of the picture's white, 1 by default */
     struct glint_view view;
     struct glint_frame frame;
     bool sized;
 
-    /* Of the last frame. */
-    bool is_followed; /* as a frame of a video */
+    /* The rest is of the last frame. */
+    bool is_followed; /* whether it is a frame of a video */
     int n_frames, n_lamps;
     double find_ms, flare_ms;
     struct glint_frame_report report;

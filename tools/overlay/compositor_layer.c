@@ -37,7 +37,7 @@ static double distance(const struct reach *r, int x, int y)
     return hypot(x + 0.5 - r->x, y + 0.5 - r->y);
 }
 
-/* Whether no other of the N lamps reaches the pixel and is nearer. */
+/* Returns whether no other of the N lamps reaches the pixel and is nearer. */
 static bool is_nearest(const struct reach *all, int n, int own, int x, int y)
 {
     const double d = distance(&all[own], x, y);
@@ -89,7 +89,7 @@ static void add_excess(struct sum *sum, const struct glint_samples *samples,
         }
 }
 
-/* What the finder saw of TRACK, in the picture's light. */
+/* Returns what the finder saw of TRACK, in the picture's light. */
 static struct sum seen_of(const struct glint_lamp_track *track, double white)
 {
     const double flux = (double)track->flux_q16 / 65536 * white;

@@ -22,7 +22,8 @@ void compositor_defaults(struct compositor *compositor)
 /* Stops by which a region extends below what makes it a lamp, if not given. */
 #define EXTENDS_EV 0.05
 
-/* Of a lamp by hand, over a white pixel: a street lamp in a night picture. */
+/* The default of a lamp by hand, over a white pixel: a street lamp in a night
+ * picture. */
 #define DEFAULT_EV 16
 
 static bool take_threshold(const char *text, double threshold_ev[2])

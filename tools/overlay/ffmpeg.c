@@ -45,7 +45,7 @@ static bool file_url(char url[FILE_NAME], const char *name)
 
 /* ---------------------------------------------------------------------- GIF */
 
-/* What of sub-blocks begins at AT: where they end, or the end of the data. */
+/* Returns where the sub-blocks that begin at AT end, or the end of the data. */
 static size_t skip_blocks(const uint8_t *d, size_t n, size_t at)
 {
     while (at < n && d[at] != 0)
@@ -298,7 +298,8 @@ static const char *planes_for(const struct ffmpeg_video *v)
                          : has_one_of(v->pixels, of_422)       ? "422"
                                                                : "420";
 
-    if (strncmp(v->pixels, "yuvj", 4) == 0) /* of full range by their name */
+    if (strncmp(v->pixels, "yuvj", 4) ==
+        0) /* the name of these says full range */
         return chroma[2] == '4'   ? "yuvj444p"
                : chroma[2] == '2' ? "yuvj422p"
                                   : "yuvj420p";
@@ -330,7 +331,7 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
 /* ------------------------------------------------------------------ encoding
  */
 
-/* Whether a file of this extension takes sound of CODEC as it is. */
+/* Returns whether a file of this extension takes sound of CODEC as it is. */
 static bool takes_sound(const char *ext, const char *codec)
 {
     static const char *const webm[] = {"opus", "vorbis", NULL};
@@ -375,7 +376,7 @@ static void add_sound(struct words *w, const struct ffmpeg_target *t,
                 t->name, extension(t->name), codec);
 }
 
-/* What codes mean, both of what comes in and of what is written, so that
+/* Says what codes mean, both of what comes in and of what is written, so that
  * nothing is turned into anything else. */
 static void add_tags(struct words *w, const struct ffmpeg_target *t,
                      const struct ffmpeg_video *v)

@@ -31,7 +31,8 @@ struct ffmpeg_video {
     int width, height;       /* 0: not known */
 };
 
-/* By its extension: .mp4 .mkv .mov .webm .avi .mpg and their like. */
+/* Returns whether the extension is a video's: .mp4 .mkv .mov .webm .avi .mpg
+ * and their like. */
 bool ffmpeg_is_video(const char *name);
 
 /* A GIF of more than one frame, which is looked into: how many; else 0 or 1. */
@@ -49,12 +50,13 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
                               const struct ffmpeg_video *video,
                               struct glint_error *error);
 
-/* What to write, and what goes with the pictures. */
+/* The file to write, and what goes with the pictures. */
 struct ffmpeg_target {
-    const char *name;    /* the file that will be there */
-    const char *file;    /* what is written for now, of the same extension */
-    const char *sound;   /* file to take sound and titles from, or NULL */
-    const char *options; /* for the encoder, words with blanks, or NULL */
+    const char *name;  /* the file that will be there */
+    const char *file;  /* file that is written for now, of the same extension */
+    const char *sound; /* file to take sound and titles from, or NULL */
+    /* Options for the encoder, words with blanks, or NULL. */
+    const char *options;
     int width, height;
     bool is_444; /* each pixel has its colour */
     enum glint_range range;

@@ -12,21 +12,24 @@ struct overlay_y4m;
 
 struct overlay {
     struct compositor compositor;
-    struct overlay_y4m *y4m; /* of a video that is not of 8 bits */
+    /* Reader and writer of a video that is not of 8 bits. */
+    struct overlay_y4m *y4m;
     const char *input, *output;
     int start_number;
-    int32_t elapsed_us; /* from frame to frame; 0: pictures by themselves */
+    int32_t elapsed_us; /* microseconds from frame to frame; 0: pictures by
+                           themselves */
     int range, matrix;  /* 0: auto */
-    int quality;        /* of JPEG and WebP; 0: the input's */
+    int quality;        /* quality of JPEG and WebP; 0: the input's */
     bool is_video;
     const char *encode; /* options for ffmpeg, or NULL */
 
-    struct glint_frame_report worst; /* its lights: of the frame with most too
-                                  many, and most beyond the model */
+    /* Lights of the frame with most too many, and of the one with most beyond
+     * the model. */
+    struct glint_frame_report worst;
     int most_lights;
     double find_ms, flare_ms, started, reported; /* seconds; of progress */
-    double peak, mean_sum; /* of the flare, 1 = white: the brightest of all
-                              frames; the sum of their means */
+    double peak, mean_sum; /* light of the flare, 1 = white: the brightest of
+                              all frames; the sum of their means */
     size_t peak_bytes;
 };
 
@@ -62,11 +65,11 @@ int overlay_numbered(struct tool *tool, struct overlay *o);
 /* Numbered pictures, as o->input and o->output have them. */
 int overlay_sequence(struct tool *tool, struct overlay *o);
 
-/* Whether NAME is a video, by its extension. */
+/* Returns whether NAME is a video, by its extension. */
 bool overlay_is_video(const char *name);
 
-/* What to do with animated GIF: sets VIDEO where that goes in or out as frames,
- * and says where one frame of many is taken. */
+/* Decides on animated GIF: sets VIDEO where it goes in or out as frames, and
+ * says where one frame of many is taken. */
 int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video);
 
 /* A video from o->input to o->output. */

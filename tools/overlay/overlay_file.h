@@ -20,7 +20,8 @@
 #include "formats/kept.h"
 
 struct overlay_file {
-    struct glint_image image; /* of the size that compositor_size wants */
+    /* Picture of the size that compositor_size wants. */
+    struct glint_image image;
 
     /* Private. */
     const char *from, *to;

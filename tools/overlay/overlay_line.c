@@ -5,7 +5,7 @@
 
 /* Two codes of sRGB near black, in display light: less is not seen. */
 static const double least_seen = 2 / 255.0 / 12.92;
-/* What a flare is brought to that could not be seen. */
+/* The brightness that a flare which could not be seen is brought to. */
 static const double well_seen = 0.25;
 
 /* ---------------------------------------------------------------- the light
@@ -84,7 +84,7 @@ static void say_dial(const struct compositor *compositor, FILE *to)
         fprintf(to, ", gain %g", compositor->settings.gain);
 }
 
-/* What would show a flare that comes to LIGHT only. */
+/* Says what would show a flare that comes to LIGHT only. */
 static void say_faint(const struct overlay *o,
                       const struct overlay_light *light, FILE *to)
 {

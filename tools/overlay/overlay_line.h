@@ -8,15 +8,16 @@
 
 #include "overlay/overlay.h"
 
-/* Of the flare alone, 1 = white, largest channel. */
+/* The light of the flare alone, 1 = white, largest channel. */
 struct overlay_light {
     double peak; /* mean of the brightest thousandth of the pixels: of all
                     frames, the brightest */
-    double mean; /* of all pixels: of all frames, the mean */
+    /* Mean over all pixels; of several frames, the mean of these. */
+    double mean;
 };
 
-/* Of a single picture the flare is drawn once more, small, and looked at; of
- * more it is what the lens's response says. */
+/* Returns the light of the flare. A single picture's is drawn once more, small,
+ * and looked at; that of several is what the lens's response says. */
 struct overlay_light overlay_light(const struct overlay *o);
 
 /* One line, or two where nothing can be seen. */

@@ -118,8 +118,8 @@ static bool compositor_for(struct numbers *l, const char *pattern, int first)
     return ok;
 }
 
-/* Where the folder is a part of the pattern: up to the first that is missing.
- */
+/* Walks through patterns whose folder has the number, too: up to the first that
+ * is missing. */
 static bool walk(struct numbers *l, const char *pattern, int first)
 {
     char name[NAME_BYTES];

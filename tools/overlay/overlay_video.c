@@ -22,8 +22,8 @@ struct video {
     bool reads, writes; /* through ffmpeg */
     struct ffmpeg_video about;
     struct child reader, writer;
-    struct glint_output file; /* what ffmpeg writes, until it is whole */
-    char pipe[32];            /* its name, which OUT keeps */
+    struct glint_output file; /* file that ffmpeg writes, until it is whole */
+    char pipe[32];            /* name of the pipe, which OUT keeps */
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
 };
@@ -221,8 +221,8 @@ static int32_t frame_us(const struct glint_y4m_header *header)
 /* -------------------------------------------------------------------- ending
  */
 
-/* That the decoder came to its end, too, unless the reader of a pipe has had
- * enough. */
+/* Checks that the decoder came to its end, too, unless the reader of a pipe has
+ * had enough. */
 static int end_reader(struct video *v)
 {
     const int code = child_end(&v->reader);

@@ -7,10 +7,10 @@
 #include "overlay/compositor_layer.h"
 #include "video/y4m_light.h"
 
-/* What all frames of a stream share. */
+/* The parts that all frames of a stream share. */
 struct overlay_y4m {
     struct glint_y4m_light light;
-    uint8_t *planes; /* of the frame */
+    uint8_t *planes; /* planes of the frame */
     float *layer;
 };
 
