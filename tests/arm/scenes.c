@@ -179,7 +179,7 @@ static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
 static void draw_flare(const struct glint_flare_config *c,
                        const struct glint_image *image)
 {
-    struct glint_light beam[MAX_BEAMS];
+    struct glint_light light[MAX_BEAMS];
     struct glint_wave wave[3];
     struct glint_flare_stats stats;
     struct glint_flare *flare;
@@ -201,11 +201,11 @@ static void draw_flare(const struct glint_flare_config *c,
     rays.half = number(3) == 0 ? &glint_half : NULL;
     make_waves(wave);
     for (int i = 0; i < n_given; i++)
-        make_beam(&beam[i]);
+        make_beam(&light[i]);
     if (image->format != GLINT_LINEAR_Q20)
         rays.faintest = real_of(1, -13);
-    n = glint_lights_merge(beam, n_given, near_q30, most, &n_apart);
-    glint_flare_plan(flare, &rays, beam, n);
+    n = glint_lights_merge(light, n_given, near_q30, most, &n_apart);
+    glint_flare_plan(flare, &rays, light, n);
     glint_flare_bin(flare, &stats);
     glint_flare_draw(flare, image);
 }

@@ -1,7 +1,7 @@
 # Tests, sanitizers, analysis.
 
-# What tests share, but for fakes, which answer calls of those that want them.
-$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(filter-out tests/support/fake_%.c,$(wildcard tests/support/*.c)))
+# What tests share; fakes answer calls of those alone that want them.
+$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c))
 
 # Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
@@ -10,7 +10,7 @@ unit_c := $(filter-out %/test_mjpeg$(if $(filter yes,$(WITH_JPEG)),_absent).c \
         %/test_config$(if $(filter yes,$(WITH_INIH)),_absent).c,$(unit_c))
 UNIT := $(patsubst test_%,%,$(basename $(notdir $(unit_c))))
 ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
-UNIT := $(filter bake exact flare workers output at_death frame live,$(UNIT))
+UNIT := $(filter bake exact flare flare_light flare_room workers output at_death frame live,$(UNIT))
 endif
 FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) $(if $(filter yes,$(WITH_INIH)),,config), \
         $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c)))
@@ -33,8 +33,8 @@ $(OUT)/tests/unit/test_frame: LDFLAGS += -Wl,--wrap=malloc,--wrap=calloc \
         -Wl,--wrap=realloc,--wrap=posix_memalign
 $(OUT)/tests/unit/test_budget: LDFLAGS += -Wl,--wrap=tool_seconds
 $(fake_bins): LDFLAGS += $(FAKE_CAMERA:%=-Wl,--wrap=%)
-$(fake_bins): $(OUT)/tests/support/fake_camera.o
-$(OUT)/tests/unit/test_fbdev: $(OUT)/tests/support/fake_fb.o
+$(fake_bins): $(OUT)/tests/support/fakes/fake_camera.o
+$(OUT)/tests/unit/test_fbdev: $(OUT)/tests/support/fakes/fake_fb.o
 extreme_bins := $(EXTREMES:%=$(OUT)/tests/unit/test_extremes_%)
 $(foreach c,$(unit_c),$(eval $(OUT)/tests/unit/$(notdir $(basename $(c))): $(OUT)/$(c:.c=.o)))
 $(test_bins): $(OUT)/libglint-tests.a $(libs)
@@ -77,7 +77,7 @@ mutants: $(test_bins)
 	@tests/mutants/run $(OUT) $(MUTANTS)
 # What valgrind says of memory that was never written, which no sanitizer of
 # gcc's does: the run-time half, what reads files, and the fuzzers' corpora.
-VALGRIND := $(filter arena kernels model curve resolve lamp_finder flare plan lights pnm y4m \
+VALGRIND := $(filter arena kernels model curve resolve lamp_finder flare flare_light flare_room plan lights pnm y4m \
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \

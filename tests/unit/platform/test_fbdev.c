@@ -24,7 +24,7 @@
 #include <linux/vt.h>
 
 #include "linux/fbdev.h"
-#include "support/fake_fb.h"
+#include "support/fakes/fake_fb.h"
 
 /* ---------------------------------------------------------------- scenery */
 

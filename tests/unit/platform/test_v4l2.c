@@ -3,7 +3,7 @@
  * The V4L2 source with a driver that does what it should: which format is
  * chosen, where its planes lie, which frames are seen and which are counted.
  */
-#include "support/camera_check.h"
+#include "support/fakes/camera_check.h"
 
 #include "jpeg/mjpeg.h"
 

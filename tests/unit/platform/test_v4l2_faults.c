@@ -3,7 +3,7 @@
  * The V4L2 source when things go wrong: what it comes through, what it gives up
  * on, after how long and in which words; and that nothing is left behind.
  */
-#include "support/camera_check.h"
+#include "support/fakes/camera_check.h"
 
 #include <linux/videodev2.h>
 #include "jpeg/mjpeg.h"

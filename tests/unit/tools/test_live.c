@@ -18,7 +18,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "support/fake_camera.h"
+#include "support/fakes/fake_camera.h"
 #include "options/tool.h"
 
 #define LENS "lenses/heliar-tronnier.lens"

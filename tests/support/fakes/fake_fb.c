@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "support/fake_fb.h"
+#include "support/fakes/fake_fb.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "support/fake_camera.h"
+#include "support/fakes/fake_camera.h"
 
 #include <errno.h>
 #include <fcntl.h>

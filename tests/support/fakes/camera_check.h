@@ -17,7 +17,7 @@
 #include <string.h>
 
 #include "linux/v4l2.h"
-#include "support/fake_camera.h"
+#include "support/fakes/fake_camera.h"
 
 static struct glint_v4l2 v4l2;
 static struct glint_error said;

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Synthetic ghosts, drawn by the integer rasteriser. Include after cmocka.h.
+ */
+#ifndef TESTS_SUPPORT_GHOSTS_H
+#define TESTS_SUPPORT_GHOSTS_H
+
+#include "glint/flare.h"
+
+enum { WIDTH = 203, HEIGHT = 151, N_GHOSTS = 6 };
+
+/* A synthetic ghost: a grid over +-1.25 stop radii, scaled, sheared and bent.
+ */
+struct ghost {
+    int n;
+    int cx, cy;       /* pixels */
+    int size;         /* pixels per stop radius */
+    int bend;         /* quadratic term, per mille of size */
+    int mirror;       /* -1: turned over */
+    int barrel_shift; /* of the barrel against the stop, per mille of radius */
+    int32_t flux_exponent;
+    int32_t rgb_q14[3];
+};
+
+extern const struct ghost ghosts[N_GHOSTS];
+
+/* An octagon for a stop, room for all ghosts, by edges. */
+struct glint_flare_config base_config(void);
+
+/* A flare of C in *MEM, which is to be freed. */
+struct glint_flare *open_flare(struct glint_flare_config *c, void **mem);
+
+/* The vertex in column I and row J of the grid of G. */
+struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j);
+
+void add_ghost(struct glint_flare *f, const struct ghost *g);
+
+/* An image over PIXELS [HEIGHT][WIDTH][3], which are cleared. */
+struct glint_image linear_image(int32_t *pixels);
+
+/* Draws the N ghosts of LIST, or all of the above, into such pixels. */
+struct glint_flare_stats draw_list(struct glint_flare_config c,
+                                   const struct ghost *list, int n,
+                                   int32_t *out);
+struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out);
+
+/* The sum of a channel, 1 being white. */
+double total(const int32_t *p, int channel);
+
+/* 0 .. N - 1, one random number after the other. */
+int draw_number(int n);
+
+/* A ghost in or about the picture, folded or not. */
+struct ghost random_ghost(void);
+
+#endif

@@ -1,0 +1,450 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The integer rasteriser on grids made by hand: where light arrives, how much,
+ * clipped and folded.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/ghosts.h"
+
+static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
+
+/* --------------------------------------------------------------------- light
+ */
+
+/* The octagon of radius 1 in a grid of 2.5 x 2.5 radii: area 2 sqrt 2 of 6.25,
+ * flux 16 x 16 cells x 1.5e9 / 2^31 x 50000 / 65536 (energy is odd about 0). */
+static void test_energy(void **state)
+{
+    const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
+    const double flux =
+        256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    /* the barrel is as wide as the stop's corners: cut it out of the way */
+    c.stop.apothem_q16 = 60547;
+    for (int raster = 0; raster < 2; raster++) {
+        const double off = raster == 0 ? 0.001 : 0.005;
+
+        c.raster = raster ? &glint_raster_cells : &glint_raster_edges;
+        draw_list(c, &g, 1, pixels);
+        assert_true(total(pixels, 0) > (1 - off) * flux);
+        assert_true(total(pixels, 0) < (1 + off) * flux);
+        assert_true(total(pixels, 1) == 0 && total(pixels, 2) == 0);
+    }
+}
+
+/* Twice as large, mirrored, other weights, merged or not: the same light. */
+static void test_energy_is_kept(void **state)
+{
+    struct ghost g = {16, 100, 75, 25, 0, 1, 0, 0, {16384, 0, 0}};
+    struct glint_flare_config c = base_config();
+    double first;
+
+    (void)state;
+    c.raster = &glint_raster_cells;
+    draw_list(c, &g, 1, pixels);
+    first = total(pixels, 0);
+    g.size = 50;
+    g.mirror = -1;
+    draw_list(c, &g, 1, pixels);
+    assert_true(total(pixels, 0) > 0.998 * first &&
+                total(pixels, 0) < 1.002 * first);
+    c.weights = GLINT_WEIGHTS_LOOP_DEROSE;
+    c.merge_steps = 4;
+    c.merge_gamma_q16 = 66;
+    assert_true(draw_list(c, &g, 1, pixels).merged_cells > 60);
+    assert_true(total(pixels, 0) > 0.998 * first &&
+                total(pixels, 0) < 1.002 * first);
+}
+
+/* A ghost smaller than a pixel, anywhere in it: its light still arrives. */
+static void test_focused_light_arrives(void **state)
+{
+    struct glint_flare_config c = base_config();
+    const double flux =
+        256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
+
+    (void)state;
+    for (int k = 0; k < 32; k++) {
+        const struct ghost g = {16, 50 + k / 2, 70,           1, 4 * k, 1,
+                                0,  0,          {16384, 0, 0}};
+        const double off = k & 1 ? 0.1 : 0.001;
+
+        c.raster = k & 1 ? &glint_raster_cells : &glint_raster_edges;
+        draw_list(c, &g, 1, pixels);
+        assert_true(total(pixels, 0) > (1 - off) * flux);
+        assert_true(total(pixels, 0) < (1 + off) * flux);
+    }
+}
+
+static int32_t at(const int32_t *p, int x, int y)
+{
+    return p[3 * (y * WIDTH + x)];
+}
+
+/* A flat ghost is flat inside: every pixel away from the rim has the same
+ * irradiance, flux per cell over its area in pixels. */
+static void test_flat_inside(void **state)
+{
+    struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
+    const double cell = 2.5 * 40 / 16;
+    const double irradiance = 1.5e9 / 2147483648.0 / (cell * cell);
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    c.raster = &glint_raster_cells;
+    draw_list(c, &g, 1, pixels);
+    for (int y = 65; y < 85; y++) {
+        /* energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40 */
+        for (int x = 90; x < 110; x++) {
+            const double energy =
+                (50000 + (x + 0.5 - 100) / 40 * 65536 / 8) / 65536;
+            const double q20 = irradiance * energy * 1048576;
+
+            assert_true(at(pixels, x, y) > 0.997 * q20 - 2 &&
+                        at(pixels, x, y) < 1.003 * q20 + 2);
+        }
+    }
+    assert_int_equal(at(pixels, 100, 2), 0);
+}
+
+/* By edges a cell is even: the energy is that of its middle, at most half a
+ * cell away. */
+static void test_edges_agree_with_cells(void **state)
+{
+    const struct ghost g = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
+    struct glint_flare_config c = base_config();
+    double off = 0, all = 0;
+
+    (void)state;
+    draw_list(c, &g, 1, pixels);
+    c.raster = &glint_raster_cells;
+    draw_list(c, &g, 1, want);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        off += abs(pixels[i] - want[i]);
+        all += want[i];
+    }
+    assert_true(off < 0.006 * all);
+    assert_true(total(pixels, 0) > 0.999 * total(want, 0));
+    assert_true(total(pixels, 0) < 1.001 * total(want, 0));
+}
+
+/* Cells of two pixels, folded, cut by stop and barrel: sampled by cells. */
+static void test_small_cells_agree(void **state)
+{
+    struct glint_flare_config c = base_config();
+    double off = 0, all = 0;
+
+    (void)state;
+    for (int k = 0; k < 16; k++) {
+        const struct ghost g = {16, 100, 75, 9 + k % 4,    60 * k,
+                                1,  300, -2, {16384, 0, 0}};
+
+        c.raster = &glint_raster_edges;
+        draw_list(c, &g, 1, pixels);
+        c.raster = &glint_raster_cells;
+        draw_list(c, &g, 1, want);
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+            off += abs(pixels[i] - want[i]);
+            all += want[i];
+        }
+    }
+    assert_true(off < 0.083 * all); /* pixel centres alone: 0.0896 */
+}
+
+/* An outline that does not close to the last bit would leave a streak to the
+ * right end of its rows. */
+static void test_outlines_close(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 400; k++) {
+        struct glint_flare_config c = base_config();
+        const struct ghost g = random_ghost();
+
+        c.stop.n_blades = k & 3 ? 8 : 0;
+        c.stop.apothem_q16 -= draw_number(30000);
+        c.irradiance_steps = draw_number(3) * 20;
+        c.tile_log2 = 3 + draw_number(4);
+        draw_list(c, &g, 1, pixels);
+        for (int y = 0; y < HEIGHT; y++)
+            for (int i = 0; i < 3; i++)
+                assert_int_equal(pixels[3 * ((y + 1) * WIDTH - 1) + i], 0);
+    }
+}
+
+/* A corner so far outside of the stop that the sides to it have no part worth a
+ * step: the cell still closes. */
+static void test_far_corner_closes(void **state)
+{
+    static const int32_t far_q16[] = {70000, 1 << 20, 700000000, 1000000000,
+                                      0x3fffffff};
+    const struct glint_image image = linear_image(pixels);
+    const int32_t half = 759250125; /* root of 1/2 */
+
+    (void)state;
+    for (size_t k = 0; k < sizeof far_q16 / sizeof *far_q16; k++) {
+        struct glint_flare_config c = base_config();
+        const struct glint_bundle b = {.n_cells = 1,
+                                       .flux_q31 = 1 << 30,
+                                       .flux_exponent = 10,
+                                       .rgb_q14 = {16384, 16384, 16384}};
+        struct glint_flare_stats stats;
+        void *mem;
+        struct glint_flare *f;
+        struct glint_vertex *v;
+
+        c.stop.n_blades = 4;
+        c.stop.apothem_q16 = 46341;
+        for (int i = 0; i < 4; i++) {
+            c.stop.normal_q30[i][0] = i == 0 || i == 3 ? half : -half;
+            c.stop.normal_q30[i][1] = i < 2 ? half : -half;
+        }
+        f = open_flare(&c, &mem);
+        v = glint_flare_add(f, &b);
+        for (int i = 0; i < 4; i++)
+            v[i] = (struct glint_vertex){.x_q8 = i & 1 ? 7693 : 2573,
+                                         .y_q8 = i & 2 ? 7757 : 2637,
+                                         .energy_q16 = 65536};
+        v[1].stop_x_q16 = v[2].stop_y_q16 = 65534; /* just inside */
+        v[3].stop_x_q16 = v[3].stop_y_q16 = far_q16[k];
+        memset(pixels, 0, sizeof pixels);
+        glint_flare_bin(f, &stats);
+        glint_flare_draw(f, &image);
+        free(mem);
+        assert_true(at(pixels, 12, 12) > 0);
+        for (int y = 0; y < HEIGHT; y++)
+            assert_int_equal(at(pixels, 60, y), 0);
+    }
+}
+
+/* Steps change the light of a cell by half of one at most. */
+static void test_steps(void **state)
+{
+    static int32_t stepped[3 * WIDTH * HEIGHT];
+    struct glint_flare_config c = base_config();
+    const struct ghost g = {24, 100, 75, 55, 60, 1, 200, 4, {16384, 0, 0}};
+
+    (void)state;
+    draw_list(c, &g, 1, pixels);
+    c.irradiance_steps = 10;
+    draw_list(c, &g, 1, stepped);
+    assert_memory_not_equal(stepped, pixels, sizeof pixels);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        assert_true(20 * llabs((long long)stepped[i] - pixels[i]) <=
+                    pixels[i] + 20);
+}
+
+/* ------------------------------------------------------- polygons by hand */
+
+/* One cell of flux 64 and energy 1, corners in order round it, in 1/256 px. */
+struct quad {
+    int32_t at[4][2];
+    int32_t barrel_q16[4];
+    int lost; /* bits of corners that were lost */
+};
+
+static struct glint_flare_stats draw_quad(const struct quad *q)
+{
+    static const int corner[4] = {0, 1, 3, 2}; /* the grid goes row by row */
+    struct glint_flare_config c = base_config();
+    const struct glint_image image = linear_image(pixels);
+    const struct glint_bundle b = {.n_cells = 1,
+                                   .flux_q31 = 1 << 30,
+                                   .flux_exponent = 7,
+                                   .rgb_q14 = {16384, 0, 0}};
+    struct glint_flare_stats stats;
+    void *mem;
+    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_vertex *v = glint_flare_add(f, &b);
+
+    for (int i = 0; i < 4; i++) {
+        const int k = corner[i];
+
+        v[i] =
+            (struct glint_vertex){.x_q8 = q->at[k][0],
+                                  .y_q8 = q->at[k][1],
+                                  .barrel_q16 = {q->barrel_q16[k], 0},
+                                  .energy_q16 = q->lost >> k & 1 ? -1 : 65536};
+    }
+    glint_flare_bin(f, &stats);
+    glint_flare_draw(f, &image);
+    free(mem);
+    return stats;
+}
+
+static void assert_light(int x, int y, double light)
+{
+    const double got = at(pixels, x, y) / 1048576.0;
+
+    if (got < light - 1e-4 || got > light + 1e-4)
+        print_message("pixel %d,%d: %f, not %f\n", x, y, got, light);
+    assert_true(got > light - 1e-4 && got < light + 1e-4);
+}
+
+static void assert_flux(double flux)
+{
+    assert_true(total(pixels, 0) > 0.999 * flux);
+    assert_true(total(pixels, 0) < 1.001 * flux);
+}
+
+/* 10.25 .. 14.25 by 10.5 .. 12.5: eight pixels of area, 8 of light each. */
+static void test_rectangle_by_hand(void **state)
+{
+    struct quad q = {{{2624, 2688}, {3648, 2688}, {3648, 3200}, {2624, 3200}},
+                     {0, 0, 0, 0},
+                     0};
+
+    (void)state;
+    draw_quad(&q);
+    assert_light(9, 11, 0);
+    assert_light(10, 10, 3);
+    assert_light(11, 10, 4);
+    assert_light(14, 10, 1);
+    assert_light(15, 11, 0);
+    assert_light(10, 11, 6);
+    assert_light(13, 11, 8);
+    assert_light(14, 12, 1);
+    assert_light(12, 13, 0);
+    /* a barrel from 0.5 on the left to 1.5 on the right leaves half */
+    q.barrel_q16[0] = q.barrel_q16[3] = 32768;
+    q.barrel_q16[1] = q.barrel_q16[2] = 98304;
+    draw_quad(&q);
+    assert_light(10, 11, 6);
+    assert_light(11, 11, 8);
+    assert_light(12, 11, 2);
+    assert_light(13, 11, 0);
+}
+
+/* A triangle of legs 8: area 32 and half of the flux, so that all is 1. */
+static void test_triangle_by_hand(void **state)
+{
+    const struct quad q = {
+        {{2048, 2048}, {4096, 2048}, {9, 9}, {2048, 4096}}, {0, 0, 0, 0}, 4};
+
+    (void)state;
+    assert_int_equal(draw_quad(&q).dropped_cells, 1);
+    assert_light(8, 8, 1);
+    assert_light(10, 12, 1);
+    for (int x = 8; x < 16; x++) {
+        assert_light(x, 23 - x, 0.5);
+        assert_light(x, 24 - x, 0);
+    }
+    assert_flux(32);
+}
+
+/* Slivers, folds, lines and points keep their light, wherever they lie. */
+static void test_thin_light_arrives(void **state)
+{
+    static const struct quad quads[] = {
+        /* a step wide, 80 px long: upright, lying, aslant */
+        {{{5000, 5000}, {5001, 5000}, {5001, 25480}, {5000, 25480}}, {0}, 0},
+        {{{5000, 5000}, {25480, 5000}, {25480, 5001}, {5000, 5001}}, {0}, 0},
+        {{{5000, 5000}, {5001, 5000}, {19001, 25480}, {19000, 25480}}, {0}, 0},
+        /* no area at all: a line, a line there and back, a point */
+        {{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}}, {0}, 0},
+        {{{5000, 5000}, {9000, 5000}, {5000, 5000}, {9000, 5000}}, {0}, 0},
+        {{{5120, 5120}, {5120, 5120}, {5120, 5120}, {5120, 5120}}, {0}, 0},
+        /* turned over: a bow tie, one with a dent */
+        {{{5000, 5000}, {9000, 5000}, {5000, 9000}, {9000, 9000}}, {0}, 0},
+        {{{5000, 5000}, {9000, 5000}, {6000, 6000}, {5000, 9000}}, {0}, 0},
+        /* two steps wide, tiny */
+        {{{5000, 5000}, {5002, 5000}, {5002, 5002}, {5000, 5002}}, {0}, 0},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof quads / sizeof *quads; i++) {
+        assert_int_equal(draw_quad(&quads[i]).dropped_cells, 0);
+        assert_flux(64);
+    }
+    /* half of a line, cut by a barrel */
+    draw_quad(
+        &(struct quad){{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}},
+                       {32768, 98304, 98304, 32768},
+                       0});
+    assert_flux(32);
+}
+
+/* Light is linear: twice the flux is twice the picture, within rounding. */
+static void test_linear_in_light(void **state)
+{
+    struct ghost g = ghosts[1];
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    draw_list(c, &g, 1, want);
+    g.flux_exponent += 3;
+    draw_list(c, &g, 1, pixels);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        assert_true(abs(pixels[i] - 8 * want[i]) <= 24);
+}
+
+/* A cell without area, rays that were lost, and light beyond all bounds. */
+static void test_hostile_bundles(void **state)
+{
+    struct glint_flare_config c = base_config();
+    const struct glint_image image = linear_image(pixels);
+    struct glint_bundle b = {.n_cells = 4,
+                             .flux_q31 = INT32_MAX,
+                             .flux_exponent = 900,
+                             .rgb_q14 = {65536, -65536, 65536}};
+    struct glint_flare_stats stats;
+    void *mem;
+    struct glint_flare *f = open_flare(&c, &mem);
+    struct glint_vertex *v = glint_flare_add(f, &b);
+
+    (void)state;
+    for (int i = 0; i < 25; i++)
+        v[i] = (struct glint_vertex){5000, 5000, 0, 0, {0, 0}, 65536};
+    v = glint_flare_add(f, &b);
+    for (int i = 0; i < 25; i++) {
+        v[i] = ghost_vertex(&(struct ghost){4, 50, 50, 9, 0, 1, 0, 0, {0}},
+                            i % 5, i / 5);
+        if (i % 3 == 0)
+            v[i].energy_q16 = -1;
+    }
+    b.flux_exponent = -900;
+    v = glint_flare_add(f, &b);
+    for (int i = 0; i < 25; i++) {
+        v[i] = (struct glint_vertex){
+            0, 0, 1 << 30, -(1 << 30), {1 << 30, 1 << 29}, 1};
+        v[i].x_q8 = (i % 5 - 2) * (GLINT_VERTEX_LIMIT_Q8 / 2 - 1);
+        v[i].y_q8 = (i / 5 - 2) * (GLINT_VERTEX_LIMIT_Q8 / 2 - 1);
+    }
+    glint_flare_bin(f, &stats);
+    glint_flare_draw(f, &image);
+    assert_true(stats.dropped_cells >= 10);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        assert_true(i % 3 == 1 ? pixels[i] <= 0 : pixels[i] >= 0);
+    free(mem);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_energy),
+        cmocka_unit_test(test_energy_is_kept),
+        cmocka_unit_test(test_focused_light_arrives),
+        cmocka_unit_test(test_flat_inside),
+        cmocka_unit_test(test_edges_agree_with_cells),
+        cmocka_unit_test(test_small_cells_agree),
+        cmocka_unit_test(test_outlines_close),
+        cmocka_unit_test(test_far_corner_closes),
+        cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_rectangle_by_hand),
+        cmocka_unit_test(test_triangle_by_hand),
+        cmocka_unit_test(test_thin_light_arrives),
+        cmocka_unit_test(test_linear_in_light),
+        cmocka_unit_test(test_hostile_bundles),
+    };
+
+    return cmocka_run_group_tests_name("flare_light", tests, NULL, NULL);
+}

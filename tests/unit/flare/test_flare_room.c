@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The integer rasteriser on grids made by hand: capacities, configurations that
+ * are refused, counts at their ends.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "flare/state.h"
+#include "support/ghosts.h"
+
+static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
+
+static void same_as_want(struct glint_flare_config c)
+{
+    draw_scene(c, pixels);
+    assert_memory_equal(pixels, want, sizeof pixels);
+}
+
+/* ------------------------------------------------------------------ capacity
+ */
+
+/* Exactly what bin asked for is enough, and one byte less is refused. */
+static void test_exact_capacity(void **state)
+{
+    struct glint_flare_config c = base_config();
+    struct glint_flare_stats s = draw_scene(c, want);
+    struct glint_flare *f;
+    void *mem;
+    size_t bytes;
+
+    (void)state;
+    assert_int_equal(s.dropped_bundles, 0);
+    c.max_bundles = s.need_bundles;
+    c.max_vertices = s.need_vertices;
+    c.max_primitives = s.need_primitives;
+    c.max_refs = s.need_refs;
+    c.max_tile_refs = s.need_tile_refs;
+    same_as_want(c);
+    bytes = glint_flare_bytes(&c);
+    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
+    assert_int_equal(glint_flare_init(&f, &c, mem, bytes - 1), GLINT_E_MEMORY);
+    assert_int_equal(glint_flare_init(&f, &c, mem, bytes), GLINT_OK);
+    free(mem);
+}
+
+/* One less of anything: whole bundles go, counted, and the rest is right. */
+static void check_capacity(const struct glint_raster *raster)
+{
+    struct glint_flare_config full = base_config();
+    struct glint_flare_stats s, less;
+
+    full.raster = raster;
+    s = draw_scene(full, pixels);
+    draw_list(full, ghosts, N_GHOSTS - 1, want);
+    for (int k = 0; k < 4; k++) {
+        struct glint_flare_config c = full;
+
+        c.max_bundles = k == 0 ? s.need_bundles - 1 : c.max_bundles;
+        c.max_vertices = k == 1 ? s.need_vertices - 1 : c.max_vertices;
+        c.max_primitives = k == 2 ? s.need_primitives - 1 : c.max_primitives;
+        c.max_refs = k == 3 ? s.need_refs - 1 : c.max_refs;
+        less = draw_scene(c, pixels);
+        assert_int_equal(less.dropped_bundles, 1);
+        assert_memory_equal(pixels, want, sizeof pixels);
+    }
+    full.max_refs = 0;
+    less = draw_scene(full, pixels);
+    assert_int_equal(less.bundles, 0);
+    assert_int_equal(less.need_refs, s.need_refs);
+    full.max_primitives = 0;
+    less = draw_scene(full, pixels);
+    assert_int_equal(less.bundles, 0);
+    assert_int_equal(less.need_primitives, s.need_primitives);
+    /* what finds no room is told all the same, however little there is */
+    for (int k = 0; k < 8; k++) {
+        full.max_primitives = (int)((int64_t)s.need_primitives * k / 8);
+        full.max_refs = k % 2 ? s.need_refs / 3 : s.need_refs;
+        less = draw_scene(full, pixels);
+        assert_true(less.bundles < s.bundles);
+        assert_int_equal(less.need_primitives, s.need_primitives);
+        assert_int_equal(less.need_refs, s.need_refs);
+        assert_int_equal(less.need_tile_refs, s.need_tile_refs);
+    }
+}
+
+static void test_too_little_capacity(void **state)
+{
+    (void)state;
+    check_capacity(&glint_raster_edges);
+    check_capacity(&glint_raster_cells);
+}
+
+static void test_config_is_checked(void **state)
+{
+    static const int16_t mask_q13[4] = {0};
+    struct glint_flare_config c = base_config();
+
+    (void)state;
+    assert_int_not_equal(glint_flare_bytes(&c), 0);
+    c.tile_log2 = 7;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.stop.mask_q13 = mask_q13; /* by cells alone */
+    c.stop.mask_nodes = 2;
+    c.stop.mask_span_q16 = 1 << 16;
+    c.raster = &glint_raster_edges;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c.raster = &glint_raster_cells;
+    assert_int_not_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.coarse_log2 = 3;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.width = GLINT_MAX_SIDE + 1;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+    c = base_config();
+    c.stop.n_blades = 2;
+    assert_int_equal(glint_flare_bytes(&c), 0);
+}
+
+/* By way of bins that count a thousand million cells for each bundle. */
+static void count_many(struct glint_flare *f)
+{
+    f->n_drawn = f->n_bundles;
+    for (int i = 0; i < f->n_bundles; i++)
+        f->slot[i].n_dropped = f->slot[i].n_merged = f->slot[i].n_held =
+            1000000000;
+}
+
+/* Counts of a frame stop at the largest int, and do not turn over. */
+static void test_counts_are_held(void **state)
+{
+    struct glint_flare_config c = base_config();
+    struct glint_raster counting = glint_raster_cells;
+    struct glint_flare_stats stats;
+    struct glint_flare *f;
+    void *mem;
+
+    (void)state;
+    counting.bin = count_many;
+    c.raster = &counting;
+    f = open_flare(&c, &mem);
+    for (int i = 0; i < 3; i++)
+        add_ghost(f, &ghosts[i]);
+    glint_flare_bin(f, &stats);
+    assert_int_equal(stats.dropped_cells, INT32_MAX);
+    assert_int_equal(stats.merged_cells, INT32_MAX);
+    assert_int_equal(stats.held_cells, INT32_MAX);
+    free(mem);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_exact_capacity),
+        cmocka_unit_test(test_too_little_capacity),
+        cmocka_unit_test(test_config_is_checked),
+        cmocka_unit_test(test_counts_are_held),
+    };
+
+    return cmocka_run_group_tests_name("flare_room", tests, NULL, NULL);
+}
