@@ -5,27 +5,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Instructions, on x86-64 with AVX2: what callgrind counted for 640x360 pixels
- * of RGB and a light each of the Heliar, the Angenieux and nikon-zoom-mid,
- * whose totals these meet within an eighth. They say what is dear, and no more.
- */
-#define PER_RAY    730.0  /* a ray that the plan looks at */
-#define PER_VERTEX 320.0  /* one, with polynomials, stop and barrels */
-#define PER_EDGE   2020.0 /* one, made of cells, put into tiles, added there */
-#define PER_ROW    18.0   /* one that an edge crosses */
-#define PER_PIXEL  80.0
+/* Instructions of N of a kind. */
+static double work_in(enum glint_cost_kind kind, double n)
+{
+    return 1e3 * glint_cost_weight[kind].counted * n;
+}
 
 /* All but pixels, which are nobody's own. */
 static double work_of(const struct glint_explain_part *p, double *stage)
 {
+    const double count[GLINT_COST_LIT] = {
+        [GLINT_COST_LOOKED_AT] = (double)p->probed,
+        [GLINT_COST_VERTICES] = (double)p->vertices,
+        [GLINT_COST_EDGES] = (double)p->edges,
+        [GLINT_COST_ROWS] = (double)p->rows};
     double work = 0;
 
-    stage[GLINT_EXPLAIN_LOOKING] = PER_RAY * (double)p->probed;
-    stage[GLINT_EXPLAIN_VERTICES] = PER_VERTEX * (double)p->vertices;
-    stage[GLINT_EXPLAIN_EDGES] = PER_EDGE * (double)p->edges;
-    stage[GLINT_EXPLAIN_ROWS] = PER_ROW * (double)p->rows;
-    for (int i = 0; i < GLINT_EXPLAIN_PIXELS; i++)
-        work += stage[i];
+    for (int k = 0; k < GLINT_COST_LIT; k++)
+        work += stage[k] = work_in((enum glint_cost_kind)k, count[k]);
     return work;
 }
 
@@ -167,7 +164,7 @@ static void measure_parts(struct glint_explain *e)
 static void set_shares(const struct glint_explain *e,
                        struct glint_explain_part *part, int n)
 {
-    double stage[GLINT_EXPLAIN_STAGES];
+    double stage[GLINT_COST_KINDS];
 
     for (int i = 0; i < n; i++) {
         part[i].work = work_of(&part[i], stage);
@@ -227,8 +224,8 @@ enum glint_status glint_explain_open(struct glint_explain *e,
     set_pairs(e);
     take_accounts(e);
     measure_parts(e);
-    e->stage[GLINT_EXPLAIN_PIXELS] = PER_PIXEL * e->all.lit;
-    e->all.work = work_of(&e->all, e->stage) + e->stage[GLINT_EXPLAIN_PIXELS];
+    e->stage[GLINT_COST_LIT] = work_in(GLINT_COST_LIT, e->all.lit);
+    e->all.work = work_of(&e->all, e->stage) + e->stage[GLINT_COST_LIT];
     e->all.share = e->all.flux > 0;
     e->all.cost = 1;
     set_shares(e, e->ghost, e->n_ghosts);

@@ -14,6 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "engine/frame/cost.h"
 #include "engine/frame/frame.h"
 
 /* A ghost, a light or a wavelength of the frame; or all of it. */
@@ -33,17 +34,6 @@ struct glint_explain_part {
 
 enum { GLINT_EXPLAIN_BARRELS = 6 };
 
-/* The stages that a frame's work is counted by. */
-enum glint_explain_stage {
-    GLINT_EXPLAIN_LOOKING, /* the plan follows rays to see which ghosts might be
-                              seen */
-    GLINT_EXPLAIN_VERTICES,
-    GLINT_EXPLAIN_EDGES,
-    GLINT_EXPLAIN_ROWS,
-    GLINT_EXPLAIN_PIXELS, /* pixels are lit, however many ghosts share them */
-    GLINT_EXPLAIN_STAGES
-};
-
 struct glint_explain {
     struct glint_frame *frame;
     int n_ghosts; /* pairs of surfaces */
@@ -53,7 +43,7 @@ struct glint_explain {
                       belongs to */
     struct glint_explain_part all, *ghost, *light, *wave;
     int barrels[GLINT_EXPLAIN_BARRELS]; /* bundles that so many cut */
-    double stage[GLINT_EXPLAIN_STAGES]; /* instructions, about */
+    double stage[GLINT_COST_KINDS];     /* instructions, about */
     double unit;         /* factor that the light drawn is multiplied by */
     int n_tiles;         /* tiles of the picture */
     int32_t *linear_q20; /* [height][width][3]: one part */

@@ -87,8 +87,6 @@ static void print_head(const char *what)
 static void print_title(const struct glint_explain *e,
                         const struct explain_title *t)
 {
-    static const char *const stages[GLINT_EXPLAIN_STAGES] = {
-        "looking", "vertices", "edges", "rows", "lit pixels"};
     const struct glint_explain_part *all = &e->all;
 
     printf("%s, %dx%d, %s\n", t->lens, e->frame->view.width,
@@ -107,9 +105,10 @@ static void print_title(const struct glint_explain *e,
     printf("\nterms of a ray: %.1f in the mean\n",
            all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
     printf("work: about %.1f M instructions\n     ", 1e-6 * all->work);
-    for (int i = 0; i < GLINT_EXPLAIN_STAGES && all->work > 0; i++)
-        printf("%s %s %.1f %%", i ? "," : "", stages[i],
-               100 * e->stage[i] / all->work);
+    for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
+        if (glint_cost_weight[i].counted > 0)
+            printf("%s %s %.1f %%", i ? "," : "", glint_cost_weight[i].name,
+                   100 * e->stage[i] / all->work);
     printf("\n");
 }
 
@@ -297,8 +296,6 @@ static void json_lights(const struct glint_explain *e,
 
 void explain_json(const struct glint_explain *e, const struct explain_title *t)
 {
-    static const char *const stages[GLINT_EXPLAIN_STAGES] = {
-        "looking", "vertices", "edges", "rows", "pixels"};
     int ghosts[GLINT_MAX_GHOSTS];
 
     glint_explain_sort(e, t->order, ghosts);
@@ -313,9 +310,11 @@ void explain_json(const struct glint_explain *e, const struct explain_title *t)
            e->n_tiles, t->report->stats.held_cells, t->report->held_samples);
     json_part(&e->all);
     printf("}, \"work\": {\"instructions\": %.0f", e->all.work);
-    for (int i = 0; i < GLINT_EXPLAIN_STAGES; i++)
-        printf(", \"%s\": %.6g", stages[i],
-               e->all.work > 0 ? e->stage[i] / e->all.work : 0);
+    for (int i = 0; i < GLINT_COST_KINDS; i++)
+        if (glint_cost_weight[i].counted > 0)
+            printf(", \"%s\": %.6g",
+                   i == GLINT_COST_LIT ? "pixels" : glint_cost_weight[i].name,
+                   e->all.work > 0 ? e->stage[i] / e->all.work : 0);
     printf("}, \"barrels\": [");
     for (int n = 0; n < GLINT_EXPLAIN_BARRELS; n++)
         printf("%s%d", n ? ", " : "", e->barrels[n]);

@@ -11,8 +11,10 @@
 #include "glint/dials.h"
 #include "glint/flare.h"
 
-/* Counts of what is worked through. */
+/* Counts of what is worked through: of a plan, before anything is drawn, or of
+ * a frame that is (engine/explain.h). */
 enum glint_cost_kind {
+    GLINT_COST_LOOKED_AT, /* by the plan: bundles; of a frame their rays */
     GLINT_COST_BUNDLES, /* bundles drawn: a few rays each, and a polynomial each
                            row */
     GLINT_COST_VERTICES, /* vertices of grids */
@@ -21,6 +23,15 @@ enum glint_cost_kind {
     GLINT_COST_LIT,      /* pixels with any light */
     GLINT_COST_KINDS
 };
+
+/* What one of each takes, thousand instructions of a processor with 8 lanes of
+ * 32 bits. */
+struct glint_cost_weight {
+    const char *name;
+    double planned; /* of those that glint_cost_of() expects */
+    double counted; /* of those that there were; 0: is in the others */
+};
+extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 
 struct glint_cost {
     double count[GLINT_COST_KINDS];

@@ -73,7 +73,7 @@ static int ghosts_drawn(const struct glint_explain *e)
 static void assert_agrees(const struct glint_explain *e,
                           const struct glint_frame_report *report)
 {
-    const double pixels = e->stage[GLINT_EXPLAIN_PIXELS] / e->all.work;
+    const double pixels = e->stage[GLINT_COST_LIT] / e->all.work;
     const struct glint_explain_part *parts[3] = {e->ghost, e->light, e->wave};
     const int n[3] = {e->n_ghosts, e->n_lights, e->n_waves};
 
