@@ -3,7 +3,8 @@
  * glint/glint.h - the whole API, and what holds everywhere in it.
  *
  * glint computes the ghosts that a real lens throws across a picture when a
- * lamp shines into it. Two halves:
+ * lamp shines into it. Programs that draw them take glint/engine.h, all in one,
+ * with doubles and malloc. Below it are two halves:
  *
  *   offline   glint/prescription.h trace.h   double precision; lens tables,
  *             exact.h bake.h                 exact rays and pictures, models
@@ -26,6 +27,7 @@
 #include "glint/bundle.h"
 #include "glint/composite.h"
 #include "glint/dials.h"
+#include "glint/engine.h"
 #include "glint/exact.h"
 #include "glint/flare.h"
 #include "glint/half.h"

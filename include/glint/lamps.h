@@ -17,7 +17,7 @@
  * Skies, clouds, snow, paper and flowers are as bright as lamps. A region is a
  * lamp by what a score says of it and of what is around it: contrast, light
  * that falls off around it and in all directions alike, a compact shape, how
- * much else is as bright, colour; see flare/score.h. A region that is none is
+ * much else is as bright, colour; see lamps/score.h. A region that is none is
  * looked at again where it clips in one channel, in nearly all, and in all: a
  * sun in a bright sky is a lamp by itself. At least an eighth of a region must
  * be at the upper threshold.

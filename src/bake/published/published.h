@@ -13,7 +13,7 @@
  * ghost's pupil box there, joined with the boxes of the neighbours, so that
  * what is interpolated between two knots is good where either lets light
  * through. One sparse basis for each output, found on some of the zones
- * (bake/shared_basis.h), serves all of them. It serves all wavelengths too,
+ * (shared_basis.h), serves all of them. It serves all wavelengths too,
  * which the method leaves open: the search takes its zones from each in turn,
  * for a third of the time.
  *

@@ -10,7 +10,7 @@
  * is one exponent away from one it has, or by a pure power; terms are swapped
  * for such terms while that helps; a term leaves when what remains beats the
  * best known basis of that size. The error is the mean over the zones of the
- * weighted squared error (bake/shared_zone.h). Outputs that are even in y have
+ * weighted squared error (shared_zone.h). Outputs that are even in y have
  * even powers of y only, and odd ones odd powers, as symmetric rays choose.
  *
  * Limits: a local search; the neighbours it tries are those named above.

@@ -4,7 +4,7 @@
  * its place. lenses/README.md is the manual of the format.
  *
  * Reading stores values that are in range, one word at a time; the lens as a
- * whole is checked by bake/check.h when all is read.
+ * whole is checked by check.h when all is read.
  */
 #include "bake/table/elements.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * From the sums of a tile to its light: tile/edges.h.
+ * From the sums of a tile to its light: edge.h.
  */
 #include <stddef.h>
 
