@@ -298,8 +298,8 @@ static void start(struct glint_mjpeg *d, struct glint_image *image)
     }
     d->jpeg.out_color_space = d->jpeg.jpeg_color_space;
     d->jpeg.raw_data_out = TRUE;
-    d->jpeg.dct_method =
-        JDCT_ISLOW; /* this method's SIMD gives the same bits */
+    /* The SIMD of this method gives the same bits. */
+    d->jpeg.dct_method = JDCT_ISLOW;
     d->in_scan = true;
     jpeg_start_decompress(&d->jpeg);
 }

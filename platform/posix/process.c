@@ -28,7 +28,7 @@ struct call {
     int (*fn)(void *ctx);
     void *ctx;
     int result;
-    sigset_t signals; /* blocked before */
+    sigset_t signals; /* signals that were blocked before */
 };
 
 static void *do_call(void *arg)

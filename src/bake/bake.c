@@ -404,7 +404,7 @@ static void clear(struct bake_run *run)
     free(run->draft.data);
 }
 
-/* What no reader would take is not handed out. */
+/* A model that no reader would take is not handed out. */
 static enum glint_status check_draft(const struct bake_run *run)
 {
     struct glint_lens lens;

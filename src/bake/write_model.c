@@ -227,7 +227,7 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft)
                                (const void *)(draft->data + h->system_at)};
 }
 
-/* As glint_model_error_q20() has it, rounded up. */
+/* Rounds an error up to what glint_model_error_q20() reads. */
 static uint16_t to_error(double x)
 {
     double mantissa = ceil(x * 0x1p20);

@@ -94,7 +94,7 @@ static void locate(struct glint_lamp_finder *f)
     }
 }
 
-/* Of the sorted candidates these come first. */
+/* Returns how many of the sorted candidates, the first, are lamps. */
 static int count_lights(const struct glint_lamp_finder *f)
 {
     int n = f->n;

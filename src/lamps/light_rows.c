@@ -115,7 +115,7 @@ static void offer(void *finder, const struct glint_region *sum)
 
 /* --------------------------------------------------------------------- rows */
 
-/* Of N values, those that are CODE or more. */
+/* Returns how many of N values are CODE or more. */
 static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
                                     int is_above_128)
 {
@@ -129,7 +129,8 @@ static WHOLLY_INLINE int count_from(const uint8_t *value, int n, int code,
     return (int)found;
 }
 
-/* Of a run whose pixels are LEAST or more, those that are CODE or more. */
+/* Returns how many pixels of a run, all of which are LEAST or more, are CODE or
+ * more. */
 static int count_of_run(const uint8_t *value, const struct glint_run *run,
                         int least, int code)
 {
@@ -166,7 +167,8 @@ static void want(struct glint_run **outer, const struct glint_run *run)
         (*outer)->want1 = run->x1;
 }
 
-/* What is larger is no light, whatever else it is. */
+/* Returns whether the region may be a light; a larger one is none, whatever
+ * else it is. */
 static int may_be_light(const struct glint_lamp_finder *f,
                         const struct glint_region *sum)
 {

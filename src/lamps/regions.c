@@ -82,7 +82,7 @@ void glint_region_centroid(const struct glint_region *sum, int32_t *x_q8,
     *y_q8 = mean_q8(sum->wy_q14, sum->w_q14);
 }
 
-/* As if the box were all of one light. */
+/* Returns the radius as if the box were all of one light. */
 static int32_t box_radius_q8(uint64_t diagonal2)
 {
     return (int32_t)q_root((diagonal2 << 16) / 12);
@@ -251,7 +251,8 @@ static void find_all_runs(struct glint_run_row *row,
 static void link_runs(struct glint_regions *r, int y)
 {
     const struct glint_run_row *above = &r->above;
-    int first = 0; /* of the runs above that may touch this one or a later */
+    int first =
+        0; /* first of the runs above that may touch this one or a later */
 
     for (int i = 0; i < r->here.n_runs; i++) {
         struct glint_run *run = &r->here.run[i];

@@ -35,19 +35,19 @@
 struct glint_arena;
 struct glint_bright;
 
-/* What is summed over the pixels of a region. */
+/* The sums over the pixels of a region. */
 struct glint_region {
     int32_t first; /* y * width + x of its first pixel: no two have the same */
     int32_t area, n_seeds, n_clipped; /* the caller counts these */
     int32_t x0, y0, x1, y1; /* pixels of it are in x0 .. x1 - 1, y0 .. y1 - 1 */
     int64_t w_q14, wx_q14, wy_q14;
     uint64_t wr2_q14;
-    int64_t rgb_q14[3];     /* of all pixels */
-    int64_t rim_rgb_q14[3]; /* of those with no channel clipped, and of their
+    int64_t rgb_q14[3];     /* sum over all pixels */
+    int64_t rim_rgb_q14[3]; /* sum over those with no channel clipped, and their
                                neighbours within the row */
 };
 
-/* What a pixel adds. */
+/* The light that a pixel adds. */
 struct glint_region_light {
     int64_t w_q14;
     int32_t rgb_q14[3];
@@ -65,7 +65,7 @@ static inline int64_t region_luminance(int64_t r, int64_t g, int64_t b)
     return q_shift(region_wide_luminance(r, g, b), 15);
 }
 
-/* Of linear light RGB, 0 .. white. */
+/* Makes it from linear light RGB, 0 .. white. */
 static inline struct glint_region_light
 region_light_of(const int32_t rgb_q20[3])
 {

@@ -35,8 +35,8 @@ struct window {
     int n_borders;
     int width, height;
     int x, y;   /* pixel in the middle */
-    int radius; /* of the inner disc; ring i ends at radius << i */
-    int step;   /* of samples there; step << i in ring i */
+    int radius; /* radius of the inner disc; ring i ends at radius << i */
+    int step;   /* step of samples there; it is step << i in ring i */
 };
 
 /* A pixel of the window, of which there are SHARE like it. */

@@ -35,7 +35,7 @@ struct picture {
     const struct glint_exact_config *cfg;
     struct bundle *bundle;
     int n_bundles;
-    struct glint_cells cells; /* of the bundle being drawn */
+    struct glint_cells cells; /* cells of the bundle being drawn */
     struct glint_path *path;
     double *row_y;      /* [n + 1][2]: lowest and highest pixel row of nodes */
     double *difference; /* [height][3][width + 2] */

@@ -9,7 +9,7 @@
 #include "engine/frame/block.h"
 #include "engine/frame/frame_parts.h"
 
-/* What one frame may take: 65535 bundles, 0.8 GB of vertices. */
+/* One frame takes 65535 bundles and 0.8 GB of vertices at most. */
 enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
 
 /* Bundles that are looked at before most of them turn out to miss the picture:
@@ -22,8 +22,8 @@ struct traced {
     struct glint_traced_bundle *bundle;
     int n_bundles, max_bundles;
     int n_dropped; /* bundles beyond what a frame may take */
-    struct glint_vertex *
-        *vertices; /* of each traced bundle, in the flare's block */
+    /* Vertices of each traced bundle, in the flare's block. */
+    struct glint_vertex **vertices;
 };
 
 struct job {
@@ -120,7 +120,8 @@ static enum glint_status plan(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* What a traced bundle's pupil sends, display white times pixels at scale 1. */
+/* Returns the flux that a traced bundle's pupil sends, display white times
+ * pixels at scale 1. */
 static double flux_of(const struct glint_frame *f,
                       const struct glint_traced_bundle *traced)
 {

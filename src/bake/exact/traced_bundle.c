@@ -192,7 +192,7 @@ static void barrel_values(const struct glint_traced_bundle *traced,
     }
 }
 
-/* Where a ray goes, as the vertex will hold it. */
+/* The place where a ray lands, as the vertex will hold it. */
 struct landing {
     double x, y, stop_x, stop_y, energy, barrel[2];
 };
@@ -219,8 +219,8 @@ static void quantise(const struct landing *l, struct glint_vertex *v)
     v->energy_q16 = (int32_t)lrint(l->energy * 65536);
 }
 
-/* From the light's frame to the picture; MIRROR -1 is the ray on the other side
- * of the light's plane. */
+/* Turns a ray from the light's frame to the picture; MIRROR -1 is the ray on
+ * the other side of the light's plane. */
 static struct landing land(const struct glint_traced_bundle_config *cfg,
                            const struct glint_traced_bundle *traced,
                            const struct glint_ray *ray, double mirror)

@@ -18,7 +18,7 @@ struct task {
     struct glint_brightness *out;
     const struct glint_setup *setup;
     double field_mm, nm;
-    double half_mm[2]; /* of the picture */
+    double half_mm[2]; /* half the size of the picture */
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
 };
 

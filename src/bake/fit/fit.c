@@ -45,8 +45,8 @@ struct fitter {
     struct glint_visible_profile profile;
     struct glint_visible in_band, in_part;
     struct glint_visible_profile band_profile;
-    double profiled[4]; /* what it is of: angles and band */
-    int n_parts;        /* of the zone so far */
+    double profiled[4]; /* angles and band that the profile is of */
+    int n_parts;        /* parts of the zone so far */
 };
 
 /* ------------------------------------------------------------------- zones */
@@ -100,7 +100,7 @@ struct pending {
     double w0, w1; /* the part of the band, -1 .. 1 */
     bool thorough;
     struct glint_zone_part part;
-    int depth; /* of the part; 0: the whole zone */
+    int depth; /* halvings that led to the part; 0: the whole zone */
 };
 
 static bool is_whole_band(double w0, double w1)
@@ -184,8 +184,8 @@ static double hopeless(const struct fitter *f, const struct pending *p,
 /* How the fit of a zone went. */
 struct attempt {
     struct glint_zone_aim aim;
-    struct glint_zone_errors errors; /* at most 1 if good; worst HUGE_VAL: it
-                                        was not tried */
+    struct glint_zone_errors errors; /* errors, at most 1 if good; worst
+                                        HUGE_VAL: it was not tried */
     double wanders;                  /* the box with the colour, half widths */
 };
 
@@ -254,7 +254,7 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
     return fit_zone(f, p, &zone, band, system, a);
 }
 
-/* What to do about a zone after attempt A. Halves of bright ones are worth
+/* The next step for a zone after attempt A. Halves of bright ones are worth
  * more. */
 enum next { KEEP, HALVE, THOROUGH, BANDS, PART };
 
@@ -362,7 +362,7 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
         return status;
     f->visible = visible;
     f->tolerance = tolerance;
-    f->profiled[0] = HUGE_VAL; /* of nothing yet */
+    f->profiled[0] = HUGE_VAL; /* there is no profile yet */
     f->out = out;
     f->buffers.scratch = malloc(glint_regress_doubles(GLINT_ZONE_RAYS) *
                                 sizeof *f->buffers.scratch);

@@ -17,22 +17,23 @@ struct glint_fitted_output {
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
     double grain; /* rounding of a coefficient that does no harm; 0: none */
-    int event;    /* of the path, for a barrel */
+    int event;    /* event of the path, for a barrel */
     int roots;    /* the energy is the polynomial squared so many times */
-    double most;  /* of the polynomial of the energy, where light gets through;
-                     0: unknown */
+    double most;  /* largest value of the energy's polynomial where light gets
+                     through; 0: unknown */
     bool met;     /* the tolerance */
 };
 
 struct glint_fitted_system {
-    int ghost, part; /* of the pupil: 0, 1 .. where it is parted */
-    int annulus;     /* see struct glint_model_system */
+    /* Number of the ghost, and of the part 0, 1 .. of its pupil. */
+    int ghost, part;
+    int annulus; /* see struct glint_model_system */
     double sine_lo, sine_hi;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
     int n_knots;             /* 0, or as many sets of coefficients */
     double *knot;            /* sines, rising; owned */
     double *box;             /* mm, as in the model; owned */
-    double radius_mm;        /* of the sparse basis; else unused */
+    double radius_mm;        /* radius of the sparse basis; else unused */
     int n_outputs;
     struct glint_fitted_output output[GLINT_OUT_KINDS]; /* kinds rising */
     bool met;

@@ -80,8 +80,8 @@ static enum glint_status to_integers(const double *value, int n, int exponent,
 
 /* ---------------------------------------------------------------- intervals */
 
-/* What a number of the run time may be, and how far rounding may have taken it
- * from what it stands for. In steps of its unit; doubles hold these exactly
+/* The range of a number of the run time, and how far rounding may have taken it
+ * from what it stands for, in steps of its unit. Doubles hold these exactly
  * enough: they stay below 2^31, and errors are rounded up at the end. */
 struct range {
     double lo, hi, error;
@@ -93,7 +93,7 @@ static double reach(struct range r)
 }
 
 struct proof {
-    double bound; /* of all intermediates so far */
+    double bound; /* bound of all intermediates so far */
 };
 
 static struct range seen(struct proof *p, struct range r)
@@ -208,7 +208,7 @@ static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
     }
 }
 
-/* What the run time makes of the polynomial of the energy. */
+/* Returns the range that the run time makes of the polynomial of the energy. */
 static struct range energy_of(struct range x, int head, int roots)
 {
     if (head || roots)

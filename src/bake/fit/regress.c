@@ -17,7 +17,7 @@
 struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead;
-    double length;              /* of the term */
+    double length;              /* length of the term's column */
     double on[GLINT_MAX_TERMS]; /* its shares of the chosen directions */
     int clean;                  /* so many of which AT has no longer */
     double was2, left2;         /* squared length of AT, and without all */
@@ -207,7 +207,7 @@ static bool is_hopeless(const struct search *s, double left)
     return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
 }
 
-/* What is left, in units of what may be. */
+/* Returns what is left, in units of what may be left. */
 static double excess(const struct search *s, double rms, double peak)
 {
     const double sum2 = dot(s->residual, s->residual, s->s->n);
@@ -218,7 +218,7 @@ static double excess(const struct search *s, double rms, double peak)
     return fmax(sqrt(sum2 / s->s->n) / rms, most / peak);
 }
 
-/* From shares of orthogonal directions back to coefficients of the terms. */
+/* Turns shares of orthogonal directions back into coefficients of the terms. */
 static void solve(const struct search *s, const double *y,
                   struct glint_poly *poly)
 {

@@ -27,13 +27,13 @@ struct glint_poly {
     double coef[GLINT_MAX_TERMS];
 };
 
-/* What may be chosen. */
+/* The terms that may be chosen. */
 struct glint_degrees {
     uint8_t most[GLINT_VARIABLES];   /* power of each variable */
-    uint8_t weight[GLINT_VARIABLES]; /* of each power in the total */
+    uint8_t weight[GLINT_VARIABLES]; /* weight of each power in the total */
     int total;                       /* weighted sum of powers, at most */
-    int parity;                      /* of variable 1: 0 even, 1 odd, -1 any */
-    int terms;                       /* 1 .. GLINT_MAX_TERMS */
+    int parity; /* parity of variable 1: 0 even, 1 odd, -1 any */
+    int terms;  /* 1 .. GLINT_MAX_TERMS */
     /* More than HOPELESS times of what may be, left after so many terms, ends
      * it; 0: never. */
     double hopeless;

@@ -357,7 +357,7 @@ static struct glint_pupil predict(const struct glint_pupil *before,
     return p;
 }
 
-/* What gets through by angle and wavelength. */
+/* The boxes of what gets through, by angle and wavelength. */
 struct box_samples {
     bool seen[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
     struct glint_pupil box[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
@@ -432,7 +432,7 @@ void glint_visible_profile_find(const struct glint_visible *visible,
     }
     for (int i = 0; i < 3; i++)
         look(visible, sine, wanted, waves[i], &g);
-    /* Where only some colours get through, boxes of others may lie between. */
+    /* Boxes of other colours may lie between where only some get through. */
     for (int k = 0; k < GLINT_PROFILE; k++)
         wanted[k] = !(g.seen[k][waves[0]] && g.seen[k][waves[1]] &&
                       g.seen[k][waves[2]]);

@@ -45,7 +45,7 @@ void glint_zone_init(struct glint_zone *zone,
                      const struct glint_visible_profile *profile, double lo,
                      double hi, bool by_colour);
 
-/* Where an annular box begins, a share of its half height. */
+/* Returns where an annular box begins, a share of its half height. */
 double glint_zone_rim(int annulus);
 
 /* The halves of PART, along v (inner and outer) or along u. */

@@ -13,10 +13,11 @@
 #include "bake/fit/zone_rays.h"
 
 struct glint_zone_aim {
-    double sensor_mm, edge_mm; /* of places; of outlines on the sensor */
-    double stop;               /* of places in the stop, radii */
-    double energy;             /* share */
-    double ease;               /* over the tolerances of a bright ghost */
+    /* Tolerances of places and of outlines on the sensor. */
+    double sensor_mm, edge_mm;
+    double stop;   /* tolerance of places in the stop, radii */
+    double energy; /* share */
+    double ease;   /* over the tolerances of a bright ghost */
     double hidden; /* what places may be off before the ghost shows it, over
                       sensor_mm */
 };

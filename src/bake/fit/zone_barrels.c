@@ -7,7 +7,7 @@
 #include "bake/fit/zone_batch.h"
 #include "bake/fit/zone_rays.h"
 
-/* What a sampled ray says: how far past each barrel it is. */
+/* The samples of a zone: how far past each barrel each ray is. */
 struct sampling {
     int n, n_events;
     double (*radius)[GLINT_MAX_EVENTS + 1];
@@ -88,7 +88,8 @@ static double escape(const struct sampling *s, int ray, const int *chosen,
     return fmin(most, 0.3);
 }
 
-/* What escapes with barrel K as the last of N: sum, and the largest. */
+/* Gives how much escapes with barrel K as the last of N: the sum, and the
+ * largest. */
 static double escapes(const struct sampling *s, int *chosen, int n,
                       double *most)
 {

@@ -33,7 +33,7 @@ void glint_zone_batch_add(struct glint_zone_batch *batch,
 
 void glint_zone_batch_trace(struct glint_zone_batch *batch);
 
-/* Where ray K meets each event of the path, [n_events]. */
+/* Returns the place of ray K at each event of the path, [n_events]. */
 static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
                                              int k))[2]
 {

@@ -101,7 +101,7 @@ static void follow(const struct seen *seen, const double *value, int degree,
                              : fit.power[k][2]] = fit.coef[k];
 }
 
-/* What HALF lacks to be above 0 everywhere. */
+/* Returns what HALF lacks to be above 0 everywhere. */
 static double lacks(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;

@@ -14,7 +14,7 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
 enum {
     FEW_TERMS = 64,
-    MANY_TERMS = 96, /* of places, in thorough fits */
+    MANY_TERMS = 96, /* terms of places in thorough fits */
     PATIENCE = 36    /* terms, with what looks hopeless */
 };
 
@@ -31,7 +31,7 @@ static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .total = 10,
                                                     .terms = FEW_TERMS};
 
-/* Of thorough fits, where energy changes a lot over the pupil. */
+/* Terms of thorough fits, where energy changes a lot over the pupil. */
 static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .weight = {1, 1, 1, 1},
                                                    .total = 12,
@@ -255,7 +255,7 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
                 left <= 1);
 }
 
-/* Where the barrel cuts is what counts. */
+/* Fits a barrel; the place where it cuts is what counts. */
 static enum glint_status fit_barrel(struct fit *f, int barrel,
                                     struct glint_fitted_system *system,
                                     double *worst)

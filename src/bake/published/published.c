@@ -27,8 +27,8 @@ static const double tolerance[GLINT_SHARED_OUTPUTS] = {0.0002, 0.0002, 0.0002,
 struct knots {
     int n;
     double *sine;
-    struct glint_pupil *box;   /* at the knot */
-    struct glint_pupil *joint; /* with the neighbours' */
+    struct glint_pupil *box;   /* box at the knot */
+    struct glint_pupil *joint; /* box joint with the neighbours' */
 };
 
 struct job {

@@ -13,7 +13,7 @@ struct search {
     enum glint_channel kind;
     int n_candidates;
     uint8_t candidate[MAX_CANDIDATES][GLINT_VARIABLES];
-    double remove[GLINT_SHARED_TERMS]; /* what dropping a term costs */
+    double remove[GLINT_SHARED_TERMS]; /* cost of dropping each term */
 };
 
 /* --------------------------------------------------------------- candidates */

@@ -51,8 +51,8 @@ struct glint_shared_basis {
 /* A zone's least squares, about 75 KB. */
 struct glint_shared_zone {
     int n, seen;
-    double scale; /* of the outputs: energy is divided by its mean */
-    double cost;  /* of a coefficient: its row in the least squares */
+    double scale; /* scale of the outputs: energy is divided by its mean */
+    double cost;  /* cost of a coefficient: its row in the least squares */
     double weight2[GLINT_SHARED_RAYS], value[GLINT_SHARED_RAYS];
     double fit[GLINT_SHARED_RAYS], column[GLINT_SHARED_RAYS];
     /* The orthonormal terms, and what is left of the output: a row for each

@@ -6,7 +6,7 @@
 
 #define STATED_TOLERANCE 1e-3 /* of a stated focal length, relative */
 #define CLEAR_SHARE      0.9  /* of the semi-diameter: surfaces stay apart */
-#define CONTACT_MM       1e-6 /* what rounding may make surfaces overlap */
+#define CONTACT_MM       1e-6 /* overlap that rounding may make */
 #define MIN_STOP_MM      1e-6
 #define STOP_SLACK       1e-9 /* rounding of the stop radius, relative */
 

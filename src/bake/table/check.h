@@ -24,12 +24,13 @@
 #define GLINT_MIN_F_NUMBER 0.5
 #define GLINT_MAX_F_NUMBER 1000.0
 
-/* Of the numbers in the table. */
+/* The places of the table's numbers in its text. */
 struct glint_places {
-    struct glint_text_place f_number, stop; /* of the stop its semi-diameter */
+    /* Places of the f-number and of the stop's semi-diameter. */
+    struct glint_text_place f_number, stop;
     struct glint_text_place focal, back_focal; /* line 0: not stated */
     struct glint_text_place thickness[GLINT_MAX_ELEMENTS];
-    struct glint_text_place medium; /* of the last surface */
+    struct glint_text_place medium; /* place of the last surface's medium */
 };
 
 /* False: the error is written. */

@@ -27,7 +27,7 @@ static inline int surface_element(const struct glint_prescription *lens, int k)
     return k + (k >= lens->stop_after);
 }
 
-/* From element E to the next one or the sensor. */
+/* Returns the gap from element E to the next one or the sensor. */
 static inline double element_gap_mm(const struct glint_prescription *lens,
                                     int e)
 {

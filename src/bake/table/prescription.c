@@ -60,7 +60,7 @@ struct parser {
     struct glint_prescription lens;
     struct glint_text_place word[N_FIELDS]; /* latest of each, line 0: none */
     struct glint_places places;
-    struct glint_film coating; /* of surfaces without their own */
+    struct glint_film coating; /* coating of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
     int n_glasses;

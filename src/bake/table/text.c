@@ -213,7 +213,7 @@ const char *glint_word_quote(const struct glint_word *word,
 /* The unread part of a number, and what was read of it. */
 struct digits {
     const char *at, *end;
-    uint64_t value; /* of the significant digits */
+    uint64_t value; /* value of the significant digits */
     int significant, n;
 };
 

@@ -60,7 +60,7 @@ struct glint_word glint_text_next_word(struct glint_text *text);
 /* All that is left of the line without blanks at either end. */
 struct glint_word glint_text_rest(struct glint_text *text);
 
-/* Where the text ends. */
+/* Returns the place where the text ends. */
 struct glint_text_place glint_text_end(const struct glint_text *text);
 
 /* Writes "FILE:LINE:COLUMN: FORMAT ..." into the error; always false. */

@@ -159,8 +159,8 @@ static double channel(const struct shape *s, int index, const double uv[2])
            (s->corner[2][index] - a) * uv[1];
 }
 
-/* What a cut is: a half plane n . c <= limit, or the unit disc, of the channels
- * FIRST and FIRST + 1. */
+/* A cut: a half plane n . c <= limit, or the unit disc, of the channels FIRST
+ * and FIRST + 1. */
 struct cut {
     int first;
     bool disc;
@@ -177,7 +177,8 @@ static double cut_value(const struct shape *s, const struct cut *cut,
                      : cut->limit - cut->normal[0] * x - cut->normal[1] * y;
 }
 
-/* Where between A (value FA) and B (value FB, other sign) the cut lies. */
+/* Returns where between A (value FA) and B (value FB, other sign) the cut lies.
+ */
 static double crossing(const struct shape *s, const struct cut *cut,
                        const double a[2], const double b[2], double fa,
                        double fb)

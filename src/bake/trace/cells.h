@@ -59,7 +59,7 @@ void glint_cells_trace(const struct glint_cells *cells, int row);
 struct glint_piece {
     int n; /* corners; 0: nothing */
     double xy[GLINT_MAX_PIECE][2];
-    double share;  /* of the triangle's pupil area, 0 .. 1 */
+    double share;  /* share of the triangle's pupil area, 0 .. 1 */
     double energy; /* mean over the piece */
 };
 

@@ -113,7 +113,7 @@ struct bend {
     int n;
     struct change sensor; /* mm */
     struct change stop;
-    struct change barrel[GLINT_MAX_EVENTS + 1]; /* of r^2 / 2 */
+    struct change barrel[GLINT_MAX_EVENTS + 1]; /* changes of r^2 / 2 */
     int up, down; /* cells by how they are turned */
     int n_steps;
     double thick; /* rays a stop radius, sum */
@@ -141,7 +141,8 @@ static void add_bend(struct bend *bend, const struct probe *a,
     bend->n++;
 }
 
-/* What the bend of CUT is worth on the sensor, over one step of the grid. */
+/* Returns what the bend of CUT is worth on the sensor, over one step of the
+ * grid. */
 static double on_sensor_mm(const struct bend *bend, const struct change *cut)
 {
     return cut->first > 0

@@ -24,7 +24,7 @@
 
 /* ------------------------------------------------------------------- paths */
 
-/* What a path is made from, and how far it has come. */
+/* The parts that a path is made from, and how far it has come. */
 struct route {
     const struct glint_prescription *lens;
     struct glint_path *path;
@@ -120,8 +120,8 @@ struct beam {
     double l[LANES], m[LANES], n[LANES]; /* direction, unit length */
     double cosine[LANES]; /* between ray and normal, where they meet */
     double energy[LANES];
-    double height2[LANES], semi2[LANES]; /* of the largest height / semi-
-                                            diameter so far, undivided */
+    /* Largest height over semi-diameter so far, undivided. */
+    double height2[LANES], semi2[LANES];
     double stop_x[LANES], stop_y[LANES];
     double status[LANES]; /* an enum glint_ray_status, as a number */
 };
@@ -308,7 +308,7 @@ static inline enum glint_ray_status arrive(const struct beam *b, int k,
     return GLINT_RAY_OK;
 }
 
-/* Of LANES lanes the first N are asked for. */
+/* Traces the first N of LANES lanes; the others are not asked for. */
 static WHOLLY_INLINE void trace(const struct glint_path *path, int lanes, int n,
                                 bool energies, const struct glint_launch *from,
                                 struct glint_ray *ray,
