@@ -234,6 +234,16 @@ static void set_corners(const struct glint_ghost_edges *g, int i, int j,
     glint_corners_set(corners, at, 4);
 }
 
+/* Whether cells of row J lie next to the row in the middle of an annular box,
+ * which has no rays: nothing is lost there. */
+static int is_in_hole(const struct glint_ghost_edges *g, int j)
+{
+    const int middle = g->bundle->n_cells / 2;
+
+    return g->transfer && g->transfer->annulus &&
+           (j == middle - 1 || j == middle);
+}
+
 /* The light of the cell at (I, J) towards its neighbours: what is drawn by
  * itself has none, and nearly all cells lie outside of what is seen or wholly
  * inside. */
@@ -250,6 +260,8 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     int32_t light;
     int cuts, turn, odd;
 
+    if (some & NODE_LOST && is_in_hole(g, j))
+        return 0;
     if (some & NODE_LOST) {
         set_cell(g, i, j, &cell);
         glint_ghost_add_triangles(g, &cell);

@@ -171,6 +171,26 @@ static void test_what_is_seen(void **state)
     close_fixture(&f);
 }
 
+/* The middle of an annular box has no rays, which are not lost. */
+static void test_a_hole_loses_no_cells(void **state)
+{
+    struct glint_model_system *system;
+    struct glint_flare_stats s;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    system =
+        (struct glint_model_system *)(void *)(f.m.data +
+                                              model_header(&f.m)->system_at);
+    for (uint32_t i = 0; i < model_header(&f.m)->n_systems; i++)
+        system[i].annulus = 1;
+    s = planned(&f, 1);
+    assert_true(s.bundles >= 1 && s.primitives > 0);
+    assert_int_equal(s.dropped_cells, 0);
+    close_fixture(&f);
+}
+
 /* The most that the flare adds to a pixel, display white. */
 static double peak(struct fixture *f)
 {
@@ -716,6 +736,7 @@ int main(void)
         cmocka_unit_test(test_reals),
         cmocka_unit_test(test_sag),
         cmocka_unit_test(test_what_is_seen),
+        cmocka_unit_test(test_a_hole_loses_no_cells),
         cmocka_unit_test(test_faint),
         cmocka_unit_test(test_steps_follow_codes),
         cmocka_unit_test(test_whole_edges),
