@@ -2,7 +2,9 @@
 # tests/figures.
 
 video-report: $(OUT)/steady
-	$(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS)
+	@{ echo "revision $$(git rev-parse --short HEAD), $$(nproc)-core $$(uname -m) machine"; \
+	    echo; $(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS) || \
+	    echo "steady: a step is larger than its bound" >&2; } | tools/report/write-figures steady
 demo:
 	@tools/make/deps "PNG and JPEG pictures, and video to look at" g++ pkg-config \
 	        libopenimageio-dev libwebp-dev ffmpeg
