@@ -204,6 +204,12 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
                                    const struct glint_flare_config *cfg,
                                    void *mem, size_t bytes);
 
+/* Has the frames to come drawn through STOP, which is copied, its mask kept.
+ * Whatever its opening, capacities serve as before. GLINT_E_ARGUMENT: it is out
+ * of range, or has a mask that the raster does not take. */
+enum glint_status glint_flare_set_stop(struct glint_flare *flare,
+                                       const struct glint_stop *stop);
+
 /* Forgets all bundles. */
 void glint_flare_begin(struct glint_flare *flare);
 

@@ -17,12 +17,16 @@ extern "C" {
 #define GLINT_MAX_WAVE_SETS 5 /* see struct glint_wave_sets, flare.h */
 
 /* The opening of the aperture stop, in stop radii (1 = the circle that the
- * f-number asks for), fixed to the camera: x right, y up. */
+ * f-number of the frame asks for), fixed to the camera: x right, y up. */
 struct glint_stop {
     int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
     /* Unit normal of each side, outwards. */
     int32_t normal_q30[GLINT_MAX_BLADES][2];
     int32_t apothem_q16; /* centre to side */
+    /* Of frames of a model: the f-number that it was baked for over that of the
+     * frame, which is the stop's radius over the model's, 2^20 .. 2^30; 0: as
+     * wide as the model's. */
+    int32_t opening_q30;
 
     /* Unless NULL, the opening is read from this mask instead: signed distance
      * to the outline, positive inside, at the nodes of a square of

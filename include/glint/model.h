@@ -39,7 +39,8 @@ extern "C" {
 #endif
 
 #define GLINT_MODEL_MAGIC   UINT32_C(0x544e4c47) /* "GLNT" */
-#define GLINT_MODEL_VERSION 3
+#define GLINT_MODEL_VERSION 4
+#define GLINT_FLUX_TERMS    6
 
 enum glint_basis {
     GLINT_BASIS_AUTO,  /* u, v, s, w: see above */
@@ -67,7 +68,10 @@ struct glint_model_header {
                             beyond it are not drawn */
     /* Flux of the direct image at angle 0 for irradiance 1 through a circular
      * stop, mm^2: coefficients of powers of w over the band. */
-    struct glint_real direct_flux[6];
+    struct glint_real direct_flux[GLINT_FLUX_TERMS];
+    /* Of a stop of R of that radius it is R^2 times as much, and times powers 1
+     * and 2 of 1 - R^2 so much more. */
+    struct glint_real stopped_flux[2][GLINT_FLUX_TERMS];
     uint32_t n_surfaces;
     uint32_t n_ghosts, ghost_at; /* struct glint_model_ghost */
     uint32_t n_parts; /* the last so many ghosts are further parts of the pupil

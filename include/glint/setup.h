@@ -46,7 +46,8 @@ struct glint_setup {
     int n_parts; /* the last so many ghosts of a model are further parts of the
                     pupil of some of those before them */
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
-    int n_blades;              /* blades of the stop; 0: circle */
+    double opening; /* radius of the stop, in those of the model's: at most 1 */
+    int n_blades;   /* blades of the stop; 0: circle */
     double blade_rotation_deg; /* angle of the stop's first corner, from x
                                   towards y */
     int n_wavelengths;
@@ -84,6 +85,14 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          double blade_rotation_deg,
                                          const double *wavelength_nm, int n,
                                          struct glint_error *error);
+
+/* Stops SETUP, made from LENS and nothing else done to it, to F_NUMBER, down to
+ * a 1024th of the opening that the model was baked for. GLINT_E_ARGUMENT:
+ * farther, or wider than that. */
+enum glint_status glint_setup_stop_down(struct glint_setup *setup,
+                                        const struct glint_lens *lens,
+                                        double f_number,
+                                        struct glint_error *error);
 
 /* Takes the colours of glint_spectrum() for SETUP, which is for its N
  * wavelengths. */

@@ -22,6 +22,13 @@
 extern "C" {
 #endif
 
+/* A part of a box, _q30: U from middle - half to middle + half, within -1 .. 1,
+ * and |V| from one to the other, 0 .. 1: from the middle of the box, or from
+ * the rim of an annular one, to its end. */
+struct glint_box_window {
+    int32_t u_middle_q30, u_half_q30, v_from_q30, v_to_q30;
+};
+
 /* The polynomials of one bundle: one ghost, light and wavelength. */
 struct glint_transfer {
     const struct glint_model_system *system;
@@ -33,6 +40,10 @@ struct glint_transfer {
     int32_t box[3];    /* middle, half width, half height at this angle */
     int32_t box_exponent;
     uint8_t annulus;
+    struct glint_box_window
+        window; /* that rows and grids of rays are laid over:
+               all of the box after init, for the caller to
+               narrow; from 0, unless it is annular */
     enum glint_basis basis;
     union {
         /* coefficients of u^a v^b: [b][a] */
@@ -77,18 +88,21 @@ struct glint_place {
     int32_t cos_q30, sin_q30; /* cosine and sine of the light's azimuth */
     struct glint_real pixels_per_mm;
     int32_t middle_x_q8, middle_y_q8; /* the sensor's centre, pixels */
+    struct glint_real stop_scale; /* the model's stop radius over the frame's, 1
+                                     or more; 0: they are the same */
 };
 
-/* V, _q30, at J of N steps from the middle of the box, or from the rim of
- * an annular one, to 1. */
+/* U at part X_Q30 of the window, -1 .. 1, and V at J of N steps across its
+ * upper half. */
+int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30);
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 
-/* Fills the vertices of a grid of N_CELLS a side over the whole box, row by
- * row, [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a
- * vertex is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does
- * not fit a vertex is lost. Of an annular box N_CELLS is even, at least 4; the
- * row in the middle is lost, and those beside it are its rim: n_cells - 2 rows
- * of cells cover what there is. */
+/* Fills the vertices of a grid of N_CELLS a side over the window, row by row,
+ * [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a vertex
+ * is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does not fit a
+ * vertex is lost. Of an annular box N_CELLS is even, at least 4; the row in the
+ * middle is lost, and those beside it are its rim: n_cells - 2 rows of cells
+ * cover what there is. */
 void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);

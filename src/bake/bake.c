@@ -10,12 +10,12 @@
 #include <string.h>
 
 #include "bake/fit/fit.h"
+#include "bake/model_header.h"
 #include "bake/published/published.h"
 #include "bake/trace/cells.h"
 #include "bake/write_model.h"
 
 enum {
-    FLUX_POWERS = 6,
     REVISION = 11 /* of what is made of a lens: raised when models change */
 };
 
@@ -72,14 +72,6 @@ static enum glint_status check(const struct glint_bake_options *o,
     return wrong ? GLINT_E_ARGUMENT : GLINT_OK;
 }
 
-static double field_of(const struct glint_prescription *lens,
-                       const struct glint_bake_options *o)
-{
-    return o->field_mm > 0
-               ? o->field_mm
-               : 0.55 * hypot(lens->film_width_mm, lens->film_height_mm);
-}
-
 /* FNV-1a over the bytes of a number. */
 static void mix(uint64_t *key, double value)
 {
@@ -101,7 +93,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
     mix(&key, options->band_nm[0]);
     mix(&key, options->band_nm[1]);
     mix(&key, options->max_deg);
-    mix(&key, field_of(lens, options));
+    mix(&key, glint_bake_field_mm(lens, options));
     mix(&key, options->tolerance);
     mix(&key, lens->f_number);
     mix(&key, lens->film_width_mm);
@@ -124,79 +116,13 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
     return key;
 }
 
-/* ------------------------------------------------------------------- header */
-
-/* The direct image's flux as a polynomial in w. */
-static enum glint_status set_flux(const struct bake_run *run,
-                                  struct glint_model_header *h)
-{
-    enum { NODES = 9 };
-    static const double zero[NODES];
-    double w[NODES], flux[NODES], one[NODES];
-    double scratch[NODES * (GLINT_MAX_CANDIDATES + 1)];
-    const struct glint_regress_samples samples = {
-        NODES, {zero, zero, zero, w}, one};
-    const struct glint_degrees degrees = {.most = {0, 0, 0, FLUX_POWERS - 1},
-                                          .weight = {1, 1, 1, 1},
-                                          .total = FLUX_POWERS - 1,
-                                          .parity = -1,
-                                          .terms = FLUX_POWERS};
-    const double *band = run->options.band_nm;
-    const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
-    struct glint_poly poly;
-
-    for (int i = 0; i < NODES; i++) {
-        w[i] = 2.0 * i / (NODES - 1) - 1;
-        one[i] = 1;
-        flux[i] = glint_direct_flux(
-            &run->setup, 1 / sqrt(0.5 * (lo + hi) + 0.5 * w[i] * (hi - lo)));
-        if (flux[i] < 0)
-            return GLINT_E_MEMORY;
-    }
-    glint_regress_fit(scratch, &samples, flux, &degrees, 1e-7 * flux[0],
-                      1e-7 * flux[0], &poly);
-    for (int i = 0; i < poly.n; i++)
-        h->direct_flux[poly.power[i][3]] = glint_real_of(poly.coef[i]);
-    return GLINT_OK;
-}
-
-static enum glint_status set_header(const struct bake_run *run,
-                                    struct glint_model_header *h)
-{
-    const struct glint_optics *o = &run->setup.optics;
-    const double *band = run->options.band_nm;
-    const uint64_t key = glint_bake_key(run->lens, &run->options);
-
-    *h = (struct glint_model_header){
-        .magic = GLINT_MODEL_MAGIC,
-        .version = GLINT_MODEL_VERSION,
-        .basis = (uint32_t)run->options.basis,
-        .key = {(uint32_t)key, (uint32_t)(key >> 32)},
-        .focal_mm = glint_real_of(o->focal_mm),
-        .back_focal_mm = glint_real_of(o->back_focal_mm),
-        .entrance_radius_mm = glint_real_of(o->entrance_radius_mm),
-        .stop_radius_mm = glint_real_of(o->stop_radius_mm),
-        .f_number = glint_real_of(run->lens->f_number),
-        .film_width_mm = glint_real_of(run->lens->film_width_mm),
-        .film_height_mm = glint_real_of(run->lens->film_height_mm),
-        .field_mm = glint_real_of(field_of(run->lens, &run->options)),
-        .front_mm = glint_real_of(run->lens->surface[0].semi_mm),
-        .wave_lo_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[1] * band[1])),
-        .wave_hi_q24 = (int32_t)lrint(0x1p24 * 1e6 / (band[0] * band[0])),
-        .sine_hi_q30 = (int32_t)lrint(
-            0x1p30 * sin(run->options.max_deg * 0.017453292519943295)),
-        .n_surfaces = (uint32_t)run->lens->n_surfaces};
-    snprintf(h->name, sizeof h->name, "%s", run->lens->name);
-    return set_flux(run, h);
-}
-
 /* --------------------------------------------------------------------- jobs */
 
 static void visible_init(const struct bake_run *run, int ghost,
                          struct glint_visible *visible)
 {
     glint_visible_init(visible, &run->setup, ghost,
-                       field_of(run->lens, &run->options),
+                       glint_bake_field_mm(run->lens, &run->options),
                        run->options.band_nm);
 }
 
@@ -220,7 +146,7 @@ static enum glint_status fit_published(struct bake_run *run, int ghost)
 
     glint_published_defaults(&options, &run->setup);
     options.max_deg = run->options.max_deg;
-    options.field_mm = field_of(run->lens, &run->options);
+    options.field_mm = glint_bake_field_mm(run->lens, &run->options);
     return glint_published_fit(&run->setup, ghost, &options,
                                &run->fitted[ghost]);
 }
@@ -424,11 +350,13 @@ static enum glint_status bake_run(struct bake_run *run)
     enum glint_status status = reserve(run);
 
     if (status == GLINT_OK)
-        status = set_header(run, &header);
+        status = glint_model_header_of(run->lens, &run->options, &run->setup,
+                                       &header);
     if (status == GLINT_OK)
-        status = glint_brightness_find(
-            &run->brightness, &run->setup, field_of(run->lens, &run->options),
-            run->options.band_nm, run->options.workers);
+        status =
+            glint_brightness_find(&run->brightness, &run->setup,
+                                  glint_bake_field_mm(run->lens, &run->options),
+                                  run->options.band_nm, run->options.workers);
     if (status == GLINT_OK)
         status = for_ghosts(run, fit_job, 0, 0.88);
     if (status == GLINT_OK)

@@ -5,6 +5,11 @@
 #include "flare/state.h"
 #include "flare/wave_sets.h"
 
+enum {
+    WHOLE_OPENING_Q30 = 1 << 30, /* as wide as the model's stop */
+    LEAST_OPENING_Q30 = 1 << 20
+};
+
 /* ------------------------------------------------------------------- memory */
 
 static const struct glint_raster *raster_of(const struct glint_flare_config *c)
@@ -66,6 +71,9 @@ static struct glint_flare *carve(struct glint_arena *a,
 
 static int stop_ok(const struct glint_stop *s, int masks)
 {
+    if (s->opening_q30 && (s->opening_q30 < LEAST_OPENING_Q30 ||
+                           s->opening_q30 > WHOLE_OPENING_Q30))
+        return 0;
     if (s->mask_q13)
         return masks && s->mask_nodes >= 2 && s->mask_nodes <= 4096 &&
                s->mask_span_q16 >= 1 << 15 && s->mask_span_q16 <= 1 << 18;
@@ -133,6 +141,15 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
         f->cfg.raster->begin(f);
     glint_flare_begin(f);
     *flare = f;
+    return GLINT_OK;
+}
+
+enum glint_status glint_flare_set_stop(struct glint_flare *flare,
+                                       const struct glint_stop *stop)
+{
+    if (!stop_ok(stop, flare->cfg.raster->masks))
+        return GLINT_E_ARGUMENT;
+    flare->cfg.stop = *stop;
     return GLINT_OK;
 }
 
@@ -292,14 +309,17 @@ void glint_flare_plan(struct glint_flare *flare,
     glint_flare_begin(flare);
     flare->quads = frame->half;
     set_size(flare, frame->half && flare->cfg.raster->halves);
-    flare->plan = (struct glint_plan){.frame = frame,
-                                      .light = lights,
-                                      .n_lights = n_lights,
-                                      .width = flare->cfg.width,
-                                      .height = flare->cfg.height,
-                                      .sets = flare->cfg.sets,
-                                      .half = flare->half,
-                                      .round = flare->cfg.stop.n_blades == 0};
+    flare->plan = (struct glint_plan){
+        .frame = frame,
+        .light = lights,
+        .n_lights = n_lights,
+        .width = flare->cfg.width,
+        .height = flare->cfg.height,
+        .sets = flare->cfg.sets,
+        .half = flare->half,
+        .round = flare->cfg.stop.n_blades == 0,
+        .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
+                                                   : WHOLE_OPENING_Q30};
     flare->flux = flare->brightest = (struct glint_real){0, 0};
     keep_seen(flare, frame->sets ? frame->sets->planner->plan(flare, n_jobs)
                                  : plan_all(flare, n_jobs));

@@ -67,7 +67,8 @@ static struct glint_real colour_of(const struct glint_wave *w,
     return real_of(most, -28);
 }
 
-/* Flux of the whole box, or of what an annular one is, at energy 2^EXPONENT. */
+/* Flux of the window of the box, or of what an annular one is, at energy
+ * 2^EXPONENT. */
 static struct glint_real flux_of(const struct glint_plan *p,
                                  const struct glint_bundle_plan *s,
                                  const struct glint_transfer *t,
@@ -81,6 +82,9 @@ static struct glint_real flux_of(const struct glint_plan *p,
     x.exponent -= 2 * p->half;  /* over pixels as large as four */
     if (t->annulus)
         x = real_over(x, real_of(t->annulus + 1, 0));
+    x = real_times(x, real_of(t->window.u_half_q30, -30));
+    x = real_times(
+        x, real_of((int64_t)t->window.v_to_q30 - t->window.v_from_q30, -30));
     x = real_times(x, real_of(b->cosine_q30, -30));
     x = real_times(x, real_times(w->weight, b->power));
     return real_times(x, colour);
@@ -118,16 +122,19 @@ void glint_plan_transfer(const struct glint_plan *plan,
                         r->wave[planned->wave].wave_q24);
     transfer->sets = plan->sets;
     transfer->energy_up = planned->energy_up;
+    transfer->window = planned->window;
 }
 
 struct glint_place glint_plan_place(const struct glint_plan *plan, int light)
 {
-    return (struct glint_place){.cos_q30 = plan->light[light].cos_q30,
-                                .sin_q30 = plan->light[light].sin_q30,
-                                .pixels_per_mm = plan_pixels_per_mm(plan),
-                                .middle_x_q8 = plan->width * 128 >> plan->half,
-                                .middle_y_q8 =
-                                    plan->height * 128 >> plan->half};
+    return (struct glint_place){
+        .cos_q30 = plan->light[light].cos_q30,
+        .sin_q30 = plan->light[light].sin_q30,
+        .pixels_per_mm = plan_pixels_per_mm(plan),
+        .middle_x_q8 = plan->width * 128 >> plan->half,
+        .middle_y_q8 = plan->height * 128 >> plan->half,
+        .stop_scale =
+            real_over(real_of(1, 0), real_of(plan->opening_q30, -30))};
 }
 
 /* How far energies can be lifted, with a quarter more than the probe saw. */
@@ -166,6 +173,23 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
     return g->i == only->i && g->j == only->j;
 }
 
+/* Narrows the window of T to what the stop lets through, if it is narrower than
+ * the model's; returns 0 where that is nothing. */
+static int set_window(const struct glint_plan *plan,
+                      struct glint_bundle_plan *planned,
+                      struct glint_plan_scratch *scratch)
+{
+    int any = 1;
+
+    if (plan->opening_q30 < INT32_C(1) << 30) {
+        any = glint_window_find(&scratch->window, &scratch->transfer,
+                                plan->opening_q30);
+        scratch->probe.n_rays += scratch->window.n_rays;
+    }
+    planned->window = scratch->transfer.window;
+    return any;
+}
+
 enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
                                      struct glint_bundle_plan *planned,
                                      struct glint_bundle *bundle,
@@ -191,9 +215,12 @@ enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
     colour = colour_of(&r->wave[planned->wave], b, bundle->rgb_q14);
     if (colour.mantissa == 0 || b->power.mantissa == 0)
         return GLINT_OUTCOME_DARK;
-    glint_probe_run(s, transfer, FEW_ACROSS, FEW_DOWN);
+    if (!set_window(plan, planned, scratch))
+        return GLINT_OUTCOME_BLOCKED;
+    glint_probe_run(s, transfer, plan->opening_q30, FEW_ACROSS, FEW_DOWN);
     if (s->n_inside < FEW_INSIDE)
-        glint_probe_run(s, transfer, GLINT_PROBE_ACROSS, GLINT_PROBE_DOWN);
+        glint_probe_run(s, transfer, plan->opening_q30, GLINT_PROBE_ACROSS,
+                        GLINT_PROBE_DOWN);
     if (s->n_inside == 0)
         return GLINT_OUTCOME_BLOCKED;
     if (!is_in_view(plan, b, transfer, &s->reach))

@@ -17,11 +17,13 @@
 #include "glint/flare.h"
 #include "glint/transfer.h"
 #include "flare/probe.h"
+#include "flare/window.h"
 
 /* Where the rays of a bundle come from. */
 struct glint_bundle_plan {
     int32_t ghost, light, wave;
-    uint8_t energy_up; /* see struct glint_transfer */
+    uint8_t energy_up;              /* see struct glint_transfer */
+    struct glint_box_window window; /* of the box, that the stop lets through */
     /* Of two barrels and a round stop: how far, in the mean, the grid's
      * straight lines lie above (1 + r^2) / 2, which is bent between its rays */
     uint16_t sag_q16[3];
@@ -39,12 +41,14 @@ struct glint_plan {
     unsigned sets;
     int half;  /* pixels are twice as wide and high as the picture's */
     int round; /* the stop is */
+    int32_t opening_q30; /* of the stop, over the model's: 2^20 .. 2^30 */
 };
 
 /* Of a worker. */
 struct glint_plan_scratch {
     struct glint_transfer transfer;
     struct glint_probe probe;
+    struct glint_window_nodes window;
 };
 
 /* Whether the lens was never looked at from where LIGHT comes. */

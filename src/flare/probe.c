@@ -5,14 +5,19 @@
 #include "base/real.h"
 
 /* X as an integer of the output's unit. */
-static int64_t in_units(const struct glint_transfer *t, int kind, int64_t x_q16)
+static int64_t in_units(const struct glint_transfer *t, int kind, int64_t x_q46)
 {
-    return real_integer(real_of(x_q16, -16), -t->exponent[kind],
+    return real_integer(real_of(x_q46, -46), -t->exponent[kind],
                         INT64_C(1) << 31);
 }
 
+static int is_of_stop(int kind)
+{
+    return kind == GLINT_OUT_STOP_X || kind == GLINT_OUT_STOP_Y;
+}
+
 static void begin(struct glint_probe *s, const struct glint_transfer *t,
-                  int across, int down)
+                  int32_t opening_q30, int across, int down)
 {
     const int64_t near_q16 = 68813; /* 1.05 */
 
@@ -26,7 +31,8 @@ static void begin(struct glint_probe *s, const struct glint_transfer *t,
     s->n_kinds = 0;
     for (int k = 0; k < GLINT_OUT_KINDS; k++) {
         s->change[k] = (struct glint_probe_change){0, 0, {0, 0}};
-        s->limit[k] = in_units(t, k, near_q16);
+        s->limit[k] = in_units(
+            t, k, near_q16 * (is_of_stop(k) ? opening_q30 : INT32_C(1) << 30));
         if (t->outputs >> k & 1 && k != GLINT_OUT_ENERGY)
             s->kind[s->n_kinds++] = (uint8_t)k;
     }
@@ -57,9 +63,10 @@ static void send_row(struct glint_probe *s, struct glint_transfer *t, int j)
         int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
 
         for (int i = 0; i < GLINT_RAYS; i++)
-            u_q30[i] = first + i < s->across
-                           ? 2 * (one_q30 / s->across) * (first + i) - one_q30
-                           : one_q30;
+            u_q30[i] = glint_transfer_u(
+                t, first + i < s->across
+                       ? 2 * (one_q30 / s->across) * (first + i) - one_q30
+                       : one_q30);
         glint_transfer_rays(t, v_q30, u_q30, first == 0, out);
         for (int i = 0; i < GLINT_RAYS && first + i <= s->across; i++) {
             struct glint_probe_node *n = &row[first + i];
@@ -150,9 +157,9 @@ static void add_seen(struct glint_probe *s, const struct glint_probe_node *n)
 }
 
 void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
-                     int across, int down)
+                     int32_t opening_q30, int across, int down)
 {
-    begin(probe, t, across, down);
+    begin(probe, t, opening_q30, across, down);
     probe->n_rays += (across + 1) * (down + 1);
     for (int j = 0; j <= down; j++) {
         const struct glint_probe_node *here = probe->row[j % 3];

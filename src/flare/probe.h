@@ -55,9 +55,10 @@ enum {
 }; /* squares are of differences over so much
     */
 
-/* Sends the rays of a grid of ACROSS x DOWN cells over half the box of T. RUN
- * adds to n_rays, and begins all else anew. */
+/* Sends the rays of a grid of ACROSS x DOWN cells over half the window of T,
+ * towards a stop of OPENING_Q30 of the model's radius. RUN adds to n_rays, and
+ * begins all else anew. */
 void glint_probe_run(struct glint_probe *probe, struct glint_transfer *t,
-                     int across, int down);
+                     int32_t opening_q30, int across, int down);
 
 #endif

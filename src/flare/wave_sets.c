@@ -45,25 +45,24 @@ int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
 /* ----------------------------------------------------------------- the choice
  */
 
-/* Gives where rays of wave WAVE land, evenly over half of the box: pixels, q8.
+/* Gives where rays of PLANNED land, evenly over half of its window: pixels, q8.
  */
-static void trace(const struct glint_plan *plan, const struct job *job,
-                  int wave, struct glint_transfer *t,
-                  int32_t at_q8[ROWS][2][GLINT_RAYS])
+static void trace(const struct glint_plan *plan,
+                  const struct glint_bundle_plan *planned,
+                  struct glint_transfer *t, int32_t at_q8[ROWS][2][GLINT_RAYS])
 {
     const int32_t one_q30 = INT32_C(1) << 30;
     const struct glint_real scale =
-        glint_plan_place(plan, job->light).pixels_per_mm;
-    const struct glint_bundle_plan planned = {
-        .ghost = job->ghost, .light = job->light, .wave = wave};
+        glint_plan_place(plan, planned->light).pixels_per_mm;
 
-    glint_plan_transfer(plan, &planned, t);
+    glint_plan_transfer(plan, planned, t);
     for (int row = 0; row < ROWS; row++) {
         const int32_t v_q30 = glint_transfer_v(t, 2 * row + 1, 2 * ROWS);
         int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
 
         for (int i = 0; i < GLINT_RAYS; i++)
-            u_q30[i] = (2 * i + 1) * (one_q30 / GLINT_RAYS) - one_q30;
+            u_q30[i] = glint_transfer_u(
+                t, (2 * i + 1) * (one_q30 / GLINT_RAYS) - one_q30);
         glint_transfer_rays(t, v_q30, u_q30, 1, out);
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < GLINT_RAYS; i++)
@@ -75,15 +74,18 @@ static void trace(const struct glint_plan *plan, const struct job *job,
     }
 }
 
-/* How far apart the outlines of the first set's outermost waves are, pixels. */
-static int64_t apart_q8(const struct glint_plan *plan, const struct job *job,
+/* How far apart the outlines of the first set's outermost waves, FIRST and
+ * LAST, are, pixels. */
+static int64_t apart_q8(const struct glint_plan *plan,
+                        const struct glint_bundle_plan *first,
+                        const struct glint_bundle_plan *last,
                         struct glint_transfer *t)
 {
     int32_t a_q8[ROWS][2][GLINT_RAYS], b_q8[ROWS][2][GLINT_RAYS];
     uint64_t squares = 0; /* 48 of at most 2^52 */
 
-    trace(plan, job, 0, t, a_q8);
-    trace(plan, job, plan->frame->sets->size[0] - 1, t, b_q8);
+    trace(plan, first, t, a_q8);
+    trace(plan, last, t, b_q8);
     for (int row = 0; row < ROWS; row++)
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < GLINT_RAYS; i++) {
@@ -118,7 +120,7 @@ static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
 }
 
 /* The smallest set that serves the ghost of N waves planned at SOURCE. */
-static int choose(const struct glint_plan *plan, const struct job *job,
+static int choose(const struct glint_plan *plan,
                   const struct glint_bundle_plan *planned,
                   const struct glint_bundle *bundle, struct glint_transfer *t)
 {
@@ -132,7 +134,9 @@ static int choose(const struct glint_plan *plan, const struct job *job,
         if (bundle[i].n_cells)
             light = real_plus(light, planned[i].irradiance);
     if (r->sets->n_sets > 1 && !serves(r, 0, FARTHEST_Q8, light)) {
-        const int64_t apart = both ? apart_q8(plan, job, t) : FARTHEST_Q8;
+        const int64_t apart =
+            both ? apart_q8(plan, &planned[0], &planned[n - 1], t)
+                 : FARTHEST_Q8;
 
         while (set < r->sets->n_sets - 1 && !serves(r, set, apart, light))
             set++;
@@ -177,7 +181,7 @@ static void look_job(void *ctx, int number, int worker)
         }
     job->peak_q20 = (int)q_clamp_sat(peak_q20, 0, 1 << 20);
     if (job->set == 0)
-        job->set = choose(&f->plan, job, &f->planned[at], &f->bundle[at],
+        job->set = choose(&f->plan, &f->planned[at], &f->bundle[at],
                           &f->worker[worker].plan->transfer);
 }
 

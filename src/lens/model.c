@@ -26,7 +26,7 @@
 
 /* The file is used in place: its layout is what these structs are. */
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
-STATIC_ASSERT(sizeof(struct glint_model_header) == 248);
+STATIC_ASSERT(sizeof(struct glint_model_header) == 344);
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
@@ -99,8 +99,10 @@ static const char *check_reals(const struct glint_model_header *h)
         if (positive[k]->mantissa <= 0)
             return "a length or the f-number is not above 0";
     }
-    for (size_t k = 0; k < sizeof h->direct_flux / sizeof *h->direct_flux; k++)
-        if (!is_normal(&h->direct_flux[k]))
+    for (int k = 0; k < GLINT_FLUX_TERMS; k++)
+        if (!is_normal(&h->direct_flux[k]) ||
+            !is_normal(&h->stopped_flux[0][k]) ||
+            !is_normal(&h->stopped_flux[1][k]))
             return "the flux of the direct image is not normalised";
     return NULL;
 }

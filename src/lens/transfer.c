@@ -244,6 +244,8 @@ int glint_transfer_init(struct glint_transfer *transfer,
     clear(transfer);
     transfer->system = system;
     transfer->annulus = (uint8_t)system->annulus;
+    transfer->window =
+        (struct glint_box_window){0, TRANSFER_ONE_Q30, 0, TRANSFER_ONE_Q30};
     transfer->basis = (enum glint_basis)lens->header->basis;
     settle(&set, lens, system, sine_q30, wave_q24);
     set_box(transfer, lens, &set);

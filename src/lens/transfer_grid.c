@@ -100,18 +100,26 @@ struct turns {
     struct glint_turn sensor, stop;
 };
 
+static struct glint_turn turn_of(const struct glint_place *p,
+                                 struct glint_real size, int exponent, int frac,
+                                 int32_t limit)
+{
+    return (struct glint_turn){
+        (int32_t)q_shift((int64_t)p->cos_q30 * size.mantissa, 30),
+        (int32_t)q_shift((int64_t)p->sin_q30 * size.mantissa, 30),
+        -(exponent + size.exponent + frac), limit};
+}
+
 static struct turns turns_of(const struct glint_transfer *t,
                              const struct glint_place *p)
 {
-    const struct glint_real size = p->pixels_per_mm;
+    const struct glint_real one = {TRANSFER_ONE_Q30, -30};
+    const struct glint_real stop = p->stop_scale.mantissa ? p->stop_scale : one;
 
     return (struct turns){
-        {(int32_t)q_shift((int64_t)p->cos_q30 * size.mantissa, 30),
-         (int32_t)q_shift((int64_t)p->sin_q30 * size.mantissa, 30),
-         -(t->exponent[GLINT_OUT_SENSOR_X] + size.exponent + 8),
-         GLINT_VERTEX_LIMIT_Q8 / 2},
-        {p->cos_q30, p->sin_q30, 30 - (t->exponent[GLINT_OUT_STOP_X] + 16),
-         LIMIT_Q16}};
+        turn_of(p, p->pixels_per_mm, t->exponent[GLINT_OUT_SENSOR_X], 8,
+                GLINT_VERTEX_LIMIT_Q8 / 2),
+        turn_of(p, stop, t->exponent[GLINT_OUT_STOP_X], 16, LIMIT_Q16)};
 }
 
 static void turn(const struct glint_turn *turn, unsigned sets, const int32_t *x,
@@ -154,19 +162,31 @@ static void put_block(const struct block *b, const struct glint_place *p,
 
 /* --------------------------------------------------------------------- rows */
 
-static int32_t node_q30(int k, int n_cells)
+/* Node K of N_CELLS over MIDDLE +- HALF. */
+static int32_t node_q30(int32_t middle_q30, int32_t half_q30, int k,
+                        int n_cells)
 {
-    return (int32_t)q_divide((int64_t)(2 * k - n_cells) * TRANSFER_ONE_Q30,
-                             n_cells);
+    return middle_q30 +
+           (int32_t)q_divide((int64_t)(2 * k - n_cells) * half_q30, n_cells);
+}
+
+int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30)
+{
+    const struct glint_box_window *w = &transfer->window;
+
+    return w->u_middle_q30 + q_mul(w->u_half_q30, x_q30, 30);
 }
 
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
 {
+    const struct glint_box_window *w = &transfer->window;
     const int rim = transfer->annulus;
+    const int64_t high_q30 = (int64_t)w->v_to_q30 - w->v_from_q30;
 
     /* NOLINTNEXTLINE: there is a step */
-    return (int32_t)q_divide(TRANSFER_ONE_Q30 * ((int64_t)rim * n + j),
-                             (rim + 1) * n);
+    return (int32_t)q_divide(
+        ((int64_t)rim * TRANSFER_ONE_Q30 + w->v_from_q30) * n + high_q30 * j,
+        (rim + 1) * n);
 }
 
 /* Whether row J lies between the two sides of an annular box. */
@@ -181,7 +201,7 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
     const int last = n_cells / 2 - 1; /* of the lower side, at its rim */
 
     if (!t->annulus)
-        return node_q30(j, n_cells);
+        return node_q30(0, t->window.v_to_q30, j, n_cells);
     return j <= last ? -glint_transfer_v(t, last - j, last)
                      : glint_transfer_v(t, last - (n_cells - j), last);
 }
@@ -199,7 +219,9 @@ static void set_row_pair(struct glint_transfer *t,
     if (t->n_nodes != n_cells + 1) {
         t->n_nodes = n_cells + 1;
         for (int i = 0; i < n_cells + RAYS; i++)
-            t->node_q30[i] = node_q30(i < n_cells ? i : n_cells, n_cells);
+            t->node_q30[i] =
+                node_q30(t->window.u_middle_q30, t->window.u_half_q30,
+                         i < n_cells ? i : n_cells, n_cells);
     }
     for (int first = 0; first <= n_cells; first += RAYS) {
         const int n = n_cells + 1 - first < RAYS ? n_cells + 1 - first : RAYS;

@@ -64,7 +64,8 @@ static void rays_of_rows(const struct glint_transfer *t,
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (transfer_has(t, kind))
             k->along(out[kind], t->of_u[kind], t->degree_u[kind], u_q30, RAYS);
-    raise_energies(t, out[GLINT_OUT_ENERGY], RAYS);
+    if (transfer_has(t, GLINT_OUT_ENERGY))
+        raise_energies(t, out[GLINT_OUT_ENERGY], RAYS);
 }
 
 static void ray_of_terms(const struct glint_transfer *t, int32_t u_q30,

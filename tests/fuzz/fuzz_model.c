@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "flare/window.h"
 #include "glint/flare.h"
 #include "glint/transfer.h"
 
@@ -59,11 +60,12 @@ static void check_grids(struct glint_transfer *t)
 
     for (int k = 0; k < 12; k++) {
         const struct glint_place place = {
-            turn_q30[k % 3][0],
-            turn_q30[k % 3][1],
-            {k < 6 ? INT32_MAX : 1 << 30, exponent[k % 4]},
-            960 << 8,
-            540 << 8};
+            .cos_q30 = turn_q30[k % 3][0],
+            .sin_q30 = turn_q30[k % 3][1],
+            .pixels_per_mm = {k < 6 ? INT32_MAX : 1 << 30, exponent[k % 4]},
+            .middle_x_q8 = 960 << 8,
+            .middle_y_q8 = 540 << 8,
+            .stop_scale = {k % 5 ? 3 << 29 : 0, k % 3 * 5 - 30}};
         const int n_cells = t->annulus ? 4 : 1 + k % 3;
 
         memset(v, 0, sizeof v);
@@ -71,6 +73,22 @@ static void check_grids(struct glint_transfer *t)
         for (int m = 0; m < (n_cells + 1) * (n_cells + 1); m++)
             check_vertex(&v[m]);
     }
+}
+
+/* Whatever a model says, a window lies within the box. */
+static void check_window(struct glint_transfer *t, int32_t opening_q30)
+{
+    static struct glint_window_nodes nodes;
+    const struct glint_box_window *w = &t->window;
+
+    t->window = (struct glint_box_window){0, ONE, 0, ONE};
+    if (!glint_window_find(&nodes, t, opening_q30))
+        return;
+    require(w->u_half_q30 > 0 && w->v_from_q30 >= 0 &&
+            w->v_to_q30 > w->v_from_q30 && w->v_to_q30 <= ONE);
+    require((int64_t)w->u_middle_q30 + w->u_half_q30 <= ONE &&
+            (int64_t)w->u_middle_q30 - w->u_half_q30 >= -ONE);
+    require(t->annulus || w->v_from_q30 == 0);
 }
 
 static void check_bundle(const struct glint_lens *lens, int ghost,
@@ -85,6 +103,9 @@ static void check_bundle(const struct glint_lens *lens, int ghost,
         return;
     require(t.outputs >> GLINT_OUT_KINDS == 0 && (t.outputs & 31) == 31);
     check_rays(&t);
+    check_grids(&t);
+    check_window(&t, 1 << 29);
+    check_window(&t, 1 << 20);
     check_grids(&t);
 }
 
@@ -110,7 +131,7 @@ static void check_ghost(const struct glint_lens *lens, int ghost)
 }
 
 /* A frame of it: planned, sorted, drawn, whatever comes out. */
-static void check_frame(const struct glint_lens *lens)
+static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
 {
     enum { SIDE = 48, ROOM = 1 << 22 };
     static uint8_t mem[ROOM] __attribute__((aligned(64)));
@@ -134,6 +155,7 @@ static void check_frame(const struct glint_lens *lens)
     const struct glint_flare_config cfg = {.width = SIDE,
                                            .height = SIDE,
                                            .tile_log2 = 4,
+                                           .stop.opening_q30 = opening_q30,
                                            .irradiance_steps = 70,
                                            .max_bundles = 64,
                                            .max_primitives = 20000,
@@ -174,7 +196,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         require(lens.header->n_ghosts <= INT32_MAX);
         for (uint32_t k = 0; k < lens.header->n_ghosts && k < 8; k++)
             check_ghost(&lens, (int)k);
-        check_frame(&lens);
+        check_frame(&lens, 0);
+        check_frame(&lens, 1 << 27);
     } else {
         require(reason && *reason);
     }

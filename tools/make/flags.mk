@@ -48,7 +48,7 @@ $(call of,$(addprefix src/base/,status arena workers blob) src/image/image,-Os)
 $(call of,$(addprefix src/lens/,model model_system),-Os)
 $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
-$(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe wave_sets flare draw_over account),-Os)
+$(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)
 $(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
 $(call of,src/tile/bins src/tile/pass $(addprefix src/image/,resolve curve mix),-Os)
 

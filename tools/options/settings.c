@@ -116,11 +116,6 @@ static int open_model(const struct tool *tool, struct settings *settings,
     if (settings->rays == SETTINGS_RAYS_EXACT)
         return tool_usage(tool, "%s is a model: exact rays need the lens table",
                           path);
-    if (settings->f_number > 0)
-        return tool_usage(tool,
-                          "%s is a model, baked for one f-number: "
-                          "--f-number needs the lens table",
-                          path);
     code = coating_of_model(tool, &settings->coating, path);
     if (code == EXIT_OK)
         code = tool_model(tool, path, &settings->model);
@@ -137,13 +132,16 @@ static int open_model(const struct tool *tool, struct settings *settings,
 static int set_up(const struct tool *tool, struct settings *s)
 {
     struct glint_error error = {""};
-    const enum glint_status status =
+    enum glint_status status =
         s->model.data
             ? glint_setup_from_model(&s->setup, &s->model.lens, s->n_blades,
                                      s->blade_rotation_deg, s->wavelength_nm,
                                      s->n_wavelengths, &error)
             : settings_table_setup(s, &error);
 
+    if (status == GLINT_OK && s->model.data && s->f_number > 0)
+        status = glint_setup_stop_down(&s->setup, &s->model.lens, s->f_number,
+                                       &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     settings_weigh(s);

@@ -75,6 +75,7 @@ enum glint_status glint_setup_check(int n_blades, double rotation_deg,
 void glint_setup_common(struct glint_setup *s, int n_blades,
                         double rotation_deg, const double *wavelength_nm, int n)
 {
+    s->opening = 1;
     s->n_blades = n_blades;
     s->blade_rotation_deg = rotation_deg;
     s->n_sets = 0;
@@ -105,25 +106,36 @@ enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
 
 /* Area of the stop as a share of its circle's: the direct light is even enough
  * over it for a ten-thousandth. */
-static double opening(int n_blades)
+static double share_of_circle(int n_blades)
 {
     return n_blades ? 0.5 * n_blades * sin(2 * GLINT_PI / n_blades) / GLINT_PI
                     : 1;
 }
 
-/* Returns the model's flux at a wavelength, which is held to the model's band.
- */
-static double model_flux(const struct glint_model_header *h, double nm)
+/* Returns the polynomial COEF of N powers at W. */
+static double of_powers(const struct glint_real *coef, int n, double w)
+{
+    double sum = 0;
+
+    for (int k = n - 1; k >= 0; k--)
+        sum = sum * w + glint_real_value(coef[k]);
+    return sum;
+}
+
+/* Returns the model's flux through a stop of OPENING at a wavelength, which is
+ * held to the model's band. */
+static double model_flux(const struct glint_model_header *h, double opening,
+                         double nm)
 {
     const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;
     const double wave = 0x1p24 * 1e6 / (nm * nm);
     const double w = fmax(-1, fmin(1, (2 * wave - lo - hi) / fmax(1, hi - lo)));
-    const int n = (int)(sizeof h->direct_flux / sizeof *h->direct_flux);
-    double flux = 0;
+    const double closed = 1 - opening * opening;
+    const double flux = of_powers(h->direct_flux, GLINT_FLUX_TERMS, w);
+    const double first = of_powers(h->stopped_flux[0], GLINT_FLUX_TERMS, w);
+    const double second = of_powers(h->stopped_flux[1], GLINT_FLUX_TERMS, w);
 
-    for (int k = n - 1; k >= 0; k--)
-        flux = flux * w + glint_real_value(h->direct_flux[k]);
-    return flux;
+    return opening * opening * (flux + closed * (first + closed * second));
 }
 
 enum glint_status glint_setup_from_model(struct glint_setup *setup,
@@ -158,7 +170,34 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     glint_setup_common(setup, n_blades, blade_rotation_deg, wavelength_nm, n);
     for (int i = 0; i < n; i++)
         setup->direct_flux[i] =
-            opening(n_blades) * model_flux(h, wavelength_nm[i]);
+            share_of_circle(n_blades) * model_flux(h, 1, wavelength_nm[i]);
+    return glint_setup_units(setup, h->name, error);
+}
+
+enum glint_status glint_setup_stop_down(struct glint_setup *setup,
+                                        const struct glint_lens *lens,
+                                        double f_number,
+                                        struct glint_error *error)
+{
+    const struct glint_model_header *h = lens->header;
+    const double widest = glint_real_value(h->f_number);
+    /* as what is printed may have been rounded */
+    const double by =
+        fabs(widest / f_number - 1) < 1e-6 ? 1 : widest / f_number;
+
+    if (!(by <= 1 && by >= 0x1p-10)) {
+        snprintf(error->text, sizeof error->text,
+                 "%s: the model was baked for f/%g and serves f/%g to f/%g, "
+                 "not f/%g",
+                 h->name, widest, widest, 1024 * widest, f_number);
+        return GLINT_E_ARGUMENT;
+    }
+    setup->opening = by;
+    setup->optics.entrance_radius_mm *= by;
+    setup->optics.stop_radius_mm *= by;
+    for (int i = 0; i < setup->n_wavelengths; i++)
+        setup->direct_flux[i] = share_of_circle(setup->n_blades) *
+                                model_flux(h, by, setup->wavelength_nm[i]);
     return glint_setup_units(setup, h->name, error);
 }
 
@@ -192,7 +231,8 @@ void glint_setup_spread(struct glint_setup *setup,
             wave[i].nm = nm[i];
             memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
             wave[i].direct_flux =
-                opening(setup->n_blades) * model_flux(lens->header, nm[i]);
+                share_of_circle(setup->n_blades) *
+                model_flux(lens->header, setup->opening, nm[i]);
             mean += share[i] * wave[i].direct_flux;
         }
         for (int i = 0; i < sizes[s]; i++)

@@ -8,7 +8,10 @@ void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop)
 {
     const int n = setup->n_blades;
 
-    *stop = (struct glint_stop){.n_blades = n, .apothem_q16 = 1 << 16};
+    *stop = (struct glint_stop){.n_blades = n,
+                                .apothem_q16 = 1 << 16,
+                                .opening_q30 =
+                                    (int32_t)lrint(setup->opening * 0x1p30)};
     if (n == 0)
         return;
     stop->apothem_q16 = (int32_t)lrint(65536 * cos(GLINT_PI / n));

@@ -569,7 +569,7 @@ static void picture(struct fixture *f, int32_t *px_q20)
 }
 
 /* By edges rows of rays come and go; a stored grid has the same edges. */
-static void test_rows_and_grids(void **state)
+static void check_rows_and_grids(int32_t opening_q30)
 {
     static int32_t rows[3 * WIDTH * HEIGHT], grid[3 * WIDTH * HEIGHT];
     static struct glint_plan_scratch scratch;
@@ -577,8 +577,8 @@ static void test_rows_and_grids(void **state)
     struct glint_plan plan;
     int64_t light = 0;
 
-    (void)state;
     open_fixture(&f);
+    f.cfg.stop.opening_q30 = opening_q30;
     start(&f);
     glint_flare_plan(f.flare, &f.rays, &f.light, 1);
     picture(&f, rows);
@@ -586,7 +586,8 @@ static void test_rows_and_grids(void **state)
                                .light = &f.light,
                                .n_lights = 1,
                                .width = WIDTH,
-                               .height = HEIGHT};
+                               .height = HEIGHT,
+                               .opening_q30 = opening_q30};
     glint_flare_begin(f.flare);
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++)
         for (int wave = 0; wave < 2; wave++) {
@@ -612,6 +613,79 @@ static void test_rows_and_grids(void **state)
     close_fixture(&f);
 }
 
+static void test_rows_and_grids(void **state)
+{
+    (void)state;
+    check_rows_and_grids(1 << 30);
+    check_rows_and_grids(1 << 28);
+}
+
+/* A hole of 0.4 of the model's stop is one of 0.8 of a stop half as wide: the
+ * same light, but for the corners of cells; and closed further less of it. */
+static void test_opening(void **state)
+{
+    static int32_t whole[3 * WIDTH * HEIGHT], half[3 * WIDTH * HEIGHT];
+    static int32_t less[3 * WIDTH * HEIGHT];
+    int64_t light = 0, off = 0, left = 0;
+    struct glint_flare_stats s;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    f.light.power = real_of(1000, 4); /* enough steps to be compared by */
+    draw(&f, whole, &s);
+    f.cfg.stop.apothem_q16 *= 2;
+    f.cfg.stop.opening_q30 = 1 << 29;
+    draw(&f, half, &s);
+    f.cfg.stop.opening_q30 = 1 << 28;
+    draw(&f, less, &s);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        light += whole[i];
+        off += llabs((int64_t)whole[i] - half[i]);
+        left += less[i];
+    }
+    print_message("%.5f of the light is elsewhere, %.3f left\n",
+                  (double)off / (double)light, (double)left / (double)light);
+    assert_true(light > 1 << 20);
+    assert_true(off < light / 250);
+    /* 0.5 u^3 is 0.4 and 0.2 at 0.9283 and 0.7368; 0.5 v - 0.125 v^3 is below
+     * 0.4 everywhere, and 0.2 at 0.4183 */
+    assert_true(fabs((double)left / (double)light - 0.7368 / 0.9283 * 0.4183) <
+                0.003);
+    close_fixture(&f);
+}
+
+/* The stop of a flare is changed between frames, and as good as its first. */
+static void test_set_stop(void **state)
+{
+    static const int32_t bad[] = {-1, 1, (1 << 20) - 1, (1 << 30) + 1};
+    static int32_t set[3 * WIDTH * HEIGHT], first[3 * WIDTH * HEIGHT];
+    struct glint_flare_stats s;
+    struct glint_stop stop;
+    struct fixture f;
+
+    (void)state;
+    open_fixture(&f);
+    start(&f);
+    stop = f.cfg.stop;
+    for (int k = 0; k < 4; k++) {
+        stop.opening_q30 = bad[k];
+        assert_int_equal(glint_flare_set_stop(f.flare, &stop),
+                         GLINT_E_ARGUMENT);
+    }
+    stop.opening_q30 = 1 << 28;
+    assert_int_equal(glint_flare_set_stop(f.flare, &stop), GLINT_OK);
+    glint_flare_plan(f.flare, &f.rays, &f.light, 1);
+    picture(&f, set);
+    free(f.mem);
+    f.cfg.stop.opening_q30 = 1 << 28;
+    draw(&f, first, &s);
+    assert_memory_equal(set, first, sizeof set);
+    f.cfg.stop.opening_q30 = 1;
+    assert_int_equal(glint_flare_bytes(&f.cfg), 0);
+    close_fixture(&f);
+}
+
 /* The finest grid there is has as many cells as its rows have room for, however
  * much a ghost bends. */
 static void test_finest_grid(void **state)
@@ -629,7 +703,8 @@ static void test_finest_grid(void **state)
                                .light = &f.light,
                                .n_lights = 1,
                                .width = WIDTH,
-                               .height = HEIGHT};
+                               .height = HEIGHT,
+                               .opening_q30 = 1 << 30};
     for (int ghost = 0; ghost < (int)f.lens.header->n_ghosts; ghost++) {
         struct glint_bundle_plan planned = {.ghost = ghost};
         struct glint_bundle bundle;
@@ -658,7 +733,8 @@ static void test_sag(void **state)
                                .light = &f.light,
                                .n_lights = 1,
                                .width = WIDTH,
-                               .height = HEIGHT};
+                               .height = HEIGHT,
+                               .opening_q30 = 1 << 30};
     glint_plan_bundle(&plan, &planned, &bundle, &scratch);
     assert_true(bundle.n_cells >= 8);
     sag = 65536 * 4.0 / 12 / (bundle.n_cells * bundle.n_cells);
@@ -747,6 +823,8 @@ int main(void)
         cmocka_unit_test(test_many_faint_lights),
         cmocka_unit_test(test_room),
         cmocka_unit_test(test_rows_and_grids),
+        cmocka_unit_test(test_opening),
+        cmocka_unit_test(test_set_stop),
         cmocka_unit_test(test_finest_grid),
         cmocka_unit_test(test_beyond),
         cmocka_unit_test(test_dark_frame),

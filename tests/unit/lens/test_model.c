@@ -821,8 +821,9 @@ static void test_strays_between_knots(void **state)
     lens = open_image(&m);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 8, 1), 1);
     assert_int_equal(ray(&t, ONE, 0).at[GLINT_OUT_BARREL_0], ONE);
-    glint_transfer_grid(&t, &(struct glint_place){ONE, 0, {ONE, -40}, 0, 0}, 1,
-                        v);
+    glint_transfer_grid(
+        &t, &(struct glint_place){.cos_q30 = ONE, .pixels_per_mm = {ONE, -40}},
+        1, v);
     for (int k = 1; k < 4; k += 2) { /* those of x = 1 */
         assert_true(v[k].energy_q16 >= 0);
         assert_int_equal(v[k].barrel_q16[0], 1);

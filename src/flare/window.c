@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT */
+#include "flare/window.h"
+
+#include "base/divide.h"
+#include "base/q.h"
+#include "base/real.h"
+
+enum {
+    ACROSS = GLINT_WINDOW_ACROSS,
+    DOWN = GLINT_WINDOW_DOWN,
+    MOST_PASSES = 8,
+    ONE_NODE_Q16 = 1 << 16,
+    LEAST_HALF_Q30 = 1 << 12
+};
+
+/* In steps between nodes, _q16, from the first. */
+struct extent {
+    int32_t low_q16[2], high_q16[2]; /* across, down */
+};
+
+/* -------------------------------------------------------------------- nodes */
+
+static int is_cut(int kind)
+{
+    return kind >= GLINT_OUT_RADIUS;
+}
+
+static int has(const struct glint_transfer *t, int kind)
+{
+    return t->outputs >> kind & 1;
+}
+
+static void send(struct glint_window_nodes *n, struct glint_transfer *t)
+{
+    const uint32_t outputs = t->outputs;
+
+    /* neither where rays land nor what is left of them */
+    t->outputs &=
+        ~(UINT32_C(1) << GLINT_OUT_SENSOR_X |
+          UINT32_C(1) << GLINT_OUT_SENSOR_Y | UINT32_C(1) << GLINT_OUT_ENERGY);
+    for (int j = 0; j < DOWN; j++) {
+        const int32_t v_q30 = glint_transfer_v(t, j, DOWN - 1);
+
+        for (int first = 0; first < ACROSS; first += GLINT_RAYS) {
+            int32_t u_q30[GLINT_RAYS], out[GLINT_OUT_KINDS][GLINT_RAYS];
+
+            for (int i = 0; i < GLINT_RAYS; i++)
+                u_q30[i] = glint_transfer_u(
+                    t, (2 * (first + i) - (ACROSS - 1)) *
+                           ((INT32_C(1) << 30) / (ACROSS - 1)));
+            glint_transfer_rays(t, v_q30, u_q30, first == 0, out);
+            for (int k = 0; k < GLINT_OUT_KINDS; k++)
+                for (int i = 0; has(t, k) && i < GLINT_RAYS; i++)
+                    n->at[k][j][first + i] = out[k][i];
+        }
+    }
+    t->outputs = outputs;
+    n->n_rays += ACROSS * DOWN;
+}
+
+/* How much kind K is bent about a node: twice as far as it may lie off what is
+ * straight between rays. Below 2^31 + 2^31 as values are below 2^30. */
+static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
+{
+    const int32_t(*at)[ACROSS] = n->at[k];
+    const int x = i < 1 ? 1 : i > ACROSS - 2 ? ACROSS - 2 : i;
+    const int y = j < 1 ? 1 : j > DOWN - 2 ? DOWN - 2 : j;
+    const int64_t across =
+        (int64_t)at[j][x - 1] - 2 * (int64_t)at[j][x] + at[j][x + 1];
+    const int64_t down =
+        (int64_t)at[y - 1][i] - 2 * (int64_t)at[y][i] + at[y + 1][i];
+
+    return ((across < 0 ? -across : across) + (down < 0 ? -down : down)) / 4;
+}
+
+/* Sides of the octagon around the stop that a node lies beyond: a bit each. */
+static uint32_t beyond_stop(int64_t x, int64_t y, int64_t radius, int64_t bend)
+{
+    const int64_t straight = radius + bend;
+    const int64_t slanted = radius + radius * 106 / 256 + 2 * bend;
+
+    return (uint32_t)((x > straight) | (x < -straight) << 1 |
+                      (y > straight) << 2 | (y < -straight) << 3 |
+                      (x + y > slanted) << 4 | (x + y < -slanted) << 5 |
+                      (x - y > slanted) << 6 | (x - y < -slanted) << 7);
+}
+
+static void look_at(struct glint_window_nodes *n, int i, int j)
+{
+    const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
+    const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
+    const int64_t bend_x = bend_of(n, GLINT_OUT_STOP_X, i, j);
+    const int64_t bend_y = bend_of(n, GLINT_OUT_STOP_Y, i, j);
+    const int64_t bend = bend_x > bend_y ? bend_x : bend_y;
+
+    n->bend[j][i] = (int32_t)(bend < INT32_MAX ? bend : INT32_MAX);
+    n->beyond[j][i] = beyond_stop(x, y, n->radius, bend);
+    n->inside[j][i] = x * x + y * y < n->radius * n->radius;
+}
+
+/* The same of barrels: bits beside those of the stop. */
+static void look_at_barrels(struct glint_window_nodes *n,
+                            const struct glint_transfer *t)
+{
+    for (int k = 0; k < GLINT_OUT_KINDS; k++) {
+        int64_t one;
+
+        if (!is_cut(k) || !has(t, k))
+            continue;
+        one = real_integer(real_of(1, 0), -t->exponent[k], INT64_C(1) << 31);
+        for (int j = 0; j < DOWN; j++)
+            for (int i = 0; i < ACROSS; i++)
+                n->beyond[j][i] |=
+                    (uint32_t)(n->at[k][j][i] > one + bend_of(n, k, i, j))
+                    << (8 + k);
+    }
+}
+
+/* -------------------------------------------------------------------- cells */
+
+static void widen(struct extent *e, int32_t across_q16, int32_t down_q16)
+{
+    const int32_t at_q16[2] = {across_q16, down_q16};
+
+    for (int k = 0; k < 2; k++) {
+        if (at_q16[k] < e->low_q16[k])
+            e->low_q16[k] = at_q16[k];
+        if (at_q16[k] > e->high_q16[k])
+            e->high_q16[k] = at_q16[k];
+    }
+}
+
+/* How far a node lies from the middle of the stop. */
+static int64_t distance(const struct glint_window_nodes *n, int i, int j)
+{
+    const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
+    const int64_t y = n->at[GLINT_OUT_STOP_Y][j][i];
+
+    return q_root((uint64_t)(x * x + y * y));
+}
+
+/* Where the circle crosses the side from node (I, J), which is inside, to the
+ * one a STEP further, WAY 0 across or 1 down. */
+static void widen_to_circle(struct extent *e,
+                            const struct glint_window_nodes *n, int i, int j,
+                            int way, int step)
+{
+    const int i2 = i + (way == 0 ? step : 0), j2 = j + (way == 1 ? step : 0);
+    int64_t here, there;
+    int32_t part_q16;
+
+    if (n->inside[j2][i2])
+        return;
+    here = distance(n, i, j);
+    there = distance(n, i2, j2);
+    part_q16 =
+        (int32_t)q_divide((n->radius - here) * ONE_NODE_Q16, there - here + 1) *
+        step;
+    widen(e, i * ONE_NODE_Q16 + (way == 0 ? part_q16 : 0),
+          j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
+}
+
+/* Whether the cell at (I, J) is small beside the stop, and hardly bent. */
+static int is_fine(const struct glint_window_nodes *n, int i, int j)
+{
+    int64_t size = 0, bend = 0;
+
+    for (int k = GLINT_OUT_STOP_X; k <= GLINT_OUT_STOP_Y; k++) {
+        int64_t low = INT32_MAX, high = -INT32_MAX;
+
+        for (int corner = 0; corner < 4; corner++) {
+            const int x = i + (corner & 1), y = j + (corner >> 1);
+
+            low = n->at[k][y][x] < low ? n->at[k][y][x] : low;
+            high = n->at[k][y][x] > high ? n->at[k][y][x] : high;
+            bend = n->bend[y][x] > bend ? n->bend[y][x] : bend;
+        }
+        size = high - low > size ? high - low : size;
+    }
+    return 3 * size < n->radius && 16 * bend < n->radius;
+}
+
+static void add_cell(struct extent *e, const struct glint_window_nodes *n,
+                     int i, int j)
+{
+    if (n->beyond[j][i] & n->beyond[j][i + 1] & n->beyond[j + 1][i] &
+        n->beyond[j + 1][i + 1])
+        return;
+    if (!is_fine(n, i, j)) {
+        widen(e, i * ONE_NODE_Q16, j * ONE_NODE_Q16);
+        widen(e, (i + 1) * ONE_NODE_Q16, (j + 1) * ONE_NODE_Q16);
+        return;
+    }
+    for (int corner = 0; corner < 4; corner++) {
+        const int right = corner & 1, low = corner >> 1;
+
+        if (!n->inside[j + low][i + right])
+            continue;
+        widen(e, (i + right) * ONE_NODE_Q16, (j + low) * ONE_NODE_Q16);
+        widen_to_circle(e, n, i + right, j + low, 0, right ? -1 : 1);
+        widen_to_circle(e, n, i + right, j + low, 1, low ? -1 : 1);
+    }
+}
+
+/* What of the window of T is seen. */
+static struct extent look(struct glint_window_nodes *n,
+                          struct glint_transfer *t)
+{
+    struct extent e = {{INT32_MAX, INT32_MAX}, {-1, -1}};
+
+    send(n, t);
+    for (int j = 0; j < DOWN; j++)
+        for (int i = 0; i < ACROSS; i++)
+            look_at(n, i, j);
+    look_at_barrels(n, t);
+    for (int j = 0; j < DOWN - 1; j++)
+        for (int i = 0; i < ACROSS - 1; i++)
+            add_cell(&e, n, i, j);
+    return e;
+}
+
+/* ------------------------------------------------------------------- window */
+
+/* A PART-th more to either side, within 0 .. STEPS: between lines the circle,
+ * of six steps and more, bulges by a hundredth of itself. */
+static void loosen(struct extent *e, int k, int steps, int part)
+{
+    const int32_t most_q16 = steps * ONE_NODE_Q16;
+    const int32_t more_q16 = (e->high_q16[k] - e->low_q16[k]) / part + 1;
+
+    e->low_q16[k] -= more_q16;
+    e->high_q16[k] += more_q16;
+    e->low_q16[k] = e->low_q16[k] > 0 ? e->low_q16[k] : 0;
+    e->high_q16[k] = e->high_q16[k] < most_q16 ? e->high_q16[k] : most_q16;
+}
+
+/* The window's part E; whether it is much smaller. */
+static int narrow(struct glint_transfer *t, struct extent *e)
+{
+    struct glint_box_window *w = &t->window;
+    const struct glint_box_window old = *w;
+    const int64_t wide_q16 = (int64_t)(ACROSS - 1) << 16;
+    const int64_t high_q16 = (int64_t)(DOWN - 1) << 16;
+    const int64_t high_q30 = (int64_t)old.v_to_q30 - old.v_from_q30;
+    const int64_t left = e->low_q16[0], right = e->high_q16[0];
+
+    w->u_middle_q30 += q_narrow(
+        q_divide(old.u_half_q30 * (left + right - wide_q16), wide_q16));
+    w->u_half_q30 =
+        q_narrow(q_divide(old.u_half_q30 * (right - left), wide_q16));
+    w->v_to_q30 = old.v_from_q30 +
+                  q_narrow(q_divide(high_q30 * e->high_q16[1], high_q16));
+    if (t->annulus)
+        w->v_from_q30 += q_narrow(q_divide(high_q30 * e->low_q16[1], high_q16));
+    return 8 * (int64_t)w->u_half_q30 < 7 * (int64_t)old.u_half_q30 ||
+           8 * ((int64_t)w->v_to_q30 - w->v_from_q30) < 7 * high_q30;
+}
+
+int glint_window_find(struct glint_window_nodes *nodes,
+                      struct glint_transfer *t, int32_t opening_q30)
+{
+    int more = 1;
+
+    nodes->radius =
+        real_integer(real_of(opening_q30, -30), -t->exponent[GLINT_OUT_STOP_X],
+                     INT64_C(1) << 30);
+    nodes->radius += !nodes->radius;
+    nodes->n_rays = 0;
+    for (int pass = 0; more && pass < MOST_PASSES; pass++) {
+        struct extent e = look(nodes, t);
+
+        if (e.high_q16[0] < 0)
+            return 0;
+        loosen(&e, 0, ACROSS - 1, 48);
+        loosen(&e, 1, DOWN - 1, 24); /* of a half */
+        more = narrow(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
+               t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;
+    }
+    return 1;
+}

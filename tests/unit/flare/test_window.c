@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A window holds every ray that a narrower stop lets through, and little else,
+ * wherever in the box that is, and moves without steps as the stop closes.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "flare/window.h"
+#include "support/model_builder.h"
+
+enum { ONE = 1 << 30, ACROSS = 240, DOWN = 120 };
+
+/* Polynomials of the stop's position, at most 2 in size, and of a barrel. */
+struct shape {
+    const char *name;
+    uint16_t x_power[3], y_power[3];
+    double x[3], y[3];
+    double barrel[2]; /* (1 + r^2) / 2 = [0] + [1] u; [0] 0: there is none */
+    double slack; /* how much wider and higher than what is seen it may be */
+};
+
+#define P(u, v) MODEL_POWER(u, v, 0, 0)
+
+static const struct shape shape[] = {
+    {"straight", {P(1, 0)}, {P(0, 1)}, {1}, {1}, {0}, 1.15},
+    {"aside", {P(0, 0), P(1, 0)}, {P(0, 1)}, {0.7, 0.9}, {0.5}, {0}, 1.15},
+    {"bent",
+     {P(0, 0), P(1, 0), P(2, 0)},
+     {P(0, 1), P(1, 1)},
+     {-0.2, 0.6, 0.5},
+     {0.8, 0.3},
+     {0},
+     1.2},
+    {"folded: seen twice",
+     {P(0, 0), P(2, 0)},
+     {P(0, 1)},
+     {-0.36, 1},
+     {1},
+     {0},
+     1.4},
+    {"flat in the middle",
+     {P(3, 0)},
+     {P(0, 1), P(0, 3)},
+     {1},
+     {0.5, 0.5},
+     {0},
+     1.6},
+    {"a ring",
+     {P(1, 0), P(3, 0), P(1, 2)},
+     {P(0, 1), P(2, 1), P(0, 3)},
+     {-0.5, 1, 1},
+     {-0.5, 1, 1},
+     {0},
+     1.25},
+    {"half behind a barrel", {P(1, 0)}, {P(0, 1)}, {1}, {1}, {1, 2}, 1.5},
+};
+
+static struct glint_lens open_shape(const struct shape *s,
+                                    struct model_image *m)
+{
+    static const struct glint_model_ghost ghost = {0, 1, 0, 1};
+    const int exponent = -28; /* sums below 4 */
+    struct model_polynomial p[] = {
+        {GLINT_OUT_SENSOR_X, 1, -28, {P(1, 0)}, {{1 << 27}}},
+        {GLINT_OUT_SENSOR_Y, 1, -28, {P(0, 1)}, {{1 << 27}}},
+        {GLINT_OUT_STOP_X, 0, exponent, {0}, {{0}}},
+        {GLINT_OUT_STOP_Y, 0, exponent, {0}, {{0}}},
+        {GLINT_OUT_ENERGY, 1, -30, {P(0, 0)}, {{1 << 28}}},
+        {GLINT_OUT_BARREL_0, 2, exponent, {P(0, 0), P(1, 0)}, {{0}}}};
+    struct glint_model_system system =
+        model_auto_system((model_begin(m, GLINT_BASIS_AUTO, "shape"), m), 0,
+                          ONE / 2, MODEL_WAVE_LO_Q24, MODEL_WAVE_HI_Q24, 0);
+    struct glint_lens lens;
+    const char *reason = "";
+
+    for (int k = 0; k < 3; k++) {
+        p[2].power[k] = s->x_power[k];
+        p[2].coef[0][k] = (int32_t)lrint(ldexp(s->x[k], 28));
+        p[3].power[k] = s->y_power[k];
+        p[3].coef[0][k] = (int32_t)lrint(ldexp(s->y[k], 28));
+        p[2].n_terms = (uint8_t)(p[2].n_terms + (s->x[k] != 0));
+        p[3].n_terms = (uint8_t)(p[3].n_terms + (s->y[k] != 0));
+    }
+    for (int k = 0; k < 2; k++)
+        p[5].coef[0][k] = (int32_t)lrint(ldexp(s->barrel[k], 28));
+    model_outputs(m, &system, p, s->barrel[0] != 0 ? 6 : 5, 0);
+    model_end(m, &ghost, 1, &system, 1);
+    if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK)
+        fail_msg("%s: %s", s->name, reason);
+    return lens;
+}
+
+static bool is_seen(const struct glint_transfer *t, double radius, int i, int j)
+{
+    struct glint_outputs out;
+    double x, y;
+
+    glint_transfer_ray(t, (int32_t)((2.0 * i / ACROSS - 1) * ONE),
+                       (int32_t)((double)j / DOWN * ONE), &out);
+    x = ldexp(out.at[GLINT_OUT_STOP_X], t->exponent[GLINT_OUT_STOP_X]);
+    y = ldexp(out.at[GLINT_OUT_STOP_Y], t->exponent[GLINT_OUT_STOP_Y]);
+    return hypot(x, y) <= radius &&
+           (!(t->outputs >> GLINT_OUT_BARREL_0 & 1) ||
+            ldexp(out.at[GLINT_OUT_BARREL_0],
+                  t->exponent[GLINT_OUT_BARREL_0]) <= 1);
+}
+
+/* The rays that get through, found one by one: -1 .. 1 and 0 .. 1. */
+struct seen {
+    double left, right, high;
+    int n;
+};
+
+static struct seen look(const struct glint_transfer *t, double radius)
+{
+    struct seen s = {1, -1, 0, 0};
+
+    for (int j = 0; j <= DOWN; j++)
+        for (int i = 0; i <= ACROSS; i++)
+            if (is_seen(t, radius, i, j)) {
+                s.left = fmin(s.left, 2.0 * i / ACROSS - 1);
+                s.right = fmax(s.right, 2.0 * i / ACROSS - 1);
+                s.high = fmax(s.high, (double)j / DOWN);
+                s.n++;
+            }
+    return s;
+}
+
+static struct seen window_of(const struct glint_transfer *t)
+{
+    const struct glint_box_window *w = &t->window;
+
+    return (struct seen){((double)w->u_middle_q30 - w->u_half_q30) / ONE,
+                         ((double)w->u_middle_q30 + w->u_half_q30) / ONE,
+                         (double)w->v_to_q30 / ONE, 0};
+}
+
+static void check(const struct shape *s, const struct glint_lens *lens,
+                  double opening)
+{
+    static struct glint_window_nodes nodes;
+    static struct glint_transfer t;
+    struct seen want, got;
+
+    assert_int_equal(glint_transfer_init(&t, lens, 0, 0, MODEL_WAVE_LO_Q24), 1);
+    want = look(&t, opening);
+    if (!glint_window_find(&nodes, &t, (int32_t)(opening * ONE))) {
+        if (want.n)
+            fail_msg("%s at %g: %d rays are lost", s->name, opening, want.n);
+        return;
+    }
+    got = window_of(&t);
+    assert_true(got.left >= -1 && got.right <= 1 && got.left < got.right);
+    assert_true(got.high > 0 && got.high <= 1);
+    assert_int_equal(t.window.v_from_q30, 0);
+    if (want.n < 100)
+        return;
+    if (got.left > want.left + 1e-6 || got.right < want.right - 1e-6 ||
+        got.high < want.high - 1e-6)
+        fail_msg("%s at %g: %g .. %g, %g instead of %g .. %g, %g", s->name,
+                 opening, got.left, got.right, got.high, want.left, want.right,
+                 want.high);
+    /* a step of what was looked at is not known */
+    if (got.right - got.left >
+            s->slack * (want.right - want.left + 4.0 / ACROSS) ||
+        got.high > s->slack * (want.high + 2.0 / DOWN))
+        fail_msg("%s at %g: %g .. %g, %g for %g .. %g, %g", s->name, opening,
+                 got.left, got.right, got.high, want.left, want.right,
+                 want.high);
+}
+
+static void test_holds_what_is_seen(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof shape / sizeof *shape; k++) {
+        struct model_image m;
+        const struct glint_lens lens = open_shape(&shape[k], &m);
+
+        for (double opening = 1; opening > 0.01; opening *= 0.93)
+            check(&shape[k], &lens, opening);
+        free(m.data);
+    }
+}
+
+/* Where the stop closes by 0.002 of itself sides move by that much, and by less
+ * than a hundredth. */
+static void test_moves_smoothly(void **state)
+{
+    static struct glint_window_nodes nodes;
+    static struct glint_transfer t;
+    struct model_image m;
+    const struct glint_lens lens = open_shape(&shape[0], &m);
+    struct seen last = {-1, 1, 1, 0};
+    double worst = 0;
+
+    (void)state;
+    for (double opening = 0.9; opening > 0.005; opening *= 0.998) {
+        struct seen now;
+
+        glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
+        assert_int_equal(
+            glint_window_find(&nodes, &t, (int32_t)(opening * ONE)), 1);
+        now = window_of(&t);
+        if (opening < 0.89)
+            worst = fmax(worst, fmax(fabs(now.right - last.right),
+                                     fabs(now.high - last.high)) /
+                                    opening);
+        last = now;
+    }
+    print_message("sides step by %.4f of the stop at most\n", worst);
+    assert_true(worst < 0.01);
+    free(m.data);
+}
+
+/* Where nothing gets through, that is said. */
+static void test_closed(void **state)
+{
+    static const struct shape beside = {
+        "beside", {P(0, 0), P(1, 0)}, {P(0, 1)}, {0.9, 0.1}, {0.5}, {0}, 1};
+    static struct glint_window_nodes nodes;
+    static struct glint_transfer t;
+    struct model_image m;
+    const struct glint_lens lens = open_shape(&beside, &m);
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
+    assert_int_equal(glint_window_find(&nodes, &t, (int32_t)(0.79 * ONE)), 0);
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
+    assert_int_equal(glint_window_find(&nodes, &t, (int32_t)(0.85 * ONE)), 1);
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
+    assert_int_equal(glint_window_find(&nodes, &t, 1 << 20), 0);
+    free(m.data);
+}
+
+/* Of an annular box both sides of the rim move. */
+static void test_annulus(void **state)
+{
+    static struct glint_window_nodes nodes;
+    static struct glint_transfer t;
+    static const struct shape aside = {
+        "upwards", {P(1, 0)}, {P(0, 1), P(0, 3)}, {1}, {-0.64, 1}, {0}, 1};
+    struct model_image m;
+    const struct glint_lens lens = open_shape(&aside, &m); /* 0 at v = 0.8 */
+    double low, high;
+
+    (void)state;
+    glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
+    t.annulus = 1; /* from v = 1/2 */
+    assert_int_equal(glint_window_find(&nodes, &t, ONE / 20), 1);
+    low = ldexp(glint_transfer_v(&t, 0, 8), -30);
+    high = ldexp(glint_transfer_v(&t, 8, 8), -30);
+    assert_true(low > 0.7 && low < 0.76 && high > 0.83 && high < 0.89);
+    free(m.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_holds_what_is_seen),
+        cmocka_unit_test(test_moves_smoothly),
+        cmocka_unit_test(test_closed),
+        cmocka_unit_test(test_annulus),
+    };
+
+    return cmocka_run_group_tests_name("window", tests, NULL, NULL);
+}
