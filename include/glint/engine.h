@@ -46,9 +46,10 @@ struct glint_engine_config {
                               is kept */
 
     /* The camera: sides of the stop, 0 (a circle) or 3 to 64, the first corner
-     * of it, and the sensor's size; 0: the film of the model. */
+     * of it, the f-number, 0: what the model was baked for, which is the widest
+     * there is, and the sensor's size; 0: the film of the model. */
     int n_blades;
-    double blade_rotation_deg, sensor_width_mm, sensor_height_mm;
+    double blade_rotation_deg, f_number, sensor_width_mm, sensor_height_mm;
 
     /* How a picture is searched: how bright a lamp must be and down to what it
      * extends, in stops from the picture's white; how far clipped pixels exceed
@@ -109,6 +110,12 @@ void glint_engine_destroy(struct glint_engine *engine); /* or NULL */
 
 /* Changes the dials for the frames to come. */
 void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials);
+
+/* Sets the stop of the pictures to come to F_NUMBER, at least what the model
+ * was baked for, and sees anew how bright the lens answers. GLINT_E_ARGUMENT
+ * with ERROR: the stop stays as it is. GLINT_E_MEMORY. */
+enum glint_status glint_engine_stop(struct glint_engine *engine,
+                                    double f_number, struct glint_error *error);
 
 /* Writes the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
  * ELAPSED_US after the one before: lamps are followed from picture to picture,

@@ -16,7 +16,7 @@
 #include "bake/write_model.h"
 
 enum {
-    REVISION = 11 /* of what is made of a lens: raised when models change */
+    REVISION = 12 /* of what is made of a lens: raised when models change */
 };
 
 /* All that the making of one model takes. */
@@ -159,6 +159,8 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost)
         .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
+        /* a sixteenth of that, or so much of f/10: models serve that, too */
+        .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / 10),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
         .energy = 1.2e-3 * t,

@@ -62,18 +62,21 @@ static const char *check(const struct glint_engine_config *c)
 
 /* ------------------------------------------------------------------- making */
 
-static enum glint_status set_up(struct glint_engine *e,
-                                const struct glint_engine_config *c,
+/* F_NUMBER 0: as the model was baked. */
+static enum glint_status set_up(struct glint_setup *setup,
+                                const struct glint_lens *model, int n_blades,
+                                double rotation_deg, double f_number,
                                 struct glint_error *error)
 {
     static const double wavelength_nm[] = {650, 532, 450};
-    const enum glint_status status =
-        glint_setup_from_model(&e->setup, c->model, c->n_blades,
-                               c->blade_rotation_deg, wavelength_nm, 3, error);
+    enum glint_status status = glint_setup_from_model(
+        setup, model, n_blades, rotation_deg, wavelength_nm, 3, error);
 
+    if (status == GLINT_OK && f_number != 0)
+        status = glint_setup_stop_down(setup, model, f_number, error);
     /* the sparse basis holds its three wavelengths and no others */
-    if (status == GLINT_OK && c->model->header->basis != GLINT_BASIS_SPARSE)
-        glint_setup_spread(&e->setup, c->model);
+    if (status == GLINT_OK && model->header->basis != GLINT_BASIS_SPARSE)
+        glint_setup_spread(setup, model);
     return status;
 }
 
@@ -124,7 +127,9 @@ static enum glint_status make(struct glint_engine *e,
                               const struct glint_engine_config *c,
                               struct glint_error *error)
 {
-    enum glint_status status = set_up(e, c, error);
+    enum glint_status status =
+        set_up(&e->setup, c->model, c->n_blades, c->blade_rotation_deg,
+               c->f_number, error);
 
     if (status != GLINT_OK)
         return status;
@@ -191,6 +196,31 @@ void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials)
     f->dials = f->asked = dials;
     if (f->budget.ms > 0)
         f->dials = glint_budget_dials(&f->budget, &dials);
+}
+
+enum glint_status glint_engine_stop(struct glint_engine *engine,
+                                    double f_number, struct glint_error *error)
+{
+    struct glint_engine *e = engine;
+    struct glint_frame *f = &e->frame;
+    struct glint_setup setup;
+    enum glint_status status =
+        set_up(&setup, f->lens, e->setup.n_blades, e->setup.blade_rotation_deg,
+               f_number, error);
+
+    if (status != GLINT_OK)
+        return status;
+    e->setup = setup;
+    glint_setup_stop(&e->setup, &f->cfg.stop);
+    glint_frame_retune(f);
+    if (e->strength.is_physical)
+        return GLINT_OK;
+    status =
+        glint_response_measure(f, f->reserved ? f->bytes : 0, &e->response);
+    if (status != GLINT_OK)
+        snprintf(error->text, sizeof error->text, "%s",
+                 glint_status_text(status));
+    return status;
 }
 
 /* ----------------------------------------------------------------- pictures */

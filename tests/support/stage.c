@@ -125,6 +125,21 @@ void stage_view(struct stage *stage, int width, int height, double sensor_mm)
     stage->framed = true;
 }
 
+bool stage_stop(struct stage *stage, double f_number)
+{
+    const struct glint_view view = stage->view;
+    struct glint_error error = {"no view"};
+
+    if (glint_prescription_set_f_number(&stage->lens, f_number, &error) !=
+            GLINT_OK ||
+        !stage_prepare(stage, stage->setup.n_blades) || !take_model(stage) ||
+        glint_setup_stop_down(&stage->of_model, &stage->file.lens, f_number,
+                              &error) != GLINT_OK)
+        return refuse(error.text);
+    stage_view(stage, view.width, view.height, view.sensor_width_mm);
+    return true;
+}
+
 bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
                   float *rgb)
 {

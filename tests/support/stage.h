@@ -46,6 +46,10 @@ bool stage_prepare(struct stage *stage, int n_blades);
 bool stage_bake(struct stage *stage, double tolerance, double max_deg);
 bool stage_model(struct stage *stage, double tolerance, double max_deg);
 
+/* Stops the lens to F_NUMBER, and its model, which was baked for a wider stop
+ * and stays, too. The same pictures as before. */
+bool stage_stop(struct stage *stage, double f_number);
+
 /* Pictures of WIDTH x HEIGHT that show SENSOR_MM across; 0: as the film fits.
  * What a newcomer gets: quantum of a percent, grids of fineness 64, all
  * instruction sets. May be repeated. */

@@ -51,8 +51,8 @@ static void add_values(uint64_t *key, const double *value, size_t n)
 static void add_setup(uint64_t *key, const struct glint_setup *s)
 {
     const size_t n = (size_t)s->n_wavelengths;
-    const double stop[] = {s->n_blades, s->blade_rotation_deg, s->n_wavelengths,
-                           s->n_sets};
+    const double stop[] = {s->n_blades, s->blade_rotation_deg, s->opening,
+                           s->n_wavelengths, s->n_sets};
     const struct glint_set_wave *w = s->set_wave;
 
     add_values(key, stop, sizeof stop / sizeof *stop);

@@ -136,8 +136,10 @@ enum settings_option {
 /* The help of a command on these options. */
 #define SETTINGS_HELP                                                          \
     "The lens\n"                                                               \
-    "  --f-number N        stop it to f/N (default: the "                      \
-    "table's)\n" COATING_HELP                                                  \
+    "  --f-number N        stop it to f/N (default: the table's, or what the " \
+    "model\n"                                                                  \
+    "                      was baked for, which serves any larger "            \
+    "N)\n" COATING_HELP                                                        \
     "  --stop SHAPE        circle | polygon:N[,ROT], 3 to 64 sides, the "      \
     "first\n"                                                                  \
     "                      corner at ROT degrees (default polygon:8)\n"        \

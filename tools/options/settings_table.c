@@ -40,7 +40,10 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &settings->lens);
-    if (settings->f_number > 0)
+    /* a model serves all stops narrower than its own */
+    if (settings->f_number > 0 &&
+        (settings->rays == SETTINGS_RAYS_EXACT ||
+         settings->f_number < settings->lens.f_number))
         status = glint_prescription_set_f_number(&settings->lens,
                                                  settings->f_number, &error);
     if (status != GLINT_OK)

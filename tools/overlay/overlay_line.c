@@ -39,7 +39,8 @@ static double stops_of(const struct glint_lamp *lamp)
 
 static double f_number_of(const struct settings *s)
 {
-    return s->model.data ? model_real_of(s->model.lens.header->f_number)
+    return s->model.data ? model_real_of(s->model.lens.header->f_number) /
+                               s->setup.opening
                          : s->lens.f_number;
 }
 

@@ -13,13 +13,15 @@ enum { GLINT_PART_DEPTH = 4, GLINT_MAX_AXIS_DEPTH = 8 };
 /* The root mean square that is aimed at; single rays may be off by five times
  * as much. Stop and barrel positions draw the outline: EDGE_MM is what they may
  * shift it on the sensor, but neither is asked for less than STOP (stop radii)
- * and BARREL (of its radius), or more than a sixteenth of it.
+ * and BARREL (of its radius), or more than STOP_LEAST and a sixteenth of
+ * BARREL: the outline of a ghost that is larger than the picture may lie beyond
+ * it, but where the stop closes it comes in.
  *
  * For ghosts of the brightness that counts; sRGB shows an error in a ghost of a
  * share v of that by v^0.42 as much, so edges and energy may be off by more
  * there, up to EASE times. */
 struct glint_tolerance {
-    double sensor_mm, edge_mm, stop, barrel, energy;
+    double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
     double faint_sensor_mm; /* the most for any ghost */
     double escape; /* past a barrel that is left out, relative radius */
     double ease;

@@ -83,11 +83,16 @@ double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
     return change2 > 0 ? sqrt(moved2 / change2) : 0;
 }
 
+static double outline(const struct glint_zone_aim *aim, double least,
+                      double most, double stretch_mm)
+{
+    return fmax(least, fmin(most, aim->edge_mm / fmax(1e-12, stretch_mm)));
+}
+
 double glint_zone_aim_outline(const struct glint_zone_aim *aim, double most,
                               double stretch_mm)
 {
-    return fmax(0.06 * most,
-                fmin(most, aim->edge_mm / fmax(1e-12, stretch_mm)));
+    return outline(aim, 0.06 * most, most, stretch_mm);
 }
 
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
@@ -106,9 +111,8 @@ struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
         .ease = ease};
 
     aim.hidden = shows * t->sensor_mm / aim.sensor_mm;
-    aim.stop = glint_zone_aim_outline(
-        &aim, t->stop,
-        glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X], rays->at[RAY_STOP_Y],
-                               -HUGE_VAL));
+    aim.stop = outline(&aim, t->stop_least, t->stop,
+                       glint_zone_aim_stretch(rays, rays->at[RAY_STOP_X],
+                                              rays->at[RAY_STOP_Y], -HUGE_VAL));
     return aim;
 }

@@ -124,6 +124,38 @@ static void test_follows(void **state)
     glint_engine_destroy(engine);
 }
 
+/* A stop set later is as good as one that an engine is made with. */
+static void test_stop(void **state)
+{
+    static uint8_t open[BYTES], set[BYTES], made[BYTES];
+    const double f = glint_real_value(settings.model.lens.header->f_number);
+    struct glint_engine *engine = make(NULL, 0);
+    struct glint_engine_report report;
+    struct glint_engine_config cfg;
+    struct glint_error error;
+
+    (void)state;
+    run(engine, 0, open, &report);
+    assert_int_equal(glint_engine_stop(engine, f / 2, &error),
+                     GLINT_E_ARGUMENT);
+    run(engine, 0, set, &report);
+    assert_memory_equal(set, open, BYTES);
+    assert_int_equal(glint_engine_stop(engine, 3 * f, &error), GLINT_OK);
+    run(engine, 0, set, &report);
+    glint_engine_destroy(engine);
+    assert_memory_not_equal(set, open, BYTES);
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = &settings.model.lens;
+    cfg.f_number = 3 * f;
+    assert_int_equal(glint_engine_create(&engine, &cfg, &error), GLINT_OK);
+    run(engine, 0, made, &report);
+    assert_memory_equal(set, made, BYTES);
+    assert_int_equal(glint_engine_stop(engine, f, &error), GLINT_OK);
+    run(engine, 0, set, &report);
+    assert_memory_equal(set, open, BYTES);
+    glint_engine_destroy(engine);
+}
+
 static void test_refuses(void **state)
 {
     static uint8_t px[BYTES];
@@ -176,7 +208,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_draws), cmocka_unit_test(test_arena),
-        cmocka_unit_test(test_follows), cmocka_unit_test(test_refuses)};
+        cmocka_unit_test(test_follows), cmocka_unit_test(test_stop),
+        cmocka_unit_test(test_refuses)};
 
     return cmocka_run_group_tests(tests, enter, leave);
 }

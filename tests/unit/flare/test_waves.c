@@ -206,7 +206,7 @@ static void test_little_room(void **state)
     frame.bytes = bytes;
     assert_int_equal(glint_flare_init(&frame.flare, &frame.cfg, mem, bytes),
                      GLINT_OK);
-    glint_flare_plan(frame.flare, &frame.rays, frame.beam, frame.n_beams);
+    glint_flare_plan(frame.flare, &frame.rays, frame.light, frame.n_lights);
     glint_flare_bin(frame.flare, &stats);
     assert_int_equal(stats.need_bundles, most);
     assert_int_equal(stats.dropped_bundles, 0);

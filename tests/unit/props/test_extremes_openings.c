@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One model for all f-numbers: baked for the full opening, it is stopped down
+ * and held against exact pictures and against models baked at that f-number.
+ * From the full opening to an eleventh of it, as from f/2 to f/22, nothing
+ * pops.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "support/extreme.h"
+#include "support/stage.h"
+
+enum { W = 216, H = 144, BLOCKS = W / 8 * (H / 8) };
+
+#define OPEN_F 5.1
+
+static struct stage stage;
+static float drawn[3 * W * H], exact[3 * W * H], native[3 * W * H];
+
+/* Two cemented surfaces, one free one, a stop behind: three ghosts. */
+static const char doublet[] = "name doublet\nf-number 5.1\nfilm 36 24\n"
+                              "surface 61.47 6 13 1.5168 64.17\n"
+                              "surface -44.64 2.5 13 1.6727 32.21\n"
+                              "surface -129.94 2 13 air\n"
+                              "stop 93 10\n";
+
+static void open_wide(int n_blades)
+{
+    stage_close(&stage);
+    assert_true(stage_parse(&stage, doublet));
+    assert_true(stage_prepare(&stage, n_blades));
+    assert_true(stage_model(&stage, 1, 12));
+    stage_view(&stage, W, H, 0);
+}
+
+/* The same lens at F_NUMBER, baked there. */
+static void draw_native(double f_number, int n_blades,
+                        const struct glint_lamp *lamp)
+{
+    struct glint_error error;
+
+    stage_close(&stage);
+    assert_true(stage_parse(&stage, doublet));
+    assert_int_equal(
+        glint_prescription_set_f_number(&stage.lens, f_number, &error),
+        GLINT_OK);
+    assert_true(stage_prepare(&stage, n_blades));
+    assert_true(stage_model(&stage, 1, 12));
+    stage_view(&stage, W, H, 0);
+    assert_true(stage_linear(&stage, lamp, 1, native));
+}
+
+static void test_against_exact(void **state)
+{
+    static const double f[] = {OPEN_F, 5.3, 5.6, 8, 11, 16, 22, 45, 128};
+    static const double angle[][2] = {{0.1, 10}, {6, 25}, {11, 80}};
+    double worst = 999, flux = 0;
+
+    (void)state;
+    for (int blades = 0; blades <= 8; blades += 8) {
+        open_wide(blades);
+        for (int k = 0; k < 9; k++) {
+            assert_true(stage_stop(&stage, f[k]));
+            for (int i = 0; i < 3; i++) {
+                const struct glint_lamp lamp =
+                    stage_lamp(angle[i][0], angle[i][1], 1);
+                struct glint_measure m;
+
+                assert_true(stage_linear(&stage, &lamp, 1, drawn));
+                assert_true(stage_exact(&stage, &lamp, 1, 192, exact));
+                m = stage_compare(&stage, exact, drawn);
+                if (m.psnr_db < 50)
+                    print_message("  f/%g at %g: %.1f dB, flux x %.4f\n", f[k],
+                                  angle[i][0], m.psnr_db, m.flux);
+                worst = fmin(worst, m.psnr_db);
+                flux = fmax(flux, fabs(m.flux - 1));
+            }
+        }
+    }
+    assert_true(extreme_at_least("openings: f/5.1 to f/128 of one model, "
+                                 "against exact",
+                                 worst, 50, "dB") &
+                extreme_at_most("openings: the same, flux", flux, 0.01, ""));
+}
+
+/* As many edges as of a model baked there, within a third, and the same
+ * picture. */
+static void test_against_native(void **state)
+{
+    static const double f[] = {8, 22};
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    double worst = 999, more = 0;
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        int n;
+
+        open_wide(8);
+        assert_true(stage_stop(&stage, f[k]));
+        assert_true(stage_linear(&stage, &lamp, 1, drawn));
+        n = stage.drawn.stats.primitives;
+        draw_native(f[k], 8, &lamp);
+        more = fmax(more, (double)n / stage.drawn.stats.primitives);
+        worst = fmin(worst, stage_compare(&stage, native, drawn).psnr_db);
+    }
+    assert_true(
+        extreme_at_least("openings: f/8 and f/22 of one model, against "
+                         "one baked there",
+                         worst, 50, "dB") &
+        extreme_at_most("openings: the same, edges", more, 1.33, "times"));
+}
+
+static double code_of(double x)
+{
+    x = fmin(1, fmax(0, x));
+    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
+}
+
+/* Means of blocks of 8 x 8 pixels in codes, green. */
+static void set_blocks(const float *rgb, double exposure, double *mean)
+{
+    memset(mean, 0, BLOCKS * sizeof *mean);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            mean[y / 8 * (W / 8) + x / 8] +=
+                code_of(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
+}
+
+/* As the stop closes ghosts shrink, exactly and as drawn: no block's error
+ * changes by a code and a half from frame to frame, where steps of the exact
+ * picture itself go to tens. */
+static void test_closing(void **state)
+{
+    const int frames = extreme_long() ? 100 : 34;
+    const struct glint_lamp lamp = stage_lamp(6, 25, 1);
+    static double got[2][BLOCKS], want[2][BLOCKS];
+    double pop = 0, own = 0, exposure = 1;
+
+    (void)state;
+    open_wide(8);
+    for (int k = 0; k < frames; k++) {
+        const double f = OPEN_F * pow(11, k / (frames - 1.0));
+        double *now = got[k & 1], *then = got[~k & 1];
+        double *exactly = want[k & 1], *before = want[~k & 1];
+
+        assert_true(stage_stop(&stage, f));
+        assert_true(stage_linear(&stage, &lamp, 1, drawn));
+        assert_true(stage_exact(&stage, &lamp, 1, 128, exact));
+        if (k == 0)
+            exposure = stage_power(&stage, &lamp);
+        /* irradiance is as it was, of a direct image ever fainter */
+        set_blocks(drawn, exposure * pow(OPEN_F / f, 2), now);
+        set_blocks(exact, exposure * pow(OPEN_F / f, 2), exactly);
+        for (int b = 0; k > 0 && b < BLOCKS; b++) {
+            const double step = exactly[b] - before[b];
+
+            own = fmax(own, fabs(step));
+            pop = fmax(pop, fabs(now[b] - then[b] - step));
+        }
+    }
+    print_message("  largest step of a block: %.2f codes, exactly\n", own);
+    assert_true(extreme_at_most("openings: closing to an eleventh, step of a "
+                                "block beside the exact one",
+                                pop, 1.5, "codes"));
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    stage_close(&stage);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_against_exact),
+        cmocka_unit_test(test_against_native),
+        cmocka_unit_test(test_closing),
+    };
+
+    return cmocka_run_group_tests_name("openings", tests, NULL, close_stage);
+}
