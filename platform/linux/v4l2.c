@@ -300,7 +300,7 @@ static void show(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     frame->image.transfer = f->transfer;
     frame->sequence = t->sequence;
     frame->time_us = t->time_us;
-    frame->cached = f->is_jpeg || v->is_cached;
+    frame->is_drawable = f->is_jpeg || (v->is_cached && !v->device.is_loopback);
     v->n_useless = 0;
     v->broken_us = 0;
 }
@@ -409,7 +409,9 @@ static void describe(const struct glint_source *source,
     snprintf(format->text, sizeof format->text,
              "%s (%s): %s, %d %s buffers%s%s", v->device.path, v->device.card,
              text, v->n_buffers, io[v->io],
-             v->is_cached ? "" : ", uncached: copied first",
+             !v->is_cached           ? ", uncached: copied first"
+             : v->device.is_loopback ? ", shared: copied first"
+                                     : "",
              v->device.has_signal ? "" : "; NO SIGNAL");
 }
 

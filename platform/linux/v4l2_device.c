@@ -64,6 +64,7 @@ enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *d,
                   ? V4L2_BUF_TYPE_VIDEO_CAPTURE
                   : V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
     snprintf(d->card, sizeof d->card, "%s", (const char *)cap.card);
+    d->is_loopback = strcmp((const char *)cap.driver, "v4l2 loopback") == 0;
     if (d->caps & (V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE))
         return GLINT_OK;
     glint_v4l2_device_close(d);

@@ -57,6 +57,8 @@ struct glint_v4l2_device {
     bool is_dv;    /* the input has timings of its own: HDMI */
     bool has_signal;
     uint32_t input;
+    bool is_loopback; /* whoever feeds it goes on writing into frames that were
+                         handed out */
     char card[33];
     struct glint_v4l2_config wish;
     struct glint_v4l2_format format;

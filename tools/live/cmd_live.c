@@ -26,9 +26,7 @@ static const char help[] =
     "Camera\n"
     "  -s, --size WxH      (default: as the camera is set)\n"
     "  -r, --fps N[/D]     (default: likewise)\n"
-    "  -f, --format NAME   YUYV, NV12, MJPG ...; default: the cheapest that "
-    "gives\n"
-    "                      size and rate\n"
+    "  -f, --format NAME   YUYV, NV12 ...; default: the cheapest\n"
     "  -i, --input N       of a camera with several\n"
     "  -n, --buffers N     2 to 32 (default 4)\n"
     "  --io HOW            auto | mmap | userptr | read\n"
@@ -37,7 +35,9 @@ static const char help[] =
     "Run\n"
     "  --count N           frames to show (default: until SIGINT or SIGTERM)\n"
     "  --skip N            frames to let pass first\n"
-    "  --adaptive          lower the quality, in steps, to hold the rate\n"
+    "  --[no-]adaptive     whether the quality goes down, in steps, to hold "
+    "the\n"
+    "                      rate (default: of cameras, without --budget)\n"
     "  --reconnect         wait for a camera or panel that went away, instead "
     "of\n"
     "                      leaving with exit code 4\n"
@@ -50,10 +50,10 @@ static const char help[] =
     "                      the panel\n"
     "  --memory MIB        all that drawing may take, 1 to 1024 (default 32);\n"
     "                      what does not fit is left out and counted\n"
-    "  --snapshot NAME     for SIGUSR2 (default glint-%03d.ppm)\n"
+    "  --snapshot NAME     (default glint-%03d.ppm)\n"
     "  --config FILE       these options, without dashes: lens = zoom.glint\n"
-    "Signals: SIGHUP reads --config and the lens again, SIGUSR1 reports now,\n"
-    "SIGUSR2 saves a snapshot.\n"
+    "Signals: SIGHUP reads --config and lens again, SIGUSR1 reports, SIGUSR2 "
+    "saves.\n"
     "Lens and lights\n" COMPOSITOR_HELP;
 
 static const char help_end[] = SETTINGS_HELP;
@@ -69,6 +69,7 @@ enum {
     OPT_COUNT,
     OPT_SKIP,
     OPT_ADAPTIVE,
+    OPT_NO_ADAPTIVE,
     OPT_RECONNECT,
     OPT_STATS,
     OPT_FIT,
@@ -94,6 +95,7 @@ static const struct option options[] = {
     {"count", required_argument, NULL, OPT_COUNT},
     {"skip", required_argument, NULL, OPT_SKIP},
     {"adaptive", no_argument, NULL, OPT_ADAPTIVE},
+    {"no-adaptive", no_argument, NULL, OPT_NO_ADAPTIVE},
     {"reconnect", no_argument, NULL, OPT_RECONNECT},
     {"stats", required_argument, NULL, OPT_STATS},
     {"fit", required_argument, NULL, OPT_FIT},
@@ -235,7 +237,10 @@ static int take(struct live_options *o, int option, const char *value)
         o->list_formats = true;
         return -1;
     case OPT_ADAPTIVE:
-        o->adaptive = true;
+        o->adaptive = LIVE_ADAPTIVE;
+        return -1;
+    case OPT_NO_ADAPTIVE:
+        o->adaptive = LIVE_FIXED;
         return -1;
     case OPT_RECONNECT:
         o->reconnect = true;

@@ -18,13 +18,21 @@
 
 enum { LIVE_NAME_BYTES = 1024 }; /* of a snapshot */
 
+enum live_adaptive {
+    LIVE_ADAPTIVE_CAMERA, /* of a camera, whose frames do not wait, unless there
+                             is a budget; a file's results depend on no clock */
+    LIVE_ADAPTIVE,
+    LIVE_FIXED
+};
+
 struct live_options {
     struct compositor compositor; /* options only, until opened */
     struct live_wish input;
     const char *output, *snapshot;
     enum glint_panel_fit fit;
     int count, skip; /* frames to show, 0: no end; and to let pass before */
-    bool adaptive, reconnect, list_devices, list_formats;
+    enum live_adaptive adaptive; /* whether the quality holds the rate */
+    bool reconnect, list_devices, list_formats;
     enum live_report report;
 };
 

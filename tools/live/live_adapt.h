@@ -2,10 +2,10 @@
  *
  * Holds a frame rate by giving up accuracy, a step at a time.
  *
- * A step down at once when frames are missed or hardly any time is left; a step
- * up only after a while with time to spare, and a longer while each time that
- * proved to be too early. Steps go down the table of --quality; below it there
- * are fewer lights.
+ * A step down at once when frames are missed or hardly any time is left,
+ * several where a frame takes several periods; a step up only after a while
+ * with time to spare, and a longer while each time that proved to be too early.
+ * Steps go down the table of --quality; below it there are fewer lights.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_ADAPT_H
 #define GLINT_TOOLS_LIVE_LIVE_ADAPT_H

@@ -162,12 +162,20 @@ static double period_ms(const struct live *l)
     return f->fps_num ? 1e3 * f->fps_den / f->fps_num : 0;
 }
 
+static bool is_adaptive(const struct live_options *o)
+{
+    return o->adaptive == LIVE_ADAPTIVE ||
+           (o->adaptive == LIVE_ADAPTIVE_CAMERA &&
+            live_input_is_camera(o->input.camera.device) &&
+            o->compositor.settings.budget_ms == 0);
+}
+
 static void adapt(struct live *l, int64_t busy_us, int n_missed)
 {
     const int before = l->adapt.step;
     char text[96];
 
-    if (!l->o->adaptive || period_ms(l) == 0 ||
+    if (!is_adaptive(l->o) || period_ms(l) == 0 ||
         !live_adapt_note(&l->adapt, 1e-3 * (double)busy_us, period_ms(l),
                          n_missed))
         return;
@@ -281,7 +289,7 @@ static int show(struct live *l, const struct glint_source_frame *frame,
     int code;
 
     at_us[0] = taken_us; /* a JPEG was decoded since */
-    if (!frame->cached)
+    if (!frame->is_drawable)
         image = live_copy(&l->copy, image);
     code = image ? take_size(l, image) : tool_fail(l->tool, GLINT_E_MEMORY, "");
     if (code != EXIT_OK)

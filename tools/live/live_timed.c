@@ -80,7 +80,7 @@ uint64_t live_timed_due(struct live_timed *timed,
 {
     const uint64_t n = count_due(timed);
 
-    *frame = (struct glint_source_frame){.cached = true};
+    *frame = (struct glint_source_frame){.is_drawable = true};
     if (n > 0)
         frame->time_us = glint_now_us();
     return n;
