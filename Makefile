@@ -42,9 +42,9 @@ include tools/make/target.mk
 
 # Rooms of the sources; every file in them is built, but for the alternatives
 # below. src/README.md says what each is for.
-CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare
+CORE      := base image kernels kernels/rays lens lamps follow tile flare/edges flare star
 PUBLISHED := published
-ENGINE    := engine engine/frame engine/setup
+ENGINE    := engine engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/trace bake/fit bake/exact bake/published
 PLATFORM  := posix formats video panel linux jpeg oiio sdl
 TOOLS     := options lamp_files model overlay command live lab

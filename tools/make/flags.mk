@@ -50,7 +50,7 @@ $(call of,$(addprefix src/lamps/,lamp_finder lamp_list),-Os)
 $(call of,$(addprefix src/follow/,match follow record lamp_tracker),-Os)
 $(call of,$(addprefix src/flare/,aim by_edges capacities colours lights plan plan_cells probe window wave_sets flare draw_over account),-Os)
 $(call of,$(addprefix src/published/,ghost_grid by_cells clip),-Os)
-$(call of,src/tile/bins src/tile/pass $(addprefix src/image/,resolve curve mix),-Os)
+$(call of,src/tile/bins src/tile/pass src/star/star $(addprefix src/image/,resolve curve mix),-Os)
 
 # Hot loops are unrolled.
 $(call of,src/kernels/%,-O3)

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT
+ *
+ *   in   a pattern, and the tables of its far field
+ *   out  the table of what is missing near the light
+ *
+ * Method: light of the pattern is summed in cells of a quarter of a pixel, from
+ * as many points each as it takes; what the sum over all cells and what lies
+ * beyond lack of 1 goes to the four in the middle, which have what no point
+ * caught. A node of the core is the sum of the cells of a pixel about it, less
+ * the far field, and fades out towards the core's rim.
+ */
+#include "engine/star/core_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "glint/view.h"
+
+enum { CELLS = 4 }; /* of a pixel, each way */
+
+/* Square of cells about the middle, and their sums from the first one on. */
+struct cells {
+    int half, side;   /* cells from the middle to a side; 2 half */
+    double (*sum)[3]; /* [side + 1][side + 1] */
+};
+
+static double (*at(const struct cells *s, int i, int k))[3]
+{
+    return &s->sum[(i + s->half) * (s->side + 1) + k + s->half];
+}
+
+/* Points of a cell whose middle is R pixels from the light, each way. */
+static int points_of(const struct glint_psf *psf, double r)
+{
+    const double fine = r < 12 * psf->airy_px + 0.5
+                            ? psf->airy_px / 8
+                            : fmin(psf->width_px, 1) / 5;
+    const int most = r < 1 ? 48 : 12;
+
+    return (int)fmin(fmax(ceil(1.0 / CELLS / fine), 1), most);
+}
+
+static void cell_light(const struct glint_psf *psf, int i, int k, double rgb[3])
+{
+    const double side = 1.0 / CELLS;
+    const int n = points_of(psf, side * hypot(i + 0.5, k + 0.5));
+
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int p = 0; p < n * n; p++) {
+        const double x = side * (k + (p % n + 0.5) / n);
+        const double y = side * (i + (p / n + 0.5) / n);
+        double here[3];
+
+        glint_psf_light(psf, x, y, here);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += here[c] * side * side / (n * n);
+    }
+}
+
+/* Light of each cell, where its sum will be; the half above is a mirror. */
+static void set_cells(const struct glint_psf *psf, struct cells *s)
+{
+    double missing[3] = {0, 0, 0};
+    const double r = (double)s->half / CELLS;
+
+    for (int i = 0; i < s->half; i++)
+        for (int k = -s->half; k < s->half; k++) {
+            double rgb[3];
+
+            cell_light(psf, i, k, rgb);
+            for (int c = 0; c < 3; c++) {
+                (*at(s, i + 1, k + 1))[c] = rgb[c];
+                (*at(s, -i, -k))[c] = rgb[c];
+                if (hypot(i + 0.5, k + 0.5) < s->half)
+                    missing[c] += 2 * rgb[c];
+            }
+        }
+    for (int c = 0; c < 3; c++) {
+        const double more = (1 - glint_psf_beyond(psf, r, c) - missing[c]) / 4;
+
+        for (int p = 0; p < 4; p++)
+            (*at(s, p / 2, p % 2))[c] += more;
+    }
+}
+
+static void sum_up(struct cells *s)
+{
+    for (int i = -s->half; i < s->half; i++)
+        for (int k = -s->half; k < s->half; k++)
+            for (int c = 0; c < 3; c++)
+                (*at(s, i + 1, k + 1))[c] += (*at(s, i, k + 1))[c] +
+                                             (*at(s, i + 1, k))[c] -
+                                             (*at(s, i, k))[c];
+}
+
+/* Light of the pixel about (X, Y), in cells. */
+static void pixel_light(const struct cells *s, int y, int x, double rgb[3])
+{
+    const int h = CELLS / 2;
+
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (*at(s, y + h, x + h))[c] - (*at(s, y - h, x + h))[c] -
+                 (*at(s, y + h, x - h))[c] + (*at(s, y - h, x - h))[c];
+}
+
+/* ----------------------------------------------------------------- far field
+ */
+
+static double halo_log2(const struct glint_star_tables *t, double row,
+                        double column, int c)
+{
+    const double i = fmin(fmax(row, 0), GLINT_STAR_HALO_ROWS - 1.0001);
+    const double k = fmin(fmax(column, 0), GLINT_STAR_HALO_COLUMNS - 1.0001);
+    const int i0 = (int)i, k0 = (int)k;
+    const double a = t->halo[i0][k0][c], b = t->halo[i0][k0 + 1][c];
+    const double d = t->halo[i0 + 1][k0][c], e = t->halo[i0 + 1][k0 + 1][c];
+    const double near = a + (b - a) * (k - k0), far = d + (e - d) * (k - k0);
+
+    return (near + (far - near) * (i - i0)) / 2048 + t->halo_log2_q16 / 65536.0;
+}
+
+void glint_star_tabled(const struct glint_star_tables *t, double x, double y,
+                       double rgb[3])
+{
+    const double inner = t->inner_q8 / 256.0, reach = t->reach_q8 / 256.0;
+    const double r2 = fmax(x * x + y * y, inner * inner);
+    double nearest = HUGE_VAL;
+
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int i = 0; i < t->n_lines; i++) {
+        const struct glint_star_line *l = &t->line[i];
+        const double v = fabs(y * l->cos_q30 - x * l->sin_q30) * 0x1p-30;
+        const double at = v / reach * GLINT_STAR_PROFILE;
+        const int k = (int)fmin(at, GLINT_STAR_PROFILE);
+        const double less = fmin(v * v / r2, 1);
+
+        nearest = fmin(nearest, v);
+        for (int c = 0; c < 3 && k < GLINT_STAR_PROFILE; c++)
+            rgb[c] += (l->profile[k][c] +
+                       (l->profile[k + 1][c] - l->profile[k][c]) * (at - k)) *
+                      glint_real_value(t->step) * (1 - less) / r2;
+    }
+    for (int c = 0; c < 3; c++)
+        rgb[c] += exp2(halo_log2(t, 2 * (log2(r2) - 4),
+                                 4 * log2(1 + 4 * nearest / reach), c)) /
+                  r2;
+}
+
+/* ---------------------------------------------------------------------- core
+ */
+
+static uint16_t code_of(double light)
+{
+    const unsigned sign = light < 0 ? 1U << 15 : 0;
+    double size = fabs(light) * 0x1p40;
+    unsigned e = 1;
+
+    if (size < 1023.5)
+        return (uint16_t)(sign | (unsigned)lrint(size));
+    for (; size >= 2047.5 && e < 31; e++)
+        size /= 2;
+    size = fmin(fmax(size, 1024), 2047);
+    return (uint16_t)(sign | e << 10 | ((unsigned)lrint(size) - 1024));
+}
+
+/* Cells from node to node: as fine as shows rings, and as few as reach where
+ * they have gone. */
+static int cells_of(const struct glint_psf *psf)
+{
+    const double far = 9 * psf->airy_px / GLINT_STAR_CORE;
+
+    return far > 0.5 ? 4 : far > 0.25 ? 2 : 1;
+}
+
+static void set_nodes(struct glint_star_tables *t, const struct cells *s,
+                      int step)
+{
+    for (int i = 0; i <= GLINT_STAR_CORE; i++)
+        for (int k = -GLINT_STAR_CORE; k <= GLINT_STAR_CORE; k++) {
+            const double from = 0.7;
+            const double r = hypot(i, k) / (GLINT_STAR_CORE - 1);
+            const double in = fmin(fmax((1 - r) / (1 - from), 0), 1);
+            const double part = in * in * (3 - 2 * in);
+            double light[3], far[3];
+
+            pixel_light(s, i * step, k * step, light);
+            glint_star_tabled(t, (double)k * step / CELLS,
+                              (double)i * step / CELLS, far);
+            for (int c = 0; c < 3; c++)
+                t->core[i][k + GLINT_STAR_CORE][c] =
+                    code_of(part * (light[c] - far[c]));
+        }
+}
+
+enum glint_status glint_star_set_core(struct glint_star_tables *tables,
+                                      const struct glint_psf *psf)
+{
+    const int step = cells_of(psf);
+    struct cells s = {.half = GLINT_STAR_CORE * step + CELLS};
+
+    s.side = 2 * s.half;
+    s.sum = calloc((size_t)(s.side + 1) * (size_t)(s.side + 1), sizeof *s.sum);
+    if (!s.sum)
+        return GLINT_E_MEMORY;
+    tables->core_per_pixel_q16 = 65536 * CELLS / step;
+    set_cells(psf, &s);
+    sum_up(&s);
+    set_nodes(tables, &s, step);
+    free(s.sum);
+    return GLINT_OK;
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Tables of the starburst of a stop, made at setup in doubles.
+ */
+#ifndef GLINT_ENGINE_STAR_STAR_TABLES_H
+#define GLINT_ENGINE_STAR_STAR_TABLES_H
+
+#include "star/starburst.h"
+
+struct glint_star_optics {
+    int n_blades; /* 0 or 3 .. GLINT_MAX_BLADES */
+    double rotation_deg, f_number;
+    double pixel_um; /* side of a pixel on the sensor */
+};
+
+/* Takes memory that glint_star_tables_free() gives back. GLINT_E_MEMORY. */
+enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
+                                         const struct glint_star_optics *o);
+void glint_star_tables_free(struct glint_star_tables *tables); /* or NULL */
+size_t glint_star_tables_bytes(const struct glint_star_tables *tables);
+
+#endif

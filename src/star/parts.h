@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a star holds, and what its lights are to the pass that draws them.
+ */
+#ifndef GLINT_STAR_PARTS_H
+#define GLINT_STAR_PARTS_H
+
+#include "star/starburst.h"
+#include "tile/blend.h"
+
+enum {
+    GLINT_STAR_ZONES = 8,     /* of distance, each four times as far */
+    GLINT_STAR_INVERSES = 128 /* steps of a table of 1 / x, x 1 .. 2 */
+};
+
+/* A light, times what its tables are counted in. */
+struct glint_star_lamp {
+    int32_t x_q8, y_q8;
+    uint64_t inner_q16; /* r^2 is taken for no less */
+    int is_bare;        /* with its core */
+    /* Light of a profile's step, and of one of the core, over 2^exponent: 15
+     * bits. And the light of the halo's. */
+    int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
+    int reach, halo_reach; /* pixels: beyond, no part is to be seen */
+    int n_zones;
+    /* Zone i begins at the distance start[i], along x or y, whichever is
+     * more; within, steps of a profile up to seen[i] can be seen. */
+    int start[GLINT_STAR_ZONES + 1];
+    int seen[GLINT_STAR_ZONES];
+};
+
+/* Light of a stretch of a row of pixels. */
+struct glint_star_stretch {
+    int y, x0, x1; /* x0 .. x1 - 1 */
+    int lo, hi;    /* of these, what has got light; the rest is 0 */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3], from x0 on */
+};
+
+/* What a worker keeps of a row of tiles. */
+struct glint_star_row {
+    const struct glint_star *star;
+    struct glint_box tile;
+    int n_near, n_here;    /* lights that reach this row of tiles; the tile */
+    uint16_t *near, *here; /* [max_lights] */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]; 0 between rows */
+};
+
+struct glint_star {
+    struct glint_star_config cfg;
+    const struct glint_star_tables *tables;
+    int n_lamps, is_linear;
+    struct glint_star_lamp *lamp;  /* [max_lights] */
+    struct glint_star_row *worker; /* [n_workers] */
+    struct glint_blend_rows *rows; /* [n_workers] */
+    uint32_t
+        inverse_q31[GLINT_STAR_INVERSES + 2]; /* 2^31 / (2^15 (1 + i / n)) */
+};
+
+struct glint_pass glint_star_pass(const struct glint_star *star);
+
+/* Add what LAMP gives to ROW. */
+void glint_star_lines(const struct glint_star *star,
+                      const struct glint_star_lamp *lamp,
+                      struct glint_star_stretch *row);
+void glint_star_halo(const struct glint_star *star,
+                     const struct glint_star_lamp *lamp,
+                     struct glint_star_stretch *row);
+void glint_star_core(const struct glint_star *star,
+                     const struct glint_star_lamp *lamp,
+                     struct glint_star_stretch *row);
+
+/* Whether they may give any to pixels of BOX. */
+int glint_star_lines_reach(const struct glint_star *star,
+                           const struct glint_star_lamp *lamp,
+                           struct glint_box box);
+
+/* Pixels X0 .. X1 - 1 get light. */
+static inline void glint_star_note(struct glint_star_stretch *row, int x0,
+                                   int x1)
+{
+    row->lo = x0 < row->lo ? x0 : row->lo;
+    row->hi = x1 > row->hi ? x1 : row->hi;
+}
+
+#endif

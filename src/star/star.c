@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+#include "star/starburst.h"
+
+#include "base/arena.h"
+#include "base/log2.h"
+#include "base/real.h"
+#include "star/parts.h"
+
+/* ------------------------------------------------------------------- memory
+ */
+
+static int config_ok(const struct glint_star_config *c)
+{
+    return c->n_workers >= 1 && c->n_workers <= 64 && c->width >= 1 &&
+           c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
+           c->height <= GLINT_MAX_SIDE && c->max_lights >= 1 &&
+           c->max_lights <= GLINT_STAR_MAX_LIGHTS;
+}
+
+/* Runs twice: to measure, which gives NULL, and to place. */
+static struct glint_star *carve(struct glint_arena *a,
+                                const struct glint_star_config *c)
+{
+    const size_t n = (size_t)c->max_lights, n_workers = (size_t)c->n_workers;
+    struct glint_star measured, *placed, *s;
+
+    placed = glint_arena_take(a, 1, sizeof *placed);
+    s = placed ? placed : &measured;
+    s->lamp = glint_arena_take(a, n, sizeof *s->lamp);
+    s->worker = glint_arena_take(a, n_workers, sizeof *s->worker);
+    s->rows = glint_arena_take(a, n_workers, sizeof *s->rows);
+    for (size_t i = 0; i < n_workers; i++) {
+        uint16_t *const near = glint_arena_take(a, 2 * n, sizeof *near);
+        int64_t(*const light_q20)[GLINT_CODES_WIDTH] =
+            glint_arena_take(a, 3, sizeof *light_q20);
+
+        if (placed)
+            s->worker[i] = (struct glint_star_row){
+                .near = near, .here = near + n, .light_q20 = light_q20};
+    }
+    return placed;
+}
+
+size_t glint_star_bytes(const struct glint_star_config *cfg)
+{
+    struct glint_arena arena = glint_arena_measure();
+
+    if (!config_ok(cfg))
+        return 0;
+    carve(&arena, cfg);
+    return arena.used;
+}
+
+enum glint_status glint_star_init(struct glint_star **star,
+                                  const struct glint_star_config *cfg,
+                                  void *mem, size_t bytes)
+{
+    struct glint_arena arena = glint_arena_over(mem, bytes);
+    struct glint_star *s;
+
+    if (!config_ok(cfg) || (uintptr_t)mem % GLINT_ALIGN != 0)
+        return GLINT_E_ARGUMENT;
+    if (glint_star_bytes(cfg) > bytes)
+        return GLINT_E_MEMORY;
+    s = carve(&arena, cfg);
+    s->cfg = *cfg;
+    s->tables = NULL;
+    s->n_lamps = s->is_linear = 0;
+    for (uint32_t i = 0; i < GLINT_STAR_INVERSES + 2; i++)
+        s->inverse_q31[i] =
+            (GLINT_STAR_INVERSES << 16) / (GLINT_STAR_INVERSES + i);
+    for (int i = 0; i < cfg->n_workers; i++) {
+        s->worker[i].star = s;
+        for (int k = 0; k < 3 * GLINT_CODES_WIDTH; k++)
+            s->worker[i]
+                .light_q20[k / GLINT_CODES_WIDTH][k % GLINT_CODES_WIDTH] = 0;
+    }
+    *star = s;
+    return GLINT_OK;
+}
+
+/* -------------------------------------------------------------------- lights
+ */
+
+/* Three products of a colour and X, 15 bits each; returns their exponent. */
+static int share(const int32_t rgb_q14[3], struct glint_real x, int32_t part[3])
+{
+    for (int c = 0; c < 3; c++)
+        part[c] = (int32_t)((int64_t)q_clamp_sat(rgb_q14[c], 0, 1 << 14) *
+                                x.mantissa >>
+                            30);
+    return x.exponent + 16;
+}
+
+static int32_t log2_q16(struct glint_real x)
+{
+    return x.mantissa > 0
+               ? q_log2_q16((uint64_t)x.mantissa) + x.exponent * 65536
+               : INT32_MIN / 2;
+}
+
+/* 2^X for a distance, pixels, held to 2^20. */
+static int distance(int32_t log2_of_q16)
+{
+    const int64_t far_q16 = q_exp2_q16(q_smaller(log2_of_q16, 20 * 65536));
+
+    return (int)(far_q16 >> 16) + 1;
+}
+
+/* The first step of a profile from which on no line has 2^LEAST or more. */
+static int seen_to(const struct glint_star_tables *t, int32_t least_log2_q16)
+{
+    const int64_t least =
+        q_exp2_q16(q_clamp_sat(least_log2_q16, -65536, 17 * 65536)) >> 16;
+
+    for (int i = GLINT_STAR_PROFILE; i > 0; i--)
+        for (int k = 0; k < t->n_lines; k++)
+            for (int c = 0; c < 3; c++)
+                if (t->line[k].profile[i - 1][c] > least)
+                    return i;
+    return 0;
+}
+
+/* Zones of distances out to the lamp's reach. OVER: light of a step of a
+ * profile, at 1 pixel, over what is seen. */
+static void set_zones(struct glint_star_lamp *lamp,
+                      const struct glint_star_tables *t, int32_t over_log2_q16)
+{
+    const int32_t inner_log2_q16 = q_log2_q16(lamp->inner_q16) - 16 * 65536;
+    int n = 1;
+
+    while (n < GLINT_STAR_ZONES && lamp->reach >> 2 * n > 8)
+        n++;
+    lamp->n_zones = n;
+    for (int i = 0; i <= n; i++)
+        lamp->start[i] = i ? lamp->reach >> 2 * (n - i) : 0;
+    for (int i = 0; i < n; i++) {
+        const uint64_t r = (uint64_t)lamp->start[i];
+        const int32_t r2_log2_q16 = r ? q_log2_q16(r * r) : 0;
+
+        lamp->seen[i] =
+            seen_to(t, q_larger(r2_log2_q16, inner_log2_q16) - over_log2_q16);
+    }
+}
+
+/* How far out the halo of a light of that POWER is above LEAST. */
+static int halo_reach(const struct glint_star_tables *t, int32_t power_log2_q16,
+                      int32_t least_log2_q16)
+{
+    int row = GLINT_STAR_HALO_ROWS - 1;
+
+    for (; row >= 0; row--) {
+        const int32_t light_log2_q16 =
+            t->halo_log2_q16 + t->halo_most[row] * 32 + power_log2_q16;
+        const int32_t r2_log2_q16 = light_log2_q16 - least_log2_q16;
+
+        /* rows are half octaves of r^2 from 2^4 on; the last goes on */
+        if (row == GLINT_STAR_HALO_ROWS - 1 && r2_log2_q16 > (26 << 16))
+            return distance(r2_log2_q16 / 2);
+        if (r2_log2_q16 >= (4 << 16) + row * 32768)
+            return distance((4 << 15) + (row + 1) * 16384);
+    }
+    return 0;
+}
+
+static struct glint_real held(struct glint_real power)
+{
+    const struct glint_real most = {1 << 30, 0};
+
+    return real_less(most, power) ? most : power;
+}
+
+/* 0: nothing of it is to be seen. */
+static int set_lamp(struct glint_star_lamp *lamp,
+                    const struct glint_star_tables *t,
+                    const struct glint_star_light *l,
+                    struct glint_real faintest)
+{
+    const int32_t far = 1 << 25;
+    const struct glint_real power = held(l->power);
+    const struct glint_real line = real_times(power, t->step);
+    const int32_t least_log2_q16 = q_larger(log2_q16(faintest), -21 * 65536);
+    const int32_t radius_q8 =
+        q_larger(q_clamp_sat(l->radius_q8, 0, 1 << 22), t->inner_q8);
+    int32_t most = 0;
+
+    if (power.mantissa <= 0 || l->x_q8 <= -far || l->x_q8 >= far ||
+        l->y_q8 <= -far || l->y_q8 >= far)
+        return 0;
+    for (int c = 0; c < 3; c++)
+        most = q_larger(most, l->rgb_q14[c]);
+    if (most == 0)
+        return 0;
+    *lamp = (struct glint_star_lamp){
+        .x_q8 = l->x_q8, .y_q8 = l->y_q8, .is_bare = l->radius_q8 < 0};
+    lamp->inner_q16 = (uint64_t)radius_q8 * (uint64_t)radius_q8;
+    lamp->line_exponent = share(l->rgb_q14, line, lamp->line);
+    lamp->core_exponent = share(l->rgb_q14, power, lamp->core);
+    for (int c = 0; c < 3; c++)
+        lamp->halo_log2_q16[c] =
+            l->rgb_q14[c] > 0
+                ? log2_q16(real_times(power, real_of(l->rgb_q14[c], -14)))
+                : INT32_MIN / 2;
+    lamp->reach =
+        t->n_lines && line.mantissa > 0
+            ? distance((log2_q16(line) + 16 * 65536 - least_log2_q16) / 2)
+            : 0;
+    set_zones(lamp, t, log2_q16(line) - least_log2_q16);
+    lamp->halo_reach = halo_reach(t, log2_q16(power), least_log2_q16);
+    return lamp->is_bare || lamp->reach > 1 || lamp->halo_reach > 1;
+}
+
+void glint_star_set(struct glint_star *star,
+                    const struct glint_star_tables *tables,
+                    const struct glint_star_light *lights, int n,
+                    struct glint_real faintest)
+{
+    star->tables = tables;
+    star->n_lamps = 0;
+    for (int i = 0; i < n && star->n_lamps < star->cfg.max_lights; i++)
+        star->n_lamps +=
+            set_lamp(&star->lamp[star->n_lamps], tables, &lights[i], faintest);
+}

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The smooth part of the far field: a table by distance and by how far the
+ * nearest line is, in logarithms.
+ */
+#include "base/log2.h"
+#include "star/parts.h"
+
+/* A row of a halo. */
+struct span {
+    const struct glint_star *star;
+    const struct glint_star_lamp *lamp;
+    int64_t dy_q8;
+    struct glint_star_stretch *row;
+};
+
+/* A place between two entries of a table. */
+struct place {
+    int at, part_q15;
+};
+
+/* X entries, held to LAST. */
+static struct place place_of(int32_t x_q16, int last)
+{
+    const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
+
+    return (struct place){held_q16 >> 16, held_q16 >> 1 & 32767};
+}
+
+static int32_t between(int32_t a, int32_t b, int part_q15)
+{
+    return a + ((b - a) * part_q15 >> 15);
+}
+
+static void add_pixel(const struct span *s, int x, int64_t dx_q8, int64_t v_q8)
+{
+    const struct glint_star_tables *t = s->star->tables;
+    uint64_t r2_q16 = (uint64_t)(dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8);
+    int32_t r2_log2_q16, column_q16, log2_of_q16;
+    struct place row, column;
+
+    r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
+    r2_log2_q16 = q_log2_q16(r2_q16) - 16 * 65536;
+    /* 1 + 4 v / reach, in 1 / 2^8 of 4 v */
+    column_q16 =
+        q_log2_q16((uint64_t)(v_q8 * 4 + t->reach_q8)) - t->reach_log2_q16;
+    row = place_of((r2_log2_q16 - 4 * 65536) * 2, GLINT_STAR_HALO_ROWS - 1);
+    column = place_of(column_q16 * 4, GLINT_STAR_HALO_COLUMNS - 1);
+    for (int c = 0; c < 3; c++) {
+        const uint16_t(*near)[3] = &t->halo[row.at][column.at];
+        const uint16_t(*far)[3] = &t->halo[row.at + 1][column.at];
+
+        log2_of_q16 =
+            32 * between(between(near[0][c], near[1][c], column.part_q15),
+                         between(far[0][c], far[1][c], column.part_q15),
+                         row.part_q15);
+        log2_of_q16 += t->halo_log2_q16 + s->lamp->halo_log2_q16[c] -
+                       r2_log2_q16 + 4 * 65536;
+        s->row->light_q20[c][x - s->row->x0] +=
+            q_exp2_q16(q_smaller(log2_of_q16, 34 * 65536));
+    }
+}
+
+/* Pixels X0 .. X1 - 1, of the sector of LINE. */
+static void add_sector(const struct span *s, const struct glint_star_line *line,
+                       int x0, int x1)
+{
+    for (int x = x0; x < x1; x++) {
+        const int64_t dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8;
+        const int64_t v_q8 =
+            (s->dy_q8 * line->cos_q30 - dx_q8 * line->sin_q30) >> 30;
+
+        add_pixel(s, x, dx_q8, v_q8 < 0 ? -v_q8 : v_q8);
+    }
+}
+
+/* Borders between sectors lie in the order of lines from right to left below
+ * the lamp, and from left to right above it. */
+static void add_sectors(const struct span *s, int x0, int x1)
+{
+    const struct glint_star_tables *t = s->star->tables;
+    const int below = s->dy_q8 >= 0;
+    int line = t->first, at = below ? x1 : x0;
+
+    for (int k = 0; k < t->n_lines; k++) {
+        const int64_t border_q8 =
+            s->lamp->x_q8 + (s->dy_q8 * t->line[line].border_q16 >> 16);
+        const int here = q_clamp_sat((border_q8 + 127) >> 8, x0, x1);
+
+        if (below && here < at) {
+            add_sector(s, &t->line[line], here, at);
+            at = here;
+        } else if (!below && here > at) {
+            add_sector(s, &t->line[line], at, here);
+            at = here;
+        }
+        line = line + 1 < t->n_lines ? line + 1 : 0;
+    }
+    if (below)
+        add_sector(s, &t->line[line], x0, at);
+    else
+        add_sector(s, &t->line[line], at, x1);
+}
+
+void glint_star_halo(const struct glint_star *star,
+                     const struct glint_star_lamp *lamp,
+                     struct glint_star_stretch *row)
+{
+    const struct span s = {star, lamp, (int64_t)row->y * 256 + 128 - lamp->y_q8,
+                           row};
+    const int64_t dy = s.dy_q8 / 256, far = lamp->halo_reach;
+    const int64_t left2 = far * far - dy * dy;
+    int half, middle, x0, x1;
+
+    if (left2 <= 0)
+        return;
+    half = (int)q_root((uint64_t)left2) + 1;
+    middle = lamp->x_q8 >> 8;
+    x0 = q_larger(row->x0, middle - half);
+    x1 = q_smaller(row->x1, middle + half + 1);
+    if (x0 >= x1)
+        return;
+    glint_star_note(row, x0, x1);
+    add_sectors(&s, x0, x1);
+}

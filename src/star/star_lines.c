@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Light that edges of the stop throw across them: strips through each lamp.
+ *
+ * Strips are as long and as wide as is to be seen: the light falls with the
+ * square of the distance, so that in a zone four times as far less of the
+ * profile counts.
+ */
+#include "base/q.h"
+#include "star/parts.h"
+
+/* X 2^-SHIFT, X below 2^48; held to 2^50. */
+static int64_t scaled(uint64_t x, int shift)
+{
+    const uint64_t most = UINT64_C(1) << 50;
+
+    if (shift >= 0)
+        return shift < 64 ? (int64_t)(x >> shift) : 0;
+    return (int64_t)(bit_length(x) - shift > 50 ? (x ? most : 0) : x << -shift);
+}
+
+/* Pixels of a row, x0 .. x1 - 1. */
+struct stretch {
+    int x0, x1;
+};
+
+static struct stretch cut(struct stretch a, struct stretch b)
+{
+    return (struct stretch){q_larger(a.x0, b.x0), q_smaller(a.x1, b.x1)};
+}
+
+/* What a strip has in one row. */
+struct strip {
+    const struct glint_star *star;
+    const struct glint_star_lamp *lamp;
+    const struct glint_star_line *line;
+    int dy_q8;
+    struct glint_star_stretch *row;
+};
+
+/* Where 1 / r^2 = inverse 2^(1 - bits), px^-2. */
+static uint32_t inverse_of(const struct glint_star *star, uint64_t r2_q16,
+                           int *bits)
+{
+    const int n = bit_length(r2_q16);
+    const uint32_t m = (uint32_t)(n > 16 ? r2_q16 >> (n - 16)
+                                         : r2_q16 << (16 - n)); /* 2^15 on */
+    const uint32_t at = (m - 32768) >> 8, part = m & 255;
+    const uint32_t *v = star->inverse_q31 + at;
+
+    *bits = n;
+    return v[0] - ((v[0] - v[1]) * part >> 8);
+}
+
+static void add_pixel(const struct strip *s, int x, int64_t v_q16)
+{
+    const struct glint_star_tables *t = s->star->tables;
+    const int at = (int)(v_q16 >> 16), part_q8 = (int)(v_q16 >> 8 & 255);
+    const int64_t dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8;
+    uint64_t r2_q16 =
+        (uint64_t)(dx_q8 * dx_q8) + (uint64_t)((int64_t)s->dy_q8 * s->dy_q8);
+    const uint64_t v_q8 = (uint64_t)(v_q16 * t->pixels_q16 >> 24);
+    const uint16_t *p = s->line->profile[at];
+    uint32_t inverse, less_q16;
+    int bits;
+
+    r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
+    inverse = inverse_of(s->star, r2_q16, &bits);
+    /* (v / r)^2 */
+    less_q16 = (uint32_t)((v_q8 * v_q8 * inverse) >> (bits - 1));
+    less_q16 = less_q16 < 65536 ? less_q16 : 65536;
+    inverse = (uint32_t)((uint64_t)inverse * (65536 - less_q16) >> 16);
+    for (int c = 0; c < 3; c++) {
+        const int32_t steps = p[c] + ((p[c + 3] - p[c]) * part_q8 >> 8);
+
+        s->row->light_q20[c][x - s->row->x0] += scaled(
+            (uint64_t)((uint32_t)s->lamp->line[c] * (uint32_t)steps) * inverse,
+            bits - 21 - s->lamp->line_exponent);
+    }
+}
+
+/* Adds pixels of HERE up to SEEN steps off the strip's middle. */
+static void add_stretch(const struct strip *s, struct stretch here, int seen)
+{
+    const int64_t step_q16 = s->star->tables->per_pixel_q16;
+    const int64_t dx_q8 = (int64_t)here.x0 * 256 + 128 - s->lamp->x_q8;
+    int64_t v_q24 =
+        (s->dy_q8 * (int64_t)s->line->cos_q30 - dx_q8 * s->line->sin_q30) >> 14;
+    const int64_t end_q16 = (int64_t)seen << 16;
+    const int32_t along_q24 = s->line->sin_q30 >> 6;
+
+    if (here.x0 >= here.x1)
+        return;
+    glint_star_note(s->row, here.x0, here.x1);
+    for (int x = here.x0; x < here.x1; x++, v_q24 -= along_q24) {
+        const int64_t v_q16 = (v_q24 >> 8) * step_q16 >> 16;
+        const int64_t size_q16 = v_q16 < 0 ? -v_q16 : v_q16;
+
+        if (size_q16 < end_q16)
+            add_pixel(s, x, size_q16);
+    }
+}
+
+/* Pixels of the row in which the strip's middle is no farther than SEEN steps.
+ */
+static struct stretch across(const struct strip *s, int seen)
+{
+    const struct glint_star_tables *t = s->star->tables;
+    const int64_t middle_q8 = (int64_t)s->dy_q8 * s->line->cot_q16 >> 16;
+    const int64_t v_q8 = ((int64_t)seen * t->pixels_q16 >> 8) + 1;
+    const int64_t half_q8 = (v_q8 * s->line->across_q16 >> 16) + 256;
+    const int64_t at_q8 = s->lamp->x_q8 + middle_q8;
+
+    return (struct stretch){
+        q_clamp_sat((at_q8 - half_q8) >> 8, INT32_MIN / 2, INT32_MAX / 2),
+        q_clamp_sat((at_q8 + half_q8 + 256) >> 8, INT32_MIN / 2,
+                    INT32_MAX / 2)};
+}
+
+static void add_line(const struct strip *s, struct stretch here)
+{
+    const struct glint_star_lamp *lamp = s->lamp;
+    const int x = lamp->x_q8 >> 8, dy = s->row->y - (lamp->y_q8 >> 8);
+    const int down = dy < 0 ? -dy : dy;
+
+    for (int i = lamp->n_zones - 1; i >= 0 && down < lamp->start[i + 1]; i--) {
+        const int near = lamp->start[i], far = lamp->start[i + 1];
+        struct stretch row;
+
+        if (lamp->seen[i] == 0)
+            continue;
+        row = cut(here, across(s, lamp->seen[i]));
+        if (row.x0 >= row.x1)
+            continue;
+        if (down >= near) {
+            add_stretch(s, cut(row, (struct stretch){x - far + 1, x + far}),
+                        lamp->seen[i]);
+        } else {
+            add_stretch(s,
+                        cut(row, (struct stretch){x - far + 1, x - near + 1}),
+                        lamp->seen[i]);
+            add_stretch(s, cut(row, (struct stretch){x + near, x + far}),
+                        lamp->seen[i]);
+        }
+    }
+}
+
+void glint_star_lines(const struct glint_star *star,
+                      const struct glint_star_lamp *lamp,
+                      struct glint_star_stretch *row)
+{
+    struct strip s = {.star = star,
+                      .lamp = lamp,
+                      .dy_q8 = row->y * 256 + 128 - lamp->y_q8,
+                      .row = row};
+
+    for (int k = 0; k < star->tables->n_lines; k++) {
+        s.line = &star->tables->line[k];
+        add_line(&s, (struct stretch){row->x0, row->x1});
+    }
+}
+
+/* How far BOX is from pixel (X, Y), the larger of both ways. */
+static int off(struct glint_box b, int x, int y)
+{
+    const int dx = q_larger(b.x0 - x, x - (b.x1 - 1));
+    const int dy = q_larger(b.y0 - y, y - (b.y1 - 1));
+
+    return q_larger(q_larger(dx, dy), 0);
+}
+
+int glint_star_lines_reach(const struct glint_star *star,
+                           const struct glint_star_lamp *lamp,
+                           struct glint_box box)
+{
+    const int64_t x_q8 = 128 * (int64_t)(box.x0 + box.x1) - lamp->x_q8;
+    const int64_t y_q8 = 128 * (int64_t)(box.y0 + box.y1) - lamp->y_q8;
+    const int64_t half_q8 = 128 * (int64_t)(box.x1 - box.x0 + box.y1 - box.y0);
+    const int near = off(box, lamp->x_q8 >> 8, lamp->y_q8 >> 8);
+    int zone = 0, seen;
+
+    if (near >= lamp->reach)
+        return 0;
+    while (zone < lamp->n_zones - 1 && near >= lamp->start[zone + 1])
+        zone++;
+    seen = lamp->seen[zone];
+    for (int k = 0; k < star->tables->n_lines && seen; k++) {
+        const struct glint_star_line *l = &star->tables->line[k];
+        const int64_t v_q8 = (y_q8 * l->cos_q30 - x_q8 * l->sin_q30) >> 30;
+        const int64_t most_q8 =
+            half_q8 + ((int64_t)seen * star->tables->pixels_q16 >> 8) + 256;
+
+        if (v_q8 < most_q8 && v_q8 > -most_q8)
+            return 1;
+    }
+    return 0;
+}

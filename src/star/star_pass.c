@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Stars as a pass: which lights reach a row of tiles and a tile, and what they
+ * give to its rows.
+ */
+#include "base/q.h"
+#include "flare/draw_over.h"
+#include "flare/state.h"
+#include "star/parts.h"
+
+/* Pixels from a light to where neither halo nor core reaches. */
+static int round_reach(const struct glint_star *star,
+                       const struct glint_star_lamp *lamp)
+{
+    const int steps = star->tables->core_per_pixel_q16 >> 16;
+    const int core = steps == 4   ? GLINT_STAR_CORE / 4
+                     : steps == 2 ? GLINT_STAR_CORE / 2
+                                  : GLINT_STAR_CORE;
+
+    return q_larger(lamp->is_bare ? core : 0, lamp->halo_reach) + 2;
+}
+
+static int is_within(const struct glint_star_lamp *lamp, struct glint_box box,
+                     int far)
+{
+    const int x = lamp->x_q8 >> 8, y = lamp->y_q8 >> 8;
+
+    return box.x0 <= x + far && box.x1 >= x - far && box.y0 <= y + far &&
+           box.y1 >= y - far;
+}
+
+static void *begin_row(const void *self, struct glint_box row, int worker)
+{
+    const struct glint_star *star = self;
+    struct glint_star_row *r = &star->worker[worker];
+
+    r->n_near = 0;
+    for (int i = 0; i < star->n_lamps; i++)
+        if (is_within(&star->lamp[i], row,
+                      q_larger(round_reach(star, &star->lamp[i]),
+                               star->lamp[i].reach)))
+            r->near[r->n_near++] = (uint16_t)i;
+    return r;
+}
+
+static int go_on(void *state, struct glint_box tile)
+{
+    struct glint_star_row *r = state;
+    const struct glint_star *s = r->star;
+
+    r->tile = tile;
+    r->n_here = 0;
+    for (int i = 0; i < r->n_near; i++) {
+        const struct glint_star_lamp *lamp = &s->lamp[r->near[i]];
+
+        if (is_within(lamp, tile, round_reach(s, lamp)) ||
+            glint_star_lines_reach(s, lamp, tile))
+            r->here[r->n_here++] = r->near[i];
+    }
+    return r->n_here > 0;
+}
+
+static void light_row(const struct glint_star_row *r,
+                      struct glint_star_stretch *row)
+{
+    const struct glint_star *s = r->star;
+
+    for (int i = 0; i < r->n_here; i++) {
+        const struct glint_star_lamp *lamp = &s->lamp[r->here[i]];
+
+        glint_star_lines(s, lamp, row);
+        glint_star_halo(s, lamp, row);
+        glint_star_core(s, lamp, row);
+    }
+}
+
+/* Moves what ROW has got of channel C to where rows of codes take it; returns
+ * whether there is any. */
+static int give_codes(const struct glint_star_stretch *row, int c,
+                      uint16_t *light_q16)
+{
+    int64_t *const light_q20 = row->light_q20[c];
+    int any = 0;
+
+    for (int i = 0; i < row->x1 - row->x0; i++)
+        light_q16[i] = 0;
+    for (int i = row->lo - row->x0; i < row->hi - row->x0; i++) {
+        light_q16[i] = (uint16_t)q_clamp_sat(light_q20[i] >> 4, 0, 65535);
+        any |= light_q16[i];
+        light_q20[i] = 0;
+    }
+    return any;
+}
+
+static int give_linear(const struct glint_star_stretch *row, int c,
+                       int32_t *to_q20)
+{
+    int64_t *const light_q20 = row->light_q20[c];
+
+    for (int i = 0; i < row->x1 - row->x0; i++)
+        to_q20[i] = 0;
+    for (int i = row->lo - row->x0; i < row->hi - row->x0; i++) {
+        to_q20[i] = q_clamp_sat(light_q20[i], INT32_MIN, INT32_MAX);
+        light_q20[i] = 0;
+    }
+    return row->lo < row->hi;
+}
+
+static enum glint_given light_rows(void *state,
+                                   const struct glint_pass_rows *rows)
+{
+    const struct glint_star_row *r = state;
+    int any = 0;
+
+    for (int k = 0; k < rows->n; k++) {
+        struct glint_star_stretch row = {.y = rows->y + k,
+                                         .x0 = r->tile.x0,
+                                         .x1 = r->tile.x1,
+                                         .lo = r->tile.x1,
+                                         .hi = r->tile.x0,
+                                         .light_q20 = r->light_q20};
+
+        light_row(r, &row);
+        for (int c = 0; c < 3; c++)
+            any |= r->star->is_linear
+                       ? give_linear(&row, c, rows->light_q20[c])
+                       : give_codes(&row, c, rows->light->rgb_q16[c][k]);
+    }
+    return any ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;
+}
+
+struct glint_pass glint_star_pass(const struct glint_star *star)
+{
+    return (struct glint_pass){star, begin_row, go_on, light_rows};
+}
+
+/* ------------------------------------------------------------------ drawing
+ */
+
+struct draw {
+    struct glint_flare *flare;
+    struct glint_tiles tiles;
+    struct glint_pass pass;
+};
+
+static void row_job(void *ctx, int job, int worker)
+{
+    const struct draw *d = ctx;
+
+    glint_tile_rows(&d->tiles, &d->pass, 1, job, worker,
+                    &d->flare->worker[worker].tile);
+}
+
+/* All pixels, also where the flare has half of them. */
+static void draw_alone(struct glint_star *star, struct glint_flare *flare,
+                       const struct glint_image *image)
+{
+    struct draw d = {flare, glint_flare_start(flare, image),
+                     glint_star_pass(star)};
+
+    d.tiles.half = 0;
+    d.tiles.quads = NULL;
+    d.tiles.region =
+        (struct glint_box){0, 0, flare->cfg.width, flare->cfg.height};
+    glint_workers_run(flare->cfg.workers, glint_tiles_down(&d.tiles), row_job,
+                      &d);
+}
+
+void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
+                           const struct glint_image *image)
+{
+    glint_flare_forget(flare);
+    star->is_linear = image && image->format == GLINT_LINEAR_Q20;
+    if (star->n_lamps > 0)
+        draw_alone(star, flare, image);
+}
+
+void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
+                     const struct glint_image *image)
+{
+    const struct glint_pass pass = glint_star_pass(star);
+    const struct glint_flare_under under = {&pass, 1, &glint_blend, star->rows};
+
+    star->is_linear = image && image->format == GLINT_LINEAR_Q20;
+    if (star->n_lamps == 0) {
+        glint_flare_draw(flare, image);
+    } else if (flare->half) {
+        glint_flare_draw(flare, image);
+        draw_alone(star, flare, image);
+    } else {
+        glint_flare_draw_over(flare, image, &under);
+    }
+}
