@@ -63,6 +63,11 @@ struct glint_engine_config {
     double strength, exposure_ev, gain;
     int by_hand;
 
+    /* The star around each lamp, of light that the stop's edges diffract: times
+     * as much as physics has, where strength is 0.5 or the exposure 0; 0:
+     * none. */
+    double starburst;
+
     struct glint_dials dials;
     double budget_ms; /* milliseconds a frame, which the dials are turned to
                          keep; 0: no budget */

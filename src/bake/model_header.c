@@ -22,7 +22,7 @@ static void fit_flux(const double *w, const double *flux, double scale,
                      struct glint_real *coef)
 {
     static const double zero[FLUX_NODES];
-    static const double one[FLUX_NODES] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+    double one[FLUX_NODES];
     double scratch[FLUX_NODES * (GLINT_MAX_CANDIDATES + 1)];
     const struct glint_regress_samples samples = {
         FLUX_NODES, {zero, zero, zero, w}, one};
@@ -34,6 +34,8 @@ static void fit_flux(const double *w, const double *flux, double scale,
         .terms = GLINT_FLUX_TERMS};
     struct glint_poly poly;
 
+    for (int i = 0; i < FLUX_NODES; i++)
+        one[i] = 1;
     glint_regress_fit(scratch, &samples, flux, &degrees, 1e-7 * scale,
                       1e-7 * scale, &poly);
     for (int i = 0; i < poly.n; i++)

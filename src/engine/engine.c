@@ -18,6 +18,7 @@ struct glint_engine {
     struct glint_lamp_detector detector;
     struct glint_response response;
     struct glint_strength strength;
+    double starburst;
     bool has_arena; /* drawing takes no memory of its own */
     int n_found;
     int32_t elapsed_us; /* between the pictures searched last */
@@ -53,6 +54,8 @@ static const char *check(const struct glint_engine_config *c)
     if (!(c->strength >= 0 && c->strength <= 100) || !(c->gain >= 0) ||
         !(fabs(c->exposure_ev) <= 100))
         return "the exposure is out of range";
+    if (!(c->starburst >= 0 && c->starburst <= 1000))
+        return "the starburst is out of range";
     if (!(c->threshold_ev[0] <= 0 && c->threshold_ev[0] >= -20 &&
           c->threshold_ev[1] >= -20 &&
           c->threshold_ev[1] <= c->threshold_ev[0]))
@@ -138,6 +141,7 @@ static enum glint_status make(struct glint_engine *e,
     e->strength.is_physical = c->by_hand != 0;
     e->strength.exposure_ev = c->exposure_ev;
     e->strength.gain = c->gain;
+    e->starburst = c->starburst;
     e->has_arena = c->arena_bytes > 0;
     status = open_frame(e, c);
     if (status == GLINT_OK && !c->by_hand)
@@ -320,6 +324,7 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     e->n_found = is_found ? n : 0;
     memcpy(e->lamp, lamps, (size_t)n * sizeof *lamps);
     expose(e, n, is_found);
+    f->star.share = glint_strength_star(&e->strength, e->starburst);
     if (f->budget.ms <= 0) /* there is time for a picture by itself */
         f->dials.area_points =
             is_found && e->elapsed_us

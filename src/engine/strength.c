@@ -218,3 +218,11 @@ void glint_strength_correct(struct glint_strength *strength,
     s->light = *drawn;
     scale_light(s);
 }
+
+double glint_strength_star(const struct glint_strength *s, double starburst)
+{
+    const double by =
+        s->is_physical ? exp2(s->exposure_ev) : 4 * s->asked * s->asked;
+
+    return s->scale > 0 ? starburst * s->gain * by / s->scale : 0;
+}

@@ -76,6 +76,12 @@ struct glint_strength {
 /* STRENGTH 0.5, gain 1. */
 void glint_strength_defaults(struct glint_strength *strength);
 
+/* What a starburst, STARBURST times as bright as its lamps and the stop have
+ * it, is to be multiplied by beside the flare, which has the scale; it does not
+ * follow what ghosts take to be seen. */
+double glint_strength_star(const struct glint_strength *strength,
+                           double starburst);
+
 /* Sets the scale and the light for LAMPS. ELAPSED_US since the frame before; 0:
  * it has nothing to do with this one. Lowers the powers of lamps that are too
  * bright yet. */

@@ -228,6 +228,7 @@ static int render_model(struct tool *tool, struct render *r)
                               settings_view(&r->settings, r->width, r->height),
                               &frame);
 
+    frame.star.is_bare = true;
     if (code == EXIT_OK) {
         status = r->reserve_bytes && r->n_lamps > 0
                      ? glint_frame_reserve(&frame, NULL, r->reserve_bytes,

@@ -52,9 +52,6 @@ int settings_option(const struct tool *tool, struct settings *settings,
             warn_lanes(tool);
         return -1;
     }
-    if (option == OPT_ONLY && strcmp(value, "starburst") == 0)
-        return tool_usage(tool, "there is no starburst yet; ghosts are all "
-                                "that is drawn");
     return tool_refuse(tool, names[option - OPT_F_NUMBER].name, value);
 }
 
@@ -240,6 +237,8 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
         if (glint_frame_calibrate(frame) != GLINT_OK)
             return tool_fail(tool, GLINT_E_MEMORY, NULL);
     }
+    frame->star.share = settings->starburst;
+    frame->star.is_alone = settings->starburst_only;
     return EXIT_OK;
 }
 

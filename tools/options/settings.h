@@ -40,6 +40,8 @@ struct settings {
     enum settings_waves waves;
     double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
+    double starburst; /* times as much as physics has; 0: none */
+    bool starburst_asked, starburst_only;
     int only_ghost;
     struct glint_dials dials; /* dials, but for max_lights */
     double quantum;           /* percent: its irradiance_steps */
@@ -90,6 +92,7 @@ enum settings_option {
     OPT_CULL,
     OPT_BALANCE,
     OPT_ONLY,
+    OPT_STARBURST,
     OPT_MAX_LIGHTS,
     OPT_AREA_SAMPLES,
     OPT_APART,
@@ -127,6 +130,7 @@ enum settings_option {
         {"cull", required_argument, NULL, OPT_CULL},                 \
         {"balance", no_argument, NULL, OPT_BALANCE},                 \
         {"only", required_argument, NULL, OPT_ONLY},                 \
+        {"starburst", required_argument, NULL, OPT_STARBURST},       \
         {"max-lights", required_argument, NULL, OPT_MAX_LIGHTS},     \
         {"area-samples", required_argument, NULL, OPT_AREA_SAMPLES}, \
     {                                                                \
@@ -157,8 +161,13 @@ enum settings_option {
     "  --sensor WxH        mm (default: the film of the table); the picture\n" \
     "                      is the largest of its shape that fits\n"            \
     "  --ghost K           this ghost alone\n"                                 \
-    "  --only WHAT         ghosts | all; ghosts are all there is yet\n"        \
+    "  --only WHAT         ghosts | starburst | all\n"                         \
     "Brightness\n"                                                             \
+    "  --starburst S       light that the stop's edges diffract, S times as "  \
+    "much\n"                                                                   \
+    "                      as the lamp, f-number and stop give, 0 to 1000; "   \
+    "off\n"                                                                    \
+    "                      (default)\n"                                        \
     "  --exposure EV       stops; all light times 2^EV (default 0)\n"          \
     "  --gain G            and times G (default 1)\n"                          \
     "  --balance           measure each wavelength by its own direct image, "  \

@@ -154,6 +154,28 @@ static enum taken take_lens(struct settings *s, int option, const char *value)
     }
 }
 
+static bool take_starburst(const char *value, struct settings *s)
+{
+    s->starburst_asked = true;
+    s->starburst = 0;
+    return strcmp(value, "off") == 0 ||
+           (tool_number(value, &s->starburst) && s->starburst >= 0 &&
+            s->starburst <= 1000);
+}
+
+static bool take_only(const char *value, struct settings *s)
+{
+    static const char *const parts[] = {"ghosts", "starburst", "all", NULL};
+    const int part = tool_word(value, parts);
+
+    s->starburst_only = part == 1;
+    if (part == 0)
+        s->starburst = 0;
+    if (part == 1 && !s->starburst_asked)
+        s->starburst = 1;
+    return part >= 0;
+}
+
 /* Options of light, and of which lights. */
 static enum taken take_light(struct settings *s, int option, const char *value)
 {
@@ -164,6 +186,10 @@ static enum taken take_light(struct settings *s, int option, const char *value)
                fabs(s->exposure_ev) <= 100;
     case OPT_GAIN:
         return tool_number(value, &s->gain) && s->gain >= 0;
+    case OPT_STARBURST:
+        return take_starburst(value, s);
+    case OPT_ONLY:
+        return take_only(value, s);
     case OPT_MAX_LIGHTS:
         return tool_integer(value, 1, 1 << 20, &s->max_lights);
     case OPT_AREA_SAMPLES:
@@ -257,7 +283,6 @@ static enum taken take_dial(struct settings *s, int option, const char *value)
 
 bool settings_take(struct settings *settings, int option, const char *value)
 {
-    static const char *const parts[] = {"ghosts", "all", NULL};
     enum taken taken = take_lens(settings, option, value);
 
     if (taken == OTHER)
@@ -266,5 +291,5 @@ bool settings_take(struct settings *settings, int option, const char *value)
         taken = take_way(settings, option, value);
     if (taken == OTHER)
         taken = take_dial(settings, option, value);
-    return taken == OTHER ? tool_word(value, parts) >= 0 : taken == TAKEN;
+    return taken == TAKEN;
 }

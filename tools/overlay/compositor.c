@@ -362,6 +362,8 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
                           is_new ? 0 : elapsed_us);
     if (elapsed_us == 0)
         expose_as_drawn(compositor);
+    compositor->frame.star.share = glint_strength_star(
+        &compositor->strength, compositor->settings.starburst);
 }
 
 void compositor_find(struct compositor *compositor,

@@ -300,7 +300,7 @@ static enum glint_status draw(struct glint_frame *frame,
     if (status != GLINT_OK)
         return status;
     times[3] = now(frame);
-    glint_flare_draw(frame->flare, image);
+    glint_frame_paint(frame, image);
     times[4] = now(frame);
     stats->dropped_bundles += t->n_dropped;
     return GLINT_OK;

@@ -73,6 +73,7 @@ enum glint_status glint_frame_use_mask(struct glint_frame *frame,
 void glint_frame_finish(struct glint_frame *frame)
 {
     free(frame->mask);
+    glint_frame_star_finish(&frame->star);
     if (frame->trace)
         frame->trace->finish(frame);
     free(frame->light);
@@ -190,6 +191,8 @@ static enum glint_status set_lights(struct glint_frame *f,
     f->n_more = within - (n - f->n_beyond);
     f->n_lights = glint_lights_merge(f->light, within, near_q30(f),
                                      f->dials.max_lights, &f->n_apart);
+    if (f->star.is_alone)
+        f->n_lights = 0;
     return GLINT_OK;
 }
 
@@ -199,9 +202,8 @@ static bool is_in_codes(const struct glint_frame *f,
     return image->format != GLINT_LINEAR_Q20 || f->for_codes;
 }
 
-/* The light of CODES near black; 0: the picture is linear. */
-static double light_of(const struct glint_frame *f,
-                       const struct glint_image *image, double codes)
+double glint_frame_codes_light(const struct glint_frame *f,
+                               const struct glint_image *image, double codes)
 {
     return !image || !is_in_codes(f, image)
                ? 0
@@ -214,7 +216,8 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
                                         const struct glint_image *image)
 {
     set_waves(f);
-    f->sets.step = glint_real_of(light_of(f, image, GLINT_FRAME_STEP_CODES));
+    f->sets.step = glint_real_of(
+        glint_frame_codes_light(f, image, GLINT_FRAME_STEP_CODES));
     return (struct glint_flare_frame){
         .lens = f->lens,
         .wave = f->wave,
@@ -225,7 +228,8 @@ static struct glint_flare_frame rays_of(struct glint_frame *f,
         .fineness = f->dials.fineness,
         .uniform = f->uniform,
         .only_ghost = f->only_ghost,
-        .faintest = glint_real_of(light_of(f, image, f->dials.cull_codes)),
+        .faintest = glint_real_of(
+            glint_frame_codes_light(f, image, f->dials.cull_codes)),
         .snap_codes_q8 = f->dials.snap_codes_q8,
         .half =
             glint_dials_half(&f->dials) && f->can_half ? &glint_half : NULL};
@@ -351,7 +355,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     if (status != GLINT_OK)
         return status;
     times[3] = now(f);
-    glint_flare_draw(f->flare, image);
+    glint_frame_paint(f, image);
     times[4] = now(f);
     return GLINT_OK;
 }
@@ -451,8 +455,10 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         frame->seen = calloc(GLINT_MAX_GHOSTS, sizeof *frame->seen);
     if (!frame->seen)
         return GLINT_E_MEMORY;
-    status = (frame->lens ? draw_model : draw_exact)(
-        frame, lamps, n_lamps, scale, image, &report->stats, times);
+    status = glint_frame_star_set(frame, lamps, n_lamps, scale, image);
+    if (status == GLINT_OK)
+        status = (frame->lens ? draw_model : draw_exact)(
+            frame, lamps, n_lamps, scale, image, &report->stats, times);
     if (status != GLINT_OK)
         return status;
     report->plan_ms = 1e3 * (times[1] - times[0]);

@@ -15,6 +15,7 @@
 #include <stdbool.h>
 
 #include "engine/frame/budget.h"
+#include "engine/frame/frame_star.h"
 #include "glint/bake.h"
 #include "glint/dials.h"
 #include "glint/engine.h"
@@ -79,6 +80,7 @@ struct glint_frame {
     bool uniform;   /* the same grid for all ghosts */
     int only_ghost; /* -1: all */
     int16_t *mask;  /* distances of the stop's outline, unless NULL */
+    struct glint_frame_star star;
     struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* memory is what it is */
 

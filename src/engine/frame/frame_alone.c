@@ -56,7 +56,10 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
     enum glint_status status =
         linear_q20 ? glint_frame_plan_scale(frame, lamps, n_lamps, &scale)
                    : GLINT_E_MEMORY;
+    const double share = frame->star.share;
     int up = 1;
+
+    frame->star.share = 0;
 
     glint_image_place(&layer, linear_q20);
     for (int i = 0; i < 4 && up && status == GLINT_OK; i++) {
@@ -68,6 +71,10 @@ enum glint_status glint_frame_draw_alone(struct glint_frame *frame,
     }
     for (size_t i = 0; i < n && status == GLINT_OK; i++)
         rgb[i] = (float)(linear_q20[i] * exp2(-20 - scale.likely) * gain);
+    frame->star.share = share;
+    if (status == GLINT_OK && share > 0)
+        status = glint_frame_star_alone(frame, lamps, n_lamps, gain, linear_q20,
+                                        rgb);
     free(linear_q20);
     return status;
 }

@@ -41,6 +41,10 @@ enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
                                          int n_lamps,
                                          struct glint_frame_scale *scale);
 
+/* The light of CODES near black of IMAGE; 0: it is NULL or linear. */
+double glint_frame_codes_light(const struct glint_frame *frame,
+                               const struct glint_image *image, double codes);
+
 /* Returns whether ghost or part GHOST of SETUP is ghost NUMBER. */
 bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
                           int number);

@@ -743,35 +743,6 @@ static void test_sag(void **state)
     close_fixture(&f);
 }
 
-/* A round stop's outline bends by the same part of itself however far it is
- * closed, as the grid comes in with it. */
-static void test_sag_of_openings(void **state)
-{
-    static struct glint_plan_scratch scratch;
-    double sag[2];
-    struct fixture f;
-
-    (void)state;
-    open_fixture(&f);
-    for (int k = 0; k < 2; k++) {
-        const struct glint_plan plan = {.frame = &f.rays,
-                                        .light = &f.light,
-                                        .n_lights = 1,
-                                        .width = WIDTH,
-                                        .height = HEIGHT,
-                                        .round = 1,
-                                        .opening_q30 = 1 << (28 - 2 * k)};
-        struct glint_bundle_plan planned = {.ghost = 0};
-        struct glint_bundle bundle;
-
-        assert_int_equal(glint_plan_bundle(&plan, &planned, &bundle, &scratch),
-                         GLINT_OUTCOME_DRAWN);
-        sag[k] = planned.sag_q16[2] * (double)bundle.n_cells * bundle.n_cells;
-    }
-    assert_true(sag[0] > 0 && fabs(sag[1] / sag[0] - 1) < 0.3);
-    close_fixture(&f);
-}
-
 /* Of lights beyond the lens nothing is drawn, whatever its polynomials say, and
  * no room is asked for unless others come after them. */
 static void test_beyond(void **state)
@@ -840,7 +811,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reals),
         cmocka_unit_test(test_sag),
-        cmocka_unit_test(test_sag_of_openings),
         cmocka_unit_test(test_what_is_seen),
         cmocka_unit_test(test_a_hole_loses_no_cells),
         cmocka_unit_test(test_faint),

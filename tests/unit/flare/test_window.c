@@ -21,8 +21,7 @@ struct shape {
     const char *name;
     uint16_t x_power[3], y_power[3];
     double x[3], y[3];
-    double barrel[3]; /* (1 + r^2) / 2 = [0] + [1] u + [2] u^2; [0] 0: there is
-                         none */
+    double barrel[2]; /* (1 + r^2) / 2 = [0] + [1] u; [0] 0: there is none */
     double slack; /* how much wider and higher than what is seen it may be */
 };
 
@@ -60,8 +59,6 @@ static const struct shape shape[] = {
      {0},
      1.25},
     {"half behind a barrel", {P(1, 0)}, {P(0, 1)}, {1}, {1}, {1, 2}, 1.5},
-    /* its slit is narrower than what lies between rays at first */
-    {"behind a slit", {P(1, 0)}, {P(0, 1)}, {1}, {1}, {0.999, -0.25, 2}, 3},
 };
 
 static struct glint_lens open_shape(const struct shape *s,
@@ -75,7 +72,7 @@ static struct glint_lens open_shape(const struct shape *s,
         {GLINT_OUT_STOP_X, 0, exponent, {0}, {{0}}},
         {GLINT_OUT_STOP_Y, 0, exponent, {0}, {{0}}},
         {GLINT_OUT_ENERGY, 1, -30, {P(0, 0)}, {{1 << 28}}},
-        {GLINT_OUT_BARREL_0, 3, exponent, {P(0, 0), P(1, 0), P(2, 0)}, {{0}}}};
+        {GLINT_OUT_BARREL_0, 2, exponent, {P(0, 0), P(1, 0)}, {{0}}}};
     struct glint_model_system system =
         model_auto_system((model_begin(m, GLINT_BASIS_AUTO, "shape"), m), 0,
                           ONE / 2, MODEL_WAVE_LO_Q24, MODEL_WAVE_HI_Q24, 0);
@@ -90,8 +87,7 @@ static struct glint_lens open_shape(const struct shape *s,
         p[2].n_terms = (uint8_t)(p[2].n_terms + (s->x[k] != 0));
         p[3].n_terms = (uint8_t)(p[3].n_terms + (s->y[k] != 0));
     }
-    p[5].n_terms = s->barrel[2] != 0 ? 3 : 2;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 2; k++)
         p[5].coef[0][k] = (int32_t)lrint(ldexp(s->barrel[k], 28));
     model_outputs(m, &system, p, s->barrel[0] != 0 ? 6 : 5, 0);
     model_end(m, &ghost, 1, &system, 1);

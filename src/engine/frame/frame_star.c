@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: MIT */
+#include "engine/frame/frame_star.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/frame/block.h"
+#include "engine/frame/frame_parts.h"
+
+/* Lights farther from the picture's corner than so many pixels are not drawn.
+ */
+static const double most_px = 1 << 16;
+
+static struct glint_star_optics optics_of(const struct glint_frame *f)
+{
+    const struct glint_optics *o = &f->setup->optics;
+
+    return (struct glint_star_optics){
+        .n_blades = f->setup->n_blades,
+        .rotation_deg = f->setup->blade_rotation_deg,
+        .f_number = fabs(o->focal_mm) / (2 * o->entrance_radius_mm),
+        .pixel_um = 1e3 * f->view.sensor_width_mm / f->view.width};
+}
+
+static bool are_same(const struct glint_star_optics *a,
+                     const struct glint_star_optics *b)
+{
+    return a->n_blades == b->n_blades && a->rotation_deg == b->rotation_deg &&
+           a->f_number == b->f_number && a->pixel_um == b->pixel_um;
+}
+
+static enum glint_status make_tables(struct glint_frame *f)
+{
+    struct glint_frame_star *s = &f->star;
+    const struct glint_star_optics optics = optics_of(f);
+    enum glint_status status;
+
+    if (s->tables && are_same(&s->optics, &optics))
+        return GLINT_OK;
+    glint_star_tables_free(s->tables);
+    s->tables = NULL;
+    s->optics = optics;
+    status = glint_star_tables_make(&s->tables, &optics);
+    return status;
+}
+
+enum glint_status glint_frame_star_hold(struct glint_frame *f, int n)
+{
+    struct glint_frame_star *s = &f->star;
+    struct glint_star_config cfg = {
+        .n_workers = glint_workers_count(f->cfg.workers),
+        .width = f->view.width,
+        .height = f->view.height,
+        .max_lights = n < GLINT_STAR_MAX_LIGHTS ? n : GLINT_STAR_MAX_LIGHTS};
+    struct glint_star_light *light;
+    size_t bytes;
+    void *block;
+
+    if (s->star && cfg.max_lights <= s->max_lights)
+        return GLINT_OK;
+    s->star = NULL;
+    free(s->mem);
+    bytes = glint_star_bytes(&cfg);
+    block = glint_block_take(bytes, &s->mem);
+    light = realloc(s->light, (size_t)cfg.max_lights * sizeof *s->light);
+    if (light)
+        s->light = light;
+    if (!block || !light)
+        return GLINT_E_MEMORY;
+    s->max_lights = cfg.max_lights;
+    return glint_star_init(&s->star, &cfg, block, bytes);
+}
+
+/* False: too far away. */
+static bool set_light(const struct glint_frame *f,
+                      const struct glint_lamp *lamp, double scale,
+                      struct glint_star_light *light)
+{
+    const double focal_mm = f->setup->optics.focal_mm;
+    const double pixels = fabs(focal_mm) * f->view.width /
+                          f->view.sensor_width_mm; /* per tangent */
+    const double radius = 2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels;
+    const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
+    const double power = lamp->power * most * scale;
+    double x, y;
+
+    glint_view_to_pixel(&f->view, focal_mm, lamp, &x, &y);
+    if (!(fabs(x) < most_px && fabs(y) < most_px) || !(power > 0) ||
+        !isfinite(power))
+        return false;
+    *light = (struct glint_star_light){
+        .x_q8 = (int32_t)lrint(256 * x),
+        .y_q8 = (int32_t)lrint(256 * y),
+        .radius_q8 =
+            f->star.is_bare ? -1 : (int32_t)lrint(256 * fmin(radius, 8192)),
+        .power = glint_real_of(power)};
+    for (int c = 0; c < 3; c++)
+        light->rgb_q14[c] = (int32_t)lrint(lamp->rgb[c] / most * 16384);
+    return true;
+}
+
+enum glint_status glint_frame_star_set(struct glint_frame *f,
+                                       const struct glint_lamp *lamps, int n,
+                                       double scale,
+                                       const struct glint_image *image)
+{
+    struct glint_frame_star *s = &f->star;
+    enum glint_status status;
+    int n_lights = 0;
+
+    s->is_set = false;
+    if (!(s->share > 0) || n == 0)
+        return GLINT_OK;
+    status = make_tables(f);
+    if (status == GLINT_OK)
+        status = glint_frame_star_hold(f, n);
+    if (status != GLINT_OK)
+        return status;
+    for (int i = 0; i < n && n_lights < s->max_lights; i++)
+        n_lights +=
+            set_light(f, &lamps[i], scale * s->share, &s->light[n_lights]);
+    glint_star_set(
+        s->star, s->tables, s->light, n_lights,
+        glint_real_of(glint_frame_codes_light(f, image, f->dials.cull_codes)));
+    s->is_set = true;
+    return GLINT_OK;
+}
+
+void glint_frame_paint(struct glint_frame *frame,
+                       const struct glint_image *image)
+{
+    if (frame->star.is_set)
+        glint_star_draw(frame->star.star, frame->flare, image);
+    else
+        glint_flare_draw(frame->flare, image);
+}
+
+/* The largest channel of all lamps' power. */
+static double brightest(const struct glint_lamp *lamps, int n)
+{
+    double most = 0;
+
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++)
+            most = fmax(most, lamps[i].power * lamps[i].rgb[c]);
+    return most;
+}
+
+enum glint_status glint_frame_star_alone(struct glint_frame *frame,
+                                         const struct glint_lamp *lamps, int n,
+                                         double gain, int32_t *linear_q20,
+                                         float *rgb)
+{
+    const int width = frame->view.width, height = frame->view.height;
+    const size_t samples = 3 * (size_t)width * (size_t)height;
+    struct glint_image layer = {
+        .format = GLINT_LINEAR_Q20, .width = width, .height = height};
+    /* no pixel has more than all of a lamp's light */
+    const double most = brightest(lamps, n) * frame->star.share;
+    const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;
+    enum glint_status status;
+
+    glint_image_place(&layer, linear_q20);
+    memset(linear_q20, 0, samples * sizeof *linear_q20);
+    status = glint_frame_star_set(frame, lamps, n, scale, &layer);
+    if (status != GLINT_OK || !frame->star.is_set)
+        return status;
+    glint_star_draw_alone(frame->star.star, frame->flare, &layer);
+    for (size_t i = 0; i < samples; i++)
+        rgb[i] += (float)(linear_q20[i] * 0x1p-20 / scale * gain);
+    return GLINT_OK;
+}
+
+void glint_frame_star_finish(struct glint_frame_star *star)
+{
+    glint_star_tables_free(star->tables);
+    free(star->light);
+    free(star->mem);
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The starburst of a frame: tables of its stop, and its lamps as they lie in
+ * the picture.
+ */
+#ifndef GLINT_ENGINE_FRAME_FRAME_STAR_H
+#define GLINT_ENGINE_FRAME_FRAME_STAR_H
+
+#include <stdbool.h>
+
+#include "engine/star/star_tables.h"
+#include "glint/view.h"
+
+struct glint_frame;
+
+struct glint_frame_star {
+    /* Light of the star over that of the lens: lamps' powers are multiplied by
+     * the frame's scale and this. 0: none. */
+    double share;
+    bool is_bare;  /* no picture shows the lamps: with their cores */
+    bool is_alone; /* without ghosts */
+
+    /* Private. */
+    struct glint_star_optics optics; /* that tables are of */
+    struct glint_star_tables *tables;
+    struct glint_star *star;        /* what is set is drawn, unless NULL */
+    struct glint_star_light *light; /* [max_lights] */
+    void *mem;
+    int max_lights;
+    bool is_set; /* for this frame */
+};
+
+/* Sets the star of LAMPS times SCALE on pictures like IMAGE, making tables
+ * where there are none of the frame's stop. Without a share nothing is done.
+ * GLINT_E_MEMORY. */
+enum glint_status glint_frame_star_set(struct glint_frame *frame,
+                                       const struct glint_lamp *lamps, int n,
+                                       double scale,
+                                       const struct glint_image *image);
+
+/* Room for N lamps. GLINT_E_MEMORY. */
+enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
+
+/* Draws what the flare has binned and the star that was set. */
+void glint_frame_paint(struct glint_frame *frame,
+                       const struct glint_image *image);
+
+/* Adds the star of LAMPS alone, times GAIN, to RGB, linear light as
+ * glint_frame_draw_alone() has it, which drew before. */
+enum glint_status glint_frame_star_alone(struct glint_frame *frame,
+                                         const struct glint_lamp *lamps, int n,
+                                         double gain, int32_t *linear_q20,
+                                         float *rgb);
+
+void glint_frame_star_finish(struct glint_frame_star *star);
+
+#endif
