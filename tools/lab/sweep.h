@@ -87,7 +87,8 @@ enum glint_status sweep_plan(struct sweep *s);
 /* Measures case C. Returns an exit code. */
 int sweep_measure(struct sweep *s, int c, struct tool_progress *progress);
 
-/* frame_draw, in a function of its own that tools/report/sweep-insn counts. */
+/* glint_frame_draw(), in a function of its own that
+ * tools/report/sweep-insn counts. */
 enum glint_status sweep_frame(struct glint_frame *frame,
                               const struct glint_lamp *lamp, int n,
                               double exposure, const struct glint_image *image,
