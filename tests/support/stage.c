@@ -140,6 +140,15 @@ bool stage_stop(struct stage *stage, double f_number)
     return true;
 }
 
+bool stage_open(struct stage *stage, const char *name, int width, int height)
+{
+    if (!stage_load(stage, name) || !stage_prepare(stage, 8) ||
+        !stage_model(stage, 1, 60))
+        return false;
+    stage_view(stage, width, height, 0);
+    return true;
+}
+
 bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
                   float *rgb)
 {

@@ -2,8 +2,8 @@
  *
  * One lens on stage: its table, its model, and pictures of both.
  *
- *     stage_load(&s, "heliar-tronnier");          or stage_parse, or s.lens =
- * .. stage_prepare(&s, 8);                       stop and colours
+ *     stage_load(&s, "heliar-tronnier");          or stage_parse, or s.lens
+ *     stage_prepare(&s, 8);                       stop and colours
  *     stage_model(&s, 1, 60);                     or none: rays are exact
  *     stage_view(&s, 240, 160, 0);
  *     stage_linear(&s, &lamp, 1, linear);         run time, floats
@@ -54,6 +54,10 @@ bool stage_stop(struct stage *stage, double f_number);
  * What a newcomer gets: quantum of a percent, grids of fineness 64, all
  * instruction sets. May be repeated. */
 void stage_view(struct stage *stage, int width, int height, double sensor_mm);
+
+/* All of these: the lens NAME with a stop of eight blades, its model for lights
+ * up to 60 degrees, and pictures of WIDTH x HEIGHT of its film. */
+bool stage_open(struct stage *stage, const char *name, int width, int height);
 
 /* RGB [height][width][3], linear light. */
 bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,

@@ -15,52 +15,19 @@
 #include <unistd.h>
 
 #include "formats/kept.h"
+#include "support/scratch.h"
 
-#define BYTES(text) text, sizeof text - 1
-
-static char dir[] = "/tmp/glint-test-kept-XXXXXX";
 static struct glint_error error;
-
-static int enter(void **state)
-{
-    (void)state;
-    return mkdtemp(dir) ? 0 : -1;
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    return rmdir(dir);
-}
-
-static const char *in_dir(const char *name)
-{
-    static char path[2][80];
-    static int turn;
-
-    turn = !turn;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", dir, name);
-    return path[turn];
-}
-
-static void put_file(const char *name, const char *data, size_t bytes)
-{
-    FILE *const f = fopen(in_dir(name), "wb");
-
-    assert_non_null(f);
-    assert_int_equal(fwrite(data, 1, bytes, f), bytes);
-    fclose(f);
-}
 
 static void expect_file(const char *name, const char *data, size_t bytes)
 {
     char got[400];
-    FILE *const f = fopen(in_dir(name), "rb");
+    FILE *const f = fopen(scratch_path(name), "rb");
     const size_t n = f ? fread(got, 1, sizeof got, f) : 0;
 
     assert_non_null(f);
     fclose(f);
-    unlink(in_dir(name));
+    unlink(scratch_path(name));
     assert_int_equal(n, bytes);
     assert_memory_equal(got, data, bytes);
 }
@@ -74,18 +41,19 @@ static void light_up(const char *name, const char *to, float light)
 
     for (int i = 0; i < 36; i++)
         layer[i] = light;
-    assert_int_equal(glint_kept_open(&kept, in_dir(name), &error), GLINT_OK);
+    assert_int_equal(glint_kept_open(&kept, scratch_path(name), &error),
+                     GLINT_OK);
     glint_samples_add(&kept.samples, layer);
-    if (glint_kept_save(&kept, in_dir(to), NULL, &options, &error))
+    if (glint_kept_save(&kept, scratch_path(to), NULL, &options, &error))
         fail_msg("%s", error.text);
     glint_kept_close(&kept);
     glint_kept_close(&kept);
-    unlink(in_dir(name));
+    unlink(scratch_path(name));
 }
 
 static void check_same(const char *name, const char *data, size_t bytes)
 {
-    put_file(name, data, bytes);
+    scratch_put(name, data, bytes);
     light_up(name,
              name[0] == 'a'   ? "b.pfm"
              : name[0] == 'c' ? "b.pgm"
@@ -113,10 +81,10 @@ static void test_stays(void **state)
 static void test_light(void **state)
 {
     (void)state;
-    put_file("x.pfm", BYTES("Pf 1 2 1 \x40\0\0\0\xbf\x80\0\0"));
+    scratch_put("x.pfm", BYTES("Pf 1 2 1 \x40\0\0\0\xbf\x80\0\0"));
     light_up("x.pfm", "y.pfm", 1);
     expect_file("y.pfm", BYTES("Pf 1 2 1 \x40\x40\0\0\0\0\0\0"));
-    put_file("x.ppm", BYTES("P6 1 1 65535\n\0\0\0\0\xff\xff"));
+    scratch_put("x.ppm", BYTES("P6 1 1 65535\n\0\0\0\0\xff\xff"));
     light_up("x.ppm", "y.ppm", 0.5F);
     expect_file("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
 }
@@ -128,19 +96,20 @@ static void test_converts(void **state)
     struct glint_kept_options options = {.quality = 0};
 
     (void)state;
-    put_file("x.pfm", BYTES("PF 1 1 1 \x40\0\0\0\x3f\x80\0\0\0\0\0\0"));
-    assert_int_equal(glint_kept_open(&kept, in_dir("x.pfm"), &error), GLINT_OK);
+    scratch_put("x.pfm", BYTES("PF 1 1 1 \x40\0\0\0\x3f\x80\0\0\0\0\0\0"));
+    assert_int_equal(glint_kept_open(&kept, scratch_path("x.pfm"), &error),
+                     GLINT_OK);
     assert_true(kept.is_float);
     assert_false(glint_kept_is_same_type(&kept, "x.ppm"));
     assert_true(glint_kept_is_same_type(&kept, "y.pfm"));
     assert_int_equal(
-        glint_kept_save(&kept, in_dir("y.ppm"), NULL, &options, &error),
+        glint_kept_save(&kept, scratch_path("y.ppm"), NULL, &options, &error),
         GLINT_OK);
     assert_non_null(strstr(options.said, "clipped"));
     glint_kept_close(&kept);
-    unlink(in_dir("x.pfm"));
+    unlink(scratch_path("x.pfm"));
     expect_file("y.ppm", BYTES("P6\n1 1\n65535\n\xff\xff\xff\xff\0\0"));
-    put_file("x.pgm", BYTES("P5 1 1 255\n\xbc"));
+    scratch_put("x.pgm", BYTES("P5 1 1 255\n\xbc"));
     light_up("x.pgm", "y.ppm", 0);
     expect_file("y.ppm", BYTES("P6\n1 1\n255\n\xbc\xbc\xbc"));
 }
@@ -150,11 +119,13 @@ static void test_copy(void **state)
     struct glint_kept kept;
 
     (void)state;
-    put_file("x.ppm", BYTES("P6 1 1 255\nabc and more"));
-    assert_int_equal(glint_kept_open(&kept, in_dir("x.ppm"), &error), GLINT_OK);
-    assert_int_equal(glint_kept_copy(&kept, in_dir("y.ppm"), &error), GLINT_OK);
+    scratch_put("x.ppm", BYTES("P6 1 1 255\nabc and more"));
+    assert_int_equal(glint_kept_open(&kept, scratch_path("x.ppm"), &error),
+                     GLINT_OK);
+    assert_int_equal(glint_kept_copy(&kept, scratch_path("y.ppm"), &error),
+                     GLINT_OK);
     glint_kept_close(&kept);
-    unlink(in_dir("x.ppm"));
+    unlink(scratch_path("x.ppm"));
     expect_file("y.ppm", BYTES("P6 1 1 255\nabc and more"));
 }
 
@@ -163,11 +134,11 @@ static void refuse(enum glint_status status, const char *data, size_t bytes,
 {
     struct glint_kept kept;
 
-    put_file("x", data, bytes);
-    assert_int_equal(glint_kept_open(&kept, in_dir("x"), &error), status);
+    scratch_put("x", data, bytes);
+    assert_int_equal(glint_kept_open(&kept, scratch_path("x"), &error), status);
     if (!strstr(error.text, cause))
         fail_msg("%s", error.text);
-    unlink(in_dir("x"));
+    unlink(scratch_path("x"));
 }
 
 static void test_refuses(void **state)
@@ -197,5 +168,5 @@ int main(void)
         cmocka_unit_test(test_refuses),
     };
 
-    return cmocka_run_group_tests(tests, enter, leave);
+    return cmocka_run_group_tests(tests, scratch_open_dir, scratch_close_dir);
 }

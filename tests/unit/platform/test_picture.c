@@ -15,50 +15,17 @@
 #include <unistd.h>
 
 #include "formats/picture.h"
+#include "support/scratch.h"
 
-#define BYTES(text) text, sizeof text - 1
-
-static char dir[] = "/tmp/glint-test-picture-XXXXXX";
 static struct glint_error error;
-
-static int enter(void **state)
-{
-    (void)state;
-    return mkdtemp(dir) ? 0 : -1;
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    return rmdir(dir); /* fails if anything is left behind */
-}
-
-static const char *in_dir(const char *name)
-{
-    static char path[2][80];
-    static int turn;
-
-    turn = !turn;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", dir, name);
-    return path[turn];
-}
-
-static void put_file(const char *name, const char *data, size_t bytes)
-{
-    FILE *const f = fopen(in_dir(name), "wb");
-
-    assert_non_null(f);
-    assert_int_equal(fwrite(data, 1, bytes, f), bytes);
-    fclose(f);
-}
 
 static void expect_load(const char *name, const char *data, size_t bytes,
                         const char *rgb)
 {
     struct glint_image image;
 
-    put_file(name, data, bytes);
-    assert_int_equal(glint_picture_load(in_dir(name), &image, &error),
+    scratch_put(name, data, bytes);
+    assert_int_equal(glint_picture_load(scratch_path(name), &image, &error),
                      GLINT_OK);
     assert_int_equal(image.format, GLINT_RGB24);
     assert_int_equal(image.stride_bytes[0], 3 * image.width);
@@ -66,7 +33,7 @@ static void expect_load(const char *name, const char *data, size_t bytes,
                         (size_t)(3 * image.width * image.height));
     glint_picture_free(&image);
     glint_picture_free(&image);
-    unlink(in_dir(name));
+    unlink(scratch_path(name));
 }
 
 static void test_by_content(void **state)
@@ -86,12 +53,13 @@ static void refuse_load(enum glint_status status, const char *data,
 {
     struct glint_image image;
 
-    put_file("a.x", data, bytes);
-    assert_int_equal(glint_picture_load(in_dir("a.x"), &image, &error), status);
-    assert_memory_equal(error.text, dir, strlen(dir));
+    scratch_put("a.x", data, bytes);
+    assert_int_equal(glint_picture_load(scratch_path("a.x"), &image, &error),
+                     status);
+    assert_memory_equal(error.text, scratch_dir, strlen(scratch_dir));
     if (!strstr(error.text, cause))
         fail_msg("%s", error.text);
-    unlink(in_dir("a.x"));
+    unlink(scratch_path("a.x"));
 }
 
 static void test_refuses_to_load(void **state)
@@ -104,7 +72,8 @@ static void test_refuses_to_load(void **state)
     refuse_load(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"), "is a video");
     assert_int_equal(glint_picture_load("/nowhere/a.ppm", &image, &error),
                      GLINT_E_IO);
-    assert_int_equal(glint_picture_load(dir, &image, &error), GLINT_E_IO);
+    assert_int_equal(glint_picture_load(scratch_dir, &image, &error),
+                     GLINT_E_IO);
 }
 
 static void test_load_float(void **state)
@@ -112,19 +81,19 @@ static void test_load_float(void **state)
     struct glint_float_image floats;
 
     (void)state;
-    put_file("a", BYTES("Pf 1 1 -1 \0\0\x40\x40"));
-    assert_int_equal(glint_picture_load_float(in_dir("a"), &floats, &error),
-                     GLINT_OK);
+    scratch_put("a", BYTES("Pf 1 1 -1 \0\0\x40\x40"));
+    assert_int_equal(
+        glint_picture_load_float(scratch_path("a"), &floats, &error), GLINT_OK);
     assert_true(floats.rgb[2] > 2.999F && floats.rgb[2] < 3.001F);
     free(floats.rgb);
-    put_file("a", BYTES("P5 3 1 255 \0\xbc\xff"));
-    assert_int_equal(glint_picture_load_float(in_dir("a"), &floats, &error),
-                     GLINT_OK);
+    scratch_put("a", BYTES("P5 3 1 255 \0\xbc\xff"));
+    assert_int_equal(
+        glint_picture_load_float(scratch_path("a"), &floats, &error), GLINT_OK);
     assert_int_equal(floats.width, 3);
     assert_true(floats.rgb[0] <= 0 && floats.rgb[8] >= 1);
     assert_true(floats.rgb[4] > 0.502F && floats.rgb[4] < 0.504F);
     free(floats.rgb);
-    unlink(in_dir("a"));
+    unlink(scratch_path("a"));
 }
 
 static void refuse_save(const char *path, enum glint_picture_kind kind,
@@ -169,15 +138,15 @@ static void check_8bit(const char *name)
 {
     struct glint_image again;
 
-    assert_int_equal(glint_picture_save(in_dir(name), &picture, &error),
+    assert_int_equal(glint_picture_save(scratch_path(name), &picture, &error),
                      GLINT_OK);
-    assert_int_equal(glint_picture_load(in_dir(name), &again, &error),
+    assert_int_equal(glint_picture_load(scratch_path(name), &again, &error),
                      GLINT_OK);
     assert_int_equal(again.width, 3);
     assert_int_equal(again.height, 2);
     assert_memory_equal(again.plane[0], codes, 18);
     glint_picture_free(&again);
-    unlink(in_dir(name));
+    unlink(scratch_path(name));
 }
 
 /* EXR and PFM keep floats exactly; values here suit HDR's 8 bits too. */
@@ -187,17 +156,18 @@ static void check_float(const char *name)
     const struct glint_float_image floats = {2, 1, values};
     struct glint_float_image again;
 
-    assert_int_equal(glint_picture_save_float(in_dir(name), &floats, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_picture_load_float(in_dir(name), &again, &error),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_picture_save_float(scratch_path(name), &floats, &error),
+        GLINT_OK);
+    assert_int_equal(
+        glint_picture_load_float(scratch_path(name), &again, &error), GLINT_OK);
     assert_int_equal(again.width, 2);
     assert_int_equal(again.height, 1);
     for (int i = 0; i < 6; i++)
         assert_true(again.rgb[i] > values[i] * 0.99F - 1e-6F &&
                     again.rgb[i] < values[i] * 1.01F + 1e-6F);
     free(again.rgb);
-    unlink(in_dir(name));
+    unlink(scratch_path(name));
 }
 
 static void test_native_round_trips(void **state)
@@ -211,10 +181,11 @@ static void test_native_round_trips(void **state)
 static void test_full_device(void **state)
 {
     (void)state;
-    assert_int_equal(symlink("/dev/full", in_dir("a.ppm")), 0);
-    assert_int_equal(glint_picture_save(in_dir("a.ppm"), &picture, &error),
-                     GLINT_E_OUTPUT);
-    unlink(in_dir("a.ppm"));
+    assert_int_equal(symlink("/dev/full", scratch_path("a.ppm")), 0);
+    assert_int_equal(
+        glint_picture_save(scratch_path("a.ppm"), &picture, &error),
+        GLINT_E_OUTPUT);
+    unlink(scratch_path("a.ppm"));
 }
 
 static void test_plugin_missing(void **state)
@@ -250,10 +221,11 @@ static void test_plugin(void **state)
     check_float("a.tif");
     refuse_load(GLINT_E_FORMAT, BYTES("\x89PNG\r\n\x1a\n"), ": ");
     refuse_load(GLINT_E_FORMAT, BYTES("hello"), ": ");
-    assert_int_equal(symlink("/dev/full", in_dir("a.png")), 0);
-    assert_int_equal(glint_picture_save(in_dir("a.png"), &picture, &error),
-                     GLINT_E_OUTPUT);
-    unlink(in_dir("a.png"));
+    assert_int_equal(symlink("/dev/full", scratch_path("a.png")), 0);
+    assert_int_equal(
+        glint_picture_save(scratch_path("a.png"), &picture, &error),
+        GLINT_E_OUTPUT);
+    unlink(scratch_path("a.png"));
 }
 
 int main(void)
@@ -269,5 +241,6 @@ int main(void)
         cmocka_unit_test(test_plugin),
     };
 
-    return cmocka_run_group_tests_name("picture", tests, enter, leave);
+    return cmocka_run_group_tests_name("picture", tests, scratch_open_dir,
+                                       scratch_close_dir);
 }

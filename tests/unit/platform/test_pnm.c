@@ -17,8 +17,7 @@
 #include "formats/pfm.h"
 #include "formats/pnm.h"
 #include "posix/input.h"
-
-#define BYTES(text) text, sizeof text - 1
+#include "support/scratch.h"
 
 static struct glint_error error;
 
@@ -259,26 +258,11 @@ static void test_truncated_pfm(void **state)
 
 /* ----------------------------------------------------------------- writing */
 
-static char path[] = "/tmp/glint-test-pnm-XXXXXX";
-
-static int enter(void **state)
-{
-    (void)state;
-    const int fd = mkstemp(path);
-
-    return fd < 0 ? -1 : close(fd);
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    return unlink(path);
-}
-
 static void open_path(struct glint_output *out)
 {
-    assert_int_equal(glint_output_open(out, path, GLINT_OUTPUT_BINARY, &error),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_output_open(out, scratch_file, GLINT_OUTPUT_BINARY, &error),
+        GLINT_OK);
 }
 
 static void expect_path(struct glint_output *out, const char *want,
@@ -288,8 +272,9 @@ static void expect_path(struct glint_output *out, const char *want,
     size_t bytes;
 
     assert_int_equal(glint_output_commit(out, &error), GLINT_OK);
-    assert_int_equal(glint_input_slurp(&data, &bytes, path, 10000, &error),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_input_slurp(&data, &bytes, scratch_file, 10000, &error),
+        GLINT_OK);
     assert_int_equal(bytes, want_bytes);
     assert_memory_equal(data, want, bytes);
     free(data);
@@ -347,9 +332,10 @@ static void test_pfm_round_trip(void **state)
     open_path(&out);
     assert_int_equal(glint_pfm_write(&out, &floats, &error), GLINT_OK);
     assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
-    assert_int_equal(glint_input_slurp(&data, &bytes, path, 100000, &error),
-                     GLINT_OK);
-    assert_int_equal(glint_pfm_read(&again, data, bytes, path, &error),
+    assert_int_equal(
+        glint_input_slurp(&data, &bytes, scratch_file, 100000, &error),
+        GLINT_OK);
+    assert_int_equal(glint_pfm_read(&again, data, bytes, scratch_file, &error),
                      GLINT_OK);
     assert_memory_equal(again.rgb, values, sizeof values);
     free(again.rgb);
@@ -373,5 +359,6 @@ int main(void)
         cmocka_unit_test(test_pfm_round_trip),
     };
 
-    return cmocka_run_group_tests_name("pnm", tests, enter, leave);
+    return cmocka_run_group_tests_name("pnm", tests, scratch_open_file,
+                                       scratch_close_file);
 }

@@ -14,10 +14,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "support/scratch.h"
 #include "video/y4m.h"
 #include "video/y4m_light.h"
-
-#define BYTES(text) text, sizeof text - 1
 
 /* Luma 9 bytes, chroma 4 and 4: 17 a frame. */
 #define SMALL                  \
@@ -362,29 +361,14 @@ static void test_hostile_frames(void **state)
 
 /* -------------------------------------------------------------- round trips */
 
-static char path[] = "/tmp/glint-test-y4m-XXXXXX";
-
-static int enter(void **state)
-{
-    (void)state;
-    const int fd = mkstemp(path);
-
-    return fd < 0 ? -1 : close(fd);
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    return unlink(path);
-}
-
 static void expect_path(const char *want, size_t want_bytes)
 {
     uint8_t *data;
     size_t bytes;
 
-    assert_int_equal(glint_input_slurp(&data, &bytes, path, 1 << 24, &error),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_input_slurp(&data, &bytes, scratch_file, 1 << 24, &error),
+        GLINT_OK);
     assert_int_equal(bytes, want_bytes);
     assert_memory_equal(data, want, bytes);
     free(data);
@@ -402,7 +386,8 @@ static void check_copy(const char *data, size_t bytes)
         glint_y4m_reader_start(&reader, pull, &memory, "x.y4m", &error),
         GLINT_OK);
     assert_int_equal(
-        glint_y4m_writer_open(&writer, path, &reader.header, &error), GLINT_OK);
+        glint_y4m_writer_open(&writer, scratch_file, &reader.header, &error),
+        GLINT_OK);
     while (!glint_y4m_reader_next(&reader, &frame, &error) && frame)
         assert_int_equal(
             glint_y4m_writer_put(&writer, frame, reader.frame_tags, &error),
@@ -573,8 +558,9 @@ static void test_strides(void **state)
 
     (void)state;
     glint_y4m_header_init(&header, 2, 3, GLINT_I420, 1, 1);
-    assert_int_equal(glint_y4m_writer_open(&writer, path, &header, &error),
-                     GLINT_OK);
+    assert_int_equal(
+        glint_y4m_writer_open(&writer, scratch_file, &header, &error),
+        GLINT_OK);
     assert_int_equal(glint_y4m_writer_put(&writer, &frame, "", &error),
                      GLINT_OK);
     assert_int_equal(glint_y4m_writer_commit(&writer, &error), GLINT_OK);
@@ -637,5 +623,6 @@ int main(void)
         cmocka_unit_test(test_missing_file),
     };
 
-    return cmocka_run_group_tests_name("y4m", tests, enter, leave);
+    return cmocka_run_group_tests_name("y4m", tests, scratch_open_file,
+                                       scratch_close_file);
 }

@@ -28,11 +28,7 @@ static struct glint_lamp lamp[LIGHTS];
 static int open_stage(void **state)
 {
     (void)state;
-    if (!stage_load(&heliar, "heliar-tronnier") || !stage_prepare(&heliar, 8) ||
-        !stage_model(&heliar, 1, 60))
-        return 1;
-    stage_view(&heliar, W, H, 0);
-    return 0;
+    return stage_open(&heliar, "heliar-tronnier", W, H) ? 0 : 1;
 }
 
 static int close_stage(void **state)

@@ -15,8 +15,7 @@
 #include <unistd.h>
 
 #include "options/config.h"
-
-#define BYTES(text) text, sizeof text - 1
+#include "support/scratch.h"
 
 static const struct option options[] = {
     {"lens", required_argument, NULL, 'L'},
@@ -302,25 +301,9 @@ static void test_unknown_section(void **state)
 
 /* -------------------------------------------------------------------- files */
 
-static char path[] = "/tmp/glint-test-config-XXXXXX";
-
-static int enter(void **state)
-{
-    (void)state;
-    const int fd = mkstemp(path);
-
-    return fd < 0 ? -1 : close(fd);
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    return unlink(path);
-}
-
 static void write_file(const char *text)
 {
-    FILE *const file = fopen(path, "w");
+    FILE *const file = fopen(scratch_file, "w");
 
     assert_non_null(file);
     assert_true(fputs(text, file) >= 0);
@@ -330,8 +313,8 @@ static void write_file(const char *text)
 /* The order a command goes by: its file first, its line later. */
 static void test_line_wins(void **state)
 {
-    char *line[] = {"live",     "--grid", "32", "in", "--conf",
-                    "/nowhere", "--con",  path, "-q", NULL};
+    char *line[] = {"live",     "--grid", "32",         "in", "--conf",
+                    "/nowhere", "--con",  scratch_file, "-q", NULL};
     struct config config = start();
     const char *found;
     int c, index;
@@ -339,7 +322,7 @@ static void test_line_wins(void **state)
     (void)state;
     write_file("lens=a\ngrid=16\n");
     found = tool_value_of(9, line, TOOL_COMMON_SHORT, options, 'C');
-    assert_string_equal(found, path);
+    assert_string_equal(found, scratch_file);
     assert_int_equal(config_read(&config, found), EXIT_OK);
     assert_int_equal(command.grid, 16);
     while ((c = getopt_long(9, line, TOOL_COMMON_SHORT, options, &index)) >= 0)
@@ -361,14 +344,15 @@ static void test_reload(void **state)
 
     (void)state;
     write_file("lens=a\n");
-    assert_int_equal(config_read(&first, path), EXIT_OK);
+    assert_int_equal(config_read(&first, scratch_file), EXIT_OK);
     lens = command.lens;
     write_file("lens=b\ngrid=x\n");
     second = start();
     listen_to_stderr();
-    assert_int_equal(config_read(&second, path), EXIT_INPUT);
+    assert_int_equal(config_read(&second, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want,
-             "glint live: %s:2: --grid: 'x' is not something it takes\n", path);
+             "glint live: %s:2: --grid: 'x' is not something it takes\n",
+             scratch_file);
     expect_said(want);
     assert_null(second.values);
     assert_string_equal(lens, "a");
@@ -383,9 +367,10 @@ static void test_files(void **state)
     (void)state;
     write_file("grid=64\nfoo=1\n");
     listen_to_stderr();
-    assert_int_equal(config_read(&config, path), EXIT_INPUT);
+    assert_int_equal(config_read(&config, scratch_file), EXIT_INPUT);
     snprintf(want, sizeof want,
-             "glint live: %s:2: there is no option foo for a file\n", path);
+             "glint live: %s:2: there is no option foo for a file\n",
+             scratch_file);
     expect_said(want);
     listen_to_stderr();
     assert_int_equal(config_read(&config, "/nowhere/x.ini"), EXIT_INPUT);
@@ -412,5 +397,6 @@ int main(void)
         cmocka_unit_test(test_files),
     };
 
-    return cmocka_run_group_tests_name("config", tests, enter, leave);
+    return cmocka_run_group_tests_name("config", tests, scratch_open_file,
+                                       scratch_close_file);
 }

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/scratch.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+char scratch_file[] = "/tmp/glint-test-file-XXXXXX";
+char scratch_dir[] = "/tmp/glint-test-dir-XXXXXX";
+
+int scratch_open_file(void **state)
+{
+    const int fd = mkstemp(scratch_file);
+
+    (void)state;
+    return fd < 0 ? -1 : close(fd);
+}
+
+int scratch_close_file(void **state)
+{
+    (void)state;
+    return unlink(scratch_file);
+}
+
+int scratch_open_dir(void **state)
+{
+    (void)state;
+    return mkdtemp(scratch_dir) ? 0 : -1;
+}
+
+int scratch_close_dir(void **state)
+{
+    (void)state;
+    return rmdir(scratch_dir);
+}
+
+const char *scratch_path(const char *name)
+{
+    static char path[2][80];
+    static int turn;
+
+    turn = !turn;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", scratch_dir, name);
+    return path[turn];
+}
+
+void scratch_put(const char *name, const char *data, size_t bytes)
+{
+    FILE *const f = fopen(scratch_path(name), "wb");
+
+    assert_non_null(f);
+    assert_int_equal(fwrite(data, 1, bytes, f), bytes);
+    assert_int_equal(fclose(f), 0);
+}
