@@ -16,6 +16,7 @@ static double work_of(const struct glint_explain_part *p, double *stage)
 {
     const double count[GLINT_COST_LIT] = {
         [GLINT_COST_LOOKED_AT] = (double)p->probed,
+        [GLINT_COST_BUNDLES] = glint_explain_drawn(p),
         [GLINT_COST_VERTICES] = (double)p->vertices,
         [GLINT_COST_EDGES] = (double)p->edges,
         [GLINT_COST_ROWS] = (double)p->rows};

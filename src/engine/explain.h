@@ -29,7 +29,7 @@ struct glint_explain_part {
     double flux, share; /* light that reaches the picture, and its share of the
                            frame's */
     double brightest;   /* pixel: mean of R, G, B */
-    double work, cost;  /* instructions, about; of the frame's */
+    double work, cost;  /* instructions, about; share of the frame's */
 };
 
 enum { GLINT_EXPLAIN_BARRELS = 6 };

@@ -106,9 +106,8 @@ static void print_title(const struct glint_explain *e,
            all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
     printf("work: about %.1f M instructions\n     ", 1e-6 * all->work);
     for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
-        if (glint_cost_weight[i].counted > 0)
-            printf("%s %s %.1f %%", i ? "," : "", glint_cost_weight[i].name,
-                   100 * e->stage[i] / all->work);
+        printf("%s %s %.1f %%", i ? "," : "", glint_cost_weight[i].name,
+               100 * e->stage[i] / all->work);
     printf("\n");
 }
 
@@ -311,10 +310,9 @@ void explain_json(const struct glint_explain *e, const struct explain_title *t)
     json_part(&e->all);
     printf("}, \"work\": {\"instructions\": %.0f", e->all.work);
     for (int i = 0; i < GLINT_COST_KINDS; i++)
-        if (glint_cost_weight[i].counted > 0)
-            printf(", \"%s\": %.6g",
-                   i == GLINT_COST_LIT ? "pixels" : glint_cost_weight[i].name,
-                   e->all.work > 0 ? e->stage[i] / e->all.work : 0);
+        printf(", \"%s\": %.6g",
+               i == GLINT_COST_LIT ? "pixels" : glint_cost_weight[i].name,
+               e->all.work > 0 ? e->stage[i] / e->all.work : 0);
     printf("}, \"barrels\": [");
     for (int n = 0; n < GLINT_EXPLAIN_BARRELS; n++)
         printf("%s%d", n ? ", " : "", e->barrels[n]);

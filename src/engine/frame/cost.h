@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a frame will take, from its plan: counts that the plan knows or tells
- * cheaply, times what each takes.
+ * The cost of a frame, predicted from its plan: counts that the plan knows or
+ * finds cheaply, times the cost of each.
  */
 #ifndef GLINT_ENGINE_FRAME_COST_H
 #define GLINT_ENGINE_FRAME_COST_H
@@ -14,7 +14,8 @@
 /* Counts of what is worked through: of a plan, before anything is drawn, or of
  * a frame that is (engine/explain.h). */
 enum glint_cost_kind {
-    GLINT_COST_LOOKED_AT, /* by the plan: bundles; of a frame their rays */
+    GLINT_COST_LOOKED_AT, /* bundles that a plan looks at, or rays that it took
+                             of them */
     GLINT_COST_BUNDLES, /* bundles drawn: a few rays each, and a polynomial each
                            row */
     GLINT_COST_VERTICES, /* vertices of grids */
@@ -24,12 +25,12 @@ enum glint_cost_kind {
     GLINT_COST_KINDS
 };
 
-/* What one of each takes, thousand instructions of a processor with 8 lanes of
+/* The cost of one of each, thousand instructions of a processor with 8 lanes of
  * 32 bits. */
 struct glint_cost_weight {
     const char *name;
-    double planned; /* of those that glint_cost_of() expects */
-    double counted; /* of those that there were; 0: is in the others */
+    double planned; /* for each that glint_cost_of() expects */
+    double counted; /* for each that a frame had */
 };
 extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 
