@@ -32,8 +32,8 @@ struct glint_error {
     char text[256];
 };
 
-/* Told now and then how much is done, 0 .. 1, by the calling thread or by
- * worker 0, one of them at a time. */
+/* Called now and then with the part that is done, 0 .. 1, by the calling thread
+ * or by worker 0, one of them at a time. */
 typedef void glint_progress_fn(void *ctx, double done);
 
 /* A few words for STATUS, never NULL. */

@@ -58,9 +58,9 @@ const char *glint_picture_type(const uint8_t *head, size_t bytes);
 enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
                                              struct glint_error *error);
 
-/* Checks whether a picture of KIND can be saved to PATH, as far as can be told
- * before there is one. GLINT_E_UNSUPPORTED: the extension is unknown or of the
- * other kind, or the plug-in is not there. */
+/* Checks whether a picture of KIND can be saved to PATH, as far as that is
+ * known before there is one. GLINT_E_UNSUPPORTED: the extension is unknown or
+ * of the other kind, or the plug-in is not there. */
 enum glint_status glint_picture_check(const char *path,
                                       enum glint_picture_kind kind,
                                       struct glint_error *error);

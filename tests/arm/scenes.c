@@ -23,7 +23,7 @@
 
 enum {
     MAX_MODELS = 16,
-    MAX_BEAMS = 12,
+    MAX_LIGHTS = 12,
     MAX_SPOTS = 32,
     ARENA_BYTES = 48 << 20,
     FINDER_BYTES = 8 << 20
@@ -114,7 +114,7 @@ static struct glint_flare_config make_config(struct shuffle *shuffle)
                                    .sets = sets,
                                    .weights = GLINT_WEIGHTS_WACHSPRESS,
                                    .antialias = 1,
-                                   .max_bundles = MAX_BEAMS * 3 * 512,
+                                   .max_bundles = MAX_LIGHTS * 3 * 512,
                                    .max_primitives = 150000,
                                    .max_refs = 600000};
 
@@ -179,15 +179,15 @@ static uint64_t hash_lights(uint64_t h, const struct glint_image *image)
 static void draw_flare(const struct glint_flare_config *c,
                        const struct glint_image *image)
 {
-    struct glint_light light[MAX_BEAMS];
+    struct glint_light light[MAX_LIGHTS];
     struct glint_wave wave[3];
     struct glint_flare_stats stats;
     struct glint_flare *flare;
     struct glint_flare_frame rays = {.wave = wave,
                                      .pixels_per_mm = real_of(image->width, -5),
                                      .only_ghost = -1};
-    const int n_given = 1 + number(MAX_BEAMS);
-    const int most = 1 + number(MAX_BEAMS);
+    const int n_given = 1 + number(MAX_LIGHTS);
+    const int most = 1 + number(MAX_LIGHTS);
     const int32_t near_q30 = 1 << number(24);
     int n, n_apart;
 

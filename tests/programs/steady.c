@@ -166,7 +166,7 @@ static bool end(const struct steady *s, const char *name, double most)
 /* ------------------------------------------------------------------- scenes
  */
 
-typedef int settings_fn(struct night *night, int i, struct night_lamp *lamp);
+typedef int lamps_fn(struct night *night, int i, struct night_lamp *lamp);
 
 /* Lamps of a street, all seen. */
 static int street(struct night_lamp *lamp)
@@ -245,7 +245,7 @@ static int cuts(struct night *night, int i, struct night_lamp *lamp)
 
 static const struct {
     const char *name;
-    settings_fn *settings;
+    lamps_fn *lamps;
 } scenes[] = {
     {"noise", noise},
     {"a sun enters", sun_alone},
@@ -306,7 +306,7 @@ static void note_truth(struct steady *s, const struct night *night,
     s->truth[0] = glint_strength_largest(light.mean);
 }
 
-static bool run_settings(struct steady *s, int k, double most)
+static bool run_scene(struct steady *s, int k, double most)
 {
     struct night night;
     struct night_lamp lamp[16];
@@ -315,7 +315,7 @@ static bool run_settings(struct steady *s, int k, double most)
     night.sigma = 1;
     begin(s, WIDTH, HEIGHT);
     for (int i = 0; i < FRAMES; i++) {
-        const int n = scenes[k].settings(&night, i, lamp);
+        const int n = scenes[k].lamps(&night, i, lamp);
 
         night_draw(&night, lamp, n);
         note_truth(s, &night, lamp, n);
@@ -376,7 +376,7 @@ int main(int argc, char **argv)
          "|---|---|---|---|---|---|---|---|---|");
     for (int k = 0; k < (int)(sizeof scenes / sizeof *scenes); k++)
         if (!only || strcmp(only, scenes[k].name) == 0)
-            good = run_settings(&s, k, most) && good;
+            good = run_scene(&s, k, most) && good;
     for (int i = optind; i < argc; i++)
         good = run_video(&s, argv[i], most) && good;
     compositor_close(&s.compositor);

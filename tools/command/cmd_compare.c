@@ -88,7 +88,7 @@ static void unexpose(struct glint_float_image *image, double exposure)
         image->rgb[i] /= (float)exposure;
 }
 
-/* What comes through a pipe is told by nothing. */
+/* The name of a pipe gives no type. */
 static bool has_floats(const char *name)
 {
     return glint_picture_is_float(name) || strcmp(name, "-") == 0;

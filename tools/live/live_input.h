@@ -30,7 +30,7 @@ struct live_input {
 /* Returns whether NAME is a camera's. */
 bool live_input_is_camera(const char *name);
 
-/* Tells what can be told before there is a lens. GLINT_E_DEVICE, _IO. */
+/* Checks NAME as far as that goes without a lens. GLINT_E_DEVICE, _IO. */
 enum glint_status live_input_check(const char *name, struct glint_error *error);
 
 /* Opens what WISH names; SEED is the test's. */

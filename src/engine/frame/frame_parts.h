@@ -18,7 +18,8 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 /* A new block for the capacities there are, in which the flare begins. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
 
-/* Bundles that N_BEAMS need; with sets, to choose from these. */
+/* Returns the bundles that N_LIGHTS need; with sets of wavelengths, those to
+ * choose from. */
 int glint_frame_bundles(const struct glint_frame *frame, int n_lights);
 
 /* Returns whether all fitted; if not, asks for more room. */

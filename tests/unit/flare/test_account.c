@@ -21,7 +21,7 @@ enum {
     WIDTH = 160,
     HEIGHT = 120,
     WAVES = 2,
-    MAX_BEAMS = 4,
+    MAX_LIGHTS = 4,
     N = WIDTH * HEIGHT
 };
 
@@ -29,7 +29,7 @@ struct fixture {
     struct model_image m;
     struct glint_lens lens;
     struct glint_wave wave[WAVES];
-    struct glint_light light[MAX_BEAMS];
+    struct glint_light light[MAX_LIGHTS];
     int n_lights;
     struct glint_flare_frame rays;
     struct glint_flare_config cfg;
@@ -54,7 +54,7 @@ static void open_fixture(struct fixture *f, int n_lights)
             (struct glint_wave){i ? MODEL_WAVE_HI_Q24 : MODEL_WAVE_LO_Q24,
                                 {i ? 0 : 16384, i ? 16384 : 0, 0},
                                 real_of(1, 0)};
-    for (int i = 0; i < MAX_BEAMS; i++)
+    for (int i = 0; i < MAX_LIGHTS; i++)
         f->light[i] = (struct glint_light){1 << 27,
                                            1065344904,
                                            (int32_t)lrint(cos(i) * 0x1p30),
@@ -261,7 +261,7 @@ static void test_faint(void **state)
     struct fixture f;
 
     (void)state;
-    for (int n = 1; n <= MAX_BEAMS; n++) {
+    for (int n = 1; n <= MAX_LIGHTS; n++) {
         open_fixture(&f, n);
         f.rays.faintest = real_of(1, 60);
         assert_outcome(&f, GLINT_OUTCOME_FAINT, n * 2 * WAVES);

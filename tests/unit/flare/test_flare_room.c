@@ -78,7 +78,7 @@ static void check_capacity(const struct glint_raster *raster)
     less = draw_scene(full, pixels);
     assert_int_equal(less.bundles, 0);
     assert_int_equal(less.need_primitives, s.need_primitives);
-    /* what finds no room is told all the same, however little there is */
+    /* bundles without room are counted all the same, however little there is */
     for (int k = 0; k < 8; k++) {
         full.max_primitives = (int)((int64_t)s.need_primitives * k / 8);
         full.max_refs = k % 2 ? s.need_refs / 3 : s.need_refs;

@@ -38,7 +38,7 @@ static void second(void)
 }
 
 /* Runs DIE in a child that has two functions to run, and gives how it ended and
- * what they told. */
+ * what they wrote. */
 static int end_of(void (*die)(int), int number, char text[8])
 {
     const struct rlimit no_core = {0, 0};
