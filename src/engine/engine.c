@@ -19,6 +19,7 @@ struct glint_engine {
     struct glint_response response;
     struct glint_strength strength;
     double starburst;
+    double seen_px[GLINT_LAMP_DETECTOR_MAX]; /* extent of what was found */
     bool has_arena; /* drawing takes no memory of its own */
     int n_found;
     int32_t elapsed_us; /* between the pictures searched last */
@@ -325,6 +326,9 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     memcpy(e->lamp, lamps, (size_t)n * sizeof *lamps);
     expose(e, n, is_found);
     f->star.share = glint_strength_star(&e->strength, e->starburst);
+    for (int i = 0; i < n && is_found; i++)
+        e->seen_px[i] = e->detector.track[i].size_q8 / 256.0;
+    f->star.seen_px = is_found ? e->seen_px : NULL;
     if (f->budget.ms <= 0) /* there is time for a picture by itself */
         f->dials.area_points =
             is_found && e->elapsed_us

@@ -21,6 +21,9 @@ struct glint_star_lamp {
     /* Light of a profile's step, and of one of the core, over 2^exponent: 15
      * bits. And the light of the halo's. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
+    /* As of tables, of this lamp's extent: steps of a profile in a pixel, and
+     * pixels in a step. */
+    int32_t per_pixel_q16, pixels_q16;
     int reach, halo_reach; /* pixels: beyond, no part is to be seen */
     int n_zones;
     /* Zone i begins at the distance start[i], along x or y, whichever is

@@ -170,6 +170,17 @@ static struct glint_real held(struct glint_real power)
     return real_less(most, power) ? most : power;
 }
 
+/* By how much a lamp of that RADIUS makes lines wider, and fainter: a disc is
+ * half as bright where it is 1.73 radii wide. At most 2^10. */
+static int64_t wider_q8(const struct glint_star_tables *t, int32_t radius_q8)
+{
+    const int64_t disc_q8 = q_divide(
+        443 * (int64_t)q_clamp_sat(radius_q8, 0, 1 << 22), t->width_q8);
+    const int64_t held_q8 = disc_q8 < 1 << 18 ? disc_q8 : 1 << 18;
+
+    return q_root((uint64_t)(65536 + held_q8 * held_q8));
+}
+
 /* 0: nothing of it is to be seen. */
 static int set_lamp(struct glint_star_lamp *lamp,
                     const struct glint_star_tables *t,
@@ -178,7 +189,9 @@ static int set_lamp(struct glint_star_lamp *lamp,
 {
     const int32_t far = 1 << 25;
     const struct glint_real power = held(l->power);
-    const struct glint_real line = real_times(power, t->step);
+    const int64_t wide_q8 = wider_q8(t, l->radius_q8);
+    const struct glint_real line =
+        real_over(real_times(power, t->step), real_of(wide_q8, -8));
     const int32_t least_log2_q16 = q_larger(log2_q16(faintest), -21 * 65536);
     const int32_t radius_q8 =
         q_larger(q_clamp_sat(l->radius_q8, 0, 1 << 22), t->inner_q8);
@@ -193,6 +206,9 @@ static int set_lamp(struct glint_star_lamp *lamp,
         return 0;
     *lamp = (struct glint_star_lamp){
         .x_q8 = l->x_q8, .y_q8 = l->y_q8, .is_bare = l->radius_q8 < 0};
+    lamp->per_pixel_q16 =
+        (int32_t)q_divide((int64_t)t->per_pixel_q16 << 8, wide_q8);
+    lamp->pixels_q16 = (int32_t)(t->pixels_q16 * wide_q8 >> 8);
     lamp->inner_q16 = (uint64_t)radius_q8 * (uint64_t)radius_q8;
     lamp->line_exponent = share(l->rgb_q14, line, lamp->line);
     lamp->core_exponent = share(l->rgb_q14, power, lamp->core);

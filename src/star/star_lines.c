@@ -54,12 +54,11 @@ static uint32_t inverse_of(const struct glint_star *star, uint64_t r2_q16,
 
 static void add_pixel(const struct strip *s, int x, int64_t v_q16)
 {
-    const struct glint_star_tables *t = s->star->tables;
     const int at = (int)(v_q16 >> 16), part_q8 = (int)(v_q16 >> 8 & 255);
     const int64_t dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8;
     uint64_t r2_q16 =
         (uint64_t)(dx_q8 * dx_q8) + (uint64_t)((int64_t)s->dy_q8 * s->dy_q8);
-    const uint64_t v_q8 = (uint64_t)(v_q16 * t->pixels_q16 >> 24);
+    const uint64_t v_q8 = (uint64_t)(v_q16 * s->lamp->pixels_q16 >> 24);
     const uint16_t *p = s->line->profile[at];
     uint32_t inverse, less_q16;
     int bits;
@@ -82,7 +81,7 @@ static void add_pixel(const struct strip *s, int x, int64_t v_q16)
 /* Adds pixels of HERE up to SEEN steps off the strip's middle. */
 static void add_stretch(const struct strip *s, struct stretch here, int seen)
 {
-    const int64_t step_q16 = s->star->tables->per_pixel_q16;
+    const int64_t step_q16 = s->lamp->per_pixel_q16;
     const int64_t dx_q8 = (int64_t)here.x0 * 256 + 128 - s->lamp->x_q8;
     int64_t v_q24 =
         (s->dy_q8 * (int64_t)s->line->cos_q30 - dx_q8 * s->line->sin_q30) >> 14;
@@ -105,9 +104,8 @@ static void add_stretch(const struct strip *s, struct stretch here, int seen)
  */
 static struct stretch across(const struct strip *s, int seen)
 {
-    const struct glint_star_tables *t = s->star->tables;
     const int64_t middle_q8 = (int64_t)s->dy_q8 * s->line->cot_q16 >> 16;
-    const int64_t v_q8 = ((int64_t)seen * t->pixels_q16 >> 8) + 1;
+    const int64_t v_q8 = ((int64_t)seen * s->lamp->pixels_q16 >> 8) + 1;
     const int64_t half_q8 = (v_q8 * s->line->across_q16 >> 16) + 256;
     const int64_t at_q8 = s->lamp->x_q8 + middle_q8;
 
@@ -188,7 +186,7 @@ int glint_star_lines_reach(const struct glint_star *star,
         const struct glint_star_line *l = &star->tables->line[k];
         const int64_t v_q8 = (y_q8 * l->cos_q30 - x_q8 * l->sin_q30) >> 30;
         const int64_t most_q8 =
-            half_q8 + ((int64_t)seen * star->tables->pixels_q16 >> 8) + 256;
+            half_q8 + ((int64_t)seen * lamp->pixels_q16 >> 8) + 256;
 
         if (v_q8 < most_q8 && v_q8 > -most_q8)
             return 1;

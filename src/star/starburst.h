@@ -67,6 +67,7 @@ struct glint_star_tables {
     int32_t per_pixel_q16;      /* steps of a profile, at most 128 */
     int32_t pixels_q16;         /* of a step */
     int32_t core_per_pixel_q16; /* steps of the core: 2^16 .. 2^18 */
+    int32_t width_q8;           /* pixels: of profiles where half as bright */
     int32_t inner_q8;           /* pixels: within, 1 / r^2 grows no more */
     /* log2 of the light times r^2, _q11, from halo_log2_q16 on; and the
      * largest of each row. */
@@ -81,9 +82,10 @@ struct glint_star_tables {
 
 /* A lamp as the picture shows it. */
 struct glint_star_light {
-    int32_t x_q8, y_q8;      /* pixels from the top left corner */
-    int32_t radius_q8;       /* of the lamp in the picture, 0 .. 2^22; below 0:
-                                there is none, and the core is drawn as well */
+    int32_t x_q8, y_q8; /* pixels from the top left corner */
+    int32_t radius_q8;  /* of the lamp in the picture, a disc, 0 .. 2^22: lines
+                           are wider by that; below 0: no picture shows it, and
+                           the core is drawn as well */
     struct glint_real power; /* white times pixels; 2^30 at most count */
     int32_t rgb_q14[3];      /* colour, 0 .. 2^14 */
 };

@@ -342,6 +342,16 @@ static void expose_as_drawn(struct compositor *compositor)
     glint_strength_correct(&compositor->strength, &drawn);
 }
 
+/* How large lamps that were found are in the picture. */
+static void set_seen(struct compositor *compositor)
+{
+    const bool found = !compositor->is_listed && compositor->n_hand == 0;
+
+    for (int i = 0; i < compositor->n_lamps && found; i++)
+        compositor->seen_px[i] = compositor->finder.track[i].size_q8 / 256.0;
+    compositor->frame.star.seen_px = found ? compositor->seen_px : NULL;
+}
+
 void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
 {
     const bool is_new =
@@ -362,6 +372,7 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
                           is_new ? 0 : elapsed_us);
     if (elapsed_us == 0)
         expose_as_drawn(compositor);
+    set_seen(compositor);
     compositor->frame.star.share = glint_strength_star(
         &compositor->strength, compositor->settings.starburst);
 }

@@ -42,7 +42,8 @@ struct compositor {
     struct glint_lamp_detector finder;
     struct glint_lamp *lamp; /* room for those by hand and all found or read */
     double *level; /* share of each lamp in its power: struct strength_lamps */
-    uint32_t *id;  /* number that each lamp is saved under */
+    double seen_px[GLINT_LAMP_DETECTOR_MAX]; /* extent of what was found */
+    uint32_t *id; /* number that each lamp is saved under */
     struct glint_response response;
     double white; /* light of the picture's white, 1 by default */
     struct glint_view view;

@@ -12,6 +12,9 @@
  */
 static const double most_px = 1 << 16;
 
+/* Radius of a point in a picture that is sharp. */
+static const double least_px = 1.5;
+
 static struct glint_star_optics optics_of(const struct glint_frame *f)
 {
     const struct glint_optics *o = &f->setup->optics;
@@ -72,15 +75,29 @@ enum glint_status glint_frame_star_hold(struct glint_frame *f, int n)
     return glint_star_init(&s->star, &cfg, block, bytes);
 }
 
-/* False: too far away. */
+/* The radius of a disc that is SEEN_PX wide in a picture: of a point, too, the
+ * picture is white as far as its own star is, whose mean far out is that of a
+ * circle, and glass and sensor spread it about twice as far. */
+static double disc_of(const struct glint_frame *f, double seen_px, double power)
+{
+    const struct glint_star_optics *o = &f->star.optics;
+    const double airy_px = 0.55 * o->f_number / o->pixel_um;
+    const double point_px =
+        2 * (least_px + cbrt(power * airy_px / pow(GLINT_PI, 3)));
+
+    return sqrt(fmax(2 * seen_px * seen_px - point_px * point_px, 0));
+}
+
+/* SEEN_PX: 0 where it is not known. False: too far away. */
 static bool set_light(const struct glint_frame *f,
                       const struct glint_lamp *lamp, double scale,
-                      struct glint_star_light *light)
+                      double seen_px, struct glint_star_light *light)
 {
     const double focal_mm = f->setup->optics.focal_mm;
     const double pixels = fabs(focal_mm) * f->view.width /
                           f->view.sensor_width_mm; /* per tangent */
-    const double radius = 2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels;
+    const double radius = fmax(2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels,
+                               disc_of(f, seen_px, lamp->power));
     const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
     const double power = lamp->power * most * scale;
     double x, y;
@@ -119,7 +136,8 @@ enum glint_status glint_frame_star_set(struct glint_frame *f,
         return status;
     for (int i = 0; i < n && n_lights < s->max_lights; i++)
         n_lights +=
-            set_light(f, &lamps[i], scale * s->share, &s->light[n_lights]);
+            set_light(f, &lamps[i], scale * s->share,
+                      s->seen_px ? s->seen_px[i] : 0, &s->light[n_lights]);
     glint_star_set(
         s->star, s->tables, s->light, n_lights,
         glint_real_of(glint_frame_codes_light(f, image, f->dials.cull_codes)));

@@ -17,6 +17,10 @@ struct glint_frame_star {
     /* Light of the star over that of the lens: lamps' powers are multiplied by
      * the frame's scale and this. 0: none. */
     double share;
+    /* Pixels of each lamp, the root of the mean square of their distances from
+     * its middle, as a picture shows it with all that its light has spread
+     * to; or NULL: lamps have the extent that they say. */
+    const double *seen_px;
     bool is_bare;  /* no picture shows the lamps: with their cores */
     bool is_alone; /* without ghosts */
 

@@ -47,8 +47,9 @@ static void cell_light(const struct glint_psf *psf, int i, int k, double rgb[3])
 
     rgb[0] = rgb[1] = rgb[2] = 0;
     for (int p = 0; p < n * n; p++) {
-        const double x = side * (k + (p % n + 0.5) / n);
-        const double y = side * (i + (p / n + 0.5) / n);
+        const int row = p / n, column = p % n;
+        const double x = side * (k + (column + 0.5) / n);
+        const double y = side * (i + (row + 0.5) / n);
         double here[3];
 
         glint_psf_light(psf, x, y, here);

@@ -170,6 +170,8 @@ static void set_sizes(struct glint_star_tables *t, const struct glint_psf *psf,
         (int32_t)lrint(65536.0 * 256 * GLINT_STAR_PROFILE / t->reach_q8);
     t->pixels_q16 =
         (int32_t)lrint(65536.0 * t->reach_q8 / 256 / GLINT_STAR_PROFILE);
+    t->width_q8 = (int32_t)lrint(
+        256 * (psf->n_blades ? hypot(1, 0.886 * psf->width_px) : 1));
     t->inner_q8 = (int32_t)lrint(256 * fmax(2, psf->airy_px));
 }
 

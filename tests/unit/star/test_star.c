@@ -355,6 +355,45 @@ static void test_direct(void **state)
     free(direct);
 }
 
+/* Light along a line across the spike to the right, 30 px away; *WIDTH is how
+ * much of it is at least half as bright as in its middle. */
+static double across_spike(double *width)
+{
+    double sum = 0;
+
+    *width = 0;
+    for (int i = -140; i <= 140; i++) {
+        const double light = at(60.5, 41.5 + 0.1 * i);
+
+        sum += light * 0.1;
+        *width += light > 0.5 * at(60.5, 41.5) ? 0.1 : 0;
+    }
+    return sum;
+}
+
+/* A lamp that the picture shows as a disc throws lines as wide as that, which
+ * carry as much light. */
+static void test_extent(void **state)
+{
+    struct glint_star_tables *t = tables_of(4, 45, 0.5);
+    struct glint_star_light light = light_at(30.5, 41.5, 10);
+    double width[2], sum[2];
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        light.radius_q8 = i * 4 * 256;
+        draw_linear(t, &light, 1, linear_q20);
+        sum[i] = across_spike(&width[i]);
+    }
+    print_message("a spike is %.1f px wide, of a disc %.1f, with %.3f times "
+                  "the light\n",
+                  width[0], width[1], sum[1] / sum[0]);
+    assert_true(width[0] > 0.8 && width[0] < 2);
+    assert_true(fabs(width[1] / (1.73 * 4) - 1) < 0.12);
+    assert_true(fabs(sum[1] / sum[0] - 1) < 0.12);
+    glint_star_tables_free(t);
+}
+
 /* -------------------------------------------------------------------- motion
  */
 
@@ -514,9 +553,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_spikes),     cmocka_unit_test(test_ring),
         cmocka_unit_test(test_drawn_ring), cmocka_unit_test(test_energy),
-        cmocka_unit_test(test_direct),     cmocka_unit_test(test_motion),
-        cmocka_unit_test(test_rotation),   cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_powers),
+        cmocka_unit_test(test_direct),     cmocka_unit_test(test_extent),
+        cmocka_unit_test(test_motion),     cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_same_bits),  cmocka_unit_test(test_powers),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
