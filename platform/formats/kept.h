@@ -28,8 +28,8 @@ enum { GLINT_KEPT_NOTES = 256 }; /* bytes */
 struct glint_kept {
     struct glint_samples samples;
     bool is_float; /* light beyond white is what it is, not clipped */
-    char note[GLINT_KEPT_NOTES]; /* what glint takes otherwise than the file
-                                    means it, in words */
+    char note[GLINT_KEPT_NOTES]; /* words on what glint takes otherwise than the
+                                    file means it */
 
     /* Private. */
     const char *path;

@@ -52,8 +52,9 @@ enum glint_status glint_picture_load_float(const char *path,
                                            struct glint_float_image *floats,
                                            struct glint_error *error);
 
-/* For formats/kept.h: the type that the first bytes of a file tell, and the
- * refusal of one that needs the plug-in, ERROR saying why it is not there. */
+/* Functions for formats/kept.h: the type that the first bytes of a file tell,
+ * and the refusal of one that needs the plug-in, ERROR saying why it is not
+ * there. */
 const char *glint_picture_type(const uint8_t *head, size_t bytes);
 enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
                                              struct glint_error *error);

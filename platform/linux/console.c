@@ -50,8 +50,8 @@ static int open_console(const char *path, int *fd)
         errno = saved;
         return -1;
     }
-    /* Who draws and lives lets the kernel ask before it switches; graphics
-     * without that is what somebody left behind who was killed. */
+    /* A program that draws and lives lets the kernel ask before it switches;
+     * graphics without that were left behind by one that was killed. */
     if (mode == KD_GRAPHICS && ioctl(*fd, VT_GETMODE, &switching) == 0 &&
         switching.mode == VT_AUTO)
         mode = KD_TEXT;

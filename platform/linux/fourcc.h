@@ -32,7 +32,7 @@ void glint_fourcc_text(uint32_t fourcc, char text[5]);
  * "mjpeg". Other texts of 4 printable characters are taken as they are. */
 bool glint_fourcc_parse(const char *text, uint32_t *fourcc);
 
-/* How V4L2 describes colours: values of enum v4l2_colorspace and so on. */
+/* The colours of a format to V4L2: values of enum v4l2_colorspace and so on. */
 struct glint_v4l2_colour {
     uint32_t colorspace, ycbcr_enc, quantization, xfer_func;
 };

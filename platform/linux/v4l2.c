@@ -191,7 +191,7 @@ static bool is_whole(const struct glint_v4l2 *v,
 static void give_back(struct glint_v4l2 *v, int index)
 {
     v->buffer[index].lent = false;
-    glint_v4l2_queue(v, index); /* if it fails, next tries again */
+    glint_v4l2_queue(v, index); /* A failure shows in the next call. */
 }
 
 static void queue_idle(struct glint_v4l2 *v)

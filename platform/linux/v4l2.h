@@ -58,7 +58,7 @@ struct glint_v4l2 {
     int n_numbered;    /* frames since the start, up to 2 */
     uint32_t sequence; /* number of the last frame taken */
     uint32_t n_read;   /* frames by read(2), which have no sequence */
-    int64_t heard_us;  /* when the last frame came */
+    int64_t heard_us;  /* time of the last frame */
     int64_t broken_us; /* since when it has been failing; 0: it is not */
     int n_useless;     /* damaged frames in a row */
 };

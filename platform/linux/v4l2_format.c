@@ -123,7 +123,7 @@ static uint32_t cheapest(const struct glint_v4l2_device *d, uint32_t w,
 
 /* ------------------------------------------------------------------- format */
 
-struct pix { /* what both kinds of struct v4l2_format hold */
+struct pix { /* the members that both kinds of struct v4l2_format have */
     uint32_t width, height, fourcc, n_blocks, stride_bytes[3], bytes[3];
     struct glint_v4l2_colour colour;
 };

@@ -95,7 +95,7 @@ static enum glint_status set_format(struct glint_v4l2_sink *out,
         got, px->width, px->height, want, like->width, like->height);
 }
 
-/* With exclusive_caps=1 v4l2loopback 0.12 is an output again after us only if
+/* v4l2loopback 0.12 with exclusive_caps=1 is an output again after us only if
  * we streamed. It takes write() all the same; others have no buffers to stream
  * and refuse. */
 static void claim(const struct glint_v4l2_sink *out)

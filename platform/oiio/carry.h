@@ -25,7 +25,7 @@ bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc);
 bool is_classic_tiff(const bytes &file); /* not BigTIFF */
 bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc);
 
-/* What is missing of FILE, for a person; empty: nothing. */
+/* Return what FILE lacks, for a person; empty: nothing. */
 std::string missing_of_jpeg(const bytes &file);
 std::string missing_of_tiff(const bytes &file);
 
@@ -34,17 +34,18 @@ int quality_of_jpeg(const bytes &file);
 
 bool is_progressive(const bytes &jpeg);
 
-/* Whether its colours are those of inks: C M Y K, of which pixels become R G B.
- */
+/* Returns whether the colours of JPEG are those of inks: C M Y K, whose pixels
+ * become R G B. */
 bool is_of_inks(const bytes &jpeg);
 
-/* Whether the file has more pictures behind the first, which get lost. */
+/* Returns whether the file has more pictures behind the first, which get lost.
+ */
 bool has_more_pictures(const bytes &jpeg);
 
 /* Data of the first chunk NAME of a PNG; empty: there is none. */
 bytes chunk_of_png(const bytes &file, const char *name);
 
-/* Whether a WebP is without loss. */
+/* Returns whether a WebP is without loss. */
 bool is_lossless(const bytes &webp);
 
 } // namespace glint

@@ -43,7 +43,7 @@ struct entry {
 
 using directory = std::map<unsigned, entry>;
 
-/* Of types 1 .. 13; 0: unknown. */
+/* Returns the bytes of one value of types 1 .. 13; 0: the type is unknown. */
 unsigned size_of(unsigned type)
 {
     static const unsigned char sizes[] = {0, 1, 1, 2, 4, 8, 1,
@@ -187,7 +187,7 @@ bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc)
     const reader ours = {made, true}, theirs = {from, from[0] == 'I'};
     bytes file = made;
     uint32_t our_next = ours.number(4, 4), their_next = theirs.number(4, 4);
-    uint64_t link = 4; /* where the place of the next directory is written */
+    uint64_t link = 4; /* place of the link to the next directory */
 
     for (int i = 0; i < 64 && our_next && their_next; i++) {
         const uint32_t at = our_next;

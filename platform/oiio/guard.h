@@ -19,8 +19,9 @@
 namespace glint
 {
 
-/* How many bytes at AT are one character of UTF-8 that a terminal shows: none
- * of the control characters, U+0080 to U+009F among them. 0: none. */
+/* Returns the bytes of the character of UTF-8 at AT if a terminal shows it:
+ * none of the control characters, U+0080 to U+009F among them. 0: it does not.
+ */
 inline size_t shown_bytes(const unsigned char *at, size_t left)
 {
     const size_t n = at[0] < 0x80    ? 1

@@ -16,17 +16,17 @@ namespace glint
 {
 
 struct kept_part {
-    OIIO::ImageSpec spec; /* as it is stored */
+    OIIO::ImageSpec spec; /* the part as it is stored */
     std::vector<unsigned char> pixels;
 };
 
-/* Whether the channels of a part have types of their own. */
+/* Returns whether the channels of a part have types of their own. */
 inline bool is_mixed(const OIIO::ImageSpec &spec)
 {
     return !spec.channelformats.empty();
 }
 
-/* Whether metadata of OpenImageIO's TYPE go over byte for byte. */
+/* Returns whether metadata of OpenImageIO's TYPE go over byte for byte. */
 bool is_carried(const std::string &type);
 
 /* All of PATH; throws failure. */

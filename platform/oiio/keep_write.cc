@@ -138,8 +138,8 @@ ImageSpec bare(const ImageSpec &spec)
     return to;
 }
 
-/* What makes OpenImageIO 2.4 write a TIFF's Exif directory, which it spoils in
- * memory. */
+/* Removes the attributes for which OpenImageIO 2.4 writes a TIFF's Exif
+ * directory, which it spoils in memory. */
 void clear_exif(ImageSpec &spec)
 {
     const auto is_exif = [](const OIIO::ParamValue &p) {
@@ -222,7 +222,7 @@ void write_parts(ImageOutput &out, const char *path,
         throw failure{GLINT_E_OUTPUT, out.geterror()};
 }
 
-/* Of BigTIFF OpenImageIO passes on what it knows. */
+/* OpenImageIO itself passes on what it knows of BigTIFF. */
 bool is_carried_from(const struct glint_oiio_file &file)
 {
     return glint::is_carried(file.type) &&

@@ -15,7 +15,9 @@
 
 #define PLUGIN     "glint-oiio.so"
 #define PATH_BYTES 4096
-#define INSTALLED  "../lib/glint/" /* from bin/, wherever both were moved */
+#define INSTALLED                                                              \
+    "../lib/glint/" /* place of plug-ins as seen from bin/, wherever both were \
+                       moved */
 
 /* The directory of the executable with its slash; false if it has none. */
 static bool find_own_directory(char dir[PATH_BYTES])
@@ -55,7 +57,7 @@ static const struct glint_oiio *load_from(const char *path,
     return NULL;
 }
 
-/* From DIR, unless everybody may put things there. */
+/* Loads the plug-in from DIR, unless everybody may put files there. */
 static const struct glint_oiio *load_from_directory(const char *dir,
                                                     struct glint_error *error)
 {

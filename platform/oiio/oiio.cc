@@ -104,8 +104,8 @@ std::vector<unsigned char> encode_pixels(const char *path,
     if (!out->supports("ioproxy") || !out->set_ioproxy(&file))
         throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
                                            "type into memory"};
-    /* With a colour space, TIFF would get an Exif directory, whose writing into
-     * memory OpenImageIO 2.4 spoils. */
+    /* A TIFF with a colour space would get an Exif directory, whose writing
+     * into memory OpenImageIO 2.4 spoils. */
     if (std::strcmp(out->format_name(), "tiff") != 0)
         spec.attribute("oiio:ColorSpace", pixels->is_float ? "Linear" : "sRGB");
     if (!out->open(path, spec) ||

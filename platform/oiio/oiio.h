@@ -34,22 +34,22 @@ struct glint_oiio_pixels {
  * windows, metadata. */
 struct glint_oiio_file;
 
-/* What a file says beside its pixels. Pointers and what they point to live as
- * long as the file does. */
+/* The facts of a file beside its pixels. Pointers, and the data behind them,
+ * live as long as the file does. */
 struct glint_oiio_facts {
     const unsigned char *icc; /* its profile; NULL: none */
     size_t icc_bytes;
-    char colour_space[32]; /* as OpenImageIO calls it, or "" */
+    char colour_space[32]; /* OpenImageIO's name for it, or "" */
     double gamma;          /* stated apart from that, or 0 */
     double primaries[4][2];
     int has_primaries;
     int cicp[2];    /* primaries and transfer of ITU-T H.273, or 0, 0 */
-    int quality;    /* of a JPEG, as its tables look; 0: not known */
-    char note[160]; /* what of it cannot be kept, or "" */
+    int quality;    /* 1 .. 100, guessed from a JPEG's tables; 0: not known */
+    char note[160]; /* words on what cannot be kept of it, or "" */
 };
 
 struct glint_oiio_options {
-    int quality;  /* of JPEG and WebP, 1 .. 100; 0: the file's own, or 95 */
+    int quality;  /* JPEG and WebP: 1 .. 100; 0: the file's own, or 95 */
     int drop_icc; /* the profile does not go with the pixels any more */
 };
 
@@ -79,7 +79,7 @@ struct glint_oiio {
                               struct glint_error *error);
     void (*close)(struct glint_oiio_file *file); /* NULL: nothing */
 
-    /* Whether a file of PATH's extension is of FILE's type. */
+    /* Returns whether a file of PATH's extension is of FILE's type. */
     int (*is_same_type)(const struct glint_oiio_file *file, const char *path);
 
     /* Encodes FILE, whose samples may have been changed in place, in its own

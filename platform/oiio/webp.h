@@ -10,8 +10,8 @@
 namespace glint
 {
 
-/* Whether FILE can be decoded here: a WebP that is no animation, and libwebp
- * was there when this was built. */
+/* Returns whether FILE can be decoded here: a WebP that is no animation, and
+ * libwebp was there when this was built. */
 bool webp_takes(const bytes &file);
 
 /* R G B, or R G B A, of 8 bits. */

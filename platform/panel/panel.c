@@ -54,7 +54,8 @@ static void place(struct glint_panel *p)
     p->shown.y = (p->cfg.height - p->shown.height) / 2;
 }
 
-/* Whose centre is nearest to that of pixel I of TO, among FROM. */
+/* Returns the one of FROM pixels whose centre is nearest to that of pixel I of
+ * TO. */
 static int nearest(int i, int from, int to)
 {
     return (2 * i + 1) * from / (2 * to);

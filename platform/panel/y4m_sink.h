@@ -21,7 +21,7 @@
 struct glint_y4m_sink {
     struct glint_sink sink; /* close puts a file in place */
     long n_frames;          /* written */
-    long n_dropped;         /* because the reader was slow */
+    long n_dropped;         /* frames that the reader was too slow for */
 
     /* Private. */
     const char *path; /* kept */

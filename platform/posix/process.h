@@ -12,8 +12,8 @@
  */
 void glint_process_hold_streams(void);
 
-/* What the environment says of NAME, or NULL; to a program with rights that its
- * user has not, it says nothing. */
+/* Returns the environment's value of NAME, or NULL; a program with rights that
+ * its user has not gets none. */
 const char *glint_process_setting(const char *name);
 
 /* FN(CTX), where the calling thread's stack may grow to less than BYTES in a

@@ -14,8 +14,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#define EXT_CHARS  16 /* of a file name extension worth keeping */
-#define MAX_LINKS  40 /* as many as Linux follows */
+#define EXT_CHARS \
+    16 /* characters that a file name extension worth keeping has at most */
+#define MAX_LINKS  40 /* links that Linux follows at most */
 #define PATH_BYTES 4096
 
 /* -------------------------------------------------------------------- links */
@@ -70,7 +71,7 @@ static bool follow(char *path)
     return true;
 }
 
-/* Where nothing is yet; links may lead there. */
+/* Returns the place of a file that is not there yet; links may lead to it. */
 static char *new_target(const char *path)
 {
     char at[PATH_BYTES];
@@ -162,7 +163,7 @@ static pid_t maker_of(const char *name)
     return end > name && (*end == '.' || !*end) ? (pid_t)pid : 0;
 }
 
-/* Whether a regular file of ours is open at FD that nobody holds. */
+/* Returns whether a regular file of ours is open at FD that nobody holds. */
 static bool is_abandoned(int fd)
 {
     struct stat st;

@@ -22,7 +22,8 @@ char *glint_target_beside(const char *target, unsigned n);
  * into the same folder once only. */
 void glint_target_clean(const char *target);
 
-/* Whether A and B, "-" the standard streams, are the same regular file. */
+/* Returns whether A and B, "-" the standard streams, are the same regular file.
+ */
 bool glint_target_is_input(const char *input, const char *output);
 
 #endif

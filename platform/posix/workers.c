@@ -18,7 +18,7 @@ struct helper {
 
 struct pool {
     struct glint_workers base; /* first: a pool is a glint_workers */
-    pthread_mutex_t lock;      /* of round, open, quit and busy */
+    pthread_mutex_t lock;      /* guards round, open, quit and busy */
     pthread_cond_t wake;       /* a round was opened, or quit */
     pthread_cond_t idle;       /* busy became 0 */
     unsigned round;            /* calls of run so far */
@@ -92,7 +92,7 @@ static void run(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
     do_jobs(p, 0);
 
     pthread_mutex_lock(&p->lock);
-    p->open = false; /* who still sleeps would find no job */
+    p->open = false; /* A worker that still sleeps would find no job. */
     while (p->busy > 0)
         pthread_cond_wait(&p->idle, &p->lock);
     pthread_mutex_unlock(&p->lock);

@@ -27,7 +27,7 @@ static void close_view(void *window)
     free(v);
 }
 
-/* In front of the desktop, as large as it lets it be. */
+/* Opens the window in front of the desktop, as large as that lets it be. */
 static void make(struct view *v, const char *title, int width, int height)
 {
     SDL_Rect room = {0, 0, width, height};

@@ -41,7 +41,7 @@ struct glint_window {
     const char *title;
     struct glint_panel panel;
     uint8_t *pixels;
-    int width, height; /* of the window's pictures */
+    int width, height; /* pixels of the window's pictures */
 };
 
 /* TITLE is kept. GLINT_E_DEVICE: no plug-in; ERROR says what does as well. */

@@ -49,21 +49,21 @@
 #define GLINT_Y4M_PRINTED    1024 /* bytes that any header line fits in */
 #define GLINT_Y4M_FRAME_TAGS 128
 
-/* What the first line says. */
+/* The first line's parameters. */
 struct glint_y4m_header {
     int width, height;              /* 1 .. GLINT_MAX_SIDE */
     enum glint_pixel_format format; /* GLINT_GREY, _I420, _I422 or _I444 */
-    struct glint_y4m_layout layout; /* of a frame as it is stored */
+    struct glint_y4m_layout layout; /* layout of a stored frame */
     enum glint_range range;
     enum glint_matrix matrix;
     int fps_num, fps_den;       /* frames a second; 0, 0: not known */
     char interlace;             /* p t b m or ?; 0: not stated */
-    char aspect[24];            /* of a pixel, "1:1"; "": not stated */
-    char colour[16];            /* as stated, "420mpeg2"; "": not stated */
-    bool range_stated;          /* by XCOLORRANGE */
+    char aspect[24];            /* a pixel's, "1:1"; "": not stated */
+    char colour[16];            /* the tag stated, "420mpeg2"; "": not stated */
+    bool range_stated;          /* XCOLORRANGE states it */
     char extra[GLINT_Y4M_LINE]; /* the other tags, each after a space */
-    char line[GLINT_Y4M_LINE];  /* as it was read, "" if it was not; it is
-                                   printed again while range is line_range */
+    char line[GLINT_Y4M_LINE];  /* the line that was read, or ""; it is printed
+                                   again while range is line_range */
     enum glint_range line_range;
 };
 
@@ -94,18 +94,18 @@ typedef ptrdiff_t glint_y4m_source_fn(void *ctx, void *dst, size_t bytes);
 
 struct glint_y4m_reader {
     struct glint_y4m_header header; /* range and matrix may be overruled */
-    char frame_tags[GLINT_Y4M_FRAME_TAGS]; /* of the last frame: "" or what
-                                              follows FRAME, space included */
+    char frame_tags[GLINT_Y4M_FRAME_TAGS]; /* last frame's: "" or what follows
+                                              FRAME, space included */
     long n_frames;                         /* delivered so far */
 
     /* Private. */
     const char *name;
-    struct glint_input in; /* where there is no source */
+    struct glint_input in; /* read from unless there is a source */
     glint_y4m_source_fn *source;
     void *ctx;
     struct glint_image frame;
-    uint8_t *planes; /* of the last frame, as stored */
-    uint8_t *mem;    /* of the frame and, before it, of its planes */
+    uint8_t *planes; /* last frame's, as it was stored */
+    uint8_t *mem;    /* memory of the frame and, before it, of its planes */
     uint8_t ahead[4096];
     size_t ahead_at, ahead_end; /* bytes read and not used yet */
 };

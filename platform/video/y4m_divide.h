@@ -11,7 +11,8 @@
 
 enum { Y4M_SHARE_BITS = 40, Y4M_PART_BITS = 48, Y4M_PART_SKIP = 14 };
 
-/* Of y4m_share, for K 2^UP / D: UP up to 20, D from 219 to 65535. */
+/* Returns the factor of y4m_share for K 2^UP / D: UP up to 20, D from 219 to
+ * 65535. */
 static inline int64_t y4m_share_factor(int up, int32_t d)
 {
     return ((INT64_C(1) << (up + Y4M_SHARE_BITS)) + d - 1) / d;
@@ -30,7 +31,7 @@ static inline int32_t y4m_share(int32_t k, int64_t factor)
     return (int32_t)(k < 0 ? -share : share);
 }
 
-/* Of y4m_part, for D from 2^15 to 2^16. */
+/* Returns the factor of y4m_part for D from 2^15 to 2^16. */
 static inline int64_t y4m_part_factor(int32_t d)
 {
     return (INT64_C(1) << Y4M_PART_BITS) / d;

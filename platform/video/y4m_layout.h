@@ -18,18 +18,19 @@
 struct glint_y4m_layout {
     enum glint_pixel_format format; /* _GREY, _I420, _I422 or _I444; _I422 also
                                        of 411, seen through a copy */
-    int bits;                       /* of a sample, 8 .. 16 */
+    int bits;                       /* bits a sample, 8 .. 16 */
     bool has_alpha; /* a fourth plane of full size, which is passed on */
     bool is_411;    /* chroma is a quarter as wide */
 };
 
-/* By TAG, "" being 420jpeg. False: no such. */
+/* Sets LAYOUT by TAG, "" being 420jpeg. False: there is no such tag. */
 bool glint_y4m_layout_parse(struct glint_y4m_layout *layout, const char *tag);
 
-/* What a header of our own says for FORMAT. */
+/* Returns the tag that headers of our own have for FORMAT. */
 const char *glint_y4m_layout_tag(enum glint_pixel_format format);
 
-/* Whether a frame is a struct glint_image as it is, but for an alpha plane. */
+/* Returns whether a frame is a struct glint_image as it is, but for an alpha
+ * plane. */
 bool glint_y4m_layout_is_plain(const struct glint_y4m_layout *layout);
 
 /* Samples across and down plane PLANE, 0 .. 3; 0 and 0 if there is none. */

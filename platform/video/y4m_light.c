@@ -55,7 +55,8 @@ static int32_t light_q24(int step)
     return (int32_t)((mul_q30(u2_q30, root_q30(u2_q30)) + (1 << 5)) >> 6);
 }
 
-/* Where the straight lines between entries of DECODE reach LIGHT. */
+/* Returns the place at which the straight lines between entries of DECODE reach
+ * LIGHT. */
 static int32_t place_q20(const int32_t *decode_q24, int32_t light)
 {
     int low = 0, high = GLINT_Y4M_STEPS;
@@ -128,7 +129,7 @@ static int32_t decode(const struct glint_y4m_light *l, int32_t v_q20)
 static int32_t encode(const struct glint_y4m_light *l, int64_t light)
 {
     int octave = 0;
-    int64_t place; /* in the octave, 16 fraction bits of an entry */
+    int64_t place; /* place in the octave, with 16 fraction bits of an entry */
     const int32_t *at;
 
     if (light >= WHITE_Q24)
@@ -244,7 +245,7 @@ static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
     rgb_q20[2] = held(b, WHITE_Q20);
 }
 
-/* What Y', Cb and Cr change by, _q20, where LAYER falls on R'G'B'. */
+/* Sets the changes of Y', Cb and Cr, _q20, where LAYER falls on R'G'B'. */
 static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
                       const float *layer, int64_t change_q20[3])
 {
@@ -284,7 +285,7 @@ static int64_t mean_of(int64_t sum_q20, int count)
 
 /* A chroma sample's pixels: X0 .. X1, Y0 .. Y1. */
 struct block {
-    int x, y; /* of the chroma sample */
+    int x, y; /* place of the chroma sample */
     int x0, y0, x1, y1;
 };
 

@@ -19,8 +19,8 @@
 #include "video/y4m.h"
 
 enum {
-    GLINT_Y4M_STEPS = 4096,   /* of R'G'B' from black to white */
-    GLINT_Y4M_OCTAVES = 25,   /* of light, from 2^-24 to white */
+    GLINT_Y4M_STEPS = 4096,   /* steps of R'G'B' from black to white */
+    GLINT_Y4M_OCTAVES = 25,   /* octaves of light, from 2^-24 to white */
     GLINT_Y4M_IN_OCTAVE = 128 /* entries of each */
 };
 
@@ -29,14 +29,15 @@ struct glint_y4m_light {
     int width, height;
     int32_t black, most;    /* codes of Y' = 0, and the largest there is */
     int32_t y_span, c_span; /* codes of Y' = 1, and from Cb = -1/2 to 1/2 */
-    int32_t kr_q16, kg_q16, kb_q16;          /* R', G', B' in Y' */
-    int64_t y_factor, c_factor;              /* of the spans, y4m_divide.h */
-    int64_t cb_factor, cr_factor, g_factor;  /* of 1 - kb, 1 - kr and kg */
+    int32_t kr_q16, kg_q16, kb_q16; /* R', G', B' in Y' */
+    int64_t y_factor, c_factor;     /* factors of the spans, y4m_divide.h */
+    int64_t cb_factor, cr_factor,
+        g_factor; /* factors of 1 - kb, 1 - kr and kg */
     int32_t decode_q24[GLINT_Y4M_STEPS + 1]; /* light of R'G'B' */
     int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];
 };
 
-/* For frames as HEADER says. */
+/* Prepares LIGHT for the frames of HEADER. */
 void glint_y4m_light_init(struct glint_y4m_light *light,
                           const struct glint_y4m_header *header);
 

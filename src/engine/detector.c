@@ -6,7 +6,7 @@
 
 #include "engine/frame/block.h"
 
-/* On the axis. */
+/* Returns the tangent that a pixel on the axis spans. */
 static double tangent_of_pixel(const struct glint_view *view, double focal_mm)
 {
     return view->sensor_width_mm / view->width / fabs(focal_mm);

@@ -24,7 +24,7 @@ struct glint_measure {
     double flux;     /* sum of the test's light over the reference's */
     double factor;   /* factor that the test was multiplied by */
     double exposure; /* factor that the reference was multiplied by */
-    bool same_codes; /* whether all codes are equal, as measure_at finds them */
+    bool same_codes; /* all codes are equal, as measure_at finds them */
 };
 
 /* Returns the factor that makes the 99.9th percentile of luminance 1; 1 for a

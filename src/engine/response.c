@@ -15,7 +15,7 @@ static const double none_log2 = -100;
 /* Tracing every ray takes fifty times as long as a model does. */
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
-/* Where the brightest pixels are brought to, display white: far from where
+/* The brightest pixels are brought to this, display white: far from where
  * samples saturate, with as many steps below for what is faint. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
@@ -45,7 +45,7 @@ static void find_top(const float *rgb, size_t pixels, int channel, float *top,
             least = insert(top, n, rgb[3 * i + (size_t)channel]);
 }
 
-/* So many are one in PARTS of N. */
+/* Returns the pixels that are one in PARTS of N. */
 static int count_of_part(size_t n, int parts)
 {
     return (int)fmin(fmax(floor((double)n / parts), 1), TOP_MAX);
@@ -98,7 +98,7 @@ struct proxy {
     float *rgb;
 };
 
-/* LIKE as far as brightness goes. */
+/* Opens a small frame that is LIKE as far as brightness goes. */
 static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
                                     size_t bytes, struct proxy *p)
 {
@@ -255,7 +255,7 @@ static enum glint_status measure_extents(struct proxy *p,
 
 static enum glint_status measure(struct proxy *p, struct glint_response *r)
 {
-    const double azimuth = /* from the middle into the corner */
+    const double azimuth = /* direction from the middle into the corner */
         atan2(p->view.height, p->view.width) * 180 / GLINT_PI;
     const double all = (double)p->view.width * p->view.height;
     struct glint_lamp lamp = {

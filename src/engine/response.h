@@ -35,7 +35,7 @@ enum {
 /* Light of a layer that is the flare alone, by linear R, G, B. */
 struct glint_response_light {
     double peak[3]; /* mean of the brightest thousandth of the pixels */
-    double mean[3]; /* of all */
+    double mean[3]; /* mean of all pixels */
 };
 
 struct glint_response {
@@ -46,7 +46,7 @@ struct glint_response {
      * what the brightest of their flares is of that of a point. */
     double extent[GLINT_RESPONSE_EXTENTS],
         softened_log2[GLINT_RESPONSE_EXTENTS];
-    double ms; /* that it took */
+    double ms; /* ms that it took */
 };
 
 /* Looks at N pixels. */
@@ -67,7 +67,7 @@ enum glint_status glint_response_measure(const struct glint_frame *like,
                                          size_t bytes,
                                          struct glint_response *response);
 
-/* What the brightest part of the flare of LAMP is of that of a point, as its
+/* Returns the brightest part of the flare of LAMP over that of a point, as its
  * ghosts overlap themselves: at most 1. */
 double glint_response_softening(const struct glint_response *response,
                                 const struct glint_lamp *lamp);

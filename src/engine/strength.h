@@ -53,7 +53,7 @@ struct glint_strength_lamps {
     const double *level;     /* [n], above 0, at most 1: how far each has risen;
                                 a part of its power. NULL: all 1 */
     int n;
-    double pixels; /* of the picture, times the light of its white */
+    double pixels; /* the picture's pixels, times the light of its white */
 };
 
 struct glint_strength {
@@ -62,11 +62,11 @@ struct glint_strength {
     bool is_physical; /* the factor is 2^EV alone */
     double exposure_ev, gain;
 
-    /* Of the last frame. */
-    double scale; /* what the powers of lamps are to be multiplied by; 0: there
-                     is nothing to draw */
-    struct glint_response_light light; /* what the flare comes to with it */
-    bool is_drawn; /* that is of the flare as it was drawn */
+    /* The last frame's. */
+    double
+        scale; /* factor for the powers of lamps; 0: there is nothing to draw */
+    struct glint_response_light light; /* the flare's, with that factor */
+    bool is_drawn; /* the light is the flare's as it was drawn */
 
     /* Private: the factor without gain, followed. */
     double factor_log2;
@@ -103,7 +103,7 @@ void glint_strength_light(const struct glint_response *response,
                           const struct glint_strength_lamps *lamps,
                           struct glint_response_light *light);
 
-/* Of the channels, the largest. */
+/* Returns the largest of three channels. */
 double glint_strength_largest(const double rgb[3]);
 
 #endif

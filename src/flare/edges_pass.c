@@ -4,7 +4,7 @@
  */
 #include "flare/by_edges.h"
 
-/* From so many bundles on, too much light is lost to the rounding of each to
+/* Frames of so many bundles lose too much light to the rounding of each to
  * _q16: half a step of each may be missing, 1/40 of a code near black. */
 enum { FINE_BUNDLES = 1024 };
 

@@ -6,9 +6,9 @@
 #define ONE_Q15   (1 << 15)
 #define SETTLE_US 60000
 
-/* Where drift over spread lies between noise and change. Noise of a bell curve
- * is above the first in one picture of 100, and
- * more than so many times the spread in one of 1000. */
+/* Drift over spread between which noise becomes change. Noise of a bell curve
+ * is above the first in one picture of 100, and more than so many times the
+ * spread in one of 1000. */
 #define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
 #define SUDDEN     6
@@ -62,7 +62,7 @@ void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Which of the two it is, by the errors so far. */
+/* Judges by the errors so far which of the two it is: 0 noise, 1 change. */
 static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
 {
     const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);
@@ -78,7 +78,7 @@ static int32_t learn_q15(struct glint_follow *f, int64_t error, int64_t floor,
 {
     if (as == GLINT_FOLLOW_CHANGED ||
         size_of(error) > SUDDEN * (f->spread + floor)) {
-        f->drift = error / 2; /* what was before is of no use */
+        f->drift = error / 2; /* errors from before are of no use */
         f->spread = size_of(error / 2);
         return ONE_Q15;
     }

@@ -27,16 +27,16 @@
 
 struct glint_follow {
     int64_t value;
-    int64_t drift, spread; /* of errors */
-    int64_t offset;        /* what is shown is value + offset */
+    int64_t drift, spread; /* means of errors, and of their sizes */
+    int64_t offset;        /* value + offset is shown */
     int64_t stride;        /* the offset goes so far in the time of a blend */
 };
 
-/* What the time between two pictures makes of the filter. */
+/* The filter's parameters for the time between two pictures. */
 struct glint_pace {
     int32_t elapsed_us;
     int32_t smooth_q15; /* part of the way for noise */
-    int32_t settle_q15; /* and for what repeats */
+    int32_t settle_q15; /* part of the way for change that repeats */
 };
 
 struct glint_pace glint_pace_of(int32_t elapsed_us, int32_t smooth_us);

@@ -25,7 +25,8 @@ enum {
 #define MAX_ELAPSED_US 10000000
 #define REACH_US       1000000 /* a lost lamp may be as far again */
 #define MAX_REACHES    3
-#define WHITE_US       1442695 /* in which white darkens to 1/e: a stop a second */
+#define WHITE_US \
+    1442695 /* time in which white darkens to 1/e: a stop a second */
 
 struct glint_lamp_tracker {
     struct glint_lamp_tracker_config cfg;
@@ -35,8 +36,8 @@ struct glint_lamp_tracker {
     struct glint_record_step step;
     struct glint_record *record; /* [max_tracks] */
     struct glint_match match;
-    int32_t *owner; /* of match.seeker: index of record */
-    int32_t *order; /* of spots or records */
+    int32_t *owner; /* index of the record of each of match.seeker */
+    int32_t *order; /* indices of spots or records */
 };
 
 /* ------------------------------------------------------------------- memory */
@@ -187,8 +188,8 @@ static void send_seekers(struct glint_lamp_tracker *t)
     }
 }
 
-/* How near a spot must be to be the same lamp where there are N spots: among
- * many there is always one in reach, by chance. */
+/* Returns how near a spot must be to be the same lamp where there are N spots:
+ * among many there is always one in reach, by chance. */
 static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
 {
     const int64_t reach2_q16 = (int64_t)t->reach_q8 * t->reach_q8;
@@ -196,8 +197,8 @@ static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
     return n > FEW_SPOTS ? reach2_q16 * FEW_SPOTS / n : reach2_q16;
 }
 
-/* What spot NOW keeps of the lamp that was seen as BEFORE, where it should be
- * by S. */
+/* Returns the part that spot NOW keeps of the lamp that was seen as BEFORE and
+ * should be where S says. */
 static int64_t kept_of(const struct glint_seeker *s,
                        const struct glint_spot *before,
                        const struct glint_spot *now, int64_t limit2_q16)
@@ -218,8 +219,8 @@ struct side {
     int n;
 };
 
-/* Whether most of A is not in B. Where nothing is seen on this side, many
- * lamps on the other speak for a cut: they came or went all at once. */
+/* Returns whether most of A is not in B. Many lamps on one side speak for a cut
+ * where the other has none: they came or went all at once. */
 static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                     const struct side *b)
 {
@@ -227,7 +228,8 @@ static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                        : b->n >= MANY_LIGHTS;
 }
 
-/* Whether most of what was seen is gone and most of what is seen is new. */
+/* Returns whether most of the lamps seen before are gone and most of those seen
+ * now are new. */
 static int is_cut(const struct glint_lamp_tracker *t,
                   const struct glint_spot *spots, int n)
 {
@@ -271,8 +273,8 @@ static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
 
 /* --------------------------------------------------------------------- new */
 
-/* Whether P should make room before Q: what was lost, then what is faint, then
- * what is young. */
+/* Returns whether P should make room before Q: lost lamps first, then faint
+ * ones, then young ones. */
 static int yields_first(const struct glint_record *p,
                         const struct glint_record *q)
 {

@@ -13,7 +13,7 @@ enum {
 struct glint_pair {
     int64_t cost_q16; /* squared pixels */
     int32_t seeker, spot;
-    int32_t rank; /* of the spot, in by_x */
+    int32_t rank; /* the spot's rank in by_x */
 };
 
 void glint_match_carve(struct glint_match *m, struct glint_arena *arena,
@@ -50,7 +50,8 @@ static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
     v[14] = s->sin_q15;
 }
 
-/* By all that a spot is: two that are equal in it may change places. */
+/* Orders spots by all their members: two that are equal in these may change
+ * places. */
 static int spot_before(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_spot *spots = ctx;

@@ -37,7 +37,7 @@ struct glint_match {
                        are */
     uint8_t *taken; /* result, by spot */
     struct glint_pair *pair;
-    int32_t *order; /* of pairs */
+    int32_t *order; /* indices of pairs */
     int n_pairs;
 };
 

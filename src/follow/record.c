@@ -41,8 +41,8 @@ int64_t glint_record_power_q16(const struct glint_spot *spot)
     return clamp(spot->power_q16, 0, MAX_FLUX_Q16);
 }
 
-/* Of twice the angle whose cosine and sine are C and S: the same for both
- * directions of an axis. */
+/* Doubles the angle whose cosine and sine are C and S: the double is the same
+ * for both directions of an axis. */
 static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
                          int64_t *sin2_q15)
 {
@@ -53,7 +53,7 @@ static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
     *sin2_q15 = (2 * c * d) >> 15;
 }
 
-/* What a spot says of each channel, held to what a picture can show. */
+/* Lists a spot's values by channel, held to what a picture can show. */
 static void list_targets(const struct glint_spot *s,
                          int64_t target[GLINT_CHANNELS])
 {
@@ -179,9 +179,9 @@ static enum glint_follow_as judge_place(const struct glint_record *r,
     return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
 }
 
-/* Whether no motion explains TARGET: twice the lamp's extent and an eighth of
- * the match distance from where it should be. It may be motion that begins, or
- * another lamp. */
+/* Returns whether no motion explains TARGET: it is twice the lamp's extent and
+ * an eighth of the match distance from its expected place. It may be motion
+ * that begins, or another lamp. */
 static int is_leap(const struct glint_record *r,
                    const struct glint_record_step *step, int axis,
                    int64_t target_q16)
@@ -224,7 +224,8 @@ static void coast(struct glint_record *r, const struct glint_record_step *step)
     }
 }
 
-/* Whether the lamp moves out of the picture, through a border next to it. */
+/* Returns whether the lamp moves out of the picture, through a border next to
+ * it. */
 static int is_leaving(const struct glint_record *r,
                       const struct glint_record_step *step)
 {
@@ -351,7 +352,8 @@ void glint_record_see(struct glint_record *r,
     r->lost_us = 0;
 }
 
-/* So far out that it never comes back, or into any picture's flare. */
+/* Returns whether the lamp is so far out that it never comes back, or into any
+ * picture's flare. */
 static int is_far(const struct glint_record *r)
 {
     const int64_t limit_q16 = (int64_t)4 * GLINT_MAX_SIDE << 16;

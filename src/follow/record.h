@@ -14,7 +14,7 @@
 #include "follow/follow.h"
 #include "glint/lamp_tracker.h"
 
-/* What is followed: places _q16, the rest as in a spot. */
+/* The channels that are followed: places _q16, the rest as in a spot. */
 enum glint_record_channel {
     GLINT_CHANNEL_X,
     GLINT_CHANNEL_Y,
@@ -23,7 +23,7 @@ enum glint_record_channel {
     GLINT_CHANNEL_SIZE,
     GLINT_CHANNEL_MAJOR,
     GLINT_CHANNEL_MINOR,
-    GLINT_CHANNEL_COS2, /* of twice the orientation */
+    GLINT_CHANNEL_COS2, /* cosine of twice the orientation */
     GLINT_CHANNEL_SIN2,
     GLINT_CHANNEL_RED,
     GLINT_CHANNEL_GREEN,
@@ -38,17 +38,17 @@ struct glint_record {
     struct glint_spot last;  /* it was seen as */
     int n_same;              /* pictures in a row before that showed the same */
     int64_t velocity_q16[2]; /* pixels a second */
-    int64_t ahead_q16[2];    /* where it should be now */
+    int64_t ahead_q16[2];    /* the lamp's expected place now */
     int32_t level_q30;
     int32_t lost_us; /* since it was seen; 0: seen now */
     int is_shown;    /* the caller's: its level rises while it is seen */
 };
 
-/* What is the same for all records of a picture. */
+/* The values that all records of a picture share. */
 struct glint_record_step {
     const struct glint_lamp_tracker_config *cfg;
     struct glint_pace pace;
-    int is_fresh; /* what begins is at full level at once */
+    int is_fresh; /* a lamp that begins is at full level at once */
 };
 
 /* The flux of a spot, held to 0 .. 2^42: the largest picture, all white. */

@@ -31,14 +31,14 @@ struct test {
     struct glint_lamp *lamp;
     int n_lamps, threads;
     const char *kernels;
-    double scale, psnr_db;                 /* NAN: not measured */
-    const char *series;                    /* of growth, or NULL */
-    struct glint_lens some;                /* lens with some ghosts only, */
+    double scale, psnr_db;  /* NAN: not measured */
+    const char *series;     /* growth: name of the series, or NULL */
+    struct glint_lens some; /* lens with some ghosts only, */
     struct glint_model_ghost *some_ghosts; /* unless this is NULL */
     struct glint_frame_report report;
-    double cpu_ms; /* of growth: of all threads, the least of a frame; or 0 */
+    double cpu_ms; /* growth: time of all threads, the least of a frame; or 0 */
     double ms[STAGES][MAX_ROUNDS];
-    double wrong[MAX_ROUNDS]; /* with a budget: predicted over measured - 1 */
+    double wrong[MAX_ROUNDS]; /* budgets: predicted over measured - 1 */
 };
 
 struct bench {

@@ -29,13 +29,13 @@ static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
 /* --------------------------------------------------------------------- tests
  */
 
-/* What of a test differs from the plainest one of its lens. */
+/* The differences of a test from the plainest one of its lens. */
 struct variation {
     int width, height; /* 0: as asked */
     int lights;
     int two_threads, by_cells; /* whatever was asked for */
     const char *kernels;       /* NULL: as asked */
-    unsigned sets;             /* which those may use */
+    unsigned sets;             /* instruction sets that the kernels may use */
     double angle;
 };
 
@@ -132,7 +132,7 @@ int bench_add_one(struct bench *b, const struct settings *settings, int width,
     return add_test(b, settings, &v);
 }
 
-/* Of a frame and its memory. */
+/* Adds the cases of a frame's size and memory. */
 static int add_sizes(struct bench *b, const struct settings *settings)
 {
     static const int size[][2] = {
@@ -193,7 +193,8 @@ void bench_move(struct test *t, int round, int n)
         t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / n;
 }
 
-/* What of drawing the last frame did not touch the picture. */
+/* Measures the part of drawing the last frame that did not touch the picture.
+ */
 static double accumulate_ms(const struct test *t)
 {
     const double t0 = tool_seconds();

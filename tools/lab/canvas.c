@@ -49,8 +49,8 @@ void canvas_finish(struct canvas *c)
     c->fresh = c->mem = NULL;
 }
 
-/* In place, with a layer that stays in the cache; written so that compilers
- * make vectors of it. */
+/* Adds a layer that stays in the cache to PX in place; written so that
+ * compilers make vectors of it. */
 static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
                       size_t bytes)
 {

@@ -47,7 +47,7 @@ enum glint_status canvas_codes(struct glint_frame *frame,
                                double exposure, uint8_t *codes,
                                struct glint_frame_report *report);
 
-/* Of N values, which stay as they are; N is 1 to CANVAS_MAX. */
+/* The median of N values, which stay as they are; N is 1 to CANVAS_MAX. */
 enum { CANVAS_MAX = 1000 };
 double canvas_median(const double *values, int n);
 

@@ -288,7 +288,7 @@ static bool note_ghost(struct glint_frame *frame, int ghost)
     return frame->seen[number] = true;
 }
 
-/* How many ghosts the last frame has, of N bundles. */
+/* Counts the ghosts of the last frame, of N bundles. */
 static int count_ghosts(struct glint_frame *frame, int n)
 {
     int n_ghosts = 0;

@@ -29,14 +29,14 @@ void glint_cuts_row(const struct glint_stop *stop,
                     const struct glint_vertex *row, int n, uint64_t *sides,
                     uint8_t *barrels);
 
-/* How many cuts there are in a set; 3 for all above. */
+/* Returns the cuts in a set; 3 for all above. */
 int glint_cuts_count(struct glint_outside o);
 
 /* The visible part of the edge between two neighbouring nodes, from the one
  * that comes first in the grid. */
 struct glint_edge_part {
     int32_t end_q8[2][2];
-    int cut[2]; /* what ends it there, or GLINT_CUT_NOTHING: the node itself */
+    int cut[2]; /* cut at each end, or GLINT_CUT_NOTHING: the node itself */
     int visible;
 };
 
@@ -47,8 +47,8 @@ void glint_cuts_part(const struct glint_stop *stop,
                      const struct glint_vertex *b, struct glint_outside at_b,
                      struct glint_edge_part *part);
 
-/* Where the cuts A and B, as parts name them, cross within the cell with the
- * corners CORNER, in order. Returns 0 where they do not. */
+/* Finds the place where the cuts A and B, as parts name them, cross within the
+ * cell with the corners CORNER, in order. Returns 0 where they do not. */
 int glint_cuts_cross(const struct glint_stop *stop,
                      const struct glint_vertex *const corner[4], int a, int b,
                      int32_t at_q8[2]);

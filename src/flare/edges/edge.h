@@ -33,7 +33,7 @@
 #include "flare/edges/primitive.h"
 
 struct glint_edge {     /* 32 bytes */
-    int64_t slope_q40;  /* of x, pixels, per 1/256 pixel of y */
+    int64_t slope_q40;  /* pixels of x per 1/256 pixel of y */
     int32_t x_q8, y_q8; /* upper end */
     int32_t end_y_q8;   /* lower end, > y */
     /* Light on its left and right side, packed; negative where a ghost is
@@ -65,10 +65,10 @@ static inline int64_t glint_light_q20(int32_t packed)
 struct glint_edge_sums {
     struct glint_box tile;
     int tile_log2, stride;
-    int linear; /* for pictures of linear light */
+    int linear; /* the picture is of linear light */
     int fine;   /* light _q20 for others too */
-    int lit;    /* for who draws rows of tiles: light runs in */
-    int narrow; /* what add found: narrow sums do, and have been used */
+    int lit;    /* set by who draws rows of tiles: light runs in */
+    int narrow; /* set by add: narrow sums do, and have been used */
     uint64_t *wide;
     uint32_t *narrow_q24;
     int64_t *carry;    /* [3][side rows]: what runs in, and out */
@@ -96,7 +96,7 @@ void glint_edge_make_snapped(struct glint_edge *edge);
 int glint_edge_count(const struct glint_edge *edge, struct glint_bins *bins);
 void glint_edge_put(const struct glint_edge *edge, struct glint_bins *bins,
                     int32_t index);
-/* How many that is, nothing counted. */
+/* Returns how many that is, and counts nothing. */
 int glint_edge_span(const struct glint_edge *edge,
                     const struct glint_bins *bins);
 
@@ -107,7 +107,7 @@ void glint_edge_add(struct glint_edge_sums *sums, const struct glint_edge *edge,
                     const struct glint_bundle *bundle, const int32_t *ref,
                     int n_refs);
 
-/* Whether row ROW has neither changes nor light that runs in. */
+/* Returns whether row ROW has neither changes nor light that runs in. */
 int glint_edge_dark(const struct glint_edge_sums *sums, int row);
 
 /* The light of row ROW of the tile in channel CHANNEL; its changes are cleared,

@@ -60,7 +60,7 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
 {
     const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
     const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
-    /* with the last pixel of the tile before, if there is one */
+    /* The last pixel of the tile before counts, if there is one. */
     const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
     const int from = first > begin ? first : begin;
     const int to = last < r->x1 - 1 ? last : r->x1 - 1;
@@ -73,7 +73,7 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         const fast high = i < last
                               ? (fast)(r->rise_q32 * (side_q16 - a_q16) >> 32)
                               : height_q16;
-        /* how far the piece's ends lie from the pixel's right side */
+        /* distance of the piece's ends from the pixel's right side */
         const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
                                     (i < last ? 0 : side_q16 - b_q16));
         const fast area =
@@ -88,8 +88,9 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         change(r, mode, last + 1, units(r, mode, height_q16) - before);
 }
 
-/* How much an edge rises per pixel, _q16 per _q16, with 32 bits more. One that
- * is so steep that it never leaves a pixel by more than 2^-16 may say less. */
+/* Returns the rise of an edge per pixel, _q16 per _q16, with 32 bits more. One
+ * that is so steep that it never leaves a pixel by more than 2^-16 may get
+ * less. */
 static int64_t rise_of(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
@@ -133,7 +134,7 @@ static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
     }
 }
 
-/* From A to B, in any order, over HEIGHT. */
+/* Adds the piece from A to B, in any order, over HEIGHT. */
 static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
                              int64_t b_q40, fast height_q16)
 {
@@ -141,7 +142,7 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
     const int64_t high_q40 = a_q40 < b_q40 ? b_q40 : a_q40;
     const int first = (int)(low_q40 >> 40), last = (int)(high_q40 >> 40);
 
-    if (last < r->x0) { /* what lies left of the picture counts from its side */
+    if (last < r->x0) { /* A piece left of the picture counts from its side. */
         if (r->x0 == 0)
             change(r, mode, 0, units(r, mode, height_q16));
     } else if (first >= r->x1) {
@@ -199,7 +200,7 @@ static inline void add_rows_within(struct run r, enum mode mode, int n,
 struct part {
     struct run run; /* its first row */
     int32_t y_q8, end_q8;
-    int64_t x_q40; /* where it begins */
+    int64_t x_q40; /* x of its upper end */
 };
 
 static inline struct part part_of(const struct glint_edge_sums *s,
@@ -225,7 +226,8 @@ static inline struct part part_of(const struct glint_edge_sums *s,
     return p;
 }
 
-/* Of the row that P begins in, the part of it; not a whole one. */
+/* Returns the height of P in the row that it begins in, if that is not a whole
+ * one. */
 static inline int32_t height_of(const struct part *p)
 {
     return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
@@ -314,7 +316,7 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
 {
     int n;
 
-    go_down(&p.run, mode, p.run.x0); /* from here on columns of the tile */
+    go_down(&p.run, mode, p.run.x0); /* Columns are the tile's from here on. */
     p.x_q40 -= p.run.x0 * ONE_Q40;
     p.run.x1 -= p.run.x0;
     if (p.y_q8 & 255) {
@@ -348,7 +350,8 @@ static int64_t coloured_q20(int32_t light, int32_t colour_q14)
                                  : q_shift(light_q20 * colour_q14, 14);
 }
 
-/* What EDGE changes light by in one channel, without so many bits of _q20. */
+/* Returns the change of light at EDGE in one channel, without so many bits of
+ * _q20. */
 static int64_t step_of(const struct glint_edge *e, int32_t colour_q14, int less)
 {
     return q_shift(coloured_q20(e->right, colour_q14), less) -
@@ -376,7 +379,8 @@ static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
                 continue;
             far[c] += step < 0 ? -step : step;
             if (mode == NARROW && far[c] >= MOST_NARROW)
-                return far[c]; /* for nothing: they have to be wide */
+                return far[c]; /* The narrow sums were for nothing: they have to
+                                  be wide. */
             if (e->whole)
                 add_whole_rows(s, mode, e, part_of(s, mode, e, step, c));
             else

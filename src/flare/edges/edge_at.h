@@ -9,8 +9,8 @@
 #include "base/q.h"
 #include "flare/edges/edge.h"
 
-/* Where EDGE is at height Y, within its own: below 2^29 q8 pixels, so 2^61. The
- * slope is never too large, so it never lies beyond its ends. */
+/* Returns x of EDGE at height Y, within its own: below 2^29 q8 pixels, so 2^61.
+ * The slope is never too large, so it never lies beyond its ends. */
 static inline int64_t edge_x_at_q40(const struct glint_edge *e, int32_t y_q8)
 {
     return e->x_q8 * (INT64_C(1) << 32) + e->slope_q40 * (y_q8 - e->y_q8);

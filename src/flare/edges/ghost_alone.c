@@ -28,8 +28,8 @@ static void add_outline(struct glint_ghost_edges *g,
         glint_ghost_add_edge(g, last, first, light, 0);
 }
 
-/* What the cuts leave of a convex primitive, its light spread over at least a
- * strip. */
+/* Adds what the cuts leave of a convex primitive, its light spread over at
+ * least a strip. */
 static void add_alone(struct glint_ghost_edges *g,
                       const struct glint_vertex *const *corner, int n,
                       int share_log2)

@@ -234,8 +234,8 @@ static void set_corners(const struct glint_ghost_edges *g, int i, int j,
     glint_corners_set(corners, at, 4);
 }
 
-/* Whether cells of row J lie next to the row in the middle of an annular box,
- * which has no rays: nothing is lost there. */
+/* Returns whether cells of row J lie next to the row in the middle of an
+ * annular box, which has no rays: nothing is lost there. */
 static int is_in_hole(const struct glint_ghost_edges *g, int j)
 {
     const int middle = g->bundle->n_cells / 2;

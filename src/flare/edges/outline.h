@@ -25,7 +25,8 @@
 #include "flare/edges/primitive.h"
 #include "glint/light.h"
 
-/* How far V lies inside of side SIDE of a stop, stop radii, and of a barrel. */
+/* Return the distance of V inside side SIDE of a stop, stop radii, and inside a
+ * barrel. */
 static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
                                      const struct glint_vertex *v)
 {
