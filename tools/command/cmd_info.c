@@ -37,6 +37,13 @@ struct info {
     int n_ghosts;
 };
 
+/* Returns the f-number of the stop's largest opening. */
+static double widest_of(const struct info *info)
+{
+    return info->lens.f_number * info->optics.stop_radius_mm /
+           info->lens.stop_semi_mm;
+}
+
 static void print_json(const struct info *info)
 {
     printf("{\"name\": ");
@@ -45,12 +52,13 @@ static void print_json(const struct info *info)
     tool_json_string(stdout, info->lens.source);
     printf(", \"focal_length_mm\": %.6f, \"back_focal_length_mm\": %.6f, "
            "\"entrance_pupil_radius_mm\": %.6f, \"entrance_pupil_z_mm\": %.6f, "
-           "\"stop_radius_mm\": %.6f, \"f_number\": %g, \"length_mm\": %.6f, "
+           "\"stop_radius_mm\": %.6f, \"f_number\": %g, "
+           "\"widest_f_number\": %.4g, \"length_mm\": %.6f, "
            "\"film_mm\": [%g, %g], \"surfaces\": %d, "
            "\"surfaces_before_stop\": %d, \"ghosts\": %d, \"ghost_pairs\": [",
            info->optics.focal_mm, info->optics.back_focal_mm,
            info->optics.entrance_radius_mm, info->optics.entrance_z_mm,
-           info->optics.stop_radius_mm, info->lens.f_number,
+           info->optics.stop_radius_mm, info->lens.f_number, widest_of(info),
            info->optics.length_mm, info->lens.film_width_mm,
            info->lens.film_height_mm, info->lens.n_surfaces,
            info->lens.stop_after, info->n_ghosts);
@@ -69,8 +77,8 @@ static void print_text(const struct info *info)
     printf("back focal length   %10.3f mm\n", o->back_focal_mm);
     printf("entrance pupil      %10.3f mm radius, %.3f mm behind the front\n",
            o->entrance_radius_mm, o->entrance_z_mm);
-    printf("stop                %10.4f mm radius at f/%g\n", o->stop_radius_mm,
-           l->f_number);
+    printf("stop                %10.4f mm radius at f/%g, opens to f/%.3g\n",
+           o->stop_radius_mm, l->f_number, widest_of(info));
     printf("front to sensor     %10.3f mm\n", o->length_mm);
     printf("film                %6gx%g mm\n", l->film_width_mm,
            l->film_height_mm);

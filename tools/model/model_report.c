@@ -19,7 +19,7 @@ static void print_header(const struct model_file *model)
     printf("back focal length   %10.3f mm\n", model_real_of(h->back_focal_mm));
     printf("entrance pupil      %10.3f mm radius\n",
            model_real_of(h->entrance_radius_mm));
-    printf("stop                %10.4f mm radius at f/%g\n",
+    printf("stop                %10.4f mm radius at f/%g, its widest\n",
            model_real_of(h->stop_radius_mm), model_real_of(h->f_number));
     printf("front               %10.3f mm radius\n",
            model_real_of(h->front_mm));

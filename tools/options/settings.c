@@ -26,7 +26,8 @@ void settings_defaults(struct settings *settings)
                                   .quantum = 1,
                                   .dials = glint_dials_at(1 << 14),
                                   .quality = 0.5,
-                                  .antialias = true};
+                                  .antialias = true,
+                                  .most_minsn = GLINT_FRAME_MOST_MINSN};
 }
 
 static void warn_lanes(const struct tool *tool)
@@ -211,6 +212,9 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
     frame->dials = settings->dials;
     frame->uniform = settings->uniform;
     frame->only_ghost = settings->only_ghost;
+    /* who asks for a fineness gets it */
+    frame->most_minsn =
+        settings->has_grid && !settings->has_work ? 0 : settings->most_minsn;
     frame->apart_px = settings->apart_px;
     if (settings->area_samples_asked)
         frame->dials.area_points = settings->area_samples_asked;
@@ -255,15 +259,16 @@ void settings_json(const struct glint_frame_report *r)
            "\"primitives\": %d, \"tiles\": %d, \"arena_bytes\": %zu, "
            "\"peak_bytes\": %zu, \"refs\": %d, \"merged_cells\": %d, "
            "\"dropped_bundles\": %d, \"dropped_cells\": %d, "
-           "\"held_cells\": %d, \"held_samples\": %d, "
+           "\"held_cells\": %d, \"held_samples\": %d, \"coarsened\": %s, "
            "\"plan_ms\": %.3f, \"trace_ms\": %.3f, \"bin_ms\": %.3f, "
            "\"draw_ms\": %.3f",
            r->lights, r->beyond_lights, r->apart_lights, r->drawn_lights,
            r->ghosts, r->stats.bundles, r->stats.primitives, r->tiles,
            r->arena_bytes, r->peak_bytes, r->stats.refs, r->stats.merged_cells,
            r->stats.dropped_bundles, r->stats.dropped_cells,
-           r->stats.held_cells, r->held_samples, r->plan_ms, r->trace_ms,
-           r->bin_ms, r->draw_ms);
+           r->stats.held_cells, r->held_samples,
+           r->coarsened ? "true" : "false", r->plan_ms, r->trace_ms, r->bin_ms,
+           r->draw_ms);
     if (r->quality >= 0)
         printf(", \"quality\": %.4f, \"predicted_ms\": %.3f, "
                "\"calibrated_minsn\": %.4f",
@@ -292,6 +297,11 @@ bool settings_memory(const char *text, size_t *bytes)
 void settings_warn_lights(const struct tool *tool,
                           const struct glint_frame_report *r)
 {
+    if (r->coarsened)
+        fprintf(stderr,
+                "glint %s: the frame would have taken more work than --work "
+                "allows; it is drawn coarser\n",
+                tool->name);
     if (!tool->quiet && r->beyond_lights > 0)
         fprintf(stderr,
                 "glint %s: %d of %d lights lie beyond the angle that the model "

@@ -51,9 +51,11 @@ struct settings {
 
     int merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma;
-    double quality;   /* quality asked for, 0.5 by default */
-    double budget_ms; /* 0: none */
-    int raster;       /* 0: by edges, 1: by cells */
+    double quality;    /* quality asked for, 0.5 by default */
+    double budget_ms;  /* 0: none */
+    double most_minsn; /* bound of a plan, for one light; 0: any */
+    bool has_work;
+    int raster; /* 0: by edges, 1: by cells */
     enum glint_weights weights;
     bool has_grid; /* fineness was said, by itself or as a quality */
     bool by_edges; /* was asked for, not only what is done anyway */
@@ -87,6 +89,7 @@ enum settings_option {
     OPT_QUALITY,
     OPT_ERROR,
     OPT_BUDGET,
+    OPT_WORK,
     OPT_RAYS,
     OPT_LANES,
     OPT_CULL,
@@ -125,6 +128,7 @@ enum settings_option {
         {"quality", required_argument, NULL, OPT_QUALITY},           \
         {"error", required_argument, NULL, OPT_ERROR},               \
         {"budget", required_argument, NULL, OPT_BUDGET},             \
+        {"work", required_argument, NULL, OPT_WORK},                 \
         {"rays", required_argument, NULL, OPT_RAYS},                 \
         {"lanes", required_argument, NULL, OPT_LANES},               \
         {"cull", required_argument, NULL, OPT_CULL},                 \
@@ -204,6 +208,11 @@ enum settings_option {
     "  --budget MS         instead, of each frame: the most that takes so "    \
     "many\n"                                                                   \
     "                      milliseconds, as its plan tells\n"                  \
+    "  --work N            what a frame of one light may take by its plan,\n"  \
+    "                      thousand million instructions, and each further\n"  \
+    "                      light a 16th of it (default 30, or any with\n"      \
+    "                      --grid and --quality; 0: any); beyond, grids,\n"    \
+    "                      wavelengths and lights are fewer, with a word\n"    \
     "  --dispersion PX     with --wavelengths auto: outlines of "              \
     "neighbouring\n"                                                           \
     "                      wavelengths may be so far apart, 0.1 to 100 "       \

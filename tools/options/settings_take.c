@@ -267,6 +267,13 @@ static enum taken take_dial(struct settings *s, int option, const char *value)
         return settings_take_quality(s, value);
     case OPT_ERROR:
         return take_error(value, s);
+    case OPT_WORK:
+        if (!tool_number(value, &s->most_minsn) || s->most_minsn < 0 ||
+            s->most_minsn > 1e9)
+            return WRONG;
+        s->most_minsn *= 1000;
+        s->has_work = true;
+        return TAKEN;
     case OPT_BUDGET:
         return tool_number(value, &s->budget_ms) && s->budget_ms > 0 &&
                s->budget_ms <= 1e6;

@@ -34,6 +34,7 @@ static const struct {
     {NULL, "band", "two wavelengths LO,HI in nm, within 300 to 1100"},
     {NULL, "basis", "auto or sparse"},
     {NULL, "budget", "milliseconds, above 0 and up to 1000000"},
+    {NULL, "work", "thousand million instructions, 0 to 1e9"},
     {NULL, "budgets", "numbers of milliseconds above 0, with commas"},
     {NULL, "buffers", "a whole number, 2 to 32"},
     {NULL, "coarse", "0, 64, 128 or 256 pixels"},

@@ -26,6 +26,8 @@ void glint_frame_init(struct glint_frame *frame,
                                   .dials = glint_dials_at(1 << 14),
                                   .asked = glint_dials_at(1 << 14),
                                   .apart_px = GLINT_FRAME_APART_PX,
+                                  .most_bytes = GLINT_FRAME_MOST_BYTES,
+                                  .most_minsn = GLINT_FRAME_MOST_MINSN,
                                   .only_ghost = -1};
     glint_setup_stop(setup, &frame->cfg.stop);
 }
@@ -42,6 +44,8 @@ void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
     frame->for_codes = like->for_codes;
     frame->uniform = like->uniform;
     frame->only_ghost = like->only_ghost;
+    frame->most_bytes = like->most_bytes;
+    frame->most_minsn = like->most_minsn;
     frame->cfg.sets = like->cfg.sets;
     frame->cfg.tile_log2 = like->cfg.tile_log2;
     frame->cfg.coarse_log2 = like->cfg.coarse_log2;
@@ -330,20 +334,27 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
            double scale, const struct glint_image *image,
            struct glint_flare_stats *stats, double times[5])
 {
+    const struct glint_dials asked = f->dials;
     enum glint_status status;
 
     f->can_half = is_in_codes(f, image) && !f->cfg.raster;
     f->rays = rays_of(f, image);
     f->scale = scale;
+    f->is_held = f->is_full = false;
     glint_budget_begin(&f->budget);
     times[0] = now(f);
     status = set_lights(f, lamps, n_lamps, scale);
     while (status == GLINT_OK) {
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
-            return status;
+            break;
         if (f->budget.ms > 0 && choose(f)) {
             f->rays = rays_of(f, image);
+            continue;
+        }
+        if (f->budget.ms <= 0 && glint_frame_hold_work(f)) {
+            f->rays = rays_of(f, image);
+            status = set_lights(f, lamps, n_lamps, scale);
             continue;
         }
         times[1] = times[2] = now(f);
@@ -352,6 +363,8 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
             break;
         status = glint_frame_regrow(f);
     }
+    if (f->is_held)
+        f->dials = asked;
     if (status != GLINT_OK)
         return status;
     times[3] = now(f);
@@ -474,6 +487,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     }
     report->beyond_lights = frame->n_beyond;
     report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
+    report->coarsened = frame->is_held;
     report->drawn_lights = larger(frame->n_lights - frame->n_more, 1);
     report->tiles = glint_flare_tiles(frame->flare);
     report->held_samples = glint_flare_held(frame->flare);

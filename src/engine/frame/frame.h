@@ -27,6 +27,14 @@
 #define GLINT_FRAME_STEP_CODES \
     2.0 /* steps between wavelengths that do not show */
 
+/* Bounds of what a frame of a model may take, unless others are set: bytes, and
+ * millions of instructions as glint_cost_minsn() has them, some ten seconds of
+ * one processor. Each light further may take 1 / GLINT_FRAME_PER_LIGHT of them
+ * more. */
+#define GLINT_FRAME_MOST_BYTES ((size_t)384 << 20)
+#define GLINT_FRAME_MOST_MINSN 30000.0
+#define GLINT_FRAME_PER_LIGHT  16
+
 struct glint_frame;
 
 /* Powers of two, as their logarithms. */
@@ -83,6 +91,11 @@ struct glint_frame {
     struct glint_frame_star star;
     struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* memory is what it is */
+    size_t most_bytes; /* bound of the block for one light, where it is not
+                          reserved; 0: any */
+    bool is_full;      /* the block has as many as it may */
+    double most_minsn; /* bound of a plan for one light; 0: any */
+    bool is_held;      /* the last frame was coarser for it */
 
     struct glint_wave wave[GLINT_SET_WAVES];
     struct glint_wave_sets sets;
@@ -116,6 +129,7 @@ struct glint_frame_report {
     size_t arena_bytes; /* bytes that the run-time half was given */
     size_t peak_bytes;  /* bytes that this frame took of these */
     size_t need_bytes;  /* bytes that would have drawn all of it, exactly */
+    bool coarsened;     /* its plan passed the bound of work */
     double plan_ms, trace_ms, bin_ms, draw_ms;
     /* Prediction and quality with a budget; else 0 and -1. */
     double predicted_ms, quality;

@@ -50,4 +50,12 @@ double glint_frame_codes_light(const struct glint_frame *frame,
 bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
                           int number);
 
+/* Returns what the lights of F may take together, over what one may. */
+double glint_frame_share(const struct glint_frame *f);
+
+/* Turns the dials down where the plan would take more than the frame may:
+ * grids first, then wavelengths, then lights. Returns whether it did, so that
+ * the frame has to be planned anew; at most a dozen times. */
+bool glint_frame_hold_work(struct glint_frame *f);
+
 #endif

@@ -25,6 +25,11 @@ bool glint_frame_has_sets(const struct glint_frame *f)
     return f->lens && f->setup->n_sets && f->dials.dispersion_q8 > 0;
 }
 
+double glint_frame_share(const struct glint_frame *f)
+{
+    return 1 + (f->n_lights > 1 ? f->n_lights - 1. : 0) / GLINT_FRAME_PER_LIGHT;
+}
+
 enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
 {
     struct glint_light *light;
@@ -37,19 +42,6 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
     f->light = light;
     f->light_capacity = n;
     return GLINT_OK;
-}
-
-enum glint_status glint_frame_regrow(struct glint_frame *f)
-{
-    const size_t bytes = glint_flare_bytes(&f->cfg);
-
-    free(f->mem);
-    f->bytes = 0;
-    f->block = glint_block_take(bytes, &f->mem);
-    if (!f->block)
-        return GLINT_E_MEMORY;
-    f->bytes = bytes;
-    return glint_flare_init(&f->flare, &f->cfg, f->block, bytes);
 }
 
 static bool is_by_edges(const struct glint_frame *f)
@@ -81,7 +73,7 @@ bool glint_frame_is_served(struct glint_frame *f,
 
     const int bundles = bundles_within(f, s->need_bundles);
 
-    if (f->reserved)
+    if (f->reserved || f->is_full)
         return true;
     if (bundles <= c->max_bundles && s->need_vertices <= c->max_vertices &&
         s->need_primitives <= c->max_primitives &&
@@ -124,6 +116,27 @@ static bool fit(struct glint_frame *f, size_t bytes)
             most += step;
     }
     return most > 0 && bytes_for(f, most) <= bytes;
+}
+
+enum glint_status glint_frame_regrow(struct glint_frame *f)
+{
+    const size_t most = (size_t)((double)f->most_bytes * glint_frame_share(f));
+    size_t bytes = glint_flare_bytes(&f->cfg);
+
+    if (f->lens && !f->reserved && most && bytes > most) {
+        if (!fit(f, most))
+            return GLINT_E_MEMORY;
+        f->is_full = true;
+        bytes = glint_flare_bytes(&f->cfg);
+    }
+
+    free(f->mem);
+    f->bytes = 0;
+    f->block = glint_block_take(bytes, &f->mem);
+    if (!f->block)
+        return GLINT_E_MEMORY;
+    f->bytes = bytes;
+    return glint_flare_init(&f->flare, &f->cfg, f->block, bytes);
 }
 
 enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
@@ -173,4 +186,24 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
     needed.max_refs = s->need_refs;
     needed.max_tile_refs = s->need_tile_refs;
     return glint_flare_bytes(&needed);
+}
+
+bool glint_frame_hold_work(struct glint_frame *f)
+{
+    enum { LEAST_FINENESS = 8, STEP = 4 };
+    const struct glint_cost_plan plan = glint_frame_plan(f);
+    const struct glint_cost cost = glint_cost_of(&plan, &f->dials);
+
+    if (f->most_minsn <= 0 ||
+        glint_cost_minsn(&cost) <= f->most_minsn * glint_frame_share(f))
+        return false;
+    if (f->dials.fineness > LEAST_FINENESS)
+        f->dials.fineness = larger(f->dials.fineness / STEP, LEAST_FINENESS);
+    else if (glint_frame_has_sets(f))
+        f->dials.dispersion_q8 = 0;
+    else if (f->n_lights > 1)
+        f->dials.max_lights = larger(f->n_lights / STEP, 1);
+    else
+        return false;
+    return f->is_held = true;
 }

@@ -199,6 +199,41 @@ static void test_too_little(void **state)
 }
 
 /* More lamps than were reserved for: merged as ever, no more memory. */
+/* Work and memory are bounded by the plan: coarser, or less, and said so; the
+ * frame after that is as it was. */
+static void test_bounds(void **state)
+{
+    static uint8_t want[BYTES], got[BYTES];
+    struct glint_frame frame;
+    struct glint_frame_report full, held;
+
+    (void)state;
+    make(&frame);
+    draw(&frame, N_LAMPS, want, &full);
+    assert_false(full.coarsened);
+    frame.most_minsn = 1;
+    draw(&frame, N_LAMPS, got, &held);
+    assert_true(held.coarsened);
+    assert_int_equal(held.drawn_lights, 1);
+    assert_true(held.stats.primitives < full.stats.primitives);
+    frame.most_minsn = 0;
+    draw(&frame, N_LAMPS, got, &held);
+    assert_false(held.coarsened);
+    assert_memory_equal(got, want, BYTES);
+    glint_frame_finish(&frame);
+    make(&frame);
+    frame.most_bytes = full.need_bytes * 3 / 4; /* share 1.25: 15/16 */
+    draw(&frame, N_LAMPS, got, &held);
+    assert_true(held.arena_bytes <= frame.most_bytes * 5 / 4);
+    assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);
+    assert_int_equal(held.need_bytes, full.need_bytes);
+    frame.most_bytes = 0;
+    draw(&frame, N_LAMPS, got, &held);
+    assert_int_equal(held.stats.dropped_bundles, 0);
+    assert_memory_equal(got, want, BYTES);
+    glint_frame_finish(&frame);
+}
+
 static void test_more_lamps(void **state)
 {
     static uint8_t got[BYTES];
@@ -352,6 +387,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_as_grown),
         cmocka_unit_test(test_too_little),
+        cmocka_unit_test(test_bounds),
         cmocka_unit_test(test_more_lamps),
         cmocka_unit_test(test_retune),
         cmocka_unit_test(test_no_memory),
