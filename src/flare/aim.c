@@ -19,15 +19,12 @@ struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
     return real_less(across, down) ? down : across;
 }
 
-/* SMALL / LARGE, which is 1 at most; 0 of 0 and 0. */
+/* SMALL / LARGE, which is 1 at most, _q30; 0 of 0 and 0. */
 static int32_t ratio(struct glint_real small, struct glint_real large)
 {
-    struct glint_real r;
-
     if (small.mantissa == 0)
         return 0;
-    r = real_over(small, large);
-    return r.exponent < -60 ? 0 : r.mantissa >> (-30 - r.exponent);
+    return (int32_t)real_integer(real_over(small, large), 30, 1 << 30);
 }
 
 /* Cosine and sine of the direction from (0, 0) to (X, Y), both 0 or more; (0,
