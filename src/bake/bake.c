@@ -130,13 +130,14 @@ static enum glint_status quantise_ghost(struct bake_run *run, int ghost)
 {
     const struct glint_fitted_ghost *f = &run->fitted[ghost];
     enum glint_status status = GLINT_OK;
+    struct glint_quantised_system *system =
+        calloc((size_t)f->n_systems + 1, sizeof *system);
 
-    run->quantised[ghost] =
-        calloc((size_t)f->n_systems + 1, sizeof **run->quantised);
-    if (!run->quantised[ghost])
+    if (!system)
         return GLINT_E_MEMORY;
+    run->quantised[ghost] = system;
     for (int i = 0; i < f->n_systems && status == GLINT_OK; i++)
-        status = glint_quantise(&f->system[i], &run->quantised[ghost][i]);
+        status = glint_quantise(&f->system[i], &system[i]);
     return status;
 }
 
