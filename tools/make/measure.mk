@@ -46,8 +46,11 @@ corpus-evaluate: corpus $(OUT)/corpus-found
 # All pictures beside what glint makes of them; how bright it is, lens by lens.
 corpus-sheet: corpus all
 	@tests/corpus/overlays build/corpus/sheet
+EVERY ?= 1
 corpus-report: corpus all
-	@tests/corpus/report build/corpus/report.csv | tools/report/write-figures brightness
+	@tests/corpus/report build/corpus/report.csv --every $(EVERY) >build/report.md
+	@{ echo "Revision $$(git rev-parse --short HEAD)."; cat build/report.md; } | \
+	    tools/report/write-figures brightness
 # The bridge by night through every lens.
 lens-sheet: all oiio
 	@tools/make/deps "contact sheets" python3-pil
