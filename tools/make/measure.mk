@@ -47,8 +47,10 @@ corpus-evaluate: corpus $(OUT)/corpus-found
 corpus-sheet: corpus all
 	@tests/corpus/overlays build/corpus/sheet
 EVERY ?= 1
+MINUTES ?= 0
 corpus-report: corpus all
-	@tests/corpus/report build/corpus/report.csv --every $(EVERY) >build/report.md
+	@tests/corpus/report build/corpus/report.csv \
+	    --every $(EVERY) --minutes $(MINUTES) >build/report.md
 	@{ echo "Revision $$(git rev-parse --short HEAD)."; cat build/report.md; } | \
 	    tools/report/write-figures brightness
 # The bridge by night through every lens.
