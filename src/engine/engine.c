@@ -329,11 +329,15 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     for (int i = 0; i < n && is_found; i++)
         e->seen_px[i] = e->detector.track[i].size_q8 / 256.0;
     f->star.seen_px = is_found ? e->seen_px : NULL;
-    if (f->budget.ms <= 0) /* there is time for a picture by itself */
+    if (f->budget.ms <= 0) { /* there is time for a picture by itself */
+        const bool is_still = !is_found || !e->elapsed_us;
+
         f->dials.area_points =
-            is_found && e->elapsed_us
-                ? f->asked.area_points
-                : 1 + GLINT_AREA_STILL * (f->asked.area_points - 1);
+            is_still ? 1 + GLINT_AREA_STILL * (f->asked.area_points - 1)
+                     : f->asked.area_points;
+        f->point_room =
+            is_still ? GLINT_AREA_STILL_ROOM * f->asked.max_lights : 0;
+    }
     status = glint_frame_draw(f, e->lamp, e->strength.scale > 0 ? n : 0,
                               e->strength.scale, image, &drawn);
     drawn.lights = n;

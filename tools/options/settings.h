@@ -192,7 +192,9 @@ enum settings_option {
     "--quality:\n"                                                             \
     "                      7, of a picture by itself 61); all lamps' "         \
     "together\n"                                                               \
-    "                      are no more than --max-lights\n"                    \
+    "                      are no more than --max-lights (a picture by "       \
+    "itself:\n"                                                                \
+    "                      than 512, unless that is given)\n"                  \
     "  --apart PX          lights whose images are nearer are one (default "   \
     "0.125)\n"                                                                 \
     "  --quality Q         0 to 1, or least, draft, default, high, finest: "   \

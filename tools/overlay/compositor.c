@@ -385,10 +385,14 @@ void compositor_find(struct compositor *compositor,
 
     compositor->n_lamps = set_lamps(compositor, image, elapsed_us);
     /* there is time for a picture by itself */
-    if (elapsed_us == 0 && !settings->area_samples_asked &&
-        settings->budget_ms == 0)
-        compositor->frame.dials.area_points =
-            1 + GLINT_AREA_STILL * (settings->dials.area_points - 1);
+    if (elapsed_us == 0 && settings->budget_ms == 0) {
+        if (!settings->area_samples_asked)
+            compositor->frame.dials.area_points =
+                1 + GLINT_AREA_STILL * (settings->dials.area_points - 1);
+        if (!settings->max_lights)
+            compositor->frame.point_room =
+                GLINT_AREA_STILL_ROOM * compositor->frame.dials.max_lights;
+    }
     compositor->find_ms = 1e3 * (tool_seconds() - start);
 }
 

@@ -171,14 +171,22 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     return within;
 }
 
+/* Lights that points of N lamps may come to. */
+static int room_for(const struct glint_frame *f, int n)
+{
+    const int most = f->dials.max_lights;
+
+    if (f->reserved)
+        return smaller(most, f->light_capacity);
+    return n <= most ? larger(most, f->point_room) : most;
+}
+
 /* Makes F's lights of LAMPS, those merged that are too many. */
 static enum glint_status set_lights(struct glint_frame *f,
                                     const struct glint_lamp *lamps, int n,
                                     double scale)
 {
-    const int room = f->reserved
-                         ? smaller(f->dials.max_lights, f->light_capacity)
-                         : f->dials.max_lights;
+    const int room = room_for(f, n);
     int within = 0, total;
     const struct glint_area_rule rule = glint_area_rule_of(
         lamps, n, pixels_per_tangent(f), f->dials.area_points, room, &total);
@@ -193,8 +201,9 @@ static enum glint_status set_lights(struct glint_frame *f,
         f->n_beyond += within == before;
     }
     f->n_more = within - (n - f->n_beyond);
-    f->n_lights = glint_lights_merge(f->light, within, near_q30(f),
-                                     f->dials.max_lights, &f->n_apart);
+    f->n_lights =
+        glint_lights_merge(f->light, within, near_q30(f),
+                           larger(room, f->dials.max_lights), &f->n_apart);
     if (f->star.is_alone)
         f->n_lights = 0;
     return GLINT_OK;

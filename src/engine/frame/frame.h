@@ -82,12 +82,14 @@ struct glint_frame {
                                       capacities are the frame's own */
     struct glint_dials dials;      /* may be turned between frames */
     struct glint_dials asked;      /* the same before a budget turned them */
-    double apart_px;               /* lights whose images are nearer are one */
-    bool for_codes; /* a linear picture is planned as if for codes */
-    bool can_half;  /* the last picture was in codes, by edges */
-    bool uniform;   /* the same grid for all ghosts */
-    int only_ghost; /* -1: all */
-    int16_t *mask;  /* distances of the stop's outline, unless NULL */
+    int point_room;  /* lights that points of wide lamps may come to, where it
+                        is more than the dial and lamps are no more than that */
+    double apart_px; /* lights whose images are nearer are one */
+    bool for_codes;  /* a linear picture is planned as if for codes */
+    bool can_half;   /* the last picture was in codes, by edges */
+    bool uniform;    /* the same grid for all ghosts */
+    int only_ghost;  /* -1: all */
+    int16_t *mask;   /* distances of the stop's outline, unless NULL */
     struct glint_frame_star star;
     struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* memory is what it is */

@@ -360,6 +360,44 @@ static void test_too_many_feeds(void **state)
     free(many);
 }
 
+/* Points of wide lamps have a room of their own, which lamps that are more
+ * than the dial says, or memory that is what it is, do not. */
+static void test_room_for_points(void **state)
+{
+    static const struct {
+        int max_lights, point_room, least, most;
+        bool reserved;
+    } setting[] = {
+        {10, 0, 9, 10, false}, {10, 30, 28, 30, false}, {2, 30, 2, 2, false},
+        {10, 5, 9, 10, false}, {10, 30, 9, 10, true},
+    };
+    static float rgb[BYTES];
+    struct glint_lamp wide[3];
+    struct glint_frame_report report;
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        wide[i] = lamps[i];
+        wide[i].axis[0] = wide[i].axis[1] = 0.05;
+    }
+    for (size_t k = 0; k < sizeof setting / sizeof *setting; k++) {
+        struct glint_frame frame;
+
+        make(&frame);
+        frame.dials.max_lights = setting[k].max_lights;
+        frame.dials.area_points = 61;
+        frame.point_room = setting[k].point_room;
+        if (setting[k].reserved)
+            assert_int_equal(glint_frame_reserve(&frame, NULL, 16 << 20, 100,
+                                                 setting[k].max_lights),
+                             GLINT_OK);
+        assert_int_equal(
+            glint_frame_draw_alone(&frame, wide, 3, 1, rgb, &report), GLINT_OK);
+        assert_in_range(frame.n_lights, setting[k].least, setting[k].most);
+        glint_frame_finish(&frame);
+    }
+}
+
 static int enter(void **state)
 {
     (void)state;
@@ -392,6 +430,7 @@ int main(void)
         cmocka_unit_test(test_retune),
         cmocka_unit_test(test_no_memory),
         cmocka_unit_test(test_too_many_feeds),
+        cmocka_unit_test(test_room_for_points),
     };
 
     return cmocka_run_group_tests_name("frame", tests, enter, leave);
