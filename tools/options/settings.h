@@ -190,7 +190,7 @@ enum settings_option {
     "1 to\n"                                                                   \
     "                      4096, of the brightest lamp (default by "           \
     "--quality:\n"                                                             \
-    "                      7, of a picture by itself 61); all lamps' "         \
+    "                      7, of a picture by itself 121); all lamps' "        \
     "together\n"                                                               \
     "                      are no more than --max-lights (a picture by "       \
     "itself:\n"                                                                \

@@ -15,7 +15,7 @@
 
 enum {
     GLINT_AREA_SAMPLES = 7,    /* points of the brightest lamp, unless asked */
-    GLINT_AREA_STILL = 10,     /* times as many of those in a single picture */
+    GLINT_AREA_STILL = 20,     /* times as many of those in a single picture */
     GLINT_AREA_STILL_ROOM = 4, /* times max_lights that those may come to */
     GLINT_AREA_SPACING_PX = 4, /* a point for so many pixels squared */
     GLINT_AREA_MOST_SAMPLES = 4096
