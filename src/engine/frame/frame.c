@@ -281,40 +281,6 @@ static enum glint_status plan(struct glint_frame *f,
     return GLINT_OK;
 }
 
-bool glint_frame_is_ghost(const struct glint_setup *s, int ghost, int number)
-{
-    return s->ghost[ghost].i == s->ghost[number].i &&
-           s->ghost[ghost].j == s->ghost[number].j;
-}
-
-/* Returns whether it is the first of its ghost in the frame. */
-static bool note_ghost(struct glint_frame *frame, int ghost)
-{
-    const struct glint_setup *s = frame->setup;
-    int number = ghost;
-
-    if (ghost >= s->n_ghosts - s->n_parts)
-        for (number = 0; !glint_frame_is_ghost(s, ghost, number);)
-            number++;
-    if (frame->seen[number])
-        return false;
-    return frame->seen[number] = true;
-}
-
-/* Counts the ghosts of the last frame, of N bundles. */
-static int count_ghosts(struct glint_frame *frame, int n)
-{
-    int n_ghosts = 0;
-
-    memset(frame->seen, 0,
-           (size_t)frame->setup->n_ghosts * sizeof *frame->seen);
-    for (int i = 0; i < n; i++)
-        n_ghosts +=
-            note_ghost(frame, frame->lens ? glint_flare_ghost(frame->flare, i)
-                                          : frame->trace->ghost(frame, i));
-    return n_ghosts;
-}
-
 /* The plan is handed out before it is drawn, so that its cost can be predicted.
  */
 struct glint_cost_plan glint_frame_plan(const struct glint_frame *f)
@@ -503,6 +469,6 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->arena_bytes = frame->bytes;
     report->peak_bytes = glint_frame_bytes_used(frame, &report->stats);
     report->need_bytes = glint_frame_bytes_needed(frame, &report->stats);
-    report->ghosts = count_ghosts(frame, n_drawn(frame, report));
+    report->ghosts = glint_frame_count_ghosts(frame, n_drawn(frame, report));
     return GLINT_OK;
 }

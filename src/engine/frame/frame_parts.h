@@ -18,6 +18,9 @@ enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 /* A new block for the capacities there are, in which the flare begins. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
 
+/* Returns how many ghosts the last frame has, of N bundles. */
+int glint_frame_count_ghosts(struct glint_frame *frame, int n);
+
 /* Returns the bundles that N_LIGHTS need; with sets of wavelengths, those to
  * choose from. */
 int glint_frame_bundles(const struct glint_frame *frame, int n_lights);
