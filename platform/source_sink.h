@@ -26,12 +26,13 @@ struct glint_source_frame {
     struct glint_image image; /* plane[0] NULL: there is no frame yet */
     uint32_t sequence; /* number that the device gave the frame; it wraps */
     int64_t time_us;   /* CLOCK_MONOTONIC, when it was captured */
-    bool is_drawable;  /* where it lies: at full speed, and nobody else writes
-                          there */
-    int n_late;        /* frames given back unseen: it is the newest */
-    int n_dropped;     /* gap in sequence before it, without those */
-    int n_corrupt;     /* frames thrown away before it as damaged */
-    void *buffer;      /* the source's own */
+    /* The frame may be drawn on in place: its memory is fast, and nobody else
+     * writes to it. */
+    bool is_drawable;
+    int n_late;    /* frames given back unseen: it is the newest */
+    int n_dropped; /* gap in sequence before it, without those */
+    int n_corrupt; /* frames thrown away before it as damaged */
+    void *buffer;  /* the source's own */
 };
 
 /* The format of the frames that a source delivers. */

@@ -130,7 +130,8 @@ bool begins(const piece &segment, const char *text, size_t n)
     return segment.data_bytes >= n && !std::memcmp(segment.data, text, n);
 }
 
-bool is_index(const piece &segment) /* of more pictures, by places */
+/* The segment lists more pictures by offset, which rewriting makes wrong. */
+bool is_index(const piece &segment)
 {
     return is_marker(segment, 0xe2) && begins(segment, "MPF", 4);
 }
@@ -444,7 +445,7 @@ struct tiff {
 
 } // namespace
 
-/* Whether all strips or tiles of the first picture lie in the file. */
+/* Says what the first picture lacks of strips and tiles; "": nothing. */
 std::string missing_of_tiff(const bytes &file)
 {
     if (file.size() < 8)
@@ -453,7 +454,8 @@ std::string missing_of_tiff(const bytes &file)
     const uint64_t first = t.big ? t.number(8, 8) : t.number(4, 4);
     const uint64_t n = t.number(first, t.big ? 8 : 2);
     const unsigned step = t.big ? 20 : 12;
-    uint64_t bits = 1, packing = 1, total = 0; /* of the pixels; as tag 259 */
+    /* Bits unpacked; tag 259, compression, 1 = none; bytes packed. */
+    uint64_t bits = 1, packing = 1, total = 0;
     uint64_t offsets = 0, counts = 0, entries = 0, missing = 0, present = 0;
 
     for (uint64_t i = 0; i < n && i < 65536; i++) {
@@ -484,7 +486,7 @@ std::string missing_of_tiff(const bytes &file)
     }
     if (!present)
         return "has no pixels";
-    /* nothing but fax packs 4096 to 1 */
+    /* Only fax (2 .. 4) packs more than 4096 to 1: fewer bytes are cut off. */
     if (missing == 0 && (packing >= 2 && packing <= 4 ? true
                          : packing == 1 ? total * 8 >= bits || present < entries
                                         : total * 8 * 4096 >= bits))

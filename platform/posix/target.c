@@ -190,7 +190,9 @@ static void clean(int folder, const char *name)
 
 void glint_target_clean(const char *target)
 {
-    static unsigned long cleaned; /* what 32 bits can hold of its numbers */
+    /* Hash of inode and device of the folder cleaned last, which is not
+     * cleaned again. */
+    static unsigned long cleaned;
     unsigned long here;
     char folder[PATH_BYTES];
     const struct dirent *entry;

@@ -36,7 +36,9 @@ static const char help_end[] = COMMON_HELP;
 struct asked {
     const char *name[2];
     bool fit, exposed;
-    bool has_ev, is_auto; /* what --exposure said; neither: by the pictures */
+    /* --exposure gave stops, or "auto"; if neither, the kinds of the pictures
+     * decide. */
+    bool has_ev, is_auto;
     double ev;
 };
 

@@ -61,7 +61,7 @@ struct explain_command {
     const char *input, *output;
     int width, height; /* 0: those of the input */
     int picture, order, top;
-    struct glint_image image; /* what is drawn over, then drawn */
+    struct glint_image image; /* the input, over which the flare is drawn */
 };
 
 static const struct option options[] = {

@@ -37,13 +37,13 @@ enum { MAX_ONLY = 64 };
 
 struct lenses {
     struct tool *tool;
-    const char *folder; /* for models, or NULL */
+    const char *folder; /* folder that models are put into; NULL: none */
     const char *only[MAX_ONLY];
     int n_only, n, code;
 };
 
 struct entry {
-    struct settings settings; /* by default */
+    struct settings settings; /* settings of a run without options */
     struct glint_optics optics;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_ghosts;

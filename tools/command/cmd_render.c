@@ -50,7 +50,9 @@ struct render {
     bool linear; /* the output takes floats */
     int width, height;
     bool exact;
-    size_t reserve_bytes; /* unless 0: all the memory that the flare takes */
+    /* Bytes reserved beforehand, which the flare must do with; 0: as many as it
+     * needs. */
+    size_t reserve_bytes;
     const char *lights_file;
     int n_lamps;
     struct glint_lamp *lamp; /* room for SETTINGS_MAX_LAMPS by hand */

@@ -90,9 +90,10 @@ struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
     double angle_deg;
-    struct glint_path path;      /* exact */
-    struct glint_transfer *part; /* of the pupil that the model has of the
-                                    ghost at this angle; owned */
+    struct glint_path path; /* surfaces that an exact ray passes, in order */
+    /* The parts of the pupil for which the model has polynomials of the ghost
+     * at this angle; owned. */
+    struct glint_transfer *part;
     int n_parts;
     double stop_radius_mm;
 };

@@ -24,9 +24,10 @@ struct label {
 
 struct marking {
     struct glint_explain *explain;
-    const struct glint_image *image; /* the new one */
-    int width, height;               /* of the frame, which is its upper part */
-    int scale;                       /* of lines and letters */
+    const struct glint_image *image; /* the picture being marked */
+    /* Size of the frame in pixels; the legend lies below it. */
+    int width, height;
+    int scale; /* thickness of strokes of labels and legend, pixels */
     int n_labels;
     struct label label[MOST_LABELS];
 };

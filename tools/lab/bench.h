@@ -31,10 +31,11 @@ struct test {
     struct glint_lamp *lamp;
     int n_lamps, threads;
     const char *kernels;
-    double scale, psnr_db;  /* NAN: not measured */
-    const char *series;     /* growth: name of the series, or NULL */
-    struct glint_lens some; /* lens with some ghosts only, */
-    struct glint_model_ghost *some_ghosts; /* unless this is NULL */
+    double scale, psnr_db; /* NAN: not measured */
+    const char *series;    /* growth: name of the series, or NULL */
+    /* A lens with some ghosts only, and these; NULL: the whole lens is used. */
+    struct glint_lens some;
+    struct glint_model_ghost *some_ghosts;
     struct glint_frame_report report;
     double cpu_ms; /* growth: time of all threads, the least of a frame; or 0 */
     double ms[STAGES][MAX_ROUNDS];
@@ -52,7 +53,7 @@ struct bench {
     const char *format_word;
     int width, height;
     bool all, sizes, growth, psnr;
-    bool moving; /* lights: from round to round */
+    bool moving; /* the lights move from round to round */
     int n_budgets;
     double budget_ms[MAX_BUDGETS];
 };

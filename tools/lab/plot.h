@@ -8,20 +8,20 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* of a panel */
+enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* size of a panel, px */
 
 struct plot_axis {
     const char *words;
     bool is_log;
     double lo, hi;     /* lo > hi: nothing yet, see plot_stretch */
-    double least_span; /* unless by logarithms */
+    double least_span; /* hi - lo at least; a logarithmic axis ignores it */
 };
 
 struct plot {
     FILE *file;
     const char *title;
     struct plot_axis x, y;
-    int left, top; /* where the panel is */
+    int left, top; /* corner of the panel, pixels */
     int n_keys;
 };
 

@@ -22,12 +22,12 @@
 #include "options/tool.h"
 
 #define FAR       1e3
-#define SENSOR_PX 0.25 /* that 99 of 100 rays should be within */
+#define SENSOR_PX 0.25 /* error in pixels that 99 of 100 rays may have */
 #define STOP_RMS  8e-4
 
 enum {
     ACROSS = 40,
-    DOWN = 20, /* of the half with y >= 0; the other mirrors it */
+    DOWN = 20, /* steps over the half with y >= 0, which the other mirrors */
     BINS = 400,
     BINS_A_DECADE = 50,
     MOST_ANGLES = 2000,
@@ -39,7 +39,9 @@ struct tally {
     double rays, lost;
     double light, light_lost; /* energy times mm^2 of pupil */
     double sensor[BINS], energy[BINS];
-    double sum2[GLINT_OUT_ENERGY + 1]; /* of squares; energy's times light */
+    /* Sum of squared errors of each output; those of energy are weighted by the
+     * light of the ray. */
+    double sum2[GLINT_OUT_ENERGY + 1];
 };
 
 struct task {
@@ -103,7 +105,8 @@ static void tally_join(struct tally *t, const struct tally *from, double weight)
         t->sum2[kind] += weight * from->sum2[kind];
 }
 
-/* The upper end of the bin that a hundredth of the N errors in BIN is above. */
+/* Returns the 99th percentile of the N errors counted in BIN, rounded up to the
+ * end of a bin. */
 static double p99_of(const double bin[BINS], double n)
 {
     double above = 0;
@@ -303,7 +306,7 @@ static void compare_all(const struct task *t)
 {
     static struct tally all, equally;
     static struct light light[MOST_ANGLES];
-    double lost = 0; /* at the worst angle */
+    double lost = 0; /* share of light lost at the worst angle, 0 .. 1 */
     int ghosts = 0, missing = 0, angles[2] = {0, 0};
 
     for (int g = 0; g < t->n_ghosts; g++) {

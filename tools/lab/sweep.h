@@ -16,7 +16,7 @@ enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 
 #define MAX_FLUX_ERROR 0.02 /* brightness must not depend on a dial */
 
-/* What a point is of. */
+/* What a point measures. */
 enum sweep_kind {
     SWEEP_STANDARD,
     SWEEP_ALONE,
@@ -27,8 +27,8 @@ enum sweep_kind {
 
 struct sweep_setting {
     enum sweep_kind kind;
-    int dial;       /* of those alone, else -1 */
-    double quality; /* of the quality table */
+    int dial;       /* number of the dial that alone is turned; -1: several */
+    double quality; /* --quality, 0 .. 1; -1: not set by it */
     double value[MAX_DIALS];
 };
 
@@ -40,7 +40,7 @@ struct sweep_point {
     size_t arena_bytes, model_bytes;
     double psnr_db, ssim, p99, flux_error;
     struct glint_frame_report report;
-    struct glint_cost cost; /* as the plan tells it */
+    struct glint_cost cost; /* cost that the plan predicts */
     bool front; /* no other of its case is both cheaper and better */
     int picture;
 };
@@ -73,10 +73,12 @@ struct sweep {
     int n_points, max_points;
     struct sweep_picture *picture;
     int n_pictures, max_pictures;
-    int rounds, grid; /* of the exact picture */
+    /* Rounds of timing, 1 .. SWEEP_ROUNDS; cells a side of the grid of rays
+     * that draws the exact picture, 4 .. 1024, even. */
+    int rounds, grid;
     bool small, count_only;
     const char *counts; /* file of instructions, or NULL */
-    int counter;        /* of instructions, or -1 */
+    int counter;        /* descriptor that counts instructions, or -1 */
     bool by_instructions;
     struct glint_workers *one;
 };

@@ -8,7 +8,8 @@
 #include "lab/sweep.h"
 #include "lab/sweep_exact.h"
 
-#define MAX_POINT_MS 4000.0 /* in all; slow ones get fewer rounds */
+/* Milliseconds spent on a point, after which it gets no further rounds. */
+#define MAX_POINT_MS 4000.0
 
 enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
 

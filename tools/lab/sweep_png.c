@@ -8,7 +8,7 @@
 
 #include "lab/sweep.h"
 
-enum { BLOCK = 65535 }; /* of stored deflate */
+enum { BLOCK = 65535 }; /* most bytes of a stored block of deflate */
 
 struct bytes {
     uint8_t *at;

@@ -12,9 +12,9 @@
 
 enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
 
-#define LAMP_MAX_POWER 1e30 /* of a lamp: still finite in every output */
+#define LAMP_MAX_POWER 1e30 /* a lamp this bright is finite in all outputs */
 
-/* POWER and each of POWER * RGB, which are not negative, are no more. */
+/* Returns whether POWER and each of POWER * RGB are 0 .. LAMP_MAX_POWER. */
 bool lamp_power_ok(double power, const double rgb[3]);
 
 /* One line of a list. X and Y are pixels from the top left corner, also outside
@@ -23,8 +23,8 @@ struct lamp_row {
     int frame; /* -1: every frame */
     double x, y, power, rgb[3];
     double size;  /* RMS radius, pixels; 0: a point */
-    double shape; /* its minor axis over the major one, */
-    double turn;  /* which lies so many degrees from +x, up being 90 */
+    double shape; /* minor axis of the lamp over its major one, 0 .. 1 */
+    double turn;  /* degrees of the major axis from +x; 90 is up */
     double level; /* share of the power that a lamp coming or going has */
     uint32_t id;  /* 0: not said */
     int next;     /* the row that lamp_keys_link() found to follow, or -1 */

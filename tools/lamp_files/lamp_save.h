@@ -18,7 +18,7 @@
 struct lamp_save {
     bool is_open;
     struct glint_output out;
-    enum glint_status status; /* of what has been written so far */
+    enum glint_status status; /* first failure of writing, else GLINT_OK */
     struct glint_error error;
 };
 

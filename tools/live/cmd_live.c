@@ -110,7 +110,7 @@ struct line {
     struct tool *tool;
     int argc;
     char **argv;
-    struct config config, again; /* as read first, and by the last reload */
+    struct config config, again; /* read at the start; by the last reload */
     struct live_options *into;
 };
 

@@ -16,11 +16,12 @@
 #include "live/live_output.h"
 #include "overlay/compositor.h"
 
-enum { LIVE_NAME_BYTES = 1024 }; /* of a snapshot */
+enum { LIVE_NAME_BYTES = 1024 }; /* bytes of the name of a snapshot */
 
 enum live_adaptive {
-    LIVE_ADAPTIVE_CAMERA, /* of a camera, whose frames do not wait, unless there
-                             is a budget; a file's results depend on no clock */
+    /* Adapts for a camera without a budget, as its frames do not wait. Results
+     * of a file must not depend on a clock. */
+    LIVE_ADAPTIVE_CAMERA,
     LIVE_ADAPTIVE,
     LIVE_FIXED
 };
@@ -31,7 +32,7 @@ struct live_options {
     const char *output, *snapshot;
     enum glint_panel_fit fit;
     int count, skip; /* frames to show, 0: no end; and to let pass before */
-    enum live_adaptive adaptive; /* whether the quality holds the rate */
+    enum live_adaptive adaptive; /* the quality gives way to hold the rate */
     bool reconnect, list_devices, list_formats;
     enum live_report report;
 };

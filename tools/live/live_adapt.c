@@ -5,15 +5,15 @@
 
 #include "engine/frame/quality.h"
 
-#define TIGHT      0.9  /* of a period: a step down */
-#define SPARE      0.55 /* of a period: a step up, later */
-#define SETTLE_S   0.3  /* after a step, before the next one down */
+#define TIGHT      0.9  /* busy share of a period above which quality drops */
+#define SPARE      0.55 /* busy share below which it may rise, after a while */
+#define SETTLE_S   0.3  /* seconds from a step to the next one down */
 #define HOLD_S     2.0
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 
-/* Down the table from its middle, what was asked for if that is coarser; then
- * lights go. */
+/* Steps go down the table of qualities from its middle, and never above what
+ * was asked for; then lights are left out. */
 static const struct {
     double quality;
     int max_lights;
@@ -34,10 +34,12 @@ static bool go(struct live_adapt *a, int by)
     a->below_s = 0;
     if (step < 0 || step > LIVE_MAX_STEP)
         return false;
-    /* down again soon after a step up: that was too early */
+    /* A step down soon after one up shows that it was too early: the next one
+     * up waits longer. */
     if (by > 0 && a->rose && a->since_s < 2 * HOLD_S)
         a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
-    if (by < 0 && a->rose) /* and this one was not */
+    /* The last step up lasted, so that the wait is short again. */
+    if (by < 0 && a->rose)
         a->hold_s = HOLD_S;
     a->rose = by < 0;
     a->step = step;

@@ -17,11 +17,13 @@
 #define LIVE_MAX_STEP 7
 
 struct live_adapt {
-    int step;               /* 0: as asked for .. LIVE_MAX_STEP */
-    double busy_ms;         /* smoothed time of a frame */
-    double below_s, hold_s; /* time with time to spare; how long it must be */
-    double since_s;         /* since the last step */
-    bool rose;              /* which was one up */
+    int step;       /* 0: as asked for .. LIVE_MAX_STEP */
+    double busy_ms; /* smoothed time of a frame; -1: none since the last step */
+    /* Seconds for which there has been time to spare; seconds of that which a
+     * step up needs. */
+    double below_s, hold_s;
+    double since_s; /* seconds since the last step */
+    bool rose;      /* the last step was one up */
 };
 
 void live_adapt_init(struct live_adapt *adapt);

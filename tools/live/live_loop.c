@@ -33,7 +33,7 @@ struct live {
     int n_shown, n_snapshots;
     struct glint_error why; /* the camera could not be opened, last time */
     int64_t time_us;        /* time of the last frame */
-    int64_t retry_us; /* when a lost output is tried again; 0: never lost */
+    int64_t retry_us; /* earliest time to reopen the output; 0: none so far */
     bool had_signal;
 };
 

@@ -95,8 +95,9 @@ static enum glint_status clear_way(const char *path, struct glint_error *error)
     if (!S_ISREG(st.st_mode))
         return glint_error_report(error, GLINT_E_OUTPUT, path,
                                   "is no file; remove it");
+    /* A failure needs no report: replacing the file will fail, too. */
     if (!is_ours(&st))
-        unlink(path); /* if it fails, so will replacing it */
+        unlink(path);
     return GLINT_OK;
 }
 

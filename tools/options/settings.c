@@ -212,7 +212,7 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
     frame->dials = settings->dials;
     frame->uniform = settings->uniform;
     frame->only_ghost = settings->only_ghost;
-    /* who asks for a fineness gets it */
+    /* A limit of work would make the grid coarser than was asked for. */
     frame->most_minsn =
         settings->has_grid && !settings->has_work ? 0 : settings->most_minsn;
     frame->apart_px = settings->apart_px;
@@ -222,7 +222,8 @@ int settings_frame(const struct tool *tool, const struct settings *settings,
         frame->dials.max_lights = settings->max_lights;
     frame->asked = frame->dials;
     frame->cfg.tile_log2 = settings->tile_log2;
-    /* no larger than the small ones: one level, and the same picture */
+    /* Coarse tiles must be larger than the small ones; else one level of tiles
+     * draws the same picture. */
     frame->cfg.coarse_log2 =
         settings->coarse_log2 > settings->tile_log2 ? settings->coarse_log2 : 0;
     frame->cfg.raster = settings->raster ? &glint_raster_cells : NULL;

@@ -27,8 +27,9 @@ struct compositor {
                                to */
     double headroom_ev;
     bool flare_only, no_tracking, show_lights;
-    bool flare_alpha;     /* alpha in files of the flare alone */
-    size_t reserve_bytes; /* unless 0: all the memory that frames will take */
+    bool flare_alpha; /* alpha in files of the flare alone */
+    /* Bytes reserved beforehand, which frames must do with; 0: as they need. */
+    size_t reserve_bytes;
     int n_hand;
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
     /* How bright, and the scale of each frame. */
@@ -51,7 +52,7 @@ struct compositor {
     bool sized;
 
     /* The rest is of the last frame. */
-    bool is_followed; /* whether it is a frame of a video */
+    bool is_followed; /* it is of a video whose lamps are tracked */
     int n_frames, n_lamps;
     double find_ms, flare_ms;
     struct glint_frame_report report;

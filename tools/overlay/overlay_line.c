@@ -3,9 +3,11 @@
 
 #include <math.h>
 
-/* Two codes of sRGB near black, in display light: less is not seen. */
+/* Linear light, 1 = white, of code 2 of 255 in sRGB, whose slope near black is
+ * 12.92: a darker flare cannot be seen. */
 static const double least_seen = 2 / 255.0 / 12.92;
-/* The brightness that a flare which could not be seen is brought to. */
+/* Linear light, 1 = white, that a flare peaks at with the option suggested
+ * where it cannot be seen. */
 static const double well_seen = 0.25;
 
 /* ---------------------------------------------------------------- the light
