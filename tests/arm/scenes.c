@@ -289,7 +289,7 @@ int main(int argc, char **argv)
         return 1;
     for (int i = 0; i < n; i++) {
         lit += draw_scene(&h);
-        if (getenv("GLINT_EACH")) /* to find the one that differs */
+        if (getenv("GLINT_EACH")) /* Each hash tells which scene differs. */
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }
     printf("%d scenes, %d with light, %08lx%08lx\n", n, lit,

@@ -14,7 +14,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-unsigned glint_fuzz_sink; /* what was read, so that it is read */
+unsigned glint_fuzz_sink; /* Stored reads are not optimised away. */
 
 static void require(int condition)
 {

@@ -12,7 +12,7 @@
 #include "glint/image.h"
 #include "formats/picture.h"
 
-static long pairs_of[2 * 255 * 2 + 1]; /* by their hue step */
+static long pairs_of[2 * 255 * 2 + 1]; /* pairs at hue steps -510 .. 510 */
 
 static int hue_of(const struct glint_image *a, const struct glint_image *b,
                   int x, int y, int c)

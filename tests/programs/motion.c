@@ -51,7 +51,7 @@ struct sweep {
     float *error[2][2]; /* [frame & 1][0: dithered, 1: as drawn] */
     uint8_t *codes;
     double exposure, power;
-    double sum; /* of the reference's codes */
+    double sum; /* codes, summed over the reference */
     struct sample sample[MAX_STEPS];
     int n;
 };

@@ -42,8 +42,8 @@ static int n_rows, features, coarse;
 /* ------------------------------------------------------------------ measure */
 
 struct camera {
-    struct glint_image image, coarse; /* of 8 bits; RGB565 */
-    const struct glint_image *seen;   /* which of them */
+    struct glint_image image, coarse; /* The formats are RGB24, RGB565. */
+    const struct glint_image *seen;   /* The finder sees one of these two. */
     struct glint_lamp_finder *finder;
     struct glint_profile *profile;
     struct glint_spot spot[MAX_SPOTS];

@@ -104,7 +104,7 @@ static void compare(struct outcome *o, struct stage *s,
         return;
     m = stage_compare(s, exact, model);
     if (m.psnr_db < 45 && stage_exact(s, lamp, 1, 2 * o->grid, exact)) {
-        o->grid *= 2; /* which of the two is wrong? */
+        o->grid *= 2; /* A finer grid shows which of the two is wrong. */
         m = stage_compare(s, exact, model);
     }
     o->psnr_db = m.psnr_db;
@@ -130,7 +130,7 @@ static void run_one(struct outcome *o, const struct options *options,
     o->n_surfaces = s.lens.n_surfaces;
     o->f_number = s.lens.f_number;
     o->n_ghosts = glint_ghost_list(&s.lens, NULL, 0);
-    o->state = SKIPPED_TIME; /* unless it ends in time */
+    o->state = SKIPPED_TIME; /* The lens may not end in time. */
     if (o->tries < 0 || !stage_prepare(&s, blades)) {
         o->state = REFUSED;
         return;

@@ -30,9 +30,9 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 struct steady {
     struct tool tool;
     struct compositor compositor;
-    double total, own; /* of the frame before */
+    double total, own; /* light of the frame before: the flare's, the lamps' */
     bool log;
-    double truth[WINDOW + 1]; /* of frames, the last first; -1: unknown */
+    double truth[WINDOW + 1]; /* light of frames, the last first; -1: unknown */
     double worst, largest;    /* step of ours; of any */
     double unmade;            /* step that no lamp made */
     int worst_frame, unmade_frame, cuts, frames, most_lights;

@@ -12,7 +12,7 @@ enum { FINDER_SPOTS = 1024 };
 /* What was found last. */
 extern struct glint_spot finder_spot[FINDER_SPOTS];
 
-/* Of random numbers; finders begin in memory of them. */
+/* This seeds random bytes, one of which fills the memory of each new finder. */
 extern uint32_t finder_seed;
 
 /* What a new finder of exactly the bytes asked for finds, in dirty memory. */

@@ -17,7 +17,7 @@ struct ghost {
     int size;         /* pixels per stop radius */
     int bend;         /* quadratic term, per mille of size */
     int mirror;       /* -1: turned over */
-    int barrel_shift; /* of the barrel against the stop, per mille of radius */
+    int barrel_shift; /* per mille of the radius: barrel against stop */
     int32_t flux_exponent;
     int32_t rgb_q14[3];
 };

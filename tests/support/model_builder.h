@@ -20,7 +20,7 @@ enum {
     MODEL_ROOM = 1 << 17,
     MODEL_KNOTS = 3,
     MODEL_TERMS = 3,
-    MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* of s^0, s^1, w */
+    MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* bits: s^0, s^1, w */
 };
 
 struct model_image {

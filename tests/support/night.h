@@ -16,13 +16,13 @@ enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
 
 struct night_lamp {
     double x, y, radius;
-    double light; /* of its face, 1 = white; it falls off over 1.5 pixels */
+    double light; /* 1 = white; a rim of 1.5 pixels falls off from it */
 };
 
 struct night {
     struct glint_image image;
-    double sigma;            /* of the noise, codes */
-    double pole_x0, pole_x1; /* nothing is seen between */
+    double sigma;            /* codes: standard deviation of the noise */
+    double pole_x0, pole_x1; /* pixels: the pole between them hides all */
     struct glint_lamp_finder *finder;
     struct glint_lamp_finder_config lights;
     struct glint_lamp_tracker *tracks;
@@ -33,8 +33,8 @@ struct night {
     struct glint_lamp_track track[NIGHT_MAX];
     int n_spots, n_tracks;
     uint32_t seed;
-    int8_t noise[NIGHT_NOISE];     /* 1/16 of sigma */
-    int row_noise[GLINT_MAX_SIDE]; /* where each row begins in it */
+    int8_t noise[NIGHT_NOISE];     /* units of sigma / 16 */
+    int row_noise[GLINT_MAX_SIDE]; /* index of a row's first noise */
 };
 
 /* A sum of twelve uniform numbers is all but a bell curve. */

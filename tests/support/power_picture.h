@@ -16,13 +16,13 @@ enum power_shape { POWER_DISC, POWER_SQUARE, POWER_TUBE, POWER_SHAPES };
 struct power_lamp {
     enum power_shape shape;
     double x, y;   /* pixels */
-    double radius; /* of a disc, half a side; of a tube half of its length */
+    double radius; /* pixels; of squares half a side, of tubes half a length */
     double angle;  /* radians */
-    double sigma;  /* of the bell curve */
+    double sigma;  /* pixels: standard deviation of the bell curve */
     double glare;  /* part of the light that goes into it */
     double reach;  /* pixels: it falls by (1 + (r / reach)^2)^(-fall / 2) */
     double fall;
-    double rgb[3]; /* of luminance 1 */
+    double rgb[3]; /* The luminance is 1. */
 };
 
 /* A picture of linear light, three numbers a pixel. */

@@ -26,11 +26,11 @@ struct stage {
     struct glint_setup setup, of_model;
     struct glint_workers *workers;   /* NULL: serial */
     struct model_file file;          /* closed: rays are exact */
-    struct glint_bake_report report; /* of the bake */
+    struct glint_bake_report report; /* The bake fills this. */
     struct glint_view view;
     struct glint_frame frame;
     bool framed;
-    struct glint_frame_report drawn; /* the last picture */
+    struct glint_frame_report drawn; /* The last picture filled this. */
 };
 
 /* Reads lenses/NAME.lens, from the root of the tree. */

@@ -718,7 +718,7 @@ ssize_t __wrap_read(int fd, void *dst, size_t bytes)
         return -1;
     if (camera.is_gone || camera.read_errno)
         return refuse(camera.is_gone ? ENODEV : camera.read_errno);
-    camera.streams = true; /* by reading, until it is closed */
+    camera.streams = true; /* Reading streams until the device is closed. */
     camera.n_buffers = 1;
     if (camera.n_frames == 0)
         return refuse(EAGAIN);
@@ -847,7 +847,7 @@ void __wrap_free(void *mem);
 void __wrap_free(void *mem)
 {
     n_blocks -= mem != NULL;
-    if (mem) /* so that it shows when it is read afterwards */
+    if (mem) /* A read of freed memory then shows. */
         memset(mem, 0xdd, malloc_usable_size(mem));
     __real_free(mem);
 }

@@ -28,62 +28,62 @@ struct fake_mode {
 
 struct fake_frame {
     uint32_t sequence;
-    int code;         /* that its bytes have */
-    const void *data; /* or these, bytesused[0] of them */
+    int code;         /* value of every byte, 0 .. 255 */
+    const void *data; /* bytesused[0] bytes used instead; NULL: none */
     uint32_t flags;
     uint32_t bytesused[3]; /* 0: all, unless is_odd */
     uint32_t data_offset[3];
     int64_t time_us;
-    bool unknown_clock; /* that time_us is of */
-    bool is_odd;        /* bytesused is meant */
-    int error;          /* DQBUF fails with this instead */
+    bool unknown_clock; /* The driver does not tell which clock it used. */
+    bool is_odd;        /* A bytesused of 0 means 0 bytes. */
+    int error;          /* errno with which DQBUF fails; 0: none */
 };
 
 struct fake_buffer {
     uint32_t bytes[3];
-    uint8_t *map[3];      /* where it is mapped */
-    unsigned long own[3]; /* userptr */
+    uint8_t *map[3];      /* NULL: this block is not mapped. */
+    unsigned long own[3]; /* address of the caller's memory; 0: none */
     bool queued;
 };
 
 struct fake_camera {
-    /* what it is */
+    /* These members describe the device. */
     uint32_t caps;
     bool multiplanar, has_dv, has_no_sizes, is_stepwise;
     uint32_t n_inputs;
     struct fake_mode mode[FAKE_MODES];
-    uint32_t stride_more;   /* than a row */
-    uint32_t length_less;   /* of buffers, than sizeimage */
-    uint32_t sizeimage;     /* unless 0: as it says */
-    bool says_no_stride;    /* bytesperline 0 */
-    bool rounds;            /* sizes to multiples of 16 */
-    bool ignores_fourcc;    /* gives the first mode's whatever is asked */
-    bool lacks_mmap;        /* REQBUFS has USERPTR only */
-    uint32_t max_buffers;   /* that REQBUFS gives */
-    struct v4l2_fract rate; /* G_PARM; numerator 0: that of the mode */
+    uint32_t stride_more;   /* bytes that a stride has above a row */
+    uint32_t length_less;   /* bytes that a buffer has below sizeimage */
+    uint32_t sizeimage;     /* bytes that the driver says; 0: the format's */
+    bool says_no_stride;    /* The driver gives a bytesperline of 0. */
+    bool rounds;            /* Sizes become multiples of 16. */
+    bool ignores_fourcc;    /* Any request gets the first mode's. */
+    bool lacks_mmap;        /* REQBUFS has USERPTR only. */
+    uint32_t max_buffers;   /* buffers that REQBUFS gives at most */
+    struct v4l2_fract rate; /* G_PARM gives this rate; 0/x: the mode's. */
     uint32_t quantization, ycbcr_enc, colorspace;
 
-    /* how it is set */
+    /* Requests set these members, or the cable does. */
     struct fake_mode now;
     uint32_t input;
     struct v4l2_bt_timings timings, received;
     bool has_signal;
 
-    /* what it is doing */
-    int fd; /* -1: closed */
+    /* These members are the state of the stream. */
+    int fd; /* file descriptor; -1: closed */
     bool streams, is_gone, is_broken;
-    int n_events; /* source changes that wait */
+    int n_events; /* number of source changes that wait */
     uint32_t n_buffers;
     struct fake_buffer buffer[FAKE_BUFFERS];
-    uint32_t order[FAKE_BUFFERS]; /* that they were queued in */
+    uint32_t order[FAKE_BUFFERS]; /* buffers by index, the first queued first */
     int n_queued;
     struct fake_frame frame[FAKE_FRAMES];
     int n_frames;
-    int read_errno;           /* read() fails with it */
-    void (*on_dequeue)(void); /* unless NULL: before each DQBUF */
-    int says_index;           /* unless 0: DQBUF gives this less one */
+    int read_errno;           /* errno with which read() fails; 0: none */
+    void (*on_dequeue)(void); /* Each DQBUF calls this first, unless NULL. */
+    int says_index;           /* index that DQBUF gives, plus 1; 0: right */
 
-    /* what happened */
+    /* These members count what happened. */
     int n_maps, n_exports, breaches, n_streamons, n_reqbufs;
     int n_s_dv_timings;
 };

@@ -56,7 +56,7 @@ int __wrap_open64(const char *path, int flags, ...)
     if (fails())
         return refuse(EMFILE);
     if (!strcmp(path, "/dev/tty"))
-        return refuse(ENXIO); /* as of a daemon */
+        return refuse(ENXIO); /* A daemon has no terminal. */
     if (is_tty)
         return fake_fb->tty_errno ? refuse(fake_fb->tty_errno)
                                   : __real_open64(fake_tty_path, flags);

@@ -21,12 +21,12 @@ struct fake_fb {
     bool gone, can_pan;
     int open_errno, vsync_errno, n_vsync, n_pan;
     int tty_errno, tty_mode, tty_switching;
-    uint32_t yoffset_at_text; /* when the console came back */
+    uint32_t yoffset_at_text; /* lines panned when text came back */
 };
 extern struct fake_fb *fake_fb; /* the test's, shared with its children */
 
-extern int fake_fb_calls;   /* that were made */
-extern int fake_fb_fail_at; /* this one fails; 0: none does */
+extern int fake_fb_calls;   /* number of calls so far */
+extern int fake_fb_fail_at; /* number of the call that fails, from 1; 0: none */
 extern int fake_fb_maps;
 
 #endif

@@ -731,7 +731,7 @@ static void test_key(void **state)
     o = options;
     o.basis = GLINT_BASIS_SPARSE;
     other_key(&lens, &o);
-    /* but not with what never changes the model */
+    /* The key ignores what never changes the model. */
     o = options;
     o.workers = (void *)&lens;
     o.progress_ctx = &lens;

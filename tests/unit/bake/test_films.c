@@ -79,7 +79,7 @@ static void test_mixed_line(void **state)
     assert_true(lens.mixed[0].nm == 450 && lens.mixed[0].index == 1.38);
     assert_true(lens.mixed[1].nm == 0 && lens.mixed[1].index == 0);
     assert_true(lens.mixed[2].nm == 620 && lens.mixed[2].index == 1.46);
-    expect(&lens, all, mgf2); /* to be asked for */
+    expect(&lens, all, mgf2); /* A mixed coating must be asked for. */
 }
 
 static void test_mistakes(void **state)
@@ -189,7 +189,7 @@ static void test_reflects(void **state)
     good(&lens, "");
     bare = lens;
     coat(&bare, "none");
-    coat(&lens, "450,650,1100,550"); /* of surfaces 0, 2, 3, 4 */
+    coat(&lens, "450,650,1100,550"); /* nm, for surfaces 0, 2, 3, 4 */
     assert_true(reflectance(&lens, 0, 650) > 1.2 * reflectance(&lens, 0, 450));
     assert_true(reflectance(&lens, 2, 450) > 1.2 * reflectance(&lens, 2, 650));
     assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 450));

@@ -20,7 +20,7 @@
 
 #define CORPUS "tests/fuzz/corpus/lens"
 
-/* A good table. The mistakes below replace one of its lines. */
+/* This table is good. Each mistake below replaces a line, numbered at right. */
 static const char *const good[] = {
     "name tiny-4",                       /* 1 */
     "source Tiny, US 1,234",             /* 2 */
@@ -228,7 +228,7 @@ static void test_numbers_are_exact(void **state)
  */
 
 static const struct {
-    int number; /* of the line replaced */
+    int number; /* line of the table that is replaced, from 1 */
     const char *line, *error;
 } mistakes[] = {
     /* names and words */

@@ -74,7 +74,8 @@ static void test_a_point_stays_one(void **state)
     (void)state;
     assert_int_equal(glint_area_plan(&area, &lamp, &rule), 1);
     point = glint_area_point(&area, 0);
-    assert_true(point.theta_deg == lamp.theta_deg); /* to the bit */
+    /* A single point is the lamp itself, to the bit. */
+    assert_true(point.theta_deg == lamp.theta_deg);
     assert_true(point.phi_deg == lamp.phi_deg);
     assert_true(point.power == lamp.power);
 }

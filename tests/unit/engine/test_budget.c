@@ -204,7 +204,8 @@ static void test_new_lights(void **state)
     make(&frame);
     glint_image_place(&image, px);
     glint_budget_init(&frame.budget, 3);
-    frame.budget.ms_per_minsn = 0.1; /* and time stands still */
+    /* The clock stands still, so this rate stays. */
+    frame.budget.ms_per_minsn = 0.1;
     frame.dials = glint_budget_dials(&frame.budget, &frame.dials);
     for (int i = 0; i < 4; i++)
         assert_int_equal(glint_frame_draw(&frame, lamps, 1, 1, &image, &one),
@@ -256,7 +257,7 @@ static void test_counts(void **state)
         assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
     }
     assert_true(glint_cost_minsn(&fine) > glint_cost_minsn(&coarse));
-    /* of half as many pixels each way: predicted, and planned */
+    /* The same holds for half as many pixels each way. */
     then = plan.dials;
     then.flags |= GLINT_DIAL_HALF;
     predicted = glint_cost_of(&plan, &then);

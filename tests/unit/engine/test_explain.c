@@ -288,7 +288,7 @@ static void test_picture(void **state)
     for (int y = 0; y < HEIGHT; y += SIDE)
         for (int x = 0; x < WIDTH; x += SIDE)
             n += is_shaded(&marked, x, y);
-    /* what label and outline cover most of is not counted */
+    /* A tile that label and outline mostly cover is not counted. */
     assert_true(n <= report.tiles && n >= report.tiles - 2);
     title.top = 0;
     assert_int_equal(explain_mark(&e, &title, &image, &unmarked), GLINT_OK);

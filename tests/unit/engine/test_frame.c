@@ -21,8 +21,8 @@ enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
 static struct settings settings, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
-static int n_asked; /* for memory, since it was set to 0 */
-static int fail_at; /* the one that is refused, from 1; 0: none */
+static int n_asked; /* requests for memory since it was set to 0 */
+static int fail_at; /* number of the request that is refused, from 1; 0: none */
 
 void *__real_malloc(size_t bytes);
 void *__wrap_malloc(size_t bytes);
@@ -285,7 +285,8 @@ static void test_retune(void **state)
             both[k]->dials.cull_codes = setting[i].codes;
         }
         n_asked = 0;
-        memcpy(want, got, BYTES); /* of the settings before */
+        /* The picture of the settings before is kept. */
+        memcpy(want, got, BYTES);
         draw(&frame, N_LAMPS, got, &report);
         assert_int_equal(n_asked, 0);
         n_changed += i > 0 && n_different(want, got) > 0;
@@ -313,7 +314,7 @@ static void test_no_memory(void **state)
 
             make_of(exact ? &exact_scene : &settings, &frame);
             frame.only_ghost = 0;
-            frame.dials.max_lights = 2; /* so that some merge */
+            frame.dials.max_lights = 2; /* Some of three lamps must merge. */
             n_asked = 0;
             fail_at = nth;
             status = glint_frame_draw_alone(&frame, lamps, 3, 1,

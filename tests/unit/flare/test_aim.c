@@ -89,7 +89,7 @@ static void test_pixels(void **state)
 /* 45 degrees to the upper left by hand, and what lies farther than counts. */
 static void test_by_hand(void **state)
 {
-    const int32_t half_q30 = 759250125; /* of sqrt(2), 2^30 times */
+    const int32_t half_q30 = 759250125; /* sqrt(2) / 2, 2^30 = 1 */
     struct glint_light light, farther;
 
     (void)state;

@@ -171,8 +171,8 @@ static void test_random_scenes(void **state)
             list[i] = random_ghost();
             if (draw_number(8) == 0) /* far beyond the picture */
                 list[i].size <<= draw_number(14);
-            list[i].flux_exponent +=
-                draw_number(20) - 12; /* to and fro white */
+            /* The light changes by factors of 2^-12 .. 2^7. */
+            list[i].flux_exponent += draw_number(20) - 12;
         }
         c.raster = k % 4 ? &glint_raster_edges : &glint_raster_cells;
         c.stop.n_blades = k % 5 ? 8 : 0;

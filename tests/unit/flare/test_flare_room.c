@@ -107,7 +107,7 @@ static void test_config_is_checked(void **state)
     c.tile_log2 = 7;
     assert_int_equal(glint_flare_bytes(&c), 0);
     c = base_config();
-    c.stop.mask_q13 = mask_q13; /* by cells alone */
+    c.stop.mask_q13 = mask_q13; /* Only the raster of cells takes a mask. */
     c.stop.mask_nodes = 2;
     c.stop.mask_span_q16 = 1 << 16;
     c.raster = &glint_raster_edges;

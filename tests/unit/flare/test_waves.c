@@ -91,7 +91,7 @@ static void test_small_picture(void **state)
     struct glint_frame frame;
     struct glint_frame_report report;
 
-    (void)state; /* of 32 pixels no outline moves by one */
+    (void)state; /* 32 pixels are too few for an outline to move by one. */
     report = drawn(&frame, &chosen, 32, 1, picture);
     count(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
@@ -347,7 +347,7 @@ static void test_words(void **state)
     assert_false(settings_take_waves(&s, "9,17"));
     assert_false(settings_take_waves(&s, ""));
     s.waves = SETTINGS_WAVES_AUTO;
-    s.rays = SETTINGS_RAYS_EXACT; /* which choose nothing */
+    s.rays = SETTINGS_RAYS_EXACT; /* Exact rays choose no number of waves. */
     settings_choose_waves(&s);
     assert_true(s.waves == SETTINGS_WAVES_COUNT && s.n_wavelengths == 9);
 }

@@ -22,7 +22,7 @@ struct shape {
     uint16_t x_power[3], y_power[3];
     double x[3], y[3];
     double barrel[2]; /* (1 + r^2) / 2 = [0] + [1] u; [0] 0: there is none */
-    double slack; /* how much wider and higher than what is seen it may be */
+    double slack;     /* ratio, at most, of the size found to the size seen */
 };
 
 #define P(u, v) MODEL_POWER(u, v, 0, 0)
@@ -251,7 +251,7 @@ static void test_annulus(void **state)
 
     (void)state;
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
-    t.annulus = 1; /* from v = 1/2 */
+    t.annulus = 1; /* The annulus begins at v = 1/2. */
     assert_int_equal(glint_window_find(&nodes, &t, ONE / 20), 1);
     low = ldexp(glint_transfer_v(&t, 0, 8), -30);
     high = ldexp(glint_transfer_v(&t, 8, 8), -30);

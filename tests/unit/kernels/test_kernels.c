@@ -464,7 +464,7 @@ static void check_turn(glint_turn_fn *turn, const char *name)
     int n_lost = 0, n_kept = 0;
 
     for (int round = 0; round < 5 * ROUNDS; round++) {
-        /* where what comes out is about as large as may be, often */
+        /* Every second round gives results about as large as may be. */
         const int near = (int)(draw() % 62) + 1;
 
         t = (struct glint_turn){draw_below(2 * most), draw_below(2 * most),

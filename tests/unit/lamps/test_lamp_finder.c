@@ -564,7 +564,8 @@ static void test_small_ones_are_noise(void **state)
     cfg.min_area = 5;
     canvas_fill_grey(&image, 10, 10, 12, 12, 255);
     assert_int_equal(finder_find(&cfg, &image), 0);
-    canvas_set_grey(&image, 12, 12, 255); /* by the corner */
+    /* A fifth pixel touches the square by a corner. */
+    canvas_set_grey(&image, 12, 12, 255);
     assert_int_equal(finder_find(&cfg, &image), 1);
     free(image.plane[0]);
 }

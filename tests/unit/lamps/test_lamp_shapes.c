@@ -218,7 +218,8 @@ static void test_ycc_formats(void **state)
 
         image.range = GLINT_RANGE_LIMITED;
         image.transfer = GLINT_TONE_BT709;
-        /* of codes 199.5 and 249.5: ((c / 255 + 0.099) / 1.099)^(1 / 0.45) */
+        /* Codes C of 199.5 and 249.5 have this light:
+         * ((C / 255 + 0.099) / 1.099)^(1 / 0.45). */
         cfg.threshold_low_q8 = (int32_t)floor(256 * log2(0.6124) + 0.5);
         cfg.threshold_high_q8 = (int32_t)floor(256 * log2(0.9569) + 0.5);
         canvas_fill_grey(&image, 0, 0, 41, 31, 16);

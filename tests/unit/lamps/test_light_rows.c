@@ -42,9 +42,10 @@ static void set_up(struct fixture *f, enum glint_pixel_format format)
     struct glint_arena arena = glint_arena_measure();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
     const int dark =
-        4 * rng_below(&seed, 2); /* as around lamps, every second time */
+        4 *
+        rng_below(&seed, 2); /* bits, 0 or 4: half of the pictures are dark */
     uint8_t *codes = malloc(bytes);
-    const size_t pixel = /* or two of them */
+    const size_t pixel = /* bytes, 3 or 4: a pixel, or two of them */
         format == GLINT_RGB24 || format == GLINT_BGR24 ? 3 : 4;
     int alike = 0; /* bytes that repeat those before */
 
@@ -165,7 +166,7 @@ static struct glint_candidate draw_candidate(void)
         glint_region_add_run(&c.sum, x0, x1, y);
         glint_region_add_pixels(&c.sum, &light, x0, x1, y);
     }
-    if (rng_below(&seed, 2)) { /* what a lamp may be */
+    if (rng_below(&seed, 2)) { /* Some fill most of their box, as lamps do. */
         c.sum.area -= rng_below(&seed, c.sum.area) / 8;
         c.sum.n_clipped = c.sum.area - rng_below(&seed, c.sum.area);
     } else

@@ -502,7 +502,7 @@ static void test_rays(void **state)
  * sixteenth; what is below 0 is none. */
 static void test_roots(void **state)
 {
-    const int32_t half = (1 << 28) / 2; /* of 2^(29 - head), head 1 */
+    const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
 
     (void)state;
     for (int roots = 0; roots <= 2; roots++)

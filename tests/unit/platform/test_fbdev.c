@@ -171,7 +171,7 @@ static void test_borders(void **state)
     mem = memory();
     for (int y = 0; y < 6; y++)
         assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
-    scribble(0, 123); /* and only made so once */
+    scribble(0, 123); /* Black borders are drawn once only. */
     must_put(&fb, grey(8, 2, 50));
     assert_int_equal(memory()[0], 123);
     fb.sink.close(&fb.sink);
@@ -281,7 +281,8 @@ static void test_vsync(void **state)
     must_open(&fb, &options);
     for (int i = 0; i < 3; i++)
         must_put(&fb, grey(8, 6, i));
-    assert_int_equal(fake_fb->n_vsync, 1); /* and never again */
+    /* A failed wait is not tried again. */
+    assert_int_equal(fake_fb->n_vsync, 1);
     fb.sink.close(&fb.sink);
     reset();
     fake_fb->vsync_errno = 0;
@@ -475,7 +476,7 @@ static void test_console(void **state)
     check_console(true, KD_GRAPHICS, KD_TEXT);
     fake_fb->tty_mode = KD_GRAPHICS; /* left behind */
     check_console(true, KD_GRAPHICS, KD_TEXT);
-    fake_fb->tty_mode = KD_GRAPHICS; /* of an X server */
+    fake_fb->tty_mode = KD_GRAPHICS; /* An X server has the console. */
     fake_fb->tty_switching = VT_PROCESS;
     check_console(false, KD_GRAPHICS, KD_GRAPHICS);
     reset();
@@ -551,7 +552,8 @@ static void test_every_end(void **state)
             assert_int_equal(WTERMSIG(how), ends[i]);
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
-        assert_int_equal(fake_fb->yoffset_at_text, 0); /* that first */
+        /* Panning back came before text. */
+        assert_int_equal(fake_fb->yoffset_at_text, 0);
     }
 }
 
@@ -616,7 +618,7 @@ static void check_failures(bool pages)
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
     } while (n <= n_last);
-    assert_true(n_failed >= 8); /* and some calls may fail unnoticed */
+    assert_true(n_failed >= 8); /* Some calls may fail unnoticed. */
     assert_true(n > 15);
 }
 

@@ -122,7 +122,7 @@ static void test_colour_defaults(void **state)
     struct glint_image i;
 
     (void)state;
-    /* as vivid and most webcams: sRGB, the rest by default */
+    /* vivid and most webcams say sRGB, and leave the rest to defaults. */
     assert_true(read_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);

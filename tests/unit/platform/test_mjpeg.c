@@ -31,8 +31,8 @@ static struct glint_error error;
 /* How a frame is coded. */
 struct coding {
     int width, height;
-    int factor[3][2]; /* of Y, Cb, Cr: across, down; 0: there is none */
-    int restart;      /* MCUs */
+    int factor[3][2]; /* sampling of Y, Cb, Cr across, down, 1 .. 4; 0: none */
+    int restart;      /* MCUs between restart markers; 0: no markers */
     bool optimised;   /* Huffman tables of its own */
     bool noisy;
 };
@@ -42,7 +42,7 @@ static const struct coding y422 = {64, 48, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 0};
 static const struct coding grey = {64, 48, {{1, 1}, {0, 0}, {0, 0}}, 0, 0, 0};
 
 struct bytes {
-    uint8_t *data; /* of malloc, exactly as long */
+    uint8_t *data; /* A block of exactly N bytes shows reads beyond them. */
     size_t n;
 };
 
@@ -277,7 +277,7 @@ static void test_codings(void **state)
         {{{1, 2}, {1, 2}, {1, 2}}, GLINT_I444},
         {{{1, 3}, {1, 3}, {1, 3}}, GLINT_I444},
         {{{2, 1}, {1, 1}, {1, 1}}, GLINT_I422},
-        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* as ffmpeg does */
+        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* ffmpeg writes 4:2:2 so. */
         {{{2, 2}, {1, 1}, {1, 1}}, GLINT_I420},
     };
     static const int size[][2] = {
@@ -383,19 +383,19 @@ static void test_camera_habits(void **state)
         struct bytes b = encode(&c, NULL);
         struct glint_image image;
 
-        if (habits & 1) { /* AVI1 instead of JFIF */
+        if (habits & 1) { /* AVI1 replaces JFIF. */
             strip(&b, 0xe0, 1);
             splice(&b, 2, 0, avi1, sizeof avi1);
         }
-        if (habits & 2) /* start of image behind the first header, */
+        if (habits & 2) /* A start of image stands among the headers. */
             splice(&b, find(&b, 0xdb, 0), 0, soi, sizeof soi);
-        if (habits & 4) /* and at once */
+        if (habits & 4) /* A second start of image comes at once. */
             splice(&b, 0, 0, soi, sizeof soi);
-        if (habits & 8) /* bytes before the third restart marker */
+        if (habits & 8) /* Stray bytes precede the third restart marker. */
             splice(&b, find(&b, 0xd2, 300), 0, "\x12\x34", 2);
-        if (habits & 16) /* trailing bytes, another frame's among them */
+        if (habits & 16) /* Half of the frame follows once more. */
             splice(&b, b.n, 0, b.data, b.n / 2);
-        else if (habits & 32) /* no end of image */
+        else if (habits & 32) /* The end of image is missing. */
             b.n -= 2;
         if (habits & 64) {
             splice(&b, find(&b, 0xdb, 0), 0, comment, sizeof comment);

@@ -213,7 +213,7 @@ static void test_full_device(void **state)
     assert_int_equal(glint_output_write(&out, data, 1, &error), GLINT_E_OUTPUT);
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
 
-    /* what is small enough for the buffer is noticed at the end */
+    /* Data that fits the buffer fails at the end only. */
     assert_int_equal(
         glint_output_open(&out, "/dev/full", GLINT_OUTPUT_TEXT, &error),
         GLINT_OK);
@@ -347,7 +347,7 @@ static void test_signals(void **state)
     check_death(SIGINT, 0);
     check_death(SIGTERM, 0);
     check_death(SIGHUP, 0);
-    check_death(SIGHUP, 1); /* as under nohup */
+    check_death(SIGHUP, 1); /* nohup leaves the signal ignored. */
 }
 
 static void test_exit(void **state)

@@ -77,7 +77,7 @@ static void test_kinds(void **state)
     (void)state;
     expect_pnm(BYTES("P6\n2 1\n255\nabcdef"), GLINT_RGB24, 2, 1, "abcdef");
     expect_pnm(BYTES("P5\n2 3\n255\nabcdef"), GLINT_GREY, 2, 3, "abcdef");
-    /* what follows is another picture */
+    /* Another picture follows in the same file. */
     expect_pnm(BYTES("P5 1 1 255 aP5 1 1 255 b"), GLINT_GREY, 1, 1, "a");
     /* samples may look like white space */
     expect_pnm(BYTES("P5\n3 1\n255\n\n #"), GLINT_GREY, 3, 1, "\n #");

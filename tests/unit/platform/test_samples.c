@@ -53,7 +53,8 @@ static void test_half(void **state)
     }
     assert_int_equal(glint_half_encode(1), 0x3c00);
     assert_int_equal(glint_half_encode(65520), 0x7c00);
-    assert_int_equal(glint_half_encode(1.00048828125F), 0x3c00); /* to even */
+    /* Ties go to even. */
+    assert_int_equal(glint_half_encode(1.00048828125F), 0x3c00);
     assert_int_equal(glint_half_encode(-0x1p-25F), 0x8000);
     assert_true(isnan(glint_half_decode(glint_half_encode(NAN))));
 }

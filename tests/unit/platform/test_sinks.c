@@ -131,7 +131,7 @@ static void check_colours(enum glint_matrix matrix, enum glint_range range)
             }
         }
     }
-    assert_true(n_off < 256 * 256 * 3 / 500); /* at ties */
+    assert_true(n_off < 256 * 256 * 3 / 500); /* Only ties may differ. */
 }
 
 /* Pure blue and red of full range: 255.5, which is no code. */
@@ -294,7 +294,7 @@ static void test_null(void **state)
 
 static struct {
     uint32_t caps, stride, size, fourcc; /* 0: as asked */
-    unsigned long fail_request;          /* that ioctl, with this: */
+    unsigned long fail_request;          /* request of ioctl() that fails */
     int fail_errno, write_errno;
     int n_streaming;
     ssize_t most; /* bytes that a write takes; 0: all */

@@ -387,7 +387,7 @@ static void test_too_small(void **state)
     must_refuse(NULL, GLINT_E_DEVICE,
                 "64x48 YUYV does not fit the 6143 bytes that the driver says");
     fake_camera_reset();
-    camera.length_less = 1; /* and it says nothing of it */
+    camera.length_less = 1; /* The driver does not say so. */
     must_open(NULL);
     fake_camera_deliver(0, 9);
     must_get_nothing();

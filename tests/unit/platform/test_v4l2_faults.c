@@ -21,11 +21,11 @@ static void test_queueing_fails_once(void **state)
     must_get(1);
     assert_int_equal(camera.n_queued, 3);
     fake_camera_deliver(1, 2);
-    must_get(2); /* which tries again first */
+    must_get(2); /* The failed request is tried again first. */
     assert_int_equal(camera.n_queued, 4);
     assert_int_equal(v4l2.source.n_restarts, 0);
     must_close();
-    fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* and at the start */
+    fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* A start may fail, too. */
     must_open(NULL);
     assert_int_equal(camera.n_queued, 3);
     must_get_nothing();
@@ -247,7 +247,7 @@ static void test_gone(void **state)
     must_close();
     must_refuse(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
 
-    for (int i = 0; i < 2; i++) { /* in whatever request it shows */
+    for (int i = 0; i < 2; i++) { /* Either request may be the first to fail. */
         fake_camera_reset();
         must_open(NULL);
         camera.is_broken = i == 1;
@@ -336,7 +336,7 @@ static void test_wrong_index(void **state)
     assert_int_equal(next(), GLINT_OK);
     kept = frame;
     fake_camera_deliver(1, 2);
-    camera.says_index = 1; /* which is the index plus one that is lent */
+    camera.says_index = 1; /* 1 stands for buffer 0, which is lent. */
     must_get_nothing();
     assert_int_equal(v4l2.source.n_restarts, 2);
     camera.says_index = 0;
@@ -363,10 +363,11 @@ static void test_silence(void **state)
     fake_camera_pass(40000); /* 2 s and 4 frames */
     must_get_nothing();
     assert_int_equal(v4l2.source.n_restarts, 1);
-    fake_camera_deliver(0, 1); /* that helped */
+    fake_camera_deliver(0, 1); /* Starting anew helped. */
     must_get(1);
     assert_int_equal(follow(10000, &failed_ms), GLINT_E_DEVICE);
-    assert_in_range(failed_ms, 4200, 4400); /* here it did not */
+    /* Starting anew did not help here. */
+    assert_in_range(failed_ms, 4200, 4400);
     assert_string_equal(said.text, FAKE_PATH ": no frames come, and starting "
                                              "anew does not help");
     must_close();
@@ -420,7 +421,7 @@ static void test_timings_change(void **state)
     use_hdmi();
     must_open(NULL);
     assert_true(v4l2.device.has_signal);
-    camera.n_events = 1; /* of what it has already */
+    camera.n_events = 1; /* The event tells nothing new. */
     fake_camera_deliver(0, 1);
     must_get(1);
     assert_int_equal(v4l2.source.n_restarts, 0);
@@ -493,7 +494,8 @@ static void test_signal_wavers(void **state)
         camera.n_events = 1;
         assert_int_equal(follow(1500, &failed_ms), GLINT_OK);
     }
-    camera.has_signal = true; /* as it was, and then it breaks */
+    /* The signal is back, and then the camera breaks. */
+    camera.has_signal = true;
     camera.n_events = 1;
     camera.is_broken = true;
     must_get_nothing();

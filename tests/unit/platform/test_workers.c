@@ -27,8 +27,8 @@
 #define MAX_JOBS 1000
 
 struct tally {
-    int runs[MAX_JOBS];          /* of each job; a job is one thread's alone */
-    int busy[GLINT_MAX_WORKERS]; /* atomic: threads inside as that worker */
+    int runs[MAX_JOBS];          /* times each job ran, on one thread */
+    int busy[GLINT_MAX_WORKERS]; /* atomic: threads now in this worker */
     int n_workers;
     int clashes; /* atomic */
 };
@@ -130,7 +130,7 @@ static void test_cpu_count(void **state)
 
 /* ------------------------------------------------------------------ threads */
 
-static int threads_left = -1; /* to be had; -1: as many as the system gives */
+static int threads_left = -1; /* threads that may still start; -1: no limit */
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
                           void *(*start)(void *), void *arg);

@@ -140,7 +140,7 @@ static void test_range_and_matrix(void **state)
     assert_int_equal(h.range, GLINT_RANGE_LIMITED);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
     assert_string_equal(h.extra, " XCOLORRANGE=OTHER");
-    /* what JPEG pictures become is BT.601 of any size */
+    /* A picture decoded from JPEG is BT.601 at any size. */
     assert_int_equal(
         parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);

@@ -69,7 +69,7 @@ static void test_green(void **state)
         const int64_t factor = y4m_part_factor(d);
 
         for (int64_t q = -2; q <= (1 << 20) + 2; q++) {
-            const int64_t first = q * d - d / 2; /* of those with Q */
+            const int64_t first = q * d - d / 2; /* first N of quotient Q */
 
             for (int64_t n = first - 2; n <= first + 2; n++)
                 wrong += y4m_part(n, d, factor) != held(divide(n, d));

@@ -243,7 +243,7 @@ static void test_zone_borders(void **state)
             const int32_t border[2] = {s->sine_lo_q30, s->sine_hi_q30};
 
             for (int e = 0; e < 2; e++) {
-                /* where a ghost is drawn at all */
+                /* The axis is no border; beyond 30 degrees none is tested. */
                 if (border[e] == 0 || border[e] > 0.5 * 0x1p30)
                     continue;
                 if (is_inner(lens, ghost, border[e])) {
@@ -354,7 +354,7 @@ static void test_pixel_borders(void **state)
     }
     assert_true(extreme_at_least(
         "angles: lights on borders of pixels and tiles", worst, 45, "dB"));
-    /* on the axis it also turns the grid round */
+    /* A lamp that passes the axis also turns the grid round. */
     assert_true(extreme_at_most("angles: across the border of a pixel", jump,
                                 GRID_CODES, "codes"));
 }

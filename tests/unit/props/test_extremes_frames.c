@@ -217,7 +217,7 @@ static int strided(enum glint_pixel_format format, int pad, int down)
 
             n += memcmp(row, plain.plane[p] + y * plain.stride_bytes[p],
                         bytes) != 0;
-            memset(row, 90, bytes); /* and what is left must be untouched */
+            memset(row, 90, bytes); /* All else must have stayed 90. */
         }
     for (int i = 0; i < ROOM; i++)
         n += got[i] != 90;

@@ -316,7 +316,7 @@ static void test_smallest_ball(void **state)
 
     (void)state;
     stage_close(&stage);
-    /* as small as the table takes: radii of 1/100 mm, scaled from 1.1 */
+    /* Radii of 1/100 mm, scaled from 1.1, are the least a table takes. */
     assert_true(stage_parse(&stage, "name ball\nf-number 4\nfilm 1 0.7\n"
                                     "surface 1.1 1.1 1 1.5168 64.17\n"
                                     "stop 1.1 0.3\n"

@@ -101,7 +101,8 @@ static void test_codes_never_fall(void **state)
             last[i] = codes[0][i];
         }
     }
-    /* at 1e28 all that was ever reached is white, but for edges of pixels */
+    /* At power 1e28 every pixel that light reaches is white, but for pixels
+     * that an edge crosses. */
     for (int i = 0; i < N; i++) {
         lit += last[i] != ground[i];
         white += last[i] == 255 && ground[i] != 255;

@@ -104,7 +104,8 @@ static void test_round_and_round(void **state)
                                 differ, 0, "frames"));
     assert_int_equal(heliar.frame.bytes, bytes);
 #ifndef GLINT_SANITIZED
-    /* what stdio and the allocator may take for once, over any number */
+    /* stdio and the allocator may take this once, whatever the number of
+     * frames. */
     assert_true(extreme_at_most("runs: memory at the end, above the second "
                                 "round's",
                                 (double)(resident_kib() - resident), 256,

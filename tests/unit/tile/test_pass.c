@@ -71,7 +71,7 @@ static int go_on(void *state, struct glint_box tile)
 {
     struct on_row *r = state;
 
-    /* from left to right, none left out */
+    /* Tiles come from left to right, and none is left out. */
     assert_int_equal(tile.x0, r->tile.x1);
     assert_int_equal(tile.y0, r->row.y0);
     assert_int_equal(tile.y1, r->row.y1);
@@ -120,7 +120,7 @@ struct glint_frame {
     struct glint_image image;
     struct triangle triangle;
     struct glint_flare_config cfg;
-    int half, n_workers, n_lights, alone; /* by glint_flare_draw() */
+    int half, n_workers, n_lights, alone; /* 1: glint_flare_draw() draws it. */
     uint32_t order;
 };
 
@@ -205,7 +205,8 @@ static void draw(struct glint_frame f, uint8_t *px)
     free(m.data);
 }
 
-static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4]; /* or codes */
+/* Light with 2^20 = 1, or codes. */
+static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4];
 static uint8_t *const one = (uint8_t *)one_q20, *const other =
                                                     (uint8_t *)other_q20;
 

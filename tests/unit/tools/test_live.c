@@ -28,7 +28,7 @@ static char said_path[] = "/tmp/glint-test-said-XXXXXX";
 static char shot_dir[] = "/tmp/glint-test-shot-XXXXXX";
 
 static int n_waits, n_unwaited;
-static void (*script)(int wait); /* what happens at wait number WAIT */
+static void (*script)(int wait); /* Each wait calls this with its number. */
 
 /* A frame comes at each wait, unless the script takes it away again. */
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,

@@ -82,7 +82,7 @@ static void test_overload(void **state)
     assert_int_equal(adapt.step, 3);
     assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
     assert_true(seen.last_change_s < 1.5);
-    run(cost, 600); /* where it stays: there is no time to spare */
+    run(cost, 600); /* The step stays: no time is to spare. */
     assert_int_equal(adapt.step, 3);
     assert_int_equal(seen.n_down, 0);
     assert_int_equal(seen.n_missed, 0);
@@ -185,7 +185,8 @@ static void test_steps(void **state)
             d = live_adapt_dials(&adapt, ask[i]);
             if (s == 0)
                 assert_memory_equal(&d, &ask[i], sizeof d);
-            assert_int_equal(glint_dials_half(&d), s > 3); /* of quality 0 */
+            /* Steps above 3 draw half as many pixels each way. */
+            assert_int_equal(glint_dials_half(&d), s > 3);
             assert_in_range(d.fineness, 1, last.fineness);
             assert_in_range(d.max_lights, 1, last.max_lights);
             assert_in_range(d.snap_codes_q8, last.snap_codes_q8, 1 << 15);

@@ -104,7 +104,7 @@ static void test_full_bin(void **state)
     assert_true(live_stats_latency_ms(&stats.total, 50) == 5.05);
     assert_true(live_stats_latency_ms(&stats.total, 51) == 6.05);
     assert_int_equal(stats.second.bin[50], 1);
-    /* and their sum passes 32 bits */
+    /* The sum of all counts passes 32 bits, too. */
     add_latency(2000000);
     stats.total.bin[50] = stats.total.bin[60] = UINT32_MAX;
     stats.total.bin[LIVE_BINS] = UINT32_MAX;

@@ -96,7 +96,7 @@ static void test_colours_of_formats(void **state)
 {
     static const struct {
         enum glint_pixel_format format;
-        int offset[3]; /* of Y Cb Cr or R G B of pixel (30, 20) */
+        int offset[3]; /* bytes to Y Cb Cr or R G B of pixel (30, 20) */
         int is_rgb;
     } at[] = {
         {GLINT_RGB24, {5850, 5851, 5852}, 1},

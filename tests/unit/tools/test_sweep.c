@@ -136,7 +136,7 @@ static void test_dials(void **state)
             assert_true(dial_get(&other, &dials[d]) == dials[d].value[i]);
         }
         assert_true(has_standard);
-        for (int e = 0; e < n_dials; e++) /* and no other moved */
+        for (int e = 0; e < n_dials; e++) /* No other dial may have moved. */
             if (e != d)
                 assert_true(dial_get(&other, &dials[e]) ==
                             dial_get(&settings, &dials[e]));

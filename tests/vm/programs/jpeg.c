@@ -15,7 +15,7 @@
 #include "video/y4m.h"
 
 #define MAX_SIDE  2048
-#define MAX_BYTES (1 << 20) /* of a frame */
+#define MAX_BYTES (1 << 20) /* bytes; a frame has fewer */
 
 static void die(const char *why)
 {

@@ -53,7 +53,7 @@ static int read_raw(const char *path, const struct layout *layout,
  * Not compressed: blocks of one row, as the format allows. */
 struct png {
     FILE *file;
-    uint32_t crc, s1, s2; /* of the chunk; Adler-32 of what it holds */
+    uint32_t crc, s1, s2; /* the chunk's CRC-32; two sums of Adler-32 */
 };
 
 static void put_bytes(struct png *png, const uint8_t *bytes, size_t n)
