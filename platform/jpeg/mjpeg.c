@@ -36,7 +36,7 @@ struct glint_mjpeg {
     bool in_scan; /* the header is over */
     bool ended;   /* libjpeg asked for more than there is */
     jmp_buf escape;
-    enum glint_status status; /* it escaped with */
+    enum glint_status status; /* the failure that a jump to escape reports */
     struct glint_error *error;
 };
 

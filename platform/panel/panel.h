@@ -37,7 +37,7 @@ struct glint_panel_config {
     struct glint_pixel_layout layout;
     int image_width, image_height;
     enum glint_panel_fit fit;
-    bool dither; /* pixels of 16 bits */
+    bool dither; /* pixels of 16 bits are dithered */
 };
 
 struct glint_panel {

@@ -50,7 +50,7 @@ static enum glint_status set_flux(const struct glint_bake_options *options,
                                   const struct glint_setup *whole,
                                   struct glint_model_header *h)
 {
-    static const double closed[2] = {0.5, 0.875}; /* 1 - R^2 */
+    static const double closed[2] = {0.5, 0.875}; /* share of the stop shut */
     const double *band = options->band_nm;
     const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
     double w[FLUX_NODES], flux[3][FLUX_NODES], more[2][FLUX_NODES];

@@ -35,7 +35,7 @@ struct glint_flare {
     int half, width, height; /* half resolution or not, and the size that is
                                 drawn with it: see struct glint_flare_frame */
     const struct glint_half *quads; /* if half */
-    int n_bundles, n_vertices;      /* taken in */
+    int n_bundles, n_vertices;      /* added so far */
     struct glint_plan plan;         /* plan for a lens, unless frame is NULL */
     struct glint_bundle_plan *planned; /* plan of each bundle planned */
     struct glint_real flux, brightest; /* flux of all that was planned, and the

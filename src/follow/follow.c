@@ -62,7 +62,7 @@ void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Judges by the errors so far which of the two it is: 0 noise, 1 change. */
+/* Judges by the errors so far whether they are noise, 0, or a change, 1. */
 static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
 {
     const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);

@@ -21,7 +21,7 @@ enum sweep_kind {
     SWEEP_STANDARD,
     SWEEP_ALONE,
     SWEEP_TOGETHER,
-    SWEEP_QUALITY, /* --quality */
+    SWEEP_QUALITY, /* the dials as --quality sets them */
     SWEEP_GROWTH   /* standard, without an exact picture */
 };
 
@@ -35,7 +35,7 @@ struct sweep_setting {
 /* One setting in one case. NAN: not measured. */
 struct sweep_point {
     struct sweep_setting set;
-    int of; /* case */
+    int of; /* index of the case it belongs to */
     double ms, floor_ms, ratio, instructions;
     size_t arena_bytes, model_bytes;
     double psnr_db, ssim, p99, flux_error;

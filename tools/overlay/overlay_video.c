@@ -158,7 +158,7 @@ static enum glint_status open_encoder(struct video *v)
         return status;
     snprintf(v->pipe, sizeof v->pipe, "/proc/self/fd/%d", v->writer.fd);
     status = glint_y4m_writer_open(&v->out, v->pipe, &v->in.header, &v->error);
-    close(v->writer.fd); /* the other is closed with the stream */
+    close(v->writer.fd); /* the stream has opened the pipe itself */
     v->writer.fd = -1;
     return status;
 }

@@ -5,10 +5,10 @@
 #include "bake/fit/regress.h"
 #include "engine/setup/degrees.h"
 
-/* Of a box; a fuller one is not worth the higher powers of s it takes, which
- * everything that is seen through it has to undo. */
+/* Share of a box that is seen, which is enough: a fuller one needs higher
+ * powers of s, which everything that is seen through it has to undo. */
 #define ENOUGH_FILL 0.6
-#define FULLER      1.6 /* what another power has to gain */
+#define FULLER      1.6 /* times the share that another power must gain */
 
 double glint_zone_node(int k, int n)
 {

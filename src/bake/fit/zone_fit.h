@@ -20,7 +20,7 @@
 
 struct glint_zone_task {
     const struct glint_zone *zone;
-    const struct glint_visible *visible; /* in the band of the zone */
+    const struct glint_visible *visible; /* ghost over the wavelengths fitted */
     double barrel;   /* tolerance of barrels: as of struct glint_tolerance */
     bool thorough;   /* a root of the energy, and more terms */
     double hopeless; /* errors with which a zone is not worth to be fitted to

@@ -113,7 +113,7 @@ struct glint_frame {
 
     /* Lamps to trace, where some merged; [n_lights]. */
     struct glint_lamp *merged;
-    void *traced; /* the trace's own */
+    void *traced; /* state that the trace keeps, NULL: none */
     struct glint_flare *flare;
     void *mem, *block; /* taken, unless NULL; the aligned part of it, or what
                           was given */

@@ -381,7 +381,7 @@ static void test_half(void **state)
         flux[1] += pow(codes[1][i], 2.2);
     }
     assert_true(fabs(flux[1] - flux[0]) < 0.02 * flux[0]);
-    assert_true(sum > 0.01 * n && sum < 40 * n); /* not the same, 32 dB */
+    assert_true(sum > 0.01 * n && sum < 40 * n); /* differs, 32 dB at least */
     close_fixture(&f);
 }
 

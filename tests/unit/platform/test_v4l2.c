@@ -142,7 +142,7 @@ static void test_unread_format(void **state)
     must_refuse(&wish, GLINT_E_DEVICE, "has no NV12 (gives YUYV instead)");
 }
 
-/* What was asked for is a wish. */
+/* A camera may choose another format than was asked for: it is believed. */
 static void test_believes(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
