@@ -49,8 +49,8 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 /* The figures of a bake that its model does not tell. */
 struct glint_bake_report {
     int rays;      /* measured */
-    int intruders; /* so many of these rays pass the model, but are cut in
-                      truth, by more than 3 % of a radius */
+    int intruders; /* measured rays that pass the model though the real lens
+                      cuts them, by more than 3 % of a radius */
     int unmet;     /* systems that the tolerance was too tight for */
 };
 

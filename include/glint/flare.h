@@ -114,7 +114,7 @@ struct glint_flare_config {
     int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
     int tile_log2;     /* small tiles of 2^n pixels square, 3 .. 6 */
     const struct glint_raster *raster; /* NULL: by edges */
-    int dither;             /* when encoding to 8 bits; deterministic */
+    int dither;             /* 1: 8-bit output is dithered, deterministically */
     struct glint_stop stop; /* copied; its mask is kept */
 
     /* For drawing by edges. The irradiance of a cell is rounded to so many
@@ -125,9 +125,10 @@ struct glint_flare_config {
     /* The rest is for drawing by cells. */
     int coarse_log2; /* large tiles, tile_log2 + 1 .. 8; 0: one level only */
     enum glint_weights weights;
-    int merge_steps;         /* blocks of 2^n cells may become one, 0 .. 4 */
-    int32_t merge_gamma_q16; /* how far edges may disagree, relative */
-    int antialias;           /* 0: a pixel's centre decides, as published */
+    int merge_steps; /* blocks of 2^n cells may become one, 0 .. 4 */
+    /* largest relative disagreement of edges that merge */
+    int32_t merge_gamma_q16;
+    int antialias; /* 0: a pixel's centre decides, as published */
 
     /* Capacities. glint_flare_bin() reports what a frame needed. */
     int max_bundles;

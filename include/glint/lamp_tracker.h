@@ -72,9 +72,10 @@ struct glint_lamp_tracker_config {
     int32_t attack_ms;
     int32_t release_ms; /* the other way */
     int32_t leave_ms;   /* the same for lamps that left the picture */
-    int32_t memory_ms;  /* how long a lamp without a spot keeps its number */
-    int32_t smooth_ms;  /* milliseconds that scatter is averaged over */
-};                      /* times 1 .. 60000 */
+    int32_t memory_ms; /* milliseconds for which a lamp without a spot keeps its
+                          number */
+    int32_t smooth_ms; /* milliseconds over which scatter is averaged */
+};                     /* all times are 1 .. 60000 ms */
 
 struct glint_lamp_tracker; /* opaque, in the caller's memory */
 

@@ -34,16 +34,16 @@ struct glint_transfer {
     const struct glint_model_system *system;
     uint32_t outputs; /* bit KIND is set where there is that output */
     int32_t exponent[GLINT_OUT_KINDS]; /* exponent of each output */
-    uint8_t head, roots; /* as in struct glint_model_output, for the energy */
-    uint8_t energy_up; /* a vertex's energy counts 2^so many times, at most 29:
-                          0 after init, for the caller to set */
+    uint8_t head, roots; /* the energy's members of these names in struct
+                            glint_model_output */
+    uint8_t energy_up; /* log2 of the factor on a vertex's energy, 0 .. 29; init
+                          sets 0, the caller may raise it */
     int32_t box[3];    /* middle, half width, half height at this angle */
     int32_t box_exponent;
     uint8_t annulus;
-    struct glint_box_window
-        window; /* that rows and grids of rays are laid over:
-               all of the box after init, for the caller to
-               narrow; from 0, unless it is annular */
+    /* part of the box that rows and grids of rays cover: init sets all of it,
+     * the caller may narrow it; v begins at 0 unless the box is annular */
+    struct glint_box_window window;
     enum glint_basis basis;
     union {
         /* coefficients of u^a v^b: [b][a] */

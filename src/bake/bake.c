@@ -16,7 +16,8 @@
 #include "bake/write_model.h"
 
 enum {
-    REVISION = 12 /* of what is made of a lens: raised when models change */
+    REVISION = 12 /* version of the models, raised when a lens would bake
+                     differently */
 };
 
 /* All that the making of one model takes. */
@@ -29,8 +30,8 @@ struct bake_run {
     struct glint_quantised_system **quantised; /* [n_ghosts][n_systems] */
     enum glint_status *status;                 /* [n_ghosts] */
     struct glint_draft draft;
-    int *first;     /* system of each ghost */
-    int *intruders; /* of each ghost */
+    int *first;     /* index of each ghost's first system */
+    int *intruders; /* number of intruders of each ghost */
     int *rays;
     struct glint_error *error;
 };

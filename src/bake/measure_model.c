@@ -181,10 +181,11 @@ static bool set_bundle(struct meter *b, const struct glint_lens *lens,
         (int32_t)(part * ((double)s->sine_hi_q30 - s->sine_lo_q30));
     const int32_t wave_q24 = (int32_t)lrint(wave);
 
+    /* A bundle on a border may belong to the system beyond it. */
     if (!glint_transfer_init(&b->transfer, lens, b->visible->ghost, sine_q30,
                              wave_q24) ||
         b->transfer.system != s)
-        return false; /* on a border: the other side's */
+        return false;
     b->direction[0] = sine_q30 * 0x1p-30;
     b->direction[1] = 0;
     b->direction[2] = sqrt(1 - b->direction[0] * b->direction[0]);

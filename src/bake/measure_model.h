@@ -15,10 +15,11 @@ struct glint_errors {
 };
 
 struct glint_measured {
-    int rays;      /* that got through */
+    int rays;      /* number of rays that got through */
     int intruders; /* rays that are cut, well outside of every edge,
                       but pass in the model */
-    struct glint_errors of[GLINT_OUT_KINDS]; /* units as in the model file */
+    struct glint_errors of[GLINT_OUT_KINDS]; /* errors of each output, in the
+                                                model file's units */
 };
 
 /* Measures system SYSTEM of LENS, made from FITTED. Deterministic. */

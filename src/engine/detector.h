@@ -14,9 +14,9 @@
 enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
-    double headroom_ev; /* how far over white clipped pixels really are; below
-                           0: as the profile of each lamp has it */
-    int max;            /* lamps a picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
+    double headroom_ev; /* stops by which clipped pixels really exceed white;
+                           below 0: the profile of each lamp tells */
+    int max; /* most lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
     /* The lamps of the last frame, as found, the strongest first; untracked
      * ones are numbered from 1. */

@@ -18,7 +18,8 @@ static const double compression = 0.15; /* stops a stop */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-static const double overshoot = 0.5; /* of a lamp that came */
+/* largest relative excess of a lamp over what it comes to by itself */
+static const double overshoot = 0.5;
 
 void glint_strength_defaults(struct glint_strength *strength)
 {

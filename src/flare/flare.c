@@ -6,7 +6,7 @@
 #include "flare/wave_sets.h"
 
 enum {
-    WHOLE_OPENING_Q30 = 1 << 30, /* as wide as the model's stop */
+    WHOLE_OPENING_Q30 = 1 << 30, /* an opening as wide as the model's stop */
     LEAST_OPENING_Q30 = 1 << 20
 };
 

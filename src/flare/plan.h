@@ -22,13 +22,14 @@
 /* Where the rays of a bundle come from. */
 struct glint_bundle_plan {
     int32_t ghost, light, wave;
-    uint8_t energy_up;              /* see struct glint_transfer */
-    struct glint_box_window window; /* of the box, that the stop lets through */
+    uint8_t energy_up; /* see struct glint_transfer */
+    /* part of the box that the stop lets through */
+    struct glint_box_window window;
     /* Of two barrels and a round stop: how far, in the mean, the grid's
      * straight lines lie above (1 + r^2) / 2, which is bent between its rays */
     uint16_t sag_q16[3];
-    struct glint_real flux; /* of the whole pupil, at the most energy seen;
-                               display white times pixels */
+    struct glint_real flux; /* light of the whole pupil at the most energy seen,
+                               in display white times pixels */
     struct glint_real irradiance; /* the same over the pixels it falls on */
     int64_t peak_q20; /* no pixel gets more; 1 = what can be seen, 2^20 at most
                        */
@@ -37,11 +38,13 @@ struct glint_bundle_plan {
 struct glint_plan {
     const struct glint_flare_frame *frame;
     const struct glint_light *light;
-    int n_lights, width, height; /* of the picture */
+    /* number of lights; size of the picture in pixels */
+    int n_lights, width, height;
     unsigned sets;
-    int half;  /* pixels are twice as wide and high as the picture's */
-    int round; /* the stop is */
-    int32_t opening_q30; /* of the stop, over the model's: 2^20 .. 2^30 */
+    int half;  /* 1: pixels are twice as wide and high as the picture's */
+    int round; /* 1: the stop is round */
+    /* opening of the stop over the model's, 2^20 .. 2^30 */
+    int32_t opening_q30;
 };
 
 /* Of a worker. */

@@ -40,10 +40,12 @@ static int64_t stop_change(const struct glint_probe *s)
 
 static int64_t one_radius(const struct glint_probe *s)
 {
-    const int64_t radius = q_divide(s->limit[GLINT_OUT_STOP_X] * 20, 21) >>
-                           GLINT_PROBE_FINE_LOG2; /* of 1.05 */
+    /* The limit is 1.05 radii. */
+    const int64_t radius =
+        q_divide(s->limit[GLINT_OUT_STOP_X] * 20, 21) >> GLINT_PROBE_FINE_LOG2;
 
-    return radius > 0 ? radius : 1; /* of coarser units than a radius */
+    /* A radius below one unit must not count as 0. */
+    return radius > 0 ? radius : 1;
 }
 
 /* The same of a round stop's outline, (1 + r^2) / 2 like a barrel's: where r is

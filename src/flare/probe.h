@@ -22,7 +22,8 @@ enum { GLINT_PROBE_ACROSS = 16, GLINT_PROBE_DOWN = 8 };
 
 struct glint_probe_node {
     int32_t at[GLINT_OUT_KINDS];
-    int inside; /* whether the ray passes the stop and the barrels, or nearly */
+    int inside; /* nonzero: the ray passes the stop and the barrels, or nearly
+                 */
 };
 
 /* How a quantity changes from ray to ray: sums of squares of differences, and
@@ -50,10 +51,8 @@ struct glint_probe {
     int64_t limit[GLINT_OUT_KINDS]; /* largest value that counts as inside */
 };
 
-enum {
-    GLINT_PROBE_FINE_LOG2 = 6
-}; /* squares are of differences over so much
-    */
+/* log2 of what differences are divided by before they are squared */
+enum { GLINT_PROBE_FINE_LOG2 = 6 };
 
 /* Sends the rays of a grid of ACROSS x DOWN cells over half the window of T,
  * towards a stop of OPENING_Q30 of the model's radius. RUN adds to n_rays, and

@@ -34,8 +34,8 @@ struct glint_flare {
     struct glint_flare_stats stats;
     int half, width, height; /* half resolution or not, and the size that is
                                 drawn with it: see struct glint_flare_frame */
-    const struct glint_half *quads; /* if half */
-    int n_bundles, n_vertices;      /* added so far */
+    const struct glint_half *quads; /* set only at half resolution */
+    int n_bundles, n_vertices;      /* bundles and vertices taken in so far */
     struct glint_plan plan;         /* plan for a lens, unless frame is NULL */
     struct glint_bundle_plan *planned; /* plan of each bundle planned */
     struct glint_real flux, brightest; /* flux of all that was planned, and the

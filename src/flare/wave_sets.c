@@ -9,10 +9,10 @@ enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 /* A ghost and a light. Lies where bundles find their places only later. */
 struct job {
     int ghost, light;
-    int set;      /* or UNSEEN */
+    int set;      /* index of its set, or UNSEEN */
     int peak_q20; /* peak of all its waves, 2^20 at most: see struct
                      glint_bundle_plan */
-    int first;    /* first of its bundles */
+    int first;    /* index of its first bundle */
 };
 
 typedef char

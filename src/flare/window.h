@@ -26,9 +26,10 @@ struct glint_window_nodes {
     int32_t at[GLINT_OUT_KINDS][GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     int32_t bend[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     uint32_t beyond[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
-    uint8_t inside[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS]; /* of the stop */
-    int64_t radius; /* of the stop, in units of its position */
-    int n_rays;     /* of all that were sent */
+    /* nonzero: the ray is inside of the stop */
+    uint8_t inside[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
+    int64_t radius; /* radius of the stop, in the units of positions in it */
+    int n_rays;     /* number of all rays sent */
 };
 
 /* Narrows the window of T to what a stop of OPENING_Q30, 2^20 .. 2^30, of the

@@ -6,7 +6,8 @@
 
 enum {
     NEAREST_SPOTS = 8,
-    FAR_LOG2 = 2, /* of squared distances: what is faint or was lost */
+    FAR_LOG2 = 2, /* log2 of the factor on squared distances where a spot is
+                     faint or a lamp was lost */
     PIXEL2_Q16 = 1 << 16
 };
 

@@ -31,8 +31,9 @@ struct glint_arena;
 enum {
     BRIGHT_BLOCK = 32,    /* pixels */
     BRIGHT_CLIPPED = 250, /* a channel here or above says nothing of colour */
-    BRIGHT_WHITE = 254,   /* brightness where luma is 237 or more, too, */
-    BRIGHT_HOT = 255      /* and 252 */
+    /* brightness that clipped pixels of luma 237 or more have, too */
+    BRIGHT_WHITE = 254,
+    BRIGHT_HOT = 255 /* the same for luma 252 or more */
 };
 
 /* Where a code of a row's pixels lies. */
@@ -53,18 +54,18 @@ struct glint_bright {
     /* Private. */
     const struct glint_image *image;
     const struct glint_layout *layout;
-    struct glint_bright_code code[3]; /* of the row; Y Cb Cr, R G B, or two
-                                         bytes */
-    int n_codes;                      /* the rest are as the first */
-    int low;                          /* 1 .. 255 */
+    /* codes of the row: Y Cb Cr, R G B, or two bytes */
+    struct glint_bright_code code[3];
+    int n_codes;         /* number of codes in use; the rest repeat the first */
+    int low;             /* least brightness of a bright pixel, 1 .. 255 */
     int low_code;        /* the least byte, of grey or of R, G or B, of a bright
                             pixel; 256: no code is enough */
     int32_t low_sum_q16; /* the least largest channel of Y, Cb, Cr that a bright
                             pixel has, less a code for rounding */
     struct glint_curve *curve;
-    int curve_tone; /* that curve is of; -1: none yet */
+    int curve_tone; /* transfer function of curve; -1: there is none yet */
     struct glint_ycc ycc;
-    uint8_t *full_luma; /* of Y codes */
+    uint8_t *full_luma; /* full-range luma of each Y code */
     uint8_t *beyond;    /* brightness of a clipped pixel, by luma */
 };
 

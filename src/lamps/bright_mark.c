@@ -243,7 +243,8 @@ static int may_be_bright_packed(const struct glint_bright *b,
                          (const int[]){e.least[cb], e.least[cr]});
 }
 
-enum { QUIET_CHROMA = 24 }; /* of most blocks, from grey */
+/* distance from grey, in codes, that most blocks keep within */
+enum { QUIET_CHROMA = 24 };
 
 /* From here on a pixel may be bright whose chroma is quiet; 0 .. 256. */
 static int loud_luma(const struct glint_bright *b)

@@ -14,7 +14,8 @@
 #include "glint/lamps.h"
 
 enum {
-    LIGHT_CANDIDATES = 2048, /* at least the 1024 that find may be asked for */
+    LIGHT_CANDIDATES = 2048, /* number of candidates, more than the 1024 lamps
+                                that find may be asked for */
     LIGHT_LEVELS = 6
 };
 
@@ -24,15 +25,17 @@ struct glint_lamp_finder {
     int64_t merge2_q16; /* squared merge distance */
     struct glint_bright bright;
     struct glint_white *white;
-    int32_t least_white_q20; /* linear, of the next picture */
+    int32_t least_white_q20; /* white of the next picture is no less; linear
+                                light */
     struct glint_row_light row;
     struct glint_regions regions[LIGHT_LEVELS];
-    struct glint_level level[LIGHT_LEVELS]; /* of rising brightness */
+    struct glint_level level[LIGHT_LEVELS]; /* levels, by rising brightness */
     int n_levels;
-    int at;                            /* level that regions are offered of */
-    struct glint_candidate *candidate; /* and one on its way out */
-    int32_t *order; /* of candidates: a heap, then by falling flux */
-    int n;          /* in order, the faint ones last */
+    int at; /* level whose regions are being offered */
+    /* the candidates, and room for one on its way out */
+    struct glint_candidate *candidate;
+    int32_t *order; /* indices of candidates: a heap, then by falling flux */
+    int n;          /* number of candidates in order, the faint ones last */
     int dropped;
 };
 

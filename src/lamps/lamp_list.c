@@ -6,7 +6,8 @@
 #include "base/sort.h"
 #include "lamps/lamp_finder.h"
 
-#define JOIN_REACH 4 /* what exceeds MAX joins within so many merge radii */
+/* merge radii within which lamps in excess of MAX join another */
+#define JOIN_REACH 4
 
 static int is_brighter(const struct glint_lamp_finder *f, int32_t a, int32_t b)
 {

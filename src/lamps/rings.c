@@ -14,7 +14,7 @@
 enum {
     SECTORS = 8,
     BORDERS = 4,
-    SAMPLES = 32, /* of the core's radius, where it is not smaller */
+    SAMPLES = 32, /* most samples along the core's radius */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
     NEAR = GLINT_PROFILE_NEAR
@@ -24,9 +24,9 @@ enum {
 
 /* A spot nearby: what lies behind the line between is its own. */
 struct border {
-    int x, y;      /* towards it, pixels */
-    int64_t limit; /* of the product with that */
-    int32_t at_q8; /* pixels off */
+    int x, y;      /* vector to the spot, pixels */
+    int64_t limit; /* A sample whose product with x, y is larger lies behind. */
+    int32_t at_q8; /* pixels from the middle to the line */
 };
 
 struct window {

@@ -36,12 +36,14 @@ enum {
 
 struct glint_profile_channel {
     int32_t black_q20, scale_q16; /* background; 1 / (1 - that), to 16 */
-    int32_t spread_q16;           /* of the background, in u */
-    int32_t step_q16; /* from the background to the next code, in u, where
+    int32_t spread_q16;           /* spread of the background, in u */
+    int32_t step_q16; /* distance in u from the background to the next code if
                          codes have fewer than 8 bits; else 0 */
-    int64_t area_q8[GLINT_PROFILE_LEVELS + 1]; /* where u is 2^-k or more;
-                                                  [0]: clipped */
-    int64_t n[GLINT_PROFILE_LEVELS + 1]; /* pixels whose own level that is */
+    /* [k]: pixels with u of 2^-k or more, in part below 2^(1 - k); [0]: clipped
+     * pixels */
+    int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
+    int64_t n[GLINT_PROFILE_LEVELS + 1]; /* [k]: pixels with u from 2^-k to
+                                            below 2^(1 - k); [0]: from 1 on */
     int64_t fringe_q16; /* light of the fringe, and of what is clipped */
     int64_t white_q16;
 };

@@ -44,7 +44,7 @@ struct glint_row_light {
     uint16_t *from; /* [width + 1]: the column itself where its sum is
                        kept, else the first of the like pixels that it
                        is among, and so is the one before */
-    int end;        /* of the last stretch; -1: there is none */
+    int end;        /* end of the last stretch; -1: there is none */
 };
 
 void glint_row_light_carve(struct glint_row_light *row,

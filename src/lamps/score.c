@@ -6,13 +6,15 @@
 
 enum {
     FLOOR_Q20 = 1 << 12, /* added to light: noise of the dark is no contrast */
-    LEAST_Q8 = -256,     /* of a contrast */
+    LEAST_Q8 = -256,     /* least contrast that counts, 1/256 stops */
     MOST_Q8 = 6 * 256,
-    SMALL_Q8 = -2424, /* log2 of a share of the picture: 1/700; a colour counts
-                         for a lamp here, */
-    LARGE_Q8 = -1400, /* and against it from here on */
+    SMALL_Q8 = -2424, /* log2 of 1/700 of the picture, at which size a colour
+                         speaks for a lamp */
+    LARGE_Q8 = -1400, /* log2 of 1/44 of the picture, from which on it speaks
+                         against one */
     HALO_MOST_Q8 = 512,
-    WIDE_Q8 = 1400, /* log2, from where a region is large until it is wholly */
+    WIDE_Q8 = 1400, /* log2 span: regions begin to be large at 1/1960 of the
+                       picture and are so wholly at 1/44 */
     SURE_Q8 = 384,  /* scores beyond are all the same */
     SCORE_PARTS = EVIDENCE_DARK_32 - EVIDENCE_DARK_2 + 1
 };

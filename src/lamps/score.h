@@ -42,19 +42,21 @@ enum {
 /* Measures, _q8. */
 enum glint_evidence {
     EVIDENCE_AROUND, /* stops over what is around: the lower quartile */
-    EVIDENCE_HALO,   /* by how much that is more further out: light falls off */
-    EVIDENCE_SPREAD, /* between the quartiles close around: it does not do so
-                        alike in all directions */
+    EVIDENCE_HALO,   /* stops by which that contrast is more further out: light
+                        falls off */
+    EVIDENCE_SPREAD, /* stops between the quartiles close around: light does not
+                        fall off alike in all directions */
     EVIDENCE_FILL,   /* area over that of a disc that is as wide: 256 for one */
     EVIDENCE_BOX,    /* area over that of its box */
     EVIDENCE_SIZE,   /* log2 of its share of the picture: 0 and less */
     EVIDENCE_COLOUR, /* saturation, 256: one channel alone; of a small region */
     EVIDENCE_DIM,    /* stops by which half of the picture is less than five
                         below a white that is none */
-    EVIDENCE_CLOSE,  /* as AROUND, close to the edge: that of a lamp is steep */
-    EVIDENCE_WHITE,  /* stops of its mean luminance over its level's white */
-    EVIDENCE_CROWD,  /* log2 of the regions of its level: lamps are few */
-    EVIDENCE_HIGH, /* how far above the picture's lower edge: 256 is the top */
+    EVIDENCE_CLOSE, /* stops over what is close to the edge, which is steep at a
+                       lamp */
+    EVIDENCE_WHITE, /* stops of its mean luminance over its level's white */
+    EVIDENCE_CROWD, /* log2 of the regions of its level: lamps are few */
+    EVIDENCE_HIGH,  /* height above the picture's lower edge: 256 is the top */
     /* Of a large region, which is the sun or a shade; 0 of a small one. */
     EVIDENCE_WIDE_HALO,
     EVIDENCE_WIDE_HOT, /* 256: as bright as its level's white, and more */
@@ -80,8 +82,9 @@ struct glint_candidate {
 
 /* Brightness that regions are made of. */
 struct glint_level {
-    int low;           /* of their pixels */
-    int seed, clipped; /* of pixels that are counted */
+    int low;           /* least brightness of the regions' pixels */
+    int seed, clipped; /* brightness from which pixels count as seeds, or as
+                          clipped */
     int32_t cost_q8;   /* taken off the score where regions of several levels
                           lie within each other */
 };

@@ -23,8 +23,9 @@ enum {
 
 struct glint_white {
     int n;                 /* pixels looked at */
-    int32_t at_least[257]; /* of these, how many have that brightness */
-    int32_t light_q20;     /* linear, of white */
+    int32_t at_least[257]; /* [i]: number of those pixels with brightness i or
+                              more */
+    int32_t light_q20;     /* linear light of white */
 };
 
 /* BRIGHT has begun with a picture of HEIGHT rows. */

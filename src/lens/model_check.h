@@ -9,7 +9,8 @@
 #include "base/blob.h"
 #include "glint/model.h"
 
-enum { MODEL_LIMIT = 1 << 30 }; /* of sums of magnitudes; also 1 as a q30 */
+/* limit of sums of magnitudes; also 1 as a q30 */
+enum { MODEL_LIMIT = 1 << 30 };
 
 struct glint_model_check {
     struct glint_blob blob;

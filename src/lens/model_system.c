@@ -8,13 +8,15 @@
 #include "lens/model_check.h"
 
 enum {
-    MAX_SHIFT = 20, /* of narrow coefficients */
+    MAX_SHIFT = 20, /* most bits that narrow coefficients are shifted by */
     MAX_ROOTS = 2,
     MAX_HEAD = 28,
-    MIN_EXPONENT = -80, /* of outputs and boxes */
+    /* least and most binary exponent of outputs and boxes */
+    MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    BOX_NODES_LOG2 = 5, /* angles at which a box is looked at, less one */
+    /* log2 of the steps between the angles at which a box is checked */
+    BOX_NODES_LOG2 = 5,
     MAX_SHARED = 8 /* times the file: what systems may refer to. Else systems
                       with the same large tables took quadratic time */
 };
@@ -65,7 +67,7 @@ static const char *check_box_at_knot(const int32_t box[3])
 {
     if (box[1] < 0 || box[2] < 0)
         return "a box has a size below 0";
-    /* and neighbours' differences stay within an int32 */
+    /* Differences between neighbours must stay within an int32. */
     if (magnitude(box[0]) >= MODEL_LIMIT ||
         magnitude(box[0]) + box[1] > MODEL_LIMIT || box[2] > MODEL_LIMIT)
         return "a box reaches too far";
@@ -148,7 +150,8 @@ static const char *check_terms(struct glint_model_check *c,
 
         if (reason)
             return reason;
-        for (uint32_t m = 0; m < k; m++) /* at most 120 of them */
+        for (uint32_t m = 0; m < k; m++) /* An output has few enough terms, 120
+                                            at most, to compare all. */
             if (power[m] == power[k])
                 return "an output has a term twice";
     }

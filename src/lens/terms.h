@@ -9,7 +9,7 @@
 #include "base/q.h"
 #include "glint/transfer.h"
 
-enum { TRANSFER_MAX_EXPONENT = 15 }; /* of any variable */
+enum { TRANSFER_MAX_EXPONENT = 15 }; /* largest exponent of any variable */
 
 #define TRANSFER_ONE_Q30 (INT32_C(1) << 30)
 

@@ -198,7 +198,8 @@ static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
 /* V of row J. */
 static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
 {
-    const int last = n_cells / 2 - 1; /* of the lower side, at its rim */
+    /* index of the last row of the lower side */
+    const int last = n_cells / 2 - 1;
 
     if (!t->annulus)
         return node_q30(0, t->window.v_to_q30, j, n_cells);

@@ -9,15 +9,16 @@
 #include "tile/blend.h"
 
 enum {
-    GLINT_STAR_ZONES = 8,     /* of distance, each four times as far */
+    /* zones of distance, each four times as far as the one before */
+    GLINT_STAR_ZONES = 8,
     GLINT_STAR_INVERSES = 128 /* steps of a table of 1 / x, x 1 .. 2 */
 };
 
 /* A light, times what its tables are counted in. */
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
-    uint64_t inner_q16; /* r^2 is taken for no less */
-    int is_bare;        /* with its core */
+    uint64_t inner_q16; /* least value that r^2 is taken for, pixels^2 */
+    int is_bare;        /* 1: the lamp's core is drawn as well */
     /* Light of a profile's step, and of one of the core, over 2^exponent: 15
      * bits. And the light of the halo's. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
@@ -35,7 +36,7 @@ struct glint_star_lamp {
 /* Light of a stretch of a row of pixels. */
 struct glint_star_stretch {
     int y, x0, x1; /* x0 .. x1 - 1 */
-    int lo, hi;    /* of these, what has got light; the rest is 0 */
+    int lo, hi;    /* columns that have got light; the rest is 0 */
     int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3], from x0 on */
 };
 

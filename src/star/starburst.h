@@ -47,10 +47,11 @@ enum {
  * it throws light, V across: u = x cos + y sin, v = y cos - x sin, pixels, y
  * down. */
 struct glint_star_line {
-    int32_t cos_q30, sin_q30; /* of an angle from 0 to below 180 degrees */
-    int32_t cot_q16;          /* cos / sin, held to +-2^12 */
-    int32_t across_q16;       /* 1 / sin, held to 2^12 */
-    int32_t border_q16;       /* cot of the angle half-way to the next line */
+    /* direction of the line, from 0 to below 180 degrees */
+    int32_t cos_q30, sin_q30;
+    int32_t cot_q16;    /* cos / sin, held to +-2^12 */
+    int32_t across_q16; /* 1 / sin, held to 2^12 */
+    int32_t border_q16; /* cot of the angle half-way to the next line */
     /* In the tables' steps: light at v = reach i / 128, times
      * r^2 / (1 - (v / r)^2). From 128 on 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
@@ -61,14 +62,15 @@ struct glint_star_tables {
     int n_lines; /* 1 .. GLINT_MAX_BLADES, angles rising */
     const struct glint_star_line *line;
     int first; /* line of the sector that begins at angle 0: the last, or 0 */
-    struct glint_real step;     /* of all profiles: light of 1 */
-    int32_t reach_q8;           /* pixels, of a profile: 1 .. 2^14 */
-    int32_t reach_log2_q16;     /* of reach_q8 */
-    int32_t per_pixel_q16;      /* steps of a profile, at most 128 */
-    int32_t pixels_q16;         /* of a step */
-    int32_t core_per_pixel_q16; /* steps of the core: 2^16 .. 2^18 */
-    int32_t width_q8;           /* pixels: of profiles where half as bright */
-    int32_t inner_q8;           /* pixels: within, 1 / r^2 grows no more */
+    /* light that the value 1 stands for in all profiles */
+    struct glint_real step;
+    int32_t reach_q8;           /* reach of a profile, 1 .. 2^14 pixels */
+    int32_t reach_log2_q16;     /* log2 of reach_q8 */
+    int32_t per_pixel_q16;      /* steps of a profile per pixel, at most 128 */
+    int32_t pixels_q16;         /* pixels per step of a profile */
+    int32_t core_per_pixel_q16; /* steps of the core per pixel, 1 .. 4 */
+    int32_t width_q8; /* pixels across profiles where they are half as bright */
+    int32_t inner_q8; /* radius in pixels within which 1 / r^2 grows no more */
     /* log2 of the light times r^2, _q11, from halo_log2_q16 on; and the
      * largest of each row. */
     int32_t halo_log2_q16;
@@ -83,16 +85,17 @@ struct glint_star_tables {
 /* A lamp as the picture shows it. */
 struct glint_star_light {
     int32_t x_q8, y_q8; /* pixels from the top left corner */
-    int32_t radius_q8;  /* of the lamp in the picture, a disc, 0 .. 2^22: lines
-                           are wider by that; below 0: no picture shows it, and
-                           the core is drawn as well */
-    struct glint_real power; /* white times pixels; 2^30 at most count */
-    int32_t rgb_q14[3];      /* colour, 0 .. 2^14 */
+    int32_t radius_q8;  /* radius of the lamp's disc, 0 .. 2^14 pixels, by which
+                           lines are wider; below 0: no picture shows the lamp,
+                           and its core is drawn as well */
+    /* light, in white times pixels; 2^30 at most count */
+    struct glint_real power;
+    int32_t rgb_q14[3]; /* colour, 0 .. 2^14 */
 };
 
 struct glint_star_config {
-    int n_workers;     /* of the flares to come, 1 .. 64 */
-    int width, height; /* of the pictures, 1 .. GLINT_MAX_SIDE */
+    int n_workers;     /* workers of the flares to come, 1 .. 64 */
+    int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int max_lights;    /* 1 .. GLINT_STAR_MAX_LIGHTS */
 };
 

@@ -66,7 +66,8 @@ struct glint_tiles {
     int width, height; /* size of the picture */
     const struct glint_image *image; /* NULL: light is dropped */
     const struct glint_resolve *resolve;
-    const struct glint_half *quads;  /* if half, and the picture not linear */
+    /* set if half is, unless the picture is linear */
+    const struct glint_half *quads;
     const struct glint_blend *blend; /* NULL: one pass, which gives no cover */
 };
 
@@ -77,7 +78,7 @@ struct glint_tile_scratch {
     struct glint_quads_rows *codes;
     int n_tiles; /* tiles in which something was drawn so far */
     int n_held;  /* samples of a linear picture at the end of their range */
-    struct glint_blend_rows *blend; /* if tiles have it */
+    struct glint_blend_rows *blend; /* set if the tiles blend passes */
 };
 
 /* Scratch of a worker: what the next pass gives, and all cover so far. */

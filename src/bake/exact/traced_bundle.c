@@ -10,8 +10,10 @@
 #include "glint/traced_bundle.h"
 #include "lens/grid.h"
 
-enum { SAMPLING = 24 }; /* cells a side of what decides cuts and grid */
-/* where sampling finds fewer rays, cells a stop radius */
+/* cells per side of the sampling that decides cuts and grid */
+enum { SAMPLING = 24 };
+/* With fewer rays inside than FEW_INSIDE, sampling tells too little of the
+ * grid, which then gets CELLS_A_RADIUS cells per stop radius. */
 enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
 
 /* The ghost's box on the sensor, turned by the light's azimuth, meets the

@@ -8,32 +8,42 @@
 #include "engine/setup/degrees.h"
 #include "bake/fit/zone_fit.h"
 
-#define LEAST_FILL 0.33 /* of a box; below it the grids waste their cells */
-#define CROWD_DEG                                                            \
-    1.5               /* a vertex has room for two barrels: more make a zone \
-                         worth halving down to here */
-#define FILL_DEG  0.6 /* narrower zones need not care for that */
+/* Share of a box: a lower fill wastes the cells of the grids. */
+#define LEAST_FILL 0.33
+#define CROWD_DEG                                                           \
+    1.5 /* degrees: a wider zone with more than two barrels is halved, as a \
+           vertex has room for two */
+/* Degrees: narrower zones may fill their boxes less. */
+#define FILL_DEG 0.6
+/* Degrees: narrower zones are not halved. */
 #define LEAST_DEG 0.7
-#define BRIGHT_EASE                                         \
-    1.5 /* zones of ghosts as bright as that may be half as \
-           wide */
-#define STUCK                                                  \
-    0.75 /* half a zone that is left with so much of the whole \
-            one's error gains nothing from halving... */
-#define STUCK_DEG     1.2  /* ...once it is this narrow */
-#define PART_LEFT     5.0  /* zones that show more than that are parted */
-#define MOST_HIDDEN   3.0  /* of very faint ones: so many times as much */
-#define HOPELESS      20.0 /* times that is what more terms cannot mend, */
-#define HALVES_ANYWAY 10.0 /* nor, where it can be halved, so much */
-#define WANDERS                                                  \
-    0.5 /* boxes that do so more make it worth to halve the band \
+#define BRIGHT_EASE                                                          \
+    1.5 /* ease below which a ghost is bright: its zones may be half as wide \
          */
+#define STUCK                                                                 \
+    0.75 /* share of the whole zone's error: a half left with more has gained \
+            nothing from halving */
+/* Degrees: a narrower zone which gained nothing is not halved again. */
+#define STUCK_DEG 1.2
+/* Tolerances: zones with a larger error are parted. Where the ghost is so faint
+ * that it hides more, they may have up to MOST_HIDDEN times as much. */
+#define PART_LEFT   5.0
+#define MOST_HIDDEN 3.0
+/* Times that error: more terms do not mend what is worse. */
+#define HOPELESS 20.0
+/* Tolerances: a wide zone with a larger error will be halved anyway. */
+#define HALVES_ANYWAY 10.0
+#define WANDERS                                                               \
+    0.5 /* half widths: a box that moves or grows more over the band makes it \
+           worth to halve the band */
+/* Width of a band in w, 0 .. 2: narrower ones are not halved. */
 #define LEAST_BAND 0.6
-#define WORTH_CROP 0.8 /* as long as cropping a part leaves less, */
+/* Share of a part: cropping is repeated if it leaves less. */
+#define WORTH_CROP 0.8
 
 enum {
-    BAND_DEPTH = 2, /* times that a band is, down to LEAST_BAND */
-    CROPS = 2       /* it is done so many times */
+    BAND_DEPTH = 2, /* times that a band can be halved, by LEAST_BAND */
+    CROPS = 2       /* most times that a part is cropped */
 };
 
 struct fitter {

@@ -28,7 +28,7 @@ static double largest_sum(const double *value, int sets, int n)
     return most;
 }
 
-enum { LEAST_EXPONENT = -80 }; /* that a model may have */
+enum { LEAST_EXPONENT = -80 }; /* least binary exponent that a model may have */
 
 /* The sum of the N values' largest magnitudes over the sets: a bound on any sum
  * of values between those of the sets. */

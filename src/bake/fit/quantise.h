@@ -26,8 +26,8 @@ struct glint_quantised_output {
     int32_t exponent;
     int32_t *coef; /* [sets][n_terms]; owned */
     int n_narrow, shift;
-    int head;                             /* as the file has it */
-    uint8_t order[GLINT_MAX_MODEL_TERMS]; /* terms as the file has them */
+    int head; /* head of the output, as the file stores it */
+    uint8_t order[GLINT_MAX_MODEL_TERMS]; /* terms in the file's order */
     uint32_t bound, rounding_q8;
     bool proven;
 };

@@ -19,10 +19,11 @@ struct column {
     bool dead;
     double length;              /* length of the term's column */
     double on[GLINT_MAX_TERMS]; /* its shares of the chosen directions */
-    int clean;                  /* so many of which AT has no longer */
-    double was2, left2;         /* squared length of AT, and without all */
-    double pull;                /* product with the residual */
-    double *at;                 /* [n] */
+    int clean; /* number of chosen directions that AT is free of */
+    /* squared length of AT, now and without all chosen directions */
+    double was2, left2;
+    double pull; /* product with the residual */
+    double *at;  /* [n] */
 };
 
 struct search {

@@ -30,9 +30,10 @@ struct glint_visible {
     int ghost;
     double field_mm; /* light beyond this radius on the sensor is no loss */
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
-    struct glint_path path[GLINT_VISIBLE_WAVES]; /* from wave_lo to wave_hi */
-    struct glint_path
-        position_path[GLINT_VISIBLE_WAVES]; /* the same, positions only */
+    struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
+                                                    wave_lo to wave_hi */
+    struct glint_path position_path[GLINT_VISIBLE_WAVES]; /* those paths, for
+                                                             positions only */
 };
 
 void glint_visible_init(struct glint_visible *visible,

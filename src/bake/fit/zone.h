@@ -26,7 +26,7 @@ struct glint_zone {
     double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     double fill; /* mean share of the box that the ghost needs */
-    int annulus; /* as of struct glint_model_system */
+    int annulus; /* same meaning as in struct glint_model_system */
 };
 
 /* A part of a zone's box and band: U0 .. U1 of its u, up to TOP of its v, W0 ..

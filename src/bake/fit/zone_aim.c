@@ -6,8 +6,8 @@
 /* The rays of one angle and wavelength from FIRST on: what is seen of them. */
 struct sight {
     int n, n_all;
-    double low[2], high[2]; /* on the sensor */
-    double energy;          /* mean */
+    double low[2], high[2]; /* corners of the seen area on the sensor, mm */
+    double energy;          /* mean energy of the rays */
 };
 
 static struct sight look(const struct glint_zone_rays *r, int first)

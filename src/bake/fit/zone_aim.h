@@ -18,7 +18,7 @@ struct glint_zone_aim {
     double stop;   /* tolerance of places in the stop, radii */
     double energy; /* share */
     double ease;   /* over the tolerances of a bright ghost */
-    double hidden; /* what places may be off before the ghost shows it, over
+    double hidden; /* error of places at which the ghost begins to show it, over
                       sensor_mm */
 };
 

@@ -17,7 +17,8 @@ enum { GLINT_ZONE_BATCH = 32 };
 struct glint_zone_batch {
     const struct glint_path *path;
     int n;
-    double x[GLINT_ZONE_BATCH][GLINT_VARIABLES]; /* in the zone */
+    /* coordinates in the zone, each -1 .. 1 */
+    double x[GLINT_ZONE_BATCH][GLINT_VARIABLES];
     struct glint_launch from[GLINT_ZONE_BATCH];
     struct glint_ray ray[GLINT_ZONE_BATCH];
     enum glint_ray_status status[GLINT_ZONE_BATCH];

@@ -8,7 +8,7 @@
 /* Share of a box that is seen, which is enough: a fuller one needs higher
  * powers of s, which everything that is seen through it has to undo. */
 #define ENOUGH_FILL 0.6
-#define FULLER      1.6 /* times the share that another power must gain */
+#define FULLER      1.6 /* least factor in fill for another power */
 
 double glint_zone_node(int k, int n)
 {

@@ -21,10 +21,10 @@
 struct glint_zone_task {
     const struct glint_zone *zone;
     const struct glint_visible *visible; /* ghost over the wavelengths fitted */
-    double barrel;   /* tolerance of barrels: as of struct glint_tolerance */
-    bool thorough;   /* a root of the energy, and more terms */
-    double hopeless; /* errors with which a zone is not worth to be fitted to
-                        the end, in tolerances; 0: every zone is */
+    double barrel;   /* tolerance of barrels, see struct glint_tolerance */
+    bool thorough;   /* true allows a root of the energy, and more terms */
+    double hopeless; /* tolerances; a zone with a larger error is not fitted to
+                        the end; 0: every zone is */
 };
 
 /* Memory for the fit of one zone after the other. */

@@ -33,8 +33,8 @@ struct glint_zone_rays {
     int n_barrels;
     int barrel[GLINT_MAX_BARRELS]; /* events of the path */
     double radius[GLINT_MAX_BARRELS][GLINT_ZONE_RAYS];
-    double missed_cut; /* how far past a barrel that is not among them a ray
-                          gets at most, relative */
+    double missed_cut; /* largest relative distance that a ray gets past a
+                          barrel which is not listed here */
 };
 
 static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,

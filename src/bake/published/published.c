@@ -37,7 +37,8 @@ struct job {
     int n_ranges;
     struct knots knots[GLINT_MAX_RANGES];
     double radius_mm;
-    int wave[GLINT_MAX_WAVELENGTHS]; /* by rising 1 / wavelength^2 */
+    int wave[GLINT_MAX_WAVELENGTHS]; /* indices of the wavelengths, by rising 1
+                                        / wavelength^2 */
     struct glint_shared_rays *rays;  /* [SEARCH_ZONES] */
     struct glint_shared_zone *zone;  /* [SEARCH_ZONES] */
     struct glint_shared_basis basis[GLINT_SHARED_OUTPUTS];

@@ -31,9 +31,9 @@
 
 struct glint_published_options {
     int n_zones;    /* angles 0 .. max_deg, at least 2; 241 as published */
-    double max_deg; /* at most 89; 60 as published */
+    double max_deg; /* degrees, at most 89; 60 as published */
     int max_terms;  /* per output, 1 .. 12 */
-    const double *wavelength_nm; /* in any order, no two the same */
+    const double *wavelength_nm; /* nanometres, in any order, no two the same */
     int n_wavelengths;           /* 1 .. GLINT_MAX_WAVELENGTHS */
     double field_mm; /* light beyond this radius on the sensor is no loss */
 };

@@ -36,10 +36,12 @@ enum {
 struct glint_shared_rays {
     int n;
     double x[GLINT_VARIABLES][GLINT_SHARED_RAYS];
-    double at[GLINT_SHARED_OUTPUTS][GLINT_SHARED_RAYS]; /* by kind */
+    /* outputs of each ray, by kind */
+    double at[GLINT_SHARED_OUTPUTS][GLINT_SHARED_RAYS];
     double excess[GLINT_SHARED_RAYS]; /* the largest of all relative radii, stop
                                          and field too; above 1 it is cut */
-    bool lost[GLINT_SHARED_RAYS];     /* it got nowhere: no outputs */
+    bool lost[GLINT_SHARED_RAYS];     /* true: the ray got nowhere and has no
+                                         outputs */
 };
 
 struct glint_shared_basis {
@@ -59,7 +61,7 @@ struct glint_shared_zone {
      * ray, times its weight, and one for each coefficient. */
     double q[GLINT_SHARED_TERMS][GLINT_SHARED_ROWS], left[GLINT_SHARED_ROWS];
     double r[GLINT_SHARED_TERMS][GLINT_SHARED_TERMS]; /* [column][row] */
-    double share[GLINT_SHARED_TERMS];                 /* of the output on q */
+    double share[GLINT_SHARED_TERMS]; /* share of each row of q in the output */
     /* Directions of the terms apart from all the others, on q, and the output's
      * share of them. */
     double apart[GLINT_SHARED_TERMS][GLINT_SHARED_TERMS];

@@ -4,11 +4,14 @@
 #include <math.h>
 #include <stdio.h>
 
-#define STATED_TOLERANCE 1e-3 /* of a stated focal length, relative */
-#define CLEAR_SHARE      0.9  /* of the semi-diameter: surfaces stay apart */
-#define CONTACT_MM       1e-6 /* overlap that rounding may make */
-#define MIN_STOP_MM      1e-6
-#define STOP_SLACK       1e-9 /* rounding of the stop radius, relative */
+/* largest relative error of a stated focal length */
+#define STATED_TOLERANCE 1e-3
+/* share of the semi-diameter, the height at which surfaces must be apart */
+#define CLEAR_SHARE 0.9
+#define CONTACT_MM  1e-6 /* mm of overlap that rounding may make */
+#define MIN_STOP_MM 1e-6
+/* relative error of the stop radius that rounding may make */
+#define STOP_SLACK 1e-9
 
 /* Depth of element E at HEIGHT from the axis, behind its vertex. */
 static double sag_mm(const struct glint_prescription *lens, int e,

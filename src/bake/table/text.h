@@ -29,7 +29,8 @@
 #define GLINT_NUMBER_DIGITS 15    /* most significant digits of a number */
 
 struct glint_text_place {
-    int line, column; /* from 1; columns count bytes; line 0 is nowhere */
+    /* both count from 1, columns in bytes; line 0: no place */
+    int line, column;
 };
 
 struct glint_word {

@@ -34,8 +34,9 @@ struct glint_cells {
     const struct glint_path *path;
     struct glint_pupil pupil;
     double direction[3];
-    double cos_phi, sin_phi; /* from the light's frame to the camera's */
-    int n;                   /* cells a side, even */
+    /* rotation from the light's frame to the camera's */
+    double cos_phi, sin_phi;
+    int n; /* cells a side, even */
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
     int stride;   /* doubles a node */

@@ -10,9 +10,10 @@ enum { SHOWN = 1000 };
 /* A sampled ray. */
 struct probe {
     bool traced, inside;
-    double x_mm, y_mm; /* on the sensor */
+    double x_mm, y_mm; /* position on the sensor */
     double stop_x, stop_y, stop_r2;
-    double r2[GLINT_MAX_EVENTS + 1]; /* relative radius, squared */
+    /* relative radius at each event, squared */
+    double r2[GLINT_MAX_EVENTS + 1];
 };
 
 static void probe_ray(struct probe *p, const struct glint_path *path, double x,

@@ -45,7 +45,8 @@ static void media_of(const struct route *route, int k, double *front,
 /* z from the last event to element E, a neighbour. */
 static double step_mm(const struct route *route, int e)
 {
-    if (route->at < 0) /* from the vertex plane of the first surface */
+    if (route->at < 0) /* A ray that has met nothing yet starts at the vertex
+                          plane of the first surface. */
         return route->lens->stop_after == 0 ? -element_gap_mm(route->lens, 0)
                                             : 0.0;
     return e > route->at ? element_gap_mm(route->lens, route->at)

@@ -19,7 +19,7 @@ enum glint_cost_kind {
     GLINT_COST_BUNDLES, /* bundles drawn: a few rays each, and a polynomial each
                            row */
     GLINT_COST_VERTICES, /* vertices of grids */
-    GLINT_COST_EDGES,    /* across which light changes */
+    GLINT_COST_EDGES,    /* edges across which light changes */
     GLINT_COST_ROWS,     /* rows of pixels that edges cross */
     GLINT_COST_LIT,      /* pixels with any light */
     GLINT_COST_KINDS
@@ -29,8 +29,8 @@ enum glint_cost_kind {
  * 32 bits. */
 struct glint_cost_weight {
     const char *name;
-    double planned; /* for each that glint_cost_of() expects */
-    double counted; /* for each that a frame had */
+    double planned; /* cost of each that glint_cost_of() expects */
+    double counted; /* cost of each that a frame had */
 };
 extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 

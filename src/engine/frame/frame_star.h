@@ -21,17 +21,18 @@ struct glint_frame_star {
      * its middle, as a picture shows it with all that its light has spread
      * to; or NULL: lamps have the extent that they say. */
     const double *seen_px;
-    bool is_bare;  /* no picture shows the lamps: with their cores */
-    bool is_alone; /* without ghosts */
+    bool is_bare;  /* true: no picture shows the lamps, so their cores are drawn
+                    */
+    bool is_alone; /* true: the star is drawn without ghosts */
 
     /* Private. */
-    struct glint_star_optics optics; /* that tables are of */
+    struct glint_star_optics optics; /* optics for which the tables were made */
     struct glint_star_tables *tables;
-    struct glint_star *star;        /* what is set is drawn, unless NULL */
+    struct glint_star *star;        /* the star is drawn once set; NULL: none */
     struct glint_star_light *light; /* [max_lights] */
     void *mem;
     int max_lights;
-    bool is_set; /* for this frame */
+    bool is_set; /* true: the star is set for this frame */
 };
 
 /* Sets the star of LAMPS times SCALE on pictures like IMAGE, making tables

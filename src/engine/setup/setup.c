@@ -181,7 +181,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
 {
     const struct glint_model_header *h = lens->header;
     const double widest = glint_real_value(h->f_number);
-    /* as what is printed may have been rounded */
+    /* The f-number asked for may be a rounded print of the widest one. */
     const double by =
         fabs(widest / f_number - 1) < 1e-6 ? 1 : widest / f_number;
 

@@ -16,7 +16,7 @@
 
 #include "glint/view.h"
 
-enum { CELLS = 4 }; /* of a pixel, each way */
+enum { CELLS = 4 }; /* cells per pixel, each way */
 
 /* Square of cells about the middle, and their sums from the first one on. */
 struct cells {

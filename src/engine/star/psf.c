@@ -48,7 +48,8 @@ static double circle(double q)
 struct sides {
     int n, n_pair; /* 2: the other half of n are opposite, and not here */
     double length, apothem, area;
-    double c[GLINT_MAX_BLADES], s[GLINT_MAX_BLADES]; /* of normals */
+    /* cosines and sines of the sides' normals */
+    double c[GLINT_MAX_BLADES], s[GLINT_MAX_BLADES];
 };
 
 static void set_sides(struct sides *p, int n, double rotation_deg)
@@ -194,7 +195,8 @@ static double *transforms(const struct glint_psf *p, int n_rows)
     if (p->n_blades)
         set_sides(&sides, p->n_blades, 0);
     for (int k = 0; k < p->n_columns && table; k++) {
-        /* of a stop without rotation: half an edge on from a corner */
+        /* The table is of a stop without rotation, where angles begin half an
+         * edge on from a corner. */
         const double angle =
             p->n_blades ? GLINT_PI / p->n_blades + half * k / (p->n_columns - 1)
                         : 0;

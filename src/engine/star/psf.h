@@ -27,7 +27,7 @@
 
 enum {
     GLINT_PSF_WAVES = 41, /* 400 to 700 nm */
-    GLINT_PSF_STEPS = 20, /* of a table, of an order of diffraction */
+    GLINT_PSF_STEPS = 20, /* steps of a table per order of diffraction */
     GLINT_PSF_PROFILE = 2048
 };
 
@@ -37,18 +37,20 @@ struct glint_psf {
     double airy_px; /* 550 nm times f-number */
     /* Lines: pairs of parallel edges, or single ones. */
     int n_lines, n_pair;
-    double edge, area, perimeter;       /* stop radii */
-    double normal[GLINT_MAX_BLADES][2]; /* of lines, y down; edges in order */
-    double width_px; /* from the middle of a profile to its first zero, 550 nm
-                      */
+    double edge, area, perimeter; /* stop radii */
+    /* normals of the lines, y down; edges in order */
+    double normal[GLINT_MAX_BLADES][2];
+    double width_px; /* pixels from the middle of a profile to its first zero,
+                        at 550 nm */
     double scale[GLINT_PSF_WAVES];     /* wavelength over 550 nm */
     double weight[GLINT_PSF_WAVES][3]; /* sum 1 */
     double mean[3], square[3]; /* sums of weight scale, weight scale^2 */
     /* sinc^2 over the spectrum at v = 32 width_px i / GLINT_PSF_PROFILE */
     double profile[GLINT_PSF_PROFILE + 1][3];
     double smooth[GLINT_PSF_PROFILE + 1][3]; /* the same without fringes */
-    int n_rows, n_columns; /* of near: orders from the middle, angles from a
-                              line to half-way to the next */
+    int n_rows, n_columns; /* size of near: a row for each order from the
+                              middle, a column for each angle from a line to
+                              half-way to the next */
     double (*near)[3];     /* light times airy_px^2 */
 };
 

@@ -168,7 +168,8 @@ void glint_cuts_part(const struct glint_stop *stop,
 
 /* VALUE at the corners as middle + u along + v across, u and v -1/2 .. 1/2. */
 struct plane {
-    int64_t middle4, u2, v2; /* so many times as much */
+    /* The members are scaled by 4 and 2 to stay whole numbers. */
+    int64_t middle4, u2, v2;
 };
 
 static struct plane plane_of(const int64_t value[4])

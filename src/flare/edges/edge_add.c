@@ -28,9 +28,9 @@ struct run {
     union {
         uint64_t *wide;
         uint32_t *narrow_q24;
-    } row;      /* by mode */
-    int less;   /* bits of areas _q16 that do not count: 8, or of linear light 0
-                 */
+    } row;      /* one member is in use, by mode */
+    int less;   /* low bits of areas _q16 that do not count: 8, or 0 for linear
+                   light */
     int x0, x1; /* the tile's columns */
     int64_t light;
     int64_t rise_q32; /* see rise_of */

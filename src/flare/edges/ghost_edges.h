@@ -73,9 +73,9 @@ struct glint_ghost_edges {
     struct glint_ghost_rows *rows;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;
-    const struct glint_bins *bins; /* unless NULL: what finds no room is counted
-                                      in these */
-    const struct glint_vertex *row[2]; /* the two at work */
+    const struct glint_bins *bins; /* bins that more_refs counts edges without
+                                      room for; NULL: it counts none */
+    const struct glint_vertex *row[2]; /* the two rows at work */
     /* out */
     int n_edges;   /* all that there are; only max_edges are written */
     int more_refs; /* entries in bins that edges without room would take */
