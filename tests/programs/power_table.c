@@ -32,7 +32,7 @@ enum {
 
 struct row {
     char kind[32];
-    int held; /* not fitted to */
+    int held; /* 1: the fit did not see this row; 0: it did. */
     double error;
 };
 

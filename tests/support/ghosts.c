@@ -89,7 +89,7 @@ struct glint_flare *open_flare(struct glint_flare_config *c, void **mem)
 
     assert_int_not_equal(bytes, 0);
     assert_int_equal(posix_memalign(mem, 64, bytes), 0);
-    memset(*mem, 0xa5, bytes); /* nothing may hang on what was there */
+    memset(*mem, 0xa5, bytes); /* Dirty memory shows what init leaves unset. */
     assert_int_equal(glint_flare_init(&f, c, *mem, bytes), GLINT_OK);
     return f;
 }

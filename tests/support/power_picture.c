@@ -105,7 +105,7 @@ static void add_glare(double *light, const double *shape, int width, int height,
 
     for (int r2 = 0; r2 < width * width + height * height && r2 < KERNEL; r2++)
         kernel[r2] = pow(1 + r2 / (l->reach * l->reach), -l->fall / 2);
-    /* all of it, as far as a few thousand pixels */
+    /* The total takes in all glare within 2000 pixels. */
     for (double r = 0.25; r < 2000; r += 0.5)
         total +=
             3.14159265 * r * pow(1 + r * r / l->reach / l->reach, -l->fall / 2);

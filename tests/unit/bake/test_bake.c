@@ -158,7 +158,7 @@ static void test_twice(void **state)
     for (int basis = GLINT_BASIS_AUTO; basis <= GLINT_BASIS_SPARSE; basis++) {
         o.basis = basis;
         if (basis == GLINT_BASIS_SPARSE)
-            o.tolerance = 1; /* it has its own */
+            o.tolerance = 1; /* A sparse basis has a tolerance of its own. */
         bake(&b, &lens, &o);
         assert_int_equal(b.lens.header->n_ghosts, 1);
         assert_true(b.lens.header->n_systems >= 1);

@@ -129,7 +129,8 @@ static void test_good_table(void **state)
     expect_tiny(&lens);
     expect_good(&lens, text, compose(text, 0, NULL, " \t \n\n"));
     expect_tiny(&lens);
-    expect_good(&lens, text, compose(text, 0, NULL, "\n") - 1); /* no end */
+    /* The last line may lack its end. */
+    expect_good(&lens, text, compose(text, 0, NULL, "\n") - 1);
     expect_tiny(&lens);
     expect_good(&lens, text,
                 compose(text, 1, "\xef\xbb\xbf# mark\nname tiny-4", "\n"));

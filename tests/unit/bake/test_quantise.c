@@ -82,7 +82,7 @@ static void make_output(struct glint_fitted_system *s, enum glint_channel kind)
     for (int k = 0; k < sets * o->n_terms; k++) {
         const double unit = random_unit();
 
-        /* one sign for some outputs: sums that go to the bound */
+        /* Coefficients of one sign take some sums to the bound. */
         o->coef[k] = ldexp(most % 3 ? unit : fabs(unit),
                            scale - random_int(0, most % 5 ? 3 : 20));
     }

@@ -218,7 +218,7 @@ static void test_dark(void **state)
 
     (void)state;
     open_fixture(&f, 2);
-    f.light[1].rgb_q14[0] = 0; /* no red, which is wave 0 */
+    f.light[1].rgb_q14[0] = 0; /* Without red the light lacks wave 0. */
     assert_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);
     assert_outcome(&f, GLINT_OUTCOME_DARK, 2 + 4);

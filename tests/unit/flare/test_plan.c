@@ -162,7 +162,7 @@ static void test_what_is_seen(void **state)
     f.light.power = real_of(0, 0);
     assert_int_equal(planned(&f, 1).bundles, 0);
     f.light.power = real_of(1000, 0);
-    f.rays.faintest = real_of(1, 60); /* nothing is that bright */
+    f.rays.faintest = real_of(1, 60); /* No ghost is that bright. */
     assert_int_equal(planned(&f, 1).bundles, 0);
     f.rays.faintest = real_of(1, -60);
     assert_int_equal(planned(&f, 1).bundles, all);
@@ -381,7 +381,8 @@ static void test_half(void **state)
         flux[1] += pow(codes[1][i], 2.2);
     }
     assert_true(fabs(flux[1] - flux[0]) < 0.02 * flux[0]);
-    assert_true(sum > 0.01 * n && sum < 40 * n); /* differs, 32 dB at least */
+    /* The two differ, yet agree to 32 dB. */
+    assert_true(sum > 0.01 * n && sum < 40 * n);
     close_fixture(&f);
 }
 

@@ -134,7 +134,7 @@ static void test_moments_by_hand(void **state)
     canvas_set_grey(&image, 11, 5, 255);
     canvas_set_grey(&image, 12, 5, 188);
     canvas_set_grey(&image, 11, 6, 188);
-    canvas_set_grey(&image, 0, 0, 188); /* no seed */
+    canvas_set_grey(&image, 0, 0, 188); /* This pixel is too dark for a seed. */
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_int_equal(finder_spot[0].area, 4);
     assert_int_equal(finder_spot[0].n_clipped, 1);

@@ -124,7 +124,8 @@ static void check_row(struct fixture *f, int y)
 
         if (x0 >= x1)
             continue;
-        for (int j = 0; j < 4; j++) { /* all of it, and runs of a core in it */
+        /* The first run is whole, the others are parts of it. */
+        for (int j = 0; j < 4; j++) {
             const int begin = j ? x0 + rng_below(&seed, x1 - x0) : x0;
             const int end = j ? begin + 1 + rng_below(&seed, x1 - begin) : x1;
 

@@ -251,7 +251,7 @@ static const struct rule auto_rules[] = {
     {GHOST_(0, n_systems), 5, no_systems},
     {GHOST_(0, first_system), UINT32_MAX, no_systems},
     {GHOST_(2, n_systems), UINT32_MAX, no_systems},
-    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* it has none */
+    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* Ghost 1 has none. */
     {GHOST_(2, first_system), 1, shared},
     {GHOST_(0, n_systems), 1, NULL},
     {SYSTEM_(0, sine_lo_q30), -1, bad_angles},

@@ -150,7 +150,7 @@ static void test_draws(void **state)
     expect_screen(0, 100);
     must_put(&fb, grey(16, 12, 50));
     expect_screen(0, 50);
-    assert_int_equal(memory()[6 * 40], 0xaa); /* nothing beyond */
+    assert_int_equal(memory()[6 * 40], 0xaa); /* Nothing is drawn beyond. */
     fb.sink.close(&fb.sink);
     fb.sink.close(&fb.sink);
     assert_int_equal(fb.fd, -1);
@@ -225,7 +225,7 @@ static void test_pages(void **state)
     }
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->var.yoffset, 0);
-    /* one of us was killed with the second in view */
+    /* A glint that was killed left the second page in view. */
     fake_fb->var.yoffset = 6;
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 1));
@@ -254,12 +254,12 @@ static void test_no_pages(void **state)
     fb.sink.close(&fb.sink);
 
     reset_pages();
-    fake_fb->fix.ypanstep = 4; /* 6 lines are no multiple */
+    fake_fb->fix.ypanstep = 4; /* The 6 lines of a page are no multiple of 4. */
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
 
-    reset_pages(); /* it could, and now it cannot */
+    reset_pages(); /* The driver can pan at first, and then no longer. */
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 9));
     fake_fb->can_pan = false;
@@ -344,7 +344,8 @@ static void test_mode_changes(void **state)
     must_put(&fb, grey(8, 6, 3));
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(memory()[6 * 40], 3);
-    assert_int_equal(fake_fb_maps, 0); /* one more and one fewer */
+    /* A page was mapped anew and the old one unmapped. */
+    assert_int_equal(fake_fb_maps, 0);
     fb.sink.close(&fb.sink);
 }
 
@@ -474,7 +475,7 @@ static void test_console(void **state)
     (void)state;
     reset();
     check_console(true, KD_GRAPHICS, KD_TEXT);
-    fake_fb->tty_mode = KD_GRAPHICS; /* left behind */
+    fake_fb->tty_mode = KD_GRAPHICS; /* A killed program left it behind. */
     check_console(true, KD_GRAPHICS, KD_TEXT);
     fake_fb->tty_mode = KD_GRAPHICS; /* An X server has the console. */
     fake_fb->tty_switching = VT_PROCESS;

@@ -64,7 +64,8 @@ static void test_words(void **state)
     assert_int_equal(glint_fourcc_of(GLINT_LINEAR_Q20), 0);
     assert_int_equal(parsed("MJPG"), 0x47504a4d);
     assert_int_equal(parsed("mjpeg"), 0x47504a4d);
-    assert_int_equal(parsed("pRAA"), 0x41415270); /* one that is not ours */
+    /* Unknown codes are taken as they are. */
+    assert_int_equal(parsed("pRAA"), 0x41415270);
 }
 
 static void test_there_and_back(void **state)
@@ -156,7 +157,7 @@ static void test_colour_stated(void **state)
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    /* no word for it */
+    /* Not all that a driver may say has a counterpart. */
     assert_false(read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_false(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,

@@ -343,7 +343,7 @@ static void test_no_huffman_tables(void **state)
     expect_planes(&image, &y422);
     image = decode(d, &other);
     expect_planes(&image, &own);
-    image = decode(d, &b); /* not with the tables of the other */
+    image = decode(d, &b); /* The other frame's tables are not kept. */
     expect_planes(&image, &y422);
     free(other.data);
     free(b.data);
@@ -643,7 +643,8 @@ static void test_garbage(void **state)
             noise[i] = n % 3 ? (uint8_t)(rng_bits(&seed) >> 8) : 0;
         splice(&b, 0, 0, noise, n);
         expect_refusal(d, &b, GLINT_E_FORMAT, "");
-        if (n > 2) { /* behind a start of image it may be a large one */
+        /* Behind a start of image noise may look like a large frame. */
+        if (n > 2) {
             struct glint_image image;
 
             memcpy(b.data, "\xff\xd8", 2);

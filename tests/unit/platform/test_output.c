@@ -109,7 +109,7 @@ static void test_commit(void **state)
     expect_file("one");
     assert_int_equal(mode_of(path), 0640);
     assert_int_equal(n_files(), 1);
-    glint_output_abort(&out); /* nothing left to do */
+    glint_output_abort(&out); /* Nothing is left to undo. */
     unlink(path);
 }
 

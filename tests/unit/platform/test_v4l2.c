@@ -176,7 +176,8 @@ static void test_odd_rates(void **state)
         fake_camera_reset();
         camera.rate = odd[i];
         must_open(NULL);
-        assert_int_equal(v4l2.device.format.fps_num, 0); /* it does not say */
+        /* Such a rate counts as unknown. */
+        assert_int_equal(v4l2.device.format.fps_num, 0);
         must_close();
     }
 }
@@ -457,7 +458,7 @@ static void test_newest(void **state)
     assert_int_equal(frame.n_dropped, 0);
     assert_int_equal(frame.sequence, 2);
     assert_int_equal(frame.time_us, 5002);
-    assert_int_equal(camera.n_queued, 3); /* all but the one lent */
+    assert_int_equal(camera.n_queued, 3); /* One of the four is lent. */
     fake_camera_deliver(3, 13);
     done();
     assert_int_equal(camera.n_queued, 4);
@@ -528,7 +529,7 @@ static void test_sequence(void **state)
     (void)state;
     fake_camera_reset();
     must_open(NULL);
-    assert_int_equal(dropped(1000), 0); /* it may begin anywhere */
+    assert_int_equal(dropped(1000), 0); /* A count may begin anywhere. */
     assert_int_equal(dropped(1001), 0);
     assert_int_equal(dropped(1005), 3);
     assert_int_equal(dropped(1005), 0);
@@ -546,7 +547,7 @@ static void test_sequence(void **state)
     assert_int_equal(dropped(28), 0);
     assert_int_equal(dropped(30), 1);
     must_close();
-    must_open(NULL); /* one that never counts */
+    must_open(NULL); /* Some drivers never count. */
     for (int i = 0; i < 5; i++)
         assert_int_equal(dropped(0), 0);
     must_close();

@@ -240,7 +240,7 @@ static void test_gone(void **state)
     must_open(NULL);
     fake_camera_deliver(0, 1);
     assert_int_equal(next(), GLINT_OK);
-    camera.is_gone = true; /* while a frame is lent */
+    camera.is_gone = true; /* A frame is lent meanwhile. */
     done();
     assert_int_equal(next(), GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": the camera is gone");
@@ -601,7 +601,7 @@ static void check_failures(int number, bool forever, enum glint_v4l2_io io,
             assert_true(status == GLINT_E_DEVICE || status == GLINT_E_MEMORY);
             assert_non_null(strstr(said.text, FAKE_PATH ": "));
         }
-        /* one that is lost, and one for each new start */
+        /* One frame may be lost, and one more at each new start. */
         if (status == GLINT_OK && !forever && fourcc != V4L2_PIX_FMT_MJPEG)
             assert_true(n_got >= 8);
         must_be_closed();

@@ -122,7 +122,7 @@ static void test_flux_of_all_azimuths(void **state)
     (void)state;
     stage_view(&heliar, SIDE, SIDE, 400);
     for (int k = 0; k < 4 * 24; k++) {
-        /* also beside the quarters, by a step of q30 and less */
+        /* Angles beside the quarters differ by a step of q30 or so, too. */
         const double phi = k % 4 == 0 ? 15.0 * k / 4
                            : k % 4 == 1
                                ? 15.0 * (k / 4) + 1e-9 * (k & 8 ? 1 : -1)

@@ -94,7 +94,7 @@ static void test_round_and_round(void **state)
     }
     if (extreme_long())
         fprintf(stderr, "\r%d frames            \n", n);
-    /* all frames alike would pass as well */
+    /* Frames that were all alike would pass what follows. */
     assert_true(first[0] != first[ROUND / 4]);
     assert_true(extreme_at_most(extreme_long()
                                     ? "runs: 100 000 frames, that differ from "

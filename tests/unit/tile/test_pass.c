@@ -146,7 +146,7 @@ static void draw_passes(struct glint_frame *f, struct glint_flare *flare)
     const struct glint_pass pass = {&f->triangle, begin_row, go_on, set_rows};
     const struct glint_flare_under under = {&pass, 1, &glint_blend, rows};
 
-    memset(rows, 0xa5, sizeof rows); /* nothing may hang on what was there */
+    memset(rows, 0xa5, sizeof rows); /* Dirty rows show what is left unset. */
     f->triangle.half = f->half;
     f->triangle.linear = f->image.format == GLINT_LINEAR_Q20;
     f->triangle.at = at;
