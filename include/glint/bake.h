@@ -51,7 +51,7 @@ struct glint_bake_report {
     int rays;      /* measured */
     int intruders; /* measured rays that pass the model though the real lens
                       cuts them, by more than 3 % of a radius */
-    int unmet;     /* systems that the tolerance was too tight for */
+    int unmet;     /* number of systems that miss the tolerance */
 };
 
 /* Bakes LENS into *MODEL of *BYTES, to be freed by the caller: a file as in

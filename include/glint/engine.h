@@ -111,7 +111,8 @@ void glint_engine_defaults(struct glint_engine_config *cfg, int width,
 enum glint_status glint_engine_create(struct glint_engine **engine,
                                       const struct glint_engine_config *cfg,
                                       struct glint_error *error);
-void glint_engine_destroy(struct glint_engine *engine); /* NULL is allowed */
+/* ENGINE may be NULL. */
+void glint_engine_destroy(struct glint_engine *engine);
 
 /* Changes the dials for the frames to come. */
 void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials);

@@ -70,12 +70,12 @@ struct glint_lamp_tracker_config {
                         more go or come all at once */
     /* Milliseconds from 0 to full level, or to a greater flux. */
     int32_t attack_ms;
-    int32_t release_ms; /* the other way */
-    int32_t leave_ms;   /* the same for lamps that left the picture */
+    int32_t release_ms; /* milliseconds from full level to 0, or to less flux */
+    int32_t leave_ms; /* milliseconds of that for lamps that left the picture */
     int32_t memory_ms; /* milliseconds for which a lamp without a spot keeps its
                           number */
     int32_t smooth_ms; /* milliseconds over which scatter is averaged */
-};                     /* all times are 1 .. 60000 ms */
+};                     /* Every time is 1 .. 60000 ms. */
 
 struct glint_lamp_tracker; /* opaque, in the caller's memory */
 

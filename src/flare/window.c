@@ -272,8 +272,8 @@ int glint_window_find(struct glint_window_nodes *nodes,
         if (e.high_q16[0] < 0)
             return 0;
         loosen(&e, 0, ACROSS - 1, 48);
-        loosen(&e, 1, DOWN - 1, 24); /* The extent is that of a half, of which
-                                        24 is what 48 is of the whole. */
+        loosen(&e, 1, DOWN - 1, 24); /* The extent is half of the height, so a
+                                        24th of it is a 48th of the whole. */
         more = narrow(t, &e) && t->window.u_half_q30 > LEAST_HALF_Q30 &&
                t->window.v_to_q30 - t->window.v_from_q30 > LEAST_HALF_Q30;
     }

@@ -41,7 +41,7 @@ enum {
 
 /* Measures, _q8. */
 enum glint_evidence {
-    EVIDENCE_AROUND, /* stops over what is around: the lower quartile */
+    EVIDENCE_AROUND, /* stops over the lower quartile of what is around */
     EVIDENCE_HALO,   /* stops by which that contrast is more further out: light
                         falls off */
     EVIDENCE_SPREAD, /* stops between the quartiles close around: light does not

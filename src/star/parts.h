@@ -36,7 +36,7 @@ struct glint_star_lamp {
 /* Light of a stretch of a row of pixels. */
 struct glint_star_stretch {
     int y, x0, x1; /* x0 .. x1 - 1 */
-    int lo, hi;    /* columns that have got light; the rest is 0 */
+    int lo, hi;    /* columns lo .. hi - 1 have got light; the rest is 0 */
     int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3], from x0 on */
 };
 

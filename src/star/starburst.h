@@ -49,8 +49,8 @@ enum {
 struct glint_star_line {
     /* direction of the line, from 0 to below 180 degrees */
     int32_t cos_q30, sin_q30;
-    int32_t cot_q16;    /* cos / sin, held to +-2^12 */
-    int32_t across_q16; /* 1 / sin, held to 2^12 */
+    int32_t cot_q16;    /* cos / sin of that angle, held to +-2^12 */
+    int32_t across_q16; /* 1 / sin of that angle, held to 2^12 */
     int32_t border_q16; /* cot of the angle half-way to the next line */
     /* In the tables' steps: light at v = reach i / 128, times
      * r^2 / (1 - (v / r)^2). From 128 on 0. */

@@ -66,7 +66,7 @@ struct glint_tiles {
     int width, height; /* size of the picture */
     const struct glint_image *image; /* NULL: light is dropped */
     const struct glint_resolve *resolve;
-    /* set if half is, unless the picture is linear */
+    /* set at half resolution, unless the picture is linear */
     const struct glint_half *quads;
     const struct glint_blend *blend; /* NULL: one pass, which gives no cover */
 };

@@ -29,7 +29,8 @@
  * that it hides more, they may have up to MOST_HIDDEN times as much. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Times that error: more terms do not mend what is worse. */
+/* Factor on the error at which a zone is parted: more terms do not mend what is
+ * worse. */
 #define HOPELESS 20.0
 /* Tolerances: a wide zone with a larger error will be halved anyway. */
 #define HALVES_ANYWAY 10.0

@@ -22,7 +22,7 @@ struct column {
     int clean; /* number of chosen directions that AT is free of */
     /* squared length of AT, now and without all chosen directions */
     double was2, left2;
-    double pull; /* product with the residual */
+    double pull; /* product of AT with the residual */
     double *at;  /* [n] */
 };
 

@@ -37,7 +37,7 @@ struct glint_psf {
     double airy_px; /* 550 nm times f-number */
     /* Lines: pairs of parallel edges, or single ones. */
     int n_lines, n_pair;
-    double edge, area, perimeter; /* stop radii */
+    double edge, area, perimeter; /* size of the stop, whose radius is 1 */
     /* normals of the lines, y down; edges in order */
     double normal[GLINT_MAX_BLADES][2];
     double width_px; /* pixels from the middle of a profile to its first zero,
@@ -51,7 +51,7 @@ struct glint_psf {
     int n_rows, n_columns; /* size of near: a row for each order from the
                               middle, a column for each angle from a line to
                               half-way to the next */
-    double (*near)[3];     /* light times airy_px^2 */
+    double (*near)[3];     /* [n_rows][n_columns]: light times airy_px^2 */
 };
 
 /* GLINT_E_MEMORY. */

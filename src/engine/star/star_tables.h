@@ -16,7 +16,7 @@ struct glint_star_optics {
 /* Takes memory that glint_star_tables_free() gives back. GLINT_E_MEMORY. */
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o);
-/* NULL is allowed */
+/* TABLES may be NULL. */
 void glint_star_tables_free(struct glint_star_tables *tables);
 size_t glint_star_tables_bytes(const struct glint_star_tables *tables);
 

@@ -28,7 +28,7 @@ struct run {
     union {
         uint64_t *wide;
         uint32_t *narrow_q24;
-    } row;      /* one member is in use, by mode */
+    } row;      /* the mode tells which member is in use */
     int less;   /* low bits of areas _q16 that do not count: 8, or 0 for linear
                    light */
     int x0, x1; /* the tile's columns */

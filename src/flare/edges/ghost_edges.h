@@ -77,7 +77,7 @@ struct glint_ghost_edges {
                                       room for; NULL: it counts none */
     const struct glint_vertex *row[2]; /* the two rows at work */
     /* out */
-    int n_edges;   /* all that there are; only max_edges are written */
+    int n_edges;   /* number of all edges; only max_edges are written */
     int more_refs; /* entries in bins that edges without room would take */
     int n_dropped; /* cells without light for want of a corner */
     int n_held;    /* cells, or halves, with more light than limit_q8 */
