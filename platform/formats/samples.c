@@ -78,8 +78,7 @@ bool glint_samples_image(const struct glint_samples *samples,
     return true;
 }
 
-/* ------------------------------------------------------------------- samples
- */
+/* ----------------------------------------------------------------- samples */
 
 static uint32_t take_integer(const struct glint_sample_place *c,
                              const uint8_t *pixel)

@@ -87,8 +87,7 @@ void glint_mjpeg_close(struct glint_mjpeg *decoder)
     free(decoder);
 }
 
-/* ------------------------------------------------- what libjpeg complains of
- */
+/* ----------------------------------------------- what libjpeg complains of */
 
 /* Leaves libjpeg; ERROR has been filled. */
 static void leave(struct glint_mjpeg *d, enum glint_status status)

@@ -331,8 +331,7 @@ static enum glint_status put(struct glint_sink *sink,
                             : draw_seen(fb, image, error);
 }
 
-/* ---------------------------------------------------------- opening, closing
- */
+/* -------------------------------------------------------- opening, closing */
 
 static enum glint_status report_open(const struct glint_fbdev *fb,
                                      struct glint_error *error)

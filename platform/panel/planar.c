@@ -112,8 +112,7 @@ static void mix_row(const struct mix *m, uint8_t *restrict to, int i,
                         channel[2][x] * b + zero);
 }
 
-/* ------------------------------------------------------------------ pictures
- */
+/* ---------------------------------------------------------------- pictures */
 
 void glint_planar_write(const struct glint_image *to,
                         const struct glint_image *from,

@@ -115,8 +115,7 @@ static void mix_greys(const struct mix *m, uint8_t *restrict grey,
         grey[i] = code_of(luma[i] * ky + bias);
 }
 
-/* ---------------------------------------------------------------------- rows
- */
+/* -------------------------------------------------------------------- rows */
 
 struct samples {
     const uint8_t *luma, *cb, *cr;

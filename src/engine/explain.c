@@ -41,8 +41,7 @@ int glint_explain_bundles(const struct glint_explain_part *p)
     return n;
 }
 
-/* ------------------------------------------------------------------- accounts
- */
+/* ---------------------------------------------------------------- accounts */
 
 static void add(struct glint_explain_part *p, const struct glint_account *a)
 {
@@ -96,8 +95,7 @@ static void take_accounts(struct glint_explain *e)
             }
 }
 
-/* ---------------------------------------------------------------------- light
- */
+/* ------------------------------------------------------------------- light */
 
 static void draw(struct glint_explain *e, int ghost, int light, int wave)
 {
@@ -174,8 +172,7 @@ static void set_shares(const struct glint_explain *e,
     }
 }
 
-/* --------------------------------------------------------------------- opening
- */
+/* ----------------------------------------------------------------- opening */
 
 /* Parts have the pair of surfaces of the ghost that they are parts of. */
 static void set_pairs(struct glint_explain *e)
@@ -244,8 +241,7 @@ void glint_explain_close(struct glint_explain *e)
     free(e->linear_q20);
 }
 
-/* ----------------------------------------------------------------------- order
- */
+/* ------------------------------------------------------------------- order */
 
 static double key(const struct glint_explain *e, enum glint_explain_order order,
                   int ghost)

@@ -19,8 +19,7 @@ enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
  * samples saturate, with as many steps below for what is faint. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
-/* ------------------------------------------------------------------- looking
- */
+/* ----------------------------------------------------------------- looking */
 
 /* Puts VALUE among the N largest, which fall; returns the least of them. */
 static float insert(float *top, int n, float value)
@@ -77,8 +76,7 @@ void glint_response_around(const float *rgb, size_t n,
     }
 }
 
-/* ------------------------------------------------------------------- drawing
- */
+/* ----------------------------------------------------------------- drawing */
 
 static struct glint_view proxy_of(struct glint_view view, int pixels)
 {
@@ -175,8 +173,7 @@ static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
     return status;
 }
 
-/* ----------------------------------------------------------------- measuring
- */
+/* --------------------------------------------------------------- measuring */
 
 static double corner_deg(struct glint_view view, double focal_mm)
 {
@@ -336,8 +333,7 @@ double glint_response_softening(const struct glint_response *r,
     return mix(r->softened_log2[i], r->softened_log2[i + 1], fmin(part, 1));
 }
 
-/* ------------------------------------------------------------ what was drawn
- */
+/* ---------------------------------------------------------- what was drawn */
 
 /* Sets the peak of LIGHT to what a ten thousandth of the pixels drawn last
  * reach. */

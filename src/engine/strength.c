@@ -31,8 +31,7 @@ double glint_strength_largest(const double rgb[3])
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
 
-/* ---------------------------------------------------------------- one frame
- */
+/* --------------------------------------------------------------- one frame */
 
 /* Light by channel of lamp I, of all its power. */
 static void light_of(const struct glint_response *response,
@@ -97,8 +96,7 @@ static double target_log2(const struct glint_strength *s,
     return 2 * log2(s->asked) - log2(together(peak * exp2(-tanh(more)), mean));
 }
 
-/* ---------------------------------------------------------------- over time
- */
+/* --------------------------------------------------------------- over time */
 
 static double step(double towards, double elapsed_s)
 {

@@ -7,8 +7,7 @@
 #include "flare/by_edges.h"
 #include "flare/edges/ghost_edges.h"
 
-/* -------------------------------------------------------------------- memory
- */
+/* ------------------------------------------------------------------ memory */
 
 /* Bundles, or rows of tiles. */
 static size_t most_jobs(const struct glint_flare_config *c)
@@ -70,8 +69,7 @@ static void begin(struct glint_flare *f)
     }
 }
 
-/* --------------------------------------------------------------------- order
- */
+/* ------------------------------------------------------------------- order */
 
 typedef int weight_fn(const struct glint_flare *f, int job);
 
@@ -106,8 +104,7 @@ static int edges_in_row(const struct glint_flare *f, int row)
     return start[f->bins.tiles_x] - start[0];
 }
 
-/* ------------------------------------------------------------------- bundles
- */
+/* ----------------------------------------------------------------- bundles */
 
 /* Returns the flux of a bundle at energy 1, display white times pixels, held at
  * 2^26. */
@@ -317,8 +314,7 @@ static void emit(struct glint_flare *f)
     }
 }
 
-/* ---------------------------------------------------------------------- bins
- */
+/* -------------------------------------------------------------------- bins */
 
 /* Keeps the bundles whose entries fit; leaves counts that mean nothing. */
 static void drop_refs(struct glint_flare *f)
@@ -397,8 +393,7 @@ static void bin(struct glint_flare *flare)
                       glint_workers_count(flare->cfg.workers), put_job, flare);
 }
 
-/* ------------------------------------------------------------------- drawing
- */
+/* ----------------------------------------------------------------- drawing */
 
 struct draw {
     struct glint_flare *flare;

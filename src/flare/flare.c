@@ -195,8 +195,7 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
     return vertices;
 }
 
-/* ---------------------------------------------------------------------- plan
- */
+/* -------------------------------------------------------------------- plan */
 
 /* N lights without the last ones that are beyond the lens: a frame that has no
  * others takes no time. */

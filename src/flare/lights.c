@@ -92,8 +92,7 @@ static void set_direction(struct glint_light *b, const struct direction *d)
     b->cosine_q30 = length ? q_clamp_sat(z * ONE_Q30 / length, 0, ONE_Q30) : 0;
 }
 
-/* --------------------------------------------------------------------- order
- */
+/* ------------------------------------------------------------------- order */
 
 /* The lights, and how they are sorted. */
 struct order {
@@ -174,8 +173,7 @@ static void sort_along(struct glint_light *b, int n, int round)
     sort(&o, n);
 }
 
-/* ------------------------------------------------------------------- merging
- */
+/* ----------------------------------------------------------------- merging */
 
 /* A gets the light of B and the direction between. */
 static void merge(struct glint_light *a, const struct glint_light *b)

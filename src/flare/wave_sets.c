@@ -42,8 +42,7 @@ int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
     return set;
 }
 
-/* ----------------------------------------------------------------- the choice
- */
+/* -------------------------------------------------------------- the choice */
 
 /* Gives where rays of PLANNED land, evenly over half of its window: pixels, q8.
  */
@@ -144,8 +143,7 @@ static int choose(const struct glint_plan *plan,
     return set;
 }
 
-/* ------------------------------------------------------------------------ jobs
- */
+/* -------------------------------------------------------------------- jobs */
 
 static void plan_waves(struct glint_flare *f, const struct job *job, int at,
                        int set, struct glint_plan_scratch *scratch)

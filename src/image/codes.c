@@ -32,8 +32,7 @@ static void pad(uint8_t *to, int n, int size)
         to[i] = to[i - size];
 }
 
-/* ----------------------------------------------------------------------- RGB
- */
+/* --------------------------------------------------------------------- RGB */
 
 static void read_565(struct glint_codes *c, const uint8_t *px, int n, int row)
 {
@@ -68,8 +67,7 @@ static void write_565(const struct glint_codes *c, uint8_t *px, int n, int row)
     }
 }
 
-/* -------------------------------------------------------------------- chroma
- */
+/* ------------------------------------------------------------------ chroma */
 
 /* Returns whether Cb and Cr alternate in a row of pairs already. */
 static int is_woven(const struct glint_layout *l)
@@ -112,8 +110,7 @@ static void write_chroma(const struct glint_layout *l,
     }
 }
 
-/* ---------------------------------------------------------------------- rows
- */
+/* -------------------------------------------------------------------- rows */
 
 /* Channels that have a sample for each pixel. */
 static int whole_channels(const struct glint_layout *l)

@@ -16,8 +16,7 @@ static int padded(int n)
     return (n + STEP - 1) & -STEP;
 }
 
-/* ------------------------------------------------------------ pixel by pixel
- */
+/* ---------------------------------------------------------- pixel by pixel */
 
 static void double_row(const uint16_t *restrict from, int n,
                        uint16_t *restrict to)

@@ -146,8 +146,7 @@ static inline V v_quads_of_block(V x, int b)
 
 #include "kernels/composite_v.inc"
 
-/* ---------------------------------------------------------------------- sums
- */
+/* -------------------------------------------------------------------- sums */
 
 static inline uint32_t w_first(V x)
 {

@@ -50,8 +50,7 @@ static inline int v_is_zero(V x)
 #endif
 }
 
-/* ----------------------------------------------------------------- constants
- */
+/* --------------------------------------------------------------- constants */
 
 /* Constants stay in registers, factors eight to one. Compilers keep a table in
  * two registers that follow each other if it is a variable, not part of one. */
@@ -117,8 +116,7 @@ static inline uint8x16x2_t table_at(const int16_t *p)
 }
 #endif
 
-/* -------------------------------------------------------------------- tables
- */
+/* ------------------------------------------------------------------ tables */
 
 /* Zeros that lead, 0 .. 16. */
 #define v_zeros vclzq_s16
@@ -259,8 +257,7 @@ static inline V v_pair_mean(const V x[2])
 
 #include "kernels/composite_v.inc"
 
-/* ---------------------------------------------------------------------- sums
- */
+/* -------------------------------------------------------------------- sums */
 
 /* Rounded, held to 0 .. 65535. */
 static inline uint16x4_t rounded(uint32x4_t sum_q24)

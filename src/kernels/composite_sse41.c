@@ -85,8 +85,7 @@ static inline V v_pair_mean(const V x[2])
 
 #include "kernels/composite_v.inc"
 
-/* ---------------------------------------------------------------------- sums
- */
+/* -------------------------------------------------------------------- sums */
 
 static inline uint32_t w_first(V x)
 {

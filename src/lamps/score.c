@@ -420,8 +420,7 @@ void glint_score_all(const struct glint_score *score,
     }
 }
 
-/* ----------------------------------------------------------- one of its kind
- */
+/* --------------------------------------------------------- one of its kind */
 
 static int by_rank(const void *ctx, int32_t a, int32_t b)
 {

@@ -52,8 +52,7 @@ uint32_t glint_model_crc32(const void *data, size_t bytes)
     return glint_blob_crc32(data, bytes);
 }
 
-/* ----------------------------------------------------------------- the whole
- */
+/* --------------------------------------------------------------- the whole */
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] = {
     [GLINT_BLOB_UNALIGNED] = "the model is not aligned to 4 bytes",

@@ -6,8 +6,7 @@
 #include "base/real.h"
 #include "star/parts.h"
 
-/* ------------------------------------------------------------------- memory
- */
+/* ------------------------------------------------------------------ memory */
 
 static int config_ok(const struct glint_star_config *c)
 {
@@ -79,8 +78,7 @@ enum glint_status glint_star_init(struct glint_star **star,
     return GLINT_OK;
 }
 
-/* -------------------------------------------------------------------- lights
- */
+/* ------------------------------------------------------------------ lights */
 
 /* Three products of a colour and X, 15 bits each; returns their exponent. */
 static int share(const int32_t rgb_q14[3], struct glint_real x, int32_t part[3])

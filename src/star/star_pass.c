@@ -134,8 +134,7 @@ struct glint_pass glint_star_pass(const struct glint_star *star)
     return (struct glint_pass){star, begin_row, go_on, light_rows};
 }
 
-/* ------------------------------------------------------------------ drawing
- */
+/* ----------------------------------------------------------------- drawing */
 
 struct draw {
     struct glint_flare *flare;

@@ -9,8 +9,7 @@ static int64_t behind(int64_t light, int cover_q8)
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
 }
 
-/* ------------------------------------------------------------------ together
- */
+/* ---------------------------------------------------------------- together */
 
 static void add_codes(const struct glint_pass_rows *rows, int row, int n_x,
                       const struct glint_blend_rows *s, int covers)
@@ -78,8 +77,7 @@ static enum glint_given add(const struct glint_pass *pass, void *state,
     return more > given ? more : given;
 }
 
-/* --------------------------------------------------------------------- cover
- */
+/* ------------------------------------------------------------------- cover */
 
 /* PART values, each twice. */
 static void double_cover(const uint16_t *from_q8, int part,

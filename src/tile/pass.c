@@ -40,8 +40,7 @@ static void hide(const struct visit *v, enum glint_given given, int y)
         v->tiles->blend->hide(v->tiles, v->tile, y, v->scratch);
 }
 
-/* -------------------------------------------------------------------- linear
- */
+/* ------------------------------------------------------------------ linear */
 
 /* Each of N values twice, in place. */
 static void double_row(int32_t *row, int n)
@@ -77,8 +76,7 @@ static void draw_linear(const struct visit *v)
     }
 }
 
-/* --------------------------------------------------------------------- codes
- */
+/* ------------------------------------------------------------------- codes */
 
 static void resolve_rows(const struct visit *v, enum glint_given given,
                          const struct glint_pass_rows *rows)
@@ -146,8 +144,7 @@ static void draw_half(const struct visit *v)
     }
 }
 
-/* --------------------------------------------------------------------- tiles
- */
+/* ------------------------------------------------------------------- tiles */
 
 static void draw_tile(struct visit *v)
 {

@@ -41,8 +41,7 @@ static int number(int below)
     return (int)(rng_xorshift(&seed) % (uint32_t)below);
 }
 
-/* ---------------------------------------------------------------------- hash
- */
+/* -------------------------------------------------------------------- hash */
 
 static const uint64_t hash_start = UINT64_C(14695981039346656037);
 
@@ -65,8 +64,7 @@ static uint64_t hash_number(uint64_t h, int64_t x)
     return h;
 }
 
-/* -------------------------------------------------------------------- a scene
- */
+/* ----------------------------------------------------------------- a scene */
 
 /* Sine and cosine, _q30, of twice the angle whose tangent is T / 2^15. */
 static void circle(int32_t t, int32_t *sine, int32_t *cosine)
@@ -234,8 +232,7 @@ static int draw_scene(uint64_t *h)
     return before != after;
 }
 
-/* ---------------------------------------------------------------------- start
- */
+/* ------------------------------------------------------------------- start */
 
 static void open_model(const char *path)
 {

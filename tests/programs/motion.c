@@ -56,8 +56,7 @@ struct sweep {
     int n;
 };
 
-/* -------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------ frames */
 
 /* As the run time encodes, but not rounded. */
 static double code_of(double x)
@@ -102,8 +101,7 @@ static bool frame_error(struct sweep *s, double theta, float *const error[2])
            add_error(s, &lamp, 0, error[1]);
 }
 
-/* ------------------------------------------------------------------ measures
- */
+/* ---------------------------------------------------------------- measures */
 
 static double block_jump(const struct options *o, const float *a,
                          const float *b)
@@ -175,8 +173,7 @@ static bool run(struct sweep *s)
     return s->n > 0;
 }
 
-/* --------------------------------------------------------------------- plots
- */
+/* ------------------------------------------------------------------- plots */
 
 enum { PLOT_W = 860, PLOT_H = 150, LEFT = 70, TOP = 30, PANEL = 190 };
 
@@ -306,8 +303,7 @@ static void write_csv(const struct sweep *s)
     fclose(f);
 }
 
-/* ------------------------------------------------------------------- the run
- */
+/* ----------------------------------------------------------------- the run */
 
 static bool open_stage(struct stage *stage, const struct options *o)
 {

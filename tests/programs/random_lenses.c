@@ -47,8 +47,7 @@ struct options {
     const char *out;
 };
 
-/* ------------------------------------------------------------------ one lens
- */
+/* ---------------------------------------------------------------- one lens */
 
 /* A light in the picture or somewhat outside, as bright as the ghosts of this
  * lens need. */
@@ -154,8 +153,7 @@ static void run_one(struct outcome *o, const struct options *options,
     stage_close(&s);
 }
 
-/* ------------------------------------------------------------------ all lenses
- */
+/* -------------------------------------------------------------- all lenses */
 
 static volatile sig_atomic_t stopped;
 
@@ -230,8 +228,7 @@ static void run_all(struct outcome *o, struct options *options)
     }
 }
 
-/* -------------------------------------------------------------------- report
- */
+/* ------------------------------------------------------------------ report */
 
 static int by_psnr(const void *a, const void *b)
 {

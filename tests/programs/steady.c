@@ -163,8 +163,7 @@ static bool end(const struct steady *s, const char *name, double most)
     return s->worst <= most && (s->truth[0] < 0 || s->unmade <= most);
 }
 
-/* ------------------------------------------------------------------- scenes
- */
+/* ------------------------------------------------------------------ scenes */
 
 typedef int lamps_fn(struct night *night, int i, struct night_lamp *lamp);
 

@@ -143,8 +143,7 @@ static int parse(struct tool *tool, int argc, char **argv,
     return check(tool, c);
 }
 
-/* ----------------------------------------------------------------------- frame
- */
+/* ------------------------------------------------------------------- frame */
 
 static int load(struct tool *tool, struct explain_command *c)
 {
@@ -197,8 +196,7 @@ static enum glint_status draw_linear(struct explain_command *c)
     return status;
 }
 
-/* ---------------------------------------------------------------------- result
- */
+/* ------------------------------------------------------------------ result */
 
 static int save(struct tool *tool, const struct explain_command *c,
                 struct glint_explain *e, const struct explain_title *title)

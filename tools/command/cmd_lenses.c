@@ -89,8 +89,7 @@ static int compositor_at(const struct tool *tool, const char *name,
     return EXIT_OK;
 }
 
-/* -------------------------------------------------------------------- tables
- */
+/* ------------------------------------------------------------------ tables */
 
 static double corner_deg(const struct entry *e)
 {
@@ -131,8 +130,7 @@ static void print_text(struct lenses *l, const char *name,
            e->n_ghosts, e->is_baked ? "baked" : "not yet");
 }
 
-/* -------------------------------------------------------------------- models
- */
+/* ------------------------------------------------------------------ models */
 
 static int save_model(const struct tool *tool, const char *path,
                       const struct model_file *model)
@@ -170,8 +168,7 @@ static int put_model(const struct lenses *l, const struct entry *e)
     return code;
 }
 
-/* ------------------------------------------------------------------- command
- */
+/* ----------------------------------------------------------------- command */
 
 static bool is_wanted(const struct lenses *l, const char *name)
 {

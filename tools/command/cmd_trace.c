@@ -107,8 +107,7 @@ static enum glint_ray_status trace_path(const struct tracer *t, double px_mm,
     return glint_trace(&t->path, px_mm, py_mm, direction, ray, NULL);
 }
 
-/* ---------------------------------------------------------------- by a model
- */
+/* -------------------------------------------------------------- by a model */
 
 static double output(const struct glint_transfer *t,
                      const struct glint_outputs *out, int kind)

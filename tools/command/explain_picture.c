@@ -39,8 +39,7 @@ static void set_palette(struct paint *p, int k)
     paint_colour(p, c[0], c[1], c[2]);
 }
 
-/* ----------------------------------------------------------------------- tiles
- */
+/* ------------------------------------------------------------------- tiles */
 
 /* Whether any pixel of the tile at (X0, Y0) has light. */
 static bool is_lit(const struct marking *m, int x0, int y0, int side)
@@ -90,8 +89,7 @@ static void shade_tiles(struct marking *m)
                        is_lit(m, x, y, side)));
 }
 
-/* ---------------------------------------------------------------------- ghosts
- */
+/* ------------------------------------------------------------------ ghosts */
 
 static bool lit_at(const struct marking *m, int x, int y)
 {
@@ -173,8 +171,7 @@ static void outline(const struct marking *m, int k)
                            y + wide < m->height ? y + wide : m->height);
 }
 
-/* ---------------------------------------------------------------------- legend
- */
+/* ------------------------------------------------------------------ legend */
 
 static int n_marked(const struct glint_explain *e,
                     const struct explain_title *t)
@@ -231,8 +228,7 @@ static void put_entry(const struct marking *m, int k, int ghost)
     paint_text(&p, x + 24 * p.line, y, text);
 }
 
-/* ----------------------------------------------------------------------- whole
- */
+/* ------------------------------------------------------------------- whole */
 
 static enum glint_status make(const struct glint_image *picture, int legend,
                               struct glint_image *marked)

@@ -56,8 +56,7 @@ static int ghosts_drawn(const struct glint_explain *e)
     return n;
 }
 
-/* ----------------------------------------------------------------------- table
- */
+/* ------------------------------------------------------------------- table */
 
 static void print_percent(double x)
 {
@@ -251,8 +250,7 @@ void explain_print(const struct glint_explain *e, const struct explain_title *t)
     print_lost_lights(e, t);
 }
 
-/* ------------------------------------------------------------------------ JSON
- */
+/* -------------------------------------------------------------------- JSON */
 
 static void json_part(const struct glint_explain_part *p)
 {

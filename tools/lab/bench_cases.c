@@ -8,8 +8,7 @@
 #include "linux/sets.h"
 #include "engine/measure.h"
 
-/* -------------------------------------------------------------------- canvas
- */
+/* ------------------------------------------------------------------ canvas */
 
 static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
 {
@@ -26,8 +25,7 @@ static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
     return c;
 }
 
-/* --------------------------------------------------------------------- tests
- */
+/* ------------------------------------------------------------------- tests */
 
 /* The differences of a test from the plainest one of its lens. */
 struct variation {

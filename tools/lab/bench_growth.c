@@ -20,8 +20,7 @@ static int add(struct bench *b, const struct settings *settings,
     return code;
 }
 
-/* --------------------------------------------------------------------- ghosts
- */
+/* ------------------------------------------------------------------ ghosts */
 
 /* Leaves of T's lens the N_KEPT ghosts from the FIRST on of LIST[N], around its
  * end; the others lose their polynomials and are never seen. */
@@ -88,8 +87,7 @@ static int add_ghosts(struct bench *b, const struct settings *settings,
     return code;
 }
 
-/* --------------------------------------------------------------------- others
- */
+/* ------------------------------------------------------------------ others */
 
 static int add_lights(struct bench *b, const struct settings *settings)
 {

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* -------------------------------------------------------------------- canvas
- */
+/* ------------------------------------------------------------------ canvas */
 
 /* Luma rises to the right, colours turn downwards. */
 static void paint(struct canvas *c)
@@ -74,8 +73,7 @@ double canvas_floor_ms(struct canvas *c)
     return 1e3 * (tool_seconds() - t0);
 }
 
-/* --------------------------------------------------------------------- lamps
- */
+/* ------------------------------------------------------------------- lamps */
 
 static double power_of(int i, int n)
 {
@@ -93,8 +91,7 @@ void canvas_lamps(struct glint_lamp *lamp, int n, double angle)
                                       0};
 }
 
-/* ------------------------------------------------------------------- pictures
- */
+/* ---------------------------------------------------------------- pictures */
 
 enum glint_status canvas_exact(const struct tool *tool,
                                const struct settings *s,

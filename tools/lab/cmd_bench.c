@@ -56,8 +56,7 @@ static const enum glint_pixel_format formats[] = {GLINT_YUYV,     GLINT_I420,
                                                   GLINT_NV12,     GLINT_RGB24,
                                                   GLINT_XRGB8888, GLINT_RGB565};
 
-/* ------------------------------------------------------------------- command
- */
+/* ----------------------------------------------------------------- command */
 
 static int run_rounds(struct bench *b)
 {

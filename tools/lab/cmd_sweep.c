@@ -71,8 +71,7 @@ struct asked {
     bool plain; /* sizes, lights and angles were not said */
 };
 
-/* ---------------------------------------------------------------------- cases
- */
+/* ------------------------------------------------------------------- cases */
 
 static void add_case(struct sweep *s, struct sweep_case c)
 {
@@ -141,8 +140,7 @@ static void add_cases(struct sweep *s, const struct asked *a)
     }
 }
 
-/* --------------------------------------------------------------------- output
- */
+/* ------------------------------------------------------------------ output */
 
 typedef void write_fn(const struct sweep *s, FILE *file);
 
@@ -248,8 +246,7 @@ static bool make_folder(const char *path)
            (errno == EEXIST && stat(path, &st) == 0 && S_ISDIR(st.st_mode));
 }
 
-/* -------------------------------------------------------------------- command
- */
+/* ----------------------------------------------------------------- command */
 
 static void say_case(const struct sweep *s, int c)
 {

@@ -10,8 +10,7 @@ double sweep_cost(const struct sweep *s, const struct sweep_point *p)
     return s->by_instructions ? 1e-6 * p->instructions : p->ratio;
 }
 
-/* ---------------------------------------------------------------------- front
- */
+/* ------------------------------------------------------------------- front */
 
 struct entry {
     double cost, quality;
@@ -78,8 +77,7 @@ void sweep_mark_fronts(struct sweep *s)
     free(front);
 }
 
-/* ---------------------------------------------------------------------- means
- */
+/* ------------------------------------------------------------------- means */
 
 static bool is_same(const struct sweep_setting *a,
                     const struct sweep_setting *b)
@@ -165,8 +163,7 @@ int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max)
     return n;
 }
 
-/* -------------------------------------------------------------------- quality
- */
+/* ----------------------------------------------------------------- quality */
 
 static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
 {

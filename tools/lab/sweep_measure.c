@@ -36,8 +36,7 @@ struct bay {
     struct glint_float_image got;
 };
 
-/* --------------------------------------------------------------------- making
- */
+/* ------------------------------------------------------------------ making */
 
 static bool is_same(const struct settings *a, const struct settings *b)
 {
@@ -140,8 +139,7 @@ static void free_bay(struct bay *b)
     free(b->got.rgb);
 }
 
-/* --------------------------------------------------------------------- timing
- */
+/* ------------------------------------------------------------------ timing */
 
 /* Draws R's frame; ROUND -1 only makes room for it. */
 static enum glint_status draw(struct bay *b, struct run *r, int round)
@@ -198,8 +196,7 @@ static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
     return status;
 }
 
-/* ------------------------------------------------------------------- pictures
- */
+/* ---------------------------------------------------------------- pictures */
 
 static double sum_of(const struct glint_float_image *image)
 {

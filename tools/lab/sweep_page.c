@@ -33,8 +33,7 @@ static const char head[] =
     "what they are under the "
     "pointer.</p>\n";
 
-/* ---------------------------------------------------------------------- table
- */
+/* ------------------------------------------------------------------- table */
 
 static void table_of_names(const struct sweep *s, FILE *file)
 {
@@ -91,8 +90,7 @@ static void table_of_front(const struct sweep *s, FILE *file)
     free(mean);
 }
 
-/* ------------------------------------------------------------------- pictures
- */
+/* ---------------------------------------------------------------- pictures */
 
 static void figure(const struct sweep *s, FILE *file,
                    const struct sweep_picture *q, const uint8_t *rgb,

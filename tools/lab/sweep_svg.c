@@ -14,8 +14,7 @@ static const char *cost_words(const struct sweep *s)
     return s->by_instructions ? "million instructions" : "times memory floor";
 }
 
-/* ---------------------------------------------------------------------- front
- */
+/* ------------------------------------------------------------------- front */
 
 /* A point of a front plot. */
 struct dot {
@@ -140,8 +139,7 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
     free(dot);
 }
 
-/* ---------------------------------------------------------------------- means
- */
+/* ------------------------------------------------------------------- means */
 
 /* Of dial D alone, through the standard, by the order of its values. */
 static void mean_curve(const struct plot *p, const struct sweep_mean *mean,
@@ -211,8 +209,7 @@ void sweep_svg_trade(const struct sweep *s, FILE *file)
     free(dot);
 }
 
-/* ---------------------------------------------------------------------- dials
- */
+/* ------------------------------------------------------------------- dials */
 
 static bool is_of(const struct sweep_point *p, int dial)
 {
@@ -296,8 +293,7 @@ void sweep_svg_dials(const struct sweep *s, FILE *file)
     plot_close(file);
 }
 
-/* --------------------------------------------------------------------- growth
- */
+/* ------------------------------------------------------------------ growth */
 
 enum against { PIXELS, LIGHTS, GHOSTS, N_AGAINST };
 

@@ -13,8 +13,7 @@ static const char *const stage_names[LIVE_N_STAGES] = {
     [LIVE_CONVERT] = "convert", [LIVE_FIND] = "find", [LIVE_PLAN] = "plan",
     [LIVE_BIN] = "bin",         [LIVE_DRAW] = "draw", [LIVE_SHOW] = "show"};
 
-/* ------------------------------------------------------------------ counting
- */
+/* ---------------------------------------------------------------- counting */
 
 static void start_sums(struct live_sums *sums, int64_t now_us)
 {

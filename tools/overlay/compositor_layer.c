@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ----------------------------------------------------------------- measuring
- */
+/* --------------------------------------------------------------- measuring */
 
 /* Pixels about a lamp whose light beyond white is its own. */
 struct reach {

@@ -193,8 +193,7 @@ bool ffmpeg_matrix(const struct ffmpeg_video *video, enum glint_matrix *matrix)
     return true;
 }
 
-/* --------------------------------------------------------------------- words
- */
+/* ------------------------------------------------------------------- words */
 
 /* A command line as it grows; what does not fit is seen at the end. */
 struct words {
@@ -241,8 +240,7 @@ static enum glint_status too_long(const char *name, struct glint_error *error)
                               "the name is too long");
 }
 
-/* ------------------------------------------------------------------ decoding
- */
+/* ---------------------------------------------------------------- decoding */
 
 static bool has_one_of(const char *text, const char *const *words)
 {
@@ -328,8 +326,7 @@ enum glint_status ffmpeg_read(struct child *child, const char *name,
     return run(child, &w, CHILD_WRITES, error);
 }
 
-/* ------------------------------------------------------------------ encoding
- */
+/* ---------------------------------------------------------------- encoding */
 
 /* Returns whether a file of this extension takes sound of CODEC as it is. */
 static bool takes_sound(const char *ext, const char *codec)

@@ -10,8 +10,7 @@ static const double least_seen = 2 / 255.0 / 12.92;
  * where it cannot be seen. */
 static const double well_seen = 0.25;
 
-/* ---------------------------------------------------------------- the light
- */
+/* --------------------------------------------------------------- the light */
 
 struct overlay_light overlay_light(const struct overlay *o)
 {
@@ -46,8 +45,7 @@ static double f_number_of(const struct settings *s)
                          : s->lens.f_number;
 }
 
-/* ----------------------------------------------------------------- the line
- */
+/* ---------------------------------------------------------------- the line */
 
 static const struct glint_lamp *
 brightest_of(const struct compositor *compositor)
@@ -162,8 +160,7 @@ void overlay_say(const struct overlay *o, const struct overlay_light *light,
         say_faint(o, light, to);
 }
 
-/* --------------------------------------------------------------------- JSON
- */
+/* -------------------------------------------------------------------- JSON */
 
 void overlay_json(const struct overlay *o, const struct overlay_light *light,
                   FILE *to)

@@ -160,8 +160,7 @@ static void say_missing(const struct tool *tool, const struct overlay *o,
         fputc('\n', stderr);
 }
 
-/* --------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------ frames */
 
 /* Number L->AT[I], as long after the one before as numbers say. */
 static int one(struct tool *tool, struct overlay *o, const struct numbers *l,

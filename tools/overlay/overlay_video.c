@@ -66,8 +66,7 @@ int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
     return EXIT_OK;
 }
 
-/* ------------------------------------------------------------------- opening
- */
+/* ----------------------------------------------------------------- opening */
 
 static int fail(struct video *v, enum glint_status status)
 {
@@ -173,8 +172,7 @@ static int open_output(struct video *v)
     return status == GLINT_OK ? EXIT_OK : fail(v, status);
 }
 
-/* -------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------ frames */
 
 static int frames(struct video *v)
 {
@@ -218,8 +216,7 @@ static int32_t frame_us(const struct glint_y4m_header *header)
     return (int32_t)fmin(fmax(us + 0.5, 1), 1e9);
 }
 
-/* -------------------------------------------------------------------- ending
- */
+/* ------------------------------------------------------------------ ending */
 
 /* Checks that the decoder came to its end, too, unless the reader of a pipe has
  * had enough. */

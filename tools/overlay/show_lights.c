@@ -98,8 +98,7 @@ void show_light_of(const struct glint_image *image,
     draw(image, track, stops);
 }
 
-/* ------------------------------------------------------------------- legend
- */
+/* ------------------------------------------------------------------ legend */
 
 static const struct {
     const char *word;

@@ -59,8 +59,7 @@ static struct function function[MAX_FUNCTIONS];
 static uint16_t slot[SLOTS]; /* 1 + index, by hash of the name; 0: free */
 static int n_functions, n_top = 30;
 
-/* -------------------------------------------------------------------- stages
- */
+/* ------------------------------------------------------------------ stages */
 
 enum { MAX_MARKS = 32, ASLEEP = -2, IDLE = -1, REST = 0, INHERIT = -3 };
 
@@ -138,8 +137,7 @@ static void take_mark(char *text)
     mark[n_marks++].name = colon + 1;
 }
 
-/* ----------------------------------------------------------------- functions
- */
+/* --------------------------------------------------------------- functions */
 
 static struct function *function_of(const char *name)
 {

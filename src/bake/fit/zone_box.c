@@ -221,8 +221,7 @@ void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
     zone->annulus = part->annulus;
 }
 
-/* --------------------------------------------------------------------- crop
- */
+/* -------------------------------------------------------------------- crop */
 
 /* What LOW .. HIGH of -1 .. 1 is of *FROM .. *TO, which becomes that. */
 static void reduce(double low, double high, double *from, double *to)

@@ -209,8 +209,7 @@ static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
     return found;
 }
 
-/* -------------------------------------------------------------------- slivers
- */
+/* ----------------------------------------------------------------- slivers */
 
 /* The part of the light's plane that may hold rays that get through, judged by
  * near neighbours; FRONT is all that can enter. */

@@ -102,8 +102,7 @@ static void mark_between(const struct probe *a, const struct probe *b, int n,
     }
 }
 
-/* --------------------------------------------------------------------- bend
- */
+/* -------------------------------------------------------------------- bend */
 
 /* How a quantity changes along the grid's lines: sums of squares. */
 struct change {
@@ -193,8 +192,7 @@ static void add_turn(struct bend *bend, const struct probe *a,
     bend->down += turn < 0;
 }
 
-/* ------------------------------------------------------------------- sampling
- */
+/* ---------------------------------------------------------------- sampling */
 
 struct rows {
     struct probe row[3][GLINT_MAX_SAMPLING + 1]; /* the last three, in turn */

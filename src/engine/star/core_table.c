@@ -104,8 +104,7 @@ static void pixel_light(const struct cells *s, int y, int x, double rgb[3])
                  (*at(s, y + h, x - h))[c] + (*at(s, y - h, x - h))[c];
 }
 
-/* ----------------------------------------------------------------- far field
- */
+/* --------------------------------------------------------------- far field */
 
 static double halo_log2(const struct glint_star_tables *t, double row,
                         double column, int c)
@@ -147,8 +146,7 @@ void glint_star_tabled(const struct glint_star_tables *t, double x, double y,
                   r2;
 }
 
-/* ---------------------------------------------------------------------- core
- */
+/* -------------------------------------------------------------------- core */
 
 static uint16_t code_of(double light)
 {

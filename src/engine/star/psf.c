@@ -12,8 +12,7 @@ enum { ORDERS = 20, BLEND_FROM = 15 };
 
 static const double span = 32; /* widths that a profile is tabled for */
 
-/* ----------------------------------------------------------------- transform
- */
+/* --------------------------------------------------------------- transform */
 
 static double sinc(double x)
 {
@@ -102,8 +101,7 @@ double glint_psf_transform(int n, double rotation_deg, double qx, double qy)
     return polygon(&sides, qx, qy);
 }
 
-/* ------------------------------------------------------------------ spectrum
- */
+/* ---------------------------------------------------------------- spectrum */
 
 static void set_spectrum(struct glint_psf *p)
 {
@@ -181,8 +179,7 @@ void glint_psf_profile(const struct glint_psf *p, double v, double rgb[3])
     profile_of(p, v, (const double(*)[3])p->profile, rgb);
 }
 
-/* ---------------------------------------------------------------------- near
- */
+/* -------------------------------------------------------------------- near */
 
 /* The transform at rows of PSF_STEPS an order of 400 nm, and columns. */
 static double *transforms(const struct glint_psf *p, int n_rows)
@@ -294,8 +291,7 @@ double glint_psf_angle(const struct glint_psf *p, int i)
     return (one - floor(one / step) * step + i * step) * (GLINT_PI / 180);
 }
 
-/* ----------------------------------------------------------------------- far
- */
+/* --------------------------------------------------------------------- far */
 
 /* The light of edges, without corners; SUM becomes the sum of products of cot
  * of the angles to neighbours, which end where profiles do. */
@@ -353,8 +349,7 @@ double glint_psf_beyond(const struct glint_psf *p, double r, int c)
            (GLINT_PI * GLINT_PI * r);
 }
 
-/* ---------------------------------------------------------------------- both
- */
+/* -------------------------------------------------------------------- both */
 
 /* The angle of (X, Y) to the nearest line. */
 static double to_line(const struct glint_psf *p, double x, double y)

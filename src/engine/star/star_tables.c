@@ -36,8 +36,7 @@ static int32_t held(double x, double most)
     return (int32_t)lrint(fmin(fmax(x, -most), most));
 }
 
-/* --------------------------------------------------------------------- lines
- */
+/* ------------------------------------------------------------------- lines */
 
 static void set_direction(struct glint_star_line *line, double angle,
                           double border)
@@ -111,8 +110,7 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
                    : 0;
 }
 
-/* ---------------------------------------------------------------------- halo
- */
+/* -------------------------------------------------------------------- halo */
 
 /* log2 of light times r^2 at ROW and COLUMN. */
 static void halo_at(const struct glint_psf *psf, const struct window *window,
@@ -157,8 +155,7 @@ static void set_halo(struct glint_star_tables *t, const struct glint_psf *psf,
     }
 }
 
-/* ---------------------------------------------------------------------- all
- */
+/* --------------------------------------------------------------------- all */
 
 static void set_sizes(struct glint_star_tables *t, const struct glint_psf *psf,
                       struct window *window)

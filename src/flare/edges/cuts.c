@@ -9,8 +9,7 @@
 /* The number of a cut: side K of the stop, or barrel K - BARREL. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
-/* ---------------------------------------------------------------------- nodes
- */
+/* ------------------------------------------------------------------- nodes */
 
 static int64_t radius2_q32(const struct glint_vertex *v)
 {
@@ -89,8 +88,7 @@ int glint_cuts_count(struct glint_outside o)
     return n;
 }
 
-/* ---------------------------------------------------------------------- parts
- */
+/* ------------------------------------------------------------------- parts */
 
 /* Positive inside. */
 static int64_t cut_q16(const struct glint_stop *stop, int cut,
@@ -163,8 +161,7 @@ void glint_cuts_part(const struct glint_stop *stop,
     }
 }
 
-/* -------------------------------------------------------------------- corners
- */
+/* ----------------------------------------------------------------- corners */
 
 /* VALUE at the corners as middle + u along + v across, u and v -1/2 .. 1/2. */
 struct plane {

@@ -46,8 +46,7 @@ void glint_edge_make_snapped(struct glint_edge *edge)
     edge->whole = 1;
 }
 
-/* --------------------------------------------------------------------- bins
- */
+/* -------------------------------------------------------------------- bins */
 
 enum visit { COUNT, PUT, SPAN };
 

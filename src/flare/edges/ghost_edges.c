@@ -12,8 +12,7 @@ enum {
 
 typedef int32_t point_q8[2];
 
-/* --------------------------------------------------------------------- edges
- */
+/* ------------------------------------------------------------------- edges */
 
 /* Returns whether a change from LIGHT to OTHER is less than what edges need to
  * be smooth for. */
@@ -70,8 +69,7 @@ void glint_ghost_add_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
     g->edge[g->n_edges - 1] = edge;
 }
 
-/* --------------------------------------------------------------------- cells
- */
+/* ------------------------------------------------------------------- cells */
 
 static void set_cell(const struct glint_ghost_edges *g, int i, int j,
                      struct glint_ghost_cell *c)
@@ -166,8 +164,7 @@ int32_t glint_ghost_light(struct glint_ghost_edges *g, int64_t area2, int frac,
         in_steps(q_shift(irradiance_q22 * energy_q16, 18), g->rows->steps));
 }
 
-/* ----------------------------------------------------------------- in the grid
- */
+/* ------------------------------------------------------------- in the grid */
 
 /* The part of side K of a cell, in the cell's order: corner K to K + 1. */
 static void part_of_side(const struct glint_ghost_edges *g,

@@ -6,8 +6,7 @@
 
 enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
 
-/* ------------------------------------------------------------------ functions
- */
+/* --------------------------------------------------------------- functions */
 
 /* A round stop's cut: (1 - r^2) / 2, held where it is far outside. */
 static int64_t disc_value(const struct glint_vertex *v)
@@ -18,8 +17,7 @@ static int64_t disc_value(const struct glint_vertex *v)
                        -(1 << 30), 1 << 30);
 }
 
-/* ----------------------------------------------------------------- classify
- */
+/* ---------------------------------------------------------------- classify */
 
 enum side { OUTSIDE, CUT, INSIDE };
 
@@ -98,8 +96,7 @@ int glint_outline_classify(const struct glint_corners *corners,
            (at_barrel == CUT ? GLINT_CUT_BARREL : 0);
 }
 
-/* --------------------------------------------------------------------- cut
- */
+/* --------------------------------------------------------------------- cut */
 
 static int64_t value_at(const int64_t *value_q16, const struct glint_uv *p)
 {
@@ -266,8 +263,7 @@ void glint_outline_whole(struct glint_outline *outline,
     outline->energy_q16 = (int32_t)(energy_q16 / corners->n);
 }
 
-/* -------------------------------------------------------------------- widen
- */
+/* ------------------------------------------------------------------- widen */
 
 /* A strip from A to B along the first coordinate, in order. Too short a one
  * grows about its middle. */

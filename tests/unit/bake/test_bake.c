@@ -680,8 +680,7 @@ static void test_planted_error(void **state)
     free(b.data);
 }
 
-/* ------------------------------------------------------------- key, refusals
- */
+/* ----------------------------------------------------------- key, refusals */
 
 static void other_key(const struct glint_prescription *lens,
                       const struct glint_bake_options *o)

@@ -146,8 +146,7 @@ static void test_golden_canon(void **state)
     compare_golden(&(struct golden){"canon-zoom-mid", 5.06, 10.2, 64});
 }
 
-/* ---------------------------------------------------------------- symmetries
- */
+/* -------------------------------------------------------------- symmetries */
 
 static void test_axis_light_is_symmetric(void **state)
 {
@@ -251,8 +250,7 @@ static void test_threads_do_not_matter(void **state)
     workers = pool;
 }
 
-/* --------------------------------------------------------- integers against it
- */
+/* ----------------------------------------------------- integers against it */
 
 static void integers(struct glint_view view, const struct glint_lamp *lamps,
                      int n_lamps, double *out,

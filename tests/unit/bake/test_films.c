@@ -106,8 +106,7 @@ static void test_mistakes(void **state)
     }
 }
 
-/* ------------------------------------------------------------------ --coating
- */
+/* --------------------------------------------------------------- --coating */
 
 static void test_dealt_out(void **state)
 {
@@ -164,8 +163,7 @@ static void test_too_many(void **state)
     assert_string_equal(error.text, "films take at most 200 characters");
 }
 
-/* -------------------------------------------------------------------- optics
- */
+/* ------------------------------------------------------------------ optics */
 
 static double reflectance(const struct glint_prescription *lens, int k,
                           double nm)

@@ -225,8 +225,7 @@ static void test_numbers_are_exact(void **state)
     }
 }
 
-/* ------------------------------------------------------------------ mistakes
- */
+/* ---------------------------------------------------------------- mistakes */
 
 static const struct {
     int number; /* line of the table that is replaced, from 1 */

@@ -24,8 +24,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* ---------------------------------------------------- another program's rays
- */
+/* -------------------------------------------------- another program's rays */
 
 struct bundle {
     char lens[64];
@@ -251,8 +250,7 @@ static void test_longest_path(void **state)
     assert_int_equal(path.n_events, GLINT_MAX_EVENTS + 1);
 }
 
-/* --------------------------------------------------------- rays done by hand
- */
+/* ------------------------------------------------------- rays done by hand */
 
 static enum glint_ray_status trace_one(const struct glint_prescription *lens,
                                        double py_mm, const double direction[3],
@@ -404,8 +402,7 @@ static void test_hostile_rays(void **state)
     assert_int_equal(trace_one(&lens, 1e200, along, &ray), GLINT_RAY_MISSED);
 }
 
-/* --------------------------------------------------------------- many at once
- */
+/* ------------------------------------------------------------ many at once */
 
 /* As one by one, to the bit, hits too; those that are not reached stay. */
 static void expect_same(const struct glint_path *path, int n,

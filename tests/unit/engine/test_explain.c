@@ -103,8 +103,7 @@ static void assert_agrees(const struct glint_explain *e,
     }
 }
 
-/* ---------------------------------------------------------------------- tests
- */
+/* ------------------------------------------------------------------- tests */
 
 /* One light is beyond the model, two are drawn; of each something is missing.
  */

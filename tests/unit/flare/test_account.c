@@ -170,8 +170,7 @@ static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
         s.n);
 }
 
-/* ---------------------------------------------------------------------- tests
- */
+/* ------------------------------------------------------------------- tests */
 
 /* Ghost 1 is never seen, ghost 2 not within a sine of 1/8. */
 static void test_drawn_and_closed(void **state)

@@ -20,8 +20,7 @@
 
 static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
-/* ------------------------------------------------------ what must not matter
- */
+/* ---------------------------------------------------- what must not matter */
 
 static void same_as_want(struct glint_flare_config c)
 {
@@ -285,8 +284,7 @@ static void test_into_nothing(void **state)
     }
 }
 
-/* -------------------------------------------------------------------- golden
- */
+/* ------------------------------------------------------------------ golden */
 
 static uint64_t hash(const void *data, size_t bytes)
 {

@@ -16,8 +16,7 @@
 
 static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
-/* --------------------------------------------------------------------- light
- */
+/* ------------------------------------------------------------------- light */
 
 /* The octagon of radius 1 in a grid of 2.5 x 2.5 radii: area 2 sqrt 2 of 6.25,
  * flux 16 x 16 cells x 1.5e9 / 2^31 x 50000 / 65536 (energy is odd about 0). */

@@ -23,8 +23,7 @@ static void same_as_want(struct glint_flare_config c)
     assert_memory_equal(pixels, want, sizeof pixels);
 }
 
-/* ------------------------------------------------------------------ capacity
- */
+/* ---------------------------------------------------------------- capacity */
 
 /* Exactly what bin asked for is enough, and one byte less is refused. */
 static void test_exact_capacity(void **state)

@@ -113,8 +113,7 @@ static void assert_sound(const struct glint_light *b)
     assert_int_equal(most, 16384);
 }
 
-/* --------------------------------------------------------------------- tests
- */
+/* ------------------------------------------------------------------- tests */
 
 static void test_none_and_one(void **state)
 {

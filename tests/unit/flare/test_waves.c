@@ -80,8 +80,7 @@ static void count(struct glint_frame *frame,
     }
 }
 
-/* ---------------------------------------------------------------- the choice
- */
+/* -------------------------------------------------------------- the choice */
 
 static uint8_t picture[SAMPLES], other[SAMPLES], truth[SAMPLES];
 
@@ -252,8 +251,7 @@ static void test_same_bits(void **state)
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* ---------------------------------------------------------------- the picture
- */
+/* ------------------------------------------------------------- the picture */
 
 static int compare(const void *a, const void *b)
 {
@@ -320,8 +318,7 @@ static void test_outlines(void **state)
     assert_true(step[1] <= 9 && 3 * step[1] < 2 * step[0]);
 }
 
-/* ---------------------------------------------------------------------- words
- */
+/* ------------------------------------------------------------------- words */
 
 static void test_words(void **state)
 {

@@ -25,8 +25,7 @@
 
 static struct glint_error error;
 
-/* ------------------------------------------------------------ frames to test
- */
+/* ---------------------------------------------------------- frames to test */
 
 /* How a frame is coded. */
 struct coding {
@@ -434,8 +433,7 @@ static void test_sizes_change(void **state)
     glint_mjpeg_close(d);
 }
 
-/* ----------------------------------------------------------- what is refused
- */
+/* --------------------------------------------------------- what is refused */
 
 static void tune_progressive(struct jpeg_compress_struct *j)
 {

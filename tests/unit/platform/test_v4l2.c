@@ -608,8 +608,7 @@ static void test_jpeg(void **state)
     must_close();
 }
 
-/* ------------------------------------------------------ other kinds of memory
- */
+/* --------------------------------------------------- other kinds of memory */
 
 static void check_io(enum glint_v4l2_io wish, enum glint_v4l2_io got)
 {

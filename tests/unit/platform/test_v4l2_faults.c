@@ -8,8 +8,7 @@
 #include <linux/videodev2.h>
 #include "jpeg/mjpeg.h"
 
-/* ------------------------------------------------------------------ requests
- */
+/* ---------------------------------------------------------------- requests */
 
 static void test_queueing_fails_once(void **state)
 {
@@ -100,8 +99,7 @@ static void test_does_without(void **state)
     }
 }
 
-/* ------------------------------------------------------------- broken streams
- */
+/* ---------------------------------------------------------- broken streams */
 
 /* The next frame is of WIDTH, CODE all over. */
 static void must_get_wide(int width, int code)
@@ -347,8 +345,7 @@ static void test_wrong_index(void **state)
     must_close();
 }
 
-/* ------------------------------------------------------------------- silence
- */
+/* ----------------------------------------------------------------- silence */
 
 static void test_silence(void **state)
 {
@@ -390,8 +387,7 @@ static void test_slow_camera(void **state)
     must_close();
 }
 
-/* -------------------------------------------------------------------- source
- */
+/* ------------------------------------------------------------------ source */
 
 static void test_source_changes(void **state)
 {
@@ -521,8 +517,7 @@ static void test_endless_changes(void **state)
     must_close();
 }
 
-/* -------------------------------------------------- begun anew, other memory
- */
+/* ------------------------------------------------ begun anew, other memory */
 
 static void check_anew(enum glint_v4l2_io io)
 {
@@ -552,8 +547,7 @@ static void test_anew_otherwise(void **state)
     check_anew(GLINT_V4L2_READ);
 }
 
-/* ------------------------------------------------------- every call that fails
- */
+/* --------------------------------------------------- every call that fails */
 
 static int n_got;
 

@@ -56,8 +56,7 @@ static double against_exact(struct stage *s, const struct glint_lamp *lamp)
     return stage_compare(s, exact, test).psnr_db;
 }
 
-/* ---------------------------------------------------------------------- axis
- */
+/* -------------------------------------------------------------------- axis */
 
 /* Nothing is special about the axis: 45 dB is what pictures so small have
  * anywhere else (test_exact asks the same of 480x270). A light a millionth of a
@@ -109,8 +108,7 @@ static void test_azimuth_on_the_axis(void **state)
                                 GRID_CODES, "codes"));
 }
 
-/* ------------------------------------------------------------------ azimuths
- */
+/* ---------------------------------------------------------------- azimuths */
 
 /* Where all light lands in the picture its sum cannot depend on the azimuth;
  * half a percent is what steps of a percent and chords of outlines may add
@@ -173,8 +171,7 @@ static void test_quarter_turns(void **state)
         "angles: quarter turns of the light, block mean", worst, 2, "codes"));
 }
 
-/* --------------------------------------------------------------------- zones
- */
+/* ------------------------------------------------------------------- zones */
 
 /* The light whose beam has exactly this sine. */
 static struct glint_lamp at_sine(int32_t sine_q30, double power)
@@ -269,8 +266,7 @@ static void test_zone_borders(void **state)
                                 flux_outer, 0.001, ""));
 }
 
-/* --------------------------------------------------------------- wide angles
- */
+/* ------------------------------------------------------------- wide angles */
 
 /* Up to the last step of the model it draws what is there; beyond it nothing,
  * which is counted; nothing is undefined up to the horizon. */
@@ -323,8 +319,7 @@ static void test_wide_ball(void **state)
     stage_close(&ball);
 }
 
-/* ------------------------------------------------------------- pixel borders
- */
+/* ----------------------------------------------------------- pixel borders */
 
 /* A light whose image lies on the corner of a pixel or of a tile is one like
  * any other: against the exact picture, and no jump where it crosses. */

@@ -65,8 +65,7 @@ static void draw(enum glint_pixel_format format, int width, int height,
         GLINT_OK);
 }
 
-/* ----------------------------------------------------------------------- sizes
- */
+/* ------------------------------------------------------------------- sizes */
 
 /* A picture is the middle of every larger one of the same scale whose sides
  * have the same parity: light that a small frame leaves out lies outside of it.
@@ -174,8 +173,7 @@ static void test_longest(void **state)
         0, "samples"));
 }
 
-/* --------------------------------------------------------------------- strides
- */
+/* ----------------------------------------------------------------- strides */
 
 /* Every format with rows apart, rows upside down and both: the same samples,
  * and not a byte beside them is touched. */
@@ -240,8 +238,7 @@ static void test_strides(void **state)
                                 n, 0, ""));
 }
 
-/* ----------------------------------------------------------------------- tiles
- */
+/* ------------------------------------------------------------------- tiles */
 
 /* A cell whose sides lie exactly on borders of tiles and of pixels lights the
  * pixels within and no other, whatever the tiles are: what it brings is its

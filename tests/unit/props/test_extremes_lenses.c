@@ -85,8 +85,7 @@ static void bake(double max_deg)
     stage_view(&stage, W, H, 0);
 }
 
-/* -------------------------------------------------------------------- the stop
- */
+/* ---------------------------------------------------------------- the stop */
 
 static void test_f_numbers(void **state)
 {
@@ -189,8 +188,7 @@ static void test_barrels(void **state)
                                  db, 48, "dB"));
 }
 
-/* --------------------------------------------------------------------- lengths
- */
+/* ----------------------------------------------------------------- lengths */
 
 /* A model is good for its film and a tenth more; larger sensors need another,
  * as tools/options/settings.c bakes it. */
@@ -306,8 +304,7 @@ static void test_focal_lengths(void **state)
     assert_true(report("focal lengths of 1 mm to 10 m", worst));
 }
 
-/* ----------------------------------------------------------------------- radii
- */
+/* ------------------------------------------------------------------- radii */
 
 static void test_smallest_ball(void **state)
 {
@@ -362,8 +359,7 @@ static void test_nearly_planes(void **state)
                                  70, "dB"));
 }
 
-/* -------------------------------------------------------------------- surfaces
- */
+/* ---------------------------------------------------------------- surfaces */
 
 /* N surfaces of 100 mm together, the stop behind SPLIT of them; its sensor
  * where the light comes to a focus. */

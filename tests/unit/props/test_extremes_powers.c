@@ -75,8 +75,7 @@ static void test_linear_in_power(void **state)
                                 flux, 0.001, ""));
 }
 
-/* ----------------------------------------------------------------------- codes
- */
+/* ------------------------------------------------------------------- codes */
 
 /* From what no code shows to what saturates all, in factors of 4: no sample is
  * darker than the ground (a sum that wraps would make it so) nor than with a
@@ -145,8 +144,7 @@ static void test_no_power(void **state)
                                 changed, 0, "samples"));
 }
 
-/* ----------------------------------------------------------------------- files
- */
+/* ------------------------------------------------------------------- files */
 
 static enum glint_status read_text(const char *text, struct lamp_list *list,
                                    struct glint_error *error)

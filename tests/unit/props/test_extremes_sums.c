@@ -38,8 +38,7 @@ static int close_stage(void **state)
     return 0;
 }
 
-/* ---------------------------------------------------------------------- lights
- */
+/* ------------------------------------------------------------------ lights */
 
 /* 10 000 lights at one place are one of 10 000 times the power: powers are
  * added with 31 bits, 10 000 times. */
@@ -110,8 +109,7 @@ static void test_ten_thousand_suns(void **state)
                                 dark, 0, "samples"));
 }
 
-/* --------------------------------------------------------------------- bundles
- */
+/* ----------------------------------------------------------------- bundles */
 
 enum { SIDE = 64, MANY = 1 << 15 };
 
@@ -211,8 +209,7 @@ static void test_piles(void **state)
                                 miscounted, 0, "of 15"));
 }
 
-/* ----------------------------------------------------------------------- traps
- */
+/* ------------------------------------------------------------------- traps */
 
 /* Whether F traps: 1, or 0. */
 static int traps(void (*f)(void))

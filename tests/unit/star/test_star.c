@@ -136,8 +136,7 @@ static double at(double x, double y)
            b * ((1 - a) * p[3 * WIDTH] + a * p[3 * WIDTH + 3]);
 }
 
-/* -------------------------------------------------------------------- shape
- */
+/* ------------------------------------------------------------------- shape */
 
 /* Maxima of light at RADIUS about the middle that are above twice the mean. */
 static int count_spikes(double radius)
@@ -245,8 +244,7 @@ static void test_energy(void **state)
     }
 }
 
-/* ----------------------------------------------------------- direct summation
- */
+/* -------------------------------------------------------- direct summation */
 
 enum { WAVES = 48 };
 
@@ -394,8 +392,7 @@ static void test_extent(void **state)
     glint_star_tables_free(t);
 }
 
-/* -------------------------------------------------------------------- motion
- */
+/* ------------------------------------------------------------------ motion */
 
 /* A light that moves by 0.05 pixels: neither all light nor any pixel jumps. */
 static void test_motion(void **state)
@@ -467,8 +464,7 @@ static void test_rotation(void **state)
     }
 }
 
-/* ------------------------------------------------------------------ extremes
- */
+/* ---------------------------------------------------------------- extremes */
 
 static struct glint_star_light any_light(uint32_t *seed)
 {

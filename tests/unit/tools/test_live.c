@@ -120,8 +120,7 @@ static void must_leave_nothing(void)
     assert_int_equal(fake_camera_blocks(), 0);
 }
 
-/* -------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------ frames */
 
 static int asked[200], blocks[200];
 
@@ -171,8 +170,7 @@ static void test_stops(void **state)
     assert_int_equal(n_waits, 30);
 }
 
-/* -------------------------------------------------------------------- reload
- */
+/* ------------------------------------------------------------------ reload */
 
 static void reload_often(int wait)
 {
@@ -251,8 +249,7 @@ static void test_bad_reloads(void **state)
     assert_int_equal(n_said(":2: there is no option no-such-thing"), 4);
 }
 
-/* ------------------------------------------------------------------ snapshot
- */
+/* ---------------------------------------------------------------- snapshot */
 
 static void silence_and_snapshot(int wait)
 {
@@ -316,8 +313,7 @@ static void test_snapshot_waits(void **state)
     assert_int_equal(unlink(path), 0);
 }
 
-/* ----------------------------------------------------------------- lost again
- */
+/* -------------------------------------------------------------- lost again */
 
 static void unplug(int wait)
 {
@@ -369,8 +365,7 @@ static void test_other_sizes(void **state)
     assert_int_equal(blocks[149], blocks[29]);
 }
 
-/* -------------------------------------------------------------------- failures
- */
+/* ---------------------------------------------------------------- failures */
 
 /* Each call in turn fails, once: frames go on or there is an exit code and a
  * line that says why. */

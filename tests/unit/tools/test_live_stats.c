@@ -33,8 +33,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* --------------------------------------------------------------- percentiles
- */
+/* ------------------------------------------------------------- percentiles */
 
 static void check_percentiles(int n, int64_t low_us, int64_t span_us)
 {
@@ -114,8 +113,7 @@ static void test_full_bin(void **state)
     assert_true(live_stats_latency_ms(&stats.total, 67) == 2000);
 }
 
-/* ---------------------------------------------------------------------- sums
- */
+/* -------------------------------------------------------------------- sums */
 
 static const struct live_frame_times frames[] = {
     {.shown = true,
