@@ -31,4 +31,7 @@ const char *scratch_path(const char *name);
 /* Writes DATA to NAME in the folder, and asserts that it could. */
 void scratch_put(const char *name, const char *data, size_t bytes);
 
+/* Returns how many files DIR has, hidden ones and folders, too. */
+int scratch_count(const char *dir);
+
 #endif

@@ -12,7 +12,6 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include <dirent.h>
 #include <errno.h>
 #include <string.h>
 
@@ -25,18 +24,6 @@ static struct glint_source_frame frame;
 
 static const struct glint_v4l2_config any_camera = {
     .device = FAKE_PATH, .input = -1, .range = -1, .matrix = -1};
-
-static inline int n_fds(void)
-{
-    DIR *const d = opendir("/proc/self/fd");
-    int n = 0;
-
-    assert_non_null(d);
-    while (readdir(d))
-        n++;
-    closedir(d);
-    return n;
-}
 
 static inline enum glint_status try_open(const struct glint_v4l2_config *wish,
                                          enum glint_v4l2_io io)

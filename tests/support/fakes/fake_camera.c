@@ -12,6 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "support/fakes/wrapped.h"
+
 struct fake_camera camera = {.fd = -1};
 bool fake_lacks_jpeg;
 
@@ -572,7 +574,6 @@ static int stream(bool on)
     return 0;
 }
 
-int __real_open64(const char *path, int flags, ...);
 int __real_close(int fd);
 
 static int export(struct v4l2_exportbuffer *e)
@@ -643,8 +644,6 @@ static int answer(unsigned long request, void *arg)
     return refuse(ENOTTY);
 }
 
-int __real_ioctl(int fd, unsigned long request, ...);
-int __wrap_ioctl(int fd, unsigned long request, ...);
 int __wrap_ioctl(int fd, unsigned long request, ...)
 {
     va_list args;
@@ -662,7 +661,6 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     return camera.is_gone ? refuse(ENODEV) : answer(request, arg);
 }
 
-int __wrap_open64(const char *path, int flags, ...);
 int __wrap_open64(const char *path, int flags, ...)
 {
     int mode;
@@ -732,11 +730,6 @@ ssize_t __wrap_read(int fd, void *dst, size_t bytes)
 
 /* ------------------------------------------------------------------- memory */
 
-void *__real_malloc(size_t bytes);
-void *__real_mmap64(void *at, size_t bytes, int how, int flags, int fd,
-                    off_t offset);
-void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
-                    off_t offset);
 void __real_free(void *mem);
 
 void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
@@ -761,8 +754,6 @@ void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
     return b->map[page % 16];
 }
 
-int __real_munmap(void *at, size_t bytes);
-int __wrap_munmap(void *at, size_t bytes);
 int __wrap_munmap(void *at, size_t bytes)
 {
     for (int i = 0; i < FAKE_BUFFERS; i++)
@@ -778,7 +769,6 @@ int __wrap_munmap(void *at, size_t bytes)
     return __real_munmap(at, bytes);
 }
 
-void *__wrap_malloc(size_t bytes);
 void *__wrap_malloc(size_t bytes)
 {
     void *const mem = fails() ? NULL : __real_malloc(bytes);
@@ -788,8 +778,6 @@ void *__wrap_malloc(size_t bytes)
     return mem;
 }
 
-void *__real_calloc(size_t n, size_t bytes);
-void *__wrap_calloc(size_t n, size_t bytes);
 void *__wrap_calloc(size_t n, size_t bytes)
 {
     void *const mem = fails() ? NULL : __real_calloc(n, bytes);
@@ -799,8 +787,6 @@ void *__wrap_calloc(size_t n, size_t bytes)
     return mem;
 }
 
-void *__real_realloc(void *old, size_t bytes);
-void *__wrap_realloc(void *old, size_t bytes);
 void *__wrap_realloc(void *old, size_t bytes)
 {
     void *const mem = fails() ? NULL : __real_realloc(old, bytes);
@@ -810,8 +796,6 @@ void *__wrap_realloc(void *old, size_t bytes)
     return mem;
 }
 
-int __real_posix_memalign(void **mem, size_t align, size_t bytes);
-int __wrap_posix_memalign(void **mem, size_t align, size_t bytes);
 int __wrap_posix_memalign(void **mem, size_t align, size_t bytes)
 {
     const int number = fails() ? 12 : __real_posix_memalign(mem, align, bytes);

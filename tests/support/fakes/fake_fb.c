@@ -16,6 +16,8 @@
 #include <linux/kd.h>
 #include <linux/vt.h>
 
+#include "support/fakes/wrapped.h"
+
 char fake_fb_path[] = "/tmp/glint-test-fb-XXXXXX";
 char fake_tty_path[] = "/tmp/glint-test-tty-XXXXXX";
 struct fake_fb *fake_fb;
@@ -27,19 +29,6 @@ static bool fails(void)
 }
 
 /* -------------------------------------------------------- what is called */
-
-int __real_open64(const char *path, int flags, ...);
-int __wrap_open64(const char *path, int flags, ...);
-int __real_ioctl(int fd, unsigned long request, ...);
-int __wrap_ioctl(int fd, unsigned long request, ...);
-void *__real_mmap64(void *at, size_t bytes, int how, int flags, int fd,
-                    off_t offset);
-void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
-                    off_t offset);
-int __real_munmap(void *at, size_t bytes);
-int __wrap_munmap(void *at, size_t bytes);
-void *__real_malloc(size_t bytes);
-void *__wrap_malloc(size_t bytes);
 
 static int refuse(int number)
 {
@@ -117,17 +106,10 @@ static int answer_tty(unsigned long request, void *arg, int mode)
     return refuse(ENOTTY);
 }
 
-static bool is_file(int fd, const char *path)
-{
-    struct stat a, b;
-
-    return fstat(fd, &a) == 0 && stat(path, &b) == 0 && a.st_ino == b.st_ino;
-}
-
 int __wrap_ioctl(int fd, unsigned long request, ...)
 {
-    const bool is_fb = is_file(fd, fake_fb_path),
-               is_tty = is_file(fd, fake_tty_path);
+    const bool is_fb = wrapped_is(fd, fake_fb_path),
+               is_tty = wrapped_is(fd, fake_tty_path);
     unsigned long arg;
     va_list args;
 
@@ -147,7 +129,7 @@ void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
 {
     void *got = MAP_FAILED;
 
-    if (fd < 0 || !is_file(fd, fake_fb_path))
+    if (fd < 0 || !wrapped_is(fd, fake_fb_path))
         return __real_mmap64(at, bytes, how, flags, fd, offset);
     if (fails())
         errno = ENOMEM;

@@ -14,13 +14,10 @@
 #include "support/rng.h"
 #include "engine/frame/cost.h"
 #include "engine/frame/quality.h"
-#include "options/settings.h"
-#include "options/tool.h"
+#include "support/opened.h"
 
 enum { WIDTH = 160, HEIGHT = 120, SETTLED = 40 };
 
-static struct settings settings;
-static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {4, 80, 3e5, {1, 1, 1}, {0, 0}, 0}};
@@ -276,25 +273,6 @@ static void test_counts(void **state)
     glint_frame_finish(&frame);
 }
 
-static int open_lens(void **state)
-{
-    (void)state;
-    settings_defaults(&settings);
-    return tool_start(&tool) == EXIT_OK &&
-                   settings_open(&tool, &settings,
-                                 "lenses/heliar-tronnier.lens") == EXIT_OK
-               ? 0
-               : -1;
-}
-
-static int close_lens(void **state)
-{
-    (void)state;
-    settings_close(&settings);
-    tool_finish(&tool);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -303,5 +281,6 @@ int main(void)
         cmocka_unit_test(test_new_lights),  cmocka_unit_test(test_counts),
     };
 
-    return cmocka_run_group_tests_name("budget", tests, open_lens, close_lens);
+    return cmocka_run_group_tests_name("budget", tests, opened_heliar,
+                                       opened_close);
 }

@@ -13,12 +13,9 @@
 #include <string.h>
 
 #include "glint/engine.h"
-#include "options/settings.h"
+#include "support/opened.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
-
-static struct settings settings;
-static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 /* A grey picture with two lamps. */
 static struct glint_image picture(uint8_t *px)
@@ -187,23 +184,6 @@ static void test_refuses(void **state)
     }
 }
 
-static int enter(void **state)
-{
-    (void)state;
-    settings_defaults(&settings);
-    return tool_start(&tool) != EXIT_OK ||
-           settings_open(&tool, &settings, "lenses/heliar-tronnier.lens") !=
-               EXIT_OK;
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    settings_close(&settings);
-    tool_finish(&tool);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -211,5 +191,5 @@ int main(void)
         cmocka_unit_test(test_follows), cmocka_unit_test(test_stop),
         cmocka_unit_test(test_refuses)};
 
-    return cmocka_run_group_tests(tests, enter, leave);
+    return cmocka_run_group_tests(tests, opened_heliar, opened_close);
 }

@@ -15,13 +15,10 @@
 #include <string.h>
 
 #include "command/explain.h"
-#include "options/settings.h"
-#include "options/tool.h"
+#include "support/opened.h"
 
 enum { WIDTH = 320, HEIGHT = 200, BYTES = 3 * WIDTH * HEIGHT, SIDE = 16 };
 
-static struct settings settings;
-static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static uint8_t rgb[BYTES];
 static const struct glint_image image = {.format = GLINT_RGB24,
                                          .width = WIDTH,
@@ -301,23 +298,6 @@ static void test_picture(void **state)
     glint_frame_finish(&frame);
 }
 
-static int enter(void **state)
-{
-    (void)state;
-    settings_defaults(&settings);
-    if (tool_start(&tool) != EXIT_OK)
-        return 1;
-    return settings_open(&tool, &settings, "lenses/heliar-tronnier.lens");
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    settings_close(&settings);
-    tool_finish(&tool);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -326,5 +306,6 @@ int main(void)
         cmocka_unit_test(test_order),   cmocka_unit_test(test_picture),
     };
 
-    return cmocka_run_group_tests_name("explain", tests, enter, leave);
+    return cmocka_run_group_tests_name("explain", tests, opened_heliar,
+                                       opened_close);
 }

@@ -16,6 +16,7 @@
 #include "engine/frame/frame.h"
 #include "options/settings.h"
 #include "options/tool.h"
+#include "support/fakes/wrapped.h"
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
@@ -23,15 +24,6 @@ static struct settings settings, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static int n_asked; /* requests for memory since it was set to 0 */
 static int fail_at; /* number of the request that is refused, from 1; 0: none */
-
-void *__real_malloc(size_t bytes);
-void *__wrap_malloc(size_t bytes);
-void *__real_calloc(size_t n, size_t bytes);
-void *__wrap_calloc(size_t n, size_t bytes);
-void *__real_realloc(void *old, size_t bytes);
-void *__wrap_realloc(void *old, size_t bytes);
-int __real_posix_memalign(void **mem, size_t align, size_t bytes);
-int __wrap_posix_memalign(void **mem, size_t align, size_t bytes);
 
 static bool is_refused(void)
 {

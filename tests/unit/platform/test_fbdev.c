@@ -9,7 +9,6 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -25,6 +24,7 @@
 
 #include "linux/fbdev.h"
 #include "support/fakes/fake_fb.h"
+#include "support/scratch.h"
 
 /* ---------------------------------------------------------------- scenery */
 
@@ -560,18 +560,6 @@ static void test_every_end(void **state)
 
 /* ---------------------------------------------------------------- failures */
 
-static int n_fds(void)
-{
-    DIR *const d = opendir("/proc/self/fd");
-    int n = 0;
-
-    assert_non_null(d);
-    while (readdir(d))
-        n++;
-    closedir(d);
-    return n;
-}
-
 /* Three frames of two sizes; false: something failed, and says so. */
 static bool live(void)
 {
@@ -601,7 +589,7 @@ static bool live(void)
 
 static void check_failures(bool pages)
 {
-    const int fds = n_fds();
+    const int fds = scratch_count("/proc/self/fd");
     int n_failed = 0, n = 0, n_last;
 
     do {
@@ -615,7 +603,7 @@ static void check_failures(bool pages)
         n_last = fake_fb_calls;
         fake_fb_fail_at = 0;
         assert_int_equal(fake_fb_maps, 0);
-        assert_int_equal(n_fds(), fds);
+        assert_int_equal(scratch_count("/proc/self/fd"), fds);
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
     } while (n <= n_last);

@@ -8,7 +8,6 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -21,36 +20,16 @@
 
 #include "posix/input.h"
 #include "posix/output.h"
+#include "support/scratch.h"
 
-static char dir[] = "/tmp/glint-test-output-XXXXXX";
 static char path[64];
 
 static int enter(void **state)
 {
-    (void)state;
-    if (!mkdtemp(dir))
+    if (scratch_open_dir(state))
         return -1;
-    snprintf(path, sizeof path, "%s/x.ppm", dir);
+    snprintf(path, sizeof path, "%s/x.ppm", scratch_dir);
     return 0;
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    return rmdir(dir);
-}
-
-/* Files in the test's directory, hidden ones too. */
-static int n_files(void)
-{
-    DIR *const d = opendir(dir);
-    int n = 0;
-
-    assert_non_null(d);
-    while (readdir(d))
-        n++;
-    closedir(d);
-    return n - 2;
 }
 
 static void put_file(const char *text)
@@ -102,13 +81,13 @@ static void test_commit(void **state)
     (void)state;
     open_text(&out, "one");
     assert_int_equal(access(path, F_OK), -1);
-    assert_int_equal(n_files(), 1); /* the temporary one */
+    assert_int_equal(scratch_count(scratch_dir), 1); /* the temporary one */
     assert_string_equal(strrchr(out.tmp, '.'), ".ppm");
     assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
     umask(old);
     expect_file("one");
     assert_int_equal(mode_of(path), 0640);
-    assert_int_equal(n_files(), 1);
+    assert_int_equal(scratch_count(scratch_dir), 1);
     glint_output_abort(&out); /* Nothing is left to undo. */
     unlink(path);
 }
@@ -121,7 +100,7 @@ static void test_abort(void **state)
     open_text(&out, "one");
     glint_output_abort(&out);
     glint_output_abort(&out);
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
 static void test_replaces_at_commit(void **state)
@@ -140,7 +119,7 @@ static void test_replaces_at_commit(void **state)
     assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
     expect_file("new");
     assert_int_equal(mode_of(path), 0600);
-    assert_int_equal(n_files(), 1);
+    assert_int_equal(scratch_count(scratch_dir), 1);
     unlink(path);
 }
 
@@ -152,7 +131,7 @@ static void test_follows_links(void **state)
     struct stat st;
 
     (void)state;
-    snprintf(link_path, sizeof link_path, "%s/link.ppm", dir);
+    snprintf(link_path, sizeof link_path, "%s/link.ppm", scratch_dir);
     put_file("old");
     assert_int_equal(symlink(path, link_path), 0);
     assert_int_equal(
@@ -250,7 +229,7 @@ static void test_full_disk(void **state)
     assert_int_equal(waitpid(child, &how, 0), child);
     assert_int_equal(how, 0);
     expect_file("old");
-    assert_int_equal(n_files(), 1);
+    assert_int_equal(scratch_count(scratch_dir), 1);
     unlink(path);
 }
 
@@ -337,7 +316,7 @@ static void check_death(int signal_number, int handled)
         assert_true(WIFSIGNALED(how));
         assert_int_equal(WTERMSIG(how), signal_number);
     }
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
 /* Must come first: the first open takes the signals for the whole process. */
@@ -364,7 +343,7 @@ static void test_exit(void **state)
     }
     assert_int_equal(waitpid(child, &how, 0), child);
     assert_int_equal(how, 0);
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
 static void refuse(const char *name, const char *text)
@@ -388,8 +367,8 @@ static void test_refuses(void **state)
     refuse("/nowhere/x.ppm", "/nowhere/x.ppm: cannot create a file beside it: "
                              "No such file or directory");
     refuse("", ": No such file or directory");
-    snprintf(text, sizeof text, "%s: Is a directory", dir);
-    refuse(dir, text);
+    snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
+    refuse(scratch_dir, text);
 
     /* a name that is too long loses its beginning, not the cause */
     snprintf(name, sizeof name, "/nowhere/%0250d/x\n.ppm", 1);
@@ -406,8 +385,9 @@ static void test_checks(void **state)
     char name[300], text[300];
 
     (void)state;
-    snprintf(text, sizeof text, "%s: is a folder; name a file in it", dir);
-    assert_int_equal(glint_output_check(dir, &error), GLINT_E_OUTPUT);
+    snprintf(text, sizeof text, "%s: is a folder; name a file in it",
+             scratch_dir);
+    assert_int_equal(glint_output_check(scratch_dir, &error), GLINT_E_OUTPUT);
     assert_string_equal(error.text, text);
     assert_int_equal(glint_output_check("/nowhere/x.ppm", &error),
                      GLINT_E_OUTPUT);
@@ -415,9 +395,9 @@ static void test_checks(void **state)
                                     "beside it: No such file or directory");
     assert_int_equal(glint_output_check("-", &error), GLINT_OK);
     assert_int_equal(glint_output_check("/dev/null", &error), GLINT_OK);
-    snprintf(name, sizeof name, "%s/x.ppm", dir);
+    snprintf(name, sizeof name, "%s/x.ppm", scratch_dir);
     assert_int_equal(glint_output_check(name, &error), GLINT_OK);
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
 static void test_many_at_a_time(void **state)
@@ -429,15 +409,15 @@ static void test_many_at_a_time(void **state)
 
     (void)state;
     for (; n < 17; n++) {
-        snprintf(name, sizeof name, "%s/%d", dir, n);
+        snprintf(name, sizeof name, "%s/%d", scratch_dir, n);
         if (glint_output_open(&out[n], name, GLINT_OUTPUT_TEXT, &error))
             break;
-        assert_int_equal(n_files(), n + 1);
+        assert_int_equal(scratch_count(scratch_dir), n + 1);
     }
     assert_int_equal(n, 16);
     while (n-- > 0)
         glint_output_abort(&out[n]);
-    assert_int_equal(n_files(), 0);
+    assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
 int main(void)
@@ -459,5 +439,6 @@ int main(void)
         cmocka_unit_test(test_many_at_a_time),
     };
 
-    return cmocka_run_group_tests_name("output", tests, enter, leave);
+    return cmocka_run_group_tests_name("output", tests, enter,
+                                       scratch_close_dir);
 }

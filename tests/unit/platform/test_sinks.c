@@ -25,8 +25,8 @@
 #include "panel/null.h"
 #include "panel/planar.h"
 #include "panel/y4m_sink.h"
-
-static char path[] = "/tmp/glint-test-sink-XXXXXX";
+#include "support/fakes/wrapped.h"
+#include "support/scratch.h"
 
 /* An image over MEM. */
 static struct glint_image image_of(enum glint_pixel_format format, int width,
@@ -174,7 +174,7 @@ static void test_from_rgb(void **state)
 static void expect_file(const char *want, size_t bytes)
 {
     char got[512];
-    const int fd = open(path, O_RDONLY);
+    const int fd = open(scratch_file, O_RDONLY);
     const ssize_t n = read(fd, got, sizeof got);
 
     close(fd);
@@ -194,7 +194,7 @@ static void test_y4m(void **state)
 
     (void)state;
     image.range = GLINT_RANGE_FULL;
-    glint_y4m_sink_open(&y4m, path, 25, 1);
+    glint_y4m_sink_open(&y4m, scratch_file, 25, 1);
     for (int i = 0; i < 2; i++)
         assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
     assert_int_equal(y4m.n_frames, 2);
@@ -217,7 +217,7 @@ static void test_y4m_formats(void **state)
     struct glint_error error;
 
     (void)state;
-    glint_y4m_sink_open(&y4m, path, 0, 0);
+    glint_y4m_sink_open(&y4m, scratch_file, 0, 0);
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
     assert_null(y4m.mem);
     y4m.sink.close(&y4m.sink);
@@ -225,7 +225,7 @@ static void test_y4m_formats(void **state)
     expect_file(planes, sizeof planes - 1);
     image = image_of(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
     image.range = GLINT_RANGE_FULL;
-    glint_y4m_sink_open(&y4m, path, 30, 1);
+    glint_y4m_sink_open(&y4m, scratch_file, 30, 1);
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
     y4m.sink.close(&y4m.sink);
     expect_file(white, sizeof white - 1);
@@ -302,17 +302,8 @@ static struct {
     struct v4l2_streamparm parm;
 } node;
 
-int __real_ioctl(int fd, unsigned long request, ...);
-int __wrap_ioctl(int fd, unsigned long request, ...);
 ssize_t __real_write(int fd, const void *data, size_t bytes);
 ssize_t __wrap_write(int fd, const void *data, size_t bytes);
-
-static bool is_node(int fd)
-{
-    struct stat a, b;
-
-    return fstat(fd, &a) == 0 && stat(path, &b) == 0 && a.st_ino == b.st_ino;
-}
 
 static void answer_format(struct v4l2_format *f)
 {
@@ -334,7 +325,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     va_start(args, request);
     arg = va_arg(args, void *);
     va_end(args);
-    if (!is_node(fd) || !node.caps)
+    if (!wrapped_is(fd, scratch_file) || !node.caps)
         return __real_ioctl(fd, request, arg);
     if (node.fail_errno && request == node.fail_request) {
         errno = node.fail_errno;
@@ -358,7 +349,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
 
 ssize_t __wrap_write(int fd, const void *data, size_t bytes)
 {
-    if (!node.caps || !is_node(fd))
+    if (!node.caps || !wrapped_is(fd, scratch_file))
         return __real_write(fd, data, bytes);
     if (node.write_errno) {
         errno = node.write_errno;
@@ -373,7 +364,7 @@ static void reset_node(void)
 {
     memset(&node, 0, sizeof node);
     node.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_READWRITE;
-    assert_int_equal(truncate(path, 0), 0);
+    assert_int_equal(truncate(scratch_file, 0), 0);
 }
 
 static void must_open(struct glint_v4l2_sink *out,
@@ -381,7 +372,7 @@ static void must_open(struct glint_v4l2_sink *out,
 {
     struct glint_error error;
 
-    if (glint_v4l2_sink_open(out, path, like, 30, 1, &error))
+    if (glint_v4l2_sink_open(out, scratch_file, like, 30, 1, &error))
         fail_msg("%s", error.text);
 }
 
@@ -489,8 +480,9 @@ static void expect_refused(enum glint_status status, const char *part)
     struct glint_v4l2_sink out;
     struct glint_error error;
 
-    assert_int_equal(glint_v4l2_sink_open(&out, path, &image, 30, 1, &error),
-                     status);
+    assert_int_equal(
+        glint_v4l2_sink_open(&out, scratch_file, &image, 30, 1, &error),
+        status);
     if (!strstr(error.text, part))
         fail_msg("\"%s\" is not in \"%s\"", part, error.text);
     assert_int_equal(out.fd, -1);
@@ -528,8 +520,9 @@ static void test_v4l2_refuses(void **state)
     node.caps = 0; /* a file */
     expect_refused(GLINT_E_DEVICE, "is not a video device");
     image.format = GLINT_I444;
-    assert_int_equal(glint_v4l2_sink_open(&out, path, &image, 0, 0, &error),
-                     GLINT_E_UNSUPPORTED);
+    assert_int_equal(
+        glint_v4l2_sink_open(&out, scratch_file, &image, 0, 0, &error),
+        GLINT_E_UNSUPPORTED);
     image.format = GLINT_YUYV;
     assert_int_equal(
         glint_v4l2_sink_open(&out, "/dev/video-none", &image, 0, 0, &error),
@@ -552,18 +545,6 @@ static void test_v4l2_refuses(void **state)
     out.sink.close(&out.sink);
 }
 
-static int enter(void **state)
-{
-    (void)state;
-    return close(mkstemp(path));
-}
-
-static int leave(void **state)
-{
-    (void)state;
-    return unlink(path);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -580,5 +561,6 @@ int main(void)
         cmocka_unit_test(test_v4l2_refuses),
     };
 
-    return cmocka_run_group_tests_name("sinks", tests, enter, leave);
+    return cmocka_run_group_tests_name("sinks", tests, scratch_open_file,
+                                       scratch_close_file);
 }

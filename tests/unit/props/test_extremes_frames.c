@@ -34,13 +34,6 @@ static int open_stage(void **state)
     return 0;
 }
 
-static int close_stage(void **state)
-{
-    (void)state;
-    stage_close(&heliar);
-    return 0;
-}
-
 static void *take(size_t bytes)
 {
     void *p = malloc(bytes);
@@ -310,7 +303,9 @@ int main(void)
         cmocka_unit_test(test_longest),         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_on_tile_borders),
     };
+    const int failed = cmocka_run_group_tests_name("extremes: frames", tests,
+                                                   open_stage, NULL);
 
-    return cmocka_run_group_tests_name("extremes: frames", tests, open_stage,
-                                       close_stage);
+    stage_close(&heliar);
+    return failed;
 }

@@ -468,13 +468,6 @@ static void test_two_thousand_ghosts(void **state)
     assert_true(report("2016 ghosts, exact rays", worst));
 }
 
-static int close_stage(void **state)
-{
-    (void)state;
-    stage_close(&stage);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -491,7 +484,9 @@ int main(void)
         cmocka_unit_test(test_no_ghosts),
         cmocka_unit_test(test_two_thousand_ghosts),
     };
+    const int failed =
+        cmocka_run_group_tests_name("extremes: lenses", tests, NULL, NULL);
 
-    return cmocka_run_group_tests_name("extremes: lenses", tests, NULL,
-                                       close_stage);
+    stage_close(&stage);
+    return failed;
 }

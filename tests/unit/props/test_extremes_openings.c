@@ -176,13 +176,6 @@ static void test_closing(void **state)
                                 pop, 1.5, "codes"));
 }
 
-static int close_stage(void **state)
-{
-    (void)state;
-    stage_close(&stage);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -190,6 +183,9 @@ int main(void)
         cmocka_unit_test(test_against_native),
         cmocka_unit_test(test_closing),
     };
+    const int failed =
+        cmocka_run_group_tests_name("openings", tests, NULL, NULL);
 
-    return cmocka_run_group_tests_name("openings", tests, NULL, close_stage);
+    stage_close(&stage);
+    return failed;
 }

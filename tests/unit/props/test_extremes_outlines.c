@@ -24,13 +24,6 @@ static const double error_px[ERRORS] = {0.05, 0.1, 0.25, 0.5, 1};
 static struct stage stage;
 static float finest[N], drawn[N];
 
-static int close_stage(void **state)
-{
-    (void)state;
-    stage_close(&stage);
-    return 0;
-}
-
 /* Of all places where light ends that were looked at. */
 struct offsets {
     int n;
@@ -174,7 +167,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_outlines),
     };
+    const int failed =
+        cmocka_run_group_tests_name("extremes: outlines", tests, NULL, NULL);
 
-    return cmocka_run_group_tests_name("extremes: outlines", tests, NULL,
-                                       close_stage);
+    stage_close(&stage);
+    return failed;
 }

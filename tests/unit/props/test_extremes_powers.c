@@ -30,13 +30,6 @@ static int open_stage(void **state)
     return stage_open(&heliar, "heliar-tronnier", W, H) ? 0 : 1;
 }
 
-static int close_stage(void **state)
-{
-    (void)state;
-    stage_close(&heliar);
-    return 0;
-}
-
 /* ----------------------------------------------------------------- linear
  * light
  */
@@ -214,7 +207,9 @@ int main(void)
         cmocka_unit_test(test_no_power),
         cmocka_unit_test(test_files),
     };
+    const int failed = cmocka_run_group_tests_name("extremes: powers", tests,
+                                                   open_stage, NULL);
 
-    return cmocka_run_group_tests_name("extremes: powers", tests, open_stage,
-                                       close_stage);
+    stage_close(&heliar);
+    return failed;
 }

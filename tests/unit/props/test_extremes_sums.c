@@ -31,13 +31,6 @@ static int open_stage(void **state)
     return stage_open(&heliar, "heliar-tronnier", W, H) ? 0 : 1;
 }
 
-static int close_stage(void **state)
-{
-    (void)state;
-    stage_close(&heliar);
-    return 0;
-}
-
 /* ------------------------------------------------------------------ lights */
 
 /* 10 000 lights at one place are one of 10 000 times the power: powers are
@@ -291,7 +284,9 @@ int main(void)
         cmocka_unit_test(test_piles),
         cmocka_unit_test(test_traps),
     };
+    const int failed =
+        cmocka_run_group_tests_name("extremes: sums", tests, open_stage, NULL);
 
-    return cmocka_run_group_tests_name("extremes: sums", tests, open_stage,
-                                       close_stage);
+    stage_close(&heliar);
+    return failed;
 }

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The Heliar, opened as commands open lenses: with its model, and the settings
+ * that a user gets who says nothing. Run from the root of the tree.
+ *
+ *     cmocka_run_group_tests(tests, opened_heliar, opened_close);
+ */
+#ifndef GLINT_TESTS_OPENED_H
+#define GLINT_TESTS_OPENED_H
+
+#include "options/settings.h"
+#include "options/tool.h"
+
+static struct settings settings;
+static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
+
+static inline int opened_heliar(void **state)
+{
+    (void)state;
+    settings_defaults(&settings);
+    return tool_start(&tool) != EXIT_OK ||
+           settings_open(&tool, &settings, "lenses/heliar-tronnier.lens") !=
+               EXIT_OK;
+}
+
+static inline int opened_close(void **state)
+{
+    (void)state;
+    settings_close(&settings);
+    tool_finish(&tool);
+    return 0;
+}
+
+#endif
