@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * scenes SET N MODEL... - N random scenes drawn by the run-time half alone, and
- * a hash of all that came out: the same on every CPU, whatever it was compiled
- * for and whatever kernels were used. SET is c, sse41, avx2, neon or best.
+ * scenes SET N MODEL... - draws N random scenes by the run-time half alone and
+ * prints a hash of all output, which is the same on every CPU, whatever it was
+ * compiled for and whatever kernels were used. SET is c, sse41, avx2, neon or
+ * best.
  *
  *     heliar.glint ...: 240 scenes, 236 with light, 1b3f...
  *
- * Models, directions, powers, formats, sizes, tiles, rasterisers are drawn at
- * random, in integers: no libm has a say. Of each picture the lights are found,
- * too. Exit code 3: a model is refused.
+ * Models, directions, powers, formats, sizes, tiles and rasterisers are random,
+ * by integers alone: no libm has a say. Lamps are then found in each picture
+ * and added to the hash. Exit code 3: a model is refused.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +36,8 @@ static unsigned sets;
 static uint32_t seed = 2026;
 static void *arena, *finder_memory;
 
-/* One to a statement: C does not say in which order arguments are evaluated. */
+/* Returns 0 .. BELOW - 1. A statement may call it once: C leaves open in which
+ * order arguments are evaluated. */
 static int number(int below)
 {
     return (int)(rng_xorshift(&seed) % (uint32_t)below);
@@ -66,7 +68,8 @@ static uint64_t hash_number(uint64_t h, int64_t x)
 
 /* ----------------------------------------------------------------- a scene */
 
-/* Sine and cosine, _q30, of twice the angle whose tangent is T / 2^15. */
+/* Sets *SINE and *COSINE, _q30, for twice the angle whose tangent is T /
+ * 2^15. */
 static void circle(int32_t t, int32_t *sine, int32_t *cosine)
 {
     const int64_t one = INT64_C(1) << 30, t2 = (int64_t)t * t;
@@ -208,7 +211,7 @@ static void draw_flare(const struct glint_flare_config *c,
     glint_flare_draw(flare, image);
 }
 
-/* Draws one; returns whether light was added. */
+/* Draws a scene and adds its picture to *H; returns whether light was added. */
 static int draw_scene(uint64_t *h)
 {
     struct shuffle shuffle;
@@ -286,7 +289,8 @@ int main(int argc, char **argv)
         return 1;
     for (int i = 0; i < n; i++) {
         lit += draw_scene(&h);
-        if (getenv("GLINT_EACH")) /* Each hash tells which scene differs. */
+        if (getenv("GLINT_EACH")) /* The first hash that differs tells the
+                                   * scene. */
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }
     printf("%d scenes, %d with light, %08lx%08lx\n", n, lit,

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * features PICTURE.ppm... - what the finder knows of each region that may be a
- * lamp, as CSV, for tests/corpus/fit: the picture, its size, level and cost of
- * the level, box, centroid (pixels), pixels, then the measures of
- * enum glint_evidence and the score that the library gives.
+ * features PICTURE.ppm... - prints, as CSV for tests/corpus/fit, what the
+ * finder measures of each region that may be a lamp: the picture, its size,
+ * level and cost of the level, box, centroid (pixels), number of pixels, the
+ * measures of enum glint_evidence, and the score that the library gives.
  */
 #include "lamps/lamp_finder.h"
 #include "ppm.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * found PICTURE.ppm... - what the finder finds with its defaults, as CSV: the
- * picture, then x, y, RMS radius, pixels and light of each lamp. What does not
- * fit 128 lamps joins others.
+ * found PICTURE.ppm... - prints, as CSV, the lamps that the finder finds with
+ * its defaults: the picture, then x, y, RMS radius, pixels and light of each
+ * lamp. Lamps beyond the 128th join lamps near them.
  */
 #include "glint/lamps.h"
 #include "ppm.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Any bytes as a configuration. What take is given is an option that exists, a
- * value of its kind without control characters; a file that is refused by the
- * parser has given nothing, and one that is not gives as much again.
+ * Parses any bytes as a configuration. The callback take() must get options
+ * that exist, with values of their kind and without control characters. A file
+ * that is refused must have set nothing, and parsing any file again must set as
+ * much.
  *
  *     make fuzz FUZZ=config SECONDS=60
  */
@@ -27,7 +28,7 @@ static void require(int condition)
 struct taken {
     int n;
     size_t bytes;
-    const char *last; /* value, which stays */
+    const char *last; /* last value, which must live until config_free() */
 };
 
 static int take(void *ctx, const struct option *option, const char *value)

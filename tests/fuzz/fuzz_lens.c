@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Any bytes as a lens table. What parses must have finite optics, a list of
- * ghosts that fits, and rays whose records are numbers.
+ * Parses any bytes as a lens table. A lens that is accepted must have a list of
+ * ghosts that fits, finite optics, and rays whose records are numbers.
  *
  *     make fuzz FUZZ=lens SECONDS=60
  */
@@ -29,7 +29,7 @@ static void check_ray(const struct glint_ray *ray)
     require(ray->rel_radius >= 0.0 && isfinite(ray->rel_radius));
 }
 
-/* Rays over the front element at angles up to 83 degrees. */
+/* Traces 25 rays over the front element at angles up to 83 degrees. */
 static void trace_some(const struct glint_prescription *lens,
                        const struct glint_ghost *ghost)
 {

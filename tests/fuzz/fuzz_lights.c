@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Any bytes as a list of lights. Rows that are taken hold what lamps.h says,
- * make lamps that are numbers, and say the same again when they are written,
- * as CSV and as JSON lines.
+ * Parses any bytes as a list of lights. Rows that are accepted must be in the
+ * ranges of lamps.h, make lamps that are numbers, and parse to the same values
+ * after they are written as CSV and as JSON lines.
  *
  *     make fuzz FUZZ=lights SECONDS=60
  */
@@ -46,7 +46,7 @@ static void check_lamps(const struct lamp_list *list, int frame)
     }
 }
 
-/* 17 digits, which tell all doubles apart. */
+/* Writes row R to TEXT with 17 digits, which tell all doubles apart. */
 static int print_row(char *text, const struct lamp_row *r, int as_json)
 {
     const char *const format =

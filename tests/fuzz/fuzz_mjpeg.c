@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Any bytes as an MJPEG frame, up to 256 x 128 pixels. What decodes does so
- * again, to the same samples, after a frame that is cut in half.
+ * Decodes any bytes as an MJPEG frame of up to 256 x 128 pixels. A frame that
+ * decodes must give the same samples again after a frame that is cut in half.
  *
  *     make fuzz FUZZ=mjpeg SECONDS=60
  */
@@ -18,7 +18,7 @@ static void require(int condition)
         abort();
 }
 
-/* Of all samples, in order; the memory checker looks at each. */
+/* Returns a hash of all samples; so the memory checker looks at each. */
 static uint32_t hash_of(const struct glint_image *image)
 {
     uint32_t hash = 2166136261U;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Any bytes as a model. Magic, version, size and checksum are put right first,
- * so that the rest is reached. What is accepted must carry rays: at the ends
- * of every range of angles, between them and outside of them, over the corners
- * of the pupil, to places near and far, and a whole frame; no integer leaves
- * the range that the rays rely on.
+ * Opens any bytes as a model, after magic, version, size and checksum are put
+ * right, so that the other checks are reached. A model that is accepted must
+ * carry rays at the ends of every range of angles, between and outside of them,
+ * over the corners of the pupil, to places near and far, and draw a whole
+ * frame; no integer may leave the range that rays rely on.
  *
  *     make fuzz FUZZ=model SECONDS=120
  */
@@ -17,7 +17,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { ONE = 1 << 30, SLACK = 64 /* steps, between two knots */ };
+enum { ONE = 1 << 30, SLACK = 64 /* units of 2^-30, between two knots */ };
 
 static void require(int condition)
 {
@@ -75,7 +75,7 @@ static void check_grids(struct glint_transfer *t)
     }
 }
 
-/* Whatever a model says, a window lies within the box. */
+/* Checks that the window of an opening lies within the ghost's box. */
 static void check_window(struct glint_transfer *t, int32_t opening_q30)
 {
     static struct glint_window_nodes nodes;
@@ -130,7 +130,7 @@ static void check_ghost(const struct glint_lens *lens, int ghost)
     }
 }
 
-/* A frame of it: planned, sorted, drawn, whatever comes out. */
+/* Plans, bins and draws a frame of the model; sanitizers judge it. */
 static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
 {
     enum { SIDE = 48, ROOM = 1 << 22 };
@@ -171,7 +171,7 @@ static void check_frame(const struct glint_lens *lens, int32_t opening_q30)
     glint_flare_draw(flare, &image);
 }
 
-/* As a maker of files would. */
+/* Writes a valid magic, version, size and checksum into the header. */
 static void seal(uint32_t *word, size_t size)
 {
     if (size < 16)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Any bytes as a PPM, PGM or PFM. What is read is there to its last sample, can
- * be written, and had its samples in the file.
+ * Reads any bytes as a PPM, PGM or PFM. A picture that is accepted must be in
+ * memory to its last sample, must be larger as a file, and can be written.
  *
  *     make fuzz FUZZ=pnm SECONDS=60
  */
@@ -14,7 +14,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-unsigned glint_fuzz_sink; /* Stored reads are not optimised away. */
+unsigned glint_fuzz_sink; /* keeps reads from being optimised away */
 
 static void require(int condition)
 {

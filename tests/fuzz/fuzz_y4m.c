@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Any bytes as a Y4M stream. The first byte says how many arrive at a time. A
- * header that parses prints as one that parses to the same; every frame that
- * is delivered is there to its last sample and can be written.
+ * Reads any bytes as a Y4M stream. The first byte sets how many bytes arrive at
+ * a time, 1 to 200. A header that is accepted must print as one that parses to
+ * the same header; every frame must be in memory to its last sample and can be
+ * written.
  *
  *     make fuzz FUZZ=y4m SECONDS=60
  */
@@ -13,7 +14,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-unsigned glint_fuzz_sink; /* Stored reads are not optimised away. */
+unsigned glint_fuzz_sink; /* keeps reads from being optimised away */
 
 static void require(int condition)
 {
@@ -48,7 +49,7 @@ static void check_printed(const struct glint_y4m_header *header)
     require(header->width >= 1 && header->width <= GLINT_MAX_SIDE);
     require(header->height >= 1 && header->height <= GLINT_MAX_SIDE);
     require(len == strlen(line) && len < sizeof line && line[len - 1] == '\n');
-    if (len > GLINT_Y4M_LINE) /* a tag that was left out has been added */
+    if (len > GLINT_Y4M_LINE) /* made too long by tags that were added */
         return;
     line[len - 1] = 0;
     require(!glint_y4m_header_parse(&again, line, "again", &error));
@@ -58,7 +59,7 @@ static void check_printed(const struct glint_y4m_header *header)
     require(again.format == header->format && again.range == header->range);
 }
 
-/* As it was read, and as its fields say. */
+/* Checks the header as it was read, and as its fields alone print it. */
 static void check_header(const struct glint_y4m_header *header)
 {
     struct glint_y4m_header own = *header;
@@ -68,7 +69,7 @@ static void check_header(const struct glint_y4m_header *header)
     check_printed(&own);
 }
 
-/* Sums all samples up; the memory checker looks at each. */
+/* Returns the sum of all samples; so the memory checker looks at each. */
 static unsigned touch(const struct glint_image *frame)
 {
     unsigned sum = 0;

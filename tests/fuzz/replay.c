@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replays every file of the directories named on the command line through one
- * fuzz target, without a fuzzer:
+ * Runs every file of the directories on the command line through one fuzz
+ * target, without a fuzzer:
  *
  *     build/.../tests/fuzz/replay_y4m tests/fuzz/corpus/y4m
  */
@@ -17,7 +17,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* 1 for a file that was replayed, 0 for what is none, -1 for a failure. */
+/* Returns 1 if PATH was replayed, 0 if it is no regular file, -1 if it could
+ * not be read or is larger than MAX_BYTES. */
 static int replay_file(const char *path)
 {
     struct stat st;
@@ -30,7 +31,7 @@ static int replay_file(const char *path)
     if (!S_ISREG(st.st_mode))
         return 0;
     file = fopen(path, "rb");
-    /* exactly as long as the input, so that an overrun is one for ASan */
+    /* exactly as long as the input, so that ASan sees an overrun */
     data = malloc(st.st_size > 0 ? (size_t)st.st_size : 1);
     if (!file || !data || st.st_size > MAX_BYTES) {
         free(data);
@@ -45,8 +46,8 @@ static int replay_file(const char *path)
     return 1;
 }
 
-/* How many files were replayed; -1: DIR or one of its files was not readable.
- */
+/* Returns how many files of DIR were replayed; -1 if DIR or one of its files
+ * was not readable. */
 static int replay_directory(const char *dir)
 {
     DIR *const d = opendir(dir);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * hue_steps A.ppm B.ppm - how far B is from A, of the same size: PSNR of codes,
- * dB, and the hue step, codes: of neighbours across and down, by how much R - G
- * or B - G changes otherwise than in A; what a thousandth of all pairs exceed.
+ * hue_steps A.ppm B.ppm - prints how far B is from A, a picture of the same
+ * size: PSNR of codes, dB, and the hue step, codes. The hue step of two
+ * neighbouring pixels is by how much R - G or B - G changes between them in B
+ * otherwise than in A; printed is the step that a thousandth of all pairs
+ * exceed.
  */
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +14,7 @@
 #include "glint/image.h"
 #include "formats/picture.h"
 
-static long pairs_of[2 * 255 * 2 + 1]; /* pairs at hue steps -510 .. 510 */
+static long pairs_of[2 * 255 * 2 + 1]; /* pairs by hue step, 0 .. 1020 */
 
 static int hue_of(const struct glint_image *a, const struct glint_image *b,
                   int x, int y, int c)

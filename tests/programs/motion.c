@@ -2,25 +2,24 @@
  *
  * motion LENS [--from DEG] [--to DEG] [--step DEG] [--azimuth DEG]
  *             [--size WxH] [--reference exact|finest] [--grid N]
- *             [--steps N] [--fineness N] [--csv OUT] [--svg OUT] [--before CSV]
- * [--jump CODES]
- *             [--flux SHARE] [--crawl CODES]
+ *             [--steps N] [--fineness N] [--csv OUT] [--svg OUT]
+ *             [--before CSV] [--jump CODES] [--flux SHARE] [--crawl CODES]
  *
- * Moves a light slowly across the frame and measures what the picture in codes
- * changes by from frame to frame beyond the true change, which is the
- * reference's: the exact renderer's, or that of the model itself with grids
- * four times as fine, no steps of irradiance and nothing left out.
+ * Moves a light slowly across the frame and measures by how much the picture in
+ * codes changes from frame to frame beyond the true change. The true change is
+ * that of the reference: of the exact renderer, or of the model with grids four
+ * times as fine, irradiance without steps and nothing left out.
  *
  *   jump   the largest change of the mean of any 8 x 8 block, codes: popping
  *   flux   the change of the sum of all codes, over that sum
  *   crawl  99.9th percentile of the change of pixels, codes: crawling edges
  *
- * The error of a frame is the difference of its codes from the reference's,
- * which are not rounded; what is measured is how much it changes. For jump and
- * flux the picture is dithered, so that means of blocks are right to 1/64 of a
- * code: without, a flat part that grows brighter changes by a whole code at
- * once, which is the format's doing. Exit code 1: a bound (--jump, --flux,
- * --crawl) was passed.
+ * The error of a frame is its codes minus those of the reference, which are not
+ * rounded; the measures say how much the error changes. For jump and flux the
+ * picture is dithered, so that means of blocks are right to 1/64 of a code:
+ * without dither, a flat part that grows brighter changes by a whole code at
+ * once, for which the format is to blame. Exit code 1: a measure exceeded its
+ * bound (--jump, --flux, --crawl).
  */
 #include <getopt.h>
 #include <math.h>
@@ -51,14 +50,14 @@ struct sweep {
     float *error[2][2]; /* [frame & 1][0: dithered, 1: as drawn] */
     uint8_t *codes;
     double exposure, power;
-    double sum; /* codes, summed over the reference */
+    double sum; /* codes: sum of the reference's last frame */
     struct sample sample[MAX_STEPS];
     int n;
 };
 
 /* ------------------------------------------------------------------ frames */
 
-/* As the run time encodes, but not rounded. */
+/* Returns the code of light X as the run time encodes it, but not rounded. */
 static double code_of(double x)
 {
     const double v = fmin(1, fmax(0, x));
@@ -72,7 +71,8 @@ static bool reference(struct sweep *s, const struct glint_lamp *lamp)
                       : stage_linear(&s->finest, lamp, 1, s->linear);
 }
 
-/* The error of the picture, DITHER or not, against the reference in LINEAR. */
+/* Sets ERROR to the codes of the picture, with dither or not, minus those of
+ * the reference in LINEAR. */
 static bool add_error(struct sweep *s, const struct glint_lamp *lamp,
                       int dither, float *error)
 {
@@ -203,7 +203,7 @@ static void plot_line(FILE *f, const struct sweep *s, const struct sample *p,
     fprintf(f, "\"/>\n");
 }
 
-/* Where zones meet, as ticks below. */
+/* Draws ticks below panel PANEL at angles where zones of the model meet. */
 static void plot_zones(FILE *f, const struct sweep *s, int panel)
 {
     const struct glint_lens *lens = &s->test.file.lens;

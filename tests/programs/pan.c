@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * pan IN FRAMES WxH > OUT.y4m - a camera that pans over a photograph, with the
- * noise of a small sensor: video with real lamps whose way is known exactly.
+ * noise of a small sensor: video with real lamps that move in a known way.
  * Frame n of N shows the window at x = (width - W) n / N, y = middle + a slow
  * sway; noise is the same in every run.
  */
@@ -15,7 +15,7 @@
 #include "video/y4m.h"
 #include "options/tool.h"
 
-/* Sum of three uniform numbers: -6 .. 6, bell-shaped. */
+/* Returns noise, -6 .. 6 codes: the sum of three uniform numbers. */
 static int noise(uint32_t *state)
 {
     return (int)((rng_bits(state) >> 16) % 5 + (rng_bits(state) >> 16) % 5 +
@@ -28,7 +28,8 @@ static uint8_t clamp(double x)
     return (uint8_t)(x < 0 ? 0 : x > 255 ? 255 : x + 0.5);
 }
 
-/* BT.601, limited range. */
+/* Writes the window of FROM at (X0, Y0) to TO as BT.601, limited range, with
+ * noise on luma. */
 static void convert(const struct glint_image *from, int x0, int y0,
                     const struct glint_image *to, uint32_t *state)
 {

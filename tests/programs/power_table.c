@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * power_table [--features] [--coarse] [PANORAMA.pfm ...] - how well the power
- * of clipped lamps is known: rendered lamps, and those of HDR panoramas, each
- * exposed ten times down to codes of 8 bits, found and measured as a picture's
- * are. Prints errors in stops by kind, for the half that constants were fitted
- * to and for the other. --features: what tests/power-fit fits them to, more
- * lamps and views of the one half: group, power, light seen and of the core,
- * features. --coarse: all pictures are RGB565.
+ * power_table [--features] [--coarse] [PANORAMA.pfm ...] - prints how well the
+ * power of clipped lamps is known. Lamps that are rendered or in HDR panoramas
+ * are exposed ten times, each half as bright, to codes of 8 bits, and measured
+ * as those of any picture. The table has errors in stops by kind, for the half
+ * of the lamps to which constants were fitted and for the other half.
+ * --features prints what tests/power-fit fits to instead, of more lamps and
+ * views of the first half: group, power, light seen and of the core, features.
+ * --coarse makes all pictures RGB565.
  */
 #include <math.h>
 #include <stdio.h>
@@ -23,16 +24,16 @@ enum {
     EXPOSURES = 10,
     LAMPS = 240,
     VIEWS = 16,
-    MORE_LAMPS = 3, /* times as many, and views, to fit to */
+    MORE_LAMPS = 3, /* factor by which --features takes more lamps, and views */
     MORE_VIEWS = 3,
-    PANORAMA = 10000, /* groups of lamps count from here */
+    PANORAMA = 10000, /* group of the first panorama */
     MAX_ROWS = 1 << 17,
     MAX_SPOTS = 64
 };
 
 struct row {
     char kind[32];
-    int held; /* 1: the fit did not see this row; 0: it did. */
+    int held; /* 1: this row is kept from the fit; 0: the fit used it */
     double error;
 };
 
@@ -42,8 +43,8 @@ static int n_rows, features, coarse;
 /* ------------------------------------------------------------------ measure */
 
 struct camera {
-    struct glint_image image, coarse; /* The formats are RGB24, RGB565. */
-    const struct glint_image *seen;   /* The finder sees one of these two. */
+    struct glint_image image, coarse; /* RGB24; the same as RGB565 */
+    const struct glint_image *seen;   /* what the finder sees of the two */
     struct glint_lamp_finder *finder;
     struct glint_profile *profile;
     struct glint_spot spot[MAX_SPOTS];
@@ -92,8 +93,8 @@ static int is_bright(const struct camera *c, int i)
     return px[0] >= 240 || px[1] >= 240 || px[2] >= 240;
 }
 
-/* The light of SETTINGS over BLACK in what is bright and touches (X, Y), and
- * the spot that an ideal finder would make of it. */
+/* Returns the luminance of SETTINGS, times GAIN, in the bright pixels that
+ * touch (CX, CY), and sets SPOT to what an ideal finder would make of them. */
 static double region_at(struct camera *c, const struct power_picture *settings,
                         double gain, int cx, int cy, struct glint_spot *spot)
 {
@@ -146,7 +147,7 @@ static double region_at(struct camera *c, const struct power_picture *settings,
     return area ? light : 0;
 }
 
-/* Where SPOT is from the left. */
+/* Returns the index of SPOT by its place from the left. */
 static int id_of(const struct camera *c, const struct glint_spot *spot)
 {
     int i = 0;
@@ -173,7 +174,8 @@ static void print_features(struct camera *c, int id, double power,
     printf("\n");
 }
 
-/* Exposure K. To fit to, some pictures are RGB565. */
+/* Takes exposure K of SETTINGS times GAIN with noise of SIGMA codes. For the
+ * fit, every fourth picture is RGB565. */
 static void expose(struct camera *c, const struct power_picture *settings,
                    double gain, double sigma, int k, uint32_t *seed)
 {
@@ -214,7 +216,8 @@ static double between(double low, double high, uint32_t *seed)
     return low + (high - low) * rng_unit(seed);
 }
 
-/* From tungsten, or sodium, to blue. */
+/* Sets RGB to the colour of a random lamp, of luminance 1: white, tungsten,
+ * sodium, blue, warm white or green. */
 static void any_colour(double *rgb, uint32_t *seed)
 {
     static const double colours[6][3] = {{1, 1, 1},      {1, 0.55, 0.18},
@@ -275,7 +278,8 @@ static void rendered(int i)
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = exp2(-k - (features ? rng_unit(&seed) : 0));
 
-        /* the background is exposed for itself: lamps by day and night */
+        /* The background keeps its exposure, as lamps are seen by day and by
+         * night. */
         for (int p = 0; p < W * H; p++)
             for (int j = 0; j < 3; j++)
                 settings.rgb[3 * p + j] =
@@ -368,7 +372,7 @@ static double mean_of(const struct power_picture *s)
     return sum / (3 * s->width * s->height);
 }
 
-/* What a camera makes of SETTINGS, with a lens of its own. */
+/* Changes SETTINGS into what a camera with a random lens sees. */
 static void see_view(struct power_picture *s, double over, uint32_t *seed)
 {
     const int n = s->width * s->height;
@@ -385,8 +389,8 @@ static void see_view(struct power_picture *s, double over, uint32_t *seed)
     free(light);
 }
 
-/* As many pixels as the panorama has there, and a third more. TRUTH is what
- * comes in through the lens, without its glare. */
+/* Takes one view of panorama P in all exposures and notes the lamps found.
+ * TRUTH is the light that enters the lens, without its glare. */
 static void view(const struct panorama *p, const char *kind, int held, int id,
                  double yaw, double pitch)
 {
@@ -484,7 +488,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < LAMPS * (features ? MORE_LAMPS : 1); i++)
         if (!features || !is_held(i))
             rendered(i);
-    /* the first panorama is held, every other one */
+    /* Every other panorama is kept from the fit, the first one included. */
     for (int i = first; i < argc; i++)
         if (!features || (i - first) % 2)
             panorama(argv[i], i - first + 1);

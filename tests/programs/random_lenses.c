@@ -3,13 +3,13 @@
  * random_lenses [--seed S] [--first N] [--count N] [--jobs N] [--seconds S]
  *               [--out DIR]
  *
- * Random but valid lenses (support/random_lens.h), each baked as a draft and
- * drawn from its model, in linear light and in codes, against the exact
- * picture. Each has a process of its own, with so many seconds of the
- * processor's time: a trap ends that lens only, and is counted. Writes the
- * tables of the ten worst and a contact sheet of them to DIR: from left to
- * right the exact picture, the model's, and their difference eight times.
- * SIGINT begins no more and reports those that are done.
+ * Bakes random but valid lenses (support/random_lens.h) as drafts and compares
+ * pictures of their models, in linear light and in codes, with the exact
+ * picture. Each lens has a process and a number of CPU seconds of its own: a
+ * trap ends this lens only, and is counted. DIR gets the tables of the ten
+ * worst lenses and a contact sheet of them: from left to right the exact
+ * picture, the model's, and their difference times eight. After SIGINT no lens
+ * is begun, and the finished ones are reported.
  * Exit code 1: a trap, or a figure out of bounds.
  */
 #define _GNU_SOURCE
@@ -49,8 +49,7 @@ struct options {
 
 /* ---------------------------------------------------------------- one lens */
 
-/* A light in the picture or somewhat outside, as bright as the ghosts of this
- * lens need. */
+/* Returns a lamp of power 1 in the picture or somewhat outside. */
 static struct glint_lamp lamp_for(const struct stage *s, uint64_t seed,
                                   int number)
 {
@@ -69,7 +68,7 @@ static bool is_dark(const struct stage *s, const float *rgb)
     return stage_flux(s, rgb) <= 0;
 }
 
-/* To what both are exposed by, as in measure.h. */
+/* Keeps both pictures in codes, at the exposure that suits the exact one. */
 static void keep_pictures(struct outcome *o, const struct stage *s,
                           const float *exact, const float *model)
 {
@@ -103,7 +102,7 @@ static void compare(struct outcome *o, struct stage *s,
         return;
     m = stage_compare(s, exact, model);
     if (m.psnr_db < 45 && stage_exact(s, lamp, 1, 2 * o->grid, exact)) {
-        o->grid *= 2; /* A finer grid shows which of the two is wrong. */
+        o->grid *= 2; /* shows whether the exact one was at fault */
         m = stage_compare(s, exact, model);
     }
     o->psnr_db = m.psnr_db;
@@ -129,7 +128,7 @@ static void run_one(struct outcome *o, const struct options *options,
     o->n_surfaces = s.lens.n_surfaces;
     o->f_number = s.lens.f_number;
     o->n_ghosts = glint_ghost_list(&s.lens, NULL, 0);
-    o->state = SKIPPED_TIME; /* The lens may not end in time. */
+    o->state = SKIPPED_TIME; /* stays if the time ends before the picture */
     if (o->tries < 0 || !stage_prepare(&s, blades)) {
         o->state = REFUSED;
         return;
@@ -145,7 +144,7 @@ static void run_one(struct outcome *o, const struct options *options,
     if (!stage_linear(&s, &lamp, 1, model))
         return;
     bright = lamp;
-    bright.power = 1e9; /* saturates: must not trap either */
+    bright.power = 1e9; /* Codes saturate; nothing must trap here. */
     memset(codes, 0, sizeof codes);
     if (!stage_codes(&s, &bright, 1, codes))
         return;
@@ -334,8 +333,8 @@ static int report(struct outcome *o, const struct options *options)
     if (options->out)
         write_sheet(options, ranked, n_worst, o);
     extreme_at_most("random lenses: traps", count[TRAP + 2], 0, "lenses");
-    /* median 54 dB; few are far below: ghosts that are large and straight get 8
-     * cells a side, and a round stop has corners then */
+    /* The median is 54 dB. A few are far below: large, straight ghosts get 8
+     * cells a side, by which a round stop has corners. */
     extreme_at_least("random lenses: worst against exact", ranked[0]->psnr_db,
                      20, "dB");
     extreme_at_most("random lenses: flux against exact", flux, 0.05, "");

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
  * steady [--lens LENS] [--most SHARE] [--log] [--scene NAME] [VIDEO.y4m...] -
- * how steady the flare of a video is: drawn scenes, all or that one (none: a
- * name that no scene has), and videos.
+ * prints how steady the flare is over drawn scenes (all, or the one called
+ * NAME; none for an unknown NAME) and over videos.
  *
- * From frame to frame the total light of the flare, as it is drawn, changes
- * for what the lamps do (they move, rise, fade, are hidden: the total light at
- * an exposure that stays) and for what the exposure does. A step that lies
- * between none and the lamps' own is theirs; what goes beyond is ours. Frames
- * after a cut begin anew and are not counted. Of drawn scenes the lamps are
- * known, too, and a step is taken for theirs as far as their true light,
- * through the lens, spans as much within the last WINDOW frames: a lamp rises
- * and fades in six. Exit code 1: a step of ours is larger than SHARE (default
- * 0.1). --log prints every frame to stderr.
+ * From frame to frame the total light of the drawn flare changes because of the
+ * lamps, which move, rise, fade or are hidden, and because of the exposure. The
+ * change at a constant exposure is the lamps'. A step between 0 and that change
+ * is due to the lamps; what goes beyond is glint's own. Frames after a cut are
+ * not counted. In drawn scenes the lamps are known, too: there a step is due to
+ * them as far as their true light, through the lens, spans as much within the
+ * last WINDOW frames, as a tracked lamp rises and fades in six. Exit code 1: a
+ * step of glint's own is larger than SHARE (default 0.1). --log prints every
+ * frame to stderr.
  */
 #include <getopt.h>
 #include <math.h>
@@ -30,11 +30,12 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 struct steady {
     struct tool tool;
     struct compositor compositor;
-    double total, own; /* light of the frame before: the flare's, the lamps' */
+    double total, own; /* last frame's light after and before exposure */
     bool log;
-    double truth[WINDOW + 1]; /* light of frames, the last first; -1: unknown */
-    double worst, largest;    /* step of ours; of any */
-    double unmade;            /* step that no lamp made */
+    double truth[WINDOW + 1]; /* true light, the last frame first; -1:
+                               * unknown */
+    double worst, largest;    /* largest step of glint's own; largest of all */
+    double unmade;            /* largest step beyond what true lamps explain */
     int worst_frame, unmade_frame, cuts, frames, most_lights;
 };
 
@@ -50,7 +51,8 @@ static double light_of(struct steady *s, const struct glint_lamp *lamps)
     return glint_strength_largest(light.mean);
 }
 
-/* By how much STEP exceeds what lies between none and OWN, both logarithms. */
+/* Returns by how much STEP exceeds the interval between 0 and OWN, all of them
+ * logarithms of ratios. */
 static double beyond(double step, double own)
 {
     const double low = fmin(own, 0), high = fmax(own, 0);
@@ -58,7 +60,8 @@ static double beyond(double step, double own)
     return step > high ? step - high : step < low ? low - step : 0;
 }
 
-/* What lies between the least and the most true light of late, a logarithm. */
+/* Returns the logarithm of the ratio of the most to the least true light within
+ * the last WINDOW frames. */
 static double true_span(const struct steady *s)
 {
     double low = s->truth[0], high = s->truth[0];
@@ -73,7 +76,7 @@ static double true_span(const struct steady *s)
 static void note(struct steady *s, double total, double own)
 {
     const bool is_cut = glint_lamp_tracker_was_cut(s->compositor.finder.tracks);
-    /* A flare below this is unseen, so it does not step when it appears. */
+    /* A fainter flare is unseen, so it does not step when it appears. */
     const double least = 1e-6;
 
     s->cuts += is_cut && s->frames > 0;
@@ -97,7 +100,7 @@ static void note(struct steady *s, double total, double own)
     s->own = own;
 }
 
-/* The light of a frame, and its lamps: what made a step. */
+/* Prints the light of a frame and its lamps, which tell what made a step. */
 static void log_frame(const struct steady *s, double own, double drawn)
 {
     const struct compositor *c = &s->compositor;
@@ -130,7 +133,7 @@ static void frame(struct steady *s, const struct glint_image *image,
     compositor_expose(compositor, elapsed_us);
     for (int i = 0; i < compositor->n_lamps; i++)
         held += compositor->lamp[i].power;
-    if (held < power) /* some are too bright yet */
+    if (held < power) /* where lamps are too bright */
         drawn = light_of(s, compositor->lamp);
     if (s->log)
         log_frame(s, own, drawn);
@@ -167,7 +170,8 @@ static bool end(const struct steady *s, const char *name, double most)
 
 typedef int lamps_fn(struct night *night, int i, struct night_lamp *lamp);
 
-/* Lamps of a street, all seen. */
+/* Sets LAMP to the five lamps of a street, all visible; returns their
+ * number. */
 static int street(struct night_lamp *lamp)
 {
     for (int i = 0; i < 5; i++)
@@ -256,7 +260,8 @@ static const struct {
     {"hard cuts", cuts},
 };
 
-/* White pixels of LAMP that are seen, and where they lie in the mean. */
+/* Returns the light of LAMP's visible pixels, white x pixels, and sets AT to
+ * their centroid, pixels. */
 static double seen_of(const struct night *night, const struct night_lamp *lamp,
                       double at[2])
 {
@@ -282,7 +287,7 @@ static double seen_of(const struct night *night, const struct night_lamp *lamp,
     return sum;
 }
 
-/* The light of a flare of the lamps as they are. */
+/* Adds the flare's light of the true lamps to the frames of S->TRUTH. */
 static void note_truth(struct steady *s, const struct night *night,
                        const struct night_lamp *lamp, int n)
 {

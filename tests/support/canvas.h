@@ -7,7 +7,8 @@
 
 #include "glint/image.h"
 
-/* A black picture of its own memory, sRGB. */
+/* Returns a black picture of FORMAT in memory of its own, which begins at
+ * plane[0] and is the caller's to free. */
 struct glint_image canvas_new(enum glint_pixel_format format, int width,
                               int height);
 
@@ -21,18 +22,20 @@ int canvas_get_grey(const struct glint_image *image, int x, int y);
 void canvas_fill_grey(const struct glint_image *image, int x0, int y0, int x1,
                       int y1, int code);
 
-/* Light of the code V, and the code of LIGHT, 1 = white; below 0 mirrored. */
+/* canvas_light() returns the light of V, a code divided by 255; canvas_code()
+ * is its inverse. White is 1; negative values are mirrored. */
 double canvas_light(double v, enum glint_tone tone);
 double canvas_code(double light, enum glint_tone tone); /* 1 at most */
 
-int canvas_srgb_code(double light); /* 0 .. 255 of 0 .. 1 */
+int canvas_srgb_code(double light); /* 0 .. 255 for light 0 .. 1 */
 
 double canvas_linear(int code);
 
-/* Share of pixel (X, Y) that the disc covers, by 16 x 16 points. */
+/* Returns the share of pixel (X, Y), 0 .. 1, that the disc covers, counted at
+ * 16 x 16 points. */
 double canvas_disc_cover(int x, int y, double cx, double cy, double radius);
 
-/* Adds a disc of LIGHT, smooth at the edge, to a grey picture. */
+/* Draws a disc of LIGHT (1 = white) with a smooth edge onto a grey picture. */
 void canvas_disc(const struct glint_image *image, double cx, double cy,
                  double radius, double light);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The list of extremes: each case says the worst figure it saw and the bound it
- * must keep, in a line that "make extremes" makes its table of.
+ * The list of extremes: each case prints the worst figure that it saw and the
+ * bound of this figure, in a line from which "make extremes" makes its
+ * table.
  */
 #ifndef GLINT_TESTS_EXTREME_H
 #define GLINT_TESTS_EXTREME_H
@@ -11,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Whether long cases were asked for (GLINT_LONG). */
+/* Returns whether GLINT_LONG asks for long cases: it is set and is not 0. */
 static inline bool extreme_long(void)
 {
     const char *text = getenv("GLINT_LONG");
@@ -19,7 +20,7 @@ static inline bool extreme_long(void)
     return text && *text && *text != '0';
 }
 
-/* What random cases start from (GLINT_SEED, else 1). */
+/* Returns the seed of random cases: GLINT_SEED, or 1 where it is not set. */
 static inline uint64_t extreme_seed(void)
 {
     const char *text = getenv("GLINT_SEED");
@@ -27,7 +28,8 @@ static inline uint64_t extreme_seed(void)
     return text && *text ? strtoull(text, NULL, 10) : 1;
 }
 
-/* Reports WORST of CASE, of which at most BOUND is right. */
+/* Prints WORST, the worst figure of case NAME, and returns whether it is at
+ * most BOUND. */
 static inline bool extreme_at_most(const char *name, double worst, double bound,
                                    const char *unit)
 {
@@ -36,7 +38,8 @@ static inline bool extreme_at_most(const char *name, double worst, double bound,
     return worst <= bound;
 }
 
-/* The same where BOUND is the least that is right. */
+/* Prints WORST, the worst figure of case NAME, and returns whether it is at
+ * least BOUND. */
 static inline bool extreme_at_least(const char *name, double worst,
                                     double bound, const char *unit)
 {

@@ -11,8 +11,9 @@
 
 #include "support/rng.h"
 
-/* An octagon's sides, rounded to q30 by hand from cos and sin of 22.5 + 45 k
- * degrees: integers, so that goldens do not hang on a libm. */
+/* Normals of an octagon's sides, _q30: cos and sin of 22.5 + 45 k degrees,
+ * rounded by hand. As constants they are the same with every libm, and so are
+ * goldens. */
 static const int32_t octagon[8][2] = {
     {992008094, 410903207},  {410903207, 992008094},   {-410903207, 992008094},
     {-992008094, 410903207}, {-992008094, -410903207}, {-410903207, -992008094},
@@ -40,7 +41,7 @@ struct glint_flare_config base_config(void)
 
 struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j)
 {
-    /* +-1.25 as q16, integers only */
+    /* sx and sy are -1.25 .. 1.25 stop radii, _q16, in integers only. */
     const int64_t sx = (int64_t)163840 * i / g->n - 81920;
     const int64_t sy = (int64_t)163840 * j / g->n - 81920;
     const int64_t bent = (sx * sx / 65536 + sx * sy / 131072) * g->bend / 1000;
@@ -78,7 +79,7 @@ const struct ghost ghosts[N_GHOSTS] = {
     {16, 64, 62, 42, 50, 1, 300, 0, {0, 16384, 0}},
     {32, 128, 64, 200, 120, -1, 600, 2, {0, 0, 16384}},
     {8, 128, 128, 3, 0, 1, 0, -2, {16384, 8000, -2000}},
-    {16, 190, 20, 60, 900, 1, 0, 0, {9000, 9000, 9000}}, /* folded */
+    {16, 190, 20, 60, 900, 1, 0, 0, {9000, 9000, 9000}}, /* a folded ghost */
     {16, -40, 160, 90, 0, -1, 0, 1, {3000, 16384, 200}}, /* partly outside */
 };
 
@@ -151,7 +152,7 @@ struct ghost random_ghost(void)
         draw_number(WIDTH - 60) - 20,
         draw_number(HEIGHT),
         size,
-        draw_number(1500) - 750, /* some are folded */
+        draw_number(1500) - 750, /* beyond +-320 the ghost is folded */
         draw_number(2) ? 1 : -1,
         draw_number(2000) - 1000,
         draw_number(4),

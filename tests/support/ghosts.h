@@ -9,8 +9,8 @@
 
 enum { WIDTH = 203, HEIGHT = 151, N_GHOSTS = 6 };
 
-/* A synthetic ghost: a grid over +-1.25 stop radii, scaled, sheared and bent.
- */
+/* A synthetic ghost: a grid of N x N cells over +-1.25 stop radii, scaled,
+ * sheared and bent. */
 struct ghost {
     int n;
     int cx, cy;       /* pixels */
@@ -24,33 +24,34 @@ struct ghost {
 
 extern const struct ghost ghosts[N_GHOSTS];
 
-/* An octagon for a stop, room for all ghosts, by edges. */
+/* Returns settings with an octagonal stop and room for all ghosts, by edges. */
 struct glint_flare_config base_config(void);
 
-/* A flare of C in *MEM, which is to be freed. */
+/* Returns a flare of settings C. Its memory is *MEM, which the caller frees. */
 struct glint_flare *open_flare(struct glint_flare_config *c, void **mem);
 
-/* The vertex in column I and row J of the grid of G. */
+/* Returns the vertex in column I and row J of the grid of G. */
 struct glint_vertex ghost_vertex(const struct ghost *g, int i, int j);
 
 void add_ghost(struct glint_flare *f, const struct ghost *g);
 
-/* An image over PIXELS [HEIGHT][WIDTH][3], which are cleared. */
+/* Clears PIXELS [HEIGHT][WIDTH][3] and returns an image over them. */
 struct glint_image linear_image(int32_t *pixels);
 
-/* Draws the N ghosts of LIST, or all of the above, into such pixels. */
+/* draw_list() draws the N ghosts of LIST into OUT [HEIGHT][WIDTH][3], linear
+ * light _q20; draw_scene() draws all of `ghosts`. */
 struct glint_flare_stats draw_list(struct glint_flare_config c,
                                    const struct ghost *list, int n,
                                    int32_t *out);
 struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out);
 
-/* The sum of a channel, 1 being white. */
+/* Returns the sum of CHANNEL over all pixels, 1 being white. */
 double total(const int32_t *p, int channel);
 
-/* 0 .. N - 1, one random number after the other. */
+/* Returns the next random number, 0 .. N - 1. */
 int draw_number(int n);
 
-/* A ghost in or about the picture, folded or not. */
+/* Returns a random ghost in or near the picture, folded or not. */
 struct ghost random_ghost(void);
 
 #endif

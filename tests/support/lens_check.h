@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * For tests about lenses; include after cmocka.h. Run from the root of the
- * tree.
+ * Lenses, and a check of doubles, for tests. Include after cmocka.h; run from
+ * the root of the tree.
  */
 #ifndef GLINT_TESTS_LENS_CHECK_H
 #define GLINT_TESTS_LENS_CHECK_H
@@ -11,7 +11,8 @@
 
 #include "glint/bake.h"
 
-/* |GOT - EXPECTED| <= TOLERANCE in double; cmocka has it for float only. */
+/* Checks that |GOT - EXPECTED| <= TOLERANCE in double; cmocka compares floats
+ * only. */
 #define assert_near(got, expected, tolerance) \
     check_near(got, expected, tolerance, #got, __FILE__, __LINE__)
 
@@ -25,7 +26,7 @@ static inline void check_near(double got, double expected, double tolerance,
     _fail(file, line);
 }
 
-/* Reads a whole file into TEXT[SIZE]; returns its bytes. */
+/* Reads the file PATH, up to SIZE bytes, into TEXT; returns how many. */
 static inline size_t read_file(const char *path, char *text, size_t size)
 {
     FILE *file = fopen(path, "rb");
@@ -38,7 +39,7 @@ static inline size_t read_file(const char *path, char *text, size_t size)
     return bytes;
 }
 
-/* Reads lenses/NAME.lens. */
+/* Reads lenses/NAME.lens into LENS. */
 static inline void load_lens(struct glint_prescription *lens, const char *name)
 {
     static char text[65536];
@@ -51,7 +52,8 @@ static inline void load_lens(struct glint_prescription *lens, const char *name)
         fail_msg("%s", error.text);
 }
 
-/* The lens with an octagonal stop and the plain three wavelengths. */
+/* Reads lenses/NAME.lens into LENS and sets it up with a stop of eight blades
+ * and wavelengths of 650, 532 and 450 nm. */
 static inline void load_setup(struct glint_setup *setup,
                               struct glint_prescription *lens, const char *name)
 {

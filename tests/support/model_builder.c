@@ -93,7 +93,7 @@ void model_outputs(struct model_image *m, struct glint_model_system *s,
         o[k].coef_at = model_put(m, coef, 4 * n_coefs);
         o[k].bound = 1 << 29;
         o[k].rounding_q8 = 384;
-        o[k].rms = MODEL_ERROR(1536, 9 - halved); /* 0.75, 0.375 */
+        o[k].rms = MODEL_ERROR(1536, 9 - halved); /* 0.75; halved: 0.375 */
         o[k].p50 = MODEL_ERROR(1024, 8);
         o[k].p99 = MODEL_ERROR(1024, 10 + halved);
         o[k].max = MODEL_ERROR(1024, 11 + halved);
@@ -109,34 +109,34 @@ struct glint_model_system model_auto_system(struct model_image *m,
                                             int32_t wave_hi_q24, int halved)
 {
     static const struct model_polynomial outputs[] = {
-        /* 0.25 + 0.5 u - 0.125 v^2 s mm */
+        /* sensor x = 0.25 + 0.5 u - 0.125 v^2 s, mm */
         {GLINT_OUT_SENSOR_X,
          3,
          -28,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(1, 0, 0, 0),
           MODEL_POWER(0, 2, 1, 0)},
          {{1 << 26, 1 << 27, -(1 << 25)}}},
-        /* 0.5 v + 0.25 u v mm */
+        /* sensor y = 0.5 v + 0.25 u v, mm */
         {GLINT_OUT_SENSOR_Y,
          2,
          -28,
          {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(1, 1, 0, 0)},
          {{1 << 27, 1 << 26}}},
-        /* 0.5 u^3 */
+        /* stop x = 0.5 u^3 */
         {GLINT_OUT_STOP_X, 1, -29, {MODEL_POWER(3, 0, 0, 0)}, {{1 << 28}}},
-        /* 0.5 v - 0.125 v^3 */
+        /* stop y = 0.5 v - 0.125 v^3 */
         {GLINT_OUT_STOP_Y,
          2,
          -29,
          {MODEL_POWER(0, 1, 0, 0), MODEL_POWER(0, 3, 0, 0)},
          {{1 << 28, -(1 << 26)}}},
-        /* 0.5 + 0.25 w, in 2^-6 */
+        /* energy = 2^-6 (0.5 + 0.25 w) */
         {GLINT_OUT_ENERGY,
          2,
          -35,
          {MODEL_POWER(0, 0, 0, 0), MODEL_POWER(0, 0, 0, 1)},
          {{1 << 28, 1 << 27}}},
-        /* 0.5 + u^2 / 2 */
+        /* barrel 0 = 0.5 + u^2 / 2 */
         {GLINT_OUT_BARREL_0,
          2,
          -28,
@@ -194,19 +194,19 @@ struct model_image model_auto(void)
 struct model_image model_sparse(void)
 {
     static const struct model_polynomial outputs[] = {
-        /* a x + r / 4 mm, a = 1/2, 1/4, 0 at the knots */
+        /* sensor x = a x + r / 4, mm; a is 1/2, 1/4 and 0 at the knots */
         {GLINT_OUT_SENSOR_X,
          2,
          -28,
          {MODEL_POWER(1, 0, 0, 0), MODEL_POWER(0, 0, 1, 0)},
          {{1 << 27, 1 << 26}, {1 << 26, 1 << 26}, {0, 1 << 26}}},
-        /* y / 2 mm */
+        /* sensor y = y / 2, mm */
         {GLINT_OUT_SENSOR_Y,
          1,
          -28,
          {MODEL_POWER(0, 1, 0, 0)},
          {{1 << 27}, {1 << 27}, {1 << 27}}},
-        /* x (1 - r) */
+        /* stop x = x (1 - r) */
         {GLINT_OUT_STOP_X,
          1,
          -29,
@@ -222,7 +222,7 @@ struct model_image model_sparse(void)
          -35,
          {MODEL_POWER(0, 0, 0, 0)},
          {{1 << 29}, {1 << 28}, {1 << 27}}},
-        /* r */
+        /* radius = r */
         {GLINT_OUT_RADIUS,
          1,
          -28,

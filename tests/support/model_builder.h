@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Small models in memory, of polynomials that can be worked out by hand.
+ * Small models in memory, whose polynomials can be worked out by hand.
  *
  *     struct model_image m = model_auto();      or model_sparse()
  *     glint_lens_open(&lens, m.data, m.bytes, &reason);
  *     free(m.data);
  *
- * Tables are written without sharing, each behind the last; model_seal() puts
- * size and checksum right after a change.
+ * Tables are written one after the other, and none is shared. After a change
+ * model_seal() sets size and checksum again.
  */
 #ifndef GLINT_TESTS_MODEL_BUILDER_H
 #define GLINT_TESTS_MODEL_BUILDER_H
@@ -20,7 +20,7 @@ enum {
     MODEL_ROOM = 1 << 17,
     MODEL_KNOTS = 3,
     MODEL_TERMS = 3,
-    MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* bits: s^0, s^1, w */
+    MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* s^0, s^1 and w */
 };
 
 struct model_image {
@@ -36,7 +36,7 @@ struct model_polynomial {
     uint8_t kind, n_terms;
     int16_t exponent;
     uint16_t power[MODEL_TERMS];
-    int32_t coef[MODEL_KNOTS][MODEL_TERMS]; /* without knots the first set */
+    int32_t coef[MODEL_KNOTS][MODEL_TERMS]; /* without knots: coef[0] */
 };
 
 /* Appends BYTES bytes, padded to whole words; returns where they are. */
@@ -48,7 +48,7 @@ void model_seal(struct model_image *m);
 
 struct glint_real model_real(double x);
 
-/* Wavelengths of 800 and 400 nm. */
+/* Wavelengths of 800 and 400 nm as 1 / wavelength^2, um^-2 _q24; 1 as _q30. */
 enum {
     MODEL_WAVE_LO_Q24 = 26214400,
     MODEL_WAVE_HI_Q24 = 104857600,
@@ -58,11 +58,13 @@ enum {
 void model_begin(struct model_image *m, enum glint_basis basis,
                  const char *name);
 
-/* Writes the tables of N polynomials, coefficients halved HALVED times. */
+/* Writes the tables of the N polynomials P into M and S, with coefficients that
+ * are halved HALVED times. */
 void model_outputs(struct model_image *m, struct glint_model_system *s,
                    const struct model_polynomial *p, uint32_t n, int halved);
 
-/* Of the auto basis. Halves 4 - s mm and 3 mm about 1 + s / 2 mm. */
+/* Returns a system of the auto basis. Its box lies at 1 + s / 2 mm and has half
+ * sides of 4 - s and 3 mm. */
 struct glint_model_system model_auto_system(struct model_image *m,
                                             int32_t sine_lo_q30,
                                             int32_t sine_hi_q30,
@@ -73,11 +75,12 @@ void model_end(struct model_image *m, const struct glint_model_ghost *ghosts,
                uint32_t n_ghosts, const struct glint_model_system *systems,
                uint32_t n_systems);
 
-/* Ghost 0 has two ranges of angles, sines 0 .. 1/4 .. 1/2, the second with
- * halved coefficients; ghost 1 is never seen; ghost 2 has two bands. */
+/* Returns a model of three ghosts: ghost 0 has two ranges of angles, sines 0 ..
+ * 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never seen; ghost
+ * 2 has two bands of wavelengths. */
 struct model_image model_auto(void);
 
-/* One ghost, knots at the sines 0, 1/4 and 1/2. */
+/* Returns a model of one ghost with knots at the sines 0, 1/4 and 1/2. */
 struct model_image model_sparse(void);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Drawn night scenes: lamps with a blurred rim in camera noise, as an 8-bit
- * grey picture shows them, and what finder and tracks make of them.
+ * grey picture shows them, and the spots and tracks that are found in it.
  */
 #ifndef GLINT_TESTS_NIGHT_H
 #define GLINT_TESTS_NIGHT_H
@@ -16,13 +16,15 @@ enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
 
 struct night_lamp {
     double x, y, radius;
-    double light; /* 1 = white; a rim of 1.5 pixels falls off from it */
+    double light; /* 1 = white; falls by e for every 1.5 pixels beyond the
+                   * radius */
 };
 
 struct night {
     struct glint_image image;
     double sigma;            /* codes: standard deviation of the noise */
-    double pole_x0, pole_x1; /* pixels: the pole between them hides all */
+    double pole_x0, pole_x1; /* pixels: columns between which a pole hides
+                              * lamps */
     struct glint_lamp_finder *finder;
     struct glint_lamp_finder_config lights;
     struct glint_lamp_tracker *tracks;
@@ -34,21 +36,24 @@ struct night {
     int n_spots, n_tracks;
     uint32_t seed;
     int8_t noise[NIGHT_NOISE];     /* units of sigma / 16 */
-    int row_noise[GLINT_MAX_SIDE]; /* index of a row's first noise */
+    int row_noise[GLINT_MAX_SIDE]; /* index in noise of a row's first pixel */
 };
 
-/* A sum of twelve uniform numbers is all but a bell curve. */
+/* Sets NIGHT to a size, defaults and a table of noise: sums of twelve uniform
+ * numbers, which are nearly normal. */
 void night_init(struct night *night, int width, int height);
 
-/* After configuration. Returns whether all went well. */
+/* Makes finder, profile and tracker once they are configured. Returns whether
+ * that went well. */
 int night_open(struct night *n);
 
 void night_close(struct night *night);
 
-/* New noise, and what lies around lamps; the rest is dark. */
+/* Draws the N lamps of LAMP with noise of sigma about them, over a dark picture
+ * with noise of one code. */
 void night_draw(struct night *night, const struct night_lamp *lamp, int n);
 
-/* Finds and tracks what the picture shows. */
+/* Finds and tracks the lamps of the picture, ELAPSED_US after the last one. */
 void night_track(struct night *n, int32_t elapsed_us);
 
 void night_step(struct night *n, const struct night_lamp *lamp, int n_lamps,
@@ -60,7 +65,8 @@ double night_energy(const struct night *n);
 
 double night_spot_power(const struct glint_spot *s);
 
-/* The track or spot nearest to X, Y; -1: there is none. */
+/* Return the index of the track or spot nearest to (X, Y); -1 if there is
+ * none. */
 int night_track_at(const struct night *n, double x, double y);
 
 int night_spot_at(const struct night *n, double x, double y);

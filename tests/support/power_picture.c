@@ -33,7 +33,8 @@ static int is_in(const struct power_lamp *l, double x, double y)
     }
 }
 
-/* What part of each pixel the shape covers; sums to 1. */
+/* Sets LIGHT to the part of each pixel that the shape covers, divided by the
+ * sum of all these parts. */
 static void cover(double *light, int width, int height,
                   const struct power_lamp *l)
 {
@@ -93,8 +94,8 @@ static void blur(double *light, int width, int height, double sigma)
     free(tmp);
 }
 
-/* Adds the glare of what SHAPE covers: of all its pixels, or so many that up to
- * SOURCES stand for it. */
+/* Adds to LIGHT the glare of the lit pixels of SHAPE, from up to SOURCES of
+ * them: where there are more, every k-th pixel stands for all. */
 static void add_glare(double *light, const double *shape, int width, int height,
                       const struct power_lamp *l)
 {
@@ -105,7 +106,7 @@ static void add_glare(double *light, const double *shape, int width, int height,
 
     for (int r2 = 0; r2 < width * width + height * height && r2 < KERNEL; r2++)
         kernel[r2] = pow(1 + r2 / (l->reach * l->reach), -l->fall / 2);
-    /* The total takes in all glare within 2000 pixels. */
+    /* TOTAL is the glare of one pixel within a radius of 2000 pixels. */
     for (double r = 0.25; r < 2000; r += 0.5)
         total +=
             3.14159265 * r * pow(1 + r * r / l->reach / l->reach, -l->fall / 2);

@@ -19,8 +19,8 @@ struct power_lamp {
     double radius; /* pixels; of squares half a side, of tubes half a length */
     double angle;  /* radians */
     double sigma;  /* pixels: standard deviation of the bell curve */
-    double glare;  /* part of the light that goes into it */
-    double reach;  /* pixels: it falls by (1 + (r / reach)^2)^(-fall / 2) */
+    double glare;  /* share of the light that becomes glare, 0 .. 1 */
+    double reach;  /* pixels: glare falls by (1 + (r / reach)^2)^(-fall / 2) */
     double fall;
     double rgb[3]; /* The luminance is 1. */
 };
@@ -31,16 +31,17 @@ struct power_picture {
     double *rgb;
 };
 
-/* The light of LAMP at power 1 for each pixel, of any channel. */
+/* Sets LIGHT, one number a pixel, to what LAMP gives at power 1. */
 void power_draw(double *light, int width, int height,
                 const struct power_lamp *lamp);
 
-/* What a camera with LENS makes of LIGHT: blurred, and with the glare of all
- * that is more than OVER. */
+/* Changes LIGHT into what a camera with LENS sees: blurred, and with the glare
+ * of all pixels above OVER. */
 void power_see(double *light, int width, int height,
                const struct power_lamp *lens, double over);
 
-/* Codes of sRGB, 8 bits, of GAIN * SETTINGS with noise of SIGMA codes. */
+/* Writes RGB, 8-bit codes of sRGB, from GAIN times the light SETTINGS with
+ * noise of SIGMA codes. */
 void power_expose(uint8_t *rgb, const struct power_picture *settings,
                   double gain, double sigma, uint32_t *seed);
 

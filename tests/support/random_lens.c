@@ -59,19 +59,20 @@ static double sag(double radius, double height)
                      copysign(sqrt(radius * radius - height * height), radius);
 }
 
-/* Surfaces about one unit across, weaker where there are many. */
+/* Chooses glasses, semi-diameters from 0.1 .. 0.5 on, and radii that are the
+ * weaker the more surfaces there are. */
 static void set_shapes(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);
     double semi = stage_uniform(r, 0.1, 0.5);
-    int left = 0; /* surfaces of this group still to come */
+    int left = 0; /* surfaces still to come in this cemented group */
 
     for (int k = 0; k < l->n_surfaces; k++) {
         struct glint_surface *s = &l->surface[k];
         const int rest = l->n_surfaces - k;
 
         *s = (struct glint_surface){.nd = 1};
-        if (left == 0) /* groups of 2 to 4, none of one */
+        if (left == 0) /* groups of 2 to 4 surfaces; the last may have 1 */
             left = rest <= 3 ? rest : rest == 4 ? 2 : 2 + below(r, 3);
         left--;
         if (left > 0)
@@ -84,8 +85,8 @@ static void set_shapes(uint64_t *r, struct glint_prescription *l)
     }
 }
 
-/* Thick enough for the rims, and a little more; the stop is a plane of its own
- * that may lie anywhere. */
+/* Places the surfaces so that rims do not cross, and a little farther apart.
+ * The stop is a plane of its own before, between or after them. */
 static void set_places(uint64_t *r, struct glint_prescription *l)
 {
     l->stop_after = below(r, l->n_surfaces + 1);
@@ -117,7 +118,7 @@ static void set_places(uint64_t *r, struct glint_prescription *l)
 static void set_coatings(uint64_t *r, struct glint_prescription *l)
 {
     const double coated = stage_uniform(r, -0.3, 1.3);
-    double before = 0; /* vd of the medium in front: 0 is air */
+    double before = 0; /* vd of the medium in front of the surface; air: 0 */
 
     for (int k = 0; k < l->n_surfaces; k++) {
         struct glint_surface *s = &l->surface[k];
@@ -130,7 +131,7 @@ static void set_coatings(uint64_t *r, struct glint_prescription *l)
     }
 }
 
-/* All lengths times FACTOR. */
+/* Multiplies all lengths of the lens by FACTOR. */
 static void scale(struct glint_prescription *l, double factor)
 {
     for (int k = 0; k < l->n_surfaces; k++) {
@@ -149,7 +150,8 @@ static double *last_gap(struct glint_prescription *l)
                : &l->surface[l->n_surfaces - 1].thickness_mm;
 }
 
-/* False: it has no image, or one inside the lens. */
+/* Sets f-number, film and its distance. Returns false if the lens forms no
+ * image, or forms it inside itself. */
 static bool set_focus(uint64_t *r, struct glint_prescription *l)
 {
     struct glint_optics o;
@@ -228,7 +230,7 @@ static bool try_one(uint64_t *r, struct glint_prescription *l, int number,
                     char *text)
 {
     struct glint_error error;
-    /* mostly few surfaces: ghosts grow with their square */
+    /* Most lenses get few surfaces, as ghosts grow with the square of these. */
     const double u = stage_uniform(r, 0, 1);
     const int n = (int)floor(2 * pow(32.5, u * u));
 

@@ -50,7 +50,8 @@ bool stage_prepare(struct stage *stage, int n_blades)
            refuse(error.text);
 }
 
-/* What frames are drawn by is what the model says of its lens. */
+/* Fills of_model, by which frames are drawn, with what the model says of its
+ * lens. */
 static bool take_model(struct stage *stage)
 {
     const struct glint_setup *s = &stage->setup;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * One lens on stage: its table, its model, and pictures of both.
+ * A lens for tests: its table, its model, and pictures of both.
  *
  *     stage_load(&s, "heliar-tronnier");          or stage_parse, or s.lens
  *     stage_prepare(&s, 8);                       stop and colours
@@ -10,7 +10,7 @@
  *     stage_exact(&s, &lamp, 1, 192, exact);      the reference
  *     stage_close(&s);
  *
- * Functions return false after saying on stderr what went wrong.
+ * Functions that fail print the reason on stderr and return false.
  */
 #ifndef GLINT_TESTS_STAGE_H
 #define GLINT_TESTS_STAGE_H
@@ -25,71 +25,74 @@ struct stage {
     struct glint_prescription lens;
     struct glint_setup setup, of_model;
     struct glint_workers *workers;   /* NULL: serial */
-    struct model_file file;          /* closed: rays are exact */
-    struct glint_bake_report report; /* The bake fills this. */
+    struct model_file file;          /* model; closed: rays are exact */
+    struct glint_bake_report report; /* filled by stage_bake() */
     struct glint_view view;
     struct glint_frame frame;
     bool framed;
-    struct glint_frame_report drawn; /* The last picture filled this. */
+    struct glint_frame_report drawn; /* filled by the last picture */
 };
 
-/* Reads lenses/NAME.lens, from the root of the tree. */
+/* Reads lenses/NAME.lens; the program must run from the root of the tree. */
 bool stage_load(struct stage *stage, const char *name);
 bool stage_parse(struct stage *stage, const char *text);
 
-/* A stop of N_BLADES, 0: a circle, and 650, 532 and 450 nm. After this the
- * stage must stay where it is. */
+/* Sets the lens up with a stop of N_BLADES (0: a circle) and wavelengths of
+ * 650, 532 and 450 nm. From now on the stage must not move in memory. */
 bool stage_prepare(struct stage *stage, int n_blades);
 
-/* A model for lights up to MAX_DEG: baked here and now, or the one that other
- * tests have baked before (tools/model/model_cache.h). */
+/* Make the model for lights up to MAX_DEG degrees: stage_bake() anew,
+ * stage_model() from the cache if another test baked it
+ * (tools/model/model_cache.h). */
 bool stage_bake(struct stage *stage, double tolerance, double max_deg);
 bool stage_model(struct stage *stage, double tolerance, double max_deg);
 
-/* Stops the lens to F_NUMBER, and its model, which was baked for a wider stop
- * and stays, too. The same pictures as before. */
+/* Stops the lens down to F_NUMBER but keeps its model, which was baked for a
+ * wider stop. The view stays as it was. */
 bool stage_stop(struct stage *stage, double f_number);
 
-/* Pictures of WIDTH x HEIGHT that show SENSOR_MM across; 0: as the film fits.
- * What a newcomer gets: quantum of a percent, grids of fineness 64, all
- * instruction sets. May be repeated. */
+/* Sets the size of pictures, WIDTH x HEIGHT, which show SENSOR_MM across (0: as
+ * the film fits), and the default dials: irradiance in steps of a percent,
+ * fineness 64, all instruction sets. May be repeated. */
 void stage_view(struct stage *stage, int width, int height, double sensor_mm);
 
-/* All of these: the lens NAME with a stop of eight blades, its model for lights
- * up to 60 degrees, and pictures of WIDTH x HEIGHT of its film. */
+/* Loads the lens NAME and sets up all else: a stop of eight blades, its model
+ * for lights up to 60 degrees, and pictures of WIDTH x HEIGHT of its film. */
 bool stage_open(struct stage *stage, const char *name, int width, int height);
 
-/* RGB [height][width][3], linear light. */
+/* Draw the flare of N lamps into RGB [height][width][3], linear light:
+ * stage_linear() as the run time does, stage_exact() by exact rays. */
 bool stage_linear(struct stage *stage, const struct glint_lamp *lamps, int n,
                   float *rgb);
 bool stage_exact(struct stage *stage, const struct glint_lamp *lamps, int n,
                  int grid, float *rgb);
 
-/* Adds the flare to CODES, RGB24 without padding. */
+/* Adds the flare of N lamps to CODES, RGB24 without padding. */
 bool stage_codes(struct stage *stage, const struct glint_lamp *lamps, int n,
                  uint8_t *codes);
 
-/* TEST against REFERENCE, as in measure.h. */
+/* Compares TEST with REFERENCE, as measure.h says. */
 struct glint_measure stage_compare(const struct stage *stage,
                                    const float *reference, const float *test);
 
-/* The power at which LAMP's flare is well exposed, as in measure.h. */
+/* Returns the power at which the flare of LAMP is well exposed, as measure.h
+ * says. */
 double stage_power(struct stage *stage, const struct glint_lamp *lamp);
 
-/* How far the means of 8 x 8 blocks are apart at most, in codes, of two
- * pictures as stage_codes draws them. */
+/* Returns the largest difference, in codes, between means of 8 x 8 blocks of A
+ * and of B, which are pictures of stage_codes(). */
 double stage_block_jump(const struct stage *stage, const uint8_t *a,
                         const uint8_t *b);
 
-/* Sum of all values. */
+/* Returns the sum of all values of RGB. */
 double stage_flux(const struct stage *stage, const float *rgb);
 
 void stage_close(struct stage *stage);
 
-/* A white lamp of POWER. */
+/* Returns a white point lamp of POWER in a direction. */
 struct glint_lamp stage_lamp(double theta_deg, double phi_deg, double power);
 
-/* splitmix64: the same numbers on every machine. */
+/* Returns 64 bits of splitmix64: the same numbers on every machine. */
 uint64_t stage_random(uint64_t *state);
 double stage_uniform(uint64_t *state, double low, double high);
 

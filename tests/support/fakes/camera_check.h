@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_check.h - what tests of the V4L2 source do again and again. They end
- * with must_close(), which looks for what was left behind.
+ * camera_check.h - steps that the tests of the V4L2 source share. Each test
+ * ends with must_close(), which checks that nothing stays open, mapped or
+ * allocated.
  */
 #ifndef GLINT_SUPPORT_CAMERA_CHECK_H
 #define GLINT_SUPPORT_CAMERA_CHECK_H
@@ -38,7 +39,7 @@ static inline void must_open(const struct glint_v4l2_config *wish)
         fail_msg("%s", said.text);
 }
 
-/* Nothing is left of the camera. */
+/* Checks that the camera is closed, unmapped and freed, without a breach. */
 static inline void must_be_closed(void)
 {
     assert_int_equal(v4l2.source.fd, -1);
@@ -56,7 +57,7 @@ static inline void must_close(void)
     must_be_closed();
 }
 
-/* It does not open, and the reason has TEXT in it. */
+/* Checks that opening fails with STATUS and for a reason that contains TEXT. */
 static inline void must_refuse(const struct glint_v4l2_config *wish,
                                enum glint_status status, const char *text)
 {
@@ -77,7 +78,7 @@ static inline void done(void)
     v4l2.source.done(&v4l2.source, &frame);
 }
 
-/* There is a frame, of one code; it is given back. */
+/* Takes a frame, checks that its first byte is CODE, and gives it back. */
 static inline void must_get(int code)
 {
     assert_int_equal(next(), GLINT_OK);
@@ -93,7 +94,9 @@ static inline void must_get_nothing(void)
     done();
 }
 
-/* Asks every 10 ms for MS; the first status that is not GLINT_OK, and when. */
+/* Takes a frame every 10 ms for MS milliseconds of the fake clock. Returns the
+ * first status that is not GLINT_OK, or GLINT_OK at the end, and sets
+ * *FAILED_MS to the time of the last attempt. */
 static inline enum glint_status follow(int ms, int *failed_ms)
 {
     const int64_t start = fake_camera_now();

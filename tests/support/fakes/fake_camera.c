@@ -71,7 +71,7 @@ static bool is_refused(unsigned long request, const void *arg)
     const struct v4l2_requestbuffers *r = arg;
 
     if (refusal.request != request || refusal.times == 0 ||
-        (request == VIDIOC_REQBUFS && r->count == 0)) /* frees them */
+        (request == VIDIOC_REQBUFS && r->count == 0)) /* frees buffers */
         return false;
     if (refusal.times > 0)
         refusal.times--;
@@ -140,7 +140,7 @@ static int blocks_of(uint32_t fourcc)
                                                                         : 1;
 }
 
-/* Bytes of a row of block BLOCK. */
+/* Returns the bytes of a row in block BLOCK; 0 for compressed formats. */
 static uint32_t stride_of(const struct fake_mode *m, int block)
 {
     switch (m->fourcc) {
@@ -250,7 +250,8 @@ static int set_format(struct v4l2_format *f)
     return tell_format(f);
 }
 
-/* Mode INDEX of those that differ in what LIKE tells apart; NULL: beyond. */
+/* Returns mode INDEX among those that WITHIN accepts for KEY, where modes that
+ * are LIKE an earlier one are not counted; NULL beyond the last. */
 static const struct fake_mode *
 nth_mode(uint32_t index,
          bool (*like)(const struct fake_mode *a, const struct fake_mode *b),
@@ -655,7 +656,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     if (fd != camera.fd || fd < 0)
         return __real_ioctl(fd, request, arg);
     if (request == VIDIOC_STREAMOFF || camera.is_gone)
-        camera.streams = false; /* though it may fail besides */
+        camera.streams = false; /* even if the call fails below */
     if (fails() || is_refused(request, arg))
         return -1;
     return camera.is_gone ? refuse(ENODEV) : answer(request, arg);
@@ -689,7 +690,7 @@ int __wrap_stat64(const char *path, struct stat *st)
     return camera.is_gone ? refuse(ENOENT) : __real_stat64("/dev/null", st);
 }
 
-/* What the kernel does for a process that ends: mappings stay. */
+/* Closes as the kernel does: the stream stops, buffers that are mapped stay. */
 int __wrap_close(int fd);
 int __wrap_close(int fd)
 {
@@ -716,7 +717,7 @@ ssize_t __wrap_read(int fd, void *dst, size_t bytes)
         return -1;
     if (camera.is_gone || camera.read_errno)
         return refuse(camera.is_gone ? ENODEV : camera.read_errno);
-    camera.streams = true; /* Reading streams until the device is closed. */
+    camera.streams = true; /* read() streams until the device is closed. */
     camera.n_buffers = 1;
     if (camera.n_frames == 0)
         return refuse(EAGAIN);
@@ -747,7 +748,8 @@ void *__wrap_mmap64(void *at, size_t bytes, int how, int flags, int fd,
         errno = EINVAL;
         return MAP_FAILED;
     }
-    /* a block of the heap: tools see what is read beyond it or afterwards */
+    /* From the heap, so that sanitizers see reads beyond it or after
+     * munmap(). */
     b->map[page % 16] = __real_malloc(bytes);
     memset(b->map[page % 16], 0, bytes);
     camera.n_maps++;
@@ -831,7 +833,7 @@ void __wrap_free(void *mem);
 void __wrap_free(void *mem)
 {
     n_blocks -= mem != NULL;
-    if (mem) /* A read of freed memory then shows. */
+    if (mem) /* so that a read of freed memory shows */
         memset(mem, 0xdd, malloc_usable_size(mem));
     __real_free(mem);
 }

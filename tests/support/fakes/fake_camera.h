@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * fake_camera.h - a V4L2 camera and a clock that are answered here, for a test
+ * fake_camera.h - a fake V4L2 camera and a fake clock, for tests that are
  * linked with fake_camera.o and FAKE_CAMERA of the Makefile.
  *
- * The driver is as strict as the kernel: buffers are queued once, no format is
- * set while there are buffers, none are freed while they are mapped. Breaches
- * that the kernel would punish later are counted in breaches. Any call that
- * reaches the kernel or the heap may be made to fail.
+ * The fake driver is as strict as the kernel: a buffer is queued once, no
+ * format is set while there are buffers, and no buffers are freed while they
+ * are mapped. The member breaches counts mistakes that the kernel would punish
+ * only later. Any call to the kernel or the heap can be made to fail.
  */
 #ifndef GLINT_SUPPORT_FAKE_CAMERA_H
 #define GLINT_SUPPORT_FAKE_CAMERA_H
@@ -21,7 +21,7 @@
 
 enum { FAKE_MODES = 8, FAKE_FRAMES = 128, FAKE_BUFFERS = 64 };
 
-/* A format, a size and a rate that go together; fourcc 0 ends them. */
+/* A format, a size and a rate that go together; fourcc 0 ends the list. */
 struct fake_mode {
     uint32_t fourcc, width, height, fps_num, fps_den;
 };
@@ -29,7 +29,7 @@ struct fake_mode {
 struct fake_frame {
     uint32_t sequence;
     int code;         /* value of every byte, 0 .. 255 */
-    const void *data; /* bytesused[0] bytes used instead; NULL: none */
+    const void *data; /* bytesused[0] bytes that replace code; NULL: none */
     uint32_t flags;
     uint32_t bytesused[3]; /* 0: all, unless is_odd */
     uint32_t data_offset[3];
@@ -57,13 +57,13 @@ struct fake_camera {
     uint32_t sizeimage;     /* bytes that the driver says; 0: the format's */
     bool says_no_stride;    /* The driver gives a bytesperline of 0. */
     bool rounds;            /* Sizes become multiples of 16. */
-    bool ignores_fourcc;    /* Any request gets the first mode's. */
-    bool lacks_mmap;        /* REQBUFS has USERPTR only. */
+    bool ignores_fourcc;    /* S_FMT always sets the first mode's fourcc. */
+    bool lacks_mmap;        /* REQBUFS refuses MMAP. */
     uint32_t max_buffers;   /* buffers that REQBUFS gives at most */
     struct v4l2_fract rate; /* G_PARM gives this rate; 0/x: the mode's. */
     uint32_t quantization, ycbcr_enc, colorspace;
 
-    /* Requests set these members, or the cable does. */
+    /* These members are the settings, and what the cable carries. */
     struct fake_mode now;
     uint32_t input;
     struct v4l2_bt_timings timings, received;
@@ -75,13 +75,14 @@ struct fake_camera {
     int n_events; /* number of source changes that wait */
     uint32_t n_buffers;
     struct fake_buffer buffer[FAKE_BUFFERS];
-    uint32_t order[FAKE_BUFFERS]; /* buffers by index, the first queued first */
+    uint32_t order[FAKE_BUFFERS]; /* queued buffers, the oldest first */
     int n_queued;
     struct fake_frame frame[FAKE_FRAMES];
     int n_frames;
     int read_errno;           /* errno with which read() fails; 0: none */
     void (*on_dequeue)(void); /* Each DQBUF calls this first, unless NULL. */
-    int says_index;           /* index that DQBUF gives, plus 1; 0: right */
+    int says_index;           /* index that DQBUF gives, plus 1; 0: the true
+                               * one */
 
     /* These members count what happened. */
     int n_maps, n_exports, breaches, n_streamons, n_reqbufs;
@@ -90,30 +91,36 @@ struct fake_camera {
 
 extern struct fake_camera camera;
 
-/* A camera of YUYV 64 x 48 at 30 fps, and every failure off. */
+/* Resets the camera to YUYV of 64 x 48 at 30 fps and takes back all
+ * failures. */
 void fake_camera_reset(void);
 
-/* Puts a frame behind those that wait, of camera.mode's own making. */
+/* Appends a frame to those that wait, all bytes CODE, taken now. The caller may
+ * change the frame that is returned. */
 struct fake_frame *fake_camera_deliver(uint32_t sequence, int code);
 
-/* REQUEST fails with NUMBER the next TIMES times; -1: for ever. */
+/* Makes the next TIMES requests REQUEST fail with errno NUMBER; TIMES -1:
+ * all. */
 void fake_camera_refuse(unsigned long request, int number, int times);
 
-/* All calls count: the kernel's for the camera, and the heap's. Call N fails,
- * and with FOREVER all that follow; 0: none. Returns how many there were. */
+/* Makes call N from now fail with errno NUMBER, and with FOREVER all later
+ * calls, too; N 0: none. Calls are those to the kernel for the camera and those
+ * to the heap for memory. Returns how many there were since this was last
+ * set. */
 int fake_camera_fail_at(int n, int number, bool forever);
 
-/* Blocks of the heap that the code under test holds. */
+/* Returns how many blocks of the heap the code under test has not freed yet. */
 int fake_camera_blocks(void);
 
-/* How often the heap was asked for memory so far. */
+/* Returns how often the heap was asked for memory since the program began. */
 int fake_camera_asked(void);
 
-/* The clock stands still but for this and for sleeping. */
+/* Advances the clock by US microseconds; only sleeping advances it
+ * otherwise. */
 void fake_camera_pass(int64_t us);
 int64_t fake_camera_now(void);
 
-/* Built without libjpeg. */
+/* true: the program acts as if it was built without libjpeg. */
 extern bool fake_lacks_jpeg;
 
 #endif

@@ -45,7 +45,7 @@ int __wrap_open64(const char *path, int flags, ...)
     if (fails())
         return refuse(EMFILE);
     if (!strcmp(path, "/dev/tty"))
-        return refuse(ENXIO); /* A daemon has no terminal. */
+        return refuse(ENXIO); /* as for a daemon, which has no terminal */
     if (is_tty)
         return fake_fb->tty_errno ? refuse(fake_fb->tty_errno)
                                   : __real_open64(fake_tty_path, flags);
@@ -83,7 +83,7 @@ static int answer_fb(unsigned long request, void *arg)
         fake_fb->n_vsync++;
         return fake_fb->vsync_errno ? refuse(fake_fb->vsync_errno) : 0;
     }
-    fail_msg("ioctl %lx", request); /* FBIOPUT_VSCREENINFO above all */
+    fail_msg("ioctl %lx", request); /* The mode must never be set. */
     return -1;
 }
 

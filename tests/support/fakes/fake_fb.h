@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * fake_fb.h - a framebuffer and a console that are files, with ioctl() answered
- * here. For a test linked with --wrap=open64,ioctl,mmap64,munmap,malloc.
+ * fake_fb.h - a framebuffer and a console that are files, and an ioctl() that
+ * answers for them. Tests link it with
+ * --wrap=open64,ioctl,mmap64,munmap,malloc.
  */
 #ifndef GLINT_SUPPORT_FAKE_FB_H
 #define GLINT_SUPPORT_FAKE_FB_H
@@ -21,11 +22,11 @@ struct fake_fb {
     bool gone, can_pan;
     int open_errno, vsync_errno, n_vsync, n_pan;
     int tty_errno, tty_mode, tty_switching;
-    uint32_t yoffset_at_text; /* lines panned when text came back */
+    uint32_t yoffset_at_text; /* var.yoffset, lines, when text mode came back */
 };
-extern struct fake_fb *fake_fb; /* the test's, shared with its children */
+extern struct fake_fb *fake_fb; /* set by the test, shared with forks */
 
-extern int fake_fb_calls;   /* number of calls so far */
+extern int fake_fb_calls;   /* number of calls so far that may fail */
 extern int fake_fb_fail_at; /* number of the call that fails, from 1; 0: none */
 extern int fake_fb_maps;
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * as UID PROGRAM [ARG...] - runs PROGRAM as a user without rights.
+ * as UID PROGRAM [ARG...] - runs PROGRAM as user UID without privileges.
  */
-#define _DEFAULT_SOURCE /* setgroups */
+#define _DEFAULT_SOURCE /* for setgroups() */
 #include <grp.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
  *
  * bars [/dev/fbN] - draws eight colour bars over ramps of red, green and blue,
  *     by the bit fields that the driver reports.
- * bars LAYOUT WxH - the picture a panel of r5g6b5, x8r8g8b8 ... must then show,
- *     as PPM; needs no device.
+ * bars LAYOUT WxH - writes, as PPM and without a device, the picture that a
+ *     panel of LAYOUT (r5g6b5, x8r8g8b8 ...) must then show.
  */
 #include <linux/fb.h>
 #include <sys/mman.h>
@@ -11,7 +11,8 @@
 #include "device.h"
 #include "layout.h"
 
-/* Channel C at a place, 0 .. 255. Bars from white to black by falling luma. */
+/* Returns channel C at (X, Y), 0 .. 255. Bars go from white to black by falling
+ * luma. */
 static uint32_t colour(unsigned x, unsigned y, unsigned width, unsigned height,
                        unsigned c)
 {

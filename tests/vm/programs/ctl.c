@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * ctl DEVICE - lists the controls of a video device.
- * ctl DEVICE NAME|0xID [VALUE] - prints one, or sets it: faults are injected
- *     into vivid this way while another program streams.
+ * ctl DEVICE NAME|0xID [VALUE] - prints a control, or sets it: tests inject
+ *     faults into vivid by it while another program streams.
  * ctl DEVICE format FOURCC WxH - tries to change the capture format.
  * ctl DEVICE input N - selects an input.
  */
@@ -26,7 +26,8 @@ static int wanted(const struct v4l2_queryctrl *query, const char *name)
            strcmp(name, (const char *)query->name) == 0;
 }
 
-/* NAME NULL: all controls. Returns how many there were. */
+/* Prints the control NAME, or sets it to VALUE unless that is NULL; NAME NULL
+ * stands for all controls. Returns how many there were. */
 static int controls(int fd, const char *name, const char *value)
 {
     int n = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * device.h - what the guest's tools share: words of the command line, ioctls
- * that end the program when they fail.
+ * device.h - what the guest's tools share: words of the command line, and
+ * ioctls that end the program when they fail.
  */
 #ifndef GLINT_VM_DEVICE_H
 #define GLINT_VM_DEVICE_H
@@ -40,7 +40,7 @@ __attribute__((unused)) static int try_ioctl(int fd, unsigned long request,
     return rc;
 }
 
-/* NAME says what is asked for when it is refused. */
+/* Ends the program if the request fails, with NAME in the message. */
 __attribute__((unused)) static void must_ioctl(int fd, unsigned long request,
                                                void *arg, const char *name)
 {
@@ -70,7 +70,7 @@ __attribute__((unused)) static void size_of(const char *word, uint32_t *width,
         die("%s: not WxH", word);
 }
 
-/* A whole file in memory, the caller's to free. */
+/* Returns the whole file in memory that the caller frees. */
 __attribute__((unused)) static uint8_t *read_file(const char *path,
                                                   size_t *n_bytes)
 {
@@ -92,8 +92,9 @@ __attribute__((unused)) static uint8_t *read_file(const char *path,
     return bytes;
 }
 
-/* Bytes of a tightly packed frame, as files hold them: v4l2loopback rounds
- * sizeimage up to pages. 0: compressed. */
+/* Returns the bytes of a tightly packed frame, as files hold it, or 0 for
+ * compressed formats. The sizeimage of v4l2loopback is no such number: it is
+ * rounded up to pages. */
 __attribute__((unused)) static size_t
 packed_bytes(uint32_t fourcc, uint32_t width, uint32_t height)
 {
@@ -111,7 +112,8 @@ packed_bytes(uint32_t fourcc, uint32_t width, uint32_t height)
     die("%.4s: no such format here", (const char *)&fourcc);
 }
 
-/* Format of a single-planar device; what it makes of it must be the same. */
+/* Sets the format of a single-planar device, which must take it unchanged;
+ * returns its sizeimage. */
 __attribute__((unused)) static uint32_t set_format(int fd, uint32_t type,
                                                    uint32_t fourcc,
                                                    uint32_t width,

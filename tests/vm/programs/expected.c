@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * expected LAYOUT WxH VIDEO OUT [scale|centre] - OUT.ppm: what a panel of these
- * pixels shows of the last frame of a y4m video.
- * expected yuyv WxH VIDEO OUT - its last frame, C422, as a camera would send
+ * expected LAYOUT WxH VIDEO OUT [scale|centre] - writes OUT, a PPM of what a
+ * panel
+ *     of LAYOUT shows of the last frame of a y4m video.
+ * expected yuyv WxH VIDEO OUT - writes this frame, C422, as a camera sends
  * it.
  */
 #include <stdio.h>
@@ -30,7 +31,7 @@ static struct glint_pixel_layout pixels_of(const struct layout *l)
     return p;
 }
 
-/* As eyes, and the emulator's picture, see it. */
+/* Writes a pixel with 8 bits a channel, as the emulator's screenshot has it. */
 static void put_pixel(const struct layout *l, const uint8_t *at, FILE *file)
 {
     uint32_t word = 0;
@@ -102,7 +103,7 @@ int main(int argc, char **argv)
     if (glint_y4m_reader_open(&in, argv[3], &error) != GLINT_OK)
         die(error.text);
     while (glint_y4m_reader_next(&in, &next, &error) == GLINT_OK && next)
-        frame = next; /* the same memory each time */
+        frame = next; /* points to the same memory for each frame */
     if (!frame || *error.text)
         die(*error.text ? error.text : "no frame");
     if (yuyv && (frame->format != GLINT_I422 || frame->width != w ||

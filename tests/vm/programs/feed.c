@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * feed [-c CAMERA] [-n COUNT] [-r FPS] [-t] DEVICE FOURCC WxH FILE... - frames
- * of files, in a loop, into a video output: what the camera behind it delivers
- * is known bit for bit. With -t it is said to have BT.709's transfer curve, as
- * y4m video does.
+ * feed [-c CAMERA] [-n COUNT] [-r FPS] [-t] DEVICE FOURCC WxH FILE... - writes
+ * the frames of files, in a loop, to a video output, so that what a camera
+ * delivers is known bit for bit. With -t the frames are declared to have
+ * BT.709's transfer curve, as y4m video does.
  *
  * DEVICE is vivid's output, whose HDMI socket is then wired to CAMERA's HDMI
  * input (same timings and format on both, no text painted over), or a node of
- * v4l2loopback. An uncompressed file holds one or more frames; one of MJPG or
- * JPEG is one frame, of any bytes. Without -r, vivid's timings set the pace.
+ * v4l2loopback. An uncompressed file holds one or more frames; a file of MJPG
+ * or JPEG is one frame, of any bytes. Without -r, vivid's timings set the
+ * pace.
  */
 #include <sys/mman.h>
 
@@ -24,10 +25,10 @@ struct frame {
 struct feed {
     int fd;
     size_t image_bytes;  /* room in a buffer */
-    size_t packed_bytes; /* a frame in a file; 0: compressed, the whole file */
+    size_t packed_bytes; /* a frame in a file; 0: compressed, the file is one */
     struct frame *frame;
     int n_frames;
-    uint32_t n_buffers; /* 0: frames are written */
+    uint32_t n_buffers; /* 0: frames are passed by write() */
     uint8_t *memory[N_BUFFERS];
 };
 
@@ -50,13 +51,14 @@ static void add_file(struct feed *feed, const char *path)
     if (feed->packed_bytes && (n_bytes == 0 || n_bytes % step != 0))
         die("%s: %zu bytes are no whole frames of %zu", path, n_bytes, step);
     size_t at = 0;
-    do { /* an empty file is an empty frame */
+    do { /* an empty file is an empty frame, too */
         add_frame(feed, bytes + at, step);
         at += step;
     } while (at < n_bytes);
 }
 
-/* Last, as S_FMT of size and pixels alone would forget it. */
+/* Declares BT.709's curve. S_FMT with size and pixels alone would forget it, so
+ * this comes last. */
 static void set_curve(int fd)
 {
     struct v4l2_format format = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
@@ -66,7 +68,8 @@ static void set_curve(int fd)
     must_ioctl(fd, VIDIOC_S_FMT, &format, "VIDIOC_S_FMT");
 }
 
-/* Sockets that take DV timings: HDMI. -1: none, as v4l2loopback. */
+/* Returns the output that takes DV timings, which is HDMI; -1: none, as with
+ * v4l2loopback. */
 static int hdmi_output(int fd)
 {
     struct v4l2_output output = {.index = 0};
@@ -91,7 +94,8 @@ static double timings_fps(const struct v4l2_bt_timings *bt)
     return (double)bt->pixelclock / pixels;
 }
 
-/* The progressive timings of a size nearest to FPS. */
+/* Returns the progressive timings of a size whose rate is nearest to FPS, or to
+ * 60 where FPS is 0. */
 static struct v4l2_dv_timings find_timings(int fd, uint32_t width,
                                            uint32_t height, double fps)
 {
@@ -127,7 +131,8 @@ static void set_control(int fd, const char *name, int32_t value)
     die("no control \"%s\"", name);
 }
 
-/* Both ends of the cable alike. */
+/* Sets the same timings on both ends of the cable, and the format on the
+ * camera. */
 static void wire_hdmi(int out, int socket, const char *camera, uint32_t fourcc,
                       uint32_t width, uint32_t height, double fps)
 {
@@ -174,7 +179,7 @@ static void take_buffers(struct feed *feed)
     }
 }
 
-/* A buffer the device is through with; blocks until there is one. */
+/* Returns a buffer that the device does not use; blocks until there is one. */
 static uint32_t free_buffer(const struct feed *feed, long i)
 {
     if (i < (long)feed->n_buffers)
@@ -185,7 +190,7 @@ static uint32_t free_buffer(const struct feed *feed, long i)
     return buffer.index;
 }
 
-/* v4l2loopback counts frames that are written, not those that are queued. */
+/* Writes a frame by write(), as v4l2loopback does not count queued frames. */
 static void write_frame(int fd, const struct frame *frame)
 {
     ssize_t n = write(fd, frame->bytes, frame->n_bytes);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * grab [-s SKIP] DEVICE FOURCC WxH COUNT OUT [REFERENCE] - frames of a camera
- * into a file, after all of them are there: what is written meanwhile costs no
- * frame. With REFERENCE (frames as large) says which of its frames each one
- * is, bit for bit, and fails when one is none of them.
+ * grab [-s SKIP] DEVICE FOURCC WxH COUNT OUT [REFERENCE] - reads frames of a
+ * camera, and writes them to a file only when all are there, so that none is
+ * lost meanwhile. Says for each frame which one of REFERENCE (frames of this
+ * size) it is, bit for bit, and fails if it is none of them.
  */
 #include <poll.h>
 #include <sys/mman.h>
@@ -48,7 +48,7 @@ static void start(struct camera *camera)
     must_ioctl(camera->fd, VIDIOC_STREAMON, &type, "VIDIOC_STREAMON");
 }
 
-/* Copies the next frame to DST of image_bytes; returns its bytes. */
+/* Copies the next frame to DST [image_bytes]; returns its bytes. */
 static size_t next_frame(const struct camera *camera, uint8_t *dst)
 {
     struct pollfd ready = {.fd = camera->fd, .events = POLLIN};

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * layout.h - packed pixels by the names that device trees give them: fields
- * from the highest bit down, as in r5g6b5 or x8r8g8b8. "-shifted" behind it is
- * for a panel that does not repeat bits, so that white is not quite white: the
- * emulated VGA card is one with 5 bits a channel.
+ * from the highest bit down, as in r5g6b5 or x8r8g8b8. A name ends in
+ * "-shifted" for a panel that does not repeat high bits in low ones, so that
+ * its white is not quite white, as on the emulated VGA card with 5 bits a
+ * channel.
  */
 #ifndef GLINT_VM_LAYOUT_H
 #define GLINT_VM_LAYOUT_H
@@ -18,7 +19,7 @@ struct layout {
     int shifted;
 };
 
-/* 0: no such name. */
+/* Sets *LAYOUT by NAME; returns 0 if there is no such name. */
 __attribute__((unused)) static int layout_of(const char *name,
                                              struct layout *layout)
 {
@@ -42,8 +43,8 @@ __attribute__((unused)) static int layout_of(const char *name,
     return at % 8 == 0 && at >= 16 && at <= 32;
 }
 
-/* Channel C of a panel's picture, 0 .. 255; both ends of the range are kept, as
- * the highest bits are repeated below. */
+/* Returns channel C of a panel's picture, 0 .. 255, for a pixel's FIELD. Where
+ * high bits are repeated in low ones, the largest field is 255. */
 __attribute__((unused)) static uint8_t shown(const struct layout *layout,
                                              unsigned c, uint32_t field)
 {

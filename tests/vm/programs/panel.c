@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * panel LAYOUT WxH RAW NAME - NAME.ppm and NAME.png of a frame buffer's memory,
- * where the emulator has no panel to take a picture of.
+ * panel LAYOUT WxH RAW NAME - writes NAME.ppm and NAME.png from the memory of a
+ * framebuffer, for emulators that have no panel to take a picture of.
  */
 #include <stdint.h>
 #include <stdio.h>
@@ -53,7 +53,7 @@ static int read_raw(const char *path, const struct layout *layout,
  * Not compressed: blocks of one row, as the format allows. */
 struct png {
     FILE *file;
-    uint32_t crc, s1, s2; /* the chunk's CRC-32; two sums of Adler-32 */
+    uint32_t crc, s1, s2; /* CRC-32 of the chunk; the two sums of Adler-32 */
 };
 
 static void put_bytes(struct png *png, const uint8_t *bytes, size_t n)

@@ -2,9 +2,9 @@
  *
  * scene [-n FRAMES] [-m DX,DY] [-s SIGMA] YUYV|NV12|y4m WxH OUT [X,Y,R]...
  *
- * A night with lamps at X, Y (pixels) of radius R, that move by DX, DY each
- * frame, under noise of SIGMA codes, over colour bars: frames as a camera would
- * send them, the same on every run. y4m has the samples of YUYV.
+ * Writes a night with lamps at X, Y (pixels) of radius R, that move by DX, DY
+ * each frame, under noise of SIGMA codes, over colour bars: frames as a camera
+ * would send them, the same on every run. y4m has the samples of YUYV.
  */
 #include <math.h>
 #include <stdint.h>
@@ -29,7 +29,7 @@ static void die(const char *why)
     exit(2);
 }
 
-/* Nearly normal, of deviation 1. */
+/* Returns nearly normal noise of standard deviation 1. */
 static double noise(void)
 {
     static uint32_t seed = 7;
@@ -40,7 +40,8 @@ static double noise(void)
     return sum;
 }
 
-/* White inside, a glow outside, over a sky that is brighter below. */
+/* Returns the luma at (X, Y), 16 .. 235: lamps are white with a glow around
+ * them, the sky is brighter below. */
 static uint8_t luma_at(const struct scene *s, int frame, int x, int y)
 {
     double v = 24 + 24.0 * y / s->height;
@@ -58,7 +59,7 @@ static uint8_t luma_at(const struct scene *s, int frame, int x, int y)
     return (uint8_t)fmax(16, fmin(235, floor(v + 0.5)));
 }
 
-/* Y, Cb, Cr of the bar at X: BT.709, 75 %, white to black. */
+/* Returns Y, Cb, Cr of the bar at X: BT.709, 75 %, from white to black. */
 static const uint8_t *bar_at(const struct scene *s, int x)
 {
     static const uint8_t bar[8][3] = {
@@ -68,7 +69,7 @@ static const uint8_t *bar_at(const struct scene *s, int x)
     return bar[8 * x / s->width];
 }
 
-/* Bars fill the lowest sixth. */
+/* Returns whether row Y is in the lowest sixth, which bars fill. */
 static int is_bar(const struct scene *s, int y)
 {
     return y >= s->height - s->height / 6;
@@ -88,7 +89,8 @@ static void put_yuyv(const struct scene *s, const uint8_t *luma, FILE *file)
         }
 }
 
-/* Chroma of two planes, halved across; or interleaved and halved both ways. */
+/* Writes luma, then chroma: NV12 interleaved and halved both ways, else two
+ * planes that are halved across. */
 static void put_planes(const struct scene *s, const uint8_t *luma, int nv12,
                        FILE *file)
 {

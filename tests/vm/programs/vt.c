@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * vt [text|graphics] - prints or sets the mode of the console that shows.
+ * vt [text|graphics] - prints or sets the mode of the visible console.
  */
 #include <linux/kd.h>
 
