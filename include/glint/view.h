@@ -35,6 +35,10 @@ struct glint_view {
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,
                                  double film_height_mm);
 
+/* Returns the tangent that a pixel on the axis takes behind a lens of FOCAL_MM.
+ */
+double glint_view_pixel_tangent(const struct glint_view *view, double focal_mm);
+
 /* Gives the direction of a light whose image lies at pixel (X, Y) of VIEW
  * behind a lens of FOCAL_MM, and the reverse. Pixels count from the top left
  * corner, y down. */

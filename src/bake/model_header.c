@@ -5,17 +5,10 @@
 #include <stdio.h>
 
 #include "bake/fit/regress.h"
+#include "bake/options.h"
 #include "bake/trace/cells.h"
 
 enum { FLUX_NODES = 9 };
-
-double glint_bake_field_mm(const struct glint_prescription *lens,
-                           const struct glint_bake_options *o)
-{
-    return o->field_mm > 0
-               ? o->field_mm
-               : 0.55 * hypot(lens->film_width_mm, lens->film_height_mm);
-}
 
 /* FLUX at the nodes W of the band as a polynomial in w. */
 static void fit_flux(const double *w, const double *flux, double scale,

@@ -9,10 +9,6 @@
 #include "glint/model.h"
 #include "glint/setup.h"
 
-/* The field that is asked for, or a tenth more than the film's corners. */
-double glint_bake_field_mm(const struct glint_prescription *lens,
-                           const struct glint_bake_options *options);
-
 /* Fills HEADER but for ghosts and systems. GLINT_E_MEMORY. */
 enum glint_status
 glint_model_header_of(const struct glint_prescription *lens,

@@ -6,12 +6,6 @@
 
 #include "engine/frame/block.h"
 
-/* Returns the tangent that a pixel on the axis spans. */
-static double tangent_of_pixel(const struct glint_view *view, double focal_mm)
-{
-    return view->sensor_width_mm / view->width / fabs(focal_mm);
-}
-
 /* Some more tracks than are shown, so that those that come up are known. */
 static int tracks_for(int max)
 {
@@ -186,7 +180,7 @@ int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
 
         glint_view_to_angles(view, focal_mm, track->x_q8 / 256.0,
                              track->y_q8 / 256.0, &lamps[i]);
-        set_extent(&lamps[i], track, tangent_of_pixel(view, focal_mm));
+        set_extent(&lamps[i], track, glint_view_pixel_tangent(view, focal_mm));
         lamps[i].power = power_of(f, track);
         for (int c = 0; c < 3; c++)
             lamps[i].rgb[c] = track->rgb_q15[c] / 32768.0;

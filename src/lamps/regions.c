@@ -8,19 +8,13 @@
 
 /* --------------------------------------------------------------------- sums */
 
-/* 0 + 1 + 4 + ... + (n - 1)^2 */
-static int64_t squares_below(int64_t n)
-{
-    return (n - 1) * n * (2 * n - 1) / 6;
-}
-
 void glint_region_add_pixels(struct glint_region *sum,
                              const struct glint_region_light *light, int x0,
                              int x1, int y)
 {
     const int64_t n = x1 - x0, w_q14 = light->w_q14;
-    const int64_t r2 =
-        squares_below(x1) - squares_below(x0) + n * ((int64_t)y * y);
+    const int64_t r2 = region_squares_below(x1) - region_squares_below(x0) +
+                       n * ((int64_t)y * y);
 
     sum->w_q14 += w_q14 * n;
     sum->wx_q14 += w_q14 * (n * (x0 + x1 - 1) / 2);

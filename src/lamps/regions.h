@@ -82,6 +82,12 @@ region_light_of(const int32_t rgb_q20[3])
     return light;
 }
 
+/* 0 + 1 + 4 + ... + (n - 1)^2 */
+static inline int64_t region_squares_below(int64_t n)
+{
+    return (n - 1) * n * (2 * n - 1) / 6;
+}
+
 /* Adds pixels X0 .. X1 - 1 of row Y, all of the same light, to the moments and
  * the colour. */
 void glint_region_add_pixels(struct glint_region *sum,

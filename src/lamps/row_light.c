@@ -48,15 +48,10 @@ static WHOLLY_INLINE void add_pixel(struct glint_row_sum *restrict next,
     next->wx2_q14 = sum->wx2_q14 + wx_q14 * x;
 }
 
-/* 0 + 1 + .. + (n - 1), and the same of squares. */
+/* 0 + 1 + .. + (n - 1) */
 static int64_t sum_below(int64_t n)
 {
     return n * (n - 1) / 2;
-}
-
-static int64_t squares_below(int64_t n)
-{
-    return (n - 1) * n * (2 * n - 1) / 6;
 }
 
 /* SUM, which is of the pixels left of X, and N more that are as pixel X is. */
@@ -69,8 +64,8 @@ static void add_alike(struct glint_row_sum *at,
     for (int i = 0; i < ROW_LIGHT_SUMS; i++)
         at->of[i] = sum->of[i] + n * (one->of[i] - sum->of[i]);
     at->wx_q14 = sum->wx_q14 + w_q14 * (sum_below(x + n) - sum_below(x));
-    at->wx2_q14 =
-        sum->wx2_q14 + w_q14 * (squares_below(x + n) - squares_below(x));
+    at->wx2_q14 = sum->wx2_q14 + w_q14 * (region_squares_below(x + n) -
+                                          region_squares_below(x));
 }
 
 /* What chroma adds to each channel, of full-range codes, and a half of what is

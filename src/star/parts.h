@@ -62,18 +62,13 @@ struct glint_star {
 
 struct glint_pass glint_star_pass(const struct glint_star *star);
 
-/* Add what LAMP gives to ROW. */
-void glint_star_lines(const struct glint_star *star,
-                      const struct glint_star_lamp *lamp,
-                      struct glint_star_stretch *row);
-void glint_star_halo(const struct glint_star *star,
-                     const struct glint_star_lamp *lamp,
-                     struct glint_star_stretch *row);
-void glint_star_core(const struct glint_star *star,
-                     const struct glint_star_lamp *lamp,
-                     struct glint_star_stretch *row);
+/* Adds what LAMP gives to ROW. */
+typedef void glint_star_part_fn(const struct glint_star *star,
+                                const struct glint_star_lamp *lamp,
+                                struct glint_star_stretch *row);
+glint_star_part_fn glint_star_lines, glint_star_halo, glint_star_core;
 
-/* Whether they may give any to pixels of BOX. */
+/* Whether lines may give any to pixels of BOX. */
 int glint_star_lines_reach(const struct glint_star *star,
                            const struct glint_star_lamp *lamp,
                            struct glint_box box);

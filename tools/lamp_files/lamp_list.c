@@ -262,12 +262,6 @@ void lamp_list_free(struct lamp_list *list)
     *list = (struct lamp_list){NULL, 0, 0};
 }
 
-/* On the axis. */
-static double tangent_of_pixel(const struct glint_view *view, double focal_mm)
-{
-    return view->sensor_width_mm / view->width / fabs(focal_mm);
-}
-
 /* Round unless its SHAPE is not 1. */
 static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
                       double tangent)
@@ -296,7 +290,7 @@ int lamp_list_frame(const struct lamp_list *list, int frame,
         glint_view_to_angles(view, focal_mm, r.x, r.y, &lamps[n]);
         lamps[n].power = r.power;
         memcpy(lamps[n].rgb, r.rgb, sizeof r.rgb);
-        set_shape(&lamps[n], &r, tangent_of_pixel(view, focal_mm));
+        set_shape(&lamps[n], &r, glint_view_pixel_tangent(view, focal_mm));
         if (level)
             level[n] = r.level;
         n++;

@@ -83,11 +83,6 @@ static bool begin(struct glint_frame *f)
     return f->traced;
 }
 
-static double now(const struct glint_frame *f)
-{
-    return f->clock ? f->clock() : 0;
-}
-
 /* Every ghost, lamp and wavelength that reaches the picture. */
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_lamp *lamps, int n_lamps)
@@ -167,11 +162,6 @@ static enum glint_status set_scale(struct glint_frame *frame,
 }
 
 /* ------------------------------------------------------------------- memory */
-
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
 
 /* A new block of exactly what was needed so far; the vertices move over. */
 static enum glint_status regrow(struct glint_frame *f,

@@ -337,7 +337,7 @@ int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
     return inside ? end_range(range, n, before) : n;
 }
 
-static void join(struct glint_pupil *a, const struct glint_pupil *b)
+void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
 {
     a->x0_mm = fmin(a->x0_mm, b->x0_mm);
     a->x1_mm = fmax(a->x1_mm, b->x1_mm);
@@ -387,7 +387,7 @@ static void look(const struct glint_visible *h, const double *sine,
                    : find_box(h, path, *s, &box);
         if (have && k % AFRESH == 0 && find_box(h, path, *s, &near)) {
             if (now)
-                join(&near, &box);
+                glint_visible_join(&near, &box);
             box = near;
             now = true;
         }
@@ -412,7 +412,7 @@ static void add_angle(struct glint_visible_profile *p, double sine,
     p->sine[p->n] = sine;
     p->box[p->n] = p->sample[first].box;
     for (int i = first + 1; i < p->n_samples; i++)
-        join(&p->box[p->n], &p->sample[i].box);
+        glint_visible_join(&p->box[p->n], &p->sample[i].box);
     p->n++;
 }
 

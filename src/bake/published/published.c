@@ -119,13 +119,6 @@ static struct glint_pupil box_at(const struct glint_visible_profile *p,
     return box;
 }
 
-static void join(struct glint_pupil *a, const struct glint_pupil *b)
-{
-    a->x0_mm = fmin(a->x0_mm, b->x0_mm);
-    a->x1_mm = fmax(a->x1_mm, b->x1_mm);
-    a->y1_mm = fmax(a->y1_mm, b->y1_mm);
-}
-
 /* Both ends, and the equidistant angles between them that are not all but at
  * one of them. */
 static int place_knots(const struct glint_published_options *o,
@@ -172,9 +165,9 @@ static enum glint_status set_knots(struct job *job, const double range[2])
 
         k->joint[i] = k->box[i];
         if (i > 0)
-            join(&k->joint[i], &k->box[i - 1]);
+            glint_visible_join(&k->joint[i], &k->box[i - 1]);
         if (i < k->n - 1)
-            join(&k->joint[i], &k->box[i + 1]);
+            glint_visible_join(&k->joint[i], &k->box[i + 1]);
         job->radius_mm =
             fmax(job->radius_mm,
                  hypot(fmax(fabs(b->x0_mm), fabs(b->x1_mm)), b->y1_mm));

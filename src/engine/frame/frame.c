@@ -115,22 +115,7 @@ static void set_waves(struct glint_frame *f)
                 glint_wave_of(s->wavelength_nm[i], s->rgb[i], s->unit_flux[i]);
 }
 
-static double now(const struct glint_frame *f)
-{
-    return f->clock ? f->clock() : 0;
-}
-
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-static double pixels_per_tangent(const struct glint_frame *f)
+double glint_frame_pixels_per_tangent(const struct glint_frame *f)
 {
     return fabs(f->setup->optics.focal_mm * f->view.width /
                 f->view.sensor_width_mm);
@@ -139,7 +124,7 @@ static double pixels_per_tangent(const struct glint_frame *f)
 /* The angle in which lights are one. */
 static int32_t near_q30(const struct glint_frame *f)
 {
-    const double pixels = pixels_per_tangent(f);
+    const double pixels = glint_frame_pixels_per_tangent(f);
 
     return (int32_t)lrint(fmin(1, f->apart_px / pixels) * 0x1p30);
 }
@@ -188,8 +173,9 @@ static enum glint_status set_lights(struct glint_frame *f,
 {
     const int room = room_for(f, n);
     int within = 0, total;
-    const struct glint_area_rule rule = glint_area_rule_of(
-        lamps, n, pixels_per_tangent(f), f->dials.area_points, room, &total);
+    const struct glint_area_rule rule =
+        glint_area_rule_of(lamps, n, glint_frame_pixels_per_tangent(f),
+                           f->dials.area_points, room, &total);
 
     if (glint_frame_hold_lights(f, total) != GLINT_OK)
         return GLINT_E_MEMORY;

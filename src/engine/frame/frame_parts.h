@@ -9,6 +9,25 @@
 
 #include "engine/frame/frame.h"
 
+static inline int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static inline int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* Seconds of the frame's clock; 0: it has none. */
+static inline double now(const struct glint_frame *f)
+{
+    return f->clock ? f->clock() : 0;
+}
+
+/* Returns the pixels that a tangent of 1 takes on the axis. */
+double glint_frame_pixels_per_tangent(const struct glint_frame *frame);
+
 /* Returns whether ghosts choose among the setup's sets of wavelengths. */
 bool glint_frame_has_sets(const struct glint_frame *frame);
 

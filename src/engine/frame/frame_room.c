@@ -10,16 +10,6 @@
 /* Most bundles that one frame may take, by edges and by other rasters. */
 enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
 
-static int larger(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-static int smaller(int a, int b)
-{
-    return a < b ? a : b;
-}
-
 bool glint_frame_has_sets(const struct glint_frame *f)
 {
     return f->lens && f->setup->n_sets && f->dials.dispersion_q8 > 0;

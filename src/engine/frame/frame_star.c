@@ -37,15 +37,13 @@ static enum glint_status make_tables(struct glint_frame *f)
 {
     struct glint_frame_star *s = &f->star;
     const struct glint_star_optics optics = optics_of(f);
-    enum glint_status status;
 
     if (s->tables && are_same(&s->optics, &optics))
         return GLINT_OK;
     glint_star_tables_free(s->tables);
     s->tables = NULL;
     s->optics = optics;
-    status = glint_star_tables_make(&s->tables, &optics);
-    return status;
+    return glint_star_tables_make(&s->tables, &optics);
 }
 
 enum glint_status glint_frame_star_hold(struct glint_frame *f, int n)
@@ -80,8 +78,7 @@ enum glint_status glint_frame_star_hold(struct glint_frame *f, int n)
  * circle, and glass and sensor spread it about twice as far. */
 static double disc_of(const struct glint_frame *f, double seen_px, double power)
 {
-    const struct glint_star_optics *o = &f->star.optics;
-    const double airy_px = 0.55 * o->f_number / o->pixel_um;
+    const double airy_px = glint_star_airy_px(&f->star.optics);
     const double point_px =
         2 * (least_px + cbrt(power * airy_px / pow(GLINT_PI, 3)));
 
@@ -94,8 +91,7 @@ static bool set_light(const struct glint_frame *f,
                       double seen_px, struct glint_star_light *light)
 {
     const double focal_mm = f->setup->optics.focal_mm;
-    const double pixels = fabs(focal_mm) * f->view.width /
-                          f->view.sensor_width_mm; /* per tangent */
+    const double pixels = glint_frame_pixels_per_tangent(f);
     const double radius = fmax(2 * fmax(lamp->axis[0], lamp->axis[1]) * pixels,
                                disc_of(f, seen_px, lamp->power));
     const double most = fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));

@@ -15,6 +15,11 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm,
                                tall < film_width_mm ? tall : film_width_mm};
 }
 
+double glint_view_pixel_tangent(const struct glint_view *view, double focal_mm)
+{
+    return view->sensor_width_mm / view->width / fabs(focal_mm);
+}
+
 void glint_view_to_angles(const struct glint_view *view, double focal_mm,
                           double x, double y, struct glint_lamp *lamp)
 {

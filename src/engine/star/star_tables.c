@@ -175,7 +175,7 @@ static void set_sizes(struct glint_star_tables *t, const struct glint_psf *psf,
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o)
 {
-    const double airy_px = 0.55 * o->f_number / o->pixel_um;
+    const double airy_px = glint_star_airy_px(o);
     struct glint_psf psf;
     struct window window;
     struct glint_star_tables *t = NULL;

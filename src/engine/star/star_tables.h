@@ -13,6 +13,12 @@ struct glint_star_optics {
     double pixel_um; /* side of a pixel on the sensor */
 };
 
+/* Returns the pixels that a wavelength of 550 nm times the f-number takes. */
+static inline double glint_star_airy_px(const struct glint_star_optics *o)
+{
+    return 0.55 * o->f_number / o->pixel_um;
+}
+
 /* Takes memory that glint_star_tables_free() gives back. GLINT_E_MEMORY. */
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o);

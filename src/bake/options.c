@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+#include "bake/options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "glint/model.h"
+
+enum {
+    REVISION = 12 /* version of the models, raised when a lens would bake
+                     differently */
+};
+
+void glint_bake_defaults(struct glint_bake_options *options)
+{
+    *options = (struct glint_bake_options){.basis = GLINT_BASIS_AUTO,
+                                           .band_nm = {400, 700},
+                                           .max_deg = 60,
+                                           .tolerance = 1};
+}
+
+enum glint_status glint_bake_check(const struct glint_bake_options *options,
+                                   struct glint_error *error)
+{
+    const struct glint_bake_options *const o = options;
+    const char *wrong =
+        o->basis != GLINT_BASIS_AUTO && o->basis != GLINT_BASIS_SPARSE
+            ? "the basis is unknown"
+        : !(o->band_nm[0] >= 300 && o->band_nm[1] <= 1100 &&
+            o->band_nm[0] + 1 <= o->band_nm[1])
+            ? "the band must rise by 1 nm or more within 300 to 1100 nm"
+        : o->basis == GLINT_BASIS_SPARSE &&
+                (o->band_nm[0] != 400 || o->band_nm[1] != 700 ||
+                 o->tolerance != 1)
+            ? "the sparse basis is for 650, 532 and 450 nm and its own "
+              "tolerance, as published"
+        : !(o->max_deg > 0 && o->max_deg <= 89)
+            ? "the largest angle must be above 0 and at most 89 degrees"
+        : !(o->field_mm >= 0 && o->field_mm < 1e6)
+            ? "the field must be a length"
+        : !(o->tolerance >= 0.1 && o->tolerance <= 100)
+            ? "the tolerance must be 0.1 to 100"
+            : NULL;
+
+    if (wrong)
+        snprintf(error->text, sizeof error->text, "%s", wrong);
+    return wrong ? GLINT_E_ARGUMENT : GLINT_OK;
+}
+
+double glint_bake_field_mm(const struct glint_prescription *lens,
+                           const struct glint_bake_options *o)
+{
+    return o->field_mm > 0
+               ? o->field_mm
+               : 0.55 * hypot(lens->film_width_mm, lens->film_height_mm);
+}
+
+/* FNV-1a over the bytes of a number. */
+static void mix(uint64_t *key, double value)
+{
+    unsigned char byte[sizeof value];
+
+    memcpy(byte, &value, sizeof value);
+    for (size_t i = 0; i < sizeof byte; i++)
+        *key = (*key ^ byte[i]) * UINT64_C(0x100000001b3);
+}
+
+uint64_t glint_bake_key(const struct glint_prescription *lens,
+                        const struct glint_bake_options *options)
+{
+    uint64_t key = UINT64_C(0xcbf29ce484222325);
+
+    mix(&key, GLINT_MODEL_VERSION);
+    mix(&key, REVISION);
+    mix(&key, options->basis);
+    mix(&key, options->band_nm[0]);
+    mix(&key, options->band_nm[1]);
+    mix(&key, options->max_deg);
+    mix(&key, glint_bake_field_mm(lens, options));
+    mix(&key, options->tolerance);
+    mix(&key, lens->f_number);
+    mix(&key, lens->film_width_mm);
+    mix(&key, lens->film_height_mm);
+    mix(&key, lens->stop_after);
+    mix(&key, lens->stop_thickness_mm);
+    for (int k = 0; k < lens->n_surfaces; k++) {
+        const struct glint_surface *s = &lens->surface[k];
+
+        mix(&key, s->radius_mm);
+        mix(&key, s->thickness_mm);
+        mix(&key, s->semi_mm);
+        mix(&key, s->nd);
+        mix(&key, s->vd);
+        mix(&key, s->coating_nm);
+        mix(&key, s->coating_n);
+    }
+    for (const char *c = lens->name; *c; c++)
+        mix(&key, (unsigned char)*c);
+    return key;
+}
