@@ -5,10 +5,9 @@
  *     glint_composite_init(&composite, &image, sets, 0, mem, bytes);  once
  *     glint_composite_add(composite, &image, &layer);       each picture
  *
- * The same tables, kernels and rounding that put a flare on a picture, for
- * programs that have light of their own: glow, bloom, a lamp. Integers only;
- * pixels without light keep their codes.
- */
+ * For programs that have light of their own: glow, bloom, a lamp. It is added
+ * by the tables, kernels and rounding that add flares. Integers only; pixels
+ * without light keep their codes. */
 #ifndef GLINT_COMPOSITE_H
 #define GLINT_COMPOSITE_H
 
@@ -24,21 +23,21 @@ extern "C" {
 
 struct glint_composite; /* opaque, in the caller's memory */
 
-/* Light to add, of a picture's size, by channel; linear BT.709, 65535 = display
- * white, where it saturates. */
+/* Light to add, as large as the picture, by channel: linear BT.709, 65535 =
+ * display white, where it saturates. */
 struct glint_layer {
     const uint16_t *rgb_q16[3];
     ptrdiff_t stride; /* values from row to row */
 };
 
-/* Bytes that init takes. */
+/* Returns the bytes that init takes. */
 size_t glint_composite_bytes(void);
 
 /* Places tables in MEM[BYTES], aligned to 64, for pictures that are coded as
- * IMAGE is; its pixels are not looked at. SETS: glint_sets_here() or fewer; 0:
- * plain C (kernels.h). DITHER: an ordered pattern of less than a code before
- * rounding. GLINT_E_ARGUMENT: IMAGE is LINEAR_Q20, which needs no tables, or
- * MEM is not aligned. GLINT_E_MEMORY: BYTES is too small. */
+ * IMAGE is, whose pixels are not looked at. SETS: glint_sets_here() or fewer;
+ * 0: plain C (kernels.h). DITHER: 1 adds an ordered pattern of less than a code
+ * before rounding. GLINT_E_ARGUMENT: IMAGE is LINEAR_Q20, which needs no
+ * tables, or MEM is not aligned. GLINT_E_MEMORY: BYTES is too small. */
 enum glint_status glint_composite_init(struct glint_composite **composite,
                                        const struct glint_image *image,
                                        unsigned sets, int dither, void *mem,

@@ -7,17 +7,17 @@
  *     glint_flare_begin(flare);                              each frame
  *     for each ghost, light and wavelength:
  *         vertices = glint_flare_add(flare, &bundle);        fill them in
- *     or for those of a baked lens at once, instead of both:
+ *     or, for a baked lens, in place of begin and the loop:
  *         glint_flare_plan(flare, &frame, lights, n_lights);
  *     glint_flare_bin(flare, &stats);
  *     glint_flare_draw(flare, &image);
  *
  * All memory is the caller's, taken at init; drawing never allocates and cannot
- * fail. What did not fit the capacities is left out and counted, together with
- * the capacities that would have served. No result depends on the number of
- * workers, the order of jobs, the tile sizes or the order of bundles.
- * Method: [Bodonyi23], with irradiance per cell and anti-aliased clipping.
- */
+ * fail. Bundles for which a capacity is too small are left out and counted, and
+ * the statistics say which capacities would have served. No result depends on
+ * the number of workers, the order of jobs, the tile sizes or the order of
+ * bundles. Method: [Bodonyi23], with irradiance per cell and anti-aliased
+ * clipping. */
 #ifndef GLINT_FLARE_H
 #define GLINT_FLARE_H
 
@@ -37,71 +37,76 @@
 extern "C" {
 #endif
 
-/* Chooses among sets of waves. */
+/* Chooses a set of waves for each ghost. */
 struct glint_wave_planner;
 extern const struct glint_wave_planner glint_wave_planner;
 
-/* Sets of waves that each stand for the same light, so that a ghost takes the
- * smallest one whose steps cannot be seen: where the outlines of neighbouring
+/* Sets of waves that each stand for the same light. Each ghost takes the
+ * smallest set whose steps cannot be seen: where the outlines of neighbouring
  * waves lie near each other, or are faint. */
 struct glint_wave_sets {
-    /* glint_wave_planner, which only a program that names it links. */
+    /* glint_wave_planner; a program that does not name it does not link it. */
     const struct glint_wave_planner *planner;
     int n_sets;                    /* 1 .. GLINT_MAX_WAVE_SETS */
-    int size[GLINT_MAX_WAVE_SETS]; /* waves of each, 2 or more, rising: one set
-                                      after the other in glint_flare_frame.wave
-                                    */
-    int32_t apart_q8;       /* pixels that neighbouring outlines may be apart */
-    struct glint_real step; /* display white: what no step of light may pass
-                               for outlines farther apart; 0: any is seen */
+    int size[GLINT_MAX_WAVE_SETS]; /* number of waves of each set, 2 or more,
+                                      rising; the sets follow each other in
+                                      glint_flare_frame.wave */
+    int32_t apart_q8;       /* pixels: largest distance between outlines of
+                               neighbouring waves */
+    struct glint_real step; /* display white: a set serves, too, if its steps of
+                               light are below this, however far outlines are
+                               apart; 0: every step counts as seen */
 };
 
-/* Everything that a frame is planned from, but its lights. */
+/* Everything that a frame is planned from, except its lights. */
 struct glint_flare_frame {
     const struct glint_lens *lens;
     const struct glint_wave *wave;
-    int n_waves;                        /* 1 or more; of all sets together */
+    int n_waves; /* number of waves of all sets together, 1 or more */
     const struct glint_wave_sets *sets; /* NULL: all waves for every ghost */
     struct glint_real pixels_per_mm;
-    int fineness;   /* 4 .. GLINT_MAX_CELLS: of grids, so that with 64 what lies
-                       between rays is off by 0.01 px, outlines by 0.1 */
-    int uniform;    /* all grids have so many cells a side */
+    int fineness; /* fineness of the grids, 4 .. GLINT_MAX_CELLS; with 64, what
+                     lies between rays is off by 0.01 px, outlines by 0.1 */
+    int uniform;  /* 1: all grids have FINENESS cells a side */
     int only_ghost; /* number of the one ghost of the lens to draw, with its
                        parts; -1: all */
-    /* Light that no pixel of a picture in codes shows, display white. Ghosts
-     * that stay below may be left out, and the fainter one is, the coarser are
-     * its grid and its steps of irradiance. 0: the picture is in linear light.
-     */
+    /* Largest light that no pixel of a picture in codes shows, display white.
+     * Ghosts below it may be left out, and a fainter ghost gets a coarser grid
+     * and coarser steps of irradiance. 0: the picture is in linear light. */
     struct glint_real faintest;
-    /* Edges of a picture in codes across which light changes by less than so
-     * many codes, 0 .. 2^15, lie on whole pixels, which takes a fraction of the
-     * time. 0: no edge does. */
+    /* Codes, 0 .. 2^15 in _q8: in a picture in codes, edges across which light
+     * changes by fewer codes than this are moved to whole pixels, which takes a
+     * fraction of the time. 0: no edge is moved. */
     int snap_codes_q8;
-    /* Only for drawing by edges: there are half as many pixels each way, each
-     * of which stands for four of the picture. In Y'CbCr whose chroma is shared
-     * by pairs the four are lit at once, by what light does to their mean.
-     * NULL, or glint_half, which only a program that names it links. */
+    /* Only for drawing by edges: if set, the flare has half as many pixels each
+     * way, and each of them stands for four of the picture. In Y'CbCr whose
+     * chroma is shared by pairs of pixels, the four are lit at once, by the
+     * change of their mean. NULL, or glint_half, which is linked only by a
+     * program that names it. */
     const struct glint_half *half;
 };
 
-/* Merges lights in place, and returns how many are left, the brightest first;
- * what lies behind them means nothing any more. Those nearer than NEAR, as the
- * chord of the angle between them, merge as they cannot be told apart; then,
- * while there are more than MOST (1 or more), those whose merging changes the
- * picture least, faint ones over long distances before bright ones. A merged
- * light has the power of both and the direction between, by their powers. What
- * has no light is left out. *N_APART is how many were left before MOST asked
- * for fewer. The result does not depend on the order of lights. */
+/* Merges lights in place and returns how many are left, sorted from the
+ * brightest to the faintest; entries after these are undefined. Lights no
+ * farther apart than NEAR_Q30, the chord of the angle between them, merge
+ * first, as they cannot be told apart. Then, while more than MOST (1 or more)
+ * are left, those merge whose merging changes the picture least: faint lights
+ * over long distances before bright ones. A merged light has the power of both
+ * and a direction between theirs, weighted by their powers. Lights without
+ * power or colour are left out. *N_APART receives the number of lights before
+ * any merged because of MOST. The result does not depend on the order of
+ * lights. */
 int glint_lights_merge(struct glint_light *lights, int n_lights,
                        int32_t near_q30, int most, int *n_apart);
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Edges draw the exact area that each cell covers, one irradiance a cell; folds
- * and slivers keep their light; a primitive is an edge across which light
- * changes. Cells interpolate at pixel centres, [Bodonyi23]; a primitive is a
- * cell; a stop with a mask takes this way, and is refused by edges. A program
- * links only the one that it names. */
+/* The two ways to draw. By edges: the exact area that each cell covers is drawn
+ * with one irradiance per cell; folds and slivers keep their light; a primitive
+ * is an edge across which light changes; stops with a mask are refused. By
+ * cells: irradiance is interpolated at pixel centres [Bodonyi23]; a primitive
+ * is a cell; a stop may have a mask. Only a program that names
+ * glint_raster_cells links it. */
 struct glint_raster;
 extern const struct glint_raster glint_raster_edges, glint_raster_cells;
 
@@ -112,162 +117,177 @@ struct glint_flare_config {
     unsigned sets; /* instruction sets, glint_sets_here() or fewer; 0: plain C
                       (kernels.h). Changes no output */
     int width, height; /* size of the picture, 1 .. GLINT_MAX_SIDE */
-    int tile_log2;     /* small tiles of 2^n pixels square, 3 .. 6 */
-    const struct glint_raster *raster; /* NULL: by edges */
+    int tile_log2;     /* log2 of the side of a small tile in pixels, 3 .. 6 */
+    const struct glint_raster *raster; /* NULL: glint_raster_edges */
     int dither;             /* 1: 8-bit output is dithered, deterministically */
     struct glint_stop stop; /* copied; its mask is kept */
 
-    /* For drawing by edges. The irradiance of a cell is rounded to so many
-     * steps an octave, 1 .. 4096, fewer for faint ghosts planned for codes, and
-     * edges between equal cells are not drawn; 0: it is not rounded. */
+    /* For drawing by edges: irradiance of a cell is rounded to this many steps
+     * an octave, 1 .. 4096, and to fewer for faint ghosts planned for codes.
+     * Edges between cells of equal irradiance are not drawn. 0: it is not
+     * rounded. */
     int irradiance_steps;
 
-    /* The rest is for drawing by cells. */
-    int coarse_log2; /* large tiles, tile_log2 + 1 .. 8; 0: one level only */
+    /* The members from here to antialias are for drawing by cells. */
+    int coarse_log2; /* log2 of the side of a large tile in pixels, tile_log2 +
+                        1 .. 8; 0: there are no large tiles */
     enum glint_weights weights;
-    int merge_steps; /* blocks of 2^n cells may become one, 0 .. 4 */
-    /* largest relative disagreement of edges that merge */
+    int merge_steps; /* log2 of the largest side, in cells, of a block of cells
+                        that may become one primitive, 0 .. 4 */
+    /* largest difference between two edges that merge, as a share of the longer
+     * one, 0 .. 1 */
     int32_t merge_gamma_q16;
-    int antialias; /* 0: a pixel's centre decides, as published */
+    int antialias; /* 0: a pixel is lit or not by its centre, as published */
 
-    /* Capacities. glint_flare_bin() reports what a frame needed. */
+    /* Capacities. The statistics of glint_flare_bin() say what a frame needed.
+     */
     int max_bundles;
     int max_vertices;
-    int max_primitives; /* primitives of a frame; by edges each worker begins
-                           with an equal share, and half as much again keeps
-                           them from waiting */
-    int max_refs;       /* entries of the index lists of the first level */
-    int max_tile_refs;  /* entries for one large tile; 0 with one level */
+    int max_primitives; /* primitives of a frame. By edges each worker gets an
+                           equal share; with half as many more than needed, few
+                           bundles have to wait for room in another worker's
+                           share. */
+    int max_refs; /* entries in the lists of all tiles; with two levels, of all
+                     large tiles */
+    int max_tile_refs; /* entries in the lists of the small tiles of one large
+                          tile; 0 with one level */
 };
 
 struct glint_flare_stats {
-    /* Number of each that was drawn. */
+    /* Number of each that was drawn; VERTICES counts all that were taken in. */
     int bundles, vertices, primitives, refs, tile_refs;
-    /* Capacities that would have drawn everything, exactly where there is room
-     * for need_bundles, and by cells for need_vertices. */
+    /* Capacities that would have drawn everything. They are exact if
+     * max_bundles was large enough and, by cells, max_vertices, too. */
     int need_bundles, need_vertices, need_primitives, need_refs, need_tile_refs;
     int dropped_bundles; /* left out for want of capacity */
     int dropped_cells; /* cells left out of bundles that were drawn: they have a
                           lost ray, a vertex out of range, or no area */
-    int merged_cells;  /* cells that went into a larger primitive */
-    int held_cells; /* cells, or halves of one, of bundles that were drawn that
-                       have more light than one may give a pixel (2048 times
-                       white, less if all together would pass 2^24), and were
-                       cut down to that */
+    int merged_cells;  /* cells that became part of a larger primitive */
+    int held_cells; /* cells, or halves of cells, of drawn bundles whose light
+                       was clamped to what one cell may give a pixel: 2048 times
+                       white, or less if the sum over all cells could pass 2^24
+                     */
 };
 
 struct glint_flare; /* opaque, in the caller's memory */
 
-/* Sets CFG to what a newcomer should start from, for pictures of WIDTH x
- * HEIGHT; capacities, workers and instruction sets are still to be set. */
+/* Sets CFG to good starting values for pictures of WIDTH x HEIGHT; the caller
+ * still sets capacities, workers and instruction sets. */
 void glint_flare_defaults(struct glint_flare_config *cfg, int width,
                           int height);
 
-/* Sets the capacities, by edges, for frames of N_LIGHTS through LENS in N_WAVES
- * wavelengths: as many bundles as there can be, and edges enough for most
- * frames. Statistics tell what would have drawn everything. */
+/* Sets the capacities for drawing by edges N_LIGHTS lights through LENS in
+ * N_WAVES wavelengths: as many bundles as there can be, 2^20 at most, and edges
+ * enough for most frames. The statistics of a frame say what would have drawn
+ * everything. */
 void glint_flare_capacities(struct glint_flare_config *cfg,
                             const struct glint_lens *lens, int n_lights,
                             int n_waves);
 
-/* Sets FRAME to what a newcomer should start from, for a picture in codes
- * through LENS; waves and pixels_per_mm are still to be set. */
+/* Sets FRAME to good starting values for a picture in codes through LENS; the
+ * caller still sets waves and pixels_per_mm. */
 void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                 const struct glint_lens *lens);
 
-/* Pixels per mm of the largest picture of WIDTH x HEIGHT that fits the film of
- * LENS, as glint_view_fit() has it. */
+/* Returns pixels per mm on the sensor for a picture of WIDTH x HEIGHT pixels
+ * that is as large as fits the film of LENS, as by glint_view_fit(). */
 struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
                                             int width, int height);
 
 #define GLINT_FLARE_WAVES 3
 
-/* Red, green and blue: 650, 532 and 450 nm, each measured by its own direct
- * image through LENS, whose stop is a circle, so that white light stays white.
- * Weights are off by 2^-24 at most. */
+/* Sets WAVE to red, green and blue: 650, 532 and 450 nm, each measured by its
+ * own direct image through LENS with a circular stop, so that white light stays
+ * white. Weights are off by 2^-24 at most. */
 void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
                        const struct glint_lens *lens);
 
-/* The light, white and of power 1, that LENS shows at (X, Y), pixels from the
- * top left corner, y down, of the picture of WIDTH x HEIGHT above; places
- * beyond 2^22 pixels count as there. In integers what glint_view_to_angles() is
- * in doubles: no sine or cosine is off by more than 2^-28. */
+/* Returns a white light of power 1 whose image through LENS lies at (X, Y):
+ * pixels from the top left corner, y down, of a picture of WIDTH x HEIGHT that
+ * is as large as fits the film of LENS. Distances from the centre beyond 2^22
+ * pixels count as 2^22. Does in integers what glint_view_to_angles() does in
+ * doubles: no sine or cosine is off by more than 2^-28. */
 struct glint_light glint_light_from_pixel(const struct glint_lens *lens,
                                           int width, int height, int32_t x_q8,
                                           int32_t y_q8);
 
-/* Bytes that init takes for CFG, exactly; 0 if CFG is out of range. */
+/* Returns the exact bytes that init takes for CFG; 0 if CFG is out of range. */
 size_t glint_flare_bytes(const struct glint_flare_config *cfg);
 
 /* Places a flare in MEM[BYTES], aligned to 64; *FLARE points into it. There is
- * no finish: drop the memory. GLINT_E_MEMORY: BYTES is too small. */
+ * nothing to release but the memory. GLINT_E_ARGUMENT: CFG or the alignment is
+ * wrong. GLINT_E_MEMORY: BYTES is too small. */
 enum glint_status glint_flare_init(struct glint_flare **flare,
                                    const struct glint_flare_config *cfg,
                                    void *mem, size_t bytes);
 
-/* Has the frames to come drawn through STOP, which is copied, its mask kept.
- * Whatever its opening, capacities serve as before. GLINT_E_ARGUMENT: it is out
- * of range, or has a mask that the raster does not take. */
+/* Sets the stop that frames to come are drawn through: STOP is copied, its mask
+ * kept. Capacities stay as they are, whatever the opening. GLINT_E_ARGUMENT:
+ * STOP is out of range, or has a mask that the raster does not take. */
 enum glint_status glint_flare_set_stop(struct glint_flare *flare,
                                        const struct glint_stop *stop);
 
 /* Forgets all bundles. */
 void glint_flare_begin(struct glint_flare *flare);
 
-/* Takes BUNDLE in and returns its vertices, to be filled before bin: row by
- * row, [n_cells + 1][n_cells + 1]. NULL: no room; the bundle is counted and
- * left out. */
+/* Takes BUNDLE in and returns its vertices, which the caller fills before
+ * glint_flare_bin(): row by row, [n_cells + 1][n_cells + 1]. Returns NULL if
+ * there is no room; the bundle is then counted and left out. */
 struct glint_vertex *glint_flare_add(struct glint_flare *flare,
                                      const struct glint_bundle *bundle);
 
-/* Forgets all bundles and takes those in that the ghosts of a lens make of
- * LIGHTS, as far as they can be seen; no vertices are to be filled in. All that
- * FRAME points to, and LIGHTS, are kept until bin has returned. Needs room for
- * n_lights * ghosts * n_waves bundles, or the last ones are left out; with sets
- * for as many of the first set, and for those of the sets that are chosen, or
- * the last ghosts take the first set. */
+/* Forgets all bundles, then takes in those that LIGHTS make of the ghosts of
+ * the lens of FRAME, as far as they can be seen; the caller fills no vertices.
+ * LIGHTS, FRAME and all that it points to must stay until glint_flare_bin() has
+ * returned. Needs room for n_lights * ghosts * n_waves bundles, or the last
+ * ones are left out. With sets of waves it needs that room for the waves of the
+ * first set, and room for the sets that ghosts choose, or the last ghosts take
+ * the first set. */
 void glint_flare_plan(struct glint_flare *flare,
                       const struct glint_flare_frame *frame,
                       const struct glint_light *lights, int n_lights);
 
-/* Returns the ghost of the lens that planned bundle I belongs to; I is from 0
- * to the bundles of the statistics. */
+/* Returns the number, in the lens, of the ghost that planned bundle I belongs
+ * to, 0 <= I < bundles of the statistics. */
 int glint_flare_ghost(const struct glint_flare *flare, int i);
 
-/* A bundle that was planned and is not yet binned: from these a program can
+/* A bundle that is planned and not yet binned. From all of them a program can
  * tell what a frame will take before it is drawn. */
 struct glint_planned {
-    int n_cells;                  /* per side */
-    struct glint_real flux;       /* display white times pixels */
-    struct glint_real irradiance; /* the same over the pixels it falls on */
+    int n_cells;            /* cells a side of the grid */
+    struct glint_real flux; /* display white times pixels */
+    /* Flux over the pixels that it falls on, display white. */
+    struct glint_real irradiance;
 };
 
-/* 0: there are not so many. */
+/* Sets PLANNED to planned bundle I, counted from 0; returns 0 if there are not
+ * so many. */
 int glint_flare_planned(const struct glint_flare *flare, int i,
                         struct glint_planned *planned);
 
-/* Gives the largest mean irradiance of the bundles planned, display white, and
- * the flux of all, display white times pixels. */
+/* Sets *BRIGHTEST to the largest mean irradiance of a planned bundle, in
+ * display white, and *FLUX to the flux of all of them, in display white times
+ * pixels. */
 void glint_flare_light(const struct glint_flare *flare,
                        struct glint_real *brightest, struct glint_real *flux);
 
-/* Turns the grids into primitives and sorts these into tiles. Bundles that do
- * not fit are left out whole, the last ones added first. */
+/* Turns the grids of all bundles into primitives and sorts these into tiles.
+ * Bundles that do not fit are left out whole, the last ones added first. */
 void glint_flare_bin(struct glint_flare *flare,
                      struct glint_flare_stats *stats);
 
 /* Adds the flare to IMAGE, which has the size of the configuration. Tiles that
- * nothing touches are neither read nor written. May be repeated. NULL: works
- * the light of every pixel out and drops it, to measure what that takes of
- * drawing to 8 bits. */
+ * no light touches are neither read nor written. May be called again. If IMAGE
+ * is NULL, the light of every pixel is worked out and dropped, which measures
+ * its share of the time of drawing to 8 bits. */
 void glint_flare_draw(struct glint_flare *flare,
                       const struct glint_image *image);
 
-/* Small tiles that the last draw touched. */
+/* Returns the number of small tiles in which the last draw drew something. */
 int glint_flare_tiles(const struct glint_flare *flare);
 
-/* Samples of a linear picture that the last draw brought to an end of their
- * range, where they saturate. */
+/* Returns how many samples of a linear picture the last draw clamped to an end
+ * of their range. */
 int glint_flare_held(const struct glint_flare *flare);
 
 /* ------------------------------------------------------------ what and why */
@@ -276,54 +296,61 @@ int glint_flare_held(const struct glint_flare *flare);
 enum glint_outcome {
     GLINT_OUTCOME_DRAWN,
     GLINT_OUTCOME_EMPTY,  /* planned, but no edge of its grid changes a pixel */
-    GLINT_OUTCOME_OTHER,  /* only_ghost asks for another one */
+    GLINT_OUTCOME_OTHER,  /* only_ghost asks for another ghost */
     GLINT_OUTCOME_BEYOND, /* the light comes from farther out than the model
                            * goes
                            */
     GLINT_OUTCOME_CLOSED, /* the model has no polynomials for this angle: no ray
                              gets through */
-    GLINT_OUTCOME_BLOCKED,   /* the stop and the barrels take all rays looked at
-                              */
-    GLINT_OUTCOME_DARK,      /* the light has no power in this wave */
-    GLINT_OUTCOME_OUTSIDE,   /* it lies beside the picture */
-    GLINT_OUTCOME_FAINT,     /* no pixel can show it, of all lights together */
+    GLINT_OUTCOME_BLOCKED, /* the stop and the barrels cut every ray that the
+                              plan looked at */
+    GLINT_OUTCOME_DARK,    /* the light has no power in this wave */
+    GLINT_OUTCOME_OUTSIDE, /* the light lands beside the picture */
+    GLINT_OUTCOME_FAINT, /* no pixel can show the ghost, even with the light of
+                            all lamps together */
     GLINT_OUTCOME_NO_ROOM,   /* a capacity is full */
     GLINT_OUTCOME_OTHER_SET, /* the ghost takes another set of waves */
     GLINT_OUTCOMES
 };
 
-/* The work that one bundle took. All but the outcome is 0 unless DRAWN, EMPTY
- * or NO_ROOM; edges, rows and refs are 0 unless DRAWN. */
+/* The work that one bundle took. Members other than outcome and probed are 0
+ * unless the outcome is DRAWN, EMPTY or NO_ROOM; edges, rows and refs are 0
+ * unless it is DRAWN. */
 struct glint_account {
     enum glint_outcome outcome;
-    int probed;           /* rays that the plan looked at */
-    int cells, vertices;  /* cells a side of the grid, vertices of all of it */
-    int outputs, barrels; /* polynomials of a ray; of these, barrels that cut */
-    int terms; /* terms of all these polynomials, with angle and wavelength put
-                  in */
-    int edges; /* drawn; all edges of all bundles are the primitives */
+    int probed; /* rays that the plan looked at */
+    /* Cells a side of the grid, and vertices of the whole grid. */
+    int cells, vertices;
+    int outputs, barrels; /* polynomials of a ray, and how many of them are of
+                             barrels that cut */
+    int terms; /* terms of all these polynomials once angle and wavelength are
+                  put in */
+    int edges; /* edges drawn; summed over all bundles they are the primitives
+                  of the statistics */
     int64_t rows; /* rows of pixels that the edges cross */
-    int refs;     /* entries in the lists of tiles */
-    /* Display white times pixels, as planned, before the stop, the barrels and
-     * the sides of the picture cut. */
+    int refs;     /* entries in the lists of all tiles */
+    /* Flux as planned, display white times pixels: before the stop, the barrels
+     * and the sides of the picture cut it. */
     struct glint_real flux;
 };
 
-/* The account of ghost GHOST (or part) of the lens, of light LIGHT and wave
- * WAVE of the frame that was planned and binned last, by edges. It asks the
- * plan again, so that what plan was given must still be there; changes nothing
- * that is drawn. Costs as much as planning that bundle. */
+/* Gives the account of ghost GHOST (or part) of the lens, light LIGHT and wave
+ * WAVE of the frame that was planned and binned last, by edges. It plans the
+ * bundle once more, so LIGHTS and FRAME of glint_flare_plan() must still be
+ * there. It changes nothing that is drawn and costs as much as planning the
+ * bundle. */
 void glint_flare_account(struct glint_flare *flare, int ghost, int light,
                          int wave, struct glint_account *account);
 
-/* Restricts drawing to the bundles of GHOST with all its parts, LIGHT and WAVE
- * (with sets: all waves of set WAVE), each -1 for all, of those planned and
- * binned last, by edges. It holds until the next call of this or of bin. */
+/* Restricts drawing to some of the bundles that were planned and binned last,
+ * by edges: those of GHOST with all its parts, of LIGHT and of WAVE (with sets
+ * of waves: all waves of set WAVE), each -1 for all. The restriction holds
+ * until the next call of this function or of glint_flare_bin(). */
 void glint_flare_keep(struct glint_flare *flare, int ghost, int light,
                       int wave);
 
-/* Edges in the list of small tile TILE, row by row; light that runs in from the
- * left is in none. */
+/* Returns the number of edges in the list of small tile TILE; tiles count row
+ * by row. Light that runs in from the left is in no list. */
 int glint_flare_listed(const struct glint_flare *flare, int tile);
 
 #ifdef __cplusplus

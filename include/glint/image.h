@@ -22,7 +22,7 @@ enum glint_pixel_format {
     GLINT_I444,       /* planes Y, Cb, Cr */
     GLINT_LINEAR_Q20, /* one plane, three int32 _q20 a pixel, linear R G B */
     GLINT_NV12,       /* planes Y, Cb Cr; chroma halved both ways */
-    GLINT_NV21,       /* planes Y, Cr Cb; the same */
+    GLINT_NV21,       /* planes Y, Cr Cb; chroma halved both ways */
     GLINT_YUYV,       /* one plane, Y Cb Y Cr for two pixels */
     GLINT_UYVY,       /* one plane, Cb Y Cr Y */
     GLINT_BGR24,      /* one plane, B G R bytes */
@@ -46,23 +46,25 @@ struct glint_image {
     enum glint_tone transfer; /* curve from codes to linear light */
 };
 
-/* Number of planes of FORMAT, 1 .. 3. */
+/* Returns the number of planes of FORMAT, 1 .. 3. */
 int glint_image_planes(enum glint_pixel_format format);
 
-/* Bytes of a row of plane PLANE that hold its samples, and rows of it. */
+/* Return the bytes of a row of plane PLANE without padding, and its number of
+ * rows. */
 size_t glint_image_row_bytes(enum glint_pixel_format format, int plane,
                              int width);
 int glint_image_plane_height(enum glint_pixel_format format, int plane,
                              int height);
 
-/* Bytes of a picture without padding, all planes; 0 if out of range. */
+/* Returns the bytes of all planes of a picture without padding; 0 if WIDTH or
+ * HEIGHT is out of range. */
 size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);
 
-/* Points the planes of IMAGE into MEM, which has glint_image_bytes() bytes, one
- * after the other without padding; format, width and height are set already. */
+/* Points the planes of IMAGE into MEM[glint_image_bytes()], one after the other
+ * without padding; format, width and height of IMAGE must be set. */
 void glint_image_place(struct glint_image *image, void *mem);
 
-/* Linear light, BT.709 primaries, 1 = display white. */
+/* A picture of linear light, BT.709 primaries, 1 = display white. */
 struct glint_float_image {
     int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */
     float *rgb;        /* [height][width][3], the top row first */

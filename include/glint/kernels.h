@@ -2,9 +2,9 @@
  *
  * glint/kernels.h - which instruction sets the hot loops may use.
  *
- * Every set gives the same bits; they differ in speed alone. Where all CPUs
- * that the library is built for have NEON, as on aarch64, pixels have no other.
- */
+ * Every set gives the same bits; they differ in speed alone. If all CPUs that
+ * the library is built for have NEON, as on aarch64, the kernels for pixels
+ * exist for NEON only. */
 #ifndef GLINT_KERNELS_H
 #define GLINT_KERNELS_H
 
@@ -14,13 +14,14 @@ extern "C" {
 
 enum { GLINT_SET_SSE41 = 1, GLINT_SET_AVX2 = 2, GLINT_SET_NEON = 4 };
 
-/* The GLINT_SET_ bits that this library has kernels for. */
+/* Returns the GLINT_SET_ bits that this library has kernels for. */
 unsigned glint_sets_built(void);
 
-/* Returns those sets that this CPU can run, as far as it can be known without
- * asking an operating system: NEON is the compiler's word. Where that is not
- * given, on 32-bit ARM, a program may take NEON from glint_sets_built() when
- * its system says so; platform/linux/sets.h does. */
+/* Returns those sets that this CPU can run, as far as that is known without
+ * asking an operating system. Whether it has NEON the compiler says. Where the
+ * compiler cannot, on 32-bit ARM, a program may take NEON from
+ * glint_sets_built() if its system reports NEON, as platform/linux/sets.h does.
+ */
 unsigned glint_sets_here(void);
 
 #ifdef __cplusplus

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/light.h - what shines through a lens: the stop, lights, wavelengths.
- */
+ * glint/light.h - the stop, the lights and the wavelengths of a frame. */
 #ifndef GLINT_LIGHT_H
 #define GLINT_LIGHT_H
 
@@ -16,20 +15,20 @@ extern "C" {
 #define GLINT_MAX_BLADES    64
 #define GLINT_MAX_WAVE_SETS 5 /* see struct glint_wave_sets, flare.h */
 
-/* The opening of the aperture stop, in stop radii (1 = the circle that the
- * f-number of the frame asks for), fixed to the camera: x right, y up. */
+/* The opening of the aperture stop, fixed to the camera: x right, y up. Its
+ * unit is the stop radius: 1 is the circle that the f-number of the frame asks
+ * for. */
 struct glint_stop {
     int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
     /* Unit normal of each side, outwards. */
     int32_t normal_q30[GLINT_MAX_BLADES][2];
-    int32_t apothem_q16; /* centre to side */
-    /* Of frames of a model: the f-number that it was baked for over that of the
-     * frame, which is the stop's radius over the model's, 2^20 .. 2^30; 0: as
-     * wide as the model's. */
+    int32_t apothem_q16; /* distance from the centre to each side */
+    /* Only for bundles of a model: the stop's radius over that of the stop that
+     * the model was baked for, 2^20 .. 2^30; 0: both are equal. */
     int32_t opening_q30;
 
-    /* Unless NULL, the opening is read from this mask instead: signed distance
-     * to the outline, positive inside, at the nodes of a square of
+    /* Unless NULL, this mask gives the opening instead of the sides: signed
+     * distance to the outline, positive inside, at the nodes of a square of
      * mask_nodes^2 over +-mask_span_q16, row 0 at the lowest y. Kept. */
     const int16_t *mask_q13;
     int mask_nodes; /* 2 .. 4096 */
@@ -51,9 +50,9 @@ struct glint_light {
 /* A wavelength that is drawn. */
 struct glint_wave {
     int32_t wave_q24;   /* 1 / wavelength^2, um^-2 */
-    int32_t rgb_q14[3]; /* colour, largest channel 1 */
-    /* Size of the colour, over the flux that light is measured by: that of the
-     * direct image at angle 0, mm^2. */
+    int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
+    /* Factor on the colour, 1 / mm^2: its size over the flux, in mm^2, that
+     * light is measured by: that of the direct image at angle 0. */
     struct glint_real weight;
 };
 

@@ -44,10 +44,9 @@ extern "C" {
 
 enum glint_basis {
     GLINT_BASIS_AUTO,  /* u, v, s, w: see above */
-    GLINT_BASIS_SPARSE /* x, y, r and 1 - r, [Bodonyi25]: the place on the
-                          vertex plane over 2^(30 + box_exponent) mm, a
-                          radius that holds all boxes of the system
-                        */
+    GLINT_BASIS_SPARSE /* x, y, r and 1 - r [Bodonyi25]: the place on the vertex
+                          plane, in units of 2^(30 + box_exponent) mm, a radius
+                          that holds all boxes of the system */
 };
 
 struct glint_model_header {
@@ -60,27 +59,28 @@ struct glint_model_header {
     char name[64];   /* name of the lens, terminated */
     struct glint_real focal_mm, back_focal_mm, entrance_radius_mm,
         stop_radius_mm, f_number, film_width_mm, film_height_mm;
-    struct glint_real field_mm; /* light farther from the sensor's centre was
-                                   not asked to be right */
+    struct glint_real field_mm; /* radius about the sensor's centre beyond which
+                                   light was not asked to be right */
     struct glint_real front_mm; /* semi-diameter of the first surface */
-    int32_t wave_lo_q24, wave_hi_q24; /* the band, 1 / wavelength^2, um^-2 */
-    int32_t sine_hi_q30; /* sine of the largest angle that was baked; lights
-                            beyond it are not drawn */
+    int32_t wave_lo_q24, wave_hi_q24; /* the band of 1 / wavelength^2, um^-2 */
+    int32_t sine_hi_q30; /* sine of the largest angle of light that was baked;
+                            lights farther out are not drawn */
     /* Flux of the direct image at angle 0 for irradiance 1 through a circular
      * stop, mm^2: coefficients of powers of w over the band. */
     struct glint_real direct_flux[GLINT_FLUX_TERMS];
-    /* Of a stop of R of that radius it is R^2 times as much, and times powers 1
-     * and 2 of 1 - R^2 so much more. */
+    /* If the stop's radius is R times that, the flux is R^2 (direct_flux + c
+     * (stopped_flux[0] + c stopped_flux[1])) with c = 1 - R^2. */
     struct glint_real stopped_flux[2][GLINT_FLUX_TERMS];
     uint32_t n_surfaces;
-    uint32_t n_ghosts, ghost_at; /* struct glint_model_ghost */
-    uint32_t n_parts; /* the last so many ghosts are further parts of the pupil
-                         of some of those before them */
-    uint32_t n_systems, system_at; /* struct glint_model_system */
+    uint32_t n_ghosts, ghost_at; /* array of struct glint_model_ghost */
+    uint32_t n_parts; /* the last n_parts ghosts are further parts of the pupil
+                         of ghosts before them */
+    uint32_t n_systems, system_at; /* array of struct glint_model_system */
 };
 
 /* Systems of one ghost follow each other by rising angle or band, without
- * overlap; so do the ghosts' lists. No systems: the ghost is never seen. */
+ * overlap; the lists of the ghosts follow each other, too. A ghost without
+ * systems is never seen. */
 struct glint_model_ghost {
     uint32_t i, j; /* reflecting surfaces, i < j */
     uint32_t first_system, n_systems;
@@ -88,48 +88,51 @@ struct glint_model_ghost {
 
 /* Polynomials for a range of angles and a band of wavelengths.
  *
- * n_knots = 0: the coefficients are good for the whole range, and s and w are
- * among the variables. n_knots >= 2: there is a set of coefficients at each of
- * so many angles, rising, and between two neighbours they are interpolated
- * linearly in the sine; the variables are those of the basis alone. */
+ * Without knots the coefficients hold for the whole range, and s and w are
+ * among the variables. With n_knots >= 2 there is a set of coefficients at each
+ * of that many rising angles; between neighbours they are interpolated linearly
+ * in the sine, and the variables are only those of the basis. */
 struct glint_model_system {
     /* Range of the sine of the light's angle, 0 .. 2^30. */
     int32_t sine_lo_q30, sine_hi_q30;
-    int32_t wave_lo_q24, wave_hi_q24; /* the same twice: one wavelength */
+    int32_t wave_lo_q24, wave_hi_q24; /* range of 1 / wavelength^2; with both
+                                         equal, one wavelength */
     uint32_t n_knots, knot_at;        /* int32 sines _q30 [n_knots] */
     /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
-     * Without knots each is a polynomial of GLINT_BOX_TERMS terms, s^0, s^1 ..
-     * and then w and s w, of which those are here whose bits are set in
-     * box_terms: [3][bits set]. With knots [n_knots][3], and box_terms 0. */
+     * Without knots each is a polynomial with up to GLINT_BOX_TERMS terms: s^0,
+     * s^1 .. s^5, w, s w. Those whose bits are set in box_terms are stored:
+     * [3][bits set]. With knots the box is [n_knots][3], and box_terms is 0. */
     uint32_t box_at;
     int32_t box_exponent;
-    uint32_t output_at; /* struct glint_model_output, kinds rising */
+    uint32_t output_at; /* array of struct glint_model_output, by rising kind */
     uint8_t n_outputs, box_terms;
-    uint8_t annulus; /* k: what is seen within |v| < k / (k + 1), its rim, is
-                       other parts' and not this one's; at most
-                       GLINT_MAX_ANNULUS, 0 with knots */
+    /* k: this part lacks |v| < k / (k + 1), which other parts of the pupil
+     * cover; at most GLINT_MAX_ANNULUS, 0 with knots. */
+    uint8_t annulus;
     uint8_t zero;
 };
 
 enum {
-    GLINT_BOX_POWERS = 6, /* powers of s alone, the 0th among them */
+    GLINT_BOX_POWERS = 6, /* number of powers of s alone, s^0 among them */
     GLINT_BOX_TERMS = GLINT_BOX_POWERS + 2,
     GLINT_MAX_POWER = 9,
     GLINT_MAX_ANNULUS = 15,
-    GLINT_RAYS = 8,         /* rays that are computed at once */
-    GLINT_TABLE_WIDTH = 16, /* entries in a row of powers of u: whole vectors */
+    GLINT_RAYS = 8, /* number of rays that are computed at once */
+    /* Entries in a row of powers of u: a whole number of vectors. */
+    GLINT_TABLE_WIDTH = 16,
     GLINT_MAX_MODEL_TERMS = 120
 };
 
 enum glint_channel {
-    GLINT_OUT_SENSOR_X, /* mm, in the light's frame; odd kinds are odd in v */
+    GLINT_OUT_SENSOR_X, /* mm, in the light's frame; both y are odd in v, all
+                           other kinds even */
     GLINT_OUT_SENSOR_Y,
     GLINT_OUT_STOP_X, /* stop radii */
     GLINT_OUT_STOP_Y,
     GLINT_OUT_ENERGY,
     GLINT_OUT_RADIUS,   /* the largest relative radius [Bodonyi25] */
     GLINT_OUT_BARREL_0, /* (1 + r^2) / 2, r = relative radius at a barrel that
-                           cuts: above 1 it does */
+                           cuts: above 1 the ray is cut */
     GLINT_OUT_BARREL_1,
     GLINT_OUT_BARREL_2,
     GLINT_OUT_BARREL_3,
@@ -140,32 +143,33 @@ enum glint_channel {
  * exponent, and so have stop x and y. */
 struct glint_model_output {
     uint8_t kind, n_terms;
-    uint8_t n_narrow; /* the last so many of the coefficients are int16 instead,
-                         padded to whole words */
-    uint8_t narrow_shift; /* the int16 coefficients count 2^so many times as
-                             much, at most 20; with knots 0 */
-    /* Both belong to the energy. If head is not 0, its polynomial P counts as
-     * at most 2^(29 - head), far above what it is where light gets through;
-     * head is 28 at most. The energy is P squared so many times as roots says,
-     * 2 at most, and 0 for P below 0. */
+    uint8_t n_narrow;     /* number of coefficients at the end that are int16
+                             instead, padded to whole words */
+    uint8_t narrow_shift; /* an int16 coefficient counts 2^narrow_shift times;
+                             at most 20; with knots 0 */
+    /* Both are 0 for all kinds but the energy. If head is not 0, the polynomial
+     * P is clamped to 2^(29 - head), far above its values where light gets
+     * through; head is 28 at most. The energy is P squared ROOTS times, 2 at
+     * most, and 0 for P below 0. */
     uint8_t head, roots;
-    int16_t exponent; /* a polynomial's value is integer * 2^exponent */
+    int16_t exponent; /* value of the polynomial = integer * 2^exponent */
     uint32_t term_at; /* uint16 [n_terms], padded to whole words: powers of u,
                          v, s, w (or x, y, r, 1 - r), four bits each, the first
                          lowest */
     uint32_t coef_at; /* int32 [n_terms], with knots [n_knots][n_terms] */
     uint32_t bound;   /* proven: no intermediate is larger; < 2^30 */
-    uint32_t rounding_q8; /* proven: integers stray from the polynomial by no
-                             more than so many steps */
-    /* Measured against exact rays through the run-time arithmetic, q20: pixels
-     * of a film 1920 wide, stop radii, share of the energy (of at least a
-     * fiftieth of the most in the system), relative radius. Each is
-     * glint_model_error_q20() of these. */
+    uint32_t rounding_q8; /* proven: integers differ from the polynomial by no
+                             more than this, in units of the integer */
+    /* Measured errors against exact rays, through the run-time arithmetic, as
+     * arguments of glint_model_error_q20(): pixels of a film 1920 wide, stop
+     * radii, share of the energy (of at least a fiftieth of the most in the
+     * system), relative radius. */
     uint16_t rms, p50, p99, max;
 };
 
-/* The upper five bits of E are how far up the lower eleven are shifted, which
- * are above 1023 then: a larger E is a larger error. */
+/* Returns the error of the code E: its lower eleven bits, shifted up by its
+ * upper five. If they are shifted the lower bits are above 1023, so that a
+ * larger E is a larger error. */
 static inline uint64_t glint_model_error_q20(uint16_t e)
 {
     return (uint64_t)(e & 2047) << (e >> 11);
@@ -177,13 +181,13 @@ struct glint_lens {
     const struct glint_model_system *system;
 };
 
-/* Checks DATA[BYTES], aligned to 4, all of it, and points LENS into it; it is
- * kept and must not change. GLINT_E_LENS: *REASON (a constant text) says what
+/* Checks all of DATA[BYTES], aligned to 4, and points LENS into it; DATA is
+ * kept and must not change. GLINT_E_LENS: *REASON, a constant text, says what
  * is wrong. Takes time in proportion to BYTES. */
 enum glint_status glint_lens_open(struct glint_lens *lens, const void *data,
                                   size_t bytes, const char **reason);
 
-/* CRC of BYTES bytes as in the header. */
+/* Returns the checksum of BYTES bytes at DATA, as crc32 of the header. */
 uint32_t glint_model_crc32(const void *data, size_t bytes);
 
 #ifdef __cplusplus

@@ -2,8 +2,8 @@
  *
  * glint/real.h - a number of any size as two integers.
  *
- * Powers, fluxes and lengths of the integer half, which have no common scale.
- */
+ * For powers, fluxes and lengths of the integer half, which have no common
+ * scale. */
 #ifndef GLINT_REAL_H
 #define GLINT_REAL_H
 
@@ -20,7 +20,8 @@ struct glint_real {
     int32_t exponent;
 };
 
-/* Offline: from and to these; what is not finite becomes 0. */
+/* Convert from and to double, for the halves that have floating point. A number
+ * that is not finite becomes 0. */
 struct glint_real glint_real_of(double x);
 double glint_real_value(struct glint_real x);
 

@@ -32,11 +32,11 @@ struct glint_error {
     char text[256];
 };
 
-/* Called now and then with the part that is done, 0 .. 1, by the calling thread
- * or by worker 0, one of them at a time. */
+/* Called now and then with the share of the work that is done, 0 .. 1: by the
+ * calling thread or by worker 0, never by both at once. */
 typedef void glint_progress_fn(void *ctx, double done);
 
-/* A few words for STATUS, never NULL. */
+/* Returns a few words for STATUS, never NULL. */
 const char *glint_status_text(enum glint_status status);
 
 #ifdef __cplusplus

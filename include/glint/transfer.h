@@ -6,9 +6,8 @@
  *     glint_transfer_ray(&transfer, u_q30, v_q30, &out);        or
  *     glint_transfer_grid(&transfer, &place, n_cells, vertices);
  *
- * Angle and wavelength are the same for a whole bundle: init puts them in and
- * leaves polynomials in u and v.
- */
+ * All rays of a bundle have the same angle and wavelength: init puts these into
+ * the polynomials, which leaves polynomials in u and v. */
 #ifndef GLINT_TRANSFER_H
 #define GLINT_TRANSFER_H
 
@@ -22,9 +21,9 @@
 extern "C" {
 #endif
 
-/* A part of a box, _q30: U from middle - half to middle + half, within -1 .. 1,
- * and |V| from one to the other, 0 .. 1: from the middle of the box, or from
- * the rim of an annular one, to its end. */
+/* A part of a box, _q30: u from u_middle - u_half to u_middle + u_half, within
+ * -1 .. 1; |v| from v_from to v_to, where 0 is the middle of the box, or the
+ * rim of an annular one, and 1 is its end. */
 struct glint_box_window {
     int32_t u_middle_q30, u_half_q30, v_from_q30, v_to_q30;
 };
@@ -32,21 +31,23 @@ struct glint_box_window {
 /* The polynomials of one bundle: one ghost, light and wavelength. */
 struct glint_transfer {
     const struct glint_model_system *system;
-    uint32_t outputs; /* bit KIND is set where there is that output */
+    uint32_t outputs; /* bit KIND is set if the system has that output */
     int32_t exponent[GLINT_OUT_KINDS]; /* exponent of each output */
-    uint8_t head, roots; /* the energy's members of these names in struct
+    uint8_t head, roots; /* members of these names of the energy's struct
                             glint_model_output */
     uint8_t energy_up; /* log2 of the factor on a vertex's energy, 0 .. 29; init
                           sets 0, the caller may raise it */
-    int32_t box[3];    /* middle, half width, half height at this angle */
+    int32_t box[3];    /* middle, half width and half height at this angle and
+                          wavelength */
     int32_t box_exponent;
     uint8_t annulus;
-    /* part of the box that rows and grids of rays cover: init sets all of it,
-     * the caller may narrow it; v begins at 0 unless the box is annular */
+    /* Part of the box that rows and grids of rays cover. Init sets it to the
+     * whole box, the caller may narrow it; v begins at 0 unless the box is
+     * annular. */
     struct glint_box_window window;
     enum glint_basis basis;
     union {
-        /* coefficients of u^a v^b: [b][a] */
+        /* coefficients of u^a v^b, at [b][a] */
         int32_t table[GLINT_OUT_KINDS][GLINT_MAX_POWER + 1][GLINT_TABLE_WIDTH];
         struct {
             int32_t n_terms;
@@ -57,62 +58,65 @@ struct glint_transfer {
     uint8_t degree_u[GLINT_OUT_KINDS], degree_v[GLINT_OUT_KINDS];
     unsigned sets; /* instruction sets for rows, GLINT_SET_: 0 after init, for
                       the caller to set; changes no result */
-    /* Scratch: polynomials in u, of one row of rays; places along a row. */
+    /* Scratch: polynomials in u of one row of rays, and the places of the rays
+     * along a row. */
     int32_t of_u[GLINT_OUT_KINDS][GLINT_TABLE_WIDTH];
     int32_t n_nodes, node_q30[GLINT_MAX_CELLS + GLINT_RAYS];
 };
 
-/* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 0 .. 2^30,
- * WAVE_Q24 within the band (else held to it). Returns 0 where nothing of the
+/* Puts angle and wavelength into the polynomials of GHOST. SINE_Q30 is 0 ..
+ * 2^30; WAVE_Q24 is clamped to the model's band. Returns 0 if no light of the
  * ghost gets through. */
 int glint_transfer_init(struct glint_transfer *transfer,
                         const struct glint_lens *lens, int ghost,
                         int32_t sine_q30, int32_t wave_q24);
 
-/* The outputs of one ray at (U, V), each within +-2^30: integers by kind, to be
- * scaled by 2^exponent; 0 for outputs that are not there. */
+/* Gives the outputs of one ray at (U, V), each within +-2^30: integers by kind,
+ * to be scaled by 2^exponent; 0 for outputs that the system lacks. */
 struct glint_outputs {
     int32_t at[GLINT_OUT_KINDS];
 };
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out);
 
-/* Gives the outputs of the rays at (U[i], V) by kind; kinds that are not there
- * are left as they are. IS_NEW: V is another one than in the last call. */
+/* Gives the outputs of the rays at (U[i], V) by kind; entries of kinds that the
+ * system lacks are undefined. IS_NEW is 0 if V is that of the last call. */
 void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS]);
 
-/* The place of a bundle in the picture. */
+/* The place of a bundle's light in the picture. */
 struct glint_place {
     int32_t cos_q30, sin_q30; /* cosine and sine of the light's azimuth */
     struct glint_real pixels_per_mm;
-    int32_t middle_x_q8, middle_y_q8; /* the sensor's centre, pixels */
-    struct glint_real stop_scale; /* the model's stop radius over the frame's, 1
-                                     or more; 0: they are the same */
+    int32_t middle_x_q8, middle_y_q8; /* pixels: place of the sensor's centre */
+    struct glint_real stop_scale; /* radius of the model's stop over that of the
+                                     frame's, 1 or more; 0: both are equal */
 };
 
-/* U at part X_Q30 of the window, -1 .. 1, and V at J of N steps across its
- * upper half. */
+/* Return u at X_Q30 of the window's width, -1 .. 1, and v after J of N equal
+ * steps up its upper half. */
 int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30);
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 
 /* Fills the vertices of a grid of N_CELLS a side over the window, row by row,
  * [n_cells + 1][n_cells + 1], v rising, u fastest. The energy 65536 of a vertex
- * is 2^(exponent[ENERGY] + 29 - energy_up); more saturates. What does not fit a
- * vertex is lost. Of an annular box N_CELLS is even, at least 4; the row in the
- * middle is lost, and those beside it are its rim: n_cells - 2 rows of cells
- * cover what there is. */
+ * stands for 2^(exponent[GLINT_OUT_ENERGY] + 29 - energy_up); larger energies
+ * are clamped. A ray with a value that does not fit a vertex is lost. For an
+ * annular box N_CELLS must be even and at least 4: the middle row of rays is
+ * lost, the rows next to it lie on the rim, and the box is covered by n_cells -
+ * 2 rows of cells. */
 void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);
 
-/* Row J of it alone, 0 .. N_CELLS. */
+/* Fills row J, 0 .. N_CELLS, of that grid alone. */
 void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row);
 
-/* Row J and, for little more, row N_CELLS - J, its mirror image. */
+/* Fills row J of that grid and, for little more time, its mirror image, row
+ * N_CELLS - J. */
 void glint_transfer_rows(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,

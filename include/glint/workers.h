@@ -26,11 +26,11 @@ struct glint_workers {
                 void *ctx);
 };
 
-/* Runs the jobs on WORKERS, or on the calling thread where it is NULL. */
+/* Runs the jobs on WORKERS, or on the calling thread if WORKERS is NULL. */
 void glint_workers_run(struct glint_workers *workers, int n_jobs,
                        glint_job_fn *fn, void *ctx);
 
-/* How many workers there are: 1 where WORKERS is NULL. */
+/* Returns the number of workers; 1 if WORKERS is NULL. */
 int glint_workers_count(const struct glint_workers *workers);
 
 #ifdef __cplusplus

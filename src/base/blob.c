@@ -7,7 +7,8 @@ STATIC_ASSERT(sizeof(struct glint_blob_header) == 92);
 
 /* ---------------------------------------------------------------------- CRC */
 
-/* Half a byte at a time: 16 words of table. */
+/* Goes on with the checksum CRC over N bytes; half a byte at a time needs a
+ * table of only 16 words. */
 static uint32_t crc32_more(uint32_t crc, const unsigned char *byte, size_t n)
 {
     static const uint32_t table[16] = {
@@ -72,7 +73,7 @@ enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob)
 
         if (c < 0x20 || c == 0x7f)
             return GLINT_BLOB_NAME_CONTROL;
-        if (c >= 0x80) /* 0x9b begins a command to a terminal */
+        if (c >= 0x80) /* 0x9b would begin a command to a terminal */
             return GLINT_BLOB_NAME_FOREIGN;
     }
     if (n == sizeof blob->header->name)

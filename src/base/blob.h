@@ -7,10 +7,9 @@
  *     table = glint_blob_section(&blob, at, n, sizeof *table);
  *
  * The header of every kind begins with struct glint_blob_header and goes on
- * with fields of its own. Behind it lie the sections: tables, in any order, to
+ * with fields of its own. After it come the sections: tables, in any order, to
  * which the kind's fields point by bytes from the start of the file, multiples
- * of 4. The magic number tells the kind.
- */
+ * of 4. The magic number tells the kind. */
 #ifndef GLINT_BASE_BLOB_H
 #define GLINT_BASE_BLOB_H
 
@@ -22,26 +21,28 @@ struct glint_blob_header {
     uint32_t bytes;   /* bytes of the whole file */
     uint32_t crc32;   /* checksum of all after this word: polynomial 0xedb88320,
                          reflected, begun and ended with all ones */
-    uint32_t variant; /* variant of the kind, which says what it means */
-    uint32_t key[2];  /* key of the source and the options, low word first */
+    uint32_t variant; /* variant of the kind; each kind gives it a meaning */
+    uint32_t key[2];  /* key of the source and the options that it was baked
+                         from, low word first */
     char name[64];    /* name of the thing baked, terminated */
 };
 
 struct glint_blob_kind {
     uint32_t magic, version;
-    size_t header_bytes; /* bytes of the header with the fields of its kind */
+    size_t header_bytes; /* bytes of the header, including the fields of its
+                            kind */
 };
 
 enum glint_blob_fault {
     GLINT_BLOB_OK,
     GLINT_BLOB_UNALIGNED,  /* the block does not begin at a multiple of 4 bytes
                             */
-    GLINT_BLOB_FOREIGN,    /* another magic number, or none */
+    GLINT_BLOB_FOREIGN,    /* it has no magic number of this kind */
     GLINT_BLOB_NEWER,      /* a later version */
     GLINT_BLOB_NO_VERSION, /* version 0, which never was */
     GLINT_BLOB_OLDER,      /* an earlier version */
     GLINT_BLOB_TRUNCATED,  /* bytes are missing */
-    GLINT_BLOB_LONGER,     /* there are more bytes than it says */
+    GLINT_BLOB_LONGER,     /* there are more bytes than the header says */
     GLINT_BLOB_DAMAGED,    /* the checksum is wrong */
     GLINT_BLOB_NAME_CONTROL, /* the name has a control character */
     GLINT_BLOB_NAME_FOREIGN, /* the name has a byte beyond ASCII */
@@ -53,27 +54,28 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    uint64_t referred; /* bytes of all sections, once for each request */
+    /* Bytes of all sections asked for, once for each request. */
+    uint64_t referred;
 };
 
 /* Checks that DATA[BYTES] is whole and of KIND, in time proportional to BYTES,
- * and points BLOB into it. Of the header only what comes before the variant is
- * looked at. BLOB is set only where nothing is wrong. */
+ * and points BLOB into it. Header fields from the variant on are not looked at.
+ * BLOB is set only if nothing is wrong. */
 enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
                                       const struct glint_blob_kind *kind,
                                       const void *data, size_t bytes);
 
-/* Checks that the name does no harm on a terminal. */
+/* Checks that the name can do no harm on a terminal. */
 enum glint_blob_fault glint_blob_check_name(const struct glint_blob *blob);
 
-/* The section of COUNT items of ITEM_BYTES each at AT; NULL if it does not lie
- * between the header and the end of the file. COUNT is below 2^38 and
+/* Returns the section of COUNT items of ITEM_BYTES each at AT; NULL if it does
+ * not lie between the header and the end of the file. COUNT is below 2^38 and
  * ITEM_BYTES below 2^26, so that nothing overflows. */
 const void *glint_blob_section(struct glint_blob *blob, uint32_t at,
                                uint64_t count, size_t item_bytes);
 
-/* Sets size and checksum of the file DATA[BYTES], which is done; BYTES is at
- * least a header. */
+/* Sets size and checksum in the header of the finished file DATA[BYTES]; BYTES
+ * is at least a header. */
 void glint_blob_seal(void *data, size_t bytes);
 
 uint32_t glint_blob_crc32(const void *data, size_t bytes);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Eight bytes in a word, the first lowest.
- */
+ * Works on eight bytes in a word; the first byte is the lowest. */
 #ifndef GLINT_BASE_BYTES_H
 #define GLINT_BASE_BYTES_H
 
@@ -11,7 +10,7 @@
 #define BYTES_LOW  (0x7f * BYTES_EACH)
 #define BYTES_HIGH (0x80 * BYTES_EACH)
 
-/* Written so that compilers make one load of it. */
+/* Returns eight bytes at P, in a form of which compilers make one load. */
 static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
 {
     return (uint64_t)p[0] | (uint64_t)p[1] << 8 | (uint64_t)p[2] << 16 |
@@ -19,8 +18,9 @@ static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
            (uint64_t)p[6] << 48 | (uint64_t)p[7] << 56;
 }
 
-/* High bits of the bytes of V that are CODE or more, 1 .. 128, or 129 .. 256 if
- * IS_ABOVE_128. No byte carries into the next: both addends are below 128. */
+/* Returns the high bits of those bytes of V that are at least CODE, which is 1
+ * .. 128, or 129 .. 256 if IS_ABOVE_128. No byte carries into the next, as both
+ * addends are below 128. */
 static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
                                           int is_above_128)
 {
@@ -31,13 +31,13 @@ static WHOLLY_INLINE uint64_t bytes_reach(uint64_t v, int code,
     return (is_above_128 ? sum & v : sum | v) & BYTES_HIGH;
 }
 
-/* The eight high bits of HIGH side by side, the first byte's lowest. */
+/* Returns the eight high bits of HIGH side by side, the first byte's lowest. */
 static WHOLLY_INLINE uint32_t bytes_high_bits(uint64_t high)
 {
     return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);
 }
 
-/* How many of these bits there are. */
+/* Returns how many high bits of HIGH are set. */
 static WHOLLY_INLINE uint32_t bytes_count(uint64_t high)
 {
     return (uint32_t)((high >> 7) * BYTES_EACH >> 56);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The few things that C99 alone cannot say.
- */
+ * What glint needs from compilers beyond C99. */
 #ifndef GLINT_BASE_COMPILER_H
 #define GLINT_BASE_COMPILER_H
 
@@ -17,14 +16,14 @@
 /* Right shifts of negative numbers are arithmetic wherever glint runs. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
-/* Makes the compiler forget where P points, so that what lies there is loaded
- * anew rather than kept where there is no room. */
+/* Makes the compiler forget where P points, so that it loads values there anew
+ * instead of keeping them in registers that it lacks. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
-/* A variable or field begins at a multiple of so many bytes. */
+/* Aligns a variable or member to a multiple of BYTES bytes. */
 #define ALIGNED(bytes) __attribute__((aligned(bytes)))
 
-/* Bits needed to write X: 0 for 0, 64 for UINT64_MAX. */
+/* Returns the bits needed to write X: 0 for 0, 64 for UINT64_MAX. */
 static inline int bit_length(uint64_t x)
 {
 #if defined(__GNUC__)
@@ -47,11 +46,11 @@ static inline uint32_t bits_set(uint32_t x)
     return n;
 }
 
-/* Functions so marked are made twice, once for wider vectors than every CPU of
- * the architecture has; one is chosen when the program is loaded; the bits are
- * the same. WHOLLY_INLINE is for the functions that they consist of. Sanitizers
- * cannot have it, and clang would name the choosers of static functions for all
- * the program. */
+/* Functions marked WIDE_VECTORS are compiled twice, once for wider vectors than
+ * every CPU of the architecture has; one of both is chosen when the program is
+ * loaded; their results are equal. WHOLLY_INLINE is for the functions they
+ * call. Sanitizers do not work with it, and clang would export the choosers of
+ * static functions. */
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && \
     !defined(GLINT_SANITIZED)
 #define WIDE_VECTORS __attribute__((target_clones("avx2", "default")))

@@ -8,12 +8,12 @@ static uint32_t upper(uint32_t a, uint32_t b)
     return (uint32_t)((uint64_t)a * b >> 32);
 }
 
-/* 2^63 / X or a little less, X from 2^31 on: a line that is off by 1/17 at most
- * and Newton's method, which squares that thrice. What is cut leaves it below.
- */
+/* Returns 2^63 / X or a little less, X from 2^31 on: starts with a line that is
+ * off by 1/17 at most, then Newton's method squares the error three times.
+ * Products are cut, so the result is never too large. */
 static uint32_t reciprocal(uint32_t x)
 {
-    /* 48/17 - 32/17 x, _q31 modulo 2^32, for x _q32 */
+    /* 48/17 - 32/17 x in _q31, modulo 2^32, for x in _q32 */
     uint32_t r_q31 = 1768515944 - upper(x, 4042322161U);
 
     for (int i = 0; i < 3; i++)
@@ -32,9 +32,9 @@ uint32_t glint_reciprocal(uint32_t x)
     return r;
 }
 
-/* Takes as many times D from the rest as the upper 32 bits of both say, never
- * too many, thirty bits of the quotient each time; what is left then is less
- * than four times D. */
+/* Divides as by hand, with up to thirty bits of the quotient at a time: the
+ * upper 32 bits of rest and D give a digit that is never too large. The loop
+ * ends when the rest is less than four times D. */
 int64_t glint_divide(int64_t n, int64_t d)
 {
     const uint64_t by = q_magnitude(d);
@@ -47,7 +47,7 @@ int64_t glint_divide(int64_t n, int64_t d)
 
     while ((more = bit_length(rest) - wide) >= 2) {
         const uint32_t of = (uint32_t)(rest << (64 - wide - more) >> 32);
-        const uint64_t ratio = upper(of, one_over); /* 2^31: 1 */
+        const uint64_t ratio = upper(of, one_over); /* 2^31 stands for 1 */
         const uint64_t times =
             more < 31 ? ratio >> (31 - more) : ratio << (more - 31);
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Division of 64 bits where it is done often: a CPU of 32 bits calls a function
- * for it that works bit by bit, some 300 instructions.
- */
+ * Division of 64 bits, where it is done often: on CPUs of 32 bits the
+ * compiler's own function works bit by bit and takes some 300 instructions. */
 #ifndef GLINT_BASE_DIVIDE_H
 #define GLINT_BASE_DIVIDE_H
 
@@ -10,21 +9,21 @@
 
 #include "base/q.h"
 
-/* N / D, cut towards 0, in 32-bit steps; D is not 0, both are within +-2^63 and
- * not INT64_MIN. */
+/* Returns N / D, cut towards 0, in 32-bit steps. D is not 0; both are within
+ * +-2^63, without INT64_MIN. */
 int64_t glint_divide(int64_t n, int64_t d);
 
-/* The same, by what the CPU does best. */
+/* Returns N / D, cut towards 0, by the faster way on this CPU. */
 static inline int64_t q_divide(int64_t n, int64_t d)
 {
 #if UINTPTR_MAX > UINT32_MAX
-    return n / d; /* NOLINT: so it is for the caller to see to */
+    return n / d; /* NOLINT: the caller sees to it that D is not 0 */
 #else
     return glint_divide(n, d);
 #endif
 }
 
-/* Floor of (2^63 - 1) / X, for X from 2^31 on. */
+/* Returns the floor of (2^63 - 1) / X, for X from 2^31 on. */
 uint32_t glint_reciprocal(uint32_t x);
 
 static inline uint32_t q_reciprocal(uint32_t x)
@@ -36,7 +35,7 @@ static inline uint32_t q_reciprocal(uint32_t x)
 #endif
 }
 
-/* X times 2^UP, cut; below 2^32, and UP from -31 to 31. */
+/* Returns X times 2^UP, cut. The result is below 2^32, UP is -31 .. 31. */
 static inline uint32_t q_upper(uint64_t x, int up)
 {
 #if UINTPTR_MAX > UINT32_MAX
@@ -46,14 +45,15 @@ static inline uint32_t q_upper(uint64_t x, int up)
 #endif
 }
 
-/* Bits by which X, not 0, is shorter than 32. */
+/* Returns the number of bits, negative if too many, by which X is shorter than
+ * 32. */
 static inline int q_up(uint64_t x)
 {
     return 32 - bit_length(x | 1);
 }
 
-/* N / D, 0 <= N <= D, D not 0; at most 2^-30 more or 2^-29 less, and within 0
- * .. 1. */
+/* Returns N / D, 0 <= N <= D, D not 0. The error is at most 2^-30 upwards and
+ * 2^-29 downwards, the result within 0 .. 1. */
 static inline int32_t q_part_q30(uint64_t n, uint64_t d)
 {
     const int up = q_up(d);

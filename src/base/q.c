@@ -2,8 +2,8 @@
 #include "base/q.h"
 
 #ifdef GLINT_Q_CHECK
-/* The trap of CONFIG=qcheck. Stopping at once keeps the failing operation on
- * the stack; nothing in the run-time half may print. */
+/* The trap of CONFIG=qcheck. It stops at once, so that the failing operation is
+ * on the stack; nothing in the run-time half may print. */
 void glint_q_overflow(const char *operation, int64_t exact)
 {
     (void)operation;
@@ -11,5 +11,5 @@ void glint_q_overflow(const char *operation, int64_t exact)
     __builtin_trap();
 }
 #else
-typedef int glint_q_is_all_inline; /* a unit must not be empty */
+typedef int glint_q_is_all_inline; /* A translation unit must not be empty. */
 #endif

@@ -27,32 +27,32 @@ void glint_q_overflow(const char *operation, int64_t exact);
 #define Q_FITS(op, r, lo, hi) ((void)0)
 #endif
 
-/* Constant from a literal, rounded; folds at compile time. */
+/* Returns a literal as a constant, rounded; folds at compile time. */
 #define Q_CONST(x, frac) \
     ((int32_t)((x) * (double)(INT64_C(1) << (frac)) + ((x) < 0 ? -0.5 : 0.5)))
 
-/* x / 2^s, rounded; 0 <= s <= 62, |x| < 2^62. */
+/* Returns x / 2^s, rounded; 0 <= s <= 62, |x| < 2^62. */
 static inline int64_t q_shift(int64_t x, int s)
 {
     Q_FITS("q_shift", x, -(INT64_C(1) << 62), INT64_C(1) << 62);
     return s ? (x + (INT64_C(1) << (s - 1))) >> s : x;
 }
 
-/* X as an int32; its range is the caller's promise. */
+/* Returns X as an int32; the caller sees to it that X fits. */
 static inline int32_t q_narrow(int64_t x)
 {
     Q_FITS("q_narrow", x, INT32_MIN, INT32_MAX);
     return (int32_t)x;
 }
 
-/* a * b / 2^s, rounded; 1 <= s <= 62. */
+/* Returns a * b / 2^s, rounded; 1 <= s <= 62. */
 static inline int32_t q_mul(int32_t a, int32_t b, int s)
 {
     return q_narrow(q_shift((int64_t)a * b, s));
 }
 
-/* X / 2^S, rounded, S of any size, if that is below LIMIT (2^30 at most) in
- * magnitude; else 0, and all bits of *LOST are set. */
+/* Returns X / 2^S, rounded, for any S, if that is below LIMIT (2^30 at most) in
+ * magnitude; else returns 0 and sets all bits of *LOST. */
 static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
 {
     int64_t y = 0;
@@ -69,7 +69,7 @@ static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
     return fits ? (int32_t)y : 0;
 }
 
-/* The root of X, rounded down: of a Q(2 n) it is a Q(n). */
+/* Returns the root of X, rounded down; the root of a Q(2 n) is a Q(n). */
 static inline uint32_t q_root(uint64_t x)
 {
     uint64_t root = 0;
@@ -83,7 +83,7 @@ static inline uint32_t q_root(uint64_t x)
     return (uint32_t)root;
 }
 
-/* The smaller and the larger of two. */
+/* Return the smaller and the larger of two numbers. */
 static inline int32_t q_smaller(int32_t a, int32_t b)
 {
     return a < b ? a : b;
@@ -94,7 +94,7 @@ static inline int32_t q_larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* X held to LO .. HI: for light, never for geometry. */
+/* Returns X clamped to LO .. HI: for light, never for geometry. */
 static inline int32_t q_clamp_sat(int64_t x, int32_t lo, int32_t hi)
 {
     return x < lo ? lo : x > hi ? hi : (int32_t)x;

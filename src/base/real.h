@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Numbers of any size in integers: struct glint_real of glint/real.h, mantissa
- * times a power of two, mantissa 0 or 2^30 .. 2^31 - 1 in magnitude. Products
- * and quotients are cut, so off by 2^-30 at most.
- */
+ * Arithmetic with struct glint_real of glint/real.h: a mantissa, 0 or 2^30 ..
+ * 2^31 - 1 in magnitude, times a power of two. Products and quotients are cut,
+ * so off by 2^-30 at most. */
 #ifndef GLINT_BASE_REAL_H
 #define GLINT_BASE_REAL_H
 
 #include "base/divide.h"
 #include "glint/real.h"
 
-/* X * 2^EXPONENT; X within +-2^62. */
+/* Returns X * 2^EXPONENT; X is within +-2^62. */
 static inline struct glint_real real_of(int64_t x, int exponent)
 {
     const uint64_t size = q_magnitude(x);
@@ -28,7 +27,7 @@ static inline struct glint_real real_times(struct glint_real a,
     return real_of((int64_t)a.mantissa * b.mantissa, a.exponent + b.exponent);
 }
 
-/* B is not 0. */
+/* Returns A / B; B is not 0. */
 static inline struct glint_real real_over(struct glint_real a,
                                           struct glint_real b)
 {
@@ -36,7 +35,7 @@ static inline struct glint_real real_over(struct glint_real a,
                    a.exponent - b.exponent - 31);
 }
 
-/* Both 0 or more. */
+/* Returns A + B, both 0 or more. */
 static inline struct glint_real real_plus(struct glint_real a,
                                           struct glint_real b)
 {
@@ -60,7 +59,7 @@ static inline int real_less(struct glint_real a, struct glint_real b)
                                     : a.mantissa < b.mantissa;
 }
 
-/* X * 2^FRAC as an integer, cut, held to +-LIMIT. */
+/* Returns X * 2^FRAC as an integer, cut, clamped to +-LIMIT. */
 static inline int64_t real_integer(struct glint_real x, int frac, int64_t limit)
 {
     const int up = x.exponent + frac;

@@ -2,26 +2,25 @@
  *
  * Heaps and heap sort: in place, without memory of its own, n log n at worst.
  *
- *     glint_sort(order, n, before, ctx);       numbers of things, or
- *     glint_heap_sort(&heap, n);               things that swap places
- */
+ *     glint_sort(order, n, before, ctx);       indices of things, or
+ *     glint_heap_sort(&heap, n);               things that swap places */
 #ifndef GLINT_BASE_SORT_H
 #define GLINT_BASE_SORT_H
 
 #include <stdint.h>
 
-/* Returns whether thing A comes before B. A total order makes the result the
- * same however the things came. */
+/* Returns whether thing A comes before thing B. With a total order the result
+ * does not depend on the order that the things begin in. */
 typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 
-/* Things at places 0, 1 and so on. In a heap none comes after the one at half
- * its place, so that the last of all is at place 0. */
+/* Things at places 0, 1 and so on. In a heap no thing comes after the one at
+ * place (i - 1) / 2, i its own place, so the last of all is at place 0. */
 struct glint_heap {
-    int (*before)(
-        const void *things, int a,
-        int b); /* returns whether the thing at A comes before the one at B */
+    int (*before)(const void *things, int a,
+                  int b); /* returns whether the thing at place A comes before
+                             the one at place B */
     void (*swap)(void *things, int a, int b);
     void *things;
 };
@@ -29,8 +28,8 @@ struct glint_heap {
 /* Makes a heap of places 0 .. N - 1. */
 void glint_heap_make(const struct glint_heap *heap, int n);
 
-/* Makes it one again after what is at place AT has changed to something that
- * comes earlier. */
+/* Restores the heap of places 0 .. N - 1 after the thing at place AT was
+ * replaced by one that comes earlier. */
 void glint_heap_sift(const struct glint_heap *heap, int at, int n);
 
 void glint_heap_sort(const struct glint_heap *heap, int n);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What became of a frame's bundles, and why. Nothing else refers to this file:
- * a program that does not ask links none of it.
+ * Gives an account of what became of a frame's bundles, and why. No other file
+ * refers to this one, so a program that does not ask for it does not link it.
  */
 #include "base/q.h"
 #include "flare/by_edges.h"
@@ -18,8 +18,8 @@ static int64_t number_of(const struct glint_flare *f, int ghost, int light,
            wave;
 }
 
-/* The first of those planned, which are in that order, that is not before
- * NUMBER; n_bundles: none. */
+/* Returns the index of the first planned bundle whose number is not below
+ * NUMBER, or n_bundles if there is none. Planned bundles rise by number. */
 static int first_from(const struct glint_flare *f, int64_t number)
 {
     int low = 0, high = f->n_bundles;
@@ -49,7 +49,8 @@ static int find(const struct glint_flare *f, int64_t number)
                : -1;
 }
 
-/* The set that GHOST took of LIGHT; the first one if nothing is seen of it. */
+/* Returns the set of waves that GHOST took for LIGHT; 0 if no bundle of them
+ * was kept. */
 static int set_of(const struct glint_flare *f, int ghost, int light)
 {
     const int at = first_from(f, number_of(f, ghost, light, 0));
@@ -60,7 +61,8 @@ static int set_of(const struct glint_flare *f, int ghost, int light)
                : 0;
 }
 
-/* The last place that the plan needed to look at the bundle. */
+/* Returns the index of the last place that the plan needs to look at the
+ * bundle; with sets, of the last wave of the first set. */
 static int64_t place_of(const struct glint_flare *f, int ghost, int light,
                         int wave)
 {
@@ -93,7 +95,7 @@ static void count_outputs(const struct glint_transfer *t,
         }
 }
 
-/* Rows of the picture that EDGE crosses. */
+/* Returns how many rows of the picture EDGE crosses. */
 static int rows_of(const struct glint_edge *edge, int height)
 {
     const int first = edge->y_q8 > 0 ? edge->y_q8 >> 8 : 0;
@@ -138,8 +140,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
         return;
     }
     if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
-        account->probed =
-            0; /* the account looked at these rays, not the plan */
+        account->probed = 0; /* this function traced these rays, not the plan */
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)
         account->outcome = GLINT_OUTCOME_NO_ROOM;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pixels as directions of light, in integers: for programs without floating
- * point, what glint/view.h does in doubles.
- */
+ * Turns pixels into directions of light in integers, as glint/view.h does in
+ * doubles, for programs without floating point. */
 #include "base/real.h"
 #include "glint/flare.h"
 
@@ -19,7 +18,7 @@ struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
     return real_less(across, down) ? down : across;
 }
 
-/* SMALL / LARGE, which is 1 at most, _q30; 0 of 0 and 0. */
+/* Returns SMALL / LARGE, at most 1; 0 if SMALL is 0. */
 static int32_t ratio(struct glint_real small, struct glint_real large)
 {
     if (small.mantissa == 0)
@@ -27,8 +26,8 @@ static int32_t ratio(struct glint_real small, struct glint_real large)
     return (int32_t)real_integer(real_over(small, large), 30, 1 << 30);
 }
 
-/* Cosine and sine of the direction from (0, 0) to (X, Y), both 0 or more; (0,
- * 0) lies to the right. */
+/* Sets cosine and sine of the direction from (0, 0) to (X, Y), both 0 or more.
+ * The direction to (0, 0) itself is that of x. */
 static void direction(struct glint_real x, struct glint_real y,
                       int32_t *cosine_q30, int32_t *sine_q30)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Drawing by edges: bundles to edges, edges to tiles, rows of tiles to pixels.
- */
+ * Draws by edges: bundles become edges, edges go into tiles, rows of tiles
+ * become pixels. */
 #include "base/divide.h"
 #include "base/q.h"
 #include "flare/by_edges.h"
@@ -9,7 +9,7 @@
 
 /* ------------------------------------------------------------------ memory */
 
-/* Bundles, or rows of tiles. */
+/* Returns the larger of the number of bundles and that of rows of tiles. */
 static size_t most_jobs(const struct glint_flare_config *c)
 {
     const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
@@ -17,7 +17,8 @@ static size_t most_jobs(const struct glint_flare_config *c)
     return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
-/* Both run twice: to measure, which gives NULL, and to place. */
+/* carve and carve_worker run twice: once to measure, which gives NULL, and once
+ * to place. */
 static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
 {
     struct glint_by_edges measured, *placed, *own;
@@ -52,7 +53,7 @@ static void *carve_worker(struct glint_arena *a,
     return placed;
 }
 
-/* Makes all sums 0, as they are between tiles. */
+/* Sets all sums of all workers to 0, as they must be between tiles. */
 static void begin(struct glint_flare *f)
 {
     const int log2 = f->cfg.tile_log2;
@@ -73,8 +74,8 @@ static void begin(struct glint_flare *f)
 
 typedef int weight_fn(const struct glint_flare *f, int job);
 
-/* The heaviest of N jobs first, by powers of two, so that no worker begins a
- * long one when the others are done. Changes no output. */
+/* Sorts N jobs by falling weight, to a power of two, so that no worker begins a
+ * long job when the others have finished. Changes no output. */
 static void set_order(struct glint_flare *f, int n, weight_fn *weight)
 {
     int32_t *order = glint_by_edges_of(f)->order;
@@ -106,7 +107,7 @@ static int edges_in_row(const struct glint_flare *f, int row)
 
 /* ----------------------------------------------------------------- bundles */
 
-/* Returns the flux of a bundle at energy 1, display white times pixels, held at
+/* Returns the flux of a bundle at energy 1, display white times pixels, at most
  * 2^26. */
 static int64_t flux_of(const struct glint_bundle *b)
 {
@@ -121,9 +122,10 @@ static int64_t flux_of(const struct glint_bundle *b)
     return ((up < 0 ? flux >> -up : flux << up) >> 8) + 1;
 }
 
-/* Sums of q36 in colours up to 4 stay below 2^63 while no pixel gets more than
- * 2^24. No cell can give a pixel more than its flux; where all flux together is
- * more than that, each cell's share is cut down to what it may have. */
+/* Returns the most light that one cell may give a pixel. Sums of _q36 in
+ * colours up to 4 stay below 2^63 while no pixel gets more than 2^24. No cell
+ * can give a pixel more than its flux; if the flux of all bundles passes 2^24,
+ * each cell is limited to its share of half of that. */
 static int32_t light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
@@ -148,7 +150,9 @@ static int add_refs(const struct glint_flare *f, int refs, int first, int n)
     return refs;
 }
 
-/* BINS: to count the entries of a bundle that finds no room, or NULL. */
+/* Turns a bundle into edges, if they fit into what is left of the worker's
+ * share. BINS: counts the entries of a bundle that does not fit; may be NULL.
+ */
 static void emit_bundle(struct glint_flare *f, int bundle, int worker,
                         const struct glint_bins *bins)
 {
@@ -195,7 +199,7 @@ static void emit_bundle(struct glint_flare *f, int bundle, int worker,
     w->n_edges += ghost.n_edges;
 }
 
-/* The bins, as WORKER fills them. */
+/* Returns the bins with the places that WORKER fills. */
 static struct glint_bins bins_of(const struct glint_flare *f, int worker)
 {
     struct glint_bins bins = f->bins;
@@ -254,8 +258,8 @@ static int all_placed(const struct glint_flare *f)
     return 1;
 }
 
-/* Finds room for the bundles that were too large for what was left of their
- * worker's share, in what the others left. */
+/* Gives bundles that did not fit into their worker's share a place in the share
+ * of any worker that has enough room. */
 static void emit_leftovers(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -272,8 +276,8 @@ static void emit_leftovers(struct glint_flare *f)
         }
 }
 
-/* Takes bundles in order, into one list, so that it does not depend on which
- * worker came first what is left out. */
+/* Turns all bundles into edges anew, in order and into one list, so that which
+ * ones are left out does not depend on the workers' timing. */
 static void emit_in_order(struct glint_flare *f)
 {
     int full = 0;
@@ -316,7 +320,8 @@ static void emit(struct glint_flare *f)
 
 /* -------------------------------------------------------------------- bins */
 
-/* Keeps the bundles whose entries fit; leaves counts that mean nothing. */
+/* Keeps the first bundles whose entries fit. The counts in the bins are
+ * meaningless afterwards. */
 static void drop_refs(struct glint_flare *f)
 {
     struct glint_bins bins = bins_of(f, 0);
@@ -335,8 +340,8 @@ static void drop_refs(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Turns counts into places: tile by tile, each worker's share after those of
- * the workers before it. Returns how many there are. */
+/* Turns counts into places: in each tile, a worker's entries follow those of
+ * the workers before it. Returns the number of all entries. */
 static int place_refs(struct glint_flare *f)
 {
     const int n_tiles = f->bins.tiles_x * f->bins.tiles_y;
@@ -357,7 +362,8 @@ static int place_refs(struct glint_flare *f)
     return sum;
 }
 
-/* The bundles that worker JOB counted: it goes on where it has its places. */
+/* Puts the edges of the bundles that worker JOB counted into the bins, at the
+ * places of that worker. */
 static void put_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;

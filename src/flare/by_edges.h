@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a flare that is drawn by edges holds besides.
- */
+ * The state of a flare that is drawn by edges, beyond struct glint_flare. */
 #ifndef GLINT_FLARE_BY_EDGES_H
 #define GLINT_FLARE_BY_EDGES_H
 
@@ -10,9 +9,11 @@
 
 struct glint_by_edges {
     struct glint_edge *edge;
-    int32_t *order;   /* bundles, then rows of tiles, as they are done */
-    int32_t limit_q8; /* most light of a cell in a pixel */
-    int linear;       /* the picture that is drawn onto */
+    int32_t *order; /* indices of bundles, then of rows of tiles, in the order
+                       in which they are worked on */
+    /* Display white: most light that one cell may give a pixel. */
+    int32_t limit_q8;
+    int linear; /* 1: the picture that is drawn onto is in linear light */
 };
 
 /* The state and memory of one worker. */
@@ -20,12 +21,13 @@ struct glint_edges_worker {
     struct glint_ghost_rows *rows;
     /* Sums of the row of tiles that the worker draws. */
     struct glint_edge_sums sums;
-    int32_t *at; /* places of the worker's entries in the bins, tile by tile */
-    /* Part of the edges that is the worker's. */
+    /* Place of the worker's next entry in the bins, for each tile. */
+    int32_t *at;
+    /* The part of all edges that the worker fills. */
     int first_edge, max_edges, n_edges;
     /* Set while the worker draws a row of tiles. */
     const struct glint_flare *flare;
-    int at_tile; /* the next one */
+    int at_tile; /* index of the next tile */
 };
 
 static inline struct glint_by_edges *
@@ -40,7 +42,7 @@ glint_edges_worker_of(const struct glint_flare *f, int i)
     return f->worker[i].own;
 }
 
-/* The pass that draws what has been binned. */
+/* Returns the pass that draws what has been binned. */
 struct glint_pass glint_edges_pass(const struct glint_flare *flare);
 
 #endif

@@ -2,8 +2,9 @@
 #include "base/q.h"
 #include "glint/flare.h"
 
-/* Edges of one light. Lenses take 67000 entries at most in linear light at
- * 1280x720; there is room to spare. */
+/* Edges of one light, of one bundle, and of a frame. The lenses of this
+ * repository take up to 67000 entries in tiles for a light at 1280x720 in
+ * linear light, so there is room to spare. */
 enum { EDGES = 1 << 16, EDGES_OF_BUNDLE = 1 << 10, MOST_EDGES = 1 << 24 };
 
 void glint_flare_defaults(struct glint_flare_config *cfg, int width, int height)
@@ -34,7 +35,7 @@ void glint_flare_capacities(struct glint_flare_config *cfg,
 void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                 const struct glint_lens *lens)
 {
-    /* an eighth of a code near black: 0.125 / 255 / 12.92 */
+    /* 1/8 code near black: 0.125 / 255 / 12.92 */
     static const struct glint_real faintest = {1334925791, -45};
 
     *frame = (struct glint_flare_frame){.lens = lens,

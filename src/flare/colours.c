@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * The colours of a frame in integers, for programs without floating point.
- */
+ * Works out the colours of a frame in integers, for programs without floating
+ * point. */
 #include "base/real.h"
 #include "glint/flare.h"
 
 enum { POWERS = 6 };
 
-/* Flux of the direct image at the place W_Q30 in the band of wavelengths, times
- * 2^FRAC. No coefficient counts for more than 2^27: sums stay below 2^30. */
+/* Returns the flux of the direct image times 2^FRAC, mm^2, at W_Q30, the place
+ * in the band of wavelengths. Each coefficient is clamped to 2^27, so sums stay
+ * below 2^30. */
 static int32_t direct_flux(const struct glint_model_header *h, int32_t w_q30,
                            int frac)
 {
@@ -27,7 +28,8 @@ void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
         Q_CONST(1 / (0.650 * 0.650), 24), Q_CONST(1 / (0.532 * 0.532), 24),
         Q_CONST(1 / (0.450 * 0.450), 24)};
     const struct glint_model_header *h = lens->header;
-    const int frac = -4 - h->direct_flux[0].exponent; /* 27 bits */
+    /* Makes the coefficient of power 0 an integer of 27 bits. */
+    const int frac = -4 - h->direct_flux[0].exponent;
     const int32_t band_q24 = h->wave_hi_q24 - h->wave_lo_q24;
 
     for (int i = 0; i < GLINT_FLARE_WAVES; i++) {

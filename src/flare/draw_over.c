@@ -33,7 +33,7 @@ void glint_flare_draw_over(struct glint_flare *flare,
         pass[i] = under->pass[i];
     if (flare->stats.primitives > 0)
         flare->cfg.raster->draw(flare, &tiles, pass, under->n);
-    else /* the bins may be another frame's */
+    else /* no primitives: the bins may be those of an earlier frame */
         glint_workers_run(flare->cfg.workers, glint_tiles_down(&tiles), row_job,
                           &alone);
 }

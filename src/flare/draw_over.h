@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Drawing a flare over what other passes draw of the same frame.
- */
+ * Draws a flare over other passes of the same frame. */
 #ifndef GLINT_FLARE_DRAW_OVER_H
 #define GLINT_FLARE_DRAW_OVER_H
 
@@ -9,15 +8,16 @@
 #include "tile/blend.h"
 
 struct glint_flare_under {
-    const struct glint_pass *pass; /* the hindmost first */
+    const struct glint_pass *pass; /* [n], from the hindmost to the foremost */
     int n;                         /* 0 .. GLINT_MAX_PASSES - 1 */
     const struct glint_blend *blend;
     struct glint_blend_rows *rows; /* one for each worker of the flare */
 };
 
-/* Does as glint_flare_draw(), but draws over UNDER. Passes see the flare's
- * tiles: at half resolution in pixels of twice the size, and by cells in two
- * levels in rows that end at each large tile. */
+/* Draws as glint_flare_draw() does, but over the passes of UNDER. These see the
+ * flare's tiles: at half resolution, tiles of pixels of twice the size; by
+ * cells in two levels, rows of tiles that end at the side of each large tile.
+ */
 void glint_flare_draw_over(struct glint_flare *flare,
                            const struct glint_image *image,
                            const struct glint_flare_under *under);

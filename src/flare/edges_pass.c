@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a flare by edges gives to a row of tiles: edges to sums, sums to light.
- */
+ * The pass of a flare by edges: edges become sums of a tile, sums become light
+ * of its rows. */
 #include "flare/by_edges.h"
 
-/* Frames of so many bundles lose too much light to the rounding of each to
- * _q16: half a step of each may be missing, 1/40 of a code near black. */
+/* Frames of more bundles than this take sums of _q20. Rounding to _q16 loses up
+ * to half a unit of each bundle, 1/40 of a code near black. */
 enum { FINE_BUNDLES = 1024 };
 
-/* Returns whether light runs into the next tile's rows. */
+/* Returns whether light runs on into the rows of the next tile. */
 static int runs_on(const struct glint_edge_sums *s)
 {
     int64_t any = 0;
@@ -45,7 +45,7 @@ static int add_tile(void *state, struct glint_box tile)
     const int n = start[1] - start[0];
     struct glint_edge_sums *s = &w->sums;
 
-    /* carries change only in tiles that are drawn */
+    /* Carries change only in tiles that are drawn. */
     s->lit = n > 0 || (s->lit && runs_on(s));
     if (!s->lit)
         return 0;

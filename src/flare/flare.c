@@ -6,7 +6,7 @@
 #include "flare/wave_sets.h"
 
 enum {
-    WHOLE_OPENING_Q30 = 1 << 30, /* an opening as wide as the model's stop */
+    WHOLE_OPENING_Q30 = 1 << 30, /* as wide as the model's stop */
     LEAST_OPENING_Q30 = 1 << 20
 };
 
@@ -36,7 +36,7 @@ static void carve_worker(struct glint_flare_worker *w, struct glint_arena *a,
     w->own = raster_of(c)->carve_worker(a, c);
 }
 
-/* Runs twice: to measure, which gives NULL, and to place. */
+/* Runs twice: once to measure, which gives NULL, and once to place. */
 static struct glint_flare *carve(struct glint_arena *a,
                                  const struct glint_flare_config *c)
 {
@@ -155,7 +155,8 @@ enum glint_status glint_flare_set_stop(struct glint_flare *flare,
 
 /* ------------------------------------------------------------------ bundles */
 
-/* Makes the frame's pixels the picture's, or HALF as many each way. */
+/* Sets the size in pixels that is drawn: the picture's, or with HALF 1 half of
+ * it each way. */
 static void set_size(struct glint_flare *f, int half)
 {
     f->half = half;
@@ -197,8 +198,8 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* N lights without the last ones that are beyond the lens: a frame that has no
- * others takes no time. */
+/* Returns N without the last lights that are beyond the lens, so that a frame
+ * with no other lights takes no time. */
 static int n_within(const struct glint_lens *lens,
                     const struct glint_light *lights, int n)
 {
@@ -207,7 +208,7 @@ static int n_within(const struct glint_lens *lens,
     return n;
 }
 
-/* All waves of one ghost and light. */
+/* Plans all waves of one ghost and light. */
 static void plan_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
@@ -226,7 +227,7 @@ static void plan_job(void *ctx, int job, int worker)
     }
 }
 
-/* Vertices of a stored grid. */
+/* Returns how many vertices of the grid of B have to be stored. */
 static int stored(const struct glint_flare *f, const struct glint_bundle *b)
 {
     const int n = b->n_cells + 1;
@@ -234,9 +235,10 @@ static int stored(const struct glint_flare *f, const struct glint_bundle *b)
     return f->cfg.raster->fill ? n * n : 0;
 }
 
-/* Leaves out what no pixel shows of all lights together: none of many may be
- * seen by itself, but all may. A ghost is left out in one wave for all lights.
- * Sums are integers, so that their order does not matter. */
+/* Leaves out ghosts that no pixel shows. The light of all lights is summed, for
+ * each ghost and wave: together they may be seen though none is by itself. A
+ * ghost is left out, in a wave, for all lights at once. Sums are integers, so
+ * their order does not matter. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -252,7 +254,8 @@ static void leave_out_faint(struct glint_flare *f, int n)
     }
 }
 
-/* Closes the gaps of what cannot be seen. */
+/* Keeps the first N bundles that can be seen, without gaps, as far as their
+ * vertices fit. */
 static void keep_seen(struct glint_flare *f, int n)
 {
     struct glint_flare_stats *s = &f->stats;
@@ -278,8 +281,8 @@ static void keep_seen(struct glint_flare *f, int n)
     }
 }
 
-/* N_JOBS pairs of a ghost and a light, all waves of each; returns how many
- * bundles there are. */
+/* Plans N_JOBS pairs of a ghost and a light, all waves of each. Returns how
+ * many bundles that makes. */
 static int plan_all(struct glint_flare *f, int n_jobs)
 {
     const int n_waves = f->plan.frame->n_waves;
@@ -349,7 +352,8 @@ void glint_flare_light(const struct glint_flare *flare,
     *flux = flare->flux;
 }
 
-/* Drops what the bins did not keep from the totals. */
+/* Sets the totals of the statistics; they count only bundles that the bins
+ * kept. */
 static void total(struct glint_flare *f)
 {
     struct glint_flare_stats *s = &f->stats;
@@ -402,7 +406,7 @@ void glint_flare_draw(struct glint_flare *flare,
 
     glint_flare_forget(flare);
     if (flare->stats.primitives == 0)
-        return; /* the bins may be another frame's */
+        return; /* the bins may be those of an earlier frame */
     tiles = glint_flare_start(flare, image);
     flare->cfg.raster->draw(flare, &tiles, pass, 0);
 }

@@ -1,26 +1,27 @@
 /* SPDX-License-Identifier: MIT
  *
- * Many lights made few: pairs merge whose images move least.
+ * Merges many lights into few, so that their images move least.
  *
  *   in   lights in any order
  *   out  fewer, with the same light from nearly the same directions
  *
  * Method: lights are sorted along a Z-order curve through the plane of their
- * direction sines, and neighbours on it are looked at. A curve parts some
- * neighbours of the plane; so each round has another, through a shifted plane.
+ * direction sines, and neighbours on the curve are compared. A curve separates
+ * some neighbours of the plane, so each round takes a curve through a shifted
+ * plane.
  *
- * What cannot be told apart merges first. Then, while there are too many, what
- * costs least: a pair of fluxes a and b that lies d apart moves by d b / (a +
- * b) and d a / (a + b), which shifts the outlines of all its ghosts, and the
- * squared error of a shifted outline is the square of its light times the
- * shift; together a b d. So faint lights merge over long distances while bright
- * ones keep their places. A round merges the cheapest of the pairs it finds, a
- * part of what has to go, so that costs rise slowly.
+ * Lights that cannot be told apart merge first. Then, while there are too many,
+ * the pairs of lowest cost merge: if fluxes a and b lie d apart, they move by d
+ * b / (a + b) and d a / (a + b), which shifts the outlines of all their ghosts,
+ * and the squared error of a shifted outline is the square of its light times
+ * the shift; the sum is a b d. So faint lights merge over long distances while
+ * bright ones keep their places. A round merges a part of the lights that have
+ * to go, by the cheapest pairs it finds, so that costs rise slowly.
  *
- * In place: O(n log n) for all rounds, as each leaves fewer lights; nothing
- * depends on the order that lights came in, as the sort is by all they hold.
- * While it works, rgb_q14 of a light has HELD more fraction bits, or a faint
- * light's colour would be lost in the rounding of a bright one's.
+ * In place: O(n log n) for all rounds, as each leaves fewer lights. Nothing
+ * depends on the order that lights came in, as the sort compares all members of
+ * a light. During the work rgb_q14 of a light has HELD more fraction bits, or
+ * the colour of a faint light would be lost in the rounding of a bright one's.
  */
 #include "base/q.h"
 #include "base/real.h"
@@ -29,8 +30,8 @@
 
 enum {
     CURVES =
-        3, /* curves along which pairs are sought that cannot be told apart */
-    PART = 4,  /* 1 / share of the lights to be merged that a round merges */
+        3, /* curves along which lights are sought that cannot be told apart */
+    PART = 4,  /* a round merges 1 / PART of the lights that have to go */
     BINS = 64, /* bins of the histogram of costs */
     HELD = 14,
     WORDS = 9 /* 32-bit words that a light consists of */
@@ -51,7 +52,8 @@ static struct direction direction_of(const struct glint_light *b)
                               b->cosine_q30};
 }
 
-/* Squared distance on the unit sphere, at most 4. */
+/* Returns the squared distance of two directions on the unit sphere, at most 4.
+ */
 static uint64_t distance2_q60(const struct glint_light *a,
                               const struct glint_light *b)
 {
@@ -63,12 +65,14 @@ static uint64_t distance2_q60(const struct glint_light *a,
     return (uint64_t)(x * x) + (uint64_t)(y * y) + (uint64_t)(z * z);
 }
 
-/* The azimuth of X, Y; returns their length. Straight ahead any will do. */
+/* Sets the azimuth of B to that of (X, Y); returns the length of (X, Y). If
+ * that is 0, straight ahead, the azimuth does not matter. */
 static int64_t set_azimuth(struct glint_light *b, int32_t x_q30, int32_t y_q30)
 {
     const uint32_t size = (uint32_t)(x_q30 < 0 ? -x_q30 : x_q30) |
                           (uint32_t)(y_q30 < 0 ? -y_q30 : y_q30);
-    const int up = 30 - bit_length(size); /* short ones need their last bits */
+    /* Lifts short vectors, whose last bits matter. */
+    const int up = 30 - bit_length(size);
     const int64_t scale = INT64_C(1) << (up > 0 ? up : 0);
     const int64_t x = x_q30 * scale, y = y_q30 * scale;
     const int64_t length = q_root((uint64_t)(x * x + y * y));
@@ -80,13 +84,13 @@ static int64_t set_azimuth(struct glint_light *b, int32_t x_q30, int32_t y_q30)
     return (length + scale / 2) / scale;
 }
 
-/* Points B at what is D when its length is made 1. */
+/* Points B in the direction D, which need not have length 1. */
 static void set_direction(struct glint_light *b, const struct direction *d)
 {
     const int64_t off = set_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
     const int64_t length = q_root((uint64_t)(off * off + z * z));
 
-    /* 0: between two lights on opposite sides of the horizon */
+    /* The length is 0 between two lights on opposite sides of the horizon. */
     b->sine_q30 =
         length ? q_clamp_sat(off * ONE_Q30 / length, 0, ONE_Q30) : ONE_Q30;
     b->cosine_q30 = length ? q_clamp_sat(z * ONE_Q30 / length, 0, ONE_Q30) : 0;
@@ -97,8 +101,9 @@ static void set_direction(struct glint_light *b, const struct direction *d)
 /* The lights, and how they are sorted. */
 struct order {
     struct glint_light *light;
-    int by_power;    /* the brightest first; else along a curve */
-    uint32_t x0, y0; /* corner that the curve begins at, 2^-30 below -1 */
+    int by_power; /* 1: the brightest first; 0: along a curve */
+    /* Where the curve begins, in units of 2^-30 below (-1, -1). */
+    uint32_t x0, y0;
 };
 
 static void words_of(const struct glint_light *b, int32_t *word)
@@ -113,7 +118,7 @@ static void words_of(const struct glint_light *b, int32_t *word)
     word[8] = b->sin_q30;
 }
 
-/* Returns whether A comes before B by all that they hold. */
+/* Returns whether A comes before B: compares all members, power first. */
 static int is_brighter(const struct glint_light *a, const struct glint_light *b)
 {
     int32_t p[WORDS], q[WORDS];
@@ -126,7 +131,8 @@ static int is_brighter(const struct glint_light *a, const struct glint_light *b)
     return 0;
 }
 
-/* How far V is along one side of the plane. */
+/* Returns how far V lies along a side of the plane from its beginning, which is
+ * ZERO below -1. */
 static uint32_t along(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
@@ -143,7 +149,8 @@ static int is_before(const void *order, int i, int j)
 
     if (o->by_power || (dx | dy) == 0)
         return is_brighter(a, b);
-    /* the highest bit that differs decides, y's before x's */
+    /* The highest bit that differs decides; of the same bit, y's comes before
+     * x's. */
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
 }
 
@@ -163,7 +170,8 @@ static void sort(struct order *o, int n)
     glint_heap_sort(&heap, n);
 }
 
-/* Multiples of irrational numbers: no two rounds part the same neighbours. */
+/* Sorts lights along the curve of round ROUND. Curves begin at multiples of
+ * irrational numbers, so that no two of them separate the same neighbours. */
 static void sort_along(struct glint_light *b, int n, int round)
 {
     const uint32_t k = (uint32_t)round;
@@ -175,7 +183,8 @@ static void sort_along(struct glint_light *b, int n, int round)
 
 /* ----------------------------------------------------------------- merging */
 
-/* A gets the light of B and the direction between. */
+/* Merges B into A: A gets the power and colour of both, and a direction
+ * between. */
 static void merge(struct glint_light *a, const struct glint_light *b)
 {
     const struct glint_real power = real_plus(a->power, b->power);
@@ -204,7 +213,8 @@ static void merge(struct glint_light *a, const struct glint_light *b)
     set_direction(a, &mean);
 }
 
-/* The power of two that merging A and B costs, squared. */
+/* Returns the exponent to base 2 of the square of what merging A and B costs.
+ */
 static int cost_of(const struct glint_light *a, const struct glint_light *b)
 {
     const uint64_t d2_q59 = distance2_q60(a, b) >> 1 | 1;
@@ -216,9 +226,11 @@ static int cost_of(const struct glint_light *a, const struct glint_light *b)
 
 /* The rule by which neighbours merge. */
 struct rule {
-    uint64_t near2_q60; /* all so near; or if 0 */
-    int cost;           /* otherwise, the largest cost of a merge */
-    int most;           /* number of lights at which merging ends */
+    uint64_t near2_q60; /* not 0: lights merge if their squared distance is at
+                           most this */
+    int cost; /* if near2_q60 is 0: largest cost at which lights merge, as of
+                 cost_of() */
+    int most; /* number of lights at which merging ends */
 };
 
 static int may_merge(const struct rule *r, const struct glint_light *a,
@@ -228,7 +240,8 @@ static int may_merge(const struct rule *r, const struct glint_light *a,
                         : cost_of(a, b) <= r->cost;
 }
 
-/* Returns how many are left. */
+/* Merges neighbours in the list of N lights by rule R; returns how many are
+ * left. */
 static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
 {
     int last = 0, left = n;
@@ -242,7 +255,8 @@ static int merge_neighbours(struct glint_light *b, int n, const struct rule *r)
     return left;
 }
 
-/* The least cost that serves for a part of the N - MOST that have to go. */
+/* Returns the least cost at which enough of the neighbours merge: 1 / PART of
+ * the N - MOST lights that have to go. */
 static int next_cost(const struct glint_light *b, int n, int most)
 {
     int count[BINS] = {0}, low = INT32_MAX, high = INT32_MIN, width, bin = 0;
@@ -262,7 +276,8 @@ static int next_cost(const struct glint_light *b, int n, int most)
     return low + (bin + 1) * width - 1;
 }
 
-/* Leaves out what is dark, and holds colours finely. */
+/* Leaves out lights without power or colour, gives colours HELD more fraction
+ * bits, and returns how many lights are kept. */
 static int take_in(struct glint_light *b, int n)
 {
     int kept = 0;

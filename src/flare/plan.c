@@ -7,13 +7,14 @@
 #include "flare/plan_cells.h"
 
 enum {
-    /* a row is as many rays as are computed at once */
+    /* cells across of the small probe: a row of it is as many rays as are
+     * computed at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
     FEW_INSIDE = 6
 };
 
-/* X of the sensor as pixels, q8. */
+/* Returns X, in units of the sensor outputs, in pixels, within +-2^31. */
 static int64_t pixels_q8(const struct glint_plan *p,
                          const struct glint_transfer *t, int64_t x)
 {
@@ -22,8 +23,8 @@ static int64_t pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* What the probe's rays reach, and a tenth more, turned by the light's
- * azimuth, meets the picture. */
+/* Returns whether the range E of the probe's rays, grown by a tenth and turned
+ * by the light's azimuth, meets the picture. */
 static int is_in_view(const struct glint_plan *p, const struct glint_light *b,
                       const struct glint_transfer *t,
                       const struct glint_probe_extent *e)
@@ -48,7 +49,8 @@ static struct glint_real box_side(const struct glint_transfer *t, int k)
     return real_of(t->box[k], t->box_exponent);
 }
 
-/* The colour of the bundle, its largest channel 1; returns what that was. */
+/* Sets the colour of the bundle, its largest channel 1; returns what the
+ * largest channel was. */
 static struct glint_real colour_of(const struct glint_wave *w,
                                    const struct glint_light *b,
                                    int32_t *rgb_q14)
@@ -67,8 +69,8 @@ static struct glint_real colour_of(const struct glint_wave *w,
     return real_of(most, -28);
 }
 
-/* Flux of the window of the box, or of what an annular one is, at energy
- * 2^EXPONENT. */
+/* Returns the flux of the bundle, display white times pixels, if all rays of
+ * its window had energy 2^EXPONENT. An annular box counts without its hole. */
 static struct glint_real flux_of(const struct glint_plan *p,
                                  const struct glint_bundle_plan *s,
                                  const struct glint_transfer *t,
@@ -78,8 +80,9 @@ static struct glint_real flux_of(const struct glint_plan *p,
     const struct glint_light *b = &p->light[s->light];
     struct glint_real x = real_times(box_side(t, 1), box_side(t, 2));
 
-    x.exponent += 2 + exponent; /* both are halves */
-    x.exponent -= 2 * p->half;  /* over pixels as large as four */
+    x.exponent += 2 + exponent; /* both sides are halves of the box */
+    /* Pixels at half resolution are as large as four. */
+    x.exponent -= 2 * p->half;
     if (t->annulus)
         x = real_over(x, real_of(t->annulus + 1, 0));
     x = real_times(x, real_of(t->window.u_half_q30, -30));
@@ -90,9 +93,10 @@ static struct glint_real flux_of(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* The most that any cell can shine over what can be seen: flux of a cell of the
- * probe over the least area of one on the sensor, twice as much for what lies
- * between. Of cells that are folded the area says little. */
+/* Returns the most light that a cell can give a pixel, in units of the faintest
+ * light that shows: twice the flux of a cell of the probe over the least area
+ * of one on the sensor, as cells between may be brighter. Returns the largest
+ * value for folded ghosts, whose areas say little. */
 static int64_t peak_q20(const struct glint_plan *p, const struct glint_probe *s,
                         const struct glint_transfer *t, struct glint_real flux)
 {
@@ -106,7 +110,8 @@ static int64_t peak_q20(const struct glint_plan *p, const struct glint_probe *s,
                               2 * t->exponent[GLINT_OUT_SENSOR_X] + 2),
                       real_times(plan_pixels_per_mm(p), plan_pixels_per_mm(p)));
     flux.exponent += 1;
-    area = real_times(area, real_of(s->across * 2 * s->down, 0)); /* the box */
+    /* Number of cells over the whole box. */
+    area = real_times(area, real_of(s->across * 2 * s->down, 0));
     return real_integer(real_over(real_over(flux, area), p->frame->faintest),
                         20, most);
 }
@@ -137,7 +142,8 @@ struct glint_place glint_plan_place(const struct glint_plan *plan, int light)
             real_over(real_of(1, 0), real_of(plan->opening_q30, -30))};
 }
 
-/* How far energies can be lifted, with a quarter more than the probe saw. */
+/* Returns the power of two by which energies can be raised without overflow,
+ * with a quarter to spare over what the probe saw. */
 static int energy_up(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
@@ -152,7 +158,7 @@ static void set_flux(struct glint_bundle *b, const struct glint_transfer *t,
     const struct glint_real cell =
         real_over(flux, real_of((int64_t)b->n_cells * rows, 0));
 
-    /* far below what can be seen, or far above what is held anyway */
+    /* below -400 nothing can be seen; above 400 light is clamped anyway */
     b->flux_q31 = cell.exponent < -400 ? 0 : cell.mantissa;
     b->flux_exponent = cell.exponent > 400 ? 431 : cell.exponent + 31;
 }
@@ -163,7 +169,8 @@ int glint_plan_is_beyond(const struct glint_lens *lens,
     return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
-/* Whether ghost or part GHOST is of the pair asked for. */
+/* Returns whether ghost or part GHOST belongs to the pair of surfaces of
+ * only_ghost. */
 static int is_wanted(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
@@ -173,8 +180,8 @@ static int is_wanted(const struct glint_flare_frame *r, int ghost)
     return g->i == only->i && g->j == only->j;
 }
 
-/* Narrows the window of T to what the stop lets through, if it is narrower than
- * the model's; returns 0 where that is nothing. */
+/* Narrows the window of T to what the stop lets through, if that is narrower
+ * than the model's stop; returns 0 if nothing is left. */
 static int set_window(const struct glint_plan *plan,
                       struct glint_bundle_plan *planned,
                       struct glint_plan_scratch *scratch)

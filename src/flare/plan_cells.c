@@ -8,14 +8,17 @@
 
 enum { FOLD_OCTAVES = 3 };
 
-/* Root of SUM / N, of differences whose squares were taken over 2^10 more. */
+/* Returns the root of the mean SUM / N of squares; each square was divided by
+ * 2^10 before it was added. */
 static int64_t root_mean(uint64_t sum, int n)
 {
     return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
 
-/* The second derivative of the kinds A and B, worth on the sensor, in units of
- * that over 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns how much the outputs A and B bend over the box, converted to a
+ * distance on the sensor, in units of the sensor outputs times
+ * 2^GLINT_PROBE_FINE_LOG2: second differences over first ones, times those of
+ * the sensor. */
 static int64_t bend_of(const struct glint_probe *s, int a, int b)
 {
     const int64_t second = root_mean(
@@ -26,11 +29,12 @@ static int64_t bend_of(const struct glint_probe *s, int a, int b)
                                          s->change[GLINT_OUT_SENSOR_Y].first,
                                      s->n_bends);
 
-    return first ? q_divide(second * sensor, first) : 0; /* 2^30 * 2^31 */
+    /* At most 2^30 * 2^31. */
+    return first ? q_divide(second * sensor, first) : 0;
 }
 
-/* What the stop position changes by over the box, and the stop's radius, both
- * in units of the outputs over 2^GLINT_PROBE_FINE_LOG2. */
+/* Return the change of the stop position over the box, and the stop's radius,
+ * both in units of the stop outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t stop_change(const struct glint_probe *s)
 {
     return root_mean(s->change[GLINT_OUT_STOP_X].first +
@@ -48,8 +52,9 @@ static int64_t one_radius(const struct glint_probe *s)
     return radius > 0 ? radius : 1;
 }
 
-/* The same of a round stop's outline, (1 + r^2) / 2 like a barrel's: where r is
- * 1, that changes as fast as the stop position S does, and bends by S'^2. */
+/* Returns what bend_of() does for a round stop's outline, (1 + r^2) / 2 as for
+ * a barrel: where r is 1, it changes as fast as the stop position s does, and
+ * bends by the square of the derivative of s. */
 static int64_t round_bend(const struct glint_probe *s)
 {
     const int64_t sensor = root_mean(s->change[GLINT_OUT_SENSOR_X].first +
@@ -60,9 +65,10 @@ static int64_t round_bend(const struct glint_probe *s)
     return q_divide((stop_change(s) >> 2) * sensor, (one_radius(s) >> 2) + 1);
 }
 
-/* What codes need of N cells a side. Errors of a faint ghost are the less seen:
- * in codes its light shrinks by 2^(5/12) with each octave, its errors with the
- * square of the cells. Folds are brighter than their ghost's mean. */
+/* Returns how many of N cells a side a picture in codes needs. Errors of a
+ * fainter ghost are seen less: in codes its light shrinks by 2^(5/12) with each
+ * octave, its errors with the square of the cells. Folds are brighter than the
+ * ghost's mean. */
 static int cells_for_codes(const struct glint_probe *s,
                            struct glint_real irradiance, int n)
 {
@@ -76,17 +82,19 @@ static int cells_for_codes(const struct glint_probe *s,
     return n;
 }
 
-/* How much more outlines may bend than light does. A vertex has two barrels, of
- * which the second is the tightest of all others: where three and more meet it
- * has kinks, so that tips of outlines come and go with the grid. A round stop
- * is round on all sides, of every ghost. */
+/* Returns how many times more outlines may bend than light. The factor is 5
+ * where three or more barrels cut: the second barrel of a vertex is the
+ * tightest of all but the first, and has kinks where these meet, so that tips
+ * of outlines come and go with the grid. It is 5 for a round stop, too, which
+ * curves all outlines. */
 static int outline_over_light(const struct glint_plan *p,
                               const struct glint_transfer *t)
 {
     return p->round || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* By the rule of lens/grid.h, from what the probe saw. */
+/* Returns the cells a side by the rule of lens/grid.h, from what the probe saw.
+ */
 static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
                     const struct glint_transfer *t,
                     struct glint_real irradiance)
@@ -119,7 +127,7 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
                                                   GLINT_PROBE_FINE_LOG2),
                                 plan_pixels_per_mm(p)),
                      8, INT64_C(1) << 40);
-    /* the root of 12.5 times as much, times fineness / 64 */
+    /* the root of 12.5 times the bend in pixels, times fineness / 64 */
     n = q_narrow(
         ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
         14);
@@ -130,7 +138,8 @@ static int cells_of(const struct glint_plan *p, const struct glint_probe *s,
     return n < most ? n : most;
 }
 
-/* As N, but even, and two more if there is room. */
+/* Returns N + 2, made even, or GLINT_MAX_CELLS if that is less: room for the
+ * two rows of cells in the hole of an annular box. */
 static int annular_cells(int n)
 {
     const int more = (n + 3) / 2 * 2;
@@ -148,8 +157,8 @@ int glint_plan_cells(const struct glint_plan *plan,
     return transfer->annulus ? annular_cells(n) : n;
 }
 
-/* What kind K bends by over the box, all ways together, in its units over
- * 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns how much output K bends over the box, across and down together, in
+ * its units times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t bowl_of(const struct glint_probe *s, int k)
 {
     int64_t sum = 0;
@@ -160,8 +169,8 @@ static int64_t bowl_of(const struct glint_probe *s, int k)
     return sum;
 }
 
-/* The same of a round stop, where r^2 / 2 bends by the square of what the stop
- * position changes by. */
+/* Returns the same for a round stop: r^2 / 2 bends by the square of the change
+ * of the stop position. */
 static int64_t round_bowl_q16(const struct glint_probe *s)
 {
     const struct glint_real change =
@@ -170,16 +179,16 @@ static int64_t round_bowl_q16(const struct glint_probe *s)
     return 2 * real_integer(real_times(change, change), 16, INT64_C(1) << 40);
 }
 
-/* How far what is straight between the rays of N_CELLS lies off such a bowl in
- * the mean: where a cell bends by D across and E down, (D + E) / 12. */
+/* Returns the mean height of straight lines between the rays of N_CELLS above a
+ * bowl: if a cell bends by D across and E down, (D + E) / 12. */
 static uint16_t sag_q16(int64_t bowl_q16, int n_cells)
 {
     return (uint16_t)q_clamp_sat(
         q_divide(bowl_q16, 12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
 }
 
-/* A barrel's (1 + r^2) / 2 is a bowl. With the sag taken off, outlines lie as
- * often outside as inside. */
+/* A barrel's (1 + r^2) / 2 is a bowl. Once its sag is subtracted, outlines lie
+ * outside of the true ones as often as inside. */
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,

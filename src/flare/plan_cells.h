@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * How fine the grid of a bundle has to be, from how much its rays bend.
+ * Chooses how fine the grid of a bundle has to be, from how much its rays bend.
  *
  *   in   a probe of the bundle, its irradiance
- *   out  cells a side; how far straight lines between rays lie off outlines
- */
+ *   out  cells a side; how far straight lines between rays lie off outlines */
 #ifndef GLINT_FLARE_PLAN_CELLS_H
 #define GLINT_FLARE_PLAN_CELLS_H
 
@@ -18,14 +17,16 @@ static inline struct glint_real plan_pixels_per_mm(const struct glint_plan *p)
     return x;
 }
 
-/* Cells a side of the grid of a bundle that shines with IRRADIANCE, display
- * white. Of an annular box two rows of them are the middle's. */
+/* Returns how many cells a side the grid of a bundle gets that shines with
+ * IRRADIANCE, display white. For an annular box this includes the two rows of
+ * cells next to the middle, which carry no light. */
 int glint_plan_cells(const struct glint_plan *plan,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer,
                      struct glint_real irradiance);
 
-/* Sets the sags of PLANNED for a grid of N_CELLS a side; ROUND: the stop is. */
+/* Sets the sags of PLANNED for a grid of N_CELLS a side; ROUND is 1 for a round
+ * stop. */
 void glint_plan_sags(struct glint_bundle_plan *planned,
                      const struct glint_probe *probe,
                      const struct glint_transfer *transfer, int n_cells,

@@ -4,7 +4,7 @@
 #include "base/q.h"
 #include "base/real.h"
 
-/* X as an integer of the output's unit. */
+/* Returns X as an integer in the unit of output KIND. */
 static int64_t in_units(const struct glint_transfer *t, int kind, int64_t x_q46)
 {
     return real_integer(real_of(x_q46, -46), -t->exponent[kind],
@@ -19,7 +19,8 @@ static int is_of_stop(int kind)
 static void begin(struct glint_probe *s, const struct glint_transfer *t,
                   int32_t opening_q30, int across, int down)
 {
-    const int64_t near_q16 = 68813; /* 1.05 */
+    /* 1.05: rays just outside count as inside. */
+    const int64_t near_q16 = 68813;
 
     s->across = across;
     s->down = down;
@@ -52,7 +53,7 @@ static int is_inside(const struct glint_probe *s,
     return 1;
 }
 
-/* Rays of row J of s->down. */
+/* Sends the rays of row J, 0 .. s->down. */
 static void send_row(struct glint_probe *s, struct glint_transfer *t, int j)
 {
     const int32_t one_q30 = INT32_C(1) << 30;
@@ -79,7 +80,8 @@ static void send_row(struct glint_probe *s, struct glint_transfer *t, int j)
     }
 }
 
-/* B between A and C, STEPS of which fit the box, across (WAY 0) or down. */
+/* Adds the differences at B between its neighbours A and C. STEPS such steps
+ * make up the whole box; WAY is 0 across, 1 down. */
 static void add_bend(struct glint_probe *s, const struct glint_probe_node *a,
                      const struct glint_probe_node *b,
                      const struct glint_probe_node *c, int steps, int way)
@@ -92,7 +94,7 @@ static void add_bend(struct glint_probe *s, const struct glint_probe_node *a,
         const int64_t second =
             ((int64_t)a->at[k] - 2 * (int64_t)b->at[k] + c->at[k]) * steps *
             steps;
-        /* squares below 2^62, some hundred of them over 2^10 */
+        /* squares below 2^62, over 2^10: some hundred of them fit a sum */
         const int64_t f =
             q_clamp_sat(first >> GLINT_PROBE_FINE_LOG2, -INT32_MAX, INT32_MAX);
         const int64_t d =
@@ -132,7 +134,8 @@ static void widen(struct glint_probe_extent *e,
     e->wide = y > e->wide ? y : -y > e->wide ? -y : e->wide;
 }
 
-/* The cell between A and B, and C and D beside them. */
+/* Adds the cell between A, B and C, D below them to the reach, if one of its
+ * rays is inside. */
 static void add_reach(struct glint_probe *s, const struct glint_probe_node *a,
                       const struct glint_probe_node *b,
                       const struct glint_probe_node *c,

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a flare holds, and what a way to draw it (by_edges.c; by_cells.c of
- * published/) is to flare.c, which has what they share. Each carves a state of
- * its own, for the flare and for each worker.
- */
+ * The state of a flare, and the interface of a way to draw it (by_edges.c;
+ * by_cells.c of published/) to flare.c, which has what both share. Each way
+ * carves a state of its own, for the flare and for each worker. */
 #ifndef GLINT_FLARE_STATE_H
 #define GLINT_FLARE_STATE_H
 
@@ -18,74 +17,80 @@
 struct glint_flare_worker {
     struct glint_tile_scratch tile;
     struct glint_plan_scratch *plan;
-    void *own; /* the raster's */
+    void *own; /* state of the raster */
 };
 
 struct glint_bundle_slot {
     int first_vertex;
-    int first; /* primitive or edge; -1: it found no place */
+    int first; /* first primitive or edge; -1: there was no room for them */
     int n, n_dropped, n_merged, n_held;
     int worker; /* worker that made it, by edges */
-    int refs;   /* entries of the bins; by edges only if it found no place */
+    int refs;   /* entries in the bins; by edges only set if the bundle found no
+                   room */
 };
 
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    int half, width, height; /* half resolution or not, and the size that is
-                                drawn with it: see struct glint_flare_frame */
+    /* 1: half resolution; and the size in pixels that is drawn. */
+    int half, width, height;
     const struct glint_half *quads; /* set only at half resolution */
     int n_bundles, n_vertices;      /* bundles and vertices taken in so far */
-    struct glint_plan plan;         /* plan for a lens, unless frame is NULL */
+    struct glint_plan plan; /* plan for a lens, unless plan.frame is NULL */
     struct glint_bundle_plan *planned; /* plan of each bundle planned */
-    struct glint_real flux, brightest; /* flux of all that was planned, and the
-                                          largest mean irradiance */
-    int n_drawn;                       /* bundles of these that bin kept */
+    struct glint_real flux, brightest; /* flux of all bundles planned, and the
+                                          largest mean irradiance of one */
+    int n_drawn; /* number of bundles, the first ones, that bin kept */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
-    void *own;              /* the raster's */
+    void *own;              /* state of the raster */
     struct glint_bins bins; /* first level */
     struct glint_flare_worker *worker;
-    struct glint_resolve *resolve; /* tables for the picture drawn last */
+    /* Tables for the picture that is being drawn. */
+    struct glint_resolve *resolve;
 };
 
 /* A way from bundles to pixels. */
 struct glint_raster {
     int max_bundles;
-    int masks;      /* takes a stop with a mask */
-    int two_levels; /* tiles of tiles, if asked for */
-    int halves;     /* can draw half as many pixels each way */
-    /* Carves the raster's own parts of flare and worker; gives NULL while A
-     * measures. */
+    int masks;      /* 1: takes a stop with a mask */
+    int two_levels; /* 1: can sort tiles into large and small ones */
+    int halves;     /* 1: can draw half as many pixels each way */
+    /* Carve the raster's own parts of the flare and of a worker; return NULL
+     * while A only measures. */
     void *(*carve)(struct glint_arena *a, const struct glint_flare_config *c);
     void *(*carve_worker)(struct glint_arena *a,
                           const struct glint_flare_config *c);
-    void (*begin)(struct glint_flare *f); /* once placed; or NULL */
-    /* Fills the vertices of the bundles planned; NULL: they come and go. */
+    /* Called once after the flare is placed; NULL: there is nothing to do. */
+    void (*begin)(struct glint_flare *f);
+    /* Fills the vertices of the bundles planned; NULL: vertices are not stored.
+     */
     void (*fill)(struct glint_flare *f);
-    /* Sorts the bundles taken in into tiles: sets all statistics but the counts
-     * of bundles and vertices, n_drawn, and what draw needs. */
+    /* Sorts the bundles taken in into tiles: sets n_drawn, what draw needs, and
+     * all statistics but the numbers of bundles and vertices. */
     void (*bin)(struct glint_flare *f);
-    /* Draws over the first N_BELOW of PASS, and may set the one after them. */
+    /* Draws over the first N_BELOW passes of PASS; has room for its own pass
+     * after them. */
     void (*draw)(struct glint_flare *f, const struct glint_tiles *tiles,
                  struct glint_pass *pass, int n_below);
 };
 
-/* Forgets what the last frame drew, and that anything was under it. */
+/* Forgets the counts of the last draw, and the passes that were under it. */
 void glint_flare_forget(struct glint_flare *flare);
 
-/* Returns the tiles that a frame is drawn onto. */
+/* Sets up the flare's tables for IMAGE (NULL: light is dropped) and returns the
+ * tiles that a frame is drawn onto. */
 struct glint_tiles glint_flare_start(struct glint_flare *flare,
                                      const struct glint_image *image);
 
-/* A + B, held at INT_MAX: a need that large cannot be served anyway. */
+/* Returns A + B, at most INT32_MAX: a need that large cannot be met anyway. */
 static inline int glint_flare_add_need(int a, int b)
 {
     return a > INT32_MAX - b ? INT32_MAX : a + b;
 }
 
-/* Tiles of so many pixels that cover a picture. */
+/* Returns how many tiles of 2^LOG2 pixels a side cover PIXELS_X x PIXELS_Y. */
 static inline size_t glint_flare_count_tiles(int pixels_x, int pixels_y,
                                              int log2)
 {

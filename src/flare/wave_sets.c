@@ -6,12 +6,13 @@
 
 enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 
-/* A ghost and a light. Lies where bundles find their places only later. */
+/* One ghost and one light. While bundles have no places yet, jobs lie in the
+ * memory of their slots. */
 struct job {
     int ghost, light;
     int set;      /* index of its set, or UNSEEN */
-    int peak_q20; /* peak of all its waves, 2^20 at most: see struct
-                     glint_bundle_plan */
+    int peak_q20; /* light of all its waves together, 2^20 at most: see peak_q20
+                     in struct glint_bundle_plan */
     int first;    /* index of its first bundle */
 };
 
@@ -44,8 +45,8 @@ int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave)
 
 /* -------------------------------------------------------------- the choice */
 
-/* Gives where rays of PLANNED land, evenly over half of its window: pixels, q8.
- */
+/* Sets AT_Q8 to where the rays of PLANNED land, in pixels. Rays are spread
+ * evenly over half of its window. */
 static void trace(const struct glint_plan *plan,
                   const struct glint_bundle_plan *planned,
                   struct glint_transfer *t, int32_t at_q8[ROWS][2][GLINT_RAYS])
@@ -73,15 +74,15 @@ static void trace(const struct glint_plan *plan,
     }
 }
 
-/* How far apart the outlines of the first set's outermost waves, FIRST and
- * LAST, are, pixels. */
+/* Returns the distance in pixels between the outlines of FIRST and LAST, the
+ * outermost waves of the first set. */
 static int64_t apart_q8(const struct glint_plan *plan,
                         const struct glint_bundle_plan *first,
                         const struct glint_bundle_plan *last,
                         struct glint_transfer *t)
 {
     int32_t a_q8[ROWS][2][GLINT_RAYS], b_q8[ROWS][2][GLINT_RAYS];
-    uint64_t squares = 0; /* 48 of at most 2^52 */
+    uint64_t squares = 0; /* 24 squares of x and 24 of y, each 2^52 at most */
 
     trace(plan, first, t, a_q8);
     trace(plan, last, t, b_q8);
@@ -95,7 +96,7 @@ static int64_t apart_q8(const struct glint_plan *plan,
     return q_root(squares / (ROWS * GLINT_RAYS));
 }
 
-/* How far set SET reaches, 1 / wavelength^2. */
+/* Returns the width of set SET in 1 / wavelength^2, um^-2 in _q24. */
 static int64_t span_of(const struct glint_flare_frame *r, int set)
 {
     const struct glint_wave *w = r->wave + glint_wave_sets_first(r->sets, set);
@@ -104,21 +105,23 @@ static int64_t span_of(const struct glint_flare_frame *r, int set)
     return span < 0 ? -span : span;
 }
 
-/* Returns whether no step of set SET shows in a ghost of LIGHT, whose first set
- * is APART. */
+/* Returns whether no step between waves of set SET shows in a ghost with the
+ * sum of light LIGHT. APART is the distance of the first set's outermost
+ * outlines, pixels _q8. */
 static int serves(const struct glint_flare_frame *r, int set, int64_t apart,
                   struct glint_real light)
 {
     const struct glint_wave_sets *s = r->sets;
     const int64_t gaps = s->size[set] - 1;
     const struct glint_real step =
-        real_over(light, real_of(s->size[set], 1)); /* 2 / n: see above */
+        real_over(light, real_of(s->size[set], 1)); /* light / (2 n) */
 
     return real_less(step, s->step) ||
            apart * span_of(r, set) <= s->apart_q8 * gaps * span_of(r, 0);
 }
 
-/* The smallest set that serves the ghost of N waves planned at SOURCE. */
+/* Returns the smallest set that serves a ghost, given its bundles of the first
+ * set. */
 static int choose(const struct glint_plan *plan,
                   const struct glint_bundle_plan *planned,
                   const struct glint_bundle *bundle, struct glint_transfer *t)
@@ -159,7 +162,8 @@ static void plan_waves(struct glint_flare *f, const struct job *job, int at,
     }
 }
 
-/* A ghost and a light with the first set, and what it takes. */
+/* Plans a ghost and a light with the first set of waves, and chooses its set.
+ */
 static void look_job(void *ctx, int number, int worker)
 {
     struct glint_flare *f = ctx;
@@ -192,7 +196,8 @@ static void more_job(void *ctx, int number, int worker)
         plan_waves(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* A ghost that no pixel can show of all lights together. */
+/* Leaves out the ghosts that no pixel can show with the light of all lights
+ * together. */
 static void leave_out_faint(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
@@ -208,7 +213,8 @@ static void leave_out_faint(struct glint_flare *f, int n)
     }
 }
 
-/* N bundles, from the far end where they go up: places may overlap. */
+/* Moves N bundles; goes from the last to the first where they move up, as the
+ * places may overlap. */
 static void move(struct glint_flare *f, int from, int to, int n)
 {
     for (int i = 0; i < n && from != to; i++) {
@@ -219,7 +225,7 @@ static void move(struct glint_flare *f, int from, int to, int n)
     }
 }
 
-/* Keeps those of N jobs that are seen, without gaps; returns how many. */
+/* Keeps those of N jobs that can be seen, without gaps; returns how many. */
 static int keep_seen(struct glint_flare *f, int n)
 {
     const int size = f->plan.frame->sets->size[0];
@@ -234,8 +240,9 @@ static int keep_seen(struct glint_flare *f, int n)
     return kept;
 }
 
-/* Gives N jobs their places; who finds none takes the first set. Returns how
- * many bundles there are; *NEED is how many there should be. */
+/* Gives N jobs places for their bundles; a job without room for its set takes
+ * the first set. Returns how many bundles there are; *NEED receives how many
+ * there would be with enough room. */
 static int place(struct glint_flare *f, int n, int64_t *need)
 {
     const int *size = f->plan.frame->sets->size;

@@ -1,32 +1,33 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which set of waves a ghost takes.
+ * Chooses the set of waves of each ghost.
  *
  *   in   a flare whose plan has sets; how many ghosts and lights there are
  *   out  bundles, as of glint_plan_bundle(), one after the other
  *
  * Method: all ghosts are planned with the first set, which says which can be
- * seen and how bright they are. Rays of its two outermost waves through the
- * same places of the pupil's box, which follows the outline from wave to wave,
- * land as far apart as their outlines are. Those that need more waves are
- * planned anew. Light between two waves takes a step of about 5 / n of the
- * ghost's, in the channel where it is largest.
- */
+ * seen and how bright they are. Rays of its two outermost waves are sent
+ * through the same places of the pupil's box. The box follows the outline from
+ * wave to wave, so the distance at which two such rays land is that of the
+ * outlines. Ghosts that need more waves are planned anew with a larger set.
+ * Light between two of n waves changes by about 5 / n of the ghost's light, in
+ * the channel where the change is largest. */
 #ifndef GLINT_FLARE_WAVE_SETS_H
 #define GLINT_FLARE_WAVE_SETS_H
 
 #include "flare/state.h"
 
 struct glint_wave_planner {
-    /* Plans N_JOBS pairs of a ghost and a light, ghosts first; returns how many
-     * bundles there are, and sets the statistics of what was needed. */
+    /* Plans N_JOBS pairs of a ghost and a light, all ghosts of the first light
+     * first. Returns how many bundles that makes, and sets the statistics of
+     * what was needed. */
     int (*plan)(struct glint_flare *flare, int n_jobs);
 };
 
-/* First wave of set SET. */
+/* Returns the index of the first wave of set SET. */
 int glint_wave_sets_first(const struct glint_wave_sets *sets, int set);
 
-/* The set of wave WAVE. */
+/* Returns the set that wave WAVE belongs to. */
 int glint_wave_sets_of(const struct glint_wave_sets *sets, int wave);
 
 #endif

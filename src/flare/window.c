@@ -13,7 +13,8 @@ enum {
     LEAST_HALF_Q30 = 1 << 12
 };
 
-/* In steps between nodes, _q16, from the first. */
+/* A range in units of the distance between nodes, counted from the first node.
+ */
 struct extent {
     int32_t low_q16[2], high_q16[2]; /* across, down */
 };
@@ -34,7 +35,7 @@ static void send(struct glint_window_nodes *n, struct glint_transfer *t)
 {
     const uint32_t outputs = t->outputs;
 
-    /* neither where rays land nor what is left of them */
+    /* The window depends neither on where rays land nor on their energy. */
     t->outputs &=
         ~(UINT32_C(1) << GLINT_OUT_SENSOR_X |
           UINT32_C(1) << GLINT_OUT_SENSOR_Y | UINT32_C(1) << GLINT_OUT_ENERGY);
@@ -58,8 +59,9 @@ static void send(struct glint_window_nodes *n, struct glint_transfer *t)
     n->n_rays += ACROSS * DOWN;
 }
 
-/* How much kind K is bent about a node: twice as far as it may lie off what is
- * straight between rays. Below 2^31 + 2^31 as values are below 2^30. */
+/* Returns how much output K bends about node (I, J): twice the distance that it
+ * may lie from a straight line between rays. At most 2^32, as values are below
+ * 2^30. */
 static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
 {
     const int32_t(*at)[ACROSS] = n->at[k];
@@ -73,7 +75,8 @@ static int64_t bend_of(const struct glint_window_nodes *n, int k, int i, int j)
     return ((across < 0 ? -across : across) + (down < 0 ? -down : down)) / 4;
 }
 
-/* Sides of the octagon around the stop that a node lies beyond: a bit each. */
+/* Returns the sides of the octagon around the stop that a node lies beyond, a
+ * bit each. */
 static uint32_t beyond_stop(int64_t x, int64_t y, int64_t radius, int64_t bend)
 {
     const int64_t straight = radius + bend;
@@ -98,7 +101,8 @@ static void look_at(struct glint_window_nodes *n, int i, int j)
     n->inside[j][i] = x * x + y * y < n->radius * n->radius;
 }
 
-/* The same of barrels: bits beside those of the stop. */
+/* Sets the bits of the barrels that each node lies beyond, next to the bits of
+ * the stop. */
 static void look_at_barrels(struct glint_window_nodes *n,
                             const struct glint_transfer *t)
 {
@@ -130,7 +134,7 @@ static void widen(struct extent *e, int32_t across_q16, int32_t down_q16)
     }
 }
 
-/* How far a node lies from the middle of the stop. */
+/* Returns the distance of a node from the middle of the stop, in its units. */
 static int64_t distance(const struct glint_window_nodes *n, int i, int j)
 {
     const int64_t x = n->at[GLINT_OUT_STOP_X][j][i];
@@ -139,8 +143,8 @@ static int64_t distance(const struct glint_window_nodes *n, int i, int j)
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Where the circle crosses the side from node (I, J), which is inside, to the
- * one a STEP further, WAY 0 across or 1 down. */
+/* Widens E to where the circle crosses the line from node (I, J), which is
+ * inside, to the next node: WAY is 0 across or 1 down, STEP 1 or -1. */
 static void widen_to_circle(struct extent *e,
                             const struct glint_window_nodes *n, int i, int j,
                             int way, int step)
@@ -160,7 +164,8 @@ static void widen_to_circle(struct extent *e,
           j * ONE_NODE_Q16 + (way == 1 ? part_q16 : 0));
 }
 
-/* Whether the cell at (I, J) is small beside the stop, and hardly bent. */
+/* Returns whether the cell at (I, J) is small against the stop, and hardly
+ * bent. */
 static int is_fine(const struct glint_window_nodes *n, int i, int j)
 {
     int64_t size = 0, bend = 0;
@@ -202,7 +207,7 @@ static void add_cell(struct extent *e, const struct glint_window_nodes *n,
     }
 }
 
-/* What of the window of T is seen. */
+/* Returns the part of the window of T from which rays may get through. */
 static struct extent look(struct glint_window_nodes *n,
                           struct glint_transfer *t)
 {
@@ -221,8 +226,9 @@ static struct extent look(struct glint_window_nodes *n,
 
 /* ------------------------------------------------------------------- window */
 
-/* A PART-th more to either side, within 0 .. STEPS: between lines the circle,
- * of six steps and more, bulges by a hundredth of itself. */
+/* Widens E by 1/PART of its size to either side, within 0 .. STEPS: between the
+ * lines of the grid a circle that spans six cells or more bulges by a hundredth
+ * of itself. */
 static void loosen(struct extent *e, int k, int steps, int part)
 {
     const int32_t most_q16 = steps * ONE_NODE_Q16;
@@ -234,7 +240,8 @@ static void loosen(struct extent *e, int k, int steps, int part)
     e->high_q16[k] = e->high_q16[k] < most_q16 ? e->high_q16[k] : most_q16;
 }
 
-/* The window's part E; whether it is much smaller. */
+/* Narrows the window of T to its part E; returns whether it became much
+ * smaller. */
 static int narrow(struct glint_transfer *t, struct extent *e)
 {
     struct glint_box_window *w = &t->window;

@@ -3,8 +3,8 @@
 
 enum { WIDTH = GLINT_CODES_WIDTH };
 
-/* N samples, TO_STEP and FROM_STEP bytes apart: loops that become vectors where
- * the steps are known. */
+/* Copies N samples that are TO_STEP and FROM_STEP bytes apart. Loops with known
+ * steps become vectors. */
 static inline void copy(uint8_t *restrict to, int to_step,
                         const uint8_t *restrict from, int from_step, int n)
 {
@@ -48,8 +48,8 @@ static void read_565(struct glint_codes *c, const uint8_t *px, int n, int row)
         pad(c->sample[k][row], n, 1);
 }
 
-/* CODE of 0 .. 255 as one of 0 .. MOST, rounded: those that were widened come
- * back. */
+/* Returns CODE, 0 .. 255, as a code 0 .. MOST, rounded. Codes that read_565()
+ * widened come back unchanged. */
 static int fewer(int code, int most)
 {
     return (code * most + 127) / 255;
@@ -69,7 +69,7 @@ static void write_565(const struct glint_codes *c, uint8_t *px, int n, int row)
 
 /* ------------------------------------------------------------------ chroma */
 
-/* Returns whether Cb and Cr alternate in a row of pairs already. */
+/* Returns whether Cb and Cr alternate in memory, as in a row of pairs. */
 static int is_woven(const struct glint_layout *l)
 {
     return l->planes == 2 && l->sample[1].offset == 0;
@@ -112,7 +112,7 @@ static void write_chroma(const struct glint_layout *l,
 
 /* -------------------------------------------------------------------- rows */
 
-/* Channels that have a sample for each pixel. */
+/* Returns the number of channels that have a sample for each pixel. */
 static int whole_channels(const struct glint_layout *l)
 {
     return l->kind == GLINT_LAYOUT_GREY || l->log2_x ? 1 : 3;

@@ -12,7 +12,7 @@ struct glint_composite {
     struct glint_resolve_rows *rows;
 };
 
-/* Runs twice: to measure, which gives NULL, and to place. */
+/* Runs twice: once to measure, which gives NULL, and once to place. */
 static struct glint_composite *carve(struct glint_arena *a)
 {
     struct glint_composite measured = {0}, *placed;
@@ -52,7 +52,7 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
     return GLINT_OK;
 }
 
-/* Takes the light of N_Y rows of N_X pixels; returns whether there is any. */
+/* Copies the light of N_Y rows of N_X pixels; returns whether there is any. */
 static int take(struct glint_composite *c, const struct glint_layer *layer,
                 int x, int y, int n_x, int n_y)
 {

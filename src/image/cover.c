@@ -5,13 +5,13 @@
 
 enum { WIDTH = GLINT_CODES_WIDTH };
 
-/* A stretch of one or two rows that share their chroma, or do not. */
+/* A stretch of one or two rows. */
 struct stretch {
     const struct glint_layout *layout;
     int n_x, n_y, black;
     const struct glint_cover_rows *cover;
     struct glint_codes *codes;
-    /* Sums over the pixels of each pair: Cb, Cr by turns. */
+    /* Sums of chroma over the pixels of each pair: Cb, Cr in turn. */
     int32_t sum_q7[WIDTH];
 };
 
@@ -23,13 +23,13 @@ static void cover_rgb(const struct stretch *s, const struct glint_mix *mix)
                                s->cover->cover_q8[row], s->n_x, &mix->tone);
 }
 
-/* The chroma of row ROW, of pairs. */
+/* Returns the chroma of the pairs of row ROW. */
 static uint8_t *pairs_of(const struct stretch *s, int row)
 {
     return s->codes->chroma[s->layout->log2_y ? 0 : row];
 }
 
-/* Y', Cb, Cr of every pixel of a row. */
+/* Sets YCC to Y', Cb and Cr of every pixel of a row. */
 static void spread(const struct stretch *s, int row, int16_t *const ycc_q7[3])
 {
     const uint8_t *pairs = pairs_of(s, row);
@@ -46,8 +46,8 @@ static uint8_t rounded(int32_t sum_q7, int log2)
     return (uint8_t)q_clamp_sat(q_shift(sum_q7, 7 + log2), 0, 255);
 }
 
-/* The sum of a row of pairs; where the width is odd, the last pixel counts
- * twice. */
+/* Adds the chroma of a row to the sums of its pairs; if the width is odd, the
+ * last pixel counts twice. */
 static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
 {
     for (int i = 0; i < s->n_x; i += 2)
@@ -58,7 +58,7 @@ static void add_pairs(struct stretch *s, int16_t *const ycc_q7[3])
         }
 }
 
-/* Pairs of as many rows as share them. */
+/* Writes the mean chroma of pairs, over both rows if they share it. */
 static void put_pairs(struct stretch *s, int row)
 {
     uint8_t *pairs = pairs_of(s, row);

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Hiding what a picture shows.
+ * Hides what a picture shows.
  *
- *   in   the share of each pixel that is hidden; light to add then
+ *   in   the share of each pixel that is hidden; light to add afterwards
  *   out  the picture's own codes, changed in place
  *
  *   code = encode(decode(code) (1 - cover) + light)
  *
- * A pixel that is all hidden is set to the light, whatever it was; one of which
- * nothing is hidden keeps its code until light is added, as resolve.h says.
- * Chroma that pixels share is the mean of what it would be for each of them.
- * What is left is rounded to codes before light is added.
- */
+ * A pixel that is wholly hidden is set to the light, whatever it was. A pixel
+ * of which nothing is hidden keeps its code until light is added, as resolve.h
+ * says. Chroma that pixels share is the mean of what it would be for each of
+ * them. What a pixel still shows is rounded to codes before light is added. */
 #ifndef GLINT_IMAGE_COVER_H
 #define GLINT_IMAGE_COVER_H
 
@@ -21,19 +20,19 @@ enum { GLINT_COVER_ALL = 256 };
 
 /* The cover of two rows. */
 struct glint_cover_rows {
-    ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH]; /* 0 .. 256 */
+    /* 0: nothing is hidden .. 256: all is. */
+    ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH];
 };
 
-/* Hides COVER of the pixels that LIGHT is then added to, as by
- * glint_resolve_stretch(), whose X, Y, N_X and N_Y these are. LIGHT may be
- * NULL. */
+/* Hides COVER of a stretch, then adds LIGHT to it unless that is NULL. X, Y,
+ * N_X and N_Y are as for glint_resolve_stretch(). */
 void glint_cover_stretch(const struct glint_resolve *resolve,
                          const struct glint_image *image, int x, int y, int n_x,
                          int n_y, const struct glint_cover_rows *cover,
                          struct glint_light_rows *light,
                          struct glint_resolve_rows *rows);
 
-/* Hides COVER of N pixels of a LINEAR_Q20 picture from (X, Y) on. */
+/* Hides COVER of N pixels from (X, Y) on in a LINEAR_Q20 picture. */
 void glint_cover_linear(const struct glint_image *image, int x, int y, int n,
                         const uint16_t *cover_q8);
 

@@ -3,13 +3,13 @@
 
 #include "base/compiler.h"
 
-/* A standard's curve, v = code / 255:
+/* The curve of a standard, v = code / 255:
  *   v * toe_divisor^-1                     up to code last_toe
  *   u^(2 + 2 / root), u = (v + a) / (1 + a)  above */
 struct standard {
     int last_toe;
-    int toe_divisor_100; /* hundredths */
-    int a_1000;          /* thousandths */
+    int toe_divisor_100; /* 100 times the divisor of the toe */
+    int a_1000;          /* 1000 times a */
     int root;            /* 5: u^2.4; 9: u^(20/9) = u^(1 / 0.45) */
 };
 
@@ -21,7 +21,7 @@ static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
     return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
 }
 
-/* x^5 or x^9, 0 <= x <= 1. */
+/* Returns x^5 or x^9, 0 <= x <= 1. */
 static uint64_t power_q30(uint64_t x_q30, int n)
 {
     const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
@@ -30,8 +30,8 @@ static uint64_t power_q30(uint64_t x_q30, int n)
     return mul_q30(n == 9 ? mul_q30(x4_q30, x4_q30) : x4_q30, x_q30);
 }
 
-/* Largest r with r^n <= x. Rounding moves r by 2^-27 at most where it is used:
- * r >= 0.38 for n = 5, r >= 0.67 for n = 9. */
+/* Returns the largest r with r^n <= x. Rounding moves r by 2^-27 at most in the
+ * range in which it is used: r >= 0.38 for n = 5, r >= 0.67 for n = 9. */
 static uint64_t root_q30(uint64_t x_q30, int n)
 {
     uint64_t r_q30 = 0;
@@ -68,7 +68,7 @@ void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer)
     curve->decode_q20[256] = 2 * LINEAR_WHITE_Q20;
 }
 
-/* N / D * 2^FRAC, rounded; D > 0. */
+/* Returns N / D * 2^FRAC, rounded; D > 0. */
 static int32_t ratio(int64_t n, int64_t d, int frac)
 {
     const int64_t twice = n * ((int64_t)2 << frac) + d;
@@ -77,8 +77,8 @@ static int32_t ratio(int64_t n, int64_t d, int frac)
                                 : -((-twice + 2 * d - 1) / (2 * d)));
 }
 
-/* R', G', B' of equal luma differ by what Cb and Cr say: B' - Y' is
- * 2 (1 - kb) Cb, R' - Y' is 2 (1 - kr) Cr, and G' makes the luma come out. */
+/* Sets the factors from Y'CbCr to R'G'B': B' - Y' is 2 (1 - kb) Cb, R' - Y' is
+ * 2 (1 - kr) Cr, and G' is such that the luma is Y'. */
 static void fill_to_rgb(struct glint_ycc *ycc, int64_t kr, int64_t kb,
                         int y_steps, int c_steps)
 {
@@ -95,7 +95,8 @@ static void fill_to_rgb(struct glint_ycc *ycc, int64_t kr, int64_t kb,
     m_q16[2][2] = 0;
 }
 
-/* Green takes the rounding errors, so that the row sums are exact. */
+/* Sets the factors from R'G'B' to Y'CbCr. Green takes the rounding errors, so
+ * that the sums of the rows are exact. */
 static void fill_to_ycc(struct glint_ycc *ycc, int64_t kr, int64_t kb,
                         int y_steps, int c_steps)
 {

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * From the codes of a picture to linear light, and between its colours.
+ * Converts the codes of a picture to linear light, and between colour systems.
  *
  *   curve  a full-range code R', G', B' or Y' -> linear light, sRGB or BT.709
  *   ycc    Y, Cb, Cr codes of 8 bits <-> full-range R', G', B'
  *
  * Full-range codes have 7 fraction bits (_q7: 255 << 7 is white), linear light
- * has 20 (1 << 20 is white). A curve is straight between the 256 codes, and
- * within 2^-21 of the true one there. The way back is the kernels':
- * kernels/tone.h.
+ * has 20 (1 << 20 is white). A curve is within 2^-21 of the true one at the 256
+ * codes, and straight between them. kernels/tone.h goes from light to codes.
  *
- * Integers only, the same on every CPU; no division but in init.
- */
+ * Integers only, the same on every CPU; only init divides. */
 #ifndef GLINT_IMAGE_CURVE_H
 #define GLINT_IMAGE_CURVE_H
 
@@ -23,14 +21,14 @@
 #define LINEAR_WHITE_Q20 (1 << 20)
 
 struct glint_curve {
-    int32_t decode_q20[257]; /* light of whole codes; [256] only ends the last
+    int32_t decode_q20[257]; /* light of whole codes; [256] ends the last
                                 interval */
 };
 
 /* Fills CURVE for TRANSFER: 256 roots by bit search. */
 void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
 
-/* Light of CODE_Q7, 0 .. CODE_WHITE_Q7. */
+/* Returns the light of CODE_Q7, 0 .. CODE_WHITE_Q7. */
 static inline int32_t curve_decode(const struct glint_curve *curve,
                                    int32_t code_q7)
 {
@@ -39,11 +37,12 @@ static inline int32_t curve_decode(const struct glint_curve *curve,
     return at_q20[0] + (((at_q20[1] - at_q20[0]) * (code_q7 & 127) + 64) >> 7);
 }
 
-/* Equal R'G'B' have Cb = Cr = 128 to the last bit: the sums of the rows hold
- * exactly. */
+/* The factors between Y'CbCr and R'G'B'. Equal R', G', B' give Cb = Cr = 128 to
+ * the last bit, as the sums of the rows are exact. */
 struct glint_ycc {
     int black;                /* code of Y' = 0 */
-    int32_t to_rgb_q16[3][3]; /* R'G'B' per step of Y - black, Cb - 128, ... */
+    int32_t to_rgb_q16[3][3]; /* R', G', B' per code of Y - black, Cb - 128, Cr
+                                 - 128 */
     int32_t to_ycc_q15[3][3]; /* Y, Cb, Cr per code of R', G', B' */
 };
 
@@ -51,7 +50,8 @@ struct glint_ycc {
 void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
                     enum glint_range range);
 
-/* R'G'B' of 8-bit codes. Not clamped: -290 .. 550 codes may come out. */
+/* Sets RGB to R'G'B' of 8-bit codes. They are not clamped: -290 .. 550 codes
+ * may come out. */
 static inline void ycc_to_rgb(const struct glint_ycc *ycc, int y, int cb,
                               int cr, int32_t rgb_q7[3])
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where the samples of a picture lie.
- */
+ * Says where the samples of a picture lie, for each format. */
 #ifndef GLINT_IMAGE_LAYOUT_H
 #define GLINT_IMAGE_LAYOUT_H
 
@@ -18,9 +17,10 @@ enum glint_layout_kind {
 struct glint_layout {
     enum glint_layout_kind kind;
     int planes;
-    int log2_x, log2_y; /* chroma is halved so many times: 0 or 1 */
-    /* Y, Cb, Cr or R, G, B: plane, bytes from the row's start, bytes from one
-     * to the next */
+    int log2_x, log2_y; /* chroma has half as many samples across and down if 1;
+                           0: as many as luma */
+    /* For Y, Cb, Cr or R, G, B: plane, bytes from the row's start to the first
+     * sample, and bytes from one sample to the next. */
     struct glint_layout_sample {
         int plane, offset, step;
     } sample[3];
@@ -28,13 +28,14 @@ struct glint_layout {
 
 const struct glint_layout *glint_layout_of(enum glint_pixel_format format);
 
-/* YUYV: every other byte is luma, and the rest is chroma by turns. */
+/* Returns whether luma and chroma share a plane, as in YUYV: every other byte
+ * is luma, the bytes between are Cb and Cr in turn. */
 static inline int glint_layout_is_packed(const struct glint_layout *layout)
 {
     return layout->planes == 1 && layout->log2_x;
 }
 
-/* Sample I that pixel (X, Y) has a part in. */
+/* Returns the address of the sample of channel I for pixel (X, Y). */
 static inline uint8_t *glint_layout_at(const struct glint_layout *layout,
                                        const struct glint_image *image, int i,
                                        int x, int y)

@@ -12,7 +12,7 @@
             (int16_t)(x), (int16_t)(x), (int16_t)(x)                          \
     }
 
-/* 32640 / 32768: a step of a code is 255 / 32767 of a code of 8 bits */
+/* 32640 / 32768 turns units of R'G'B', 255 / 32767 of a code, into _q7 */
 #define FACTORS(toe, rise, turn)                                    \
     {                                                               \
         {toe, rise, turn, 32640, 0x0202},                           \
@@ -65,15 +65,15 @@ static void set_factor(struct glint_factors *f, int i, int64_t x)
     set(f->all[i], f->one[i]);
 }
 
-/* N / D, rounded; D > 0. */
+/* Returns N / D, rounded; D > 0. */
 static int64_t ratio(int64_t n, int64_t d)
 {
     return (2 * n + (n < 0 ? -d : d)) / (2 * d);
 }
 
-/* A code of 8 bits is 128 steps of 1 / 128.5 for what comes, and half of those
- * are what base and tints are made of: 257 / 256 of to_rgb, and again half of
- * it for Y', whose codes come _q7. */
+/* Sets the factors from Y'CbCr in _q7 to base and tints, which are half of
+ * R'G'B' in _q15. A code of 8 bits is 128.5 units of R'G'B', so the factors are
+ * 257 / 512 of to_rgb; that of blue is halved once more, to fit 16 bits. */
 static void from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
 {
     static const uint8_t at[][2] = {[GLINT_MIX_BASE] = {0, 0},
@@ -92,7 +92,8 @@ static void from_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
     set(mix->black, -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
 }
 
-/* The way back, from steps of R'G'B' to _q7, is 256 / 257 of to_ycc. */
+/* Sets the factors from changes of R'G'B' to those of Y'CbCr in _q7: 256 / 257
+ * of to_ycc. */
 static void to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
 {
     const int32_t(*m_q15)[3] = ycc->to_ycc_q15;
@@ -102,8 +103,8 @@ static void to_ycc(struct glint_mix *mix, const struct glint_ycc *ycc)
     set(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
     for (int c = 0; c < 3; c++)
         set_factor(f, GLINT_MIX_LUMA + c, ratio(m_q15[0][c] * 256, 257));
-    /* The factors of B' - Y' and R' - Y' are the parts of Cb and Cr that are
-     * not of Y'. */
+    /* Cb is PER (B' - Y'), Cr is PER (R' - Y'). Y' contains a share of B' and
+     * R', so PER is larger than the factor of B' in Cb, or R' in Cr, alone. */
     for (int k = 0; k < 2; k++) {
         const int own = k ? 0 : 2;
         const int64_t own_q15 = m_q15[k + 1][own];

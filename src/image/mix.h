@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The constants of kernels/tone.h for a picture's coding.
- */
+ * Works out the constants of kernels/tone.h for the coding of a picture. */
 #ifndef GLINT_IMAGE_MIX_H
 #define GLINT_IMAGE_MIX_H
 

@@ -3,7 +3,7 @@
 
 enum { STEP = 2 * GLINT_LANES }; /* pixels that kernels take at a time */
 
-/* A stretch of two rows of a picture, or of its last one alone. */
+/* A stretch of two rows of a picture, or of its last row alone. */
 struct stretch {
     const struct glint_image *image;
     const struct glint_layout *layout;
@@ -58,7 +58,8 @@ static void add_to_pairs(const struct glint_resolve *r, const struct stretch *s,
     glint_codes_write(codes, s->image, s->x, s->y, s->n_x, s->n_y);
 }
 
-/* YUYV and the like, in place; what is left of whole steps on the side. */
+/* Adds light in place to packed pictures like YUYV. Pixels beyond the last
+ * whole step of the kernels are copied, lit and copied back. */
 static void add_to_packed(const struct glint_resolve *r,
                           const struct stretch *s, struct glint_codes *codes)
 {

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * As resolve.h, of light that four pixels have in common.
+ * Adds light that four pixels share, as resolve.h does for single pixels.
  *
  *   in   linear light, _q16, one value for 2 x 2 pixels
  *   out  the picture's own codes, changed in place
  *
- * Y'CbCr whose chroma is shared by pairs: what light changes is worked out
- * once, for the mean of four pixels, which is a quarter of the work; each of
- * them changes by it, in proportion to what it lacks to white. Where the
- * picture is even over the four it makes no difference. Other pictures: pixel
- * by pixel.
- */
+ * In Y'CbCr whose chroma is shared by pairs, the change by light is worked out
+ * once, for the mean of four pixels, which is a quarter of the work. Each of
+ * them then changes in proportion to how far it is below white. If the four are
+ * equal, the result is that of single pixels. In other pictures light is added
+ * pixel by pixel. */
 #ifndef GLINT_IMAGE_QUADS_H
 #define GLINT_IMAGE_QUADS_H
 
@@ -24,10 +23,10 @@ struct glint_quads_rows {
     struct glint_resolve_rows rows;
 };
 
-/* Adds LIGHT to N_X x N_Y pixels of IMAGE from (X, Y) on: X is a multiple of 8
- * and Y even, N_X at most GLINT_CODES_WIDTH and even but at the right edge, N_Y
- * 2 but at the lower edge. LIGHT: R, G, B of (N_X + 1) / 2 quads, at 32-byte
- * boundaries, and as long as a multiple of GLINT_LANES. */
+/* Adds LIGHT to N_X x N_Y pixels of IMAGE from (X, Y) on. X is a multiple of 8,
+ * Y is even; N_X is at most GLINT_CODES_WIDTH, and even except at the right
+ * side; N_Y is 2 except at the lower side. LIGHT has R, G, B of (N_X + 1) / 2
+ * quads, at 32-byte boundaries, with room for a multiple of GLINT_LANES. */
 typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     const struct glint_image *image, int x,
                                     int y, int n_x, int n_y,
@@ -35,8 +34,8 @@ typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     struct glint_quads_rows *rows);
 glint_resolve_quads_fn glint_resolve_quads;
 
-/* Half resolution as an object, so that drawing links it only where it is
- * named. */
+/* Half resolution as an object, so that only a program that names it links it.
+ */
 struct glint_half {
     glint_resolve_quads_fn *resolve;
 };

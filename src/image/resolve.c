@@ -4,8 +4,8 @@
 #include "base/q.h"
 #include "image/mix.h"
 
-/* Rank of (x, y) among the 64 thresholds of the recursive ordered dither: the
- * bits of x ^ y and y, interleaved, lowest first. */
+/* Returns the rank of (X, Y) among the 64 thresholds of the recursive ordered
+ * dither: the bits of x ^ y and y, interleaved, lowest first. */
 static int bayer_rank(int x, int y)
 {
     int rank = 0;
@@ -44,7 +44,8 @@ static void resolve_rgb(const struct glint_resolve *r, int y, int n_x, int n_y,
                                  r->round_q7[(y + row) & 7]);
 }
 
-/* BT.709: weights of sum 1. */
+/* Sets GREY to the luminance of N pixels, with the weights of BT.709, whose sum
+ * is 1. */
 static void luminance(const struct glint_light_rows *light, int row, int n,
                       uint16_t *grey_q16)
 {
@@ -55,8 +56,8 @@ static void luminance(const struct glint_light_rows *light, int row, int n,
                                  16);
 }
 
-/* One row of chroma for whole pixels. OWN: what B' or R' changes by, LUMA: what
- * Y' does, and two factors of them. */
+/* Adds light to one row of chroma that has a sample for each pixel. OWN is the
+ * change of B' or R', LUMA that of Y', FACTOR the two factors on these. */
 static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
                        const int16_t *factor_q15, int n, const int16_t *round)
 {
@@ -69,7 +70,7 @@ static void add_chroma(uint8_t *code, const int16_t *own, const int16_t *luma,
     }
 }
 
-/* Chroma of its own for every pixel, or none. */
+/* Adds light to a row whose pixels have chroma of their own, or none. */
 static void resolve_whole(const struct glint_resolve *r,
                           const struct glint_image *image, int y, int n,
                           int row, const struct glint_light_rows *light,
@@ -97,7 +98,8 @@ static void resolve_whole(const struct glint_resolve *r,
                    n, round);
 }
 
-/* A stretch of odd width ends with half a pair: the other half is the same. */
+/* Completes the last pair of a stretch of odd width: the missing pixel gets the
+ * light of its neighbour. */
 static void mirror_last(struct glint_light_rows *light, int n_x, int n_y)
 {
     for (int c = 0; c < 3; c++)
@@ -132,7 +134,8 @@ static void resolve_pairs(const struct glint_resolve *r,
     }
 }
 
-/* YUYV and the like, in place; what is left of whole vectors on the side. */
+/* Adds light in place to packed pictures like YUYV. Pixels beyond the last
+ * whole vector are copied, lit and copied back. */
 static void resolve_packed(const struct glint_resolve *r,
                            const struct glint_layout *l,
                            const struct glint_image *image, int x, int y, int n,

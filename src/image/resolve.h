@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * From light to pixels of the picture.
+ * Adds light to the pixels of a picture.
  *
  *   in   linear light to add, _q16, 65535 = display white, which saturates
  *   out  the picture's own codes, changed in place: decode to linear, add,
@@ -10,15 +10,13 @@
  * Y'CbCr pictures: the change of R'G'B' is carried over to Y' per pixel, and to
  * Cb and Cr as the mean change over the pixels that share the sample; samples
  * that change by less than half a code stay. Codes outside the R'G'B' cube are
- * held to it for the sum only, so that nothing jumps where the first light
- * arrives.
+ * clamped to it only for the sum, so that nothing jumps as light rises from 0.
  *
- * Grey pictures: what is added is the luminance of the light, with the weights
- * of BT.709, the primaries of linear light here; the matrix has no say.
+ * Grey pictures: the luminance of the light is added, with the weights of
+ * BT.709, whose primaries linear light has; the picture's matrix is not used.
  *
  * Before rounding to codes, the error of R', G', B' is below 0.11 code
- * (kernels/tone.h); light counts in steps that are worth 0.1 code at most.
- */
+ * (kernels/tone.h); light is quantised to steps of 0.1 code at most. */
 #ifndef GLINT_IMAGE_RESOLVE_H
 #define GLINT_IMAGE_RESOLVE_H
 
@@ -33,12 +31,13 @@ struct glint_resolve {
     struct glint_mix mix;
     const struct glint_kernels *kernels;
     unsigned sets;
-    /* Added before rounding down, in codes: 1/2, or an 8 x 8 pattern of that
-     * mean below 1, which leaves whole codes whole. */
+    /* Codes to add before rounding down: 1/2 everywhere, or an 8 x 8 pattern
+     * with that mean and all values below 1, so that whole codes stay as they
+     * are. */
     int16_t round_q7[8][8];
 };
 
-/* Two rows of a tile, for resolve, which may write past the last pixel. */
+/* Light of two rows of a stretch; resolve may write past its last pixel. */
 struct glint_light_rows {
     ALIGNED(32) uint16_t rgb_q16[3][2][GLINT_CODES_WIDTH];
 };
@@ -47,37 +46,36 @@ struct glint_light_rows {
 struct glint_resolve_rows {
     ALIGNED(32) struct glint_codes codes;
     ALIGNED(32)
-    int16_t change[3][GLINT_CODES_WIDTH]; /* changes of codes as kernels have
-                                             them */
+    int16_t change[3][GLINT_CODES_WIDTH]; /* changes of R', B' and Y', in the
+                                             formats of the kernels */
     ALIGNED(32) uint16_t grey_q16[GLINT_CODES_WIDTH];
 };
 
-/* Tables for pictures that are coded as IMAGE is. DITHER: add an ordered
- * pattern of less than a code before rounding, the same for every run. */
+/* Makes the tables for pictures that are coded as IMAGE is. DITHER: 1 adds an
+ * ordered pattern of less than a code before rounding, equal in every run. */
 void glint_resolve_init(struct glint_resolve *resolve,
                         const struct glint_image *image, int dither,
                         unsigned sets);
 
-/* Adds LIGHT to the pixels X .. X + N_X - 1 of the N_Y (1 or 2) rows from Y on
- * of IMAGE, which is not LINEAR_Q20. X is a multiple of 8 and Y even, and N_X
- * is even but at the picture's right edge; there is one row only at its lower
- * edge. Then stretches share no sample and may be resolved in any order, or at
- * once. */
+/* Adds LIGHT to pixels X .. X + N_X - 1 of the N_Y (1 or 2) rows from Y on of
+ * IMAGE, which is not LINEAR_Q20. X is a multiple of 8 and Y even; N_X is even
+ * except at the picture's right side, N_Y is 2 except at its lower side. So
+ * stretches share no sample and may be resolved in any order, or at once. */
 void glint_resolve_stretch(const struct glint_resolve *resolve,
                            const struct glint_image *image, int x, int y,
                            int n_x, int n_y, struct glint_light_rows *light,
                            struct glint_resolve_rows *rows);
 
-/* The same of a stretch that has been read to rows->codes, and is not yet
- * written. */
+/* Adds LIGHT to a stretch that has been read to rows->codes, and leaves it
+ * there. */
 void glint_resolve_codes(const struct glint_resolve *resolve,
                          const struct glint_image *image, int y, int n_x,
                          int n_y, struct glint_light_rows *light,
                          struct glint_resolve_rows *rows);
 
-/* Adds N values of LIGHT, R, G, B by themselves, to a row of a LINEAR_Q20
- * picture (4-byte aligned) from (X, Y) on, as they are, saturating at the int32
- * range; returns how many came to an end of it. */
+/* Adds N values of LIGHT, separate R, G, B, to a row of a LINEAR_Q20 picture
+ * (4-byte aligned) from (X, Y) on, clamped to int32. Returns how many samples
+ * are then at an end of the range. */
 int glint_resolve_linear(const struct glint_image *image, int x, int y, int n,
                          const int32_t *const light_q20[3]);
 

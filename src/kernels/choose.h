@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which variants of a kernel this processor's kind has, and the best of them.
+ * Chooses among the variants of a kernel.
  *
- * KERNEL_SETS(X): X(c), and X(set) of each set that is built.
- * BEST_OF(sets, NAME_): of NAME_c, NAME_sse41 and so on what the GLINT_SET_
- * bits SETS allow; of no set the one in C.
- * PIXEL_SETS, BEST_OF_PIXELS: the same of what pixels take, which is large: not
- * in C where every CPU that this is built for has NEON.
- */
+ * KERNEL_SETS(X): X(c), and X(set) for each instruction set that is built.
+ * BEST_OF(sets, NAME_): the best of NAME_c, NAME_sse41 and so on that the
+ * GLINT_SET_ bits SETS allow; NAME_c if there is no bit. PIXEL_SETS,
+ * BEST_OF_PIXELS: as these, for kernels of pixels. They are large, and so have
+ * no C variant where every CPU that this is built for has NEON. */
 #ifndef GLINT_KERNELS_CHOOSE_H
 #define GLINT_KERNELS_CHOOSE_H
 
 #include "glint/kernels.h"
 
-/* NEON kernels are built for every ARM that may have NEON; whether this one
- * has, its compiler or its system says. */
+/* NEON kernels are built for every ARM that may have NEON. Whether a CPU has
+ * it, the compiler or the system says. */
 #if defined(__aarch64__) || defined(__ARM_NEON) ||               \
     (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
      __ARM_ARCH >= 7)

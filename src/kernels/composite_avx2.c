@@ -21,7 +21,7 @@ static inline __m128i b_of_chroma(const V c[2]);
 
 #include "kernels/composite_x86.inc"
 
-/* Eight values, over and over. */
+/* Loads eight values into each half. */
 static inline V v_repeat(const int16_t *p)
 {
     return _mm256_broadcastsi128_si256(b_load(p));
@@ -39,7 +39,7 @@ static inline void v_store_codes(uint8_t *p, V x)
                                 _mm256_extracti128_si256(x, 1)));
 }
 
-/* Even lanes to the lower half, odd ones to the upper. */
+/* Loads sixteen values: even ones to the lower half, odd ones to the upper. */
 static inline void v_load_pairs(const uint16_t *p, V x[1])
 {
     x[0] = _mm256_permute4x64_epi64(
@@ -48,13 +48,14 @@ static inline void v_load_pairs(const uint16_t *p, V x[1])
         0xd8);
 }
 
-/* CODES twice, those at EVEN in the lower half and at ODD in the upper, _q7. */
+/* Returns, as _q7, the bytes of CODES that PLACES names for each half. */
 static inline V spread(__m128i codes, V places)
 {
     return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);
 }
 
-/* Bytes 0, 2, 4 ... and 1, 3, 5 ... to the upper bytes of lanes. */
+/* Places that move bytes 0, 2, 4 ... (EVENS) and 1, 3, 5 ... (ODDS) to the
+ * upper bytes of lanes. */
 #define EVENS 0x0e800c800a800880, 0x0680048002800080
 #define ODDS  0x0f800d800b800980, 0x0780058003800180
 
@@ -69,7 +70,7 @@ static inline void v_chroma_of(__m128i codes, V c[2])
     c[1] = spread(codes, _mm256_set_epi64x(ODDS, ODDS));
 }
 
-/* Codes of X and Y in their lower halves by turns. */
+/* Returns codes from the lower halves of X and Y in turn. */
 static inline __m128i woven(V x, V y)
 {
     const __m128i both =
@@ -80,7 +81,7 @@ static inline __m128i woven(V x, V y)
         both, _mm_set_epi64x(0x0f070e060d050c04, 0x0b030a0209010800));
 }
 
-/* The other half first. */
+/* Returns X with its halves swapped. */
 static inline V turned(V x)
 {
     return _mm256_permute2x128_si256(x, x, 1);
@@ -96,7 +97,8 @@ static inline __m128i b_of_chroma(const V c[2])
     return woven(c[0], c[1]);
 }
 
-/* Eight thresholds for sixteen pixels; the two of chroma by turns. */
+/* Load eight thresholds for sixteen pixels, and for their chroma, Cb and Cr
+ * apart. */
 static inline void v_round_pairs(const int16_t *p, V x[1])
 {
     x[0] = v_shuffle(v_repeat(p),
@@ -119,14 +121,16 @@ static inline void v_store_mean(int16_t *p, V x)
     b_store(p, _mm256_castsi256_si128(x));
 }
 
-/* Returns the means of pairs: even pixels and odd ones, in both halves. */
+/* Returns the means of pairs, of an even pixel and an odd one, in both halves.
+ */
 static inline V v_pair_mean(const V x[1])
 {
     return v_mean(x[0], turned(x[0]));
 }
 
-/* Joins two blocks of quads: the means of their pairs, their chroma, and the
- * other way round, in both halves. */
+/* Join two blocks of quads, one in each half: the means of their pairs, or
+ * their chroma. v_quads_of_block() gives the values of block B in both halves.
+ */
 static inline V v_pairs_joined(V x[2][1])
 {
     return v_mean(_mm256_permute2x128_si256(x[0][0], x[1][0], 0x20),
@@ -153,14 +157,15 @@ static inline uint32_t w_first(V x)
     return (uint32_t)_mm256_cvtsi256_si32(x);
 }
 
-/* Returns for each lane the sum of it and those before it. */
+/* Returns for each lane the sum of it and all lanes before it. */
 static inline V w_sums(V x)
 {
     V low;
 
     x = OP(add_epi32)(x, _mm256_slli_si256(x, 4));
     x = OP(add_epi32)(x, _mm256_slli_si256(x, 8));
-    low = _mm256_permute2x128_si256(x, x, 0x08); /* 0, lower half */
+    /* 0 in the lower half, the lower half's sums in the upper. */
+    low = _mm256_permute2x128_si256(x, x, 0x08);
     return OP(add_epi32)(x, _mm256_shuffle_epi32(low, 0xff));
 }
 
@@ -169,7 +174,7 @@ static inline V w_last(V x)
     return _mm256_permutevar8x32_epi32(x, _mm256_set1_epi32(7));
 }
 
-/* Held to 0 .. 65535. */
+/* Returns A and B clamped to 0 .. 65535. */
 static inline V w_narrow(V a, V b)
 {
     return _mm256_permute4x64_epi64(_mm256_packus_epi32(a, b), 0xd8);

@@ -15,7 +15,7 @@ static int16_t sum_sat(int a, int b)
     return held(a + b, INT16_MIN, INT16_MAX);
 }
 
-/* a * b / 2^15; not for the minimum times itself. */
+/* Returns a * b / 2^15, rounded; not both INT16_MIN. */
 static int16_t times(int a, int b)
 {
     return (int16_t)((a * b + (1 << 14)) >> 15);
@@ -45,7 +45,7 @@ static int16_t encode(const struct glint_tone16 *t, uint16_t light)
     return (int16_t)(t->level[zeros] + times(z, x));
 }
 
-/* Returns the change of CODE. */
+/* Returns by how much CODE rises if LIGHT is added. */
 static int16_t change_of(const struct glint_tone16 *t, int16_t code,
                          uint16_t light_q16)
 {
@@ -55,11 +55,11 @@ static int16_t change_of(const struct glint_tone16 *t, int16_t code,
     return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Indices of the changes of R', G', B', Y' of a pixel that its chroma changes
- * by. */
+/* Indices, among the changes of R', G', B', Y', of those that chroma depends
+ * on. */
 static const int kept[3] = {0, 2, 3};
 
-/* R', G', B' of a pixel whose Y', Cb, Cr are _q7. */
+/* Sets RGB to R', G', B' of a pixel whose Y', Cb and Cr are _q7. */
 static WHOLLY_INLINE void full_range(int luma_q7, int cb_q7, int cr_q7,
                                      int16_t rgb[3],
                                      const struct glint_mix *mix)
@@ -76,7 +76,7 @@ static WHOLLY_INLINE void full_range(int luma_q7, int cb_q7, int cr_q7,
         rgb[c] = held(2 * sum_sat(base, tint[c]), 0, GLINT_WHITE_Q15);
 }
 
-/* Gives the changes of R', G', B' and Y' (_q7) of one pixel. */
+/* Sets CHANGE to the changes of R', G', B' (_q15) and Y' (_q7) of a pixel. */
 static void change_pixel(int luma_q7, int cb_q7, int cr_q7,
                          const uint16_t light[3], int16_t change[4],
                          const struct glint_mix *mix)
@@ -100,7 +100,7 @@ static uint8_t add_luma(int code, int16_t change_q7, int16_t round_q7)
     return (uint8_t)(sum_sat(code * 128 + round_q7, change_q7) >> 7);
 }
 
-/* Adds light to one pixel: returns its luma, and what it changed by. */
+/* Adds light to one pixel: returns its new luma and sets CHANGE. */
 static uint8_t add_pixel(int luma, int cb, int cr, const uint16_t light[3],
                          int16_t change[4], const struct glint_mix *mix,
                          int16_t round_q7)
@@ -124,14 +124,14 @@ void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
     }
 }
 
-/* Rounded up. */
+/* Returns the mean of A and B, rounded up. */
 static int16_t mean_of(int a, int b)
 {
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* A code of chroma whose pixels' own colour, B' or R', changes by OWN and whose
- * Y' by LUMA; K: the first of its factors. */
+/* Returns a code of chroma after its pixels' own colour, B' or R', changed by
+ * OWN and Y' by LUMA. K is the index of the first of its two factors. */
 static uint8_t add_chroma(int code, int own, int luma, int k,
                           const struct glint_mix *mix, int16_t round_q7)
 {
@@ -198,8 +198,8 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
     }
 }
 
-/* PART / WHOLE, both 0 or more, _q15; PART is held to WHOLE. By Newton's
- * method: what it is off is below 2^-12. */
+/* Returns PART / WHOLE, both 0 or more, as _q15; PART is clamped to WHOLE. The
+ * error of Newton's method is below 2^-12. */
 static int16_t share(int part, int whole)
 {
     const int zeros = 16 - bit_length((uint32_t)whole);
@@ -219,8 +219,8 @@ static int16_t share(int part, int whole)
     return sum_sat(q_q14, q_q14);
 }
 
-/* Adds light to 2 x 2 pixels. Both rows are read before either is written:
- * they may be one. */
+/* Adds light to 2 x 2 pixels. Both rows are read before either is written, as
+ * they may be the same row. */
 static void add_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
                      const uint16_t light[3], const struct glint_mix *mix,
                      const int16_t *const round[2],
@@ -337,7 +337,7 @@ void glint_run_sum_c(uint32_t *change_q24, uint32_t *carry_q24,
     *carry_q24 = sum_q24;
 }
 
-/* Returns what is left of CODE, a full-range one, under COVER. */
+/* Returns CODE, full-range, after COVER hides a part of its light. */
 static int16_t left_of(const struct glint_tone16 *t, int16_t code, int cover_q8)
 {
     const uint32_t light = decode(t, code) * (uint32_t)(256 - cover_q8);
@@ -361,7 +361,7 @@ void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
     }
 }
 
-/* One pixel, its Y', Cb and Cr _q7, of which some shows and some does not. */
+/* Hides a part of one pixel, given as Y', Cb, Cr in _q7. */
 static void cover_pixel(int16_t ycc_q7[3], int cover_q8,
                         const struct glint_mix *mix)
 {

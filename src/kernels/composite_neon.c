@@ -28,14 +28,14 @@
 #define v_and_not(mask, x)       vbicq_s16(x, mask)
 #define v_equal(a, b)            S(vceqq_s16(a, b))
 
-/* Makes X, or what is loaded from P, wait for Y. */
+/* Make X, or the load from P, wait for Y. */
 #define AFTER(x, y)      __asm__("" : "+w"(x) : "w"(y))
 #define LOAD_AFTER(p, y) __asm__("" : "+r"(p) : "w"(y))
 
 /* A plus half of B, unsigned. */
 #define v_add_half(a, b) S(vsraq_n_u16(U(a), U(b), 1))
 
-/* Rounded up; of values of 0 or more. */
+/* Mean of values of 0 or more, rounded up. */
 #define v_mean vrhaddq_s16
 
 static inline int v_is_zero(V x)
@@ -52,8 +52,9 @@ static inline int v_is_zero(V x)
 
 /* --------------------------------------------------------------- constants */
 
-/* Constants stay in registers, factors eight to one. Compilers keep a table in
- * two registers that follow each other if it is a variable, not part of one. */
+/* Constants stay in registers, eight factors in each. Compilers keep a table in
+ * two consecutive registers only if it is a variable of its own, not a member
+ * of one. */
 struct v_tone {
     int16x8_t factor, toe_end, rise[2], turn;
     const uint8x16x2_t *level, *slope, *curve;
@@ -75,8 +76,8 @@ struct v_mix {
     vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
 #endif
 
-/* Tables are loaded once where there are registers for them, else whenever one
- * is looked into. */
+/* Tables are loaded once where there are registers for them, else at each use.
+ */
 #if defined(__aarch64__)
 #define TABLES(t, tone)                                     \
     const uint8x16x2_t t##_level = table_at((tone)->level), \
@@ -118,10 +119,10 @@ static inline uint8x16x2_t table_at(const int16_t *p)
 
 /* ------------------------------------------------------------------ tables */
 
-/* Zeros that lead, 0 .. 16. */
+/* Number of leading zeros, 0 .. 16. */
 #define v_zeros vclzq_s16
 
-/* Places of the two bytes of an entry; past the end 0 is found. */
+/* Byte places of a table's entries; places past its end give 0. */
 #define PLACES uint8x16_t
 
 static inline PLACES v_places_of(const TONE *t, V k)
@@ -148,8 +149,7 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
         vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
                     vtbl4_u8(quarters, vget_high_u8(at))));
 #else
-    /* written so, as GCC loads four registers otherwise only by way of the
-     * stack */
+    /* Inline assembly, as GCC would load four registers by way of the stack. */
     uint8x8x4_t quarters;
     uint8x16_t entry;
 
@@ -162,7 +162,7 @@ static inline V v_look(const uint8x16x2_t *table, PLACES at)
 #endif
 }
 
-/* X times 2^ZEROS. */
+/* Returns X times 2^ZEROS. */
 static inline V v_raise(const TONE *t, V x, V zeros, PLACES at)
 {
     (void)t;
@@ -172,8 +172,7 @@ static inline V v_raise(const TONE *t, V x, V zeros, PLACES at)
 
 /* ------------------------------------------------------------ codes to lanes
  *
- * Codes of 8 bits come as _q7 and go from it, held to 0 .. 255.
- */
+ * Codes of 8 bits are loaded as _q7 and stored clamped to 0 .. 255. */
 
 static inline V v_load_codes(const uint8_t *p)
 {
@@ -212,7 +211,8 @@ static inline void v_store_code_pairs(uint8_t *p, const V x[2])
 #define v_load_chroma  v_load_code_pairs
 #define v_store_chroma v_store_code_pairs
 
-/* Luma, and chroma, of pairs of two bytes each; luma second if LUMA_AT. */
+/* Loads sixteen pixels of two bytes each: luma and chroma, luma second if
+ * LUMA_AT is 1. */
 static inline void v_load_packed(const uint8_t *p, int luma_at, V y[2], V c[2])
 {
     const uint8x8x4_t quads = vld4_u8(p);
@@ -238,7 +238,8 @@ static inline void v_store_packed(uint8_t *p, int luma_at, const V y[2],
     vst4_u8(p, quads);
 }
 
-/* Eight thresholds for sixteen pixels; the two of chroma by turns. */
+/* Loads eight thresholds for sixteen pixels: even ones, then odd ones; as
+ * chroma they are Cb's, then Cr's. */
 static inline void v_round_pairs(const int16_t *p, V x[2])
 {
     const int16x8x2_t pairs = vuzpq_s16(vld1q_s16(p), vld1q_s16(p));
@@ -249,7 +250,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 
 #define v_round_chroma v_round_pairs
 
-/* Returns the means of pairs: even pixels and odd ones. */
+/* Returns the means of pairs, of an even pixel and an odd one. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -259,14 +260,14 @@ static inline V v_pair_mean(const V x[2])
 
 /* -------------------------------------------------------------------- sums */
 
-/* Rounded, held to 0 .. 65535. */
+/* Returns sums rounded to _q16, clamped to 0 .. 65535. */
 static inline uint16x4_t rounded(uint32x4_t sum_q24)
 {
     return vqrshrun_n_s32(vreinterpretq_s32_u32(sum_q24), 8);
 }
 
-/* Sixteen lanes by fours: of each four what is summed up in it, in place, then
- * what all before it sum up to. Fours without a change are common. */
+/* Sums sixteen lanes in groups of four: first within each group, then the sums
+ * of all groups before it are added. Groups without changes are common. */
 void glint_run_sum_neon(uint32_t *change_q24, uint32_t *carry_q24,
                         uint16_t *light_q16, int n)
 {
@@ -296,7 +297,7 @@ void glint_run_sum_neon(uint32_t *change_q24, uint32_t *carry_q24,
         sum = vaddq_u32(all, vextq_u32(zero, all, 3));
         sum = vaddq_u32(sum, vextq_u32(zero, sum, 2));
         sum = vaddq_u32(sum, carry);
-        carry = vextq_u32(carry, sum, 3); /* the sum before each four */
+        carry = vextq_u32(carry, sum, 3); /* the sum before each group */
         light.val[0] = rounded(vaddq_u32(x.val[0], carry));
         light.val[1] = rounded(vaddq_u32(x01, carry));
         light.val[2] = rounded(vaddq_u32(x012, carry));

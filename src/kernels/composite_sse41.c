@@ -37,7 +37,7 @@ static inline void v_store_codes(uint8_t *p, V x)
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(x, x));
 }
 
-/* Even lanes, then odd ones. */
+/* Returns the even lanes, then the odd ones. */
 static inline V parted(V x)
 {
     return v_shuffle(x, v_bytes(0x0f0e0b0a07060302, 0x0d0c090805040100));
@@ -64,7 +64,8 @@ static inline V b_of_pairs(const V x[2])
         v_bytes(0x0f070e060d050c04, 0x0b030a0209010800));
 }
 
-/* Eight thresholds for sixteen pixels; the two of chroma by turns. */
+/* Loads eight thresholds for sixteen pixels: even ones, then odd ones; as
+ * chroma they are Cb's, then Cr's. */
 static inline void v_round_pairs(const int16_t *p, V x[2])
 {
     const V both = parted(b_load(p));
@@ -77,7 +78,7 @@ static inline void v_round_pairs(const int16_t *p, V x[2])
 #define v_load_mean    v_load
 #define v_store_mean   v_store
 
-/* Returns the means of pairs: even pixels and odd ones. */
+/* Returns the means of pairs, of an even pixel and an odd one. */
 static inline V v_pair_mean(const V x[2])
 {
     return v_mean(x[0], x[1]);
@@ -92,7 +93,7 @@ static inline uint32_t w_first(V x)
     return (uint32_t)_mm_cvtsi128_si32(x);
 }
 
-/* Returns for each lane the sum of it and those before it. */
+/* Returns for each lane the sum of it and all lanes before it. */
 static inline V w_sums(V x)
 {
     x = OP(add_epi32)(x, _mm_slli_si128(x, 4));
@@ -104,7 +105,7 @@ static inline V w_last(V x)
     return _mm_shuffle_epi32(x, 0xff);
 }
 
-/* Held to 0 .. 65535. */
+/* Clamps to 0 .. 65535. */
 #define w_narrow _mm_packus_epi32
 
 #include "kernels/run_sum_x86.inc"

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loops, and all code that differs between CPUs: those of pixels; of
- * rays they are in kernels/rays/rays.h, so that a program that has only one of
- * them links nothing of the other.
+ * The hot loops for pixels. Those for rays are in kernels/rays/rays.h, so that
+ * a program links only the kind that it uses. All code that differs between
+ * CPUs is in this folder.
  *
  * A kernel is a pure function over arrays: no allocation, errors or globals.
  * NAME_c.c defines it; NAME_sse41.c, NAME_avx2.c and NAME_neon.c give the same
  * bits. Arrays are disjoint, begin at 32-byte boundaries and are as long as N
  * rounded up to a multiple of GLINT_LANES, so that no variant has a tail.
  *
- * One rounding everywhere but where a product is said to be cut: to nearest,
- * ties up, as pmulhrsw and vqrdmulh do.
- */
+ * Products are rounded to nearest, ties up, as pmulhrsw and vqrdmulh do, unless
+ * a comment says that they are cut. */
 #ifndef GLINT_KERNELS_KERNELS_H
 #define GLINT_KERNELS_KERNELS_H
 
@@ -23,29 +22,29 @@
  *   luma    codes, changed in place
  *   cb, cr  codes, one for each pixel
  *   light   R, G, B: _q16, white = 65535
- *   round   _q7, of pixel i: round[i & 7], below 1
- *   change  of R', B' (_q15, white = 32767) and Y' (_q7), each 0 or more; 0
- *           where there is no light at all */
+ *   round   _q7, below 1: pixel i takes round[i & 7]
+ *   change  receives the changes of R', B' (_q15, white = 32767) and Y' (_q7),
+ *           each 0 or more; 0 for a pixel without light */
 typedef void
 glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* The way in which a row of pairs uses the mean changes of R', B' and Y' of its
- * pairs. */
+/* How a row of pairs uses the mean changes of R', B' and Y' of its pairs. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* the row's chroma is its own */
-    GLINT_PAIRS_FIRST, /* the first of two rows keeps them */
-    GLINT_PAIRS_SECOND /* the second row's chroma goes by the mean of both */
+    GLINT_PAIRS_FIRST, /* the first of two rows stores them */
+    GLINT_PAIRS_SECOND /* the second row's chroma changes by the mean of both
+                          rows */
 };
 
 /* Adds light to N pixels of one row of Y'CbCr whose chroma is shared by pairs.
  *   luma    codes, changed in place
  *   chroma  codes Cb, Cr of each pair; changed unless STEP is FIRST
- *   light, round  as above
- *   round_chroma  the same for chroma[i]
- *   mean    R', B' (_q15), Y' (_q7), of each pair: kept for the second row by
- *           the first */
+ *   light, round  as for glint_add_luma_fn
+ *   round_chroma  _q7, below 1: chroma[i] takes round_chroma[i & 7]
+ *   mean    mean changes of each pair, R', B' (_q15) and Y' (_q7): the first
+ *           row writes them, the second reads them */
 typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,
                                 const uint16_t *const light[3],
                                 int16_t *const mean[3], int n,
@@ -54,24 +53,25 @@ typedef void glint_add_pairs_fn(uint8_t *luma, uint8_t *chroma,
                                 const int16_t *round,
                                 const int16_t *round_chroma);
 
-/* The same for pixels of two bytes, luma and by turns Cb and Cr, luma first
- * unless LUMA_AT is 1; PIXELS begins anywhere. */
+/* Adds light to N pixels of two bytes each: luma, and Cb or Cr in turn; luma
+ * comes first unless LUMA_AT is 1. PIXELS may begin anywhere; other arguments
+ * are those of glint_add_pairs_fn. */
 typedef void glint_add_packed_fn(uint8_t *pixels,
                                  const uint16_t *const light[3], int n,
                                  int luma_at, const struct glint_mix *mix,
                                  const int16_t *round,
                                  const int16_t *round_chroma);
 
-/* Adds light that 2 x 2 pixels have in common to two rows of N pixels, N a
- * multiple of twice GLINT_LANES. What it changes is worked out once, for the
- * mean of the four: from there it falls to nothing at white, in proportion, so
- * that light which makes the mean white does so to each of them. Chroma differs
- * as much less from its mean. Y' never falls.
- *   luma    codes of two rows; of a last one that is alone: it, twice
- *   chroma  codes Cb, Cr of each pair of both; the same twice where the rows
- *           share them
+/* Adds light that 2 x 2 pixels share to two rows of N pixels, N a multiple of
+ * twice GLINT_LANES. The change by light is worked out once, for the mean of
+ * the four pixels. A pixel's own change is to that of the mean as its distance
+ * to white is to the mean's, so light that makes the mean white makes each
+ * pixel white. Chroma moves towards its mean by the same share. Y' never falls.
+ *   luma    codes of two rows; if the last row is alone, that row twice
+ *   chroma  codes Cb, Cr of each pair of both rows; the same row twice if they
+ *           share it
  *   light   R, G, B: _q16, one for every two pixels of a row
- *   round, round_chroma  as above, of both */
+ *   round, round_chroma  as for glint_add_pairs_fn, for both rows */
 typedef void glint_add_quads_fn(uint8_t *const luma[2],
                                 uint8_t *const chroma[2],
                                 const uint16_t *const light[3], int n,
@@ -79,21 +79,22 @@ typedef void glint_add_quads_fn(uint8_t *const luma[2],
                                 const int16_t *const round[2],
                                 const int16_t *const round_chroma[2]);
 
-/* The same for pixels of two bytes, which begin anywhere; ROUND serves chroma,
- * too. */
+/* Does as glint_add_quads_fn for pixels of two bytes, as of
+ * glint_add_packed_fn. PIXELS may begin anywhere; ROUND serves chroma, too. */
 typedef void glint_add_quads_packed_fn(uint8_t *const pixels[2],
                                        const uint16_t *const light[3], int n,
                                        int luma_at, const struct glint_mix *mix,
                                        const int16_t *const round[2]);
 
-/* Adds light to N codes of one channel of R'G'B'; LIGHT and ROUND as above. */
+/* Adds light to N codes of one channel of R'G'B'. LIGHT and ROUND are as for
+ * glint_add_luma_fn, for one channel. */
 typedef void glint_add_code_fn(uint8_t *code, const uint16_t *light, int n,
                                const struct glint_tone16 *tone,
                                const int16_t *round);
 
-/* Hides COVER (_q8, 0 .. 256: all of it) of N pixels: what is left of their
- * light, rounded to the nearest codes. Where COVER is 0 codes stay, and where
- * it is all they are black.
+/* Hide COVER (_q8, 0 .. 256: all) of N pixels: the light that is left is
+ * rounded to the nearest codes. Codes stay where COVER is 0 and become black
+ * where it is 256.
  *   code  one channel of R'G'B'
  *   ycc   Y', Cb, Cr of each pixel, _q7; BLACK: code of Y' = 0 */
 typedef void glint_cover_code_fn(uint8_t *code, const uint16_t *cover_q8, int n,
@@ -105,12 +106,12 @@ glint_cover_code_fn glint_cover_code_c;
 glint_cover_ycc_fn glint_cover_ycc_c;
 
 /* Turns changes into light along a row: light[i] is *CARRY plus changes 0 .. i,
- * _q24, rounded to _q16 and held to 0 .. 65535. Changes are cleared, sums may
- * wrap and wrap back; *CARRY goes on. */
+ * _q24, rounded to _q16 and clamped to 0 .. 65535. Changes are cleared; sums
+ * may wrap, and wrap back. *CARRY becomes the sum of the whole row. */
 typedef void glint_run_sum_fn(uint32_t *change_q24, uint32_t *carry_q24,
                               uint16_t *light_q16, int n);
 
-/* The kernels that pictures take. */
+/* The kernels for pictures, except those at half resolution. */
 struct glint_kernels {
     glint_add_luma_fn *add_luma;
     glint_add_pairs_fn *add_pairs;
@@ -119,14 +120,14 @@ struct glint_kernels {
     glint_run_sum_fn *run_sum;
 };
 
-/* The kernels that pictures take in which four pixels share their light. */
+/* The kernels for pictures in Y'CbCr in which four pixels share their light. */
 struct glint_quad_kernels {
     glint_add_quads_fn *add;
     glint_add_quads_packed_fn *add_packed;
 };
 
-/* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C, but
- * for what pixels take (choose.h). */
+/* Return the best kernels that the GLINT_SET_ bits SETS allow: those in C if
+ * there is no bit, or those of NEON where all CPUs have it (choose.h). */
 const struct glint_kernels *glint_kernels_of(unsigned sets);
 const struct glint_quad_kernels *glint_quad_kernels_of(unsigned sets);
 

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * The box of a system without knots: its middle or a half size as a polynomial
- * of angle and wavelength, for the run time and for the check of a model alike.
- */
+ * of angle and wavelength. The run time and the check of a model share it. */
 #ifndef GLINT_LENS_BOX_H
 #define GLINT_LENS_BOX_H
 
 #include "base/q.h"
 #include "glint/model.h"
 
-/* Takes a side out of a model, where it has the terms of the bits set in
- * TERMS. Returns where the next one is. */
+/* Unpacks the polynomial of one side, of which the model stores only the terms
+ * whose bits are set in TERMS. Returns a pointer to the next side. */
 static inline const int32_t *box_unpack(const int32_t *packed, uint32_t terms,
                                         int32_t side[GLINT_BOX_TERMS])
 {
@@ -19,7 +18,7 @@ static inline const int32_t *box_unpack(const int32_t *packed, uint32_t terms,
     return packed;
 }
 
-/* P at S_Q30 and W_Q30, each within +-2^30. */
+/* Returns the value of P at S_Q30 and W_Q30, each within +-2^30. */
 static inline int32_t box_side(const int32_t p[GLINT_BOX_TERMS], int32_t s_q30,
                                int32_t w_q30)
 {

@@ -1,23 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a model file once, so that the transfer may take it at its word.
+ * Checks a model file once, so that the transfer need not check anything.
  *
  *   in   bytes that may hold anything
  *   out  a lens that points into them, or the reason why not
  *
- * Size, checksum and name are the container's (base/blob.h), systems are
- * checked in model_system.c. What the transfer relies on:
+ * Size, checksum and name are those of any baked file (base/blob.h); systems
+ * are checked in model_system.c. The transfer relies on this:
  *   - every table lies inside the file;
  *   - variables are within +-2^30 and so are their powers, and q_mul by them
  *     never makes an integer larger. With the sum of |coefficient| of an output
  *     below 2^30 no product, row or Horner step leaves that range, whatever
- *     the order of additions: between two knots a coefficient strays half a
- *     step from the line, 120 of them 60 steps, and int32 has a bit to spare;
- *   - the box of the sparse basis stays within +-2^30, or 1 step more between
- *     two knots: its powers stray 15 steps, and the same bit takes it;
+ *     the order of additions: between two knots a coefficient is off the line
+ *     by half a unit, 120 of them by 60 units, and int32 has a bit to spare;
+ *   - the box of the sparse basis stays within +-2^30, or 1 unit more between
+ *     two knots: its powers are off by 15 units, and the same bit takes it;
  *   - in the auto basis powers of u and v index a table, and powers of v are
  *     all odd or all even;
- *   - knots rise, and there are none or two. A range may be a single point.
+ *   - knots rise, and there are none, or two and more. A range may be a single
+ *     point.
  * Vertices shift by any exponent; the limits here keep sums of exponents small.
  */
 #include "lens/model_check.h"
@@ -31,7 +32,8 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* Its header begins as that of every baked file; the variant is the basis. */
+/* The header begins as that of every baked file does; its basis is the variant.
+ */
 #define SAME_PLACE(field, as)                                   \
     STATIC_ASSERT(offsetof(struct glint_model_header, field) == \
                   offsetof(struct glint_blob_header, as))
@@ -130,7 +132,7 @@ static const char *check_header(struct glint_model_check *c)
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* NEXT follows LAST among the systems of one ghost. */
+/* Checks that NEXT may follow LAST among the systems of one ghost. */
 static const char *check_order(const struct glint_model_system *last,
                                const struct glint_model_system *next)
 {
@@ -140,8 +142,8 @@ static const char *check_order(const struct glint_model_system *last,
                : NULL;
 }
 
-/* Lists in the order of the ghosts: that no two share a system then shows in
- * one pass. */
+/* Checks the ghosts. Their lists of systems must rise with the ghosts, so that
+ * one pass shows that no two share a system. */
 static const char *check_ghosts(const struct glint_model_check *c)
 {
     const struct glint_model_header *h = c->header;
@@ -174,7 +176,7 @@ static const char *check_ghosts(const struct glint_model_check *c)
 
 /* ------------------------------------------------------------------ opening */
 
-/* What is wrong with the header and all that it points to. */
+/* Returns what is wrong with the header and all that it points to, or NULL. */
 static const char *check_contents(struct glint_model_check *c)
 {
     const char *reason = check_header(c);

@@ -9,7 +9,7 @@
 #include "base/blob.h"
 #include "glint/model.h"
 
-/* limit of sums of magnitudes; also 1 as a q30 */
+/* limit of sums of magnitudes, and 1 in _q30 */
 enum { MODEL_LIMIT = 1 << 30 };
 
 struct glint_model_check {
@@ -21,7 +21,7 @@ struct glint_model_check {
 
 extern const char glint_model_outside[]; /* "a table lies outside ..." */
 
-/* What is wrong with system S, or NULL. */
+/* Returns what is wrong with system S, or NULL. */
 const char *glint_model_check_system(struct glint_model_check *check,
                                      const struct glint_model_system *s);
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Checks the systems of a model: knots, boxes, outputs, terms, coefficients.
- * model.c says what the transfer relies on.
- */
+ * model.c says which of their properties the transfer relies on. */
 #include "base/q.h"
 #include "lens/box.h"
 #include "lens/model_check.h"
@@ -15,10 +14,12 @@ enum {
     MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    /* log2 of the steps between the angles at which a box is checked */
+    /* log2 of the number of intervals of angle at whose ends a box is checked
+     */
     BOX_NODES_LOG2 = 5,
-    MAX_SHARED = 8 /* times the file: what systems may refer to. Else systems
-                      with the same large tables took quadratic time */
+    MAX_SHARED = 8 /* largest size of all tables that systems refer to, in sizes
+                      of the file; otherwise systems that share large tables
+                      would take quadratic time */
 };
 
 /* ---------------------------------------------------------- angles and box */
@@ -62,19 +63,19 @@ static const char *check_knots(struct glint_model_check *c,
     return NULL;
 }
 
-/* A box of one corner of the polynomial: middle, half width, half height. */
+/* Checks the box at one knot: middle, half width, half height. */
 static const char *check_box_at_knot(const int32_t box[3])
 {
     if (box[1] < 0 || box[2] < 0)
         return "a box has a size below 0";
-    /* Differences between neighbours must stay within an int32. */
+    /* Differences between neighbours must fit an int32. */
     if (magnitude(box[0]) >= MODEL_LIMIT ||
         magnitude(box[0]) + box[1] > MODEL_LIMIT || box[2] > MODEL_LIMIT)
         return "a box reaches too far";
     return NULL;
 }
 
-/* Whether the polynomial of a half size is below 0 anywhere on a grid of
+/* Returns whether the polynomial P of a half size is below 0 at any of a row of
  * angles, at either end of the band. */
 static int shrinks_below_0(const int32_t p[GLINT_BOX_TERMS])
 {
@@ -158,7 +159,8 @@ static const char *check_terms(struct glint_model_check *c,
     return NULL;
 }
 
-/* Coefficients in two sizes: see n_narrow in struct glint_model_output. */
+/* Checks coefficients of two sizes: see n_narrow in struct glint_model_output.
+ */
 static const char *check_narrow(struct glint_model_check *c,
                                 const struct glint_model_output *o)
 {

@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the two halves of the transfer share: transfer.c, which puts angle and
- * wavelength into polynomials, and transfer_rays.c, which puts rays in.
- */
+ * Shared by the two halves of the transfer: transfer.c, which puts angle and
+ * wavelength into polynomials, and transfer_rays.c, which puts rays in. */
 #ifndef GLINT_LENS_TERMS_H
 #define GLINT_LENS_TERMS_H
 
 #include "base/q.h"
 #include "glint/transfer.h"
 
-enum { TRANSFER_MAX_EXPONENT = 15 }; /* largest exponent of any variable */
+enum { TRANSFER_MAX_EXPONENT = 15 }; /* largest power of any variable */
 
 #define TRANSFER_ONE_Q30 (INT32_C(1) << 30)
 
-/* The powers 0 .. N of X. */
+/* Sets the powers 0 .. N of X. */
 static inline void transfer_powers(int32_t x_q30, int n, int32_t *power_q30)
 {
     power_q30[0] = TRANSFER_ONE_Q30;

@@ -24,7 +24,7 @@ static const void *at(const struct glint_lens *lens, uint32_t offset)
     return (const unsigned char *)lens->header + offset;
 }
 
-/* X of LO .. HI as -1 .. 1. */
+/* Returns the place of X in LO .. HI as -1 .. 1, clamped. */
 static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t span = (int64_t)hi - lo;
@@ -37,7 +37,8 @@ static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
                              span);
 }
 
-/* Whether WAVE is the system's; the upper end of its band is the next one's. */
+/* Returns whether WAVE belongs to the band of system S. The upper end of a band
+ * belongs to the next one. */
 static int is_in_band(const struct glint_model_system *s,
                       const struct glint_model_header *h, int32_t wave_q24)
 {
@@ -46,7 +47,7 @@ static int is_in_band(const struct glint_model_system *s,
             (wave_q24 == s->wave_hi_q24 && wave_q24 == h->wave_hi_q24));
 }
 
-/* How far WAVE lies outside of the system's band. */
+/* Returns how far WAVE lies outside of the band of S. */
 static int64_t off_band(const struct glint_model_system *s, int32_t wave_q24)
 {
     const int64_t below = (int64_t)s->wave_lo_q24 - wave_q24;
@@ -78,9 +79,9 @@ find_system(const struct glint_lens *lens, int ghost, int32_t sine_q30,
     return best;
 }
 
-/* Angle and wavelength of a bundle within its system. */
+/* Angle and wavelength of a bundle, relative to its system. */
 struct setting {
-    uint32_t knot; /* the lower one */
+    uint32_t knot; /* the knot below the angle */
     int32_t part_q30;
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
 };
@@ -131,7 +132,8 @@ static void set_box(struct glint_transfer *t, const struct glint_lens *lens,
     }
 }
 
-/* The sparse basis: between two knots. */
+/* Sets the terms of an output in the sparse basis, interpolated between two
+ * knots. */
 static void set_terms(struct glint_transfer *t, const struct glint_lens *lens,
                       const struct glint_model_output *o,
                       const struct setting *set)
@@ -148,7 +150,8 @@ static void set_terms(struct glint_transfer *t, const struct glint_lens *lens,
     }
 }
 
-/* VALUE, of a term with the powers POWER, with angle and wavelength put in. */
+/* Returns VALUE, the coefficient of a term with the powers POWER, multiplied by
+ * its powers of angle and wavelength. */
 static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
                                     uint16_t power)
 {
@@ -159,7 +162,7 @@ static WHOLLY_INLINE int32_t put_in(const struct setting *set, int32_t value,
     return d ? q_mul(value, set->w_q30[d], 30) : value;
 }
 
-/* A polynomial of u and v while it is added up. */
+/* A polynomial of u and v while its terms are added. */
 struct table {
     int32_t (*row)[GLINT_TABLE_WIDTH];
     int degree_u, degree_v;
@@ -175,7 +178,7 @@ static WHOLLY_INLINE void add_term(struct table *t, uint16_t power,
     t->degree_v = b > t->degree_v ? b : t->degree_v;
 }
 
-/* The auto basis. */
+/* Sets the table of an output in the auto basis. */
 static void set_table(struct glint_transfer *t, const struct glint_lens *lens,
                       const struct glint_model_output *o,
                       const struct setting *set)

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Grids of rays to vertices in the picture: values of the polynomials become
- * pixels, stop radii and energies of fixed formats, turned by the azimuth of
- * the light; what does not fit is lost.
- */
+ * Turns grids of rays into vertices of the picture: values of the polynomials
+ * become pixels, stop radii and energies of fixed formats, turned by the
+ * azimuth of the light. Rays with values that do not fit are lost. */
 #include "glint/transfer.h"
 
 #include <stddef.h>
@@ -20,17 +19,18 @@ STATIC_ASSERT((int)RAYS == (int)GLINT_TURNED);
 
 /* ---------------------------------------------------------------- vertices */
 
-/* As many rays as are computed at once, on their way to vertices. */
+/* The rays that are computed at once, before they become vertices. */
 struct block {
-    /* x and y, and those of the other side of the light's plane */
+    /* x and y, then x and y of the mirrored rays */
     int32_t sensor_q8[4][RAYS], stop_q16[4][RAYS];
     int32_t barrel_q16[2][RAYS];
     int32_t energy_q16[RAYS];
-    int32_t lost[2][RAYS]; /* here and there: all bits, or none */
+    int32_t lost[2][RAYS]; /* [0] of the rays, [1] of the mirrored rays: all
+                              bits set if lost */
 };
 
-/* The rays' values X over 2^SHIFT; where that is LIMIT or more, or negative, a
- * ray is lost. */
+/* Sets SCALED to X / 2^SHIFT, rounded. A ray whose value reaches LIMIT in
+ * magnitude is lost. */
 static void scale_rays(const int32_t *x, int shift, int32_t limit,
                        int32_t *scaled, int32_t *lost)
 {
@@ -39,7 +39,8 @@ static void scale_rays(const int32_t *x, int shift, int32_t limit,
             scaled[i] = q_scaled(x[i], shift, limit, &lost[i]);
         return;
     }
-    for (int i = 0; i < RAYS; i++) /* below 2^30 + 61 and 2^29: no overflow */
+    /* Sums below 2^30 + 61 + 2^29 do not overflow. */
+    for (int i = 0; i < RAYS; i++)
         scaled[i] = (x[i] + (INT32_C(1) << (shift - 1))) >> shift;
 }
 
@@ -80,7 +81,7 @@ static void set_barrels(const struct glint_transfer *t,
     }
 }
 
-/* Energies count 2^UP times, in 2^13, held to 0 .. 1. */
+/* Sets energies from _q29, raised by 2^UP, to _q16, clamped to 0 .. 1. */
 static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
 {
     const int raise = up > 13 ? up - 13 : 0, lower = up < 13 ? 13 - up : 0;
@@ -94,8 +95,9 @@ static void set_energies(const int32_t *energy, int up, int32_t *energy_q16)
     }
 }
 
-/* How rays lie in the picture: the azimuth of the light, for the sensor times
- * pixels per mm, and the shifts to the formats of a vertex. */
+/* How sensor and stop positions are turned: by the azimuth of the light, times
+ * pixels per mm for the sensor, and with the shifts to the formats of a vertex.
+ */
 struct turns {
     struct glint_turn sensor, stop;
 };
@@ -145,8 +147,8 @@ static void set_block(const struct glint_transfer *t, const struct turns *turns,
          b->stop_q16, b->lost);
 }
 
-/* The first N of them on this side of the light's plane, or, SIDE 1, on the
- * other one. */
+/* Writes the first N rays of B as vertices: SIDE 0 the rays themselves, SIDE 1
+ * the mirrored ones. */
 static void put_block(const struct block *b, const struct glint_place *p,
                       int side, int n, struct glint_vertex *v)
 {
@@ -162,7 +164,7 @@ static void put_block(const struct block *b, const struct glint_place *p,
 
 /* --------------------------------------------------------------------- rows */
 
-/* Node K of N_CELLS over MIDDLE +- HALF. */
+/* Returns the place of node K of N_CELLS over MIDDLE +- HALF. */
 static int32_t node_q30(int32_t middle_q30, int32_t half_q30, int k,
                         int n_cells)
 {
@@ -183,22 +185,23 @@ int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n)
     const int rim = transfer->annulus;
     const int64_t high_q30 = (int64_t)w->v_to_q30 - w->v_from_q30;
 
-    /* NOLINTNEXTLINE: there is a step */
+    /* NOLINTNEXTLINE: N is at least 1 */
     return (int32_t)q_divide(
         ((int64_t)rim * TRANSFER_ONE_Q30 + w->v_from_q30) * n + high_q30 * j,
         (rim + 1) * n);
 }
 
-/* Whether row J lies between the two sides of an annular box. */
+/* Returns whether row J is the one in the middle of an annular box, which has
+ * no rays. */
 static int is_hidden(const struct glint_transfer *t, int n_cells, int j)
 {
     return t->annulus && 2 * j == n_cells;
 }
 
-/* V of row J. */
+/* Returns v of row J. */
 static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
 {
-    /* index of the last row of the lower side */
+    /* index of the last row below the middle */
     const int last = n_cells / 2 - 1;
 
     if (!t->annulus)
@@ -207,8 +210,8 @@ static int32_t row_q30(const struct glint_transfer *t, int n_cells, int j)
                      : glint_transfer_v(t, last - (n_cells - j), last);
 }
 
-/* Row J of the lower half into ROW, and the one on the other side of the
- * light's plane into MIRRORED, unless they are NULL. */
+/* Fills ROW with row J of the lower half, and MIRRORED with its mirror image,
+ * unless they are NULL. */
 static void set_row_pair(struct glint_transfer *t,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rays through the polynomials of a bundle, into which transfer.c has put angle
- * and wavelength: along rows of a grid by Horner's rule (kernels/horner), eight
- * at once. Formats are those of transfer.c.
- */
+ * Sends rays through the polynomials of a bundle, into which transfer.c has put
+ * angle and wavelength: along rows of a grid by Horner's rule (kernels/rays),
+ * eight at once. Formats are those of transfer.c. */
 #include "glint/transfer.h"
 
 #include "base/q.h"
@@ -12,13 +11,15 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Powers of v of a kind are all odd, or all even. */
+/* Returns whether the powers of v of KIND are all odd; else they are all even.
+ */
 static int is_odd(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;
 }
 
-/* An output's polynomial in u along one row of the grid. */
+/* Sets OF_U to the polynomial in u of output KIND along the row of rays at V.
+ */
 static void set_row(const struct glint_transfer *t,
                     const struct glint_horner *k, int kind, int32_t v_q30,
                     int32_t v2_q30, int32_t *of_u)
@@ -32,7 +33,7 @@ static void set_row(const struct glint_transfer *t,
         of_u[a] = q_mul(of_u[a], v_q30, 30);
 }
 
-/* Fills the polynomials in u of the rays at V. */
+/* Sets the polynomials in u of all outputs along the row of rays at V. */
 static void set_rows(const struct glint_transfer *t,
                      const struct glint_horner *k, int32_t v_q30,
                      int32_t (*of_u)[GLINT_TABLE_WIDTH])
@@ -44,7 +45,7 @@ static void set_rows(const struct glint_transfer *t,
             set_row(t, k, kind, v_q30, v2_q30, of_u[kind]);
 }
 
-/* From values of the polynomial of energy to N energies. */
+/* Turns N values of the polynomial of energy into energies. */
 static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
 {
     const int32_t most = (INT32_C(1) << 29) >> t->head;
@@ -56,7 +57,7 @@ static void raise_energies(const struct glint_transfer *t, int32_t *e, int n)
             e[i] = q_mul(e[i], e[i], 29);
 }
 
-/* The rays at U, by kind. */
+/* Gives the outputs of the rays at U, by kind. */
 static void rays_of_rows(const struct glint_transfer *t,
                          const struct glint_horner *k, const int32_t *u_q30,
                          int32_t (*out)[RAYS])

@@ -1,28 +1,27 @@
 /* SPDX-License-Identifier: MIT
  *
- * Drawing by cells: grids to primitives, primitives to tiles, one level or two,
- * tiles to pixels.
- */
+ * Draws by cells: grids become primitives, primitives go into tiles, of one
+ * level or two, tiles become pixels. */
 #include "base/q.h"
 #include "flare/state.h"
 #include "published/ghost_grid.h"
 #include "published/raster.h"
 
-/* The memory of a flare drawn by cells, besides that of any flare. */
+/* The memory of a flare that is drawn by cells, beyond that of any flare. */
 struct by_cells {
-    uint8_t *level; /* one per vertex, what merge found */
+    uint8_t *level; /* for each vertex, the marks that merging leaves */
     struct glint_primitive *primitive;
 };
 
 /* The memory of one worker. */
 struct worker {
-    int64_t *acc_q20; /* [3][side * side], one small tile's sums */
+    int64_t *acc_q20; /* [3][side * side]: sums of one small tile */
     struct glint_clip *clip;
-    int32_t *start; /* small tiles of one large tile */
+    int32_t *start; /* lists of the small tiles of one large tile */
     int32_t *ref;
     const struct draw *draw; /* set while the worker draws a row of tiles */
     const struct glint_bins *bins;
-    int at_tile; /* the next one of them */
+    int at_tile; /* index of the next tile */
     struct glint_box tile;
 };
 
@@ -36,7 +35,8 @@ static struct worker *worker_of(const struct glint_flare *f, int i)
     return f->worker[i].own;
 }
 
-/* Both run twice: to measure, which gives NULL, and to place. */
+/* carve and carve_worker run twice: once to measure, which gives NULL, and once
+ * to place. */
 static void *carve(struct glint_arena *a, const struct glint_flare_config *c)
 {
     struct by_cells measured, *placed, *own;
@@ -103,7 +103,7 @@ static struct glint_ghost_grid grid_of(const struct glint_flare *f, int bundle)
     };
 }
 
-/* The index entries that the primitives of a bundle take. */
+/* Counts the index entries that the primitives of a bundle take. */
 struct span {
     const struct glint_bins *bins;
     int refs;
@@ -176,7 +176,8 @@ static struct glint_box primitive_box(const struct glint_flare *f, int index)
     return glint_primitive_box(p, &corners, f->cfg.width, f->cfg.height);
 }
 
-/* Keeps the bundles whose index entries fit; counts those of all. */
+/* Keeps the first bundles whose index entries fit, and counts the entries of
+ * all. */
 static void keep_refs(struct glint_flare *f)
 {
     int full = 0, n_kept = 0;
@@ -194,7 +195,7 @@ static void keep_refs(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Makes the lists of the bundles that were kept. */
+/* Sorts the primitives of the bundles that were kept into tiles. */
 static void fill_bins(struct glint_flare *f)
 {
     int n = 0;
@@ -210,7 +211,7 @@ static void fill_bins(struct glint_flare *f)
     glint_bins_close(&f->bins);
 }
 
-/* Small tiles of the large tile TILE. */
+/* Returns the small tiles of large tile TILE. */
 static struct glint_bins small_bins(const struct glint_flare *f, int tile,
                                     const struct worker *w)
 {
@@ -221,8 +222,8 @@ static struct glint_bins small_bins(const struct glint_flare *f, int tile,
     return bins;
 }
 
-/* The longest index list that one large tile will need: the lists of large
- * tiles are there, and of all bundles. */
+/* Sets need_tile_refs to the longest index list that one large tile will need.
+ * The lists of large tiles must be there, with all bundles. */
 static void count_tile_refs(struct glint_flare *f)
 {
     const int n = f->bins.tiles_x * f->bins.tiles_y;
@@ -237,7 +238,8 @@ static void count_tile_refs(struct glint_flare *f)
     }
 }
 
-/* Counts the entries for small tiles of each large tile. */
+/* Adds the entries that BOX takes in small tiles to the count of each large
+ * tile. */
 static void add_tile_span(void *ctx, struct glint_box box)
 {
     const struct glint_flare *f = ctx;
@@ -252,8 +254,9 @@ static void add_tile_span(void *ctx, struct glint_box box)
     }
 }
 
-/* The same before there are lists, where bundles found no room: primitives are
- * made once more, and dropped. Counts where the lists will begin. */
+/* Sets need_tile_refs when bundles found no room, so that lists are incomplete:
+ * primitives are made once more, and dropped. The counts lie where the lists
+ * will begin. */
 static void count_all_tile_refs(struct glint_flare *f)
 {
     const int n = f->bins.tiles_x * f->bins.tiles_y;
@@ -300,7 +303,7 @@ struct draw {
     struct glint_cell_raster cells;
 };
 
-/* Row Y of a tile's sums in channel C. */
+/* Returns row Y of a tile's sums in channel C. */
 static const int64_t *sums_of(const struct worker *w, int c, int y)
 {
     const int side = 1 << w->draw->cells.tile_log2;
@@ -308,7 +311,7 @@ static const int64_t *sums_of(const struct worker *w, int c, int y)
     return w->acc_q20 + (ptrdiff_t)(c * side + y) * side;
 }
 
-/* One level: a row of the frame's tiles. */
+/* Begins a row of the frame's tiles, for one level. */
 static void *begin_row(const void *self, struct glint_box row, int worker)
 {
     const struct draw *d = self;
@@ -320,7 +323,8 @@ static void *begin_row(const void *self, struct glint_box row, int worker)
     return w;
 }
 
-/* Two levels: a row of small tiles in the large one that the worker is at. */
+/* Begins a row of small tiles of the large tile that the worker is at, for two
+ * levels. */
 static void *begin_small_row(const void *self, struct glint_box row, int worker)
 {
     const struct draw *d = self;
@@ -331,7 +335,8 @@ static void *begin_small_row(const void *self, struct glint_box row, int worker)
     return w;
 }
 
-/* Clears the sums and adds every primitive. */
+/* Clears the sums and adds every primitive of TILE; returns 0 if there is none.
+ */
 static int add_tile(void *state, struct glint_box tile)
 {
     struct worker *w = state;
@@ -377,7 +382,7 @@ static enum glint_given light_rows(void *state,
     return GLINT_GIVES_LIGHT;
 }
 
-/* One level: a job is a row of small tiles. */
+/* Draws a row of tiles: a job of one level. */
 static void row_job(void *ctx, int job, int worker)
 {
     const struct draw *d = ctx;
@@ -386,8 +391,8 @@ static void row_job(void *ctx, int job, int worker)
                     &d->flare->worker[worker].tile);
 }
 
-/* Sorts the large tile TILE into small ones, so many entries as there is room
- * for. */
+/* Sorts the primitives of large tile TILE into small tiles, as far as there is
+ * room for their entries. */
 static void sort_tile(const struct glint_flare *f, int tile,
                       struct glint_bins *bins)
 {
@@ -411,7 +416,7 @@ static void sort_tile(const struct glint_flare *f, int tile,
     glint_bins_close(bins);
 }
 
-/* Two levels: a job is a large tile. */
+/* Draws one large tile: a job of two levels. */
 static void coarse_job(void *ctx, int job, int worker)
 {
     const struct draw *d = ctx;

@@ -13,13 +13,13 @@ static uint64_t magnitude(int64_t x)
     return x < 0 ? (uint64_t)-x : (uint64_t)x;
 }
 
-/* mantissa * 2^exponent, mantissa below 2^28. */
+/* A number, mantissa * 2^exponent, with the mantissa below 2^28. */
 struct scale {
     int64_t mantissa;
     int exponent;
 };
 
-/* NUMERATOR / DENOMINATOR, both positive, to 27 bits. */
+/* Returns NUMERATOR / DENOMINATOR, both positive, to 27 bits. */
 static struct scale scale_of(uint64_t numerator, uint64_t denominator)
 {
     const int up = 62 - bit_length(numerator);
@@ -32,7 +32,7 @@ static struct scale scale_of(uint64_t numerator, uint64_t denominator)
     return (struct scale){(int64_t)q, extra - up - down};
 }
 
-/* VALUE, within +-2^34, times SCALE; saturates far from any cut. */
+/* Returns VALUE, within +-2^34, times SCALE, clamped far from any cut. */
 static int32_t scaled(int64_t value, struct scale scale)
 {
     const int64_t x = value * scale.mantissa;
@@ -46,8 +46,9 @@ static int32_t scaled(int64_t value, struct scale scale)
     return (int32_t)(x * (INT64_C(1) << scale.exponent));
 }
 
-/* Turns values at the corners into distances in pixels: divides by the slope,
- * which follows from the two diagonals (or sides). */
+/* Turns values of a linear function at the corners into distances in pixels:
+ * divides them by the slope, which follows from the two diagonals (or sides).
+ */
 static void to_pixels(const struct glint_corners *c, const int64_t *value_q16,
                       int32_t *at_q8)
 {
@@ -68,7 +69,8 @@ static void to_pixels(const struct glint_corners *c, const int64_t *value_q16,
                                             (ny >> down) * (ny >> down));
     struct scale scale;
 
-    if (slope == 0) { /* the same everywhere: all in or all out */
+    /* The function is constant: all is inside or all is outside. */
+    if (slope == 0) {
         for (int i = 0; i < 4; i++)
             at_q8[i] = value_q16[i] >= 0 ? FAR_Q8 : -FAR_Q8;
         return;
@@ -119,9 +121,9 @@ static int64_t highest(const int64_t *v)
 
 enum side { OUTSIDE, CUT, INSIDE };
 
-/* MARGIN over the primitive's width at its narrowest, q8, from area and
- * extent: a cut whose values keep that many times their span from 0 is out of
- * reach. */
+/* Returns MARGIN over the primitive's narrowest width, q8, from its area and
+ * extent. A cut whose values stay farther from 0 than this many times their
+ * span cannot reach it. */
 static int64_t reach_q8(const struct glint_corners *c)
 {
     int64_t x[4], y[4], extent_q8;
@@ -135,8 +137,8 @@ static int64_t reach_q8(const struct glint_corners *c)
     return 2 * MARGIN_Q8 * 256 * extent_q8 / c->area2_q16 + 1;
 }
 
-/* On which side of a linear cut the primitive lies, with three quarters of a
- * pixel of respect for pixels that straddle it. */
+/* Returns on which side of a linear cut the primitive lies; CUT if the cut
+ * comes within three quarters of a pixel, as pixels may straddle it. */
 static enum side side_of(const struct glint_corners *c,
                          const int64_t *value_q16, int64_t reach)
 {
@@ -146,7 +148,7 @@ static enum side side_of(const struct glint_corners *c,
 
     if (near == 0)
         return CUT;
-    /* |values| < 2^34, reach < 2^29 or out of use */
+    /* values| < 2^34; REACH is below 2^29 or not used */
     if (reach >= INT64_C(1) << 29 || near * 256 < (high - low) * reach) {
         to_pixels(c, value_q16, at_q8);
         for (int i = 0; i < 4; i++)
@@ -156,7 +158,8 @@ static enum side side_of(const struct glint_corners *c,
     return low > 0 ? INSIDE : OUTSIDE;
 }
 
-/* Pixels per stop radius, from the ratio of the areas. */
+/* Returns pixels per stop radius, from the ratio of the areas on the screen and
+ * in the stop. */
 static int32_t field_scale_q16(const struct glint_corners *c)
 {
     const int last = c->n == 4;
@@ -175,7 +178,8 @@ static int32_t field_scale_q16(const struct glint_corners *c)
     area_q32 = magnitude(ax * by - ay * bx);
     if (area_q32 == 0)
         return INT32_MAX;
-    /* area2_q16 / area_q32 is a q-16: lift it to a q32 of pixels^2, root q16 */
+    /* area2_q16 / area_q32 is a q-16: lift it to q32, pixels^2; the root is q16
+     */
     up = 62 - bit_length((uint64_t)c->area2_q16);
     ratio_q16 = ((uint64_t)c->area2_q16 << up) / area_q32;
     up -= 48;
@@ -197,7 +201,8 @@ int32_t glint_clip_field_q16(const struct glint_stop *stop, int32_t x_q16,
     const int16_t *m;
     int64_t low, high;
 
-    if (!stop->mask_q13) { /* circle: (1 - r^2) / 2 is 1 - r near r = 1 */
+    if (!stop->mask_q13) { /* circle: (1 - r^2) / 2, which is 1 - r near r = 1
+                            */
         const int64_t x = x_q16 / 2, y = y_q16 / 2;
 
         return q_clamp_sat((INT64_C(1) << 15) - q_shift(x * x + y * y, 15),
@@ -218,7 +223,7 @@ int32_t glint_clip_field_q16(const struct glint_stop *stop, int32_t x_q16,
     return q_narrow(q_shift(low * 65536 + (high - low) * fv, 29));
 }
 
-/* The box of the stop positions at the corners, grown by GROW. */
+/* The bounding box of the stop positions at the corners. */
 struct extent {
     int64_t x0, x1, y0, y1;
 };
@@ -235,7 +240,8 @@ static struct extent stop_extent(const struct glint_corners *c, int64_t grow)
                            lowest(y) - grow, highest(y) + grow};
 }
 
-/* The unit disc is convex: the box may miss it, all corners may be in it. */
+/* Returns on which side of the unit disc the primitive lies. The disc is
+ * convex: outside if it misses the box, inside if all corners are in it. */
 static enum side circle_side(struct extent e, int64_t low, int64_t pixel_q16)
 {
     const int64_t one = INT64_C(1) << 16;
@@ -247,8 +253,8 @@ static enum side circle_side(struct extent e, int64_t low, int64_t pixel_q16)
     return low > pixel_q16 ? INSIDE : CUT;
 }
 
-/* On which side of a circle or mask the primitive lies. A signed distance
- * changes by no more than the way between two points. */
+/* Returns on which side of a circle or mask the primitive lies: a signed
+ * distance changes by no more than the distance between two points. */
 static enum side field_side(const struct glint_corners *c,
                             const struct glint_stop *stop)
 {

@@ -7,8 +7,8 @@
 #include "base/q.h"
 #include "published/clip.h"
 
-/* Marks of a cell: the size of the block that starts here, as a power of two,
- * or that a larger block has it. */
+/* Marks of cells: log2 of the side of the block that starts at the cell, or
+ * COVERED if the cell belongs to a block that starts at another. */
 enum { COVERED = 255 };
 
 static int node(const struct glint_ghost_grid *g, int i, int j)
@@ -23,7 +23,8 @@ static int vertex_valid(const struct glint_vertex *v)
            v->y_q8 > -GLINT_VERTEX_LIMIT_Q8 && v->y_q8 < GLINT_VERTEX_LIMIT_Q8;
 }
 
-/* Sign of the turn at each corner, if it is the same at all four; else 0. */
+/* Returns the sign of the turn at each corner if it is the same at all four,
+ * else 0. */
 static int convexity(const struct glint_vertex *v, const int32_t *q)
 {
     int positive = 0, negative = 0;
@@ -41,7 +42,8 @@ static int convexity(const struct glint_vertex *v, const int32_t *q)
     return positive == 4 ? 1 : negative == 4 ? -1 : 0;
 }
 
-/* The corners of the block of 2^SIZE_LOG2 cells at (I, J), in order. */
+/* Sets Q to the corners of the block of 2^SIZE_LOG2 cells a side at (I, J), in
+ * order. */
 static void block_corners(const struct glint_ghost_grid *g, int i, int j,
                           int size_log2, int32_t *q)
 {
@@ -53,7 +55,8 @@ static void block_corners(const struct glint_ghost_grid *g, int i, int j,
     q[3] = node(g, i, j + h);
 }
 
-/* Edges A to B and B to C agree within GAMMA of the longer one. */
+/* Returns whether edges A to B and B to C differ by no more than GAMMA of the
+ * longer one. */
 static int edges_agree(const struct glint_vertex *a,
                        const struct glint_vertex *b,
                        const struct glint_vertex *c, int32_t gamma_q16)
@@ -69,10 +72,10 @@ static int edges_agree(const struct glint_vertex *a,
                                 ? (longest * gamma2_q24) >> 24
                                 : (longest >> 24) * gamma2_q24;
 
-    return dx * dx + dy * dy <= allowed + 2; /* two steps of rounding */
+    return dx * dx + dy * dy <= allowed + 2; /* 2 is two units of rounding */
 }
 
-/* B is the mean of A and C within GAMMA. */
+/* Returns whether 2 B differs from A + C by no more than GAMMA. */
 static int halfway(int32_t a, int32_t b, int32_t c, int32_t gamma)
 {
     const int64_t off = (int64_t)a + c - 2 * (int64_t)b;
@@ -80,8 +83,8 @@ static int halfway(int32_t a, int32_t b, int32_t c, int32_t gamma)
     return off <= gamma && -off <= gamma;
 }
 
-/* B is the mean of A and C within GAMMA, where a cut may run: what clips must
- * be as straight as what is drawn. */
+/* Returns whether cuts are straight from A over B to C, within GAMMA in stop
+ * radii and in the values of barrels. */
 static int cuts_agree(const struct glint_vertex *a,
                       const struct glint_vertex *b,
                       const struct glint_vertex *c, int32_t gamma_q16)
@@ -94,7 +97,8 @@ static int cuts_agree(const struct glint_vertex *a,
            halfway(a->stop_y_q16, b->stop_y_q16, c->stop_y_q16, gamma_q16);
 }
 
-/* The three rows and columns of nodes of a block are straight enough. */
+/* Returns whether the three rows and three columns of nodes of a block are
+ * straight enough; CUT is nonzero if a cut may cross it. */
 static int block_straight(const struct glint_ghost_grid *g, int i, int j,
                           int half, int cut)
 {
@@ -126,8 +130,9 @@ static int block_cut(const struct glint_ghost_grid *g, const int32_t *q)
     return glint_clip_classify(&corners, g->stop);
 }
 
-/* The block of 2^SIZE_LOG2 cells at (I, J) can be one primitive: its quarters
- * are, all are convex, turned alike, and straight enough. */
+/* Returns whether the block of 2^SIZE_LOG2 cells a side at (I, J) can be one
+ * primitive: its quarters are merged already, all are convex, turned alike, and
+ * straight enough. */
 static int block_merges(const struct glint_ghost_grid *g, int i, int j,
                         int size_log2)
 {
@@ -188,13 +193,13 @@ void glint_ghost_grid_merge(struct glint_ghost_grid *grid)
         grid->n_merged += grid->level[k] != 0;
 }
 
-/* Light, q22, as a primitive holds it. */
+/* Returns light as a primitive stores it: _q20, clamped. */
 static int32_t held_q20(int64_t light_q22)
 {
     return q_clamp_sat(q_shift(light_q22, 2), 0, INT32_MAX);
 }
 
-/* A primitive far smaller than a pixel, given the flux of its cells. */
+/* Adds a primitive far smaller than a pixel, with the flux of its cells. */
 static int emit_point(struct glint_ghost_grid *g,
                       const struct glint_corners *corners,
                       struct glint_primitive *p, struct glint_primitive *out)
@@ -212,7 +217,8 @@ static int emit_point(struct glint_ghost_grid *g,
     return 0;
 }
 
-/* Adds what pixel centres can see; returns whether light was dropped. */
+/* Adds a primitive if pixel centres can see it; returns whether light was
+ * dropped because it has no area. */
 static int emit_cell(struct glint_ghost_grid *g,
                      const struct glint_corners *corners,
                      struct glint_primitive *p, struct glint_primitive *out)
@@ -240,7 +246,7 @@ static int emit_cell(struct glint_ghost_grid *g,
     return 0;
 }
 
-/* Adds one primitive with the corners Q if anything of it can be seen. Returns
+/* Adds one primitive with the corners Q if any of it can be seen. Returns
  * whether its light was dropped. */
 static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
                     int n, int share_log2, struct glint_primitive *out)
@@ -263,7 +269,8 @@ static int emit_one(struct glint_ghost_grid *g, int bundle, const int32_t *q,
     return dropped;
 }
 
-/* A cell that is no convex quad: two triangles, or the one that is left. */
+/* Adds a cell that is no convex quad: as two triangles, or as the one triangle
+ * whose corners are not lost. Returns whether light was dropped. */
 static int emit_triangles(struct glint_ghost_grid *g, int bundle,
                           const int32_t *q, struct glint_primitive *out)
 {
@@ -286,7 +293,7 @@ static int emit_triangles(struct glint_ghost_grid *g, int bundle,
     return dropped;
 }
 
-/* Too small to show that it is folded. */
+/* Returns whether a block is too small to show that it is folded. */
 static int block_tiny(const struct glint_ghost_grid *g, const int32_t *q)
 {
     struct glint_corners corners;
@@ -335,8 +342,9 @@ static int is_near(const struct glint_vertex *a, const struct glint_vertex *b)
     return x < 1024 && x > -1024 && y < 1024 && y > -1024;
 }
 
-/* Returns whether all neighbours land within four pixels of each other: then
- * folds have rims that pixel centres cannot tell, hundreds of times white. */
+/* Returns whether all neighbours land within four pixels of each other. Folds
+ * of such grids have rims of hundreds of times white that pixel centres miss.
+ */
 static int has_small_cells(const struct glint_ghost_grid *g)
 {
     const int n = g->bundle->n_cells;

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * From a bundle's ray grid to primitives, for the rasteriser of cells.
+ * Turns a bundle's ray grid into primitives, for the rasteriser of cells.
  *
  *   in   vertices of the grid, row by row
  *   out  convex quads, triangles where a quad is folded or has lost a corner,
  *        each with the irradiance that keeps the energy of its cells
  *
  * Blocks of 2 x 2 equal cells become one where their edges agree, up to four
- * times over [Bodonyi23]. What nothing of can be seen is left out. A cell that
- * lost one corner keeps half of its light, one that lost more is dropped.
- * Cells of a ghost that is focused to a few pixels become points; others
- * without area lose their light.
- */
+ * times over [Bodonyi23]. Primitives that cannot be seen are left out. A cell
+ * that lost one corner keeps half of its light, one that lost more is dropped.
+ * Cells of a ghost that is focused to a few pixels become points; other cells
+ * without area lose their light. */
 #ifndef GLINT_PUBLISHED_GHOST_GRID_H
 #define GLINT_PUBLISHED_GHOST_GRID_H
 
@@ -20,34 +19,34 @@
 #include "flare/edges/primitive.h"
 #include "glint/light.h"
 
-/* A bundle in the making; counts are what the grid gave. */
+/* A bundle while it becomes primitives, and the counts of what it gave. */
 struct glint_ghost_grid {
-    const struct glint_vertex *vertex; /* all bundles' */
+    const struct glint_vertex *vertex; /* vertices of all bundles */
     int first;                         /* first vertex of this bundle */
     const struct glint_bundle *bundle;
     const struct glint_stop *stop;
-    int width, height;       /* pixels of the picture */
-    int merge_steps;         /* 0 .. 4 */
-    int32_t merge_gamma_q16; /* relative */
-    uint8_t *level;          /* [n_cells][n_cells], scratch that keeps what
-                                merge found for emit */
-    int antialias;           /* cells of a few pixels are sampled finely */
-    int sampled;             /* all cells are that small */
-    int focused;             /* the whole ghost is a few pixels wide */
+    int width, height; /* size of the picture in pixels */
+    int merge_steps;   /* log2 of the largest side of a merged block, 0 .. 4 */
+    /* Largest relative disagreement of edges that merge. */
+    int32_t merge_gamma_q16;
+    uint8_t *level; /* [n_cells][n_cells]: marks of cells, from merge to emit */
+    int antialias;  /* 1: cells of a few pixels are sampled finely */
+    int sampled;    /* 1: all cells are a few pixels wide */
+    int focused;    /* 1: the whole ghost is a few pixels wide */
     int n_primitives, n_dropped, n_merged;
-    int n_held; /* primitives written that had more light than a pixel gets of
-                   one */
+    int n_held; /* primitives written whose light was clamped to what one may
+                   give a pixel */
 
-    /* Unless NULL, it is handed the box of each primitive, written or not. */
+    /* Unless NULL, called with the box of each primitive, written or not. */
     void (*see)(void *ctx, struct glint_box box);
     void *ctx;
 };
 
-/* Decides which blocks of cells become one. */
+/* Decides which blocks of cells become one primitive. */
 void glint_ghost_grid_merge(struct glint_ghost_grid *grid);
 
-/* Counts the primitives, and writes them unless OUT is NULL, as bundle BUNDLE.
- */
+/* Counts the primitives of bundle BUNDLE, and writes them to OUT unless it is
+ * NULL. */
 void glint_ghost_grid_emit(struct glint_ghost_grid *grid, int bundle,
                            struct glint_primitive *out);
 

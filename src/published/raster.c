@@ -6,16 +6,16 @@
 
 enum { HALF_Q8 = 128 };
 
-/* Edge I runs from corner I to corner I + 1. A triangle's fourth edge is one
- * that everything is inside of. */
+/* The edges of a primitive: edge I runs from corner I to corner I + 1. A
+ * triangle has a fourth edge that everything is inside of. */
 struct edges {
     int n;
     int64_t at[4];        /* value at the pixel, >= 0 inside */
     int64_t row[4];       /* value at the first pixel of the row */
     int64_t dx[4], dy[4]; /* change to the next pixel, next row */
-    int bias[4];          /* -1 where a pixel on the edge is the neighbour's */
-    int shift;            /* leaves 24 bits of a value */
-    uint64_t fan[4];      /* Wachspress: area at each corner, 12 bits; else 1 */
+    int bias[4];     /* -1 where a pixel on the edge belongs to the neighbour */
+    int shift;       /* bits to drop so that 24 are left of a value */
+    uint64_t fan[4]; /* Wachspress: area at each corner, 12 bits; else 1 */
 };
 
 static void edges_init(struct edges *e, const struct glint_corners *c,
@@ -49,15 +49,16 @@ static void edges_init(struct edges *e, const struct glint_corners *c,
 
 static int inside(const struct edges *e)
 {
-    int64_t outside = 0; /* negative if any is */
+    int64_t outside = 0; /* negative if any edge has the pixel outside */
 
     for (int i = 0; i < 4; i++)
         outside |= e->at[i] + e->bias[i];
     return outside >= 0;
 }
 
-/* Unnormalised weights. Each factor is below 2^24 (2^12 for the fans), products
- * below 2^60, sums below 2^62. */
+/* Sets W to the unnormalised weights of the corners and returns their sum. Each
+ * factor is below 2^24 (2^12 for the fans), products below 2^60, sums below
+ * 2^62. */
 static uint64_t raw_weights(const struct edges *e, uint64_t *w)
 {
     uint64_t a[4];
@@ -75,13 +76,13 @@ static uint64_t raw_weights(const struct edges *e, uint64_t *w)
     return w[0] + w[1] + w[2] + w[3];
 }
 
-/* Barycentric weights, q16, of the corners. */
+/* Sets the barycentric weights of the corners, q16. */
 static void corner_weights(const struct edges *e, int32_t *weight_q16)
 {
     uint64_t w[4], scale, sum = raw_weights(e, w);
     int wide, drop;
 
-    if (sum == 0) /* a sliver of a few steps: any corner will do */
+    if (sum == 0) /* a sliver of a few units: any corner will do */
         w[0] = sum = 1;
     wide = bit_length(sum);
     drop = wide > 31 ? wide - 31 : 0;
@@ -93,9 +94,9 @@ static void corner_weights(const struct edges *e, int32_t *weight_q16)
                       (wide + 15));
 }
 
-/* Share, q16, of the pixel that the clips leave, or of one of its PLACES
- * across: distances in pixels become cover by half of it on either side, or a
- * step at 0. */
+/* Returns the share, q16, that the clips leave of a pixel, or of one of its
+ * PLACES parts across. Distances in pixels become cover over half a pixel on
+ * either side of the cut, or without antialiasing at once. */
 static int32_t cover_of(const struct glint_cell_raster *r,
                         const struct glint_clip *clip,
                         const struct glint_corners *c, const int32_t *w_q16,
@@ -140,7 +141,7 @@ static int32_t energy_of(const struct glint_corners *c, const int32_t *w_q16)
     return (int32_t)q_shift(sum, 16);
 }
 
-/* One pixel of the primitive: light times colour into the three sums. */
+/* Adds light times colour at one pixel to its three sums. */
 static void add_pixel(int64_t *acc_q20, int channel_stride,
                       const int32_t *rgb_q14, int64_t light_q20)
 {
@@ -154,7 +155,7 @@ static void next_row(struct edges *e)
         e->row[i] += e->dy[i];
 }
 
-/* All the light of a point, to the one pixel it has. */
+/* Adds all the light of a point to its one pixel. */
 static void add_point(const struct glint_cell_raster *raster,
                       const struct glint_primitive *p,
                       const struct glint_corners *c, int64_t *acc_q20)
@@ -190,7 +191,7 @@ static int64_t light_at(const struct glint_cell_raster *raster,
     return light_q20;
 }
 
-/* The mean over 4 x 4 places of the pixel. */
+/* Returns the mean light over 4 x 4 places of the pixel. */
 static int64_t sampled_light(const struct glint_cell_raster *raster,
                              const struct glint_primitive *p,
                              const struct glint_corners *c,
@@ -201,7 +202,8 @@ static int64_t sampled_light(const struct glint_cell_raster *raster,
     int64_t sum_q20 = 0;
 
     for (int k = 0; k < 16; k++) {
-        const int x = 2 * (k & 3) - 3, y = 2 * (k >> 2) - 3; /* eighths */
+        /* Eighths of a pixel from its centre. */
+        const int x = 2 * (k & 3) - 3, y = 2 * (k >> 2) - 3;
 
         for (int i = 0; i < 4; i++)
             here.at[i] = e->at[i] + (e->dx[i] * x + e->dy[i] * y) / 8;

@@ -14,7 +14,8 @@ void glint_bins_init(struct glint_bins *bins, struct glint_box region,
     bins->ref = ref;
 }
 
-/* The tiles that BOX touches, as columns and rows; empty if none. */
+/* Returns the tiles that BOX touches, as columns and rows; empty if there are
+ * none. */
 static struct glint_box tile_range(const struct glint_bins *bins,
                                    struct glint_box box)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Index lists: which items, each of a box of pixels, may touch which tile.
+ * Index lists: which items, each in a box of pixels, may touch which tile.
  *
- * Three steps, so that every list has exactly the length it needs and order is
- * by item, never by arrival: count, prefix sum, scatter. The same code
- * serves both levels: the frame in large tiles, a large tile in small ones.
+ * Three steps, so that every list has exactly the length it needs and is
+ * ordered by item, never by arrival: count, prefix sum, scatter. The same code
+ * serves both levels: a frame in large tiles, and a large tile in small ones.
  */
 #ifndef GLINT_TILE_BINS_H
 #define GLINT_TILE_BINS_H
@@ -17,29 +17,34 @@ struct glint_bins {
     struct glint_box region; /* pixels that the tiles cover */
     int tile_log2;
     int tiles_x, tiles_y;
-    int32_t *start; /* [tiles_x * tiles_y + 1], into ref */
-    int32_t *ref;   /* indices of items, rising within a tile */
+    /* [tiles_x * tiles_y + 1]: first entry of each tile in ref. */
+    int32_t *start;
+    int32_t *ref; /* indices of items, rising within a tile */
 };
 
-/* Tiles across and down REGION. */
+/* Sets up BINS for REGION: its numbers of tiles across and down, START and REF.
+ */
 void glint_bins_init(struct glint_bins *bins, struct glint_box region,
                      int tile_log2, int32_t *start, int32_t *ref);
 
-/* How many tiles of BINS the pixels BOX touch: the entries it will take. */
+/* Returns how many tiles of BINS the pixels of BOX touch: the entries it takes.
+ */
 int glint_bins_span(const struct glint_bins *bins, struct glint_box box);
 
-/* count: once for all boxes, after glint_bins_open */
+/* Open sets all counts to 0; count adds the tiles of BOX, once for each item.
+ */
 void glint_bins_open(struct glint_bins *bins);
 void glint_bins_count(struct glint_bins *bins, struct glint_box box);
-/* prefix sum: from counts to starts */
+/* Turns the counts into places where lists start. */
 void glint_bins_sum(struct glint_bins *bins);
-/* scatter: the same boxes again, in the order wanted */
+/* Writes ITEM into the lists of the tiles of BOX; items come in the order that
+ * lists shall have. */
 void glint_bins_put(struct glint_bins *bins, struct glint_box box,
                     int32_t item);
-/* puts the starts back where the scatter found them */
+/* Sets the starts back to the beginnings of the lists, which put moved on. */
 void glint_bins_close(struct glint_bins *bins);
 
-/* The pixels of tile TILE. */
+/* Returns the pixels of tile TILE. */
 struct glint_box glint_bins_tile(const struct glint_bins *bins, int tile);
 
 #endif

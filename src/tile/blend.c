@@ -3,7 +3,7 @@
 
 #include "base/q.h"
 
-/* LIGHT behind what covers COVER_Q8 of it. */
+/* Returns the part of LIGHT that is seen through COVER_Q8. */
 static int64_t behind(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
@@ -38,7 +38,8 @@ static void add_linear(const struct glint_pass_rows *rows, int n_x,
                             INT32_MIN, INT32_MAX);
 }
 
-/* COVERED: something behind has cover already. */
+/* Adds the cover of a pass to the cover so far. COVERED is 0 if there is none
+ * yet. */
 static void add_cover(struct glint_blend_rows *s, int row, int n_x, int covered)
 {
     uint16_t *to_q8 = s->cover.cover_q8[row];
@@ -79,7 +80,7 @@ static enum glint_given add(const struct glint_pass *pass, void *state,
 
 /* ------------------------------------------------------------------- cover */
 
-/* PART values, each twice. */
+/* Writes PART values of cover, each twice across and in two rows. */
 static void double_cover(const uint16_t *from_q8, int part,
                          struct glint_cover_rows *to)
 {

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * How several passes come together, and cover the picture.
+ * Blends several passes, and lets them cover the picture.
  *
  *   light = light (1 - cover of the next) + light of the next
- *   cover = 1 - (1 - cover) (1 - cover of the next)
- */
+ *   cover = 1 - (1 - cover) (1 - cover of the next) */
 #ifndef GLINT_TILE_BLEND_H
 #define GLINT_TILE_BLEND_H
 
 #include "tile/pass.h"
 
-/* Blends several passes, where glint_tiles names it. */
+/* Blends several passes, if a struct glint_tiles names it. */
 extern const struct glint_blend glint_blend;
 
 #endif

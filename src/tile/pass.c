@@ -3,7 +3,7 @@
 
 #include "base/q.h"
 
-/* One tile, and who draws in it. */
+/* One tile, and the passes that draw in it. */
 struct visit {
     const struct glint_tiles *tiles;
     const struct glint_pass *pass;
@@ -14,7 +14,7 @@ struct visit {
     struct glint_tile_scratch *scratch;
 };
 
-/* Has all passes draw ROWS; returns what they give together. */
+/* Has all passes of this tile draw ROWS; returns what they give together. */
 static enum glint_given gather(const struct visit *v,
                                struct glint_pass_rows *rows)
 {
@@ -33,7 +33,8 @@ static enum glint_given gather(const struct visit *v,
     return given;
 }
 
-/* Hides what is covered of row Y, whose pixels are not those of codes. */
+/* Covers row Y of the picture if a pass gave cover. For linear pictures and
+ * half resolution, whose rows do not take cover and light at once. */
 static void hide(const struct visit *v, enum glint_given given, int y)
 {
     if (given == GLINT_GIVES_COVER)
@@ -42,7 +43,7 @@ static void hide(const struct visit *v, enum glint_given given, int y)
 
 /* ------------------------------------------------------------------ linear */
 
-/* Each of N values twice, in place. */
+/* Writes each of N values twice, in place. */
 static void double_row(int32_t *row, int n)
 {
     for (int i = n - 1; i >= 0; i--)
@@ -92,7 +93,8 @@ static void resolve_rows(const struct visit *v, enum glint_given given,
                               rows->light, &v->scratch->codes->rows);
 }
 
-/* Two rows at a time, which share their colours in 4:2:0. */
+/* Draws a tile of codes two rows at a time, as in 4:2:0 these share their
+ * chroma. */
 static void draw_codes(const struct visit *v)
 {
     struct glint_pass_rows rows = {.light = v->scratch->light};
@@ -107,9 +109,11 @@ static void draw_codes(const struct visit *v)
     }
 }
 
-enum { QUADS = GLINT_CODES_WIDTH / 2 }; /* blocks of four pixels in a stretch */
+/* Blocks of four pixels that are resolved at once. */
+enum { QUADS = GLINT_CODES_WIDTH / 2 };
 
-/* A row of pixels as two rows of twice as many. */
+/* Adds one row at half resolution to two rows of the picture, of twice as many
+ * pixels. */
 static void resolve_quads(const struct visit *v,
                           const struct glint_pass_rows *rows)
 {

@@ -6,7 +6,7 @@
 #include "base/q.h"
 #include "flare/edges/outline.h"
 
-/* The number of a cut: side K of the stop, or barrel K - BARREL. */
+/* Numbers of cuts: side K of the stop is K, barrel K is BARREL + K. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
 /* ------------------------------------------------------------------- nodes */
@@ -17,7 +17,8 @@ static int64_t radius2_q32(const struct glint_vertex *v)
            (int64_t)v->stop_y_q16 * v->stop_y_q16;
 }
 
-/* Half the sides, where each has one opposite, parallel to it; else 0. */
+/* Returns half the number of sides if each has a parallel one opposite, else 0.
+ */
 static int half_sides(const struct glint_stop *stop)
 {
     const int half = stop->n_blades / 2;
@@ -29,7 +30,7 @@ static int half_sides(const struct glint_stop *stop)
     return stop->n_blades % 2 ? 0 : half;
 }
 
-/* 1 less (1 + r^2) / 2 of a round stop, held where it is far outside. */
+/* Returns 1 - (1 + r^2) / 2 at V in the round stop, clamped far outside. */
 static int64_t disc_q16(const struct glint_vertex *v)
 {
     const int64_t value_q16 = ((INT64_C(1) << 32) - radius2_q32(v)) >> 17;
@@ -37,9 +38,10 @@ static int64_t disc_q16(const struct glint_vertex *v)
     return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
 }
 
-/* Sides that V lies on or beyond: as glint_side_q16() rounds, that is where
- * what it takes from the apothem, _q46, comes to LEAST. HALF of them with those
- * opposite, or 0. */
+/* Returns the sides that V lies on or beyond: those along whose normal it lies
+ * at least LEAST from the middle, which agrees with the rounding of
+ * glint_side_q16(). If HALF is not 0, only the first HALF sides are looked at,
+ * each together with its opposite. */
 static inline uint64_t sides_of(const struct glint_stop *stop, int half,
                                 const struct glint_vertex *v, int64_t least_q46)
 {
@@ -90,7 +92,7 @@ int glint_cuts_count(struct glint_outside o)
 
 /* ------------------------------------------------------------------- parts */
 
-/* Positive inside. */
+/* Returns the value of cut CUT at V, positive inside. */
 static int64_t cut_q16(const struct glint_stop *stop, int cut,
                        const struct glint_vertex *v)
 {
@@ -108,7 +110,7 @@ static void shorten(const struct glint_stop *stop, struct interval *in, int cut,
                     const struct glint_vertex *a, const struct glint_vertex *b)
 {
     const int64_t fa = cut_q16(stop, cut, a), fb = cut_q16(stop, cut, b);
-    const int end = fb <= 0; /* the one that is outside */
+    const int end = fb <= 0; /* index of the end that is outside */
     int32_t t_q30;
 
     if (fa > 0 && fb > 0)
@@ -163,9 +165,10 @@ void glint_cuts_part(const struct glint_stop *stop,
 
 /* ----------------------------------------------------------------- corners */
 
-/* VALUE at the corners as middle + u along + v across, u and v -1/2 .. 1/2. */
+/* The plane through the values at four corners: middle + u along + v across,
+ * with u and v from -1/2 to 1/2. */
 struct plane {
-    /* The members are scaled by 4 and 2 to stay whole numbers. */
+    /* Members are scaled to stay whole: the middle by 4, the slopes by 2. */
     int64_t middle4, u2, v2;
 };
 
@@ -176,7 +179,8 @@ static struct plane plane_of(const int64_t value[4])
                           value[3] - value[0] + value[2] - value[1]};
 }
 
-/* X / Y as q16, if it is within the cell or near. */
+/* Sets *Q16 to X / Y if that lies within the cell or near it; else returns 0.
+ */
 static int near_q16(int64_t x, int64_t y, int64_t *q16)
 {
     const int wide = bit_length(q_magnitude(x));
@@ -210,14 +214,15 @@ int glint_cuts_cross(const struct glint_stop *stop,
         y[k] = v->y_q8;
     }
     down = bit_length(most) > 27 ? bit_length(most) - 27 : 0;
-    for (int k = 0; k < 4; k++) { /* sums below 2^29, their products 2^58 */
+    /* Sums below 2^29, their products below 2^58. */
+    for (int k = 0; k < 4; k++) {
         fa[k] >>= down;
         fb[k] >>= down;
     }
     pa = plane_of(fa);
     pb = plane_of(fb);
-    /* middle4 / 4 + u u2 / 2 + v v2 / 2 = 0 for both: 2 u u2 + 2 v v2 =
-     * -middle4 */
+    /* Both planes are 0: middle4 / 4 + u u2 / 2 + v v2 / 2 = 0, so 2 u u2 + 2 v
+     * v2 = -middle4. */
     det = 2 * (pa.u2 * pb.v2 - pb.u2 * pa.v2);
     if (!near_q16(pb.middle4 * pa.v2 - pa.middle4 * pb.v2, det, &u_q16) ||
         !near_q16(pa.middle4 * pb.u2 - pb.middle4 * pa.u2, det, &v_q16))

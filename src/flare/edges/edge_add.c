@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The light of edges in one tile's sums: of smooth edges the area they cover in
- * each pixel, of those on whole pixels that of a row. edges.h has the formats.
- */
+ * Adds the light of edges to one tile's sums: smooth edges by the area that
+ * they cover in each pixel, edges on whole pixels by their height in each row.
+ * edge.h has the formats. */
 #include "flare/edges/edge.h"
 
 #include <stddef.h>
@@ -15,25 +15,24 @@
 #define ONE_Q16 (INT32_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
 
-/* Below 2^31, in whatever a CPU adds up at once. */
+/* An integer below 2^31, of the width that the CPU adds fastest. */
 typedef int_fast32_t fast;
 
-/* Sums of 64 bits, or of 32, of light _q16 below this. */
+/* Sums have 64 bits, or 32 if light _q16 stays below MOST_NARROW. */
 enum mode { WIDE, NARROW };
 #define MOST_NARROW (INT64_C(1) << 23)
 
-/* One row of one channel of a tile, from where pixel 0 of the picture would be.
- */
+/* One row of one channel of a tile, addressed from pixel 0 of the picture. */
 struct run {
     union {
         uint64_t *wide;
         uint32_t *narrow_q24;
     } row;      /* the mode tells which member is in use */
-    int less;   /* low bits of areas _q16 that do not count: 8, or 0 for linear
+    int less;   /* low bits of areas _q16 that are dropped: 8, or 0 for linear
                    light */
     int x0, x1; /* the tile's columns */
     int64_t light;
-    int64_t rise_q32; /* see rise_of */
+    int64_t rise_q32; /* rise of the covered area per pixel, see rise_of() */
 };
 
 static inline void change(const struct run *r, enum mode mode, int x, fast area)
@@ -44,7 +43,7 @@ static inline void change(const struct run *r, enum mode mode, int x, fast area)
         r->row.wide[x] += (uint64_t)(r->light * area);
 }
 
-/* AREA, a pixel at most, in what sums count. */
+/* Returns AREA, one pixel at most, in the units of the sums. */
 static inline fast units(const struct run *r, enum mode mode, fast area_q16)
 {
     const int less = mode == NARROW ? 8 : r->less;
@@ -52,15 +51,16 @@ static inline fast units(const struct run *r, enum mode mode, fast area_q16)
     return (area_q16 + (1 << less >> 1)) >> less;
 }
 
-/* A piece of an edge within one row, from A to B (A <= B) over HEIGHT, in
- * several pixels. Covered areas rise from pixel to pixel, from 0 to HEIGHT; so
- * much of each as lies in the tile is what it changes by. */
+/* Adds a piece of an edge within one row, from A to B (A <= B) over HEIGHT,
+ * that spans several pixels. Covered areas rise from pixel to pixel from 0 to
+ * HEIGHT; each pixel of the tile changes by the difference from the pixel
+ * before. */
 static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
                      int64_t b_q40, fast height_q16)
 {
     const int first = (int)(a_q40 >> 40), last = (int)(b_q40 >> 40);
     const int64_t a_q16 = a_q40 >> 24, b_q16 = b_q40 >> 24;
-    /* The last pixel of the tile before counts, if there is one. */
+    /* The last pixel before the tile counts, too, if there is one. */
     const int begin = r->x0 > 0 ? r->x0 - 1 : 0;
     const int from = first > begin ? first : begin;
     const int to = last < r->x1 - 1 ? last : r->x1 - 1;
@@ -73,7 +73,8 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         const fast high = i < last
                               ? (fast)(r->rise_q32 * (side_q16 - a_q16) >> 32)
                               : height_q16;
-        /* distance of the piece's ends from the pixel's right side */
+        /* distances of both ends of the piece from the pixel's right side,
+         * summed */
         const fast far_q16 = (fast)((i > first ? ONE_Q16 : side_q16 - a_q16) +
                                     (i < last ? 0 : side_q16 - b_q16));
         const fast area =
@@ -88,9 +89,9 @@ static void add_wide(const struct run *r, enum mode mode, int64_t a_q40,
         change(r, mode, last + 1, units(r, mode, height_q16) - before);
 }
 
-/* Returns the rise of an edge per pixel, _q16 per _q16, with 32 bits more. One
- * that is so steep that it never leaves a pixel by more than 2^-16 may get
- * less. */
+/* Returns the rise of an edge, height over width, both _q16, with 32 fraction
+ * bits more. Edges so steep that they move by less than 2^-16 pixels get a
+ * smaller rise. */
 static int64_t rise_of(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
@@ -100,12 +101,12 @@ static int64_t rise_of(int64_t slope_q40)
     const int up = q_up(by);                         /* 7 at most */
     const int64_t r = q_reciprocal(q_upper(by, up)); /* 2^(63 - up) / size */
 
-    /* 1/256 pixel of height is 2^8 of _q16 */
+    /* 1/256 pixel of height is 2^8 in _q16 */
     return (r << 8) >> (7 - up);
 }
 
-/* The same where it is one pixel or two, both in the tile: what a register
- * holds does. */
+/* Adds a piece that lies in one pixel or two, both in the tile: it needs only
+ * registers. */
 static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
                             fast b_q16, fast height_q16)
 {
@@ -134,7 +135,7 @@ static inline void add_near(const struct run *r, enum mode mode, fast a_q16,
     }
 }
 
-/* Adds the piece from A to B, in any order, over HEIGHT. */
+/* Adds the piece from A to B over HEIGHT; A and B in any order. */
 static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
                              int64_t b_q40, fast height_q16)
 {
@@ -156,7 +157,7 @@ static inline void add_piece(const struct run *r, enum mode mode, int64_t a_q40,
     }
 }
 
-/* N rows further down. */
+/* Moves R by N rows down. */
 static inline void go_down(struct run *r, enum mode mode, ptrdiff_t n)
 {
     if (mode == NARROW)
@@ -165,13 +166,14 @@ static inline void go_down(struct run *r, enum mode mode, ptrdiff_t n)
         r->row.wide += n;
 }
 
-/* Rows A .. B - 1, of 64. */
+/* Returns a set of 64 bits with bits A .. B - 1 set. */
 static uint64_t rows_between(int a, int b)
 {
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
-/* N whole rows from X on, STEP further in each. */
+/* Adds N whole rows of an edge that begins at X and moves by STEP in each row.
+ */
 static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
                             int64_t step_q40, int stride)
 {
@@ -182,7 +184,8 @@ static inline void add_rows(struct run r, enum mode mode, int n, int64_t x_q40,
     }
 }
 
-/* The same where all of them lie within the tile, one pixel or two in each. */
+/* Does as add_rows() for rows that lie within the tile, each in one pixel or
+ * two. */
 static inline void add_rows_within(struct run r, enum mode mode, int n,
                                    int64_t x_q40, int64_t step_q40, int stride)
 {
@@ -196,9 +199,9 @@ static inline void add_rows_within(struct run r, enum mode mode, int n,
     }
 }
 
-/* An edge's part in one channel of a tile. */
+/* The part of an edge in one channel of a tile. */
 struct part {
-    struct run run; /* its first row */
+    struct run run; /* the first row of the part */
     int32_t y_q8, end_q8;
     int64_t x_q40; /* x of its upper end */
 };
@@ -226,14 +229,13 @@ static inline struct part part_of(const struct glint_edge_sums *s,
     return p;
 }
 
-/* Returns the height of P in the row that it begins in, if that is not a whole
- * one. */
+/* Returns the height, in 1/256 pixel, of the part of P within its first row. */
 static inline int32_t height_of(const struct part *p)
 {
     return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
 }
 
-/* All its rows. */
+/* Adds all rows of P as a smooth edge. */
 static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
                               const struct glint_edge *e, struct part p)
 {
@@ -254,7 +256,8 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
         p.y_q8 += height_q8;
     }
     n = (p.end_q8 - p.y_q8) >> 8;
-    if (n > 0) { /* else so flat an edge's step might overflow */
+    /* If n is 0, the edge may be so flat that its step overflows. */
+    if (n > 0) {
         const int64_t step_q40 = e->slope_q40 * 256;
         const int is_narrow = step_q40 < ONE_Q40 && step_q40 > -ONE_Q40;
 
@@ -271,9 +274,9 @@ static inline void add_smooth(const struct glint_edge_sums *s, enum mode mode,
         add_piece(&p.run, mode, p.x_q40, end_q40, (p.end_q8 - p.y_q8) * 256);
 }
 
-/* All of a row's light, AREA, from the pixel on that the edge is in there,
- * X_Q40 from the tile's first; that of one left of the picture from its side.
- */
+/* Adds a row's light, AREA, to the pixel that the edge is in there and all to
+ * its right. X_Q40 counts from the tile's left side. An edge left of the
+ * picture counts from its side. */
 static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
                              fast area)
 {
@@ -285,7 +288,7 @@ static inline void add_whole(const struct run *r, enum mode mode, int64_t x_q40,
         change(r, mode, 0, area);
 }
 
-/* The same in N whole rows, STEP further in each. */
+/* Does as add_whole() in N whole rows, moving by STEP in each. */
 static inline void add_full_rows(struct run r, enum mode mode, int n,
                                  int64_t x_q40, int64_t step_q40, int stride)
 {
@@ -300,7 +303,8 @@ static inline void add_full_rows(struct run r, enum mode mode, int n,
         }
         return;
     }
-    /* into the tile, through it, and out of it for good */
+    /* skips rows to the left or right of the tile, then follows the edge until
+     * it leaves the tile for good */
     for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
         go_down(&r, mode, stride);
     for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
@@ -309,7 +313,7 @@ static inline void add_full_rows(struct run r, enum mode mode, int n,
     }
 }
 
-/* All its rows, on whole pixels. */
+/* Adds all rows of P as an edge on whole pixels. */
 static inline void add_whole_rows(const struct glint_edge_sums *s,
                                   enum mode mode, const struct glint_edge *e,
                                   struct part p)
@@ -330,7 +334,8 @@ static inline void add_whole_rows(const struct glint_edge_sums *s,
         p.y_q8 += height_q8;
     }
     n = (p.end_q8 - p.y_q8) >> 8;
-    if (n > 0) { /* else so flat an edge's step might overflow */
+    /* If n is 0, the edge may be so flat that its step overflows. */
+    if (n > 0) {
         add_full_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256, s->stride);
         go_down(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * (e->slope_q40 * 256);
@@ -350,15 +355,16 @@ static int64_t coloured_q20(int32_t light, int32_t colour_q14)
                                  : q_shift(light_q20 * colour_q14, 14);
 }
 
-/* Returns the change of light at EDGE in one channel, without so many bits of
- * _q20. */
+/* Returns the change of light across E in one channel, with LESS of the 20
+ * fraction bits dropped. */
 static int64_t step_of(const struct glint_edge *e, int32_t colour_q14, int less)
 {
     return q_shift(coloured_q20(e->right, colour_q14), less) -
            q_shift(coloured_q20(e->left, colour_q14), less);
 }
 
-/* Returns how far sums can come from where they begin, all steps added up. */
+/* Adds the edges to the sums of MODE. Returns the sum of the magnitudes of all
+ * changes of light: the farthest that a sum can get from where it begins. */
 static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
                                      enum mode mode,
                                      const struct glint_edge *edge,
@@ -379,8 +385,8 @@ static WHOLLY_INLINE int64_t add_all(const struct glint_edge_sums *s,
                 continue;
             far[c] += step < 0 ? -step : step;
             if (mode == NARROW && far[c] >= MOST_NARROW)
-                return far[c]; /* The narrow sums were for nothing: they have to
-                                  be wide. */
+                return far[c]; /* The narrow sums cannot hold this tile; the
+                                  wide ones have to. */
             if (e->whole)
                 add_whole_rows(s, mode, e, part_of(s, mode, e, step, c));
             else

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cells that are drawn by themselves, closed, with an outline of their own.
- */
+ * Draws cells that do not share edges with their neighbours, each with a closed
+ * outline of its own. */
 #include "base/compiler.h"
 #include "base/q.h"
 #include "flare/edges/ghost_parts.h"
 
 typedef int32_t point_q8[2];
 
-/* The edges of OUTLINE, closed. */
+/* Adds the edges of the closed outline O. */
 static void add_outline(struct glint_ghost_edges *g,
                         const struct glint_outline *o, int32_t light)
 {
@@ -28,8 +28,8 @@ static void add_outline(struct glint_ghost_edges *g,
         glint_ghost_add_edge(g, last, first, light, 0);
 }
 
-/* Adds what the cuts leave of a convex primitive, its light spread over at
- * least a strip. */
+/* Adds the part of a convex primitive that the cuts leave. If it is thin, its
+ * light is spread over a strip a sixteenth of a pixel wide. */
 static void add_alone(struct glint_ghost_edges *g,
                       const struct glint_vertex *const *corner, int n,
                       int share_log2)

@@ -7,15 +7,15 @@
 
 enum {
     OCTAVES = GLINT_LIGHT_OCTAVES,
-    WHITE_LOG2 = 20 /* 1 of display white, q20 */
+    WHITE_LOG2 = 20 /* log2 of display white in _q20 */
 };
 
 typedef int32_t point_q8[2];
 
 /* ------------------------------------------------------------------- edges */
 
-/* Returns whether a change from LIGHT to OTHER is less than what edges need to
- * be smooth for. */
+/* Returns whether the change from LIGHT to OTHER is so small that its edge may
+ * lie on whole pixels. */
 static int is_weak(const struct glint_ghost_edges *g, int32_t light,
                    int32_t other)
 {
@@ -39,7 +39,7 @@ static void make_edge(const struct glint_ghost_edges *g,
         glint_edge_make_snapped(edge);
 }
 
-/* Edges without room: what they would take of the bins. */
+/* Counts the entries in the bins of an edge that has no room. */
 static void count_only(struct glint_ghost_edges *g, const int32_t a_q8[2],
                        const int32_t b_q8[2], int32_t light, int32_t other)
 {
@@ -86,7 +86,8 @@ static void set_cell(const struct glint_ghost_edges *g, int i, int j,
     }
 }
 
-/* Twice the triangle at corner I. */
+/* Returns twice the signed area of the triangle of corners I, I + 1 and I + 2.
+ */
 static int64_t turn_q16(const struct glint_corners *c, int i)
 {
     const struct glint_vertex *a = c->at[i], *b = c->at[i + 1];
@@ -95,8 +96,8 @@ static int64_t turn_q16(const struct glint_corners *c, int i)
     return glint_turn_q16(a->x_q8, a->y_q8, b->x_q8, b->y_q8, d->x_q8, d->y_q8);
 }
 
-/* Sign of the turn at each corner, if it is the same at all four; else 0.
- * Triangles at opposite corners make up the cell. */
+/* Returns the sign of the turn at each corner if it is the same at all four,
+ * else 0. The turns at opposite corners add up to the area of the cell. */
 static int convexity(const struct glint_corners *c)
 {
     const int64_t one = turn_q16(c, 0), other = c->area2_q16 - one;
@@ -107,10 +108,10 @@ static int convexity(const struct glint_corners *c)
     return one < 0 && other < 0 && two < 0 && another < 0 ? -1 : 0;
 }
 
-/* Steps of irradiance in each octave. Codes of a picture tell the less apart
- * the fainter light is: what a code is worth shrinks by 2^(7/12) with each
- * octave of light, so 3/4 of the steps would do, 7/8 where many ghosts overlap.
- */
+/* Sets the steps of irradiance in each octave. Codes of a picture resolve
+ * fainter light more coarsely: the light of one code shrinks by only 2^(7/12)
+ * with each octave, so 3/4 of the steps would do; 7/8 are taken, as many ghosts
+ * may overlap. */
 static void set_steps(struct glint_ghost_edges *g)
 {
     int steps_q8 = g->steps * 256;
@@ -122,8 +123,9 @@ static void set_steps(struct glint_ghost_edges *g)
     }
 }
 
-/* Sets the light that a code is worth: it shrinks by 2^(7/12) with each octave
- * below white, down to where codes are linear. */
+/* Sets, for each octave, the light of snap_codes: the light of one code shrinks
+ * by 2/3, about 2^(7/12), with each octave below white, down to where codes are
+ * linear. */
 static void set_weak(struct glint_ghost_edges *g)
 {
     const int32_t least_q20 = 318;
@@ -138,7 +140,7 @@ static void set_weak(struct glint_ghost_edges *g)
     }
 }
 
-/* X, below 2^44, to the nearest of the steps of its octave. */
+/* Returns X, below 2^44, rounded to the nearest step of its octave. */
 static int64_t in_steps(int64_t x, const uint16_t *steps_of)
 {
     const int log2 = bit_length((uint64_t)x | 1) - 1;
@@ -166,7 +168,7 @@ int32_t glint_ghost_light(struct glint_ghost_edges *g, int64_t area2, int frac,
 
 /* ------------------------------------------------------------- in the grid */
 
-/* The part of side K of a cell, in the cell's order: corner K to K + 1. */
+/* Finds the visible part of side K of a cell, from corner K to K + 1. */
 static void part_of_side(const struct glint_ghost_edges *g,
                          const struct glint_ghost_cell *c, int k,
                          struct glint_edge_part *part)
@@ -187,7 +189,8 @@ static void part_of_side(const struct glint_ghost_edges *g,
     }
 }
 
-/* The chords of a cell that is cut: they link what is left of its sides. */
+/* Adds the chords of a cell that is cut: they link the visible parts of its
+ * sides. */
 static void add_chords(struct glint_ghost_edges *g,
                        const struct glint_ghost_cell *c, int32_t light)
 {
@@ -231,8 +234,8 @@ static void set_corners(const struct glint_ghost_edges *g, int i, int j,
     glint_corners_set(corners, at, 4);
 }
 
-/* Returns whether cells of row J lie next to the row in the middle of an
- * annular box, which has no rays: nothing is lost there. */
+/* Returns whether the cells of row J touch the middle row of nodes of an
+ * annular box: that row has no rays, but no light is lost there. */
 static int is_in_hole(const struct glint_ghost_edges *g, int j)
 {
     const int middle = g->bundle->n_cells / 2;
@@ -241,9 +244,9 @@ static int is_in_hole(const struct glint_ghost_edges *g, int j)
            (j == middle - 1 || j == middle);
 }
 
-/* The light of the cell at (I, J) towards its neighbours: what is drawn by
- * itself has none, and nearly all cells lie outside of what is seen or wholly
- * inside. */
+/* Returns the light of the cell at (I, J) for the edges that it shares. Cells
+ * that are drawn by themselves, or not at all, return 0. Nearly all cells lie
+ * wholly outside of the visible part or wholly inside of it. */
 static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
 {
     const struct glint_ghost_rows *r = g->rows;
@@ -264,7 +267,8 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
         glint_ghost_add_triangles(g, &cell);
         return 0;
     }
-    /* all is cut off by one side or barrel, or no edge of it can be drawn */
+    /* The cell is cut off by one side or barrel, or none of its edges can
+     * change a pixel. */
     if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;
     set_corners(g, i, j, &corners);
@@ -287,7 +291,8 @@ static int32_t light_at(struct glint_ghost_edges *g, int i, int j)
     return light;
 }
 
-/* The visible part of the edge A to B, between the lights of two cells. */
+/* Adds the visible part of the edge from A to B between two cells of light
+ * LIGHT and OTHER. */
 static void add_shared(struct glint_ghost_edges *g,
                        const struct glint_vertex *a, struct glint_outside at_a,
                        const struct glint_vertex *b, struct glint_outside at_b,
@@ -315,7 +320,7 @@ static struct glint_outside outside_at(const struct glint_ghost_edges *g, int i,
                                   g->rows->barrels[j & 1][i] & NODE_BARRELS};
 }
 
-/* The edges between two rows of cells; the nodes of row J. */
+/* Adds the edges along the nodes of row J, between two rows of cells. */
 static void add_level(struct glint_ghost_edges *g, int j, const int32_t *above,
                       const int32_t *below)
 {
@@ -326,7 +331,7 @@ static void add_level(struct glint_ghost_edges *g, int j, const int32_t *above,
                        below[i], above[i]);
 }
 
-/* The edges between the cells of row J. */
+/* Adds the edges between neighbouring cells of row J. */
 static void add_upright(struct glint_ghost_edges *g, int j,
                         const int32_t *light)
 {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows of nodes of a grid: their vertices, and what of stop, barrels and
- * picture each lies outside of.
- */
+ * Fills rows of nodes of a grid: their vertices, and which of stop, barrels and
+ * sides of the picture each node lies outside of. */
 #include "flare/edges/ghost_parts.h"
 
 #include <stddef.h>
@@ -17,8 +16,8 @@ static int vertex_valid(const struct glint_vertex *v)
            (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
-/* Lowers the barrels of a row by their sag; brings the stop nearer where it is
- * round, by its own. */
+/* Lowers the barrels' values in a row by their sag, and moves the stop
+ * positions inwards by the sag of a round stop. */
 static struct glint_vertex *lower(const struct glint_ghost_edges *g,
                                   struct glint_vertex *row)
 {
@@ -37,7 +36,7 @@ static struct glint_vertex *lower(const struct glint_ghost_edges *g,
     return row;
 }
 
-/* Row J of the grid; valid until the next but one. */
+/* Returns row J of the grid; it stays valid until row J + 2 is asked for. */
 static const struct glint_vertex *row_of(struct glint_ghost_edges *g, int j)
 {
     const int n = g->bundle->n_cells;

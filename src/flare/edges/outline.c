@@ -8,7 +8,8 @@ enum { TO_Q16 = 16 - GLINT_VERTEX_FRAC, STRIP_HALF_Q16 = 1 << 11 };
 
 /* --------------------------------------------------------------- functions */
 
-/* A round stop's cut: (1 - r^2) / 2, held where it is far outside. */
+/* Returns the value of a round stop's cut at V: (1 - r^2) / 2, clamped far
+ * outside. */
 static int64_t disc_value(const struct glint_vertex *v)
 {
     const int64_t x = v->stop_x_q16 / 2, y = v->stop_y_q16 / 2;
@@ -49,8 +50,9 @@ static enum side barrel_side(const struct glint_corners *c)
     return all;
 }
 
-/* The disc may bulge into a primitive whose corners all lie outside, so that
- * only far ones are left out. */
+/* Returns on which side of the disc a primitive lies. The disc may bulge into a
+ * primitive whose corners all lie outside, so only far ones count as OUTSIDE.
+ */
 static enum side disc_side(const struct glint_corners *c)
 {
     int64_t value[4];
@@ -105,14 +107,15 @@ static int64_t value_at(const int64_t *value_q16, const struct glint_uv *p)
                                   28);
 }
 
-/* A + (B - A) FA / (FA - FB): below 2^28 times 2^33. */
+/* Returns the place between A and B where a function with the values FA and FB
+ * is 0. Products are below 2^28 times 2^33. */
 static int32_t between(int32_t a_q28, int32_t b_q28, int64_t fa, int64_t fb)
 {
     return a_q28 + (int32_t)q_divide((b_q28 - a_q28) * fa, fa - fb);
 }
 
-/* Keeps what lies on the inner side of one half plane, given its values at the
- * triangle's corners. */
+/* Keeps the part of O on the inner side of one half plane, given the function's
+ * values at the triangle's corners. */
 static void cut_one(struct glint_outline *o, const int64_t *value_q16)
 {
     int64_t here, next;
@@ -150,8 +153,9 @@ static void cut_barrels(struct glint_outline *o,
     }
 }
 
-/* Between the corners 1 - r^2 runs above the straight line by half the sum of
- * l_i l_j |s_i - s_j|^2; over the triangle l_i l_j is 1/12 in the mean. */
+/* Returns the mean height over the triangle of (1 - r^2) / 2 above the plane
+ * through its corners. At barycentric l it is half the sum of l_i l_j |s_i -
+ * s_j|^2, and the mean of l_i l_j is 1/12. */
 static int64_t disc_lift_q16(const struct glint_vertex *const *at)
 {
     int64_t sum_q16 = 0;
@@ -163,7 +167,7 @@ static int64_t disc_lift_q16(const struct glint_vertex *const *at)
         const int64_t one = 1 << 16;
 
         if (dx > one || dx < -one || dy > one || dy < -one)
-            return 0; /* too coarse to be called smooth */
+            return 0; /* the triangle is too coarse for this rule */
         sum_q16 += (dx * dx + dy * dy) >> 16;
     }
     return sum_q16 / 24;
@@ -187,7 +191,7 @@ static void cut_stop(struct glint_outline *o,
     }
 }
 
-/* Turns u and v into pixels: differences below 2^29 times 2^28. */
+/* Turns the corners' u and v into pixels: differences below 2^29 times 2^28. */
 static void place(struct glint_outline *o, const struct glint_vertex *const *at)
 {
     const int64_t ux = at[1]->x_q8 - at[0]->x_q8;
@@ -205,7 +209,7 @@ static void place(struct glint_outline *o, const struct glint_vertex *const *at)
     }
 }
 
-/* Share and energy; the triangle's area is 1/2 in u and v. */
+/* Sets share and energy of O. The triangle's area is 1/2 in u and v. */
 static void weigh(struct glint_outline *o, const struct glint_vertex *const *at)
 {
     const int64_t energy_q16[3] = {at[0]->energy_q16, at[1]->energy_q16,
@@ -265,8 +269,8 @@ void glint_outline_whole(struct glint_outline *outline,
 
 /* ------------------------------------------------------------------- widen */
 
-/* A strip from A to B along the first coordinate, in order. Too short a one
- * grows about its middle. */
+/* Widens A to B, whose first coordinate is the one along the strip, A's the
+ * smaller, to the least length. Returns twice the strip's area, q32. */
 static int64_t strip(int64_t a[2], int64_t b[2])
 {
     const int64_t middle = (a[0] + b[0]) >> 1;
@@ -296,7 +300,8 @@ int64_t glint_outline_widen_q32(struct glint_outline *o)
     area2_q32 = strip(a, b);
     o->n = 4;
     for (int i = 0; i < 4; i++) {
-        /* round the same way for both: left, right, right, left; or top ... */
+        /* Corners go round the same way in both cases: left, right, right,
+         * left; or top, top, bottom, bottom. */
         const int far = flat ? i == 1 || i == 2 : i >= 2;
         const int beyond = flat ? i >= 2 : i == 1 || i == 2;
         const int64_t along = far ? b[0] : a[0];

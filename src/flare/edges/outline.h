@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What can be seen of a primitive, as a convex polygon.
+ * Finds the visible part of a primitive, as a convex polygon.
  *
  *   in   a triangle of a primitive's corners, the stop, two barrels
  *   out  the polygon that the stop's sides and the barrels leave, all of them
@@ -10,12 +10,11 @@
  * Method: half planes cut the triangle in barycentric coordinates u, v of its
  * second and third corner, one after the other, so that a triangle without area
  * on the screen is cut as well as any other. A round stop is taken as a half
- * plane, too: 1 - r^2 between the corners, lifted by its mean over the
- * triangle, which makes the area right.
+ * plane, too: (1 - r^2) / 2 at the corners, raised by the mean height of its
+ * bulge over the triangle, which makes the area right.
  *
  * Formats: u, v _q28; functions _q16, below 2^33, times u or v below 2^61;
- * pixels _q16 in 64 bits.
- */
+ * pixels _q16 in 64 bits. */
 #ifndef GLINT_FLARE_OUTLINE_H
 #define GLINT_FLARE_OUTLINE_H
 
@@ -25,8 +24,8 @@
 #include "flare/edges/primitive.h"
 #include "glint/light.h"
 
-/* Return the distance of V inside side SIDE of a stop, stop radii, and inside a
- * barrel. */
+/* Return how far V lies inside side SIDE of a stop, in stop radii, and how far
+ * inside a barrel, as 1 - (1 + r^2) / 2. */
 static inline int64_t glint_side_q16(const struct glint_stop *stop, int side,
                                      const struct glint_vertex *v)
 {
@@ -42,37 +41,39 @@ static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
     return (INT64_C(1) << 16) - v->barrel_q16[barrel];
 }
 
-/* A triangle's, one more for each cut, and one for the loops to lean on. */
+/* Three corners of a triangle, one more for each cut, and room for the copy of
+ * the first corner after the last. */
 enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
 
 /* 2 KiB: scratch of a worker. */
 struct glint_outline {
-    int n; /* corners; 0: nothing is seen */
+    int n; /* number of corners; 0: nothing is seen */
     int64_t x_q16[GLINT_OUTLINE_CORNERS], y_q16[GLINT_OUTLINE_CORNERS];
     int32_t share_q28;  /* share of the triangle that the cuts leave, 0 .. 1 */
-    int32_t energy_q16; /* mean of the corners */
+    int32_t energy_q16; /* mean over the corners */
     struct glint_uv {
         int32_t u_q28, v_q28;
     } uv[GLINT_OUTLINE_CORNERS], kept[GLINT_OUTLINE_CORNERS];
 };
 
-/* Returns the cuts that cross the primitive: a set of GLINT_CUT_, or -1 where
- * nothing of it is seen. The stop has no mask. */
+/* Returns the set of GLINT_CUT_ that cross the primitive, or -1 if nothing of
+ * it is seen. The stop has no mask. */
 int glint_outline_classify(const struct glint_corners *corners,
                            const struct glint_stop *stop);
 
-/* All of CORNERS, as they are. */
+/* Sets OUTLINE to the whole primitive. */
 void glint_outline_whole(struct glint_outline *outline,
                          const struct glint_corners *corners);
 
-/* Makes the outline that the cuts CUT leave of the triangle of corners 0, K +
- * 1, K + 2. */
+/* Sets OUTLINE to the part that the cuts CUT leave of the triangle of corners
+ * 0, K + 1 and K + 2. */
 void glint_outline_cut(struct glint_outline *outline,
                        const struct glint_corners *corners, int k,
                        const struct glint_stop *stop, int cut);
 
-/* Makes OUTLINE a strip a sixteenth of a pixel wide along the longer way, and
- * at least as long: for what is thinner than that. Returns twice its area. */
+/* Replaces an OUTLINE thinner than a sixteenth of a pixel by a strip of that
+ * width, along its longer side and at least as long as wide. Returns twice its
+ * area. */
 int64_t glint_outline_widen_q32(struct glint_outline *outline);
 
 #endif

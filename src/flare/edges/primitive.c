@@ -16,7 +16,7 @@ void glint_corners_gather(struct glint_corners *corners,
     glint_corners_set(corners, at, n);
 }
 
-/* First pixel whose centre is at X or beyond. */
+/* Returns the first pixel whose centre is at X or beyond. */
 static int first_centre(int32_t x_q8)
 {
     return (x_q8 + 127) >> 8;
@@ -27,7 +27,7 @@ static int clamp(int x, int max)
     return x < 0 ? 0 : x > max ? max : x;
 }
 
-/* The box of the corners, q8. */
+/* Returns the bounding box of the corners, pixels _q8. */
 static struct glint_box extent_q8(const struct glint_corners *corners)
 {
     struct glint_box b = {corners->at[0]->x_q8, corners->at[0]->y_q8,
@@ -74,7 +74,8 @@ int glint_corners_lean(const struct glint_corners *corners)
            area2 == 0;
 }
 
-/* Grown by half a strip, and a step for what rounding may add. */
+/* The box is grown by half the width of a strip, and 1/256 pixel for rounding.
+ */
 struct glint_box glint_corners_reach(const struct glint_corners *corners,
                                      int width, int height)
 {
@@ -88,7 +89,8 @@ struct glint_box glint_corners_reach(const struct glint_corners *corners,
         clamp(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
 }
 
-/* MANTISSA * 2^UP, held to LIMIT: it is light. */
+/* Returns MANTISSA * 2^UP, light, clamped to LIMIT; adds 1 to *N_HELD if it was
+ * larger. */
 static int64_t scaled_sat(int64_t mantissa, int up, int64_t limit, int *n_held)
 {
     int64_t x;
@@ -107,22 +109,23 @@ int64_t glint_irradiance_q22(const struct glint_bundle *bundle, int share_log2,
                              int64_t area, int frac, int32_t limit_q8,
                              int *n_held)
 {
-    /* the area is brought to 32 bits before it divides */
+    /* The area is brought to 32 bits before it divides. */
     const int up = q_up((uint64_t)area);
     const uint32_t area_32 = q_upper((uint64_t)area, up);
-    /* rounded, so that it is exact where the area is a power of two */
+    /* Rounding makes this exact if the area is a power of two. */
     const int64_t ratio =
         (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +
                    (1 << 30)) >>
                   31);
-    /* light over less than a pixel: limit_q8 below 2^20, area at least 2^-33 */
+    /* The least area that light falls on counts as one pixel. limit_q8 is below
+     * 2^20, the area at least 2^-33. */
     const int64_t limit_q22 =
         (area >> frac ? (int64_t)limit_q8
                       : q_divide((int64_t)limit_q8 << frac, area))
         << 14;
 
-    /* flux 2^(e - 31), area = area_32 2^(-up - frac), ratio of both times 2^32;
-     * result q22 */
+    /* The flux is 2^(e - 31), the area area_32 2^(-up - frac), and RATIO is
+     * that of both mantissas times 2^32; the result is q22. */
     return scaled_sat(
         ratio, bundle->flux_exponent - 31 + share_log2 + up + frac - 32 + 22,
         limit_q22, n_held);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * From the sums of a tile to its light: edge.h.
- */
+ * Turns the sums of a tile into its light; see edge.h. */
 #include <stddef.h>
 
 #include "flare/edges/edge.h"
@@ -26,7 +25,7 @@ void glint_edge_linear(const struct glint_edge_sums *sums, int channel, int row,
     sums->touched[channel] &= ~(UINT64_C(1) << row);
 }
 
-/* Bits that a sum has beyond _q16. */
+/* Returns how many fraction bits a sum has beyond _q16. */
 static int more_bits(const struct glint_edge_sums *s)
 {
     return s->fine ? 12 : 8;
@@ -62,7 +61,7 @@ int glint_edge_dark(const struct glint_edge_sums *sums, int row)
            (carry[0] | carry[side] | carry[2 * side]) == 0;
 }
 
-/* The same light everywhere. */
+/* Fills a row with the same light everywhere; returns whether there is any. */
 static int even_light(int64_t carry, int n, int more, uint16_t *light_q16)
 {
     const uint16_t light = rounded_q16(carry, more);

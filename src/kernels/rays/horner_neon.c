@@ -20,8 +20,8 @@ static inline struct factor factor_of(W x_q30)
     return (struct factor){x_q30};
 }
 
-/* Values are below 2^30: the upper half of twice the product of their double
- * is what a shift by 30 leaves, and rounds alike. */
+/* Returns a product, rounded. Values are below 2^30: the upper half of 2 (2 A)
+ * BY is A BY / 2^30, rounded in the same way. */
 static inline W w_times(W a, struct factor by)
 {
     return vqrdmulhq_s32(vshlq_n_s32(a, 1), by.x);

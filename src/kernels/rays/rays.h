@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hot loops of rays, for which all holds that kernels.h says.
- */
+ * The hot loops for rays. The rules of kernels.h hold for them, too. */
 #ifndef GLINT_KERNELS_RAYS_RAYS_H
 #define GLINT_KERNELS_RAYS_RAYS_H
 
@@ -9,13 +8,12 @@
 
 #include "base/compiler.h"
 
-/* N values of a polynomial, Horner's way: ((c[D] x + c[D - 1]) x + ...) + c[0]
- * with each product rounded to integers by a shift of 30 bits. Values of the
- * polynomial stay below 2^30 in magnitude, X within +-2^30: the caller's
- * promise.
- *   along   of one polynomial at x[0 .. N - 1]
- *   across  of N polynomials, whose coefficients C[k] begin STRIDE apart, at X
- */
+/* Give N values of a polynomial by Horner's rule: ((c[D] x + c[D - 1]) x + ...)
+ * + c[0], each product rounded to an integer after a shift by 30 bits. The
+ * caller must see to it that values stay below 2^30 in magnitude, and X within
+ * +-2^30.
+ *   along   one polynomial at x[0 .. N - 1]
+ *   across  N polynomials at X; the coefficients C[k] begin STRIDE apart */
 typedef void glint_horner_along_fn(int32_t *out, const int32_t *c, int degree,
                                    const int32_t *x_q30, int n);
 typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
@@ -23,9 +21,9 @@ typedef void glint_horner_across_fn(int32_t *out, const int32_t *c, int stride,
 
 /* Turns points (X, Y) by an angle, and their mirror images (X, -Y):
  *   out     x cos - y sin, x sin + y cos; x cos + y sin, x sin - y cos; each
- *           over 2^shift, 0 where that is LIMIT or more in magnitude
- *   lost    of points and of images: bits all set where one of theirs is; else
- *           left as it is
+ *           over 2^shift, or 0 if that reaches LIMIT in magnitude
+ *   lost    [0] of points, [1] of images: all bits are set if a coordinate
+ *           reaches LIMIT; else left unchanged
  * X and Y are below 2^30 in magnitude, cosine and sine below 2^31, LIMIT is
  * 2^30 at most. Shifts are 1 .. 62; the C definition takes any. */
 enum { GLINT_TURNED = 8 }; /* rays that are turned at once */
@@ -45,7 +43,8 @@ struct glint_horner {
     glint_horner_across_fn *across;
 };
 
-/* The best ones that the GLINT_SET_ bits SETS allow; of no set those in C. */
+/* Return the best kernels that the GLINT_SET_ bits SETS allow; those in C if
+ * there is no bit. */
 const struct glint_horner *glint_horner_of(unsigned sets);
 glint_turn_fn *glint_turn_of(unsigned sets);
 

@@ -33,7 +33,8 @@ struct scale {
     int32x4_t limit;
 };
 
-/* Into OUT; returns where it fits. */
+/* Writes SUM, scaled, to OUT, or 0 where it does not fit; returns where it
+ * fits. */
 static inline uint32x4_t scale(struct scale s, struct products sum,
                                int32_t *out)
 {
