@@ -7,7 +7,8 @@
  * when it is opened or its format changes; a frame costs none.
  *
  * Errors are GLINT_E_DEVICE for a device that failed or went away and
- * GLINT_E_OUTPUT for what cannot be written, with one line that names it.
+ * GLINT_E_OUTPUT for a file that cannot be written, with one line that names
+ * the device or file.
  */
 #ifndef GLINT_PLATFORM_SOURCE_SINK_H
 #define GLINT_PLATFORM_SOURCE_SINK_H
@@ -18,7 +19,8 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
-/* Sides of cameras and panels, pixels, at most; pictures of files have more. */
+/* Most pixels on a side of a camera's or panel's picture; pictures of files may
+ * have more. */
 #define GLINT_PANEL_SIDE 8192
 
 /* One frame of a source, its memory lent until done. */
@@ -29,43 +31,43 @@ struct glint_source_frame {
     /* The frame may be drawn on in place: its memory is fast, and nobody else
      * writes to it. */
     bool is_drawable;
-    int n_late;    /* frames given back unseen: it is the newest */
-    int n_dropped; /* gap in sequence before it, without those */
-    int n_corrupt; /* frames thrown away before it as damaged */
-    void *buffer;  /* the source's own */
+    int n_late;    /* older frames given back unseen before this one */
+    int n_dropped; /* frames missing in the sequence before this one */
+    int n_corrupt; /* damaged frames thrown away */
+    void *buffer;  /* private to the source */
 };
 
 /* The format of the frames that a source delivers. */
 struct glint_source_format {
     struct glint_image image; /* format of a frame, without its memory */
     int fps_num, fps_den;     /* frames a second; 0: not known */
-    char text[512];           /* one line about it for a person */
-    const char *detail;       /* a further one; NULL: none */
+    char text[512];           /* one line about the source for a person */
+    const char *detail;       /* a second line; NULL: none */
 };
 
 struct glint_source {
-    int fd; /* readable when there may be a frame; may be another after next */
-    int n_restarts;  /* since it was opened; its format may be another after
-                        each */
-    bool has_signal; /* false: its picture is what it makes of none */
+    int fd;         /* readable when there may be a frame; next may change it */
+    int n_restarts; /* times that it began anew since it was opened; its format
+                       may change with each */
+    bool has_signal; /* false: frames show what the device makes of no signal */
 
-    /* Gives the newest frame there is, and older ones back; never waits.
-     * GLINT_E_DEVICE: the device is lost; close it. GLINT_E_CLOSED: there are
-     * no more. */
+    /* Sets FRAME to the newest frame and gives back older ones; never waits.
+     * GLINT_E_DEVICE: the device is lost; close SOURCE. GLINT_E_CLOSED: there
+     * are no more frames. */
     enum glint_status (*next)(struct glint_source *source,
                               struct glint_source_frame *frame,
                               struct glint_error *error);
-    /* Gives FRAME back. */
+    /* Gives FRAME back to SOURCE. */
     void (*done)(struct glint_source *source, struct glint_source_frame *frame);
-    /* Says what it delivers now. */
+    /* Sets FORMAT to what SOURCE delivers now. */
     void (*describe)(const struct glint_source *source,
                      struct glint_source_format *format);
     void (*close)(struct glint_source *source); /* idempotent */
 };
 
 struct glint_sink {
-    /* Shows IMAGE, which is the caller's. Does not wait for slow readers longer
-     * than a frame where the system allows it. */
+    /* Shows IMAGE, whose memory stays the caller's. Waits for slow readers no
+     * longer than a frame, where the system allows that. */
     enum glint_status (*put)(struct glint_sink *sink,
                              const struct glint_image *image,
                              struct glint_error *error);

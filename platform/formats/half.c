@@ -12,7 +12,7 @@ float glint_half_decode(uint16_t half)
     const uint32_t bits = (sign | (rest << 13)) + exponent;
     float value;
 
-    if (rest < 0x400) { /* 0 or subnormal: steps of 2^-24 */
+    if (rest < 0x400) { /* 0 or subnormal: a multiple of 2^-24 */
         value = (float)rest * 0x1p-24F;
         return sign ? -value : value;
     }
@@ -20,7 +20,7 @@ float glint_half_decode(uint16_t half)
     return value;
 }
 
-/* MANTISSA without its last N bits, rounded. */
+/* Returns MANTISSA / 2^N, N >= 1, rounded to nearest, ties to even. */
 static uint32_t drop(uint32_t mantissa, int n)
 {
     const uint32_t half = UINT32_C(1) << (n - 1);
@@ -38,11 +38,12 @@ uint16_t glint_half_encode(float value)
     sign = bits >> 16 & 0x8000;
     size = bits & 0x7fffffff;
     exponent = (int)(size >> 23) - 127;
-    if (size > 0x7f800000) /* not a number stays one */
+    if (size > 0x7f800000) /* not-a-number stays one */
         return (uint16_t)(sign | 0x7e00 | (size >> 13 & 0x1ff));
     if (exponent > 15)
         return (uint16_t)(sign | 0x7c00);
-    if (exponent >= -14) /* may round up into the next octave, or infinity */
+    /* Rounding may carry into the exponent, as far as infinity. */
+    if (exponent >= -14)
         return (uint16_t)(sign | (drop(size, 13) - (UINT32_C(112) << 10)));
     if (exponent < -25)
         return (uint16_t)sign;

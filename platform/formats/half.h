@@ -7,10 +7,11 @@
 
 #include <stdint.h>
 
-/* Exact. */
+/* Decodes HALF without rounding. */
 float glint_half_decode(uint16_t half);
 
-/* Encodes to the nearest value, ties to even; beyond 65504 it is infinite. */
+/* Encodes VALUE to the nearest half, ties to even; from 65520 on to
+ * infinity. */
 uint16_t glint_half_encode(float value);
 
 #endif

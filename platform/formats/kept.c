@@ -30,8 +30,8 @@ static enum glint_status report_memory(struct glint_error *error,
                               s->height);
 }
 
-/* Pixels of CHANNELS samples one after the other; the last of 2 and 4 is alpha.
- */
+/* Sets S up for WIDTH x HEIGHT pixels of CHANNELS samples, 1 .. 4, one after
+ * the other; of 2 or 4 the last is alpha. Leaves its memory NULL. */
 static void lay_out(struct glint_samples *s, int width, int height,
                     enum glint_sample sample, int channels)
 {
@@ -67,7 +67,8 @@ static size_t samples_bytes(const struct glint_samples *s)
 
 /* -------------------------------------------------------------- PNM and PFM */
 
-/* Samples of two bytes between the file's order and this machine's. */
+/* Copies BYTES of 16-bit samples, from big-endian order to this machine's or
+ * back. */
 static void swap_shorts(uint8_t *to, const uint8_t *from, size_t bytes)
 {
     const uint16_t one = 1;
@@ -79,8 +80,8 @@ static void swap_shorts(uint8_t *to, const uint8_t *from, size_t bytes)
     }
 }
 
-/* Rows of floats, the last first, between the file's order and this machine's.
- */
+/* Copies the rows of S, which are floats, in reversed order, between
+ * little-endian (LITTLE) or big-endian order and this machine's. */
 static void swap_rows(uint8_t *to, const uint8_t *from,
                       const struct glint_samples *s, bool little)
 {
@@ -139,7 +140,8 @@ static enum glint_status open_pfm(struct glint_kept *k,
     return GLINT_OK;
 }
 
-/* Puts the samples back where they came from. */
+/* Copies the samples of K back into its PNM or PFM file, in the file's order.
+ * Where K has no copy of its own they are there already. */
 static void refill_native(struct glint_kept *k)
 {
     uint8_t *const at = k->native + k->header_bytes;
@@ -175,7 +177,8 @@ static enum glint_status open_by_plugin(struct glint_kept *k, const char *type,
 
 /* ----------------------------------------------------------------- opening */
 
-/* The whole of a PNM or PFM, or the first bytes of another file. */
+/* Reads a PNM or PFM whole into k->native; of other files the first 12
+ * bytes. */
 static enum glint_status read_native(struct glint_kept *k,
                                      struct glint_error *error)
 {
@@ -336,7 +339,8 @@ static void say_losses(struct glint_kept_options *options,
         glint_kept_note(options->said, "8 bits are left");
 }
 
-/* Converts FROM to what TYPE takes; TO's memory is the caller's to free. */
+/* Converts FROM to samples that TYPE takes, in TO, whose memory the caller
+ * frees. */
 static enum glint_status convert(struct glint_samples *to,
                                  const struct glint_samples *from,
                                  const struct glint_file_type *type)
@@ -416,7 +420,8 @@ write_by_plugin(struct glint_kept *k, struct glint_output *out,
     return status;
 }
 
-/* Saves the picture as another type, or another picture in its place. */
+/* Writes FROM to OUT, converted to the type that OUT's name stands for, and
+ * notes in OPTIONS what that loses. K has the metadata. */
 static enum glint_status save_converted(struct glint_kept *k,
                                         struct glint_output *out,
                                         const struct glint_samples *from,

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
  * formats/kept.h - a picture file that is opened, lit and written with all that
- * it holds.
+ * it holds: samples, metadata, profile.
  *
  *     glint_kept_open(&kept, "in.png", &error);
  *     ... change kept.samples: formats/samples.h ...
  *     glint_kept_save(&kept, "out.png", NULL, &options, &error);
  *     glint_kept_close(&kept);
  *
- * Into a file of the same type go depth, alpha, other channels, parts, windows,
- * profile and metadata as they came; PPM, PGM and PFM by glint itself, the rest
- * through the image plug-in (oiio/oiio.h). Into another type go the colours,
- * upright, with as much depth and as much alpha as it takes, and the metadata
- * that OpenImageIO translates.
+ * A file of the same type gets depth, alpha, other channels, parts, windows,
+ * profile and metadata as they came. glint itself writes PPM, PGM and PFM,
+ * other types go through the image plug-in (oiio/oiio.h). A file of another
+ * type gets the colours, upright, with as much depth and alpha as it takes, and
+ * the metadata that OpenImageIO translates.
  */
 #ifndef GLINT_PLATFORM_FORMATS_KEPT_H
 #define GLINT_PLATFORM_FORMATS_KEPT_H
@@ -27,9 +27,10 @@ enum { GLINT_KEPT_NOTES = 256 }; /* bytes */
 
 struct glint_kept {
     struct glint_samples samples;
-    bool is_float; /* light beyond white is what it is, not clipped */
-    char note[GLINT_KEPT_NOTES]; /* words on what glint takes otherwise than the
-                                    file means it */
+    /* The file holds floats: light above white is not clipped. */
+    bool is_float;
+    char note[GLINT_KEPT_NOTES]; /* says what of the file glint cannot keep or
+                                    does not know; "" if nothing */
 
     /* Private. */
     const char *path;
@@ -42,44 +43,45 @@ struct glint_kept {
     uint8_t *own; /* the file's samples in this machine's order */
 };
 
-/* Opens PATH, which is kept. Errors as of glint_picture_load. On failure KEPT
- * is closed. */
+/* Opens the file PATH; the string must outlive KEPT. Errors are those of
+ * glint_picture_load(). On failure KEPT is closed. */
 enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
                                   struct glint_error *error);
 
-/* Does nothing when closed. */
+/* Closes KEPT, unless it is closed already. */
 void glint_kept_close(struct glint_kept *kept);
 
 struct glint_kept_options {
     int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the input's own, or
                     95 */
-    bool quiet;  /* do not say what is lost */
+    bool quiet;  /* has no effect */
     char said[GLINT_KEPT_NOTES]; /* out: what was lost, "" if nothing */
 };
 
-/* Writes KEPT, or unless NULL the picture ALONE, which has the size of KEPT
- * as it is seen, to PATH. GLINT_E_OUTPUT, GLINT_E_UNSUPPORTED, GLINT_E_MEMORY,
- * GLINT_E_CLOSED. */
+/* Writes to PATH the picture ALONE, which has KEPT's upright size, or if ALONE
+ * is NULL the picture of KEPT. GLINT_E_OUTPUT, GLINT_E_UNSUPPORTED,
+ * GLINT_E_MEMORY, GLINT_E_CLOSED. */
 enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
                                   const struct glint_samples *alone,
                                   struct glint_kept_options *options,
                                   struct glint_error *error);
 
-/* Returns whether KEPT can be written to PATH as what it is; then copying the
- * file gives the same. */
+/* Checks whether PATH has the file type of KEPT. If so, a picture that was not
+ * changed can be saved by copying its file, as glint_kept_copy() does. */
 bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path);
 enum glint_status glint_kept_copy(const struct glint_kept *kept,
                                   const char *path, struct glint_error *error);
 
-/* A picture WIDTH x HEIGHT of zeros with as much depth as FROM has: R G B, and
- * alpha if HAS_ALPHA. FLOATS: linear, else sRGB. Its memory is the caller's to
- * free. */
+/* Makes BLANK, a picture of zeros of FROM's upright size, with R G B, and alpha
+ * if HAS_ALPHA. Its samples are of FROM's type, but floats for integers of 32
+ * bits; floats are linear, codes sRGB. The caller frees blank->mem.
+ * GLINT_E_MEMORY. */
 enum glint_status glint_kept_blank(struct glint_samples *blank,
                                    const struct glint_samples *from,
                                    bool has_alpha);
 
-/* Checks whether PATH can be saved to at all, before long work is done for it.
- */
+/* Checks, before long work is done for it, whether PATH has an extension that
+ * glint can write. GLINT_E_UNSUPPORTED: unknown, or its plug-in is missing. */
 enum glint_status glint_kept_check(const char *path, struct glint_error *error);
 
 #endif

@@ -14,8 +14,8 @@ void glint_kept_note(char notes[GLINT_KEPT_NOTES], const char *text)
              text);
 }
 
-/* Sets colours by the numbers of ITU-T H.273. False: they are not known here.
- */
+/* Sets C by CICP, the numbers of primaries and transfer in ITU-T H.273. Returns
+ * false if it does not know the transfer. */
 static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
 {
     static const double p3[4][2] = {
@@ -39,8 +39,8 @@ static bool set_by_cicp(struct glint_colours *c, const int cicp[2])
     return cicp[0] != 12 || glint_colours_primaries(c, p3);
 }
 
-/* Sets colours by OpenImageIO's name of a colour space. False: it is not known
- * here. */
+/* Sets C by NAME, OpenImageIO's name of a colour space. Returns false if it
+ * does not know NAME. */
 static bool set_by_name(struct glint_colours *c, const char *name)
 {
     static const double adobe[4][2] = {

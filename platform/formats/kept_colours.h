@@ -8,12 +8,12 @@
 
 #include "formats/kept.h"
 
-/* Sets the colours of KEPT's samples as FACTS say; what glint does not know is
- * taken as linear or sRGB, and KEPT's note says so. */
+/* Sets the colours of KEPT's samples as FACTS say. Colours that glint does not
+ * know are taken as linear or sRGB, and KEPT's note says so. */
 void glint_kept_set_colours(struct glint_kept *kept,
                             const struct glint_oiio_facts *facts);
 
-/* Adds TEXT to NOTES, behind a semicolon where there is something. */
+/* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
 void glint_kept_note(char notes[GLINT_KEPT_NOTES], const char *text);
 
 #endif

@@ -7,7 +7,7 @@
 
 /* clang-format off */
 static const struct glint_file_type types[] = {
-    /* extension, native, grey, alpha, 8 bits, 16, half, float */
+    /* extension, native, grey, alpha; takes 8 bits, 16, half, float */
     {".ppm",  true,  false, GLINT_ALPHA_NONE,          true,  true,  false, false},
     {".pnm",  true,  false, GLINT_ALPHA_NONE,          true,  true,  false, false},
     {".pgm",  true,  true,  GLINT_ALPHA_NONE,          true,  true,  false, false},

@@ -18,15 +18,17 @@ enum glint_type_alpha {
 struct glint_file_type {
     const char *extension;
     bool is_native; /* written by glint itself */
-    bool is_grey;   /* nothing but */
+    bool is_grey;   /* holds no colours */
     enum glint_type_alpha alpha;
     bool takes_u8, takes_u16, takes_half, takes_float;
 };
 
-/* Returns the type that the extension of PATH stands for; NULL: unknown. */
+/* Returns the type that PATH's extension stands for, or NULL if it is
+ * unknown. */
 const struct glint_file_type *glint_file_type_of(const char *path);
 
-/* The sample nearest to SAMPLE that TYPE takes. */
+/* Returns the kind of sample, among those that TYPE takes, closest to
+ * SAMPLE. */
 enum glint_sample glint_file_type_sample(const struct glint_file_type *type,
                                          enum glint_sample sample);
 

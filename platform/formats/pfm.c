@@ -9,7 +9,7 @@
 
 #include "posix/error.h"
 
-#define TOKEN_CHARS 32  /* bytes of a number in the header, with its end */
+#define TOKEN_CHARS 32  /* bytes of a word of the header, with its 0 */
 #define CHUNK       256 /* floats encoded at a time */
 
 static bool is_space(int c)
@@ -25,7 +25,9 @@ bool glint_pfm_matches(const void *data, size_t bytes)
            is_space(d[2]);
 }
 
-/* The next word of DATA from *AT on, and the one white space that ends it. */
+/* Copies the next word of DATA[BYTES] from *AT on to TOKEN, and moves *AT past
+ * the one white space that ends it. Returns false if there is no such word, or
+ * it is longer than TOKEN. */
 static bool take_token(char token[TOKEN_CHARS], const uint8_t *data,
                        size_t bytes, size_t *at)
 {
@@ -42,7 +44,8 @@ static bool take_token(char token[TOKEN_CHARS], const uint8_t *data,
     return len > 0 && *at < bytes && is_space(data[(*at)++]);
 }
 
-/* 1 .. 99999 in plain digits; 0 for anything else. */
+/* Returns TOKEN as a number, at most 99999, or 0 if it has other characters
+ * than digits. */
 static int side_of(const char *token)
 {
     int value = 0;

@@ -14,8 +14,8 @@
 #include "posix/input.h"
 #include "posix/output.h"
 
-/* The largest PFM with its header; no other type that is read here is larger.
- */
+/* Bytes of the largest file read: a PFM with its header. PNM files are
+ * smaller. */
 #define MAX_FILE_BYTES                                             \
     (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
          ? SIZE_MAX / 4                                            \
@@ -24,7 +24,8 @@
 
 /* ----------------------------------------------------------------- loading */
 
-/* A picture of either kind. One of the two has pixels, the other is zeros. */
+/* A picture that was loaded, of 8 bits or of floats; the other member is
+ * zeros. */
 struct loaded {
     struct glint_image image; /* GLINT_RGB24 or GLINT_GREY */
     struct glint_float_image floats;
@@ -91,7 +92,8 @@ static enum glint_status load_by_plugin(struct loaded *loaded, const char *path,
     return GLINT_OK;
 }
 
-/* Reads the first bytes of IN, enough to tell what it is. */
+/* Reads the first HEAD_BYTES of IN, or as many as it has, into *DATA, which the
+ * caller frees. */
 static enum glint_status read_head(struct glint_input *in, uint8_t **data,
                                    size_t *bytes, struct glint_error *error)
 {
@@ -160,14 +162,15 @@ static enum glint_status load(struct loaded *loaded, const char *path,
     glint_input_close(&in);
     free(data);
     if (!status && !loaded->floats.rgb && !loaded->image.plane[0]) {
-        /* whatever the plug-in says */
+        /* The plug-in reported success, but gave no pixels. */
         (void)glint_error_report(error, GLINT_E_FORMAT, path, "has no pixels");
         status = GLINT_E_FORMAT;
     }
     return status;
 }
 
-/* IEC 61966-2-1; not-a-number counts as black. */
+/* Encodes LINEAR light, 1 = white, to a code by the curve of IEC 61966-2-1.
+ * Not-a-number becomes 0. */
 static uint8_t encode_srgb(float linear)
 {
     if (!(linear > 0))
@@ -295,8 +298,8 @@ static const struct file_type {
     {".webp", false, true, false},
 };
 
-/* The type that the extension of PATH names; NULL if unknown. A pipe takes
- * whichever type glint writes itself. */
+/* Returns the type that PATH's extension names, or NULL if it is unknown. The
+ * pipe "-" has the type that glint itself writes for KIND. */
 static const struct file_type *find_type(const char *path,
                                          enum glint_picture_kind kind)
 {

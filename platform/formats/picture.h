@@ -30,49 +30,50 @@
 
 enum glint_picture_kind { GLINT_PICTURE_8BIT, GLINT_PICTURE_FLOAT };
 
-/* Returns whether the extension of PATH is one of those that hold nothing but
- * floats. TIFF, which takes both, and "-" count as 8 bits. */
+/* Checks whether the extension of PATH is of a type that holds floats only.
+ * TIFF, which takes floats and codes, and "-" count as 8 bits. */
 bool glint_picture_is_float(const char *path);
 
 /* Loads PATH as GLINT_RGB24, full range, sRGB; grey becomes R = G = B, alpha is
- * left out, floats are clamped to 0 .. 1. To be freed.
- * GLINT_E_IO: it cannot be read. GLINT_E_FORMAT: it is malformed.
- * GLINT_E_UNSUPPORTED: no picture, too large, or it needs the plug-in, which is
- * not there. GLINT_E_MEMORY. */
+ * left out, floats are clipped to 0 .. 1. glint_picture_free() frees IMAGE.
+ * GLINT_E_IO: PATH cannot be read. GLINT_E_FORMAT: it is malformed.
+ * GLINT_E_UNSUPPORTED: no picture, too large, or of a type whose plug-in is
+ * missing. GLINT_E_MEMORY. */
 enum glint_status glint_picture_load(const char *path,
                                      struct glint_image *image,
                                      struct glint_error *error);
 
-/* Frees an image that was loaded; fine with an image of zeros. */
+/* Frees the pixels of IMAGE; does nothing to an image of zeros. */
 void glint_picture_free(struct glint_image *image);
 
-/* Loads PATH as linear light; floats->rgb is the caller's to free(). Errors as
- * above. */
+/* Loads PATH as linear light; the caller frees floats->rgb. Errors are those of
+ * glint_picture_load(). */
 enum glint_status glint_picture_load_float(const char *path,
                                            struct glint_float_image *floats,
                                            struct glint_error *error);
 
-/* Functions for formats/kept.h: the type that the first bytes of a file tell,
- * and the refusal of one that needs the plug-in, ERROR saying why it is not
- * there. */
+/* For formats/kept.c: returns the name of the file type that HEAD, the first
+ * BYTES of a file, shows; reports in ERROR that a file of TYPE needs the
+ * plug-in, with the reason that ERROR gives for its absence. */
 const char *glint_picture_type(const uint8_t *head, size_t bytes);
 enum glint_status glint_picture_needs_plugin(const char *path, const char *type,
                                              struct glint_error *error);
 
 /* Checks whether a picture of KIND can be saved to PATH, as far as that is
- * known before there is one. GLINT_E_UNSUPPORTED: the extension is unknown or
- * of the other kind, or the plug-in is not there. */
+ * known before it is drawn. GLINT_E_UNSUPPORTED: the extension is unknown or of
+ * the other kind, or its plug-in is missing. */
 enum glint_status glint_picture_check(const char *path,
                                       enum glint_picture_kind kind,
                                       struct glint_error *error);
 
-/* Saves IMAGE, GLINT_RGB24 with any strides; the file is whole or not there,
- * see posix/output.h. Errors as of check, GLINT_E_OUTPUT, GLINT_E_CLOSED. */
+/* Saves IMAGE, GLINT_RGB24 with any strides; the file appears whole or not at
+ * all (posix/output.h). Errors of glint_picture_check(), GLINT_E_OUTPUT,
+ * GLINT_E_CLOSED. */
 enum glint_status glint_picture_save(const char *path,
                                      const struct glint_image *image,
                                      struct glint_error *error);
 
-/* Saves FLOATS in the same way. */
+/* Saves FLOATS, as glint_picture_save() saves 8 bits. */
 enum glint_status
 glint_picture_save_float(const char *path,
                          const struct glint_float_image *floats,

@@ -8,7 +8,7 @@
 
 #include "posix/error.h"
 
-#define MAX_NUMBER 99999 /* larger ones read as this */
+#define MAX_NUMBER 99999 /* Larger numbers are read as this one. */
 
 struct cursor {
     const uint8_t *at, *end;
@@ -35,7 +35,8 @@ static void skip_space(struct cursor *c)
     }
 }
 
-/* A number after any white space; -1 if there is none. */
+/* Skips white space and comments and returns the number that follows, at most
+ * MAX_NUMBER, or -1 if none does. */
 static int take_number(struct cursor *c)
 {
     int value = -1;
@@ -49,7 +50,8 @@ static int take_number(struct cursor *c)
     return value;
 }
 
-/* The one white space that ends the header; a comment may stand before it. */
+/* Skips the one white space that ends the header, and a comment before it.
+ * Returns false if there is none. */
 static bool take_header_end(struct cursor *c)
 {
     if (c->at < c->end && *c->at == '#')
@@ -88,7 +90,8 @@ static enum glint_status read_header(struct cursor *c,
     return GLINT_OK;
 }
 
-/* N samples of 1 or 2 bytes, 0 .. MAXIMUM, to 8 bits. */
+/* Scales N samples of SRC, 0 .. MAXIMUM, to 8 bits. They have 2 bytes if
+ * MAXIMUM is above 255, else 1. */
 static void scale_samples(uint8_t *dst, const uint8_t *src, size_t n,
                           int maximum)
 {

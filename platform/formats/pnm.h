@@ -24,15 +24,17 @@
 /* Returns whether DATA begins like a P5 or P6. */
 bool glint_pnm_matches(const void *data, size_t bytes);
 
-/* The header, after which the samples follow. */
+/* The header of a PNM. Its samples follow. */
 struct glint_pnm_header {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
-    int channels;      /* 3 or 1 */
-    int maximum;       /* 1 .. 65535; above 255 in two bytes, the high first */
-    size_t bytes;      /* bytes of the header itself */
+    int channels;      /* 3: R G B, or 1: grey */
+    int maximum;  /* 1 .. 65535; above 255 samples have two bytes, the high one
+                     first */
+    size_t bytes; /* length of the header */
 };
 
-/* Reads the header of DATA[BYTES], which has all samples. Errors as below. */
+/* Reads the header of DATA[BYTES], which must have all samples. Errors are
+ * those of glint_pnm_read(). */
 enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
                                         const void *data, size_t bytes,
                                         const char *name,
@@ -47,7 +49,8 @@ enum glint_status glint_pnm_read(struct glint_image *image, const void *data,
                                  size_t bytes, const char *name,
                                  struct glint_error *error);
 
-/* Writes IMAGE, GLINT_RGB24 with any strides, as a P6 with maximum 255. */
+/* Writes IMAGE, GLINT_RGB24 with any strides, to OUT as a P6 with maximum
+ * 255. */
 enum glint_status glint_pnm_write(struct glint_output *out,
                                   const struct glint_image *image,
                                   struct glint_error *error);

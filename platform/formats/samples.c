@@ -36,11 +36,12 @@ int glint_samples_height(const struct glint_samples *samples)
     return is_turned(samples) ? samples->window_width : samples->window_height;
 }
 
-/* The pixel that is seen at X, Y; NULL: there is none. */
+/* Returns the pixel that is seen at X, Y, or NULL if the file has none
+ * there. */
 static uint8_t *find(const struct glint_samples *s, int x, int y)
 {
     const int right = s->window_width - 1, bottom = s->window_height - 1;
-    /* windows of a file may be anywhere */
+    /* 64 bits, as a file may place its window anywhere */
     int64_t column = is_turned(s) ? y : x, row = is_turned(s) ? x : y;
 
     if (s->orientation == 2 || s->orientation == 3 || s->orientation == 7 ||
@@ -136,7 +137,7 @@ static void put_float(const struct glint_sample_place *c, uint8_t *pixel,
 {
     const float single = (float)value;
     const uint16_t half =
-        glint_half_encode(value > 65504 ? 65504.0F : single); /* held */
+        glint_half_encode(value > 65504 ? 65504.0F : single); /* clamped */
 
     if (c->sample == GLINT_SAMPLE_HALF)
         memcpy(pixel + c->offset, &half, sizeof half);
@@ -153,7 +154,7 @@ static uint32_t most_of(enum glint_sample sample)
                                         : UINT32_MAX;
 }
 
-/* 0 .. 1, floats whatever they hold. */
+/* Returns a sample of PIXEL over MAXIMUM, or a float as it is. */
 static double take(const struct glint_sample_place *c, uint32_t maximum,
                    const uint8_t *pixel)
 {
@@ -184,8 +185,9 @@ static double alpha_of(const struct glint_samples *s, const uint8_t *pixel)
 
 /* ------------------------------------------------------------ linear light */
 
-/* Light of all codes of colours that have no more than 65536; entries NULL:
- * as the formula says each time. */
+/* Decodes samples to linear light: entries[c] has the light of each code of
+ * colour c, or is NULL where samples are floats, MAXIMUM is above 65535 or
+ * memory is short; then the curve is evaluated for each sample. */
 struct decoder {
     const struct glint_samples *samples;
     float *entries[3];
@@ -231,14 +233,15 @@ static void turn(const double m[3][3], const double from[3], double to[3])
         to[i] = m[i][0] * from[0] + m[i][1] * from[1] + m[i][2] * from[2];
 }
 
-/* Infinite light is the largest of a half float; no number, none. */
+/* Returns VALUE, but 65504, the largest half, for infinity, and 0 for minus
+ * infinity and not-a-number. */
 static double finite(double value)
 {
     return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
 }
 
-/* Gives the light that is seen of PIXEL over black, or, straight, that of its
- * colours alone. */
+/* Sets RGB to the linear light of PIXEL, BT.709 primaries: of its colours alone
+ * if STRAIGHT, else as it is seen over black. */
 static void light_of(const struct decoder *d, const uint8_t *pixel,
                      bool straight, double rgb[3])
 {
@@ -270,9 +273,10 @@ void glint_samples_light(const struct glint_samples *samples, int x, int y,
 
 /* ------------------------------------------------------------------- proxy */
 
-#define BINS 256 /* eight an octave, from 2^-8 to 2^24 */
+#define BINS 256 /* bins of light, eight an octave, from 2^-8 to 2^24 */
 
-/* Light that a hundredth of the picture exceeds, at least 1. */
+/* Returns the least light, to an eighth of an octave and at least 1, that no
+ * more than a hundredth of the pixels exceed; 1 if samples are not floats. */
 static double white_of(const struct decoder *d)
 {
     const struct glint_samples *const s = d->samples;

@@ -30,7 +30,8 @@ void glint_tone_curve_set(struct glint_tone_curve *transfer,
 static double look_up(const struct glint_tone_curve *t, double code)
 {
     const double at = code * (t->n_entries - 1);
-    const int i = code < 1 ? (int)at : t->n_entries - 2; /* no number, too */
+    /* Not-a-number, too, is looked up at the end. */
+    const int i = code < 1 ? (int)at : t->n_entries - 2;
 
     return (t->entry[i] + (at - i) * (t->entry[i + 1] - t->entry[i])) / 65535;
 }
@@ -51,7 +52,7 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
            t->e;
 }
 
-/* The place of LIGHT in a table that rises. */
+/* Returns the code, 0 .. 1, that the rising table of T decodes to LIGHT. */
 static double find(const struct glint_tone_curve *t, double light)
 {
     const double level = light * 65535;
@@ -119,7 +120,9 @@ static void multiply(double to[3][3], const double a[3][3],
                 a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
 }
 
-/* The matrix from R, G, B to X, Y, Z; white has the luminance 1. */
+/* Sets M to the matrix from R, G, B to X, Y, Z for the chromaticities XY of
+ * red, green, blue and white, whose luminance is 1. Returns false if there is
+ * none. */
 static bool to_xyz(double m[3][3], const double xy[4][2])
 {
     double columns[3][3], back[3][3], white[3];
@@ -147,8 +150,8 @@ static bool to_xyz(double m[3][3], const double xy[4][2])
     return true;
 }
 
-/* Makes the matrices from TO_XYZ of the file and that of BT.709, which have the
- * same white point. */
+/* Sets the matrices of COLOURS by the matrices FILE and BT709 to X, Y, Z, which
+ * have the same white point. Returns false if one of the two has no inverse. */
 static bool set_matrices(struct glint_colours *colours, const double file[3][3],
                          const double bt709[3][3])
 {
@@ -179,7 +182,7 @@ bool glint_colours_primaries(struct glint_colours *colours,
         {0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}};
     double file[3][3], bt709[3][3], own[4][2];
 
-    /* white stays white: no more than the three colours is taken over */
+    /* White stays white: BT.709 takes the white point of the file. */
     memcpy(own, bt709_xy, sizeof own);
     memcpy(own[3], xy[3], sizeof own[3]);
     return to_xyz(file, xy) && to_xyz(bt709, (const double(*)[2])own) &&
@@ -217,7 +220,8 @@ static double s15f16(const uint8_t *at)
     return (int32_t)u32(at) / 65536.0;
 }
 
-/* The data of tag NAME, of at least LEAST bytes; NULL: there is none. */
+/* Returns the data of tag NAME, and their length in *BYTES, at least LEAST; or
+ * NULL if P has no such tag. */
 static const uint8_t *find_tag(const struct profile *p, const char *name,
                                size_t least, size_t *bytes)
 {
@@ -300,7 +304,7 @@ static bool take_curve(struct glint_tone_curve *t, const struct profile *p,
     return n <= 1 ? t->gamma > 0.1 : take_table(t, at + 12, n);
 }
 
-/* Within a quarter of a code of 8 bits. */
+/* Checks whether T is within a quarter of an 8-bit code of the sRGB curve. */
 static bool is_srgb(const struct glint_tone_curve *t)
 {
     struct glint_tone_curve srgb;
@@ -317,7 +321,7 @@ static bool is_srgb(const struct glint_tone_curve *t)
 
 static bool take_matrix(struct glint_colours *colours, const struct profile *p)
 {
-    /* The primaries of BT.709 under D50, as profiles have them. */
+    /* The primaries of BT.709 in X, Y, Z under D50, as profiles have them. */
     static const double bt709[3][3] = {{0.43607, 0.38515, 0.14307},
                                        {0.22249, 0.71687, 0.06061},
                                        {0.01392, 0.09708, 0.71410}};

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/tones.h - from the codes of a picture file to linear light, whatever
- * its profile says, and between its primaries and BT.709.
+ * formats/tones.h - from the codes of a picture file to linear light, as its
+ * profile says, and between its primaries and BT.709.
  *
  *     glint_tone_curve_set(&transfer, GLINT_TONE_IS_SRGB, 0);      or
  *     glint_icc_read(&colours, profile, bytes);
  *     light = glint_tone_curve_decode(&transfer, code / 65535.0);
  *
  * A code is 0 .. 1; floats go beyond, where a curve is continued by its own
- * formula and mirrored below 0. In double, for pictures that are edited once;
- * frames of a video have tables of integers.
+ * formula and mirrored below 0. All is double, for pictures that are edited
+ * once; frames of a video have tables of integers.
  */
 #ifndef GLINT_PLATFORM_FORMATS_TONES_H
 #define GLINT_PLATFORM_FORMATS_TONES_H
@@ -27,25 +27,27 @@ enum glint_tone_kind {
 
 #define GLINT_TONE_ENTRIES 1024
 
-/* light = (a code + b)^gamma + e from code = d on, c code + f below, unless
- * there is a table: then entries at even distances with straight lines between
- * them. */
+/* light = (a code + b)^gamma + e from code = d on, c code + f below d. With a
+ * table: straight lines between its entries, which lie at even distances of
+ * code; 65535 is light 1. */
 struct glint_tone_curve {
     double gamma, a, b, c, d, e, f;
     int n_entries; /* 0: no table */
     uint16_t entry[GLINT_TONE_ENTRIES];
 };
 
-/* The meaning of the codes of a file's three colours. */
+/* Says what the codes of a file's three colours mean. */
 struct glint_colours {
     struct glint_tone_curve transfer[3];
-    double to_bt709[3][3];   /* linear light of the file's primaries, and */
-    double from_bt709[3][3]; /* back */
-    bool is_srgb; /* the 8-bit path's own: sRGB curve, BT.709 primaries */
+    double to_bt709[3][3]; /* from light of the file's primaries to BT.709's */
+    /* from light of BT.709's primaries to the file's */
+    double from_bt709[3][3];
+    bool is_srgb; /* sRGB curve and BT.709 primaries, as 8-bit pictures have */
     char name[48];
 };
 
-/* GAMMA is for GLINT_TONE_IS_GAMMA alone. */
+/* Sets TRANSFER to the curve KIND; GAMMA is for GLINT_TONE_IS_GAMMA alone. The
+ * two functions after it convert a code to linear light and back. */
 void glint_tone_curve_set(struct glint_tone_curve *transfer,
                           enum glint_tone_kind kind, double gamma);
 double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
@@ -53,17 +55,17 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
 double glint_tone_curve_encode(const struct glint_tone_curve *transfer,
                                double light);
 
-/* The same curve for all three, primaries of BT.709. */
+/* Sets COLOURS to BT.709 primaries, with one curve for all three colours. */
 void glint_colours_set(struct glint_colours *colours, enum glint_tone_kind kind,
                        double gamma, const char *name);
 
-/* Primaries by chromaticities x, y of red, green, blue and white. False, and
- * nothing changed: they span nothing. */
+/* Sets the primaries of COLOURS by the chromaticities x, y of red, green, blue
+ * and white. Returns false and changes nothing if they have no matrix. */
 bool glint_colours_primaries(struct glint_colours *colours,
                              const double xy[4][2]);
 
-/* Reads an ICC profile of a grey or RGB picture that consists of curves and a
- * matrix. False: it is malformed, or of another kind. */
+/* Sets COLOURS by an ICC profile of a grey or RGB picture that consists of
+ * curves and a matrix. Returns false if it is malformed or of another kind. */
 bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
                     size_t bytes);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * In place of mjpeg.c where there is no libjpeg to build with.
+ * Stands in for mjpeg.c where glint is built without libjpeg.
  */
 #include "jpeg/mjpeg.h"
 
@@ -21,7 +21,7 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
                               "MJPEG: glint was built without libjpeg");
 }
 
-/* Nobody has a decoder to call this with. */
+/* Is never called: there is no decoder to call it with. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

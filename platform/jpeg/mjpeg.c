@@ -12,8 +12,8 @@
 
 #include "posix/error.h"
 
-#define ALIGN     64 /* bytes, of planes and their rows */
-#define MAX_ROWS  32 /* most of a plane in a row of MCUs: 4 blocks of 8 */
+#define ALIGN     64 /* bytes, alignment of planes and their rows */
+#define MAX_ROWS  32 /* most rows of a plane in a row of MCUs: 4 blocks of 8 */
 #define N_PLANES  3
 #define MARKER    0xff
 #define SOI       0xd8
@@ -27,14 +27,14 @@ struct glint_mjpeg {
     int max_width, max_height;
     ptrdiff_t stride_bytes; /* stride of all planes, for the widest frame */
     size_t plane_bytes;
-    uint8_t *mem; /* N_PLANES of them */
+    uint8_t *mem; /* N_PLANES planes of plane_bytes each */
 
     /* The state of the frame being decoded. */
     struct jpeg_decompress_struct jpeg;
     struct jpeg_error_mgr errors;
     struct jpeg_source_mgr source;
-    bool in_scan; /* the header is over */
-    bool ended;   /* libjpeg asked for more than there is */
+    bool in_scan; /* The header has been read. */
+    bool ended;   /* libjpeg asked for more bytes than the frame has. */
     jmp_buf escape;
     enum glint_status status; /* the failure that a jump to escape reports */
     struct glint_error *error;
@@ -67,7 +67,7 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
     d->name = name;
     d->max_width = max_width;
     d->max_height = max_height;
-    /* libjpeg writes whole blocks and is handed whole rows of MCUs */
+    /* libjpeg writes whole blocks and takes pointers to whole rows of MCUs. */
     d->stride_bytes = (max_width + ALIGN - 1) / ALIGN * ALIGN;
     d->plane_bytes = (size_t)d->stride_bytes * (size_t)(max_height + MAX_ROWS);
     if (posix_memalign(&mem, ALIGN, N_PLANES * d->plane_bytes)) {
@@ -89,7 +89,8 @@ void glint_mjpeg_close(struct glint_mjpeg *decoder)
 
 /* ----------------------------------------------- what libjpeg complains of */
 
-/* Leaves libjpeg; ERROR has been filled. */
+/* Leaves libjpeg with STATUS, by a jump to d->escape. d->error has been
+ * filled. */
 static void leave(struct glint_mjpeg *d, enum glint_status status)
 {
     d->status = status;
@@ -119,8 +120,9 @@ static void on_error(j_common_ptr jpeg)
     leave_with_message(jpeg, GLINT_E_FORMAT);
 }
 
-/* LEVEL -1 is a warning, others are chatter. After most warnings the samples
- * are still right; these four say that they are not. */
+/* Leaves libjpeg at the three warnings that mean wrong samples. After other
+ * warnings samples are still right; messages of LEVEL 0 and above are no
+ * warnings. */
 static void on_message(j_common_ptr jpeg, int level)
 {
     struct glint_mjpeg *const d = jpeg->client_data;
@@ -154,8 +156,9 @@ static void on_source(j_decompress_ptr jpeg)
     (void)jpeg;
 }
 
-/* Inside the scan an end of image is made up, since libjpeg reads ahead of what
- * it needs: samples may all be there without one. */
+/* Ends the data that libjpeg reads: in the scan by an end of image, since
+ * libjpeg reads ahead and may have all samples already; in the header by
+ * leaving. */
 static boolean on_end(j_decompress_ptr jpeg)
 {
     static const JOCTET end[] = {MARKER, EOI};
@@ -181,14 +184,14 @@ static void on_skip(j_decompress_ptr jpeg, long bytes)
     d->source.bytes_in_buffer -= n;
 }
 
-/* Markers that stand alone, without a length. */
+/* Checks whether MARKER stands alone, without a length. */
 static bool is_bare(int marker)
 {
     return marker == TEM || (marker >= RST_FIRST && marker <= EOI);
 }
 
-/* Returns the place of the last start of image in the header, which may have
- * several: libjpeg takes one only. */
+/* Returns the offset of the last start of image in the header. Cameras may send
+ * several, and libjpeg accepts one. */
 static size_t find_start(const uint8_t *data, size_t bytes)
 {
     size_t start = 0, at = 0;
@@ -232,8 +235,8 @@ static void refuse(struct glint_mjpeg *d, const char *cause)
                                 "MJPEG: %s", cause));
 }
 
-/* Refuses what has another subsampling. The factors themselves do not matter,
- * only how those of Y relate to those of Cb and Cr. */
+/* Returns the pixel format of the frame's subsampling, and refuses frames of
+ * any other. Only the ratios of Y's factors to those of Cb and Cr count. */
 static enum glint_pixel_format format_of(struct glint_mjpeg *d)
 {
     const jpeg_component_info *const c = d->jpeg.comp_info;
@@ -258,7 +261,8 @@ static enum glint_pixel_format format_of(struct glint_mjpeg *d)
     return GLINT_GREY;
 }
 
-/* The rest after this costs memory and time that these bounds limit. */
+/* Refuses frames of a size or kind that would take too much memory or time, or
+ * that glint cannot draw on. */
 static void check_header(struct glint_mjpeg *d)
 {
     const struct jpeg_decompress_struct *const j = &d->jpeg;
@@ -297,13 +301,14 @@ static void start(struct glint_mjpeg *d, struct glint_image *image)
     }
     d->jpeg.out_color_space = d->jpeg.jpeg_color_space;
     d->jpeg.raw_data_out = TRUE;
-    /* The SIMD of this method gives the same bits. */
+    /* With this method libjpeg's SIMD gives the same bits as its C. */
     d->jpeg.dct_method = JDCT_ISLOW;
     d->in_scan = true;
     jpeg_start_decompress(&d->jpeg);
 }
 
-/* One row of MCUs at a time. Rows of a plane's padding are never written. */
+/* Decodes to the planes of IMAGE, one row of MCUs at a time. The last rows may
+ * reach below the picture, where planes have MAX_ROWS to spare. */
 static void read_planes(struct glint_mjpeg *d, const struct glint_image *image)
 {
     struct jpeg_decompress_struct *const j = &d->jpeg;
@@ -323,8 +328,8 @@ static void read_planes(struct glint_mjpeg *d, const struct glint_image *image)
     }
 }
 
-/* A fresh libjpeg object for each frame: a used one would lend the tables of
- * the last frame to the next. */
+/* Makes a libjpeg object for each frame: a used one would lend the last frame's
+ * tables to the next. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

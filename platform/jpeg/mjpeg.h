@@ -12,14 +12,14 @@
  * are taken as they were coded: no conversion to RGB and no enlarging of
  * chroma. They are exact to the bit on every machine (integer transform).
  *
- * What cameras do and is put up with: no Huffman tables (the standard ones
- * are meant), an AVI1 header, a start of image twice, bytes where none belong
+ * Faults of cameras that are put up with: no Huffman tables (the standard ones
+ * are meant), an AVI1 header, two starts of image, bytes where none belong
  * between markers, no end of image, anything after it. Nothing of a frame is
- * remembered for the next: what comes out depends on its bytes alone.
+ * remembered for the next: pixels depend on the bytes of their frame alone.
  *
- * This is done by libjpeg, which takes and returns some 30 KiB of heap for
- * each frame, in blocks so small that no system call comes of it once the
- * heap is warm. Built without libjpeg, open fails with GLINT_E_UNSUPPORTED.
+ * libjpeg decodes, and takes and returns some 30 KiB of heap for each frame,
+ * in blocks so small that they need no system call once the heap is warm.
+ * Built without libjpeg, open fails with GLINT_E_UNSUPPORTED.
  */
 #ifndef GLINT_PLATFORM_JPEG_MJPEG_H
 #define GLINT_PLATFORM_JPEG_MJPEG_H
@@ -37,7 +37,8 @@ struct glint_mjpeg; /* opaque */
 bool glint_mjpeg_available(void);
 
 /* Makes a decoder for frames up to MAX_WIDTH x MAX_HEIGHT, 1 ..
- * GLINT_PANEL_SIDE, with room for any subsampling. NAME, for errors, is kept.
+ * GLINT_PANEL_SIDE, with room for any subsampling. NAME is for errors and must
+ * outlive DECODER.
  * GLINT_E_UNSUPPORTED: built without libjpeg. GLINT_E_MEMORY. */
 enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
                                    const char *name, int max_width,
@@ -50,15 +51,15 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
  * GLINT_E_FORMAT: the frame is empty, garbage, damaged where that can be seen,
  * or ends before its last sample; drop it and go on.
  * GLINT_E_UNSUPPORTED: it is larger than the maximum, progressive, RGB or CMYK,
- * of another subsampling, or has more than 8 bits. So will the next one be,
- * unless this is damage.
- * GLINT_E_MEMORY: libjpeg got none; the next may work. */
+ * of another subsampling, or has more than 8 bits. The next frame will be, too,
+ * unless this one is damaged.
+ * GLINT_E_MEMORY: libjpeg got no memory; the next frame may work. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,
                                      struct glint_error *error);
 
-/* NULL is fine. */
+/* Frees DECODER, which may be NULL. */
 void glint_mjpeg_close(struct glint_mjpeg *decoder);
 
 #endif

@@ -13,12 +13,14 @@
 #include "posix/at_death.h"
 #include "posix/error.h"
 
-/* The functions at death read these, which are all atomic. */
+/* put_back() reads these when the process dies, so that all are atomic. */
 static int held_fd = -1;
-static int held_mode; /* mode to go back to */
-static pid_t holder;  /* children that exit leave the console alone */
+static int held_mode; /* mode of the console before */
+/* process that took the console; its children leave it alone */
+static pid_t holder;
 
-/* Async-signal-safe: ioctl() is no more than a system call in Linux. */
+/* Puts the console back into its mode. Async-signal-safe, as ioctl() is only a
+ * system call in Linux. */
 static void put_back(void)
 {
     const int saved = errno;
@@ -34,7 +36,8 @@ void glint_console_watch(void)
     glint_at_death(put_back);
 }
 
-/* The mode to leave PATH in, whose descriptor is *FD; -1 with errno set. */
+/* Opens PATH as *FD. Returns the mode to put it back into later, or -1 with
+ * errno set. */
 static int open_console(const char *path, int *fd)
 {
     struct vt_mode switching;
@@ -50,8 +53,8 @@ static int open_console(const char *path, int *fd)
         errno = saved;
         return -1;
     }
-    /* A program that draws and lives lets the kernel ask before it switches;
-     * graphics without that were left behind by one that was killed. */
+    /* A program that draws has the kernel ask it before it switches. Graphics
+     * mode without that (VT_AUTO) was left by a program that was killed. */
     if (mode == KD_GRAPHICS && ioctl(*fd, VT_GETMODE, &switching) == 0 &&
         switching.mode == VT_AUTO)
         mode = KD_TEXT;

@@ -4,18 +4,18 @@
  * shown.
  *
  *     if (!glint_console_take(&console, &note))    puts it in graphics mode
- *         ... tell NOTE to those who want to know, and go on
+ *         ... print NOTE, and go on without
  *     glint_console_release(&console);             puts it back
  *
- * In graphics mode the console draws neither text nor cursor. It is the
- * terminal that the process belongs to, or the one in the foreground. Its mode
- * comes back by release, and also by exit() and all that posix/at_death.h
- * lists, whereupon the kernel paints the text anew.
+ * In graphics mode the console draws neither text nor cursor. The console is
+ * the terminal of the process, or the one in the foreground. Release puts its
+ * mode back, as do exit() and the deaths that posix/at_death.h lists; then the
+ * kernel paints the text anew.
  *
- * After kill -9 the console stays dark, and cannot be switched away from: that
- * mode is for programs that switch by themselves. Whatever takes and releases
- * the console next, as the next run does, brings the text back. So does
- * SysRq + K, or echo k > /proc/sysrq-trigger from elsewhere.
+ * After kill -9 the console stays dark, and cannot be switched away from, as
+ * graphics mode is for programs that switch by themselves. The next run, which
+ * takes and releases the console, brings the text back. So does SysRq + K, or
+ * echo k > /proc/sysrq-trigger from another terminal.
  */
 #ifndef GLINT_PLATFORM_LINUX_CONSOLE_H
 #define GLINT_PLATFORM_LINUX_CONSOLE_H
@@ -28,8 +28,9 @@ struct glint_console {
     int fd; /* -1: not taken */
 };
 
-/* One at a time in a process. False: there is none (no permission, a terminal
- * elsewhere), and NOTE says so in a line. */
+/* Sets the console to graphics mode; one console at a time in a process.
+ * Returns false, with the reason in NOTE, if there is none, permission is
+ * missing or another program draws on it. */
 bool glint_console_take(struct glint_console *console,
                         struct glint_error *note);
 
@@ -37,7 +38,7 @@ bool glint_console_take(struct glint_console *console,
  * be put right before the console is, and so come after it on that list. */
 void glint_console_watch(void);
 
-/* Does nothing when not taken. */
+/* Puts the console back into its mode, if it was taken. */
 void glint_console_release(struct glint_console *console);
 
 #endif

@@ -18,7 +18,7 @@
 #define FBIO_WAITFORVSYNC _IOW('F', 0x20, uint32_t)
 #endif
 
-/* REQUEST failed, as errno says. */
+/* Reports that the request WHAT failed, by errno. */
 static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
                               struct glint_error *error)
 {
@@ -31,14 +31,14 @@ static enum glint_status lost(const struct glint_fbdev *fb, const char *what,
 
 /* -------------------------------------------------------------- when dying */
 
-/* The console draws where it drew before, so that place must be seen again; and
- * before the console comes back, for it takes the place as given, and Linux 6.1
- * then counts from a wrong one. */
+/* The console draws at the offset it had before, so the panel must show that
+ * again when glint ends; and before the console returns, which takes over the
+ * panel's offset: Linux 6.1 then draws in a wrong place. */
 static int panned_fd = -1; /* atomic */
 static struct fb_var_screeninfo panned_home;
 static pid_t panner; /* atomic */
 
-/* Async-signal-safe. */
+/* Pans the panel back to the offset it had before. Async-signal-safe. */
 static void pan_home(void)
 {
     const int saved = errno;
@@ -73,7 +73,8 @@ static struct glint_pixel_field field_of(const struct fb_bitfield *bits)
     return (struct glint_pixel_field){(int)bits->offset, (int)bits->length};
 }
 
-/* Drivers that say nothing of their bits mean the usual ones. */
+/* Returns the layout of V's pixels: RGB565 or XRGB8888 if the driver states no
+ * bits. */
 static struct glint_pixel_layout layout_of(const struct fb_var_screeninfo *v)
 {
     const int bytes =
@@ -100,7 +101,8 @@ static bool is_true_colour(const struct fb_fix_screeninfo *fix,
             fix->visual == FB_VISUAL_DIRECTCOLOR);
 }
 
-/* Takes over what the driver says, or refuses it. */
+/* Sets size, layout and memory of FB as the driver says, or reports why glint
+ * cannot draw on that. */
 static enum glint_status adopt(struct glint_fbdev *fb,
                                const struct fb_fix_screeninfo *fix,
                                struct glint_error *error)
@@ -157,7 +159,7 @@ static enum glint_status map(struct glint_fbdev *fb, struct glint_error *error)
     return GLINT_OK;
 }
 
-/* Row Y of all the memory. */
+/* Returns row Y of the mapped memory. */
 static uint8_t *row_at(const struct glint_fbdev *fb, uint32_t y)
 {
     return fb->map + fb->skip_bytes + y * fb->stride_bytes;
@@ -172,8 +174,8 @@ static bool pan(struct glint_fbdev *fb, int page)
     return glint_ioctl(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
 }
 
-/* Returns whether there are two screens to change between. Both are black while
- * that is tried, so that what the second held is not seen. */
+/* Checks whether the panel can pan between two screens of memory. Clears both
+ * first, so that old contents of the second are not seen. */
 static bool try_pages(struct glint_fbdev *fb,
                       const struct fb_fix_screeninfo *fix)
 {
@@ -188,7 +190,7 @@ static bool try_pages(struct glint_fbdev *fb,
     return pan(fb, 1) && pan(fb, 0);
 }
 
-/* Reads all about the mode that fb->var already tells of. */
+/* Sets FB up for the mode in fb->var: layout, mapping, number of screens. */
 static enum glint_status enter_mode(struct glint_fbdev *fb,
                                     struct glint_error *error)
 {
@@ -200,7 +202,8 @@ static enum glint_status enter_mode(struct glint_fbdev *fb,
     fb->home = fb->var;
     if (fb->home.yoffset == fb->var.yres)
         fb->home.yoffset =
-            0; /* a glint that was killed may have left another offset */
+            /* A glint that was killed may have left the second screen shown. */
+            0;
     if (glint_ioctl(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
         return lost(fb, "FBIOGET_FSCREENINFO", error);
     status = adopt(fb, &fix, error);
@@ -230,7 +233,8 @@ static bool is_same_mode(const struct fb_var_screeninfo *a,
            is_same_field(&a->transp, &b->transp);
 }
 
-/* Other programs may change the mode, and the device may go. */
+/* Sets FB up again if another program changed the mode. Fails if the device is
+ * gone. */
 static enum glint_status follow_mode(struct glint_fbdev *fb,
                                      struct glint_error *error)
 {
@@ -277,8 +281,7 @@ static void draw(struct glint_fbdev *fb, const struct glint_image *image,
     glint_panel_draw(&fb->panel, image, mem, stride);
 }
 
-/* Draws, where there is memory for one screen only, to the place that is looked
- * at now. */
+/* Draws IMAGE to the screen that is shown, where memory has only one. */
 static enum glint_status draw_seen(struct glint_fbdev *fb,
                                    const struct glint_image *image,
                                    struct glint_error *error)
@@ -299,8 +302,7 @@ static enum glint_status draw_seen(struct glint_fbdev *fb,
     return GLINT_OK;
 }
 
-/* Draws, where there are two screens, to the one that is not looked at, and
- * then shows it. */
+/* Draws IMAGE to the one of two screens that is not shown, then shows it. */
 static enum glint_status draw_unseen(struct glint_fbdev *fb,
                                      const struct glint_image *image,
                                      struct glint_error *error)
@@ -372,7 +374,7 @@ static const char *default_path(void)
     return path && *path ? path : "/dev/fb0";
 }
 
-/* The device, and that it is a framebuffer. */
+/* Opens the device and checks that it is a framebuffer. */
 static enum glint_status open_device(struct glint_fbdev *fb,
                                      struct glint_error *error)
 {
@@ -404,7 +406,8 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     status = open_device(fb, error);
     if (!status && options->console) {
         fb->has_note = !glint_console_take(&fb->console_held, &fb->note);
-        /* taking it may have moved what is seen */
+        /* Taking the console may have changed the offset of the screen
+         * shown. */
         if (glint_ioctl(fb->fd, FBIOGET_VSCREENINFO, &fb->var) < 0)
             status = lost(fb, "FBIOGET_VSCREENINFO", error);
     }
@@ -413,6 +416,6 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
     if (status)
         close_fb(&fb->sink);
     else
-        ioctl(fb->fd, FBIOBLANK, FB_BLANK_UNBLANK); /* few drivers can */
+        ioctl(fb->fd, FBIOBLANK, FB_BLANK_UNBLANK); /* few drivers know it */
     return status;
 }

@@ -9,13 +9,13 @@
  * The mode is taken as it is, never set; what the driver says of its rows
  * (line_length) and bits is believed. Any packed true colour of 16, 24 or 32
  * bits will do (panel/panel.h). Where the driver offers memory for two screens
- * and panning, each frame is drawn unseen and then shown; else it is drawn
- * where it is seen.
+ * and panning, each frame is drawn unseen and then shown; else it is drawn to
+ * the screen that is shown.
  *
  * Each put asks the driver for the mode first: another program may have changed
- * it, and the picture follows; or the framebuffer may be gone, which the memory
- * does not tell, for it stays mapped. A frame of a new size takes new memory,
- * any other none.
+ * it, and the picture follows; or the framebuffer may be gone, which its memory
+ * does not show, as it stays mapped. Only a frame of a new size takes new
+ * memory.
  */
 #ifndef GLINT_PLATFORM_LINUX_FBDEV_H
 #define GLINT_PLATFORM_LINUX_FBDEV_H
@@ -33,9 +33,10 @@
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
     bool dither;  /* panel/row_pack.h */
-    bool vsync;   /* wait for the panel where there is one screen of memory and
-                     the driver can: less tearing, up to a refresh a frame */
-    bool console; /* take it (linux/console.h) */
+    bool vsync;   /* With one screen of memory, wait for the panel's refresh if
+                     the driver can: less tearing, up to one refresh of time a
+                     frame. */
+    bool console; /* take the console (linux/console.h) */
 };
 
 struct glint_fbdev {
@@ -44,26 +45,27 @@ struct glint_fbdev {
     int width, height; /* size of the panel */
     struct glint_pixel_layout layout;
     int n_pages;             /* 2: frames are drawn unseen */
-    bool has_note;           /* the console could not be taken: */
-    struct glint_error note; /* why */
+    bool has_note;           /* the console could not be taken */
+    struct glint_error note; /* reason for that */
 
     /* Private. */
     struct glint_fbdev_options options;
-    const char *name;                   /* kept */
+    const char *name;                   /* not owned */
     int fd;                             /* -1: closed */
-    struct fb_var_screeninfo var, home; /* now, and as we found it */
+    struct fb_var_screeninfo var, home; /* mode now, and as it was found */
     uint8_t *map;                       /* NULL: not mapped */
-    size_t map_bytes, skip_bytes;       /* pixels begin so far into it */
+    size_t map_bytes, skip_bytes;       /* Pixels begin at map + skip_bytes. */
     size_t stride_bytes, mem_bytes;
-    const uint8_t *cleared[2]; /* screens that are black around the picture */
+    const uint8_t *cleared[2]; /* screens already black around the picture */
     bool has_vsync;
     struct glint_panel panel;
     struct glint_console console_held;
 };
 
-/* PATH is kept; NULL: $FRAMEBUFFER, or /dev/fb0. On failure FB is closed.
- * GLINT_E_DEVICE: there is none, no permission, or nothing glint can draw on;
- * ERROR says what to do. */
+/* Opens the framebuffer PATH; the string must outlive FB. NULL stands for
+ * $FRAMEBUFFER, or /dev/fb0 if that is not set. On failure FB is closed.
+ * GLINT_E_DEVICE: no such device, no permission, or nothing that glint can draw
+ * on; ERROR says what to do. */
 enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
                                    const struct glint_fbdev_options *options,
                                    struct glint_error *error);

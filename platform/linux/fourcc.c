@@ -7,7 +7,7 @@
 
 #include <linux/videodev2.h>
 
-/* The first of a format is what glint_fourcc_of() gives. */
+/* glint_fourcc_of() returns the first entry of a format that has one plane. */
 static const struct {
     uint32_t fourcc;
     enum glint_pixel_format format;
@@ -33,7 +33,7 @@ static const struct {
     {V4L2_PIX_FMT_YUV444M, GLINT_I444, 3},
 };
 
-/* Names of formats as ffmpeg has them, and a few more that people type. */
+/* Names of formats: those of ffmpeg, and a few common ones. */
 static const struct {
     const char *name;
     uint32_t fourcc;
@@ -143,7 +143,7 @@ bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
                             struct glint_image *image)
 {
     const bool rgb = is_rgb(image->format);
-    /* sensors without colour use all codes, and so does vivid */
+    /* By default grey is full range: sensors without colour use all codes. */
     const bool is_grey = image->format == GLINT_GREY;
     const uint32_t space = colour->colorspace;
     uint32_t enc = colour->ycbcr_enc;

@@ -14,38 +14,43 @@
 
 #include "glint/image.h"
 
-/* False: glint has no such format (MJPG among them). AR24 and BGR4 count as
- * GLINT_XRGB8888, whose fourth byte is nothing. */
+/* Sets FORMAT to glint's format for FOURCC. Returns false if glint has none,
+ * as for MJPG. AR24 and BGR4 count as GLINT_XRGB8888, whose fourth byte is
+ * unused. */
 bool glint_fourcc_to_format(uint32_t fourcc, enum glint_pixel_format *format);
 
-/* The FOURCC in one block of memory; 0: V4L2 has none (GLINT_LINEAR_Q20, and
- * GLINT_I444, which exists as YM24 only). */
+/* Returns the FOURCC of FORMAT in one block of memory, or 0 if V4L2 has none,
+ * as for GLINT_LINEAR_Q20 and for GLINT_I444, which exists as YM24 only. */
 uint32_t glint_fourcc_of(enum glint_pixel_format format);
 
-/* Blocks of memory that a picture in FOURCC is spread over, 1 .. 3. */
+/* Returns the number of blocks of memory, 1 .. 3, that a picture in FOURCC lies
+ * in; 1 if FOURCC is unknown. */
 int glint_fourcc_memory_planes(uint32_t fourcc);
 
-/* "YUYV"; what does not print becomes '?'. */
+/* Writes FOURCC as text, such as "YUYV", with '?' for characters that do not
+ * print. */
 void glint_fourcc_text(uint32_t fourcc, char text[5]);
 
-/* Reads a FOURCC or a name of ffmpeg's, in any case: "YUYV", "yuyv422", "nv12",
- * "mjpeg". Other texts of 4 printable characters are taken as they are. */
+/* Sets FOURCC by TEXT: a FOURCC or a name of ffmpeg's, in any case ("YUYV",
+ * "yuyv422", "nv12", "mjpeg"), or any other 4 printable characters as they are.
+ * Returns false for other texts. */
 bool glint_fourcc_parse(const char *text, uint32_t *fourcc);
 
-/* The colours of a format to V4L2: values of enum v4l2_colorspace and so on. */
+/* Colours of a format as V4L2 states them, by values of enum v4l2_colorspace
+ * and so on. */
 struct glint_v4l2_colour {
     uint32_t colorspace, ycbcr_enc, quantization, xfer_func;
 };
 
-/* Sets range, matrix and transfer of IMAGE, whose format is set, from COLOUR;
- * where it says "default", by the rules of videodev2.h, but grey
- * of full range. False: it says what
- * glint has no word for (BT.2020, linear, RGB of limited range ...), and the
- * nearest is set. */
+/* Sets range, matrix and transfer of IMAGE, whose format is set, from COLOUR. A
+ * value of "default" follows the rules of videodev2.h, except that grey is full
+ * range. Returns false if COLOUR states what glint does not have (BT.2020,
+ * linear, RGB of limited range ...); then IMAGE gets the nearest. */
 bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
                             struct glint_image *image);
 
-/* The other way: COLOUR states everything. */
+/* Sets COLOUR from range, matrix and transfer of IMAGE, without any
+ * "default". */
 void glint_v4l2_colour_write(struct glint_v4l2_colour *colour,
                              const struct glint_image *image);
 

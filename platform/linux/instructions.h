@@ -2,7 +2,7 @@
  *
  * linux/instructions.h - instructions of the calling thread, in user space.
  *
- *     int counter = glint_instructions_open();       -1: not to be had here
+ *     int counter = glint_instructions_open();       -1: not available
  *     before = glint_instructions_read(counter);
  */
 #ifndef GLINT_PLATFORM_LINUX_INSTRUCTIONS_H
@@ -10,8 +10,9 @@
 
 #include <stdint.h>
 
-/* Begins to count. -1: the processor does not, or the system does not let us
- * (/proc/sys/kernel/perf_event_paranoid above 2). */
+/* Begins to count and returns the counter, or -1 if the processor has none or
+ * the system does not allow it (/proc/sys/kernel/perf_event_paranoid above
+ * 2). */
 int glint_instructions_open(void);
 
 /* Returns the instructions counted so far, or 0 where they cannot be read. */

@@ -7,11 +7,11 @@
 
 #include "glint/status.h"
 
-/* ioctl(2), again while signals interrupt it. */
+/* Calls ioctl(2), again whenever a signal interrupts it. */
 int glint_ioctl(int fd, unsigned long request, void *arg);
 
-/* Fills ERROR with "PATH: REQUEST: why", for errno and with what to do about it
- * where that is known; returns GLINT_E_DEVICE. */
+/* Sets ERROR to "PATH: REQUEST: cause" by errno, with advice for the causes
+ * that have any. Returns GLINT_E_DEVICE. */
 enum glint_status glint_ioctl_failed(struct glint_error *error,
                                      const char *path, const char *request);
 

@@ -14,11 +14,14 @@
 #include "posix/clock.h"
 #include "posix/error.h"
 
-#define PATIENCE_US  900000  /* a broken stream gets so long to come back */
-#define STALL_US     2000000 /* silence beyond some frames that is no pause */
+/* us in which a broken stream may come back */
+#define PATIENCE_US 900000
+/* us of silence, beyond STALL_FRAMES frames, that are a stall and no pause */
+#define STALL_US     2000000
 #define STALL_FRAMES 4
-#define MAX_GAP      4096
-#define USELESS      30 /* damaged frames in a row that call for a new start */
+#define MAX_GAP      4096 /* most frames that are lost at a time */
+/* damaged frames in a row after which the stream begins anew */
+#define USELESS 30
 
 /* ------------------------------------------------------------------- stream */
 
@@ -64,7 +67,7 @@ static enum glint_status start(struct glint_v4l2 *v, struct glint_error *error)
         return glint_ioctl_failed(error, v->device.path, failed);
     for (int i = 0; i < v->n_buffers; i++)
         n_queued +=
-            glint_v4l2_queue(v, i) == 0; /* the rest is tried again later */
+            glint_v4l2_queue(v, i) == 0; /* Refused buffers are queued later. */
     if (n_queued == 0)
         return glint_ioctl_failed(error, v->device.path, "VIDIOC_QBUF");
     if (stream_on(v) < 0)
@@ -92,8 +95,8 @@ static bool is_there(const struct glint_v4l2 *v)
     return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
 }
 
-/* Opens the device anew: one that is read by read(2) streams until it is
- * closed, and takes no other format before. */
+/* Agrees on a format anew. A device that is read by read(2) is opened again for
+ * that, as it streams, and takes no other format, until it is closed. */
 static enum glint_status agree_anew(struct glint_v4l2 *v,
                                     struct glint_error *error)
 {
@@ -108,9 +111,10 @@ static enum glint_status agree_anew(struct glint_v4l2 *v,
     return status;
 }
 
-/* Stops and starts, with the format that the device has now. Success is known
- * only when a frame comes; until then patience runs. Then the request that is
- * still refused says more than what happened first. */
+/* Stops the stream and starts it with the format that the device has now. Only
+ * a frame tells whether that helped: until one comes, failures are ignored for
+ * PATIENCE_US. After that the error is that of the request that fails, or WHY
+ * where the stream had started. */
 static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
                                     struct glint_error *error)
 {
@@ -144,8 +148,8 @@ static enum glint_status start_anew(struct glint_v4l2 *v, const char *why,
 
 /* ------------------------------------------------------------------- frames */
 
-/* Begins to wait for another source, or the same after a pause: the time for it
- * counts from now, and so does patience. */
+/* Begins to wait for a source that changed or has no signal: silence and
+ * patience count from now. */
 static void begin_waiting(struct glint_v4l2 *v)
 {
     v->heard_us = glint_now_us();
@@ -153,7 +157,7 @@ static void begin_waiting(struct glint_v4l2 *v)
         v->broken_us = v->heard_us;
 }
 
-/* Returns whether the source is another one now. */
+/* Takes all events. Returns whether the source has changed. */
 static bool take_events(struct glint_v4l2 *v)
 {
     struct v4l2_event event;
@@ -201,9 +205,10 @@ static void queue_idle(struct glint_v4l2 *v)
             glint_v4l2_queue(v, i);
 }
 
-/* Frames between the last one and this. A driver that does not count says the
- * same number every time; the first number after a start may be an old one, as
- * of v4l2loopback; and longer than a stall no gap can be. */
+/* Returns the number of frames lost before frame SEQUENCE. It is 0 where
+ * numbers do not tell: for the first two frames after a start, as v4l2loopback
+ * begins with an old number; for drivers that repeat one number; beyond
+ * MAX_GAP, as such a gap would have been a stall. */
 static int gap(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;
@@ -214,7 +219,8 @@ static int gap(struct glint_v4l2 *v, uint32_t sequence)
     return counts ? (int)missing : 0;
 }
 
-/* The newest whole frame there is. */
+/* Takes the newest whole frame that waits; gives back the others and counts
+ * them in FRAME as late or corrupt, and lost ones as dropped. */
 static enum glint_v4l2_outcome take_newest(struct glint_v4l2 *v,
                                            struct glint_v4l2_taken *newest,
                                            struct glint_source_frame *frame)
@@ -264,7 +270,8 @@ static void place(const struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     }
 }
 
-/* Decodes a JPEG to the decoder's planes; the buffer goes back at once. */
+/* Decodes a JPEG to the decoder's planes and gives its buffer back. Without
+ * success IMAGE has no planes. */
 static bool decode(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
                    struct glint_image *image)
 {
@@ -305,7 +312,8 @@ static void show(struct glint_v4l2 *v, const struct glint_v4l2_taken *t,
     v->broken_us = 0;
 }
 
-/* An HDMI input without a signal may be silent for as long as it likes. */
+/* Checks whether no frame has come for too long; an HDMI input without a signal
+ * may be silent for any time. */
 static bool is_stalled(struct glint_v4l2 *v)
 {
     const struct glint_v4l2_format *f = &v->device.format;
@@ -368,7 +376,7 @@ static void done(struct glint_source *source, struct glint_source_frame *frame)
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_buffer *b = frame->buffer;
 
-    if (b && b->lent) /* else the stream was begun anew meanwhile */
+    if (b && b->lent) /* else the stream has begun anew since */
         give_back(v, (int)(b - v->buffer));
     frame->buffer = NULL;
     frame->image.plane[0] = NULL;

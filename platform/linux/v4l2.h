@@ -2,7 +2,7 @@
  *
  * linux/v4l2.h - a V4L2 camera as a source of live frames.
  *
- *     glint_v4l2_open(&camera, &config, &error);
+ *     glint_v4l2_open(&camera, &wish, GLINT_V4L2_AUTO, 4, &error);
  *     camera.source.next(&camera.source, &frame, &error);    when readable
  *     camera.source.done(&camera.source, &frame);
  *     camera.source.close(&camera.source);
@@ -13,9 +13,10 @@
  * the application's (USERPTR), else read(2), as the device allows.
  *
  * A stream that breaks is begun anew, with whatever format the device has then:
- * after failed requests, a fatal error of the driver, another source, or
- * silence for STALL. When that does not help within a second, or the device is
- * gone, next fails with GLINT_E_DEVICE.
+ * after failed requests, a fatal error of the driver, another source, 30
+ * damaged frames in a row, or silence for two seconds and four frames. When
+ * that does not help within a second, or the device is gone, next fails with
+ * GLINT_E_DEVICE.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
 #define GLINT_PLATFORM_LINUX_V4L2_H
@@ -34,20 +35,20 @@ enum glint_v4l2_io {
 
 struct glint_v4l2_buffer {
     void *mem[3];
-    size_t bytes[3]; /* bytes that are mapped or ours; as the driver says */
-    bool queued;     /* the driver has it */
-    bool lent;       /* the application has it */
+    size_t bytes[3]; /* size of each block in mem */
+    bool queued;     /* The driver has the buffer. */
+    bool lent;       /* The application has the buffer. */
 };
 
 struct glint_v4l2 {
     struct glint_source source;
     struct glint_v4l2_device device;
 
-    /* the outcome of opening, for reports */
+    /* Set when the stream starts; for reports. */
     enum glint_v4l2_io io;
     int n_buffers;
-    bool is_cached;      /* buffers are read at the speed of memory */
-    bool exports_dmabuf; /* they could be handed on without a copy */
+    bool is_cached;      /* Buffers are read at the speed of memory. */
+    bool exports_dmabuf; /* Buffers could be handed on without a copy. */
 
     /* Private. */
     enum glint_v4l2_io wish_io;
@@ -55,16 +56,17 @@ struct glint_v4l2 {
     struct glint_v4l2_buffer buffer[GLINT_V4L2_MAX_BUFFERS];
     struct glint_mjpeg *jpeg; /* decoder of JPEG streams */
     bool streams;
-    int n_numbered;    /* frames since the start, up to 2 */
+    int n_numbered;    /* frames since the start, counted up to 2 */
     uint32_t sequence; /* number of the last frame taken */
-    uint32_t n_read;   /* frames by read(2), which have no sequence */
+    uint32_t n_read;   /* frames read by read(2), which numbers none */
     int64_t heard_us;  /* time of the last frame */
-    int64_t broken_us; /* since when it has been failing; 0: it is not */
+    int64_t broken_us; /* time since which the stream has failed; 0: it works */
     int n_useless;     /* damaged frames in a row */
 };
 
-/* Opens the camera that WISH names and begins to stream, with 2 ..
- * GLINT_V4L2_MAX_BUFFERS buffers. On failure CAMERA is closed. */
+/* Opens the camera that WISH names and begins to stream by IO, with N_BUFFERS
+ * buffers, 2 .. GLINT_V4L2_MAX_BUFFERS, or as many as the driver gives. On
+ * failure CAMERA is closed. */
 enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                   const struct glint_v4l2_config *wish,
                                   enum glint_v4l2_io io, int n_buffers,

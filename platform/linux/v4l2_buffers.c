@@ -11,8 +11,9 @@
 #include "linux/request.h"
 #include "posix/clock.h"
 
-#define PAGE       4096
-#define MAX_AGE_US 5000000 /* oldest frame taken for one of the driver's */
+#define PAGE 4096
+/* us; stamps of an unknown clock that are older are not trusted */
+#define MAX_AGE_US 5000000
 
 static bool is_multiplanar(const struct glint_v4l2 *v)
 {
@@ -21,7 +22,7 @@ static bool is_multiplanar(const struct glint_v4l2 *v)
 
 /* ----------------------------------------------------------------- requests */
 
-/* A struct v4l2_buffer for buffer INDEX; PLANES stay in use with it. */
+/* Returns a struct v4l2_buffer for buffer INDEX; it uses PLANES. */
 static struct v4l2_buffer describe(const struct glint_v4l2 *v, int index,
                                    struct v4l2_plane planes[3])
 {
@@ -61,8 +62,10 @@ int glint_v4l2_queue(struct glint_v4l2 *v, int index)
     return 0;
 }
 
-/* v4l2loopback does not say which clock its stamps are of; what lies within
- * some seconds of the monotonic one is of that. None lies ahead. */
+/* Returns the time of B's frame by the monotonic clock: its stamp, if the
+ * driver says that it is of that clock, or does not say, as v4l2loopback, and
+ * the stamp is at most MAX_AGE_US old. Otherwise, or if the stamp lies ahead,
+ * the time now. */
 static int64_t capture_time_us(const struct v4l2_buffer *b)
 {
     const uint32_t clock = b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
@@ -138,7 +141,8 @@ enum glint_v4l2_outcome glint_v4l2_take(struct glint_v4l2 *v,
 
 /* ------------------------------------------------------------------ buffers */
 
-/* 0: it failed, and errno says why. */
+/* Asks the driver for N buffers in MEMORY; 0 frees them all. Returns the number
+ * granted, or 0 with errno set. */
 static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
                                 int n)
 {
@@ -163,8 +167,8 @@ void glint_v4l2_release_buffers(struct glint_v4l2 *v)
                 free(mem);
         }
     memset(v->buffer, 0, sizeof v->buffer);
-    /* also where there are none: the last time may have failed, and no format
-     * can be set until it does not */
+    /* Buffers are freed in the driver even if there are none here: freeing may
+     * have failed before, and until it succeeds no format can be set. */
     if (v->io == GLINT_V4L2_MMAP || v->io == GLINT_V4L2_USERPTR)
         request_buffers(v,
                         v->io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP
@@ -173,7 +177,7 @@ void glint_v4l2_release_buffers(struct glint_v4l2 *v)
     v->n_buffers = 0;
 }
 
-/* These return NULL, or what failed. */
+/* Maps a block of buffer INDEX. Returns NULL, or the call that failed. */
 static const char *map_block(struct glint_v4l2 *v, int index, int block,
                              size_t bytes, size_t offset)
 {
@@ -188,6 +192,7 @@ static const char *map_block(struct glint_v4l2 *v, int index, int block,
     return NULL;
 }
 
+/* Maps all blocks of buffer INDEX. Returns NULL, or the call that failed. */
 static const char *map_buffer(struct glint_v4l2 *v, int index)
 {
     struct v4l2_plane planes[3];
@@ -204,6 +209,7 @@ static const char *map_buffer(struct glint_v4l2 *v, int index)
     return failed;
 }
 
+/* Allocates all blocks of buffer INDEX. Returns NULL, or what failed. */
 static const char *own_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *b = &v->buffer[index];
@@ -231,7 +237,8 @@ bool glint_v4l2_can_export(const struct glint_v4l2 *v)
     return true;
 }
 
-/* Time to read MEM[BYTES] twice: what is not cached is slow both times. */
+/* Returns the us that reading every other word of MEM[BYTES] twice takes;
+ * uncached memory is slow both times. */
 static int64_t read_time_us(const void *mem, size_t bytes)
 {
     const volatile uint64_t *at = mem;
@@ -272,7 +279,8 @@ static const char *fill_buffers(struct glint_v4l2 *v, uint32_t n)
     return failed;
 }
 
-/* Asks twice: drivers that were just stopped refuse once. */
+/* Gets buffers by IO. Returns NULL, or the call that failed, with errno set.
+ * Asks twice, as drivers that were just stopped refuse once. */
 static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
 {
     const enum v4l2_memory memory =
@@ -298,7 +306,8 @@ static const char *try_io(struct glint_v4l2 *v, enum glint_v4l2_io io)
     return failed;
 }
 
-/* EINVAL is how drivers say that they lack this kind of memory. */
+/* Checks whether there are no buffers because the driver lacks their kind of
+ * memory, which it says by EINVAL. */
 static bool is_lacking(const struct glint_v4l2 *v)
 {
     return v->n_buffers == 0 && errno == EINVAL;

@@ -25,24 +25,24 @@ struct glint_v4l2_taken {
     bool damaged;
 };
 
-/* Gets buffers of the kind that the device allows. Returns NULL, or what
- * failed, for the user. */
+/* Gets buffers of the first kind that wish and device allow. Returns NULL, or
+ * the call that failed, as text. */
 const char *glint_v4l2_get_buffers(struct glint_v4l2 *v);
 void glint_v4l2_release_buffers(struct glint_v4l2 *v);
 
-/* Gives buffer INDEX to the driver. */
+/* Gives buffer INDEX to the driver. Returns 0, or -1 with errno set. */
 int glint_v4l2_queue(struct glint_v4l2 *v, int index);
 
-/* Takes a filled one back. */
+/* Takes a filled buffer from the driver and describes it in T. */
 enum glint_v4l2_outcome glint_v4l2_take(struct glint_v4l2 *v,
                                         struct glint_v4l2_taken *t);
 
-/* Returns whether frames could be handed on without a copy; for reports alone.
- */
+/* Returns whether buffers could be handed on without a copy; for reports
+ * only. */
 bool glint_v4l2_can_export(const struct glint_v4l2 *v);
 
-/* Returns whether buffers are read as fast as other memory. No driver says, so
- * it is tried. */
+/* Measures whether buffers are read about as fast as other memory, as no driver
+ * says it. */
 bool glint_v4l2_is_cached(const struct glint_v4l2 *v);
 
 #endif

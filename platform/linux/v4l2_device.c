@@ -94,7 +94,8 @@ static void note_input(struct glint_v4l2_device *d)
         d->is_dv = input.capabilities & V4L2_IN_CAP_DV_TIMINGS;
 }
 
-/* Drivers without this event say EINVAL, and need it not. */
+/* Subscribes to changes of the source. Drivers whose source never changes
+ * refuse with EINVAL, which is ignored. */
 static void subscribe(const struct glint_v4l2_device *d)
 {
     struct v4l2_event_subscription wanted = {.type = V4L2_EVENT_SOURCE_CHANGE,
@@ -137,7 +138,8 @@ bool glint_v4l2_device_retimed(struct glint_v4l2_device *d)
            !same_timings(&now.bt, &set.bt);
 }
 
-/* An HDMI input keeps old timings until it is given what it receives. */
+/* Sets an HDMI input to the timings it receives, as it keeps old ones until it
+ * is told. Notes whether it has a signal. */
 static enum glint_status follow_timings(struct glint_v4l2_device *d,
                                         struct glint_error *error)
 {

@@ -3,8 +3,8 @@
  * linux/v4l2_device.h - a camera before it streams: what it is, what it offers,
  * and the format that is agreed on.
  *
- * What was asked for is a wish: the device answers with what it can do, and
- * that is believed, strides and sizes included.
+ * A configuration is a wish: the device answers with what it can do, and glint
+ * takes that, strides and sizes included.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
 #define GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
@@ -17,15 +17,15 @@
 #include "glint/image.h"
 #include "glint/status.h"
 
-#define GLINT_V4L2_PATH 256 /* udev makes names of 80 and more */
+#define GLINT_V4L2_PATH 256 /* bytes; names by udev have 80 and more */
 
 struct glint_v4l2_config {
-    const char *device;   /* "/dev/video0", or "0" for it */
-    int width, height;    /* 0, both: what the device is set to */
-    int fps_num, fps_den; /* frames a second; 0: likewise */
-    uint32_t fourcc;      /* 0: the cheapest that gives size and rate */
-    int input;            /* -1: likewise */
-    /* Range and matrix to take for the device's own; -1: not. */
+    const char *device;   /* "/dev/video0", or "0" for short */
+    int width, height;    /* 0, both: as the device is set */
+    int fps_num, fps_den; /* frames a second; 0: as the device is set */
+    uint32_t fourcc;      /* 0: the cheapest format that gives size and rate */
+    int input;            /* -1: the input that is selected */
+    /* Range and matrix to use in place of the device's; -1: the device's. */
     int range, matrix;
 };
 
@@ -33,15 +33,15 @@ struct glint_v4l2_config {
 struct glint_v4l2_format {
     uint32_t fourcc;
     bool is_jpeg;
-    enum glint_pixel_format pixels; /* not of JPEG */
+    enum glint_pixel_format pixels; /* unused if is_jpeg */
     int width, height;
-    int n_blocks; /* pieces of memory a frame lies in, 1 .. 3 */
+    int n_blocks; /* blocks of memory a frame lies in, 1 .. 3 */
     size_t block_bytes[3];
     struct {
         int block; /* number of the block that the plane lies in */
         size_t offset;
         ptrdiff_t stride_bytes;
-        size_t bytes; /* bytes of it, from its offset on */
+        size_t bytes; /* bytes of the plane, from its offset on */
     } plane[3];
     enum glint_range range;
     enum glint_matrix matrix;
@@ -57,44 +57,45 @@ struct glint_v4l2_device {
     bool is_dv;    /* the input has timings of its own: HDMI */
     bool has_signal;
     uint32_t input;
-    bool is_loopback; /* whoever feeds it goes on writing into frames that were
-                         handed out */
+    bool is_loopback; /* v4l2loopback: its writer goes on writing into frames
+                         that were handed out */
     char card[33];
     struct glint_v4l2_config wish;
     struct glint_v4l2_format format;
 };
 
 /* Opens the camera and agrees on a format. On failure DEVICE is closed.
- * GLINT_E_DEVICE: not there, not allowed, not a camera, in use.
- * GLINT_E_UNSUPPORTED: it has no format that glint reads. */
+ * GLINT_E_DEVICE: there is no such device, no permission, it is not a camera,
+ * or in use. GLINT_E_UNSUPPORTED: it has no format that glint reads. */
 enum glint_status glint_v4l2_device_open(struct glint_v4l2_device *device,
                                          const struct glint_v4l2_config *wish,
                                          struct glint_error *error);
 
-/* Agrees anew, after the source changed or the stream broke. */
+/* Agrees on a format anew, after the source changed or the stream broke. */
 enum glint_status glint_v4l2_device_negotiate(struct glint_v4l2_device *device,
                                               struct glint_error *error);
 
-/* Returns whether the device's own timings have changed; notes whether there is
- * a signal at all. */
+/* Returns whether an HDMI input receives other timings than it is set to; false
+ * for other inputs. Sets has_signal. */
 bool glint_v4l2_device_retimed(struct glint_v4l2_device *device);
 
 void glint_v4l2_device_close(struct glint_v4l2_device *device);
 
-/* "YUYV 640x480 at 30 fps, BT.601 limited, sRGB" */
+/* Writes FORMAT as "YUYV 640x480 at 30 fps, BT.601 limited, sRGB". */
 void glint_v4l2_format_text(const struct glint_v4l2_format *format,
                             char text[96]);
 
-/* Prints the cameras there are, or what DEVICE offers: formats, sizes, rates.
- * As JSON if JSON. */
+/* Print all cameras, or the formats, sizes and rates of DEVICE, as JSON if
+ * JSON. */
 enum glint_status glint_v4l2_list_devices(FILE *out, bool json);
 enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,
                                           bool json, struct glint_error *error);
 
-/* Returns whether glint has a use for frames in FOURCC. */
+/* Returns whether glint can read frames in FOURCC. */
 bool glint_v4l2_is_read(uint32_t fourcc);
 
-/* Opens NAME and asks what it is, for both lists. */
+/* Opens NAME and reads its capabilities and name, without any settings. On
+ * failure DEVICE is closed. GLINT_E_DEVICE. */
 enum glint_status glint_v4l2_device_attach(struct glint_v4l2_device *device,
                                            const char *name,
                                            struct glint_error *error);

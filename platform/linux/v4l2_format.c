@@ -11,9 +11,9 @@
 #include "posix/error.h"
 #include "source_sink.h"
 
-/* The formats by what they cost a frame, the least first: two bytes a pixel
- * that are drawn into where they lie, planes, RGB, and last those that have to
- * be decoded first. */
+/* Formats in order of preference: two bytes a pixel that are drawn into where
+ * they lie, planes, RGB, JPEG, which has to be decoded, and grey, which has no
+ * colours. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,
@@ -50,7 +50,7 @@ static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
 
     if (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) < 0)
-        return true; /* not said: tried */
+        return true; /* The device does not say; it may have the size. */
     if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE)
         return w >= size.stepwise.min_width && w <= size.stepwise.max_width &&
                h >= size.stepwise.min_height && h <= size.stepwise.max_height;
@@ -62,8 +62,9 @@ static bool has_size(const struct glint_v4l2_device *d, uint32_t fourcc,
     return false;
 }
 
-/* A is at most as long as FPS_DEN / FPS_NUM, but for one part in 200: USB has
- * units of 100 ns, and 30 is also said for 29.97. */
+/* Checks whether the interval A is no longer than that of the rate wished for,
+ * but for one part in 200: USB has units of 100 ns, and 29.97 is also called
+ * 30. */
 static bool is_fast(const struct glint_v4l2_device *d, struct v4l2_fract a)
 {
     return 200.0 * a.numerator * d->wish.fps_num <=
@@ -89,7 +90,8 @@ static bool has_rate(const struct glint_v4l2_device *d, uint32_t fourcc,
     return false;
 }
 
-/* Bit i: the device has preferred[i]. */
+/* Returns a mask whose bit i is set if the device has preferred[i] and glint
+ * reads it. */
 static uint32_t offered(const struct glint_v4l2_device *d)
 {
     struct v4l2_fmtdesc f = {.type = d->type};
@@ -103,8 +105,9 @@ static uint32_t offered(const struct glint_v4l2_device *d)
     return have;
 }
 
-/* Returns the cheapest format for pictures of W x H; 0: there is none that
- * glint reads. */
+/* Returns the first of preferred[] that the device has in W x H at the rate
+ * wished for; if none, the first that it has; 0 if glint reads none of its
+ * formats. */
 static uint32_t cheapest(const struct glint_v4l2_device *d, uint32_t w,
                          uint32_t h)
 {
@@ -172,8 +175,9 @@ static void write_pix(struct v4l2_format *f, bool multiplanar, uint32_t fourcc,
     }
 }
 
-/* Finds the planes of a picture. One block holds them one after the other, and
- * the strides of chroma follow from that of luma. */
+/* Sets the planes of F from PIX, or returns false if they do not fit its
+ * blocks. A single block holds the planes one after the other, and strides of
+ * chroma follow from that of luma. */
 static bool lay_out(struct glint_v4l2_format *f, const struct pix *pix)
 {
     const int n = glint_image_planes(f->pixels);
@@ -211,7 +215,7 @@ static void take_colour(struct glint_v4l2_device *d,
     struct glint_image image = {.format = f->is_jpeg ? GLINT_I420 : f->pixels};
 
     glint_v4l2_colour_read(colour, &image);
-    if (f->is_jpeg) { /* JFIF, whatever the driver says */
+    if (f->is_jpeg) { /* as JFIF has it, whatever the driver says */
         image.range = GLINT_RANGE_FULL;
         image.matrix = GLINT_MATRIX_BT601;
     }

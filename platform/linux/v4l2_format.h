@@ -9,13 +9,13 @@
 
 #include "linux/v4l2_device.h"
 
-/* Sets the format and believes what the device answers. Errors as of
- * glint_v4l2_device_open. */
+/* Sets the format wished for and takes over the one that the device answers.
+ * Errors are those of glint_v4l2_device_open(). */
 enum glint_status glint_v4l2_set_format(struct glint_v4l2_device *device,
                                         struct glint_error *error);
 
-/* Sets the rate. It is a wish even more than a size is: some inputs have
- * theirs. */
+/* Asks for the rate wished for, if any, and notes the rate that the device has;
+ * some inputs have one of their own. */
 void glint_v4l2_set_rate(struct glint_v4l2_device *device);
 
 #endif

@@ -17,7 +17,8 @@ static int by_number(const void *a, const void *b)
     return *(const int *)a - *(const int *)b;
 }
 
-/* The numbers of the /dev/videoN there are, in order. */
+/* Lists the numbers of all /dev/videoN, rising. Returns their count, at most
+ * MAX_NODES. */
 static int find_nodes(int number[MAX_NODES])
 {
     DIR *dev = opendir("/dev");

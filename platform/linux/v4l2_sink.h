@@ -7,10 +7,10 @@
  *     out.sink.put(&out.sink, &image, &error);        each frame
  *     out.sink.close(&out.sink);
  *
- * Frames are given by write(), in the format, size and colours of LIKE; what
- * the driver makes of that is believed, its row length for one. A driver that
- * has no room drops the frame, which is counted. Multi-planar nodes, and those
- * that only stream, are refused.
+ * Frames are given by write(), in the format, size and colours of LIKE, with
+ * the row length that the driver answers. A frame that the driver has no room
+ * for is dropped and counted. Multi-planar nodes, and those that only stream,
+ * are refused.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_SINK_H
 #define GLINT_PLATFORM_LINUX_V4L2_SINK_H
@@ -23,22 +23,22 @@
 struct glint_v4l2_sink {
     struct glint_sink sink;
     char card[33];  /* name that the device gives itself */
-    long n_frames;  /* taken by the device */
-    long n_dropped; /* not taken */
+    long n_frames;  /* frames taken by the device */
+    long n_dropped; /* frames that the device did not take */
 
     /* Private. */
-    const char *name;         /* kept */
+    const char *name;         /* not owned */
     int fd;                   /* -1: closed */
     struct glint_image frame; /* picture in the device's format */
     uint8_t *mem;             /* memory of the frame */
     size_t bytes;
 };
 
-/* PATH is kept. LIKE: format, size and colours of all frames to come; its
- * planes are not looked at. A rate of 0, 0 is not stated. On failure OUT is
- * closed. GLINT_E_DEVICE: no such node, not an output, busy, or it will not
- * take this format; GLINT_E_UNSUPPORTED: V4L2 has no word for the format;
- * GLINT_E_MEMORY. */
+/* Opens the output PATH; the string must outlive OUT. LIKE has format, size and
+ * colours of all frames to come; its planes are not read. A rate of 0, 0 is not
+ * stated. On failure OUT is closed. GLINT_E_DEVICE: no such node, not an
+ * output, busy, or it does not take this format. GLINT_E_UNSUPPORTED: V4L2 has
+ * no FOURCC for the format. GLINT_E_MEMORY. */
 enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
                                        const char *path,
                                        const struct glint_image *like,

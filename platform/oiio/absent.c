@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * In place of loader.c in static programs: they cannot load a plug-in.
+ * Stands in for loader.c in static programs, which cannot load a plug-in.
  */
 #include "oiio/oiio.h"
 

@@ -28,8 +28,7 @@ void append(bytes &to, const unsigned char *at, size_t n)
     to.insert(to.end(), at, at + n);
 }
 
-/* A chunk of PNG or WebP, a segment of JPEG: where it lies with all of its
- * frame, and its data. */
+/* A chunk of PNG or WebP, or a segment of JPEG: all of it, and its data. */
 struct piece {
     std::string name;
     const unsigned char *whole;
@@ -40,7 +39,7 @@ struct piece {
 
 /* ------------------------------------------------------------------- PNG */
 
-/* Empty: malformed. */
+/* Returns the chunks of FILE; none if it is malformed. */
 std::vector<piece> chunks_of_png(const bytes &file)
 {
     std::vector<piece> chunks;
@@ -69,7 +68,8 @@ bool is_one_of(const std::string &name, std::initializer_list<const char *> of)
     return false;
 }
 
-/* Chunks that speak of the pixels' own coding go with the same coding alone. */
+/* Checks whether CHUNK goes into the new file. Chunks about the coding of
+ * pixels need the SAME_CODING; those about colours do not go if DROP_ICC. */
 bool goes_along(const piece &chunk, bool same_coding, bool drop_icc)
 {
     if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST"}))
@@ -82,8 +82,8 @@ bool goes_along(const piece &chunk, bool same_coding, bool drop_icc)
 
 /* -------------------------------------------------------------------- JPEG */
 
-/* Segments up to the first scan, and all from there on as the last, "". Empty:
- * malformed. */
+/* Returns the segments of FILE up to the first scan, then all its other bytes
+ * as one segment named "". Returns none if FILE is malformed. */
 std::vector<piece> segments_of_jpeg(const bytes &file)
 {
     std::vector<piece> segments;
@@ -130,7 +130,7 @@ bool begins(const piece &segment, const char *text, size_t n)
     return segment.data_bytes >= n && !std::memcmp(segment.data, text, n);
 }
 
-/* The segment lists more pictures by offset, which rewriting makes wrong. */
+/* Checks whether SEGMENT lists more pictures, by offsets in the old file. */
 bool is_index(const piece &segment)
 {
     return is_marker(segment, 0xe2) && begins(segment, "MPF", 4);
@@ -180,8 +180,8 @@ void append_named(bytes &to, const std::vector<piece> &chunks,
             append_chunk(to, chunk);
 }
 
-/* Width and height less 1 and whether there is alpha, as VP8X has them, from
- * the one chunk of a simple file. False: not understood. */
+/* Sets SIDE to width and height less 1, as VP8X has them, and ALPHA, from the
+ * only chunk of a simple file. Returns false if it cannot read CHUNK. */
 bool canvas_of(const piece &chunk, uint32_t side[2], bool &alpha)
 {
     const unsigned char *const d = chunk.data;
@@ -315,8 +315,8 @@ bytes chunk_of_png(const bytes &file, const char *name)
 
 /* ---------------------------------------------------------------- complete */
 
-/* A scan holds 0xff only before 0 and restart markers, so what ends it is a
- * marker, and the last of these is the end of the image. */
+/* Walks through the scans to the end of the image. In a scan 0xff stands only
+ * before 0 and restart markers; any other marker ends the scan. */
 std::string missing_of_jpeg(const bytes &file)
 {
     const std::vector<piece> segments = segments_of_jpeg(file);
@@ -416,7 +416,7 @@ namespace
 
 struct tiff {
     const bytes &file;
-    bool little, big; /* byte order; BigTIFF */
+    bool little, big; /* little-endian; BigTIFF */
 
     uint64_t number(uint64_t at, int n) const
     {
@@ -429,7 +429,7 @@ struct tiff {
         return value;
     }
 
-    /* Value I of the entry at AT, which has COUNT of them. */
+    /* Returns value I of the directory entry at AT. */
     uint64_t value(uint64_t at, uint64_t i) const
     {
         const int type = int(number(at + 2, 2));
@@ -445,7 +445,7 @@ struct tiff {
 
 } // namespace
 
-/* Says what the first picture lacks of strips and tiles; "": nothing. */
+/* Says which strips or tiles the first picture lacks; "" if it has all. */
 std::string missing_of_tiff(const bytes &file)
 {
     if (file.size() < 8)
@@ -454,7 +454,7 @@ std::string missing_of_tiff(const bytes &file)
     const uint64_t first = t.big ? t.number(8, 8) : t.number(4, 4);
     const uint64_t n = t.number(first, t.big ? 8 : 2);
     const unsigned step = t.big ? 20 : 12;
-    /* Bits unpacked; tag 259, compression, 1 = none; bytes packed. */
+    /* size of the pixels in bits; tag 259, 1 = not packed; bytes as packed */
     uint64_t bits = 1, packing = 1, total = 0;
     uint64_t offsets = 0, counts = 0, entries = 0, missing = 0, present = 0;
 
@@ -481,12 +481,12 @@ std::string missing_of_tiff(const bytes &file)
         const uint64_t at = t.value(offsets, i), size = t.value(counts, i);
 
         total += size;
-        present += size > 0; /* some writers leave out what is black */
+        present += size > 0; /* Some writers leave out black tiles. */
         missing += at > file.size() || size > file.size() - at;
     }
     if (!present)
         return "has no pixels";
-    /* Only fax (2 .. 4) packs more than 4096 to 1: fewer bytes are cut off. */
+    /* Only fax (2 .. 4) packs more than 4096 to 1; else data are cut off. */
     if (missing == 0 && (packing >= 2 && packing <= 4 ? true
                          : packing == 1 ? total * 8 >= bits || present < entries
                                         : total * 8 * 4096 >= bits))

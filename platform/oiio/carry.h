@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/carry.h - what OpenImageIO does not carry from file to file: chunks of
- * PNG and WebP, segments of JPEG and tags of TIFF, taken over byte for byte;
- * and what it does not check: whether a JPEG or TIFF is all there.
+ * oiio/carry.h - metadata that OpenImageIO does not carry from file to file:
+ * chunks of PNG and WebP, segments of JPEG and tags of TIFF, copied byte for
+ * byte; and a check that it does not make: whether a JPEG or TIFF is complete.
  */
 #ifndef GLINT_PLATFORM_OIIO_CARRY_H
 #define GLINT_PLATFORM_OIIO_CARRY_H
@@ -16,36 +16,35 @@ namespace glint
 
 using bytes = std::vector<unsigned char>;
 
-/* MADE, a file of the same type, with the metadata of FROM in place of its own.
- * MADE as it is where one of them is not understood. DROP_ICC: but for its
- * profile. */
+/* Return MADE with the metadata of FROM, a file of the same type, in place of
+ * its own, but without FROM's profile if DROP_ICC. They return MADE as it is if
+ * they cannot read one of the two. */
 bytes carry_png(const bytes &made, const bytes &from, bool drop_icc);
 bytes carry_jpeg(const bytes &made, const bytes &from, bool drop_icc);
 bytes carry_webp(const bytes &made, const bytes &from, bool drop_icc);
-bool is_classic_tiff(const bytes &file); /* not BigTIFF */
+bool is_classic_tiff(const bytes &file); /* BigTIFF is not. */
 bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc);
 
-/* Return what FILE lacks, for a person; empty: nothing. */
+/* Return in words what FILE lacks; "" if it is complete. */
 std::string missing_of_jpeg(const bytes &file);
 std::string missing_of_tiff(const bytes &file);
 
-/* 1 .. 100 of libjpeg's scale, nearest to FILE's tables; 0: there are none. */
+/* Returns the quality, 1 .. 100 on libjpeg's scale, whose tables are nearest to
+ * FILE's; 0 if FILE has none. */
 int quality_of_jpeg(const bytes &file);
 
 bool is_progressive(const bytes &jpeg);
 
-/* Returns whether the colours of JPEG are those of inks: C M Y K, whose pixels
- * become R G B. */
+/* Returns whether the pixels of JPEG are C M Y K, which become R G B. */
 bool is_of_inks(const bytes &jpeg);
 
-/* Returns whether the file has more pictures behind the first, which get lost.
- */
+/* Returns whether JPEG has more pictures after the first, which are lost. */
 bool has_more_pictures(const bytes &jpeg);
 
-/* Data of the first chunk NAME of a PNG; empty: there is none. */
+/* Returns the data of the first chunk NAME of a PNG; empty if it has none. */
 bytes chunk_of_png(const bytes &file, const char *name);
 
-/* Returns whether a WebP is without loss. */
+/* Returns whether WEBP is coded without loss. */
 bool is_lossless(const bytes &webp);
 
 } // namespace glint

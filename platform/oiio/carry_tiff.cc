@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tags of TIFF: what OpenImageIO has written keeps those that say how its
- * pixels lie in the file; all others, directories of Exif and GPS with them,
- * come from the file that was read, in its order of bytes or the other. */
+ * Tags of TIFF. The file that OpenImageIO has written keeps its tags on how
+ * pixels lie in it; all other tags, with the directories of Exif and GPS, come
+ * from the file that was read, whose byte order may be the other one. */
 #include "oiio/carry.h"
 
 #include <cstdint>
@@ -43,7 +43,7 @@ struct entry {
 
 using directory = std::map<unsigned, entry>;
 
-/* Returns the bytes of one value of types 1 .. 13; 0: the type is unknown. */
+/* Returns the bytes of a value of TYPE, 1 .. 13, or 0 if TYPE is unknown. */
 unsigned size_of(unsigned type)
 {
     static const unsigned char sizes[] = {0, 1, 1, 2, 4, 8, 1,
@@ -52,13 +52,15 @@ unsigned size_of(unsigned type)
     return type < sizeof sizes ? sizes[type] : 0;
 }
 
-/* Bytes that change places together: rationals are two numbers. */
+/* Returns the bytes of each number in a value of TYPE, for swapping their
+ * order; a rational has two numbers. */
 unsigned unit_of(unsigned type)
 {
     return type == 5 || type == 10 ? 4 : size_of(type);
 }
 
-/* Takes what its values need from ROOM. */
+/* Adds the entry at AT to TO and takes the bytes of its values from ROOM. Skips
+ * an entry that is malformed or needs more than ROOM. */
 void read_entry(const reader &r, uint64_t at, uint64_t &room, directory &to)
 {
     const unsigned type = r.number(at + 2, 2), unit = unit_of(type);
@@ -77,11 +79,13 @@ void read_entry(const reader &r, uint64_t at, uint64_t &room, directory &to)
     to[r.number(at, 2)] = e;
 }
 
-/* The directory at AT; NEXT is where the one behind it is. */
+/* Returns the directory at AT, empty if it is malformed, and sets NEXT to the
+ * offset of the directory after it. */
 directory read_directory(const reader &r, uint64_t at, uint32_t &next)
 {
     const unsigned n = r.number(at, 2);
-    uint64_t room = r.file.size(); /* values that overlap may need far more */
+    /* a limit, as values that overlap may need far more than the file has */
+    uint64_t room = r.file.size();
     directory read;
 
     next = 0;
@@ -115,7 +119,8 @@ void put(bytes &to, uint32_t value, int n)
         to.push_back(static_cast<unsigned char>(value >> (8 * i)));
 }
 
-/* Appends D and what it points to; returns where it is. */
+/* Appends the values of D and D itself, with NEXT as the offset of the next
+ * directory, to the file TO. Returns the offset of D. */
 uint32_t write_directory(bytes &to, const directory &d, uint32_t next)
 {
     bytes list;
@@ -151,7 +156,8 @@ uint32_t pointer_of(const struct entry &e)
                      uint32_t(e.values[1]) << 8 | e.values[0];
 }
 
-/* Copies the directories that D points to and sets where they are now. */
+/* Copies the directories of FROM that D points to into TO, and sets the
+ * pointers to their new offsets. */
 void move_pointers(bytes &to, const reader &from, directory &d, int depth)
 {
     for (const unsigned tag : {EXIF, GPS, INTEROPERABILITY}) {
@@ -187,7 +193,7 @@ bytes carry_tiff(const bytes &made, const bytes &from, bool drop_icc)
     const reader ours = {made, true}, theirs = {from, from[0] == 'I'};
     bytes file = made;
     uint32_t our_next = ours.number(4, 4), their_next = theirs.number(4, 4);
-    uint64_t link = 4; /* place of the link to the next directory */
+    uint64_t link = 4; /* offset of the link to the next directory */
 
     for (int i = 0; i < 64 && our_next && their_next; i++) {
         const uint32_t at = our_next;

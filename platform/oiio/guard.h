@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/guard.h - between exceptions and statuses, for the plug-in's files.
+ * oiio/guard.h - turns exceptions into statuses, for the plug-in's files.
  */
 #ifndef GLINT_PLATFORM_OIIO_GUARD_H
 #define GLINT_PLATFORM_OIIO_GUARD_H
@@ -19,9 +19,9 @@
 namespace glint
 {
 
-/* Returns the bytes of the character of UTF-8 at AT if a terminal shows it:
- * none of the control characters, U+0080 to U+009F among them. 0: it does not.
- */
+/* Returns the bytes of the UTF-8 character at AT, or 0 if it is malformed or
+ * a control character, U+0080 to U+009F among them. LEFT bytes of text are
+ * left. */
 inline size_t shown_bytes(const unsigned char *at, size_t left)
 {
     const size_t n = at[0] < 0x80    ? 1
@@ -40,7 +40,8 @@ inline size_t shown_bytes(const unsigned char *at, size_t left)
     return n;
 }
 
-/* TEXT as one line that says nothing to a terminal but letters. */
+/* Returns TEXT as one line that is safe to print on a terminal, with '?' for
+ * control characters. */
 inline std::string printable(const std::string &text)
 {
     std::string line;
@@ -61,7 +62,8 @@ struct failure {
     std::string cause;
 };
 
-/* Runs BODY, which returns or throws; NAME is for errors. */
+/* Runs BODY. If it throws, returns a status, with NAME and the cause in
+ * ERROR. */
 template <class Body>
 enum glint_status guarded(const char *name, struct glint_error *error,
                           Body body)
@@ -91,7 +93,8 @@ enum glint_status guarded(const char *name, struct glint_error *error,
     return what.status;
 }
 
-/* Before any memory is taken. */
+/* Throws failure, before any memory is taken, if glint cannot read pictures
+ * like SPEC. */
 inline void check_spec(const OIIO::ImageSpec &spec)
 {
     if (spec.deep || spec.nchannels < 1 || spec.depth > 1)

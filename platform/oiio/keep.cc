@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whole files in: each part's pixels in the types they are stored in, and what
- * belongs to them. */
+ * Reads whole files: each part's pixels in the types they are stored in, and
+ * metadata. */
 #include "oiio/keep.h"
 
 #include <cctype>
@@ -76,7 +76,7 @@ bool to_sample(TypeDesc type, enum glint_sample &sample)
     }
 }
 
-/* A part whose pixels glint has no arithmetic for is read as floats. */
+/* Has a part read as floats if glint has no arithmetic for one of its types. */
 void choose_types(ImageSpec &spec)
 {
     enum glint_sample sample;
@@ -154,8 +154,8 @@ int find_channel(const ImageSpec &spec, const std::string &name)
 
 /* The colour channels and alpha of a part, by name. */
 struct choice {
-    int index[4]; /* -1: none */
-    int rank;     /* the more the better; 0: there is no colour */
+    int index[4]; /* R, G, B, alpha; -1: none */
+    int rank;     /* the higher the better, 1 .. 4; 0: nothing chosen */
 };
 
 int rank_of(const std::string &prefix)
@@ -264,7 +264,7 @@ void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
     if (primaries.size() != 32)
         return;
     facts.has_primaries = 1;
-    for (size_t i = 0; i < 8; i++) /* white comes first there */
+    for (size_t i = 0; i < 8; i++) /* cHRM has white first */
         facts.primaries[(i / 2 + 3) % 4][i % 2] = big32(primaries, 4 * i);
 }
 

@@ -20,23 +20,24 @@ struct kept_part {
     std::vector<unsigned char> pixels;
 };
 
-/* Returns whether the channels of a part have types of their own. */
+/* Returns whether each channel of a part has a type of its own. */
 inline bool is_mixed(const OIIO::ImageSpec &spec)
 {
     return !spec.channelformats.empty();
 }
 
-/* Returns whether metadata of OpenImageIO's TYPE go over byte for byte. */
+/* Returns whether metadata of files of TYPE, OpenImageIO's name of it, are
+ * copied byte for byte. */
 bool is_carried(const std::string &type);
 
-/* All of PATH; throws failure. */
+/* Returns all bytes of the file PATH; throws failure. */
 bytes read_whole(const char *path);
 
 } // namespace glint
 
 struct glint_oiio_file {
     std::string type;   /* OpenImageIO's name of the file type */
-    glint::bytes whole; /* the file, of the types that are carried over */
+    glint::bytes whole; /* bytes of the file if is_carried(type) */
     std::vector<glint::kept_part> parts;
     std::vector<unsigned char> icc;
 };

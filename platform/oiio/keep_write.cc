@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whole files out: parts as they came, or other pixels with what belongs to
- * them. */
+ * Writes whole files: parts as they came, or other pixels with the metadata of
+ * the file. */
 #include "oiio/keep.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ using OIIO::TypeDesc;
 namespace
 {
 
-/* Memory that is written and, by TIFF, read again. */
+/* A file in memory. TIFF also reads what it has written. */
 class memory : public OIIO::Filesystem::IOProxy
 {
   public:
@@ -91,7 +91,8 @@ TypeDesc to_type(enum glint_sample sample)
     return types[sample];
 }
 
-/* Attributes that describe how the input was coded and not what it shows. */
+/* Removes the attributes that describe how the input was coded and not what it
+ * shows. */
 void clear_coding(ImageSpec &spec)
 {
     for (const char *name : {"compression",
@@ -154,7 +155,8 @@ void clear_exif(ImageSpec &spec)
                              spec.extra_attribs.end());
 }
 
-/* 1 .. 100; 0: without loss. */
+/* Returns the quality for a file of TYPE, 1 .. 100, or 0: without loss. It is
+ * that of OPTIONS, else FILE's own if that is of TYPE, else 95. */
 int quality_of(const std::string &type, const struct glint_oiio_file *file,
                const struct glint_oiio_options &options)
 {
@@ -169,7 +171,7 @@ int quality_of(const std::string &type, const struct glint_oiio_file *file,
     return own ? own : 95;
 }
 
-/* SAMPLES as a part, with the metadata of FILE if there is one. */
+/* Returns SAMPLES as a part, with the metadata of FILE unless that is NULL. */
 kept_part part_of(const struct glint_samples &samples,
                   const struct glint_oiio_file *file)
 {
@@ -222,14 +224,15 @@ void write_parts(ImageOutput &out, const char *path,
         throw failure{GLINT_E_OUTPUT, out.geterror()};
 }
 
-/* OpenImageIO itself passes on what it knows of BigTIFF. */
+/* Checks whether FILE's metadata are copied byte for byte. Those of BigTIFF are
+ * not; OpenImageIO passes on what it knows of them. */
 bool is_carried_from(const struct glint_oiio_file &file)
 {
     return glint::is_carried(file.type) &&
            (file.type != "tiff" || glint::is_classic_tiff(file.whole));
 }
 
-/* A folder of our own with one file in it; both go with it. */
+/* A temporary folder with one file in it; both are removed with the object. */
 struct scratch {
     std::string folder, path;
 
@@ -249,7 +252,8 @@ struct scratch {
     }
 };
 
-/* OpenImageIO 2.4 writes an EXR of parts into files alone, whatever it says. */
+/* Encodes an EXR of parts by way of a file: OpenImageIO 2.4 cannot write it
+ * into memory, though it claims to. */
 bytes encode_by_file(ImageOutput &out, std::vector<ImageSpec> &specs,
                      const std::vector<kept_part> &parts)
 {

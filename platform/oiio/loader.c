@@ -19,7 +19,8 @@
     "../lib/glint/" /* place of plug-ins as seen from bin/, wherever both were \
                        moved */
 
-/* The directory of the executable with its slash; false if it has none. */
+/* Sets DIR to the directory of the executable, with its last slash. Returns
+ * false if that is unknown. */
 static bool find_own_directory(char dir[PATH_BYTES])
 {
     const ssize_t n = readlink("/proc/self/exe", dir, PATH_BYTES - 1);
@@ -35,7 +36,8 @@ static bool find_own_directory(char dir[PATH_BYTES])
     return true;
 }
 
-/* Loads the file PATH. NULL: ERROR says why. */
+/* Loads the plug-in PATH and returns its functions, or NULL with the cause in
+ * ERROR. */
 static const struct glint_oiio *load_from(const char *path,
                                           struct glint_error *error)
 {
@@ -43,7 +45,7 @@ static const struct glint_oiio *load_from(const char *path,
     const struct glint_oiio *face;
 
     if (!handle) {
-        /* says the path, or that of a library it misses */
+        /* dlerror() names PATH, or a library that it needs. */
         glint_error_report(error, GLINT_E_UNSUPPORTED, "the image plug-in",
                            "%s", dlerror());
         return NULL;
@@ -57,7 +59,8 @@ static const struct glint_oiio *load_from(const char *path,
     return NULL;
 }
 
-/* Loads the plug-in from DIR, unless everybody may put files there. */
+/* Loads the plug-in from DIR if it is there. Returns NULL also if everybody may
+ * write to DIR. */
 static const struct glint_oiio *load_from_directory(const char *dir,
                                                     struct glint_error *error)
 {
@@ -65,7 +68,7 @@ static const struct glint_oiio *load_from_directory(const char *dir,
     struct stat st;
 
     snprintf(path, sizeof path, "%s%s", dir, PLUGIN);
-    if (stat(dir, &st) < 0 || st.st_mode & S_IWOTH) /* whose is it? */
+    if (stat(dir, &st) < 0 || st.st_mode & S_IWOTH)
         return NULL;
     return access(path, F_OK) == 0 ? load_from(path, error) : NULL;
 }

@@ -29,7 +29,7 @@ using glint::check_spec;
 using glint::failure;
 using glint::guarded;
 
-/* Colour from the first three channels, or grey from the first. */
+/* Returns the channels for R, G, B: the first three, or the first for all. */
 std::vector<int> channel_order(int n_channels)
 {
     if (n_channels >= 3)
@@ -37,8 +37,8 @@ std::vector<int> channel_order(int n_channels)
     return {0, 0, 0};
 }
 
-/* Reads PATH as bytes or floats and turns it upright. Not by the file name of
- * an ImageBuf, which would answer from a cache after the file has changed. */
+/* Reads PATH as bytes or floats and turns it upright. An ImageBuf opened by
+ * file name would answer from a cache after the file has changed. */
 OIIO::ImageBuf load_upright(const char *path)
 {
     const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
@@ -85,8 +85,8 @@ void read_pixels(struct glint_oiio_pixels *pixels, const char *path)
     *pixels = made;
 }
 
-/* Into memory, because some writers of OpenImageIO do not notice a full disk.
- */
+/* Encodes PIXELS into memory, as some writers of OpenImageIO do not notice a
+ * full disk. */
 std::vector<unsigned char> encode_pixels(const char *path,
                                          const struct glint_oiio_pixels *pixels,
                                          ptrdiff_t stride_bytes)

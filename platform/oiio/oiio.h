@@ -18,7 +18,7 @@
 #include "glint/status.h"
 #include "formats/samples.h"
 
-/* Changes with struct glint_oiio; a plug-in of another number is refused. */
+/* Number of this interface. A plug-in with another number is refused. */
 #define GLINT_OIIO_VERSION 2
 
 /* A picture as R G B, rows without padding, the top row first, turned upright
@@ -37,27 +37,28 @@ struct glint_oiio_file;
 /* The facts of a file beside its pixels. Pointers, and the data behind them,
  * live as long as the file does. */
 struct glint_oiio_facts {
-    const unsigned char *icc; /* its profile; NULL: none */
+    const unsigned char *icc; /* ICC profile; NULL: none */
     size_t icc_bytes;
     char colour_space[32]; /* OpenImageIO's name for it, or "" */
-    double gamma;          /* stated apart from that, or 0 */
+    double gamma;          /* gamma that the file states by itself, or 0 */
     double primaries[4][2];
     int has_primaries;
     int cicp[2];    /* primaries and transfer of ITU-T H.273, or 0, 0 */
     int quality;    /* 1 .. 100, guessed from a JPEG's tables; 0: not known */
-    char note[160]; /* words on what cannot be kept of it, or "" */
+    char note[160]; /* says what of the file cannot be kept; "" if nothing */
 };
 
 struct glint_oiio_options {
     int quality;  /* JPEG and WebP: 1 .. 100; 0: the file's own, or 95 */
-    int drop_icc; /* the profile does not go with the pixels any more */
+    int drop_icc; /* Leaves out the profile, which does not fit the pixels any
+                     more. */
 };
 
 struct glint_oiio {
     int version;
 
     /* Reads PATH: as floats where the file holds floats (EXR, HDR), else as 8
-     * bits, whatever its depth. GLINT_E_IO: not there. GLINT_E_FORMAT,
+     * bits, whatever its depth. GLINT_E_FORMAT: it cannot be read.
      * GLINT_E_UNSUPPORTED, GLINT_E_MEMORY. */
     enum glint_status (*read)(struct glint_oiio_pixels *pixels,
                               const char *path, struct glint_error *error);
@@ -70,23 +71,23 @@ struct glint_oiio {
                                 ptrdiff_t stride_bytes,
                                 struct glint_error *error);
 
-    /* Reads PATH as it is. SAMPLES are the colours of it and belong to FILE;
-     * their meaning (samples->colours) is left to the caller, who sets it by
-     * FACTS. Errors as of read. */
+    /* Reads PATH with all that it holds into FILE. SAMPLES are its colours, in
+     * memory of FILE; the caller sets their meaning, samples->colours, by
+     * FACTS. GLINT_E_IO, and the errors of read. */
     enum glint_status (*open)(struct glint_oiio_file **file,
                               struct glint_samples *samples,
                               struct glint_oiio_facts *facts, const char *path,
                               struct glint_error *error);
-    void (*close)(struct glint_oiio_file *file); /* NULL: nothing */
+    void (*close)(struct glint_oiio_file *file); /* FILE may be NULL. */
 
     /* Returns whether a file of PATH's extension is of FILE's type. */
     int (*is_same_type)(const struct glint_oiio_file *file, const char *path);
 
-    /* Encodes FILE, whose samples may have been changed in place, in its own
-     * type and with all that it holds; or, unless PIXELS is NULL, these
+    /* If PIXELS is NULL, encodes FILE, whose samples may have been changed in
+     * place, in its own type and with all that it holds. Else encodes PIXELS
      * (upright, without a window, channels R G B A one after the other, all of
      * one kind of sample) in the type of PATH's extension, with FILE's metadata
-     * as far as that type takes it; FILE may then be NULL. Errors as of
+     * as far as that type takes it; FILE may then be NULL. Errors are those of
      * encode. */
     enum glint_status (*encode_file)(void **data, size_t *bytes,
                                      const char *path,
@@ -96,12 +97,11 @@ struct glint_oiio {
                                      struct glint_error *error);
 };
 
-/* Finds the plug-in, at the first call, and returns its functions. Looks at
- * $GLINT_OIIO, which names the file and then is the only place; beside the
+/* Sets OIIO to the functions of the plug-in, which the first call loads. Looks
+ * at $GLINT_OIIO, which names the file and then is the only place; beside the
  * executable; in ../lib/glint from there; and in GLINT_PLUGIN_DIR, where that
- * was defined when compiling. GLINT_E_UNSUPPORTED: ERROR has the cause, and no
- * file name yet. Any thread.
- */
+ * was defined when compiling. GLINT_E_UNSUPPORTED: not found; ERROR has the
+ * cause, but not the name of the picture. May be called by any thread. */
 enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
                                   struct glint_error *error);
 

@@ -52,7 +52,7 @@ glint::bytes glint::webp_encode(const unsigned char *pixels, int width,
         throw failure{GLINT_E_OUTPUT, "WebP has at most 16383 pixels a side"};
     if (!quality)
         WebPConfigLosslessPreset(&config, 6);
-    config.exact = 1; /* colours where nothing is seen of them, too */
+    config.exact = 1; /* keeps colours where alpha is 0 */
     config.thread_level = 1;
     picture.use_argb = quality == 0;
     picture.width = width;

@@ -10,14 +10,16 @@
 namespace glint
 {
 
-/* Returns whether FILE can be decoded here: a WebP that is no animation, and
- * libwebp was there when this was built. */
+/* Returns whether webp_decode() can decode FILE: a WebP without animation, if
+ * this was built with libwebp. */
 bool webp_takes(const bytes &file);
 
-/* R G B, or R G B A, of 8 bits. */
+/* Returns the pixels of FILE in 8 bits: R G B A if CHANNELS is 4, else R G B.
+ * Throws failure. */
 bytes webp_decode(const bytes &file, int channels);
 
-/* QUALITY 1 .. 100; 0: without loss. */
+/* Returns PIXELS, 8 bits, as a WebP of QUALITY 1 .. 100, or 0: without loss.
+ * Throws failure. */
 bytes webp_encode(const unsigned char *pixels, int width, int height,
                   int channels, int quality);
 

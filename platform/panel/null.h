@@ -9,7 +9,7 @@
 
 struct glint_null_sink {
     struct glint_sink sink;
-    long n_frames; /* put so far */
+    long n_frames; /* frames put so far */
 };
 
 void glint_null_sink_open(struct glint_null_sink *null);

@@ -13,7 +13,7 @@ static int at_least_1(int side)
     return side < 1 ? 1 : side;
 }
 
-/* The largest of WIDTH : HEIGHT inside the panel. */
+/* Has all of the picture shown, as large as fits the panel in its shape. */
 static void fit(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
@@ -30,6 +30,7 @@ static void fit(struct glint_panel *p)
             (c->width * c->image_height + c->image_width / 2) / c->image_width);
 }
 
+/* Has the middle of the picture shown, pixel by pixel. */
 static void centre(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
@@ -54,8 +55,8 @@ static void place(struct glint_panel *p)
     p->shown.y = (p->cfg.height - p->shown.height) / 2;
 }
 
-/* Returns the one of FROM pixels whose centre is nearest to that of pixel I of
- * TO. */
+/* Returns the pixel of FROM pixels whose centre is nearest to that of pixel I
+ * of TO pixels along the same side. */
 static int nearest(int i, int from, int to)
 {
     return (2 * i + 1) * from / (2 * to);
@@ -63,7 +64,8 @@ static int nearest(int i, int from, int to)
 
 /* ------------------------------------------------------------------- memory */
 
-/* Multiples of this keep arrays apart and aligned as malloc does. */
+/* Rounds BYTES up to a multiple of 64, so that arrays one after the other are
+ * aligned as by malloc. */
 static size_t round_up(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
@@ -174,7 +176,8 @@ static void spread_4(uint32_t *restrict to, const uint32_t *restrict from,
         to[i] = from[from_x[i]];
 }
 
-/* Makes the row of the panel that shows row Y of the picture. */
+/* Returns row Y of the picture as the panel shows it, packed. TO_Y, its row
+ * among those shown, is for dithering. */
 static const uint8_t *make_row(struct glint_panel *p,
                                const struct glint_image *image, int y, int to_y)
 {

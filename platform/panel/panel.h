@@ -32,7 +32,7 @@
 enum glint_panel_fit { GLINT_PANEL_FIT, GLINT_PANEL_CENTRE };
 
 struct glint_panel_config {
-    /* Size of the panel, 1 .. GLINT_PANEL_SIDE, as the picture's. */
+    /* Sizes of panel and picture, 1 .. GLINT_PANEL_SIDE. */
     int width, height;
     struct glint_pixel_layout layout;
     int image_width, image_height;
@@ -42,8 +42,8 @@ struct glint_panel_config {
 
 struct glint_panel {
     struct glint_panel_config cfg;
-    /* The place of the picture on the panel, and the part of it that is seen.
-     */
+    /* Shown: the area of the panel that the picture covers. Seen: the part of
+     * the picture that is shown there. */
     struct glint_panel_area {
         int x, y, width, height;
     } shown, seen;
@@ -51,28 +51,32 @@ struct glint_panel {
     /* Private. */
     struct glint_row_rgb rgb;
     struct glint_row_pack pack;
-    uint16_t *from_x; /* pixel of the seen part, by pixel shown; NULL: same */
-    uint8_t *line;    /* packed, of the seen part */
-    uint8_t *scaled;  /* packed, of what is shown */
-    void *mem;        /* memory of all these; NULL: closed */
+    uint16_t *from_x; /* pixel of the seen part for each pixel shown; NULL: the
+                         same */
+    uint8_t *line;    /* a row of the seen part, packed */
+    uint8_t *scaled;  /* a row as it is shown, packed */
+    void *mem;        /* memory of all private arrays; NULL: closed */
 };
 
-/* GLINT_E_UNSUPPORTED: a layout that is not valid, or a size out of range.
- * GLINT_E_MEMORY. On failure PANEL is closed. */
+/* Prepares PANEL for CFG and takes all memory. GLINT_E_UNSUPPORTED: a layout
+ * that is not valid, or a size out of range. GLINT_E_MEMORY. On failure PANEL
+ * is closed. */
 enum glint_status glint_panel_open(struct glint_panel *panel,
                                    const struct glint_panel_config *cfg,
                                    struct glint_error *error);
 
-/* Black, opaque, over the whole panel at MEM, rows STRIDE bytes apart. */
+/* Fills the panel at MEM, whose rows are STRIDE bytes apart, with opaque
+ * black. */
 void glint_panel_clear(struct glint_panel *panel, uint8_t *mem,
                        ptrdiff_t stride);
 
-/* Draws IMAGE, of the size that was configured and any 8-bit format. */
+/* Draws IMAGE, of the configured size and any 8-bit format, to the panel at
+ * MEM. */
 void glint_panel_draw(struct glint_panel *panel,
                       const struct glint_image *image, uint8_t *mem,
                       ptrdiff_t stride);
 
-/* Does nothing when closed already. */
+/* Frees the memory of PANEL, unless it is closed already. */
 void glint_panel_close(struct glint_panel *panel);
 
 #endif

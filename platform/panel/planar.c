@@ -39,8 +39,8 @@ static void copy_plane(const struct glint_image *to,
         memcpy(row_at(to, plane, y), row_at(from, plane, y), bytes);
 }
 
-/* Splits a row into planes. The last pair may have one pixel, whose twin is
- * left out. */
+/* Splits row Y of FROM, YUYV or UYVY, into the planes of TO. If the width is
+ * odd, the second pixel of the last pair is left out. */
 static void split_row(const struct glint_image *to,
                       const struct glint_image *from, struct glint_row_rgb *row,
                       int y)
@@ -69,7 +69,8 @@ static void split_chroma(const struct glint_image *to,
 
 enum { ONE_Q16 = 1 << 16, HALF_Q16 = 1 << 15 };
 
-/* Rows Y', Cb, Cr by R', G', B'. */
+/* by_q16: rows for Y', Cb, Cr, columns for R', G', B'. zero_q16: the code of
+ * black, and a half for rounding. */
 struct mix {
     int32_t by_q16[3][3], zero_q16[3];
 };
@@ -95,7 +96,8 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* Pure red or blue of full range is half a code beyond the last. */
+/* Cuts SUM to a code. Chroma of pure red and blue in full range is half a code
+ * above 255. */
 static uint8_t code_of(int32_t sum_q16)
 {
     return (uint8_t)(sum_q16 >= 256 * ONE_Q16 ? 255 : sum_q16 >> 16);

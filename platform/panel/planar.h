@@ -14,12 +14,12 @@
 #include "glint/image.h"
 #include "panel/row_rgb.h"
 
-/* GLINT_GREY, _I420, _I422 or _I444: what keeps all samples of FORMAT, which
- * is not GLINT_LINEAR_Q20. */
+/* Returns the format of planes that keeps all samples of FORMAT, which is not
+ * GLINT_LINEAR_Q20: GLINT_GREY, _I420, _I422 or _I444. */
 enum glint_pixel_format glint_planar_format(enum glint_pixel_format format);
 
-/* Fills TO, of FROM's size and glint_planar_format(), its planes in place. ROW
- * is work memory for that width. */
+/* Fills the planes of TO, which has FROM's size and glint_planar_format(), from
+ * FROM. ROW is work memory for that width. */
 void glint_planar_write(const struct glint_image *to,
                         const struct glint_image *from,
                         struct glint_row_rgb *row);

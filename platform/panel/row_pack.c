@@ -5,7 +5,8 @@
 
 /* ------------------------------------------------------------------- layout */
 
-/* 0 where the field does not fit into N_BITS. */
+/* Returns the mask of FIELD in a word of N_BITS, or 0 if it does not fit
+ * there. */
 static uint64_t bits_of(const struct glint_pixel_field *field, int n_bits)
 {
     if (field->length < 1 || field->offset < 0 || field->length > 16 ||
@@ -96,8 +97,8 @@ static void pack_bytes(const struct glint_row_pack *p, uint8_t *dst,
         pack_threes(dst, byte[0], byte[1], byte[2], n);
 }
 
-/* (CODE * MOST + THRESHOLD) / 255 without a division: exact below 65535, and
- * 255 * 255 + 254 is. */
+/* Returns (CODE * MOST + THRESHOLD) / 255 without a division: exact for sums
+ * below 65535, and none is above 255 * 255 + 254. */
 static inline uint16_t fewer(uint8_t code, uint16_t most, uint8_t threshold)
 {
     const uint16_t sum = (uint16_t)(code * most + threshold);
@@ -184,7 +185,8 @@ static void place_bytes(struct glint_row_pack *p, uint8_t *mem, int width)
     memset(p->rest, (int)(p->opaque >> 8 * free_byte & 255), (size_t)width);
 }
 
-/* Each threshold 2 i + 1 of 128, scaled to 255, so that they average 127. */
+/* Returns the threshold of pixel X, Y (0 .. 7): one of (2 i + 1) * 255 / 128, i
+ * = 0 .. 63, whose mean is 127. */
 static int threshold_of(int x, int y)
 {
     int bits = 0;

@@ -38,10 +38,12 @@ struct glint_row_pack {
     /* Private. */
     enum glint_pack_way way;
     bool dither;
-    int channel[4];        /* BYTES: in each byte, 3: none of them */
-    uint8_t *rest;         /* BYTES: what the byte of no channel holds */
-    uint8_t *threshold[8]; /* HALVES: of pixels, by the row modulo 8 */
-    uint32_t *table[3];    /* TABLES: bits by code */
+    int channel[4]; /* BYTES: number of the channel in each byte of a pixel; 3:
+                       none */
+    uint8_t *rest;  /* BYTES: a row of the byte that holds no channel */
+    uint8_t *threshold[8]; /* HALVES: thresholds of a row of pixels, for each
+                              row modulo 8 */
+    uint32_t *table[3];    /* TABLES: bits of each colour, by code */
     uint32_t opaque;
 };
 
@@ -49,17 +51,18 @@ struct glint_row_pack {
  * not overlap, and all three colours. */
 bool glint_pixel_layout_is_valid(const struct glint_pixel_layout *layout);
 
-/* Bytes of memory, aligned as malloc does, for rows of up to WIDTH pixels. */
+/* Returns the bytes of memory that rows of up to WIDTH pixels take. */
 size_t glint_row_pack_bytes(int width);
 
-/* LAYOUT is valid. MEM[glint_row_pack_bytes(width)] is kept. Dithering is for
- * pixels of 16 bits and ignored elsewhere. */
+/* Prepares PACK for rows of up to WIDTH pixels in LAYOUT, which is valid. PACK
+ * keeps using MEM[glint_row_pack_bytes(width)], aligned as by malloc. DITHER
+ * has an effect with pixels of 16 bits only. */
 void glint_row_pack_init(struct glint_row_pack *pack,
                          const struct glint_pixel_layout *layout, bool dither,
                          void *mem, int width);
 
 /* Packs N pixels of CHANNEL (R', G', B') into DST, aligned to 4 bytes. Y is
- * the row they go to, for dithering. */
+ * their row, for dithering. */
 void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
                           const uint8_t *const channel[3], int y, int n);
 

@@ -32,8 +32,8 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* Terms to add to products of raw codes: the codes of zero, times the
- * constants, and one half. */
+/* Terms to add to the products of raw codes: the constants times minus the
+ * codes of zero, and a half for rounding. */
 struct bias {
     int32_t red, green, blue, grey;
 };
@@ -50,8 +50,8 @@ static struct bias bias_of(const struct mix *m)
     };
 }
 
-/* |sum| < 2^23, so the code before the clamp fits 16 bits: half the work of 32
- * in vectors. */
+/* Returns SUM as a code, clamped to 0 .. 255. |SUM| < 2^23, so that the code
+ * fits 16 bits before that: half the work of 32 in vectors. */
 static inline uint8_t code_of(int32_t sum_q13)
 {
     const int16_t code = (int16_t)(sum_q13 >> 13);
@@ -59,7 +59,7 @@ static inline uint8_t code_of(int32_t sum_q13)
     return (uint8_t)(code < 0 ? 0 : code > 255 ? 255 : code);
 }
 
-/* N pixels that have a sample of each for themselves. */
+/* Mixes R', G', B' of N pixels, each with Y', Cb and Cr of its own. */
 static void mix_pixels(const struct mix *m, uint8_t *restrict r,
                        uint8_t *restrict g, uint8_t *restrict b,
                        const uint8_t *restrict luma, const uint8_t *restrict cb,
@@ -79,7 +79,7 @@ static void mix_pixels(const struct mix *m, uint8_t *restrict r,
     }
 }
 
-/* N pairs of pixels that share their chroma. */
+/* Mixes R', G', B' of N pairs of pixels that share Cb and Cr. */
 static void mix_pairs(const struct mix *m, uint8_t *restrict r,
                       uint8_t *restrict g, uint8_t *restrict b,
                       const uint8_t *restrict luma, const uint8_t *restrict cb,
@@ -126,7 +126,8 @@ static const uint8_t *row_at(const struct glint_image *image, int plane, int y)
     return image->plane[plane] + y * image->stride_bytes[plane];
 }
 
-/* Y', Cb, Cr of N pixels, where they lie or moved apart. */
+/* Returns Y', Cb, Cr of N pixels of row Y from X on: in the picture itself, or
+ * moved apart into ROW if they are interleaved. */
 static struct samples find_samples(struct glint_row_rgb *row,
                                    const struct glint_image *image, int x,
                                    int y, int n)
@@ -173,7 +174,7 @@ static void read_ycc(struct glint_row_rgb *row, const struct glint_image *image,
         return;
     }
     mix_pairs(m, r, g, b, s.luma, s.cb, s.cr, n / 2);
-    if (n > even) /* the twin of the last pixel may have no luma */
+    if (n > even) /* The second pixel of the last pair may have no luma. */
         mix_pixels(m, r + even, g + even, b + even, s.luma + even,
                    s.cb + even / 2, s.cr + even / 2, 1);
 }
@@ -217,7 +218,7 @@ size_t glint_row_rgb_bytes(int width)
 
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 {
-    const ptrdiff_t each = (ptrdiff_t)width + 1; /* whole pairs */
+    const ptrdiff_t each = (ptrdiff_t)width + 1; /* room for whole pairs */
     uint8_t *const at = mem;
 
     for (int i = 0; i < 3; i++)

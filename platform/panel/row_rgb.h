@@ -28,13 +28,15 @@ struct glint_row_rgb {
     uint8_t *rgb[3], *luma, *cb, *cr; /* rows in the caller's memory */
 };
 
-/* Bytes of memory for rows of up to WIDTH pixels. */
+/* Returns the bytes of memory that rows of up to WIDTH pixels take. */
 size_t glint_row_rgb_bytes(int width);
 
-/* MEM[glint_row_rgb_bytes(width)] is kept. */
+/* Prepares ROW for up to WIDTH pixels. It keeps using
+ * MEM[glint_row_rgb_bytes(width)]. */
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width);
 
-/* Points channels at the pixels X .. X + N - 1 of row Y. X is even. */
+/* Sets row->channel to the pixels X .. X + N - 1 of row Y of IMAGE. X is
+ * even. */
 void glint_row_rgb_read(struct glint_row_rgb *row,
                         const struct glint_image *image, int x, int y, int n);
 

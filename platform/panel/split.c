@@ -53,7 +53,8 @@ void glint_split_fours(uint8_t *restrict a, uint8_t *restrict b,
     }
 }
 
-/* Few bits repeat their highest ones below: 0 and the most become 0 and 255. */
+/* Fills the low bits of a code by its highest ones, so that 0 and the largest
+ * become 0 and 255. */
 void glint_split_565(uint8_t *restrict r, uint8_t *restrict g,
                      uint8_t *restrict b, const uint8_t *restrict from, int n)
 {

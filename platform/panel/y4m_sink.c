@@ -13,7 +13,8 @@ static bool is_rgb(enum glint_pixel_format format)
            format == GLINT_XRGB8888 || format == GLINT_RGB565;
 }
 
-/* Memory for what Y4M does not know. */
+/* Prepares the frames to write, with memory for them where Y4M does not know
+ * the format of the images. */
 static enum glint_status take_planes(struct glint_y4m_sink *y,
                                      const struct glint_y4m_header *header,
                                      struct glint_error *error)
@@ -66,7 +67,7 @@ static bool is_ready(const struct glint_y4m_sink *y)
 {
     struct pollfd writable = {.fd = y->writer.out.fd, .events = POLLOUT};
 
-    return poll(&writable, 1, 0) != 0; /* errors show in writing */
+    return poll(&writable, 1, 0) != 0; /* Errors show when writing. */
 }
 
 static enum glint_status put(struct glint_sink *sink,

@@ -2,14 +2,14 @@
  *
  * panel/y4m_sink.h - frames as YUV4MPEG2 (video/y4m.h), as a sink.
  *
- * The stream is opened with the first frame, whose size, format and range all
- * must have. Formats that Y4M does not know are written as planes
+ * The stream is opened with the first frame; all frames must have its size,
+ * format and range. Formats that Y4M does not know are written as planes
  * (panel/planar.h); RGB is of limited range then, as most readers expect. The
- * matrix goes unsaid, for Y4M has no word for it: readers take BT.601 below 720
- * lines, and RGB is written so.
+ * matrix is not stated, as Y4M has no tag for it: readers take BT.601 below 720
+ * lines, else BT.709, and RGB is written so.
  *
- * A reader of a pipe that has not taken the last frame costs this one, which is
- * counted: what is live does not queue. Once begun, a frame is finished.
+ * While the reader of a pipe has not taken the last frame, new ones are dropped
+ * and counted: live frames do not queue. A frame that is begun is finished.
  */
 #ifndef GLINT_PLATFORM_PANEL_Y4M_SINK_H
 #define GLINT_PLATFORM_PANEL_Y4M_SINK_H
@@ -19,27 +19,28 @@
 #include "source_sink.h"
 
 struct glint_y4m_sink {
-    struct glint_sink sink; /* close puts a file in place */
-    long n_frames;          /* written */
+    struct glint_sink sink; /* Closing it puts a file in place. */
+    long n_frames;          /* frames written */
     long n_dropped;         /* frames that the reader was too slow for */
 
     /* Private. */
-    const char *path; /* kept */
+    const char *path; /* not owned */
     int fps_num, fps_den;
     bool is_open;
     struct glint_image like; /* the first frame, without its memory */
     struct glint_image planes;
     struct glint_row_rgb row;
-    void *mem; /* memory of both; NULL: frames are written as they are */
+    void *mem; /* memory of planes and row; NULL: none is needed */
     struct glint_y4m_writer writer;
 };
 
-/* PATH is kept; "-": standard output. Rate as in video/y4m.h. Nothing can
- * fail before the first frame. */
+/* Prepares Y4M to write to PATH, which must outlive it; "-" is standard
+ * output. The rate is as in video/y4m.h. Only the first frame opens PATH and
+ * can fail. */
 void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den);
 
-/* Closes Y4M and says whether all was written. GLINT_E_OUTPUT, _CLOSED. */
+/* Closes Y4M. GLINT_E_OUTPUT, GLINT_E_CLOSED: not all was written. */
 enum glint_status glint_y4m_sink_finish(struct glint_y4m_sink *y4m,
                                         struct glint_error *error);
 

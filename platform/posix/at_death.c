@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _XOPEN_SOURCE 700 /* SIGPROF, SIGSYS and their kind */
+#define _XOPEN_SOURCE 700 /* for SIGPROF, SIGSYS and others */
 #include "posix/at_death.h"
 
 #include <pthread.h>
@@ -15,7 +15,8 @@ static const int deadly[] = {
     SIGSEGV, SIGBUS,    SIGILL,  SIGFPE,  SIGTRAP,
 };
 
-static glint_at_death_fn *fns[MAX_FN]; /* atomic; NULL from the first free */
+/* atomic; NULL after the last one added */
+static glint_at_death_fn *fns[MAX_FN];
 
 static void run_all(void)
 {
@@ -28,8 +29,9 @@ static void run_all(void)
     }
 }
 
-/* SA_RESETHAND has put the default action back: the second signal, delivered
- * on return, kills the process with the status everybody expects. */
+/* Runs all functions and dies of the signal. SA_RESETHAND has restored the
+ * default action, so the second signal, delivered on return, kills the process
+ * with the status that its parent expects. */
 static void die(int signal_number)
 {
     run_all();

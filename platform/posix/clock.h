@@ -7,7 +7,8 @@
 
 #include <stdint.h>
 
-/* CLOCK_MONOTONIC, microseconds. It does not jump, and drivers have it, too. */
+/* Returns CLOCK_MONOTONIC in us. It does not jump, and drivers stamp frames
+ * with it. */
 int64_t glint_now_us(void);
 
 #endif

@@ -7,7 +7,8 @@
 
 #include "posix/utf8.h"
 
-#define FILE_CHARS 120 /* shown of a name, so that the cause fits behind */
+/* characters shown of a file name, to leave room for the cause */
+#define FILE_CHARS 120
 
 enum glint_status glint_error_report(struct glint_error *error,
                                      enum glint_status status, const char *file,

@@ -13,10 +13,10 @@
 #define GLINT_PRINTF(text, first)
 #endif
 
-/* Fills ERROR with "FILE: cause" and returns STATUS, so that a refusal is one
- * statement. A long FILE loses its beginning, never the cause its end; control
- * characters, which hostile files and names may hold, become '?', so the text
- * is one line whatever happens. */
+/* Sets ERROR to "FILE: cause" and returns STATUS, so that a refusal is one
+ * statement. A long FILE loses its beginning, to leave room for the cause.
+ * Control characters, which hostile files and names may hold, become '?', so
+ * that the text is one line. */
 enum glint_status glint_error_report(struct glint_error *error,
                                      enum glint_status status, const char *file,
                                      const char *format, ...)

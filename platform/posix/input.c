@@ -11,7 +11,7 @@
 
 #include "posix/error.h"
 
-#define FIRST_BYTES 65536 /* room where the size is not known beforehand */
+#define FIRST_BYTES 65536 /* bytes of room where the size is unknown */
 
 enum glint_status glint_input_open(struct glint_input *in, const char *path,
                                    struct glint_error *error)
@@ -34,8 +34,8 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
     return GLINT_OK;
 }
 
-/* Returns whether a read that failed is worth repeating, after waiting if need
- * be. */
+/* Returns whether a failed read is worth repeating; waits until FD is readable
+ * if it would have blocked. */
 static int may_retry(int fd)
 {
     struct pollfd readable = {.fd = fd, .events = POLLIN};

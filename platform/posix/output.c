@@ -22,14 +22,14 @@
 
 #define BUFFER_BYTES 65536
 #define MAX_TMP      16   /* temporary files at a time */
-#define MAX_TRIES    1000 /* names that somebody else has taken */
+#define MAX_TRIES    1000 /* names to try, as others may have taken some */
 
 /* ---------------------------------------------- files to remove when dying */
 
 static char *doomed[MAX_TMP]; /* atomic: names of temporary files, or NULL */
 static int dying;             /* atomic */
 
-/* Async-signal-safe. */
+/* Removes all temporary files when the process dies. Async-signal-safe. */
 static void remove_doomed(void)
 {
     const int saved = errno;
@@ -56,9 +56,9 @@ static bool doom(char *name)
     return false;
 }
 
-/* Takes NAME off the list and frees it. Another thread may be in the handler
- * with that very name in hand; either it has missed the name, or we see that
- * it is dying and leave the memory alone. */
+/* Takes NAME off the list and frees it. Another thread may be in
+ * remove_doomed() with NAME in use: then DYING is set, and NAME is not
+ * freed. */
 static void spare(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
@@ -80,8 +80,9 @@ static enum glint_status refuse(const struct glint_output *out,
                               strerror(number));
 }
 
-/* Creates the file NAME and puts it on the list, undisturbed by signals, which
- * would otherwise find it created and not yet listed. */
+/* Creates the file NAME and puts it on the list, with signals blocked, which
+ * could otherwise find it created and not listed yet. Returns its descriptor,
+ * or -1 with errno set. */
 static int create_doomed(char *name, mode_t mode)
 {
     sigset_t held, old;
@@ -130,13 +131,15 @@ static enum glint_status open_beside(struct glint_output *out, mode_t mode,
         return glint_error_report(error, GLINT_E_OUTPUT, out->name,
                                   "cannot create a file beside it: %s",
                                   strerror(number));
-    flock(out->fd, LOCK_EX | LOCK_NB); /* we live; see glint_target_clean() */
+    /* The lock tells glint_target_clean() that this process lives. */
+    flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)
         return refuse(out, error, errno);
     return GLINT_OK;
 }
 
-/* The target is a regular file (ST) or not there yet (NULL). */
+/* Opens a temporary file that is to replace OUT's target: a regular file whose
+ * status is ST, or NULL if it is not there yet. */
 static enum glint_status open_replacing(struct glint_output *out,
                                         const struct stat *st,
                                         struct glint_error *error)
@@ -224,8 +227,8 @@ static enum glint_status report_failed(const struct glint_output *out,
         out->name, "%s", strerror(out->failed));
 }
 
-/* Returns whether a write that failed is worth repeating, after waiting if need
- * be. */
+/* Returns whether a failed write is worth repeating; waits until FD is writable
+ * if it would have blocked. */
 static bool may_retry(int fd)
 {
     struct pollfd writable = {.fd = fd, .events = POLLOUT};

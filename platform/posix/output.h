@@ -1,27 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/output.h - output files that are whole or not there.
+ * posix/output.h - output files that appear whole or not at all.
  *
  *     glint_output_open(&out, "x.ppm", GLINT_OUTPUT_BINARY, &error);
  *     glint_output_write(&out, data, bytes, &error);       any number of times
- *     glint_output_commit(&out, &error);                   or
- * glint_output_abort
+ *     glint_output_commit(&out, &error);                   or abort
  *
  * Bytes go to a temporary file in the directory of the target, named
  * .glint-PID-N.EXT, which commit renames over the target. Until then an older
- * target is untouched; after an error, an abort, exit(), or death by a signal
- * other than SIGKILL nothing is left, and what a killed run has left is removed
- * by the next that writes into the same folder. Symbolic links are followed,
- * dangling ones, too, and a file that is replaced hands its permission bits on.
- * There is no fsync: what is promised holds when the process dies, not when the
- * power goes.
+ * target is untouched. An error, an abort, exit(), or death by a signal other
+ * than SIGKILL leaves no temporary file; one that SIGKILL leaves is removed by
+ * the next run that writes into the same folder. Symbolic links are followed,
+ * dangling ones, too, and the new file gets the permission bits of the one it
+ * replaces. There is no fsync: files are whole when the process dies, but not
+ * when the power fails.
  *
  * "-" is standard output. It and any target that exists and is no regular file
- * (a FIFO, /dev/null) are written straight into; what went there stays.
+ * (a FIFO, /dev/null) are written directly; bytes written there stay.
  *
  * The first open changes how the process takes signals, as posix/at_death.h
- * says. An application that handles deadly ones itself must abort or commit
- * what it has open, or exit().
+ * says. An application that handles deadly signals itself must abort or commit
+ * its open outputs, or call exit().
  */
 #ifndef GLINT_PLATFORM_POSIX_OUTPUT_H
 #define GLINT_PLATFORM_POSIX_OUTPUT_H
@@ -38,47 +37,46 @@ enum glint_output_kind {
 
 struct glint_output {
     int fd;           /* -1: closed */
-    const char *name; /* name for errors; kept */
-    char *target;     /* file that commit replaces; NULL: it is written straight
-                         into */
-    char *tmp;        /* the file being written; NULL: straight */
-    uint8_t *buffer;  /* small writes gather here */
-    size_t used;      /* bytes of it */
+    const char *name; /* name for errors; not owned */
+    char *target;     /* file that commit replaces; NULL: none */
+    char *tmp;        /* temporary file in its place; NULL: none */
+    uint8_t *buffer;  /* Small writes are gathered here. */
+    size_t used;      /* bytes in buffer */
     int failed;       /* errno of the first write that failed, or 0 */
 };
 
-/* Opens PATH, which is kept. On failure OUT is closed.
- * GLINT_E_OUTPUT: it cannot be written; GLINT_E_MEMORY. */
+/* Opens PATH, which must outlive OUT. On failure OUT is closed. GLINT_E_OUTPUT:
+ * it cannot be written; GLINT_E_MEMORY. */
 enum glint_status glint_output_open(struct glint_output *out, const char *path,
                                     enum glint_output_kind kind,
                                     struct glint_error *error);
 
-/* Checks whether a file can be created at PATH, before there is work for it;
- * leaves nothing. A file that is written straight into is not touched, and is
- * fine. GLINT_E_OUTPUT: it cannot; GLINT_E_MEMORY. */
+/* Checks, before long work, whether a file can be created at PATH; leaves none
+ * there. A target that would be written directly passes untouched.
+ * GLINT_E_OUTPUT: it cannot be created; GLINT_E_MEMORY. */
 enum glint_status glint_output_check(const char *path,
                                      struct glint_error *error);
 
-/* Writes all of DATA[BYTES], or fails; once failed, it keeps failing.
- * GLINT_E_CLOSED: the reader of a pipe went away. GLINT_E_OUTPUT: the rest. */
+/* Writes all of DATA[BYTES], or fails; once it has failed, it keeps failing.
+ * GLINT_E_CLOSED: the reader of a pipe went away. GLINT_E_OUTPUT: any other
+ * failure. */
 enum glint_status glint_output_write(struct glint_output *out, const void *data,
                                      size_t bytes, struct glint_error *error);
 
-/* Passes on what small writes left in the buffer. For pipes, where somebody
- * waits; commit does it too. */
+/* Writes out the buffer, for pipes, whose reader waits. Commit does so, too. */
 enum glint_status glint_output_flush(struct glint_output *out,
                                      struct glint_error *error);
 
-/* Closes OUT and puts it in place. On failure it is aborted. */
+/* Closes OUT and puts its file in place of the target. On failure aborts it. */
 enum glint_status glint_output_commit(struct glint_output *out,
                                       struct glint_error *error);
 
-/* Writes DATA[BYTES] and commits, or aborts. */
+/* Writes DATA[BYTES] and commits OUT, or aborts it on failure. */
 enum glint_status glint_output_finish(struct glint_output *out,
                                       const void *data, size_t bytes,
                                       struct glint_error *error);
 
-/* Closes OUT and removes the temporary file. Does nothing when closed. */
+/* Closes OUT and removes its temporary file, unless it is closed already. */
 void glint_output_abort(struct glint_output *out);
 
 #endif

@@ -16,7 +16,7 @@ void glint_process_hold_streams(void)
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
             open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
-            _exit(1); /* nowhere to say why */
+            _exit(1); /* There is no stream to say why. */
 }
 
 const char *glint_process_setting(const char *name)
@@ -40,7 +40,8 @@ static void *do_call(void *arg)
     return NULL;
 }
 
-/* Runs C in a thread with a stack of BYTES, while this one takes no signals. */
+/* Runs C in a thread with a stack of BYTES; signals go to that thread
+ * meanwhile. Returns false if there can be no such thread. */
 static bool call_apart(size_t bytes, struct call *c)
 {
     pthread_attr_t attr;

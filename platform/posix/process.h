@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * posix/process.h - what a program sees to before anything else.
+ * posix/process.h - preparations of a process, before all else in main().
  */
 #ifndef GLINT_PLATFORM_POSIX_PROCESS_H
 #define GLINT_PLATFORM_POSIX_PROCESS_H
 
 #include <stddef.h>
 
-/* Descriptors 0 to 2 that are closed become such as fail when they are read or
- * written, so that no file that is opened later is taken for standard output.
- */
+/* Opens those of the descriptors 0 to 2 that are closed such that reading or
+ * writing them fails. So no file that is opened later becomes standard
+ * output. */
 void glint_process_hold_streams(void);
 
-/* Returns the environment's value of NAME, or NULL; a program with rights that
- * its user has not gets none. */
+/* Returns the environment's value of NAME, or NULL if it has none or the
+ * program has more rights than its user. */
 const char *glint_process_setting(const char *name);
 
-/* FN(CTX), where the calling thread's stack may grow to less than BYTES in a
- * thread of its own that has as many, to which all signals go meanwhile. Where
- * there is no such thread to be had, it is called directly. For main(). */
+/* Returns FN(CTX). If the stack may grow to less than BYTES, FN runs in a
+ * thread that has BYTES, to which all signals go meanwhile, or directly if
+ * there can be no such thread. For main(). */
 int glint_process_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx);
 
 #endif

@@ -14,14 +14,15 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#define EXT_CHARS \
-    16 /* characters that a file name extension worth keeping has at most */
-#define MAX_LINKS  40 /* links that Linux follows at most */
+/* most characters of an extension that temporary names keep */
+#define EXT_CHARS  16
+#define MAX_LINKS  40 /* most links that Linux follows */
 #define PATH_BYTES 4096
 
 /* -------------------------------------------------------------------- links */
 
-/* The length of PATH's folder with its slash; 0: it has none. */
+/* Returns the length of PATH's folder with its slash, or 0 if it states
+ * none. */
 static size_t folder_length(const char *path)
 {
     const char *const slash = strrchr(path, '/');
@@ -29,7 +30,8 @@ static size_t folder_length(const char *path)
     return slash ? (size_t)(slash + 1 - path) : 0;
 }
 
-/* The folder of PATH, "." where it states none; FOLDER holds PATH_BYTES. */
+/* Sets FOLDER, PATH_BYTES long, to the folder of PATH, or "." if it states
+ * none. */
 static void set_folder(char *folder, const char *path)
 {
     const size_t n = folder_length(path);
@@ -40,8 +42,10 @@ static void set_folder(char *folder, const char *path)
         snprintf(folder, PATH_BYTES, "%.*s", (int)n, path);
 }
 
-/* The kernel would not follow it in a folder that all may write into, and says
- * so only where it finds a file. */
+/* Checks whether the kernel would follow the link at PATH, whose status is
+ * LINK. In a folder that everybody may write to it follows only links of the
+ * user and of the folder's owner, but it reports that only if the link leads to
+ * a file. */
 static bool may_follow(const char *path, const struct stat *link)
 {
     char folder[PATH_BYTES];
@@ -53,7 +57,8 @@ static bool may_follow(const char *path, const struct stat *link)
             (!(st.st_mode & S_IWOTH) || st.st_uid == link->st_uid));
 }
 
-/* PATH, PATH_BYTES long, becomes what the link there says. */
+/* Replaces PATH, PATH_BYTES long, by the text of the link there. Returns false
+ * with errno set. */
 static bool follow(char *path)
 {
     char text[PATH_BYTES];
@@ -71,7 +76,8 @@ static bool follow(char *path)
     return true;
 }
 
-/* Returns the place of a file that is not there yet; links may lead to it. */
+/* Follows the links at PATH to a file that is not there yet. Returns its path,
+ * malloc'ed, or NULL with errno set. */
 static char *new_target(const char *path)
 {
     char at[PATH_BYTES];
@@ -106,8 +112,8 @@ char *glint_target_of(const char *path, const struct stat *st)
     target = realpath(path, NULL);
     if (!target)
         return NULL;
-    /* else somebody has turned a link in between, which the kernel, asked
-     * again, might not have followed */
+    /* If TARGET is another file than ST, somebody has changed a link since, and
+     * the kernel might not have followed the new one. */
     if (lstat(target, &now) == 0 && now.st_dev == st->st_dev &&
         now.st_ino == st->st_ino)
         return target;
@@ -145,7 +151,8 @@ char *glint_target_beside(const char *target, unsigned n)
     return name;
 }
 
-/* The process that made the file NAME, or 0: it has no such name. */
+/* Returns the process that made the temporary file NAME, or 0 if NAME is not
+ * one. */
 static pid_t maker_of(const char *name)
 {
     static const char begin[] = ".glint-";
@@ -163,7 +170,7 @@ static pid_t maker_of(const char *name)
     return end > name && (*end == '.' || !*end) ? (pid_t)pid : 0;
 }
 
-/* Returns whether a regular file of ours is open at FD that nobody holds. */
+/* Checks whether FD is a regular file of this user's that nobody has locked. */
 static bool is_abandoned(int fd)
 {
     struct stat st;

@@ -8,22 +8,24 @@
 #include <stdbool.h>
 #include <sys/stat.h>
 
-/* The file that PATH means, all links followed, malloc'ed. ST: what it is by
- * stat(), or NULL: it is not there yet, as at the end of a dangling link. NULL
- * with errno: EACCES where a dangling link is somebody else's, ESTALE where
- * PATH means another file than ST now, or any of the system's. */
+/* Returns the file that PATH leads to, all links followed, malloc'ed. ST is the
+ * status of PATH, or NULL if there is no file yet, as at the end of a dangling
+ * link. Returns NULL with errno set: EACCES for a dangling link that the kernel
+ * would not follow, ESTALE if PATH leads to another file than ST now, or an
+ * error of the system. */
 char *glint_target_of(const char *path, const struct stat *st);
 
-/* DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT; malloc'ed, or NULL. */
+/* Returns the temporary name DIR/.glint-PID-N.EXT for the target DIR/NAME.EXT,
+ * malloc'ed, or NULL without memory. */
 char *glint_target_beside(const char *target, unsigned n);
 
-/* Removes files of that kind beside TARGET that runs left that were killed:
- * ours, of a process that is gone, and locked by nobody on any machine. Looks
- * into the same folder once only. */
+/* Removes temporary files beside TARGET that killed runs have left: files of
+ * this user's, whose process is gone, and locked by nobody on any machine. Does
+ * nothing in the folder that it has cleaned last. */
 void glint_target_clean(const char *target);
 
-/* Returns whether A and B, "-" the standard streams, are the same regular file.
- */
+/* Returns whether INPUT and OUTPUT are the same regular file; "-" is the
+ * standard stream. */
 bool glint_target_is_input(const char *input, const char *output);
 
 #endif

@@ -3,8 +3,8 @@
 
 #include <stdint.h>
 
-/* Bytes that a character with this first byte has; 0: no character begins so.
- */
+/* Returns the length of a character by its FIRST byte, or 0 if no character
+ * that prints begins so. */
 static size_t stated_length(unsigned char first)
 {
     if (first < 0x80)
@@ -25,7 +25,7 @@ size_t glint_utf8_length(const char *text)
         return length;
     code = byte[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
-        if ((byte[i] & 0xc0) != 0x80) /* the end, too */
+        if ((byte[i] & 0xc0) != 0x80) /* also at the end of TEXT */
             return 0;
         code = code << 6 | (byte[i] & 0x3fu);
     }

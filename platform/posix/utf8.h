@@ -7,12 +7,13 @@
 
 #include <stddef.h>
 
-/* Bytes of the character that TEXT begins with, 1 .. 4; 0: a control character
- * (C1 too: U+009B begins a command to a terminal), no well-formed UTF-8, or the
- * end. */
+/* Returns the bytes of the character that TEXT begins with, 1 .. 4, or 0 for a
+ * control character (C1, too: U+009B begins a command to a terminal), malformed
+ * UTF-8 or the end of TEXT. */
 size_t glint_utf8_length(const char *text);
 
-/* Every byte that is no part of such a character becomes '?'. */
+/* Replaces every byte of TEXT that glint_utf8_length() does not accept by
+ * '?'. */
 void glint_utf8_clean(char *text);
 
 #endif

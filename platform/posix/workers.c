@@ -19,10 +19,10 @@ struct helper {
 struct pool {
     struct glint_workers base; /* first: a pool is a glint_workers */
     pthread_mutex_t lock;      /* guards round, open, quit and busy */
-    pthread_cond_t wake;       /* a round was opened, or quit */
-    pthread_cond_t idle;       /* busy became 0 */
-    unsigned round;            /* calls of run so far */
-    bool open;                 /* the round still takes helpers in */
+    pthread_cond_t wake; /* signals that a round was opened, or quit set */
+    pthread_cond_t idle; /* signals that busy became 0 */
+    unsigned round;      /* number of rounds so far */
+    bool open;           /* the round still takes helpers in */
     bool quit;
     int busy; /* helpers inside the round */
 
@@ -31,7 +31,8 @@ struct pool {
     void *ctx;
     unsigned n_jobs;
 
-    unsigned next; /* job; atomic. Unsigned, as every worker oversteps once */
+    unsigned next; /* next job; atomic. Unsigned, as each worker counts one too
+                      far */
     int n_helpers;
     struct helper helper[GLINT_MAX_WORKERS - 1];
 };
@@ -98,8 +99,8 @@ static void run(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
     pthread_mutex_unlock(&p->lock);
 }
 
-/* All signals but those of a thread's own faults: blocked, these kill at once,
- * and nothing is put right. */
+/* Blocks all signals but those of a thread's own faults. If blocked, these
+ * would kill the process at once, without the functions of posix/at_death.h. */
 static void hold_signals(sigset_t *old)
 {
     static const int faults[] = {SIGSEGV, SIGBUS,  SIGILL, SIGFPE,
@@ -112,7 +113,7 @@ static void hold_signals(sigset_t *old)
     pthread_sigmask(SIG_SETMASK, &held, old);
 }
 
-/* Up to N, as many as the system gives. */
+/* Starts N helpers, or as many as the system gives. */
 static void start_helpers(struct pool *p, int n)
 {
     pthread_attr_t attr;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * In place of window.c in static programs, which have no plug-ins.
+ * Stands in for window.c in static programs, which cannot load a plug-in.
  */
 #include "posix/error.h"
 #include "sdl/sdl.h"

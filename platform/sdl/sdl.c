@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint-sdl.so, the plug-in: the only file that knows SDL2.
+ * The plug-in glint-sdl.so: the only file that uses SDL2.
  */
 #include <SDL2/SDL.h>
 #include <stdlib.h>
@@ -27,7 +27,8 @@ static void close_view(void *window)
     free(v);
 }
 
-/* Opens the window in front of the desktop, as large as that lets it be. */
+/* Opens a window for pictures of WIDTH x HEIGHT, of that size or halved until
+ * it fits the desktop. */
 static void make(struct view *v, const char *title, int width, int height)
 {
     SDL_Rect room = {0, 0, width, height};

@@ -8,8 +8,8 @@
  *
  * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is asked
  * for: beside the executable, in ../lib/glint from there, or as $GLINT_SDL
- * names it. The picture keeps its shape in a window of any size. Closing it, or
- * Escape or q, is GLINT_E_CLOSED: whoever looked has had enough.
+ * names it. The picture keeps its shape in a window of any size. Once the user
+ * closes it or presses Escape or q, put returns GLINT_E_CLOSED.
  */
 #ifndef GLINT_PLATFORM_SDL_SDL_H
 #define GLINT_PLATFORM_SDL_SDL_H
@@ -17,17 +17,19 @@
 #include "panel/panel.h"
 #include "source_sink.h"
 
-/* Changes with struct glint_sdl; a plug-in of another number is refused. */
+/* Number of this interface. A plug-in with another number is refused. */
 #define GLINT_SDL_VERSION 1
 
 struct glint_sdl {
     int version;
 
-    /* Opens a window for pictures of WIDTH x HEIGHT. NULL: CAUSE says why. */
+    /* Opens a window for pictures of WIDTH x HEIGHT. Returns NULL on failure,
+     * with the reason in CAUSE. */
     void *(*open)(const char *title, int width, int height, const char **cause);
 
     /* Shows PIXELS, four bytes each, B G R and one unused, STRIDE bytes from
-     * row to row. 0: it was shown; 1: the window was closed; -1: failed. */
+     * row to row. Returns 0 if they were shown, 1 if the user has closed the
+     * window, -1 on failure. */
     int (*show)(void *window, const void *pixels, int stride);
     void (*close)(void *window);
 };
@@ -37,14 +39,16 @@ struct glint_window {
 
     /* Private. */
     const struct glint_sdl *sdl;
-    void *window; /* NULL: not yet */
+    void *window; /* NULL: not open */
     const char *title;
     struct glint_panel panel;
     uint8_t *pixels;
     int width, height; /* pixels of the window's pictures */
 };
 
-/* TITLE is kept. GLINT_E_DEVICE: no plug-in; ERROR says what does as well. */
+/* Prepares WINDOW, which the first frame opens. TITLE must outlive it.
+ * GLINT_E_DEVICE: there is no plug-in; ERROR names another way to show
+ * frames. */
 enum glint_status glint_window_open(struct glint_window *window,
                                     const char *title,
                                     struct glint_error *error);

@@ -22,7 +22,8 @@ static const struct glint_sdl *load(const char *path)
     return face && face->version == GLINT_SDL_VERSION ? face : NULL;
 }
 
-/* BEHIND the folder of the executable. */
+/* Loads the plug-in at BEHIND, a path from the folder of the executable.
+ * Returns NULL if it is not there. */
 static const struct glint_sdl *load_near(const char *behind)
 {
     char path[PATH_BYTES + 64];
@@ -68,7 +69,7 @@ static void give_up(struct glint_window *w)
     w->pixels = NULL;
 }
 
-/* A window for pictures as large as IMAGE. */
+/* Opens a window for pictures of IMAGE's size and closes the one before. */
 static enum glint_status begin(struct glint_window *w,
                                const struct glint_image *image,
                                struct glint_error *error)

@@ -19,8 +19,8 @@ static enum glint_matrix matrix_of(int height)
     return height < 720 ? GLINT_MATRIX_BT601 : GLINT_MATRIX_BT709;
 }
 
-/* Codes of JPEG are BT.601 whatever the size [JFIF]: of full range, with chroma
- * where JPEG has it. */
+/* Checks whether codes are those of JPEG, which are BT.601 in any size [JFIF]:
+ * full range, and C420jpeg or no tag C. */
 static bool is_jpeg(const struct glint_y4m_header *h)
 {
     return h->range == GLINT_RANGE_FULL &&
@@ -46,7 +46,8 @@ void glint_y4m_header_init(struct glint_y4m_header *header, int width,
     (void)glint_y4m_layout_parse(&header->layout, header->colour);
 }
 
-/* The number at *AT, which moves behind it; -1 if there is none. */
+/* Returns the number at *AT, at most INT_MAX, and moves *AT past it. Returns -1
+ * if there is none. */
 static int take_number(const char **at)
 {
     int value = -1;
@@ -60,7 +61,8 @@ static int take_number(const char **at)
     return value;
 }
 
-/* "N:D" in plain digits, both 0 or D above 0. */
+/* Reads TEXT as "N:D" in plain digits. Returns false if it is malformed, or D
+ * is 0 and N is not. */
 static bool take_ratio(const char *text, int *num, int *den)
 {
     *num = take_number(&text);
@@ -70,7 +72,7 @@ static bool take_ratio(const char *text, int *num, int *den)
     return *den >= 0 && !*text && (*den > 0 || *num == 0);
 }
 
-/* 0 for anything but plain digits. */
+/* Returns TEXT as a number, or 0 if it has other characters than digits. */
 static int take_side(const char *text)
 {
     const int value = take_number(&text);
@@ -98,7 +100,7 @@ static bool take_range(struct glint_y4m_header *h, const char *tag)
     return true;
 }
 
-/* False: TAG is malformed. */
+/* Sets H by a tag of the header. Returns false if TAG is malformed. */
 static bool take_tag(struct glint_y4m_header *h, const char *tag)
 {
     int num, den;
@@ -120,7 +122,8 @@ static bool take_tag(struct glint_y4m_header *h, const char *tag)
         return tag[1] && take_text(h->colour, sizeof h->colour, tag + 1);
     }
     if (!take_range(h, tag)) {
-        strcat(h->extra, " "); /* it all fitted in the line it comes from */
+        /* All tags fit, as they come from a line no longer than EXTRA. */
+        strcat(h->extra, " ");
         strcat(h->extra, tag);
     }
     return true;
@@ -178,7 +181,7 @@ enum glint_status glint_y4m_header_parse(struct glint_y4m_header *header,
     if (status)
         return status;
     h.matrix = is_jpeg(&h) ? GLINT_MATRIX_BT601 : matrix_of(h.height);
-    strcpy(h.line, line); /* it fitted above */
+    strcpy(h.line, line); /* LINE fitted into COPY. */
     h.line_range = h.range;
     *header = h;
     return GLINT_OK;
@@ -222,7 +225,8 @@ static enum glint_status report_io(const struct glint_y4m_reader *r,
 
 enum line_end { LINE_FEED, LINE_EOF, LINE_TOO_LONG, LINE_FAILED };
 
-/* Reads up to a line feed, which is dropped, or the end. LEN: characters. */
+/* Reads a line up to its line feed, which is dropped, or to the end of the
+ * stream. Sets *LEN to the number of characters. */
 static enum line_end read_line(struct glint_y4m_reader *r, char *line,
                                size_t size, size_t *len)
 {
@@ -246,7 +250,8 @@ static enum line_end read_line(struct glint_y4m_reader *r, char *line,
     }
 }
 
-/* Reads BYTES, fewer only at the end; -1: failed. */
+/* Reads BYTES, or fewer at the end of the stream. Returns how many, or -1 on
+ * failure. */
 static ptrdiff_t read_block(struct glint_y4m_reader *r, uint8_t *dst,
                             size_t bytes)
 {
@@ -319,7 +324,8 @@ enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
     return status;
 }
 
-/* Allocated late, so that a header alone costs nothing. */
+/* Prepares r->frame. Its memory is taken with the first frame, so that a header
+ * alone costs none. */
 static enum glint_status place_frame(struct glint_y4m_reader *r,
                                      struct glint_error *error)
 {
@@ -351,7 +357,8 @@ static enum glint_status place_frame(struct glint_y4m_reader *r,
     return GLINT_OK;
 }
 
-/* Reads a FRAME line. *MORE: there was one, and not the end of the stream. */
+/* Reads a FRAME line. Sets *MORE if there is one, and clears it at the end of
+ * the stream. */
 static enum glint_status read_frame_line(struct glint_y4m_reader *r, bool *more,
                                          struct glint_error *error)
 {

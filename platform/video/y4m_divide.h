@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * video/y4m_divide.h - the divisions that light on a pixel takes, by a
- * multiplication: a CPU of 32 bits calls a function for one of 64 bits. The
- * results are those of the division, rounded to nearest, ties away from 0.
+ * video/y4m_divide.h - the divisions that light on a pixel takes, done by
+ * multiplications, as CPUs of 32 bits need a function call to divide 64 bits.
+ * The results are those of the division, rounded to nearest, ties away from 0.
  */
 #ifndef GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
 #define GLINT_PLATFORM_VIDEO_Y4M_DIVIDE_H
@@ -18,9 +18,10 @@ static inline int64_t y4m_share_factor(int up, int32_t d)
     return ((INT64_C(1) << (up + Y4M_SHARE_BITS)) + d - 1) / d;
 }
 
-/* K 2^UP / D; |K| is at most 2^20, and the result at most 2^22. FACTOR is
- * larger than it should be by less than 1, so the result before it is cut by
- * less than 2^-20, and it lies no nearer than 1 / 2D below a whole number. */
+/* Returns K 2^UP / D; |K| is at most 2^20, and the result at most 2^22. FACTOR
+ * is too large by less than 1, so the quotient before the shift is too large by
+ * less than 2^-20. A quotient below a whole number is at least 1 / 2D below it,
+ * so that it never reaches the next one. */
 static inline int32_t y4m_share(int32_t k, int64_t factor)
 {
     const int64_t size = k < 0 ? -(int64_t)k : k;
@@ -37,8 +38,8 @@ static inline int64_t y4m_part_factor(int32_t d)
     return (INT64_C(1) << Y4M_PART_BITS) / d;
 }
 
-/* N / D, held within 0 and 2^20. What SKIP and the factor's cut leave out is
- * less than 1, so the quotient is found or is one short of it. */
+/* Returns N / D, clamped to 0 .. 2^20. The bits that Y4M_PART_SKIP and the
+ * factor leave out are less than 1, so Q is the quotient or one less. */
 static inline int32_t y4m_part(int64_t n, int32_t d, int64_t factor)
 {
     const int64_t m = n + d / 2;
@@ -52,7 +53,7 @@ static inline int32_t y4m_part(int64_t n, int32_t d, int64_t factor)
     return (int32_t)(q + (m - q * d >= d));
 }
 
-/* N / 2^S, S from 1. */
+/* Returns N / 2^S, S >= 1. */
 static inline int64_t y4m_halve(int64_t n, int s)
 {
     const int64_t half = INT64_C(1) << (s - 1);

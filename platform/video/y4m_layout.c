@@ -8,7 +8,7 @@ static const struct colour {
     enum glint_pixel_format format;
     bool has_alpha, is_411, may_be_deep;
 } colours[] = {
-    /* The first of a format is what a header of our own says. */
+    /* glint_y4m_layout_tag() returns the first tag of a format. */
     {"420jpeg", GLINT_I420, false, false, false},
     {"420mpeg2", GLINT_I420, false, false, false},
     {"420paldv", GLINT_I420, false, false, false},
@@ -22,7 +22,8 @@ static const struct colour {
 
 #define N_COLOURS (sizeof colours / sizeof *colours)
 
-/* Bits that TEXT behind the layout says; 8: nothing, 0: nonsense. */
+/* Returns the bits a sample that TEXT, the end of a tag, states: 9 .. 16, 8 if
+ * it is empty, 0 if malformed. */
 static int bits_of(const char *text, bool is_grey)
 {
     static const char *const names[] = {"9", "10", "12", "14", "16"};

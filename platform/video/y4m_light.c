@@ -16,7 +16,7 @@ static uint64_t mul_q30(uint64_t a_q30, uint64_t b_q30)
     return (a_q30 * b_q30 + (UINT64_C(1) << 29)) >> 30;
 }
 
-/* x^9, 0 <= x <= 1 */
+/* Returns x^9, 0 <= x <= 1. */
 static uint64_t power_q30(uint64_t x_q30)
 {
     const uint64_t x2_q30 = mul_q30(x_q30, x_q30);
@@ -25,7 +25,7 @@ static uint64_t power_q30(uint64_t x_q30)
     return mul_q30(mul_q30(x4_q30, x4_q30), x_q30);
 }
 
-/* Largest r with r^9 <= x. */
+/* Returns the largest r with r^9 <= x, 0 <= x <= 1. */
 static uint64_t root_q30(uint64_t x_q30)
 {
     uint64_t r_q30 = 0;
@@ -37,8 +37,8 @@ static uint64_t root_q30(uint64_t x_q30)
     return r_q30;
 }
 
-/* BT.709's inverse: v / 4.5 below 0.081, else u^(20/9), u = (v + 0.099) / 1.099
- */
+/* Returns the light of v = STEP / 4096 by BT.709: v / 4.5 below 0.081, else
+ * u^(20/9), u = (v + 0.099) / 1.099. */
 static int32_t light_q24(int step)
 {
     const uint64_t divisor = UINT64_C(1099) * GLINT_Y4M_STEPS;
@@ -55,8 +55,8 @@ static int32_t light_q24(int step)
     return (int32_t)((mul_q30(u2_q30, root_q30(u2_q30)) + (1 << 5)) >> 6);
 }
 
-/* Returns the place at which the straight lines between entries of DECODE reach
- * LIGHT. */
+/* Returns the R'G'B' code, _q20, at which the straight lines between the
+ * entries of DECODE reach LIGHT, _q24. */
 static int32_t place_q20(const int32_t *decode_q24, int32_t light)
 {
     int low = 0, high = GLINT_Y4M_STEPS;
@@ -229,7 +229,8 @@ static int32_t held(int64_t v, int32_t most)
     return v < 0 ? 0 : v > most ? most : (int32_t)v;
 }
 
-/* R', G', B' of codes, _q20, within 0 .. 1. */
+/* Sets RGB to R', G', B', clamped to 0 .. 1, of the code Y' and of Cb and Cr
+ * less their middle. */
 static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
                    int32_t rgb_q20[3])
 {
@@ -245,7 +246,8 @@ static void to_rgb(const struct glint_y4m_light *l, const int32_t ycc[3],
     rgb_q20[2] = held(b, WHITE_Q20);
 }
 
-/* Sets the changes of Y', Cb and Cr, _q20, where LAYER falls on R'G'B'. */
+/* Sets the changes of Y', Cb and Cr, _q20, that the light of LAYER makes on a
+ * pixel of YCC. */
 static void change_of(const struct glint_y4m_light *l, const int32_t ycc[3],
                       const float *layer, int64_t change_q20[3])
 {
@@ -272,7 +274,8 @@ static bool is_lit(const float *layer)
     return layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
 }
 
-/* SUM_Q20 / COUNT, 1 .. 4: three at the right edge of 4:1:1 alone. */
+/* Returns SUM_Q20 / COUNT as a whole number. COUNT is 1 .. 4; 3 occurs only at
+ * the right edge of 4:1:1. */
 static int64_t mean_of(int64_t sum_q20, int count)
 {
     const int64_t whole = 3 * (int64_t)WHITE_Q20;
@@ -283,7 +286,7 @@ static int64_t mean_of(int64_t sum_q20, int count)
                        : (2 * sum_q20 + whole) / (2 * whole);
 }
 
-/* A chroma sample's pixels: X0 .. X1, Y0 .. Y1. */
+/* the pixels X0 .. X1 - 1, Y0 .. Y1 - 1 that share a chroma sample */
 struct block {
     int x, y; /* place of the chroma sample */
     int x0, y0, x1, y1;
