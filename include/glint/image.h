@@ -64,6 +64,12 @@ size_t glint_image_bytes(enum glint_pixel_format format, int width, int height);
  * without padding; format, width and height of IMAGE must be set. */
 void glint_image_place(struct glint_image *image, void *mem);
 
+/* Writes the full-range R', G', B' codes, of 8 bits, of the pixels in the
+ * middle of COLUMNS x ROWS even parts of IMAGE, 1 .. 1024 each; 0 of linear
+ * pictures, which have none. */
+void glint_image_sample(const struct glint_image *image, int columns, int rows,
+                        uint8_t *rgb);
+
 /* A picture of linear light, BT.709 primaries, 1 = display white. */
 struct glint_float_image {
     int width, height; /* pixels, 1 .. GLINT_MAX_SIDE */

@@ -260,19 +260,28 @@ static bool are_found(const struct glint_engine *e,
 
 /* There is time for a picture by itself. Lamps that were not found in it may be
  * those of a video that the program made. */
-static void expose_as_drawn(struct glint_engine *e, int n)
+static void expose_as_drawn(struct glint_engine *e, int n,
+                            const struct glint_image *image)
 {
     struct glint_response_light drawn;
+    struct glint_seen seen;
+    struct glint_ground *ground;
 
-    if (!e->has_arena && !e->strength.is_physical && e->strength.scale > 0 &&
-        glint_response_draw(&e->frame, e->lamp, n, GLINT_RESPONSE_FINE,
-                            &drawn) == GLINT_OK)
-        glint_strength_correct(&e->strength, &drawn);
+    if (e->has_arena || e->strength.is_physical || !(e->strength.scale > 0))
+        return;
+    ground = malloc(sizeof *ground);
+    if (ground)
+        glint_ground_take(ground, image);
+    if (glint_response_draw(&e->frame, e->lamp, n, GLINT_RESPONSE_FINE, ground,
+                            &drawn, &seen) == GLINT_OK)
+        glint_strength_correct(&e->strength, &drawn, ground ? &seen : NULL);
+    free(ground);
 }
 
 /* Sets what the powers of N lamps are multiplied by, and holds those that are
  * too bright yet. */
-static void expose(struct glint_engine *e, int n, bool is_found)
+static void expose(struct glint_engine *e, int n, bool is_found,
+                   const struct glint_image *image)
 {
     const double pixels = (double)e->frame.view.width * e->frame.view.height;
     const struct glint_strength_lamps lamps = {
@@ -283,7 +292,7 @@ static void expose(struct glint_engine *e, int n, bool is_found)
     glint_strength_expose(&e->strength, &e->response, &lamps,
                           is_new ? 0 : e->elapsed_us);
     if (is_found && e->elapsed_us == 0 && e->frame.budget.ms <= 0)
-        expose_as_drawn(e, n);
+        expose_as_drawn(e, n, image);
 }
 
 static void set_report(const struct glint_engine *e,
@@ -324,7 +333,7 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     is_found = are_found(e, lamps, n);
     e->n_found = is_found ? n : 0;
     memcpy(e->lamp, lamps, (size_t)n * sizeof *lamps);
-    expose(e, n, is_found);
+    expose(e, n, is_found, image);
     f->star.share = glint_strength_star(&e->strength, e->starburst);
     for (int i = 0; i < n && is_found; i++)
         e->seen_px[i] = e->detector.track[i].size_q8 / 256.0;

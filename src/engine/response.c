@@ -353,7 +353,9 @@ static void set_least_top(const struct proxy *p,
 enum glint_status glint_response_draw(const struct glint_frame *like,
                                       const struct glint_lamp *lamps, int n,
                                       int pixels,
-                                      struct glint_response_light *light)
+                                      const struct glint_ground *ground,
+                                      struct glint_response_light *light,
+                                      struct glint_seen *seen)
 {
     struct glint_lamp *small = malloc((size_t)(n ? n : 1) * sizeof *small);
     struct proxy p;
@@ -374,6 +376,8 @@ enum glint_status glint_response_draw(const struct glint_frame *like,
             status = draw(&p, small, n, &peak_log2, light);
         if (status == GLINT_OK)
             set_least_top(&p, light);
+        if (status == GLINT_OK && ground)
+            glint_seen_on(seen, ground, p.rgb, p.view.width, p.view.height);
         close_proxy(&p);
     }
     free(small);

@@ -21,6 +21,7 @@
 #define GLINT_ENGINE_RESPONSE_H
 
 #include "engine/frame/frame.h"
+#include "engine/seen.h"
 
 enum {
     GLINT_RESPONSE_ANGLES = 12,
@@ -55,11 +56,14 @@ void glint_response_around(const float *rgb, size_t n,
 
 /* Of N lamps behind the lens of LIKE, drawn small, with about PIXELS. Powers
  * are those of its view. The peak is what a ten thousandth of the pixels reach:
- * smaller specks do not count. GLINT_E_MEMORY. */
+ * smaller specks do not count. SEEN: what GROUND lets see of it; NULL, both.
+ * GLINT_E_MEMORY. */
 enum glint_status glint_response_draw(const struct glint_frame *like,
                                       const struct glint_lamp *lamps, int n,
                                       int pixels,
-                                      struct glint_response_light *light);
+                                      const struct glint_ground *ground,
+                                      struct glint_response_light *light,
+                                      struct glint_seen *seen);
 
 /* Measures frames as LIKE was asked to draw them. Takes no more than BYTES for
  * its own, unless that is 0. GLINT_E_MEMORY. */

@@ -14,6 +14,14 @@ static const double mean_most = 0.32;
 static const double common_log2 = -5;
 static const double compression = 0.15; /* stops a stop */
 
+/* Display light of the brightest part, and of the mean, that a flare at the
+ * strength of 0.5 may be lifted to where the picture hides it; and what the
+ * brightest part keeps of one that veils the picture. */
+static const double seen_peak = 0.7, seen_mean = 0.04, veil_peak = 0.08;
+
+/* The part of what is seen that a quarter of the picture may get. */
+static const double veil_light = 0.5;
+
 /* Following. */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
@@ -203,8 +211,26 @@ void glint_strength_expose(struct glint_strength *strength,
     scale_light(s);
 }
 
+/* The stops that the flare DRAWN, exposed to BASE for the strength of 0.5, is
+ * lifted so that it is seen, or lowered so that it is no veil, within what its
+ * brightest part and its mean may come to. */
+static double lift_log2(double base, const struct glint_response_light *drawn,
+                        const struct glint_seen *seen)
+{
+    const double peak = log2(fmax(glint_strength_largest(drawn->peak), 1e-60));
+    const double mean = log2(fmax(glint_strength_largest(drawn->mean), 1e-60));
+    const double room = fmin(log2(seen_peak) - peak, log2(seen_mean) - mean);
+    const double few = seen->few > 0 ? -log2(seen->few) : room;
+    const double many = seen->many > 0 ? log2(veil_light / seen->many) : room;
+
+    if (many < base)
+        return fmin(fmax(many, log2(veil_peak) - peak) - base, 0);
+    return fmax(fmin(few, room) - base, 0);
+}
+
 void glint_strength_correct(struct glint_strength *strength,
-                            const struct glint_response_light *drawn)
+                            const struct glint_response_light *drawn,
+                            const struct glint_seen *seen)
 {
     struct glint_strength *s = strength;
 
@@ -213,6 +239,9 @@ void glint_strength_correct(struct glint_strength *strength,
         return;
     s->is_drawn = true;
     s->factor_log2 = target_log2(s, drawn);
+    if (seen)
+        s->factor_log2 +=
+            lift_log2(s->factor_log2 - 2 * log2(2 * s->asked), drawn, seen);
     s->scale = s->gain * exp2(s->factor_log2);
     s->light = *drawn;
     scale_light(s);

@@ -32,7 +32,12 @@
  * picture by itself there is time to draw the flare small and to take p and m
  * from that: p is then what a ten thousandth of the pixels reach. So the few
  * small ghosts of a point, the wide ones of a candle, and lamps that the lens
- * answers otherwise off that line come out as bright as others.
+ * answers otherwise off that line come out as bright as others. Then what the
+ * picture lets see of it (engine/seen.h) counts: where that is too little the
+ * flare is lifted until a fiftieth of the picture shows it, at strength 0.5 up
+ * to 0.7 at its brightest and 0.04 in the mean; where a quarter of the picture
+ * is veiled it is lowered until that shows half as much as is seen, down to
+ * 0.08 at its brightest.
  *
  * In a video the factor follows, by stops in proportion to the time: it falls
  * by up to 3 stops a second and rises by up to 2, no more than an eighth of
@@ -92,10 +97,12 @@ void glint_strength_expose(struct glint_strength *strength,
 
 /* Of a picture by itself, after it was exposed: sets the scale and the light
  * anew by what its flare came to when it was drawn small, DRAWN, at scale 1,
- * rather than by the response. Nothing changes where the factor is set by hand
+ * rather than by the response, and by what is SEEN of it at that scale, unless
+ * that is NULL. Nothing changes where the factor is set by hand
  * or there is no light. */
 void glint_strength_correct(struct glint_strength *strength,
-                            const struct glint_response_light *drawn);
+                            const struct glint_response_light *drawn,
+                            const struct glint_seen *seen);
 
 /* The light of the flare of N lamps behind RESPONSE, as its pixels' channels
  * come to, at scale 1. */

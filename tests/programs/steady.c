@@ -46,7 +46,8 @@ static double light_of(struct steady *s, const struct glint_lamp *lamps)
     struct glint_response_light light;
 
     if (glint_response_draw(&s->compositor.frame, lamps, s->compositor.n_lamps,
-                            GLINT_RESPONSE_COARSE, &light) != GLINT_OK)
+                            GLINT_RESPONSE_COARSE, NULL, &light,
+                            NULL) != GLINT_OK)
         exit(EXIT_RUNTIME);
     return glint_strength_largest(light.mean);
 }

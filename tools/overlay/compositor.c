@@ -169,6 +169,8 @@ void compositor_close(struct compositor *compositor)
     compositor->level = NULL;
     free(compositor->id);
     compositor->id = NULL;
+    free(compositor->ground);
+    compositor->ground = NULL;
     settings_close(&compositor->settings);
 }
 
@@ -328,18 +330,22 @@ double compositor_scale(const struct compositor *compositor)
 static void expose_as_drawn(struct compositor *compositor)
 {
     struct glint_response_light drawn;
+    struct glint_seen seen = {0, 0};
 
     if (compositor->settings.has_exposure || compositor->strength.scale <= 0 ||
         compositor->settings.budget_ms > 0 ||
         glint_response_draw(&compositor->frame, compositor->lamp,
                             compositor->n_lamps, GLINT_RESPONSE_FINE,
-                            &drawn) != GLINT_OK)
+                            compositor->ground, &drawn, &seen) != GLINT_OK)
         return;
+    seen.few /= compositor->white;
+    seen.many /= compositor->white;
     for (int c = 0; c < 3; c++) {
         drawn.peak[c] /= compositor->white;
         drawn.mean[c] /= compositor->white;
     }
-    glint_strength_correct(&compositor->strength, &drawn);
+    glint_strength_correct(&compositor->strength, &drawn,
+                           compositor->ground ? &seen : NULL);
 }
 
 /* How large lamps that were found are in the picture. */
@@ -372,9 +378,22 @@ void compositor_expose(struct compositor *compositor, int32_t elapsed_us)
                           is_new ? 0 : elapsed_us);
     if (elapsed_us == 0)
         expose_as_drawn(compositor);
+    free(compositor->ground);
+    compositor->ground = NULL;
     set_seen(compositor);
     compositor->frame.star.share = glint_strength_star(
         &compositor->strength, compositor->settings.starburst);
+}
+
+/* What the flare of a picture by itself will be seen on; without memory for
+ * that, it is exposed as on any. */
+static void keep_ground(struct compositor *compositor,
+                        const struct glint_image *image)
+{
+    free(compositor->ground);
+    compositor->ground = malloc(sizeof *compositor->ground);
+    if (compositor->ground)
+        glint_ground_take(compositor->ground, image);
 }
 
 void compositor_find(struct compositor *compositor,
@@ -393,6 +412,8 @@ void compositor_find(struct compositor *compositor,
             compositor->frame.point_room =
                 GLINT_AREA_STILL_ROOM * compositor->frame.dials.max_lights;
     }
+    if (elapsed_us == 0)
+        keep_ground(compositor, image);
     compositor->find_ms = 1e3 * (tool_seconds() - start);
 }
 

@@ -34,6 +34,8 @@ struct compositor {
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
     /* How bright, and the scale of each frame. */
     struct glint_strength strength;
+    struct glint_ground *ground; /* what a picture by itself shows, from when
+                                    lamps are found until it is exposed */
     int dial; /* option that said so, OPT_STRENGTH or OPT_EXPOSURE; 0: none */
 
     /* Made by open and size. */

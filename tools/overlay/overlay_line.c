@@ -22,8 +22,8 @@ struct overlay_light overlay_light(const struct overlay *o)
     if (n != 1 || compositor->n_lamps == 0 || compositor->strength.scale <= 0 ||
         compositor->strength.is_drawn ||
         glint_response_draw(&compositor->frame, compositor->lamp,
-                            compositor->n_lamps, GLINT_RESPONSE_FINE,
-                            &drawn) != GLINT_OK)
+                            compositor->n_lamps, GLINT_RESPONSE_FINE, NULL,
+                            &drawn, NULL) != GLINT_OK)
         return light;
     light.peak = compositor_scale(compositor) / compositor->white *
                  glint_strength_largest(drawn.peak);

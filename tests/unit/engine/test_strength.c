@@ -204,7 +204,7 @@ static double corrected(double asked, double stops, double mean_stops)
     assert_false(s.is_drawn);
     drawn.peak[1] = exp2(stops - 5);
     drawn.mean[1] = exp2(stops - 5 - mean_stops);
-    glint_strength_correct(&s, &drawn);
+    glint_strength_correct(&s, &drawn, NULL);
     assert_true(s.is_drawn == (asked > 0));
     assert_true(s.light.mean[1] < 0.081);
     assert_true(asked <= 0 ||
@@ -239,10 +239,10 @@ static void test_not_as_it_was_drawn(void **state)
     glint_strength_defaults(&s);
     peak_of(&s, &r, &lamp, NULL, 1, 0);
     scale = s.scale;
-    glint_strength_correct(&s, &none);
+    glint_strength_correct(&s, &none, NULL);
     assert_true(s.scale == scale && !s.is_drawn);
     s.is_physical = true;
-    glint_strength_correct(&s, &bright);
+    glint_strength_correct(&s, &bright, NULL);
     assert_true(s.scale == scale && !s.is_drawn);
 }
 
@@ -385,9 +385,10 @@ static void check_lens(const char *lens, double corner_deg)
         lamp.phi_deg = 29 + 180 * (i % 2); /* within the picture */
         glint_strength_defaults(&s);
         glint_strength_expose(&s, &r, &all, 0);
-        assert_int_equal(
-            glint_response_draw(&frame, &lamp, 1, GLINT_RESPONSE_FINE, &drawn),
-            GLINT_OK);
+        assert_int_equal(glint_response_draw(&frame, &lamp, 1,
+                                             GLINT_RESPONSE_FINE, NULL, &drawn,
+                                             NULL),
+                         GLINT_OK);
         /* a ten thousandth is brighter than the thousandth of the response */
         assert_true(s.scale * glint_strength_largest(drawn.peak) > 1 / 16.0);
         assert_true(s.scale * glint_strength_largest(drawn.peak) < 2);

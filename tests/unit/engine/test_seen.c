@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What of a flare is seen on the picture under it, and what the exposure makes
+ * of that.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/strength.h"
+#include "support/canvas.h"
+
+enum { WIDTH = 64, HEIGHT = 36 };
+
+static struct glint_ground ground;
+static float light[HEIGHT][WIDTH][3];
+
+static void set_ground(int code)
+{
+    memset(&ground, code, sizeof ground);
+}
+
+/* LIGHT in the first ROWS rows of the flare, in one channel. */
+static void set_flare(int rows, double of)
+{
+    memset(light, 0, sizeof light);
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < WIDTH; x++)
+            light[y][x][1] = (float)of;
+}
+
+static struct glint_seen look(void)
+{
+    struct glint_seen seen;
+
+    glint_seen_on(&seen, &ground, light[0][0], WIDTH, HEIGHT);
+    return seen;
+}
+
+/* What 32 codes take on black counts as 1, and 1/14 as much beside code 120. */
+static void test_ground(void **state)
+{
+    struct glint_seen dark, lit;
+    const double each = canvas_linear(32);
+
+    (void)state;
+    set_ground(0);
+    set_flare(4, each);
+    dark = look();
+    assert_true(fabs(log2(dark.few)) <= 0.126);
+    assert_true(dark.many == 0);
+    set_ground(120);
+    lit = look();
+    assert_true(fabs(log2(lit.few * (canvas_linear(152) - canvas_linear(120)) /
+                          each)) <= 0.126);
+    set_ground(240);
+    assert_true(look().few == 0); /* nothing shows on white */
+}
+
+static void test_area(void **state)
+{
+    (void)state;
+    set_ground(0);
+    set_flare(0, 1);
+    assert_true(look().few == 0 && look().many == 0);
+    set_flare(HEIGHT / 3, 4 * canvas_linear(32));
+    assert_true(look().few == look().many);
+    assert_true(fabs(log2(look().many) - 2) <= 0.126);
+    light[0][0][0] = 1; /* a speck */
+    assert_true(fabs(log2(look().few) - 2) <= 0.126);
+}
+
+/* On the picture itself: its left half is white. */
+static void test_taken(void **state)
+{
+    struct glint_image image = canvas_new(GLINT_GREY, 100, 50);
+
+    (void)state;
+    canvas_fill_grey(&image, 0, 0, 50, 50, 255);
+    glint_ground_take(&ground, &image);
+    assert_int_equal(ground.rgb[90][159][0], 255);
+    assert_int_equal(ground.rgb[90][160][2], 0);
+    free(image.plane[0]);
+}
+
+/* ----------------------------------------------------------------- exposure */
+
+/* The brightest part at the strength ASKED of a flare with PEAK and MEAN. */
+static double exposed(double asked, double peak, double mean,
+                      struct glint_seen seen)
+{
+    const struct glint_response_light drawn = {{peak, 0, 0}, {mean, 0, 0}};
+    struct glint_strength s;
+
+    glint_strength_defaults(&s);
+    s.asked = asked;
+    s.scale = 1;
+    glint_strength_correct(&s, &drawn, &seen);
+    return s.light.peak[0];
+}
+
+static void test_lifted(void **state)
+{
+    const double peak = 1 / 32.0, mean = peak / 300;
+    const struct glint_seen plain = {1, 0}, hidden = {0, 0}, half = {0.0625, 0};
+
+    (void)state;
+    /* as it was: a quarter of white */
+    assert_true(fabs(exposed(0.5, peak, mean, plain) - 0.25) < 0.001);
+    /* to where it is seen, and to 0.7 of white at most */
+    assert_true(fabs(exposed(0.5, peak, mean, half) - 0.5) < 0.001);
+    assert_true(fabs(exposed(0.5, peak, mean, hidden) - 0.7) < 0.001);
+    /* strengths keep their steps of two stops */
+    assert_true(fabs(exposed(0.25, peak, mean, half) - 0.125) < 0.001);
+    assert_true(fabs(exposed(0.25, peak, mean, plain) - 0.0625) < 0.001);
+    /* no mean over 0.04 */
+    assert_true(fabs(exposed(0.5, peak, peak / 10, hidden) - 0.4) < 0.001);
+}
+
+static void test_lowered(void **state)
+{
+    const double peak = 1 / 32.0, mean = peak / 20;
+    const struct glint_seen veil = {0.5, 0.125}, thick = {9, 9},
+                            thin = {1, 0.05};
+
+    (void)state;
+    assert_true(fabs(exposed(0.5, peak, mean, veil) - 0.125) < 0.001);
+    assert_true(fabs(exposed(0.5, peak, mean, thick) - 0.08) < 0.001);
+    assert_true(exposed(0.5, peak, mean, thin) > 0.24);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ground),  cmocka_unit_test(test_area),
+        cmocka_unit_test(test_taken),   cmocka_unit_test(test_lifted),
+        cmocka_unit_test(test_lowered),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
