@@ -85,8 +85,24 @@ void glint_lamp_detector_restart(struct glint_lamp_detector *detector)
     glint_lamp_tracker_restart(detector->tracks);
 }
 
+static int32_t larger(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+
+/* The least semi-axis of what a picture by itself shows as SPOT. The rim of a
+ * core in its glare may hide any lamp in there; one that is taken for a point
+ * has ghosts as if cut out of paper, which no lamp's look like. */
+static int32_t least_axis_q8(const struct glint_spot *spot)
+{
+    return spot->size_q8 / 6;
+}
+
 static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
 {
+    const int32_t least_q8 = least_axis_q8(spot);
+    const bool is_round = spot->axis_q8[0] <= least_q8;
+
     return (struct glint_lamp_track){
         .id = id,
         .state = GLINT_LAMP_STEADY,
@@ -96,9 +112,10 @@ static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
         .level_q15 = 1 << 15,
         .flux_q16 = spot->flux_q16,
         .power_q16 = spot->power_q16,
-        .axis_q8 = {spot->axis_q8[0], spot->axis_q8[1]},
-        .cos_q15 = spot->cos_q15,
-        .sin_q15 = spot->sin_q15,
+        .axis_q8 = {larger(spot->axis_q8[0], least_q8),
+                    larger(spot->axis_q8[1], least_q8)},
+        .cos_q15 = is_round ? 1 << 15 : spot->cos_q15,
+        .sin_q15 = is_round ? 0 : spot->sin_q15,
         .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
 }
 

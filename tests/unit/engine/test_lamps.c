@@ -2,6 +2,7 @@
  *
  * From lamps in a picture or a list to lights at infinity: place and power.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,6 +12,7 @@
 #include <cmocka.h>
 
 #include "lamp_files/lamp_list.h"
+#include "support/canvas.h"
 #include "support/lens_check.h"
 
 enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
@@ -94,6 +96,41 @@ static void test_tracked_lamps(void **state)
     glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp);
     assert_true(lamp[1].power == still[0].power);
     glint_lamp_detector_close(&finder);
+    glint_lamp_detector_close(&finder);
+}
+
+/* A glare whose clipped core falls off over as much as its radius: the lamp in
+ * it may be a point, and is none in a picture by itself. */
+static void test_lamp_in_glare(void **state)
+{
+    static uint8_t grey[W * H];
+    static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
+    const struct glint_view view = glint_view_fit(W, H, 36, 24);
+    struct glint_image image = {.format = GLINT_GREY, .width = W, .height = H};
+    struct glint_lamp_detector finder = {.headroom_ev = -1, .max = 8};
+    struct glint_lamp_finder_config cfg;
+    double least;
+
+    (void)state;
+    glint_image_place(&image, grey);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const double r2 = pow(x - 150, 2) + pow(y - 90, 2);
+
+            grey[y * W + x] = (uint8_t)canvas_srgb_code(fmin(1, 80 / (1 + r2)));
+        }
+    glint_lamp_finder_defaults(&cfg, W, H);
+    assert_int_equal(glint_lamp_detector_open(&finder, &cfg), GLINT_OK);
+    assert_int_equal(
+        glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 1);
+    assert_true(finder.track[0].axis_q8[0] < finder.track[0].size_q8 / 6);
+    assert_int_equal(
+        glint_lamp_detector_frame(&finder, &image, 0, &view, 50, lamp), 1);
+    least = finder.track[0].size_q8 / 256.0 / 6;
+    assert_true(least > 0.5);
+    for (int k = 0; k < 2; k++)
+        assert_near(lamp[0].axis[k] / (36.0 / W / 50), least, 0.01);
+    assert_true(lamp[0].turn_deg == 0);
     glint_lamp_detector_close(&finder);
 }
 
@@ -210,6 +247,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_found_lamp),
         cmocka_unit_test(test_tracked_lamps),
+        cmocka_unit_test(test_lamp_in_glare),
         cmocka_unit_test(test_most_lamps),
         cmocka_unit_test(test_lists),
         cmocka_unit_test(test_refused_lists),
