@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/bake.h - lens tables to models; and all of the offline half.
+ * glint/bake.h - lens tables to models; it includes all of the offline half.
  *
  *     glint_bake_defaults(&options);
- *     glint_bake(&lens, &options, &model, &bytes, &report, &error);
- */
+ *     glint_bake(&lens, &options, &model, &bytes, &report, &error); */
 #ifndef GLINT_BAKE_H
 #define GLINT_BAKE_H
 
@@ -28,36 +27,37 @@ struct glint_bake_options {
     int basis;         /* enum glint_basis */
     double band_nm[2]; /* shortest and longest wavelength, 300 .. 1100 */
     double max_deg;    /* largest angle of a light, above 0, up to 89 */
-    double field_mm;   /* radius on the sensor within which light counts; 0: a
-                          tenth more than the film's corners */
-    double tolerance;  /* scale of all errors aimed at, 0.1 .. 100; at 1 the
-                          root mean squares for ghosts that are as bright as
-                          counts are 0.03 pixels of a film 1920 wide, as much
-                          for the outline, and 0.06 % of energy; for faint
-                          ones up to 0.056 and 0.3 pixels and 0.6 % */
-    struct glint_workers *workers; /* never changes the model */
+    double field_mm;   /* radius about the sensor's centre within which light
+                          counts; 0: a tenth more than to the film's corners */
+    /* Scale of all tolerances, 0.1 .. 100. At 1, the root mean squares aimed at
+     * for ghosts as bright as an exposure goes by are 0.04 pixels of a film
+     * 1920 wide, for places and outlines, and 0.12 % of the energy; for faint
+     * ghosts up to 0.07 pixels for places, 0.4 for outlines, and 1.2 %. */
+    double tolerance;
+    struct glint_workers *workers; /* does not change the model */
     glint_progress_fn *progress;   /* NULL: silent */
     void *progress_ctx;
 };
 
 void glint_bake_defaults(struct glint_bake_options *options);
 
-/* A model is known by this key of LENS and OPTIONS. */
+/* Returns a hash of all of LENS and OPTIONS that a model depends on, to
+ * recognise the model by. */
 uint64_t glint_bake_key(const struct glint_prescription *lens,
                         const struct glint_bake_options *options);
 
-/* The figures of a bake that its model does not tell. */
+/* Figures of a bake that are not in its model. */
 struct glint_bake_report {
-    int rays;      /* measured */
+    int rays;      /* number of rays measured */
     int intruders; /* measured rays that pass the model though the real lens
                       cuts them, by more than 3 % of a radius */
     int unmet;     /* number of systems that miss the tolerance */
 };
 
-/* Bakes LENS into *MODEL of *BYTES, to be freed by the caller: a file as in
- * glint/model.h. The same lens and options give the same bytes.
- * GLINT_E_ARGUMENT, GLINT_E_LENS (no light gets through, or the proof that no
- * integer overflows fails) with ERROR, GLINT_E_MEMORY. */
+/* Bakes LENS into *MODEL[*BYTES], a file as in glint/model.h, to be freed by
+ * the caller. The same lens and options give the same bytes. With ERROR:
+ * GLINT_E_ARGUMENT, and GLINT_E_LENS if no light gets through or the proof that
+ * no integer overflows fails. GLINT_E_MEMORY. */
 enum glint_status glint_bake(const struct glint_prescription *lens,
                              const struct glint_bake_options *options,
                              unsigned char **model, size_t *bytes,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/exact.h - the exact picture: what all others are measured by.
- */
+ * glint/exact.h - the exact picture, by which all others are measured. */
 #ifndef GLINT_EXACT_H
 #define GLINT_EXACT_H
 
@@ -19,19 +18,19 @@ struct glint_exact_config {
     struct glint_view view;
     const struct glint_lamp *lamps;
     int n_lamps;
-    int grid;       /* cells a side over each ghost's pupil box, even */
-    int only_ghost; /* -1: all */
-    struct glint_workers *workers; /* never changes the picture */
+    int grid; /* cells a side of the grid over each ghost's pupil box, even */
+    int only_ghost; /* index of the only ghost that is drawn; -1: all are */
+    struct glint_workers *workers; /* does not change the picture */
     glint_progress_fn *progress;   /* NULL: silent */
     void *progress_ctx;
 };
 
-/* The reference picture: every ray in double, each cell clipped exactly by the
- * stop and by every barrel's own circle, coverage by area, energy conserving.
- * RGB is [height][width][3], row 0 on top; values are what the lamps' POWER
- * says. GLINT_E_MEMORY: it needs about 100 bytes per cell of one ghost and 24
- * per pixel, or lamps times ghosts times wavelengths are more than 2^24.
- * Deterministic. */
+/* Draws the reference picture: every ray in double, each cell clipped exactly
+ * by the stop and by every barrel's own circle, coverage by area, energy
+ * conserving. RGB is [height][width][3], row 0 on top, in the unit of the
+ * lamps' power. GLINT_E_MEMORY: about 100 bytes per cell of one ghost and 24
+ * per pixel are needed, or lamps times ghosts times wavelengths are more than
+ * 2^24. Deterministic. */
 enum glint_status glint_exact_render(const struct glint_exact_config *cfg,
                                      double *rgb);
 

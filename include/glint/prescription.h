@@ -49,8 +49,8 @@ struct glint_film {
 
 #define GLINT_MAX_FILMS GLINT_MAX_SURFACES
 
-/* A lens table, all of it checked. The stop lies between two surfaces: its gap
- * before is the thickness of the surface in front of it. */
+/* A lens table, all of it checked. The stop lies between two surfaces: the
+ * thickness of the surface before it is its distance from that surface. */
 struct glint_prescription {
     char name[GLINT_NAME_BYTES];
     char source[256]; /* patent or book, for people */
@@ -58,17 +58,16 @@ struct glint_prescription {
     double film_width_mm, film_height_mm;
     int n_surfaces; /* without the stop, 1 .. GLINT_MAX_SURFACES */
     struct glint_surface surface[GLINT_MAX_SURFACES];
-    int stop_after;           /* surfaces before the stop, 0 .. n_surfaces */
+    int stop_after; /* number of surfaces before the stop, 0 .. n_surfaces */
     double stop_thickness_mm; /* mm from the stop to the next surface (or the
                                  sensor); a front stop lies at z < 0 */
     double stop_semi_mm;      /* largest opening of the stop */
-    double check_focal_mm;    /* stated values; 0: not stated */
+    double check_focal_mm;    /* values that the table states; 0: not stated */
     double check_back_mm;
-    /* Coatings that the table gives its surfaces by look rather than by
-     * measurement; the surfaces have them only after glint_prescription_coat().
-     */
+    /* Coatings of the lens that the table took from its look, not from
+     * measurements. Surfaces have them only after glint_prescription_coat(). */
     struct glint_film mixed[GLINT_MAX_FILMS];
-    int n_mixed; /* 0: the table does not say */
+    int n_mixed; /* 0: the table lists none */
 };
 
 /* Reads a lens table; lenses/README.md describes the format. TEXT need not be
@@ -79,24 +78,25 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
                                            const char *file_name,
                                            struct glint_error *error);
 
-/* Changes the f-number. GLINT_E_ARGUMENT: not finite, or the stop it asks for
- * is wider than stop_semi_mm. */
+/* Changes the f-number. GLINT_E_ARGUMENT: F_NUMBER is not finite or out of
+ * range, or needs a stop wider than stop_semi_mm. */
 enum glint_status
 glint_prescription_set_f_number(struct glint_prescription *lens,
                                 double f_number, struct glint_error *error);
 
-/* Takes what is on LENS's surfaces between air and glass off, and deals FILMS
- * out over them, the first one to the front and from the first again behind the
- * last; N 1 .. GLINT_MAX_FILMS. Cemented surfaces stay bare. */
+/* Replaces the coatings of LENS: surfaces between air and glass get FILMS[N] in
+ * turn from the front, again from the first when all are used; N is 1 ..
+ * GLINT_MAX_FILMS. Cemented surfaces are bare. */
 void glint_prescription_coat(struct glint_prescription *lens,
                              const struct glint_film *films, int n);
 
-/* The films that a table without any of its own is mixed of; returns how many
- * there are. */
+/* Sets FILMS to the mix for tables that list none; returns how many films it
+ * has. */
 int glint_films_mixed(struct glint_film films[GLINT_MAX_FILMS]);
 
-/* Reads films as the tables have them, "none", "NM" or "NM/INDEX", but divided
- * by commas. GLINT_E_ARGUMENT: ERROR says what is wrong; nothing is written. */
+/* Reads films from TEXT, words "none", "NM" or "NM/INDEX" as in the tables, but
+ * separated by commas. GLINT_E_ARGUMENT: ERROR says what is wrong, and FILMS is
+ * unchanged. */
 enum glint_status glint_films_parse(struct glint_film films[GLINT_MAX_FILMS],
                                     int *n, const char *text,
                                     struct glint_error *error);
@@ -104,12 +104,13 @@ enum glint_status glint_films_parse(struct glint_film films[GLINT_MAX_FILMS],
 /* First-order quantities at the d line (587.56 nm). */
 struct glint_optics {
     double focal_mm;           /* effective focal length */
-    double back_focal_mm;      /* last surface to the paraxial focus */
+    double back_focal_mm;      /* from the last surface to the paraxial focus */
     double entrance_radius_mm; /* radius of the entrance pupil: focal / (2 N) */
     double entrance_z_mm;      /* distance of the entrance pupil from the front
                                   vertex */
     double stop_radius_mm;     /* radius of the aperture stop at the f-number */
-    double length_mm;          /* front vertex to sensor */
+    double length_mm; /* from the front vertex, or a stop before it, to the
+                         sensor */
 };
 
 void glint_optics_of(const struct glint_prescription *lens,
@@ -121,8 +122,9 @@ struct glint_ghost {
     int i, j; /* indices into glint_prescription.surface, i < j */
 };
 
-/* All pairs on the same side of the stop, those before it first, I outer, J
- * inner. Writes at most MAX; returns how many there are. [Hullin11] */
+/* Lists all pairs of surfaces on the same side of the stop, those before it
+ * first, by rising I and then J. Writes at most MAX; returns how many there
+ * are. [Hullin11] */
 int glint_ghost_list(const struct glint_prescription *lens,
                      struct glint_ghost *ghosts, int max);
 

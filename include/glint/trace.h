@@ -5,10 +5,9 @@
  *     glint_path_init(&path, &lens, &ghosts[k], 532.0);  one ghost, one colour
  *     glint_trace(&path, px, py, direction, &ray, NULL);
  *
- * A thread that calls what finds pupils, bakes or draws exact pictures, and
- * each of its workers, needs a stack of GLINT_BAKE_STACK_BYTES, more than what
- * musl (128 KiB) and macOS (512 KiB) give to threads.
- */
+ * Functions that find pupils, bake or draw exact pictures need a stack of
+ * GLINT_BAKE_STACK_BYTES in the calling thread and in each worker, more than
+ * musl (128 KiB) and macOS (512 KiB) give to threads. */
 #ifndef GLINT_TRACE_H
 #define GLINT_TRACE_H
 
@@ -20,23 +19,26 @@
 extern "C" {
 #endif
 
-#define GLINT_MAX_EVENTS (3 * GLINT_MAX_SURFACES) /* most of one path */
+/* Most surfaces that a path meets. */
+#define GLINT_MAX_EVENTS (3 * GLINT_MAX_SURFACES)
 
 #define GLINT_BAKE_STACK_BYTES (1 << 20)
 
 enum glint_event_kind { GLINT_REFRACT, GLINT_REFLECT, GLINT_STOP };
 
-/* One thing that happens to a ray, all constants worked out. */
+/* One meeting of a ray with a surface or the stop, with its constants worked
+ * out. */
 struct glint_event {
     enum glint_event_kind kind;
-    int surface;         /* index; -1 for the stop */
-    double curvature;    /* 1 / radius, 0 for a plane and the stop */
-    double advance_mm;   /* z from the vertex before (or the start plane) to
-                            this one; negative when running backwards */
-    double semi_mm;      /* semi-diameter */
-    double n_from, n_to; /* index on the side it comes from, and beyond */
-    double film_n;       /* index of the coating; 0: bare */
-    double film_phase;   /* 4 pi n d / wavelength, radians */
+    int surface;       /* index; -1 for the stop */
+    double curvature;  /* 1 / radius, 0 for a plane and the stop */
+    double advance_mm; /* z from the vertex of the last event (or the start
+                          plane) to this one; negative when running backwards */
+    double semi_mm;    /* semi-diameter */
+    /* Index before the surface and after it, as the ray runs. */
+    double n_from, n_to;
+    double film_n;     /* index of the coating; 0: bare */
+    double film_phase; /* 4 pi n d / wavelength of the coating, radians */
 };
 
 /* The path of one ghost at one wavelength: forward to J, back to I, forward to
@@ -44,20 +46,22 @@ struct glint_event {
 struct glint_path {
     int n_events;
     struct glint_event event[GLINT_MAX_EVENTS + 1];
-    double to_sensor_mm; /* last vertex to the sensor */
-    bool places_only;    /* energies stay 1, in a third less time */
+    double to_sensor_mm; /* from the last vertex to the sensor */
+    bool places_only; /* true: energies stay 1, and tracing takes a third less
+                         time */
 };
 
-/* Fills PATH for GHOST of LENS (NULL: the direct path). */
+/* Fills PATH for GHOST of LENS; NULL: for the direct path. */
 void glint_path_init(struct glint_path *path,
                      const struct glint_prescription *lens,
                      const struct glint_ghost *ghost, double wavelength_nm);
 
 enum glint_ray_status {
     GLINT_RAY_OK = 0,
-    GLINT_RAY_MISSED = 1, /* a surface, its equator, or the way */
+    GLINT_RAY_MISSED = 1, /* the ray misses a surface, meets it beyond its
+                             equator, or cannot go on */
     GLINT_RAY_TOTAL_REFLECTION =
-        2 /* the ray was reflected wholly where it should have been refracted */
+        2 /* the ray is reflected totally where it should be refracted */
 };
 
 struct glint_ray {
@@ -70,10 +74,10 @@ struct glint_ray {
 };
 
 /* Traces the ray that starts at (PX, PY) on the vertex plane of the first
- * surface along DIRECTION (unit length). It goes on where a barrel or the stop
- * would have ended it. RAY is written only for GLINT_RAY_OK. HITS, unless NULL,
- * receives x and y of each event, [n_events][2], in mm.
- * [Hullin11] section 4; unpolarised energy. */
+ * surface along DIRECTION, of unit length. The ray goes on where a barrel or
+ * the stop would have ended it. RAY is written only if GLINT_RAY_OK is
+ * returned. HITS, unless NULL, receives x and y of each event, [n_events][2],
+ * in mm. Energy is that of unpolarised light. [Hullin11] section 4 */
 enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
                                   double py_mm, const double direction[3],
                                   struct glint_ray *ray, double (*hits)[2]);
@@ -84,50 +88,52 @@ struct glint_launch {
     double x_mm, y_mm, direction[3];
 };
 
-/* Traces N rays, to the bit as glint_trace() does, in a fraction of the time.
- * RAY and STATUS have N entries, HITS [n][n_events][2]. */
+/* Traces N rays, with the same bits as glint_trace() gives, in a fraction of
+ * the time. RAY and STATUS have N entries, HITS has [n][n_events][2]. */
 void glint_trace_many(const struct glint_path *path, int n,
                       const struct glint_launch *from, struct glint_ray *ray,
                       enum glint_ray_status *status, double (*hits)[2]);
 
-/* N parallel rays side by side. */
+/* N parallel rays in a row along x. */
 struct glint_row {
     int n;
     double x0_mm, step_mm, y_mm, direction[3];
 };
 
-/* glint_trace_many() of ROW, ray I at x0_mm + I step_mm. */
+/* Does what glint_trace_many() does for the rays of ROW: ray I starts at x0_mm
+ * + I step_mm. */
 void glint_trace_row(const struct glint_path *path, const struct glint_row *row,
                      struct glint_ray *ray, enum glint_ray_status *status,
                      double (*hits)[2]);
 
-/* Index of refraction at WAVELENGTH_NM of a glass (two-term Cauchy from nd and
- * Vd; vd <= 0 is a medium without dispersion). */
+/* Returns the index of refraction of a glass at WAVELENGTH_NM, by two-term
+ * Cauchy from ND and VD; VD <= 0 is a medium without dispersion. */
 double glint_index(double nd, double vd, double wavelength_nm);
 
-/* Reflectance of one boundary for unpolarised light that meets it at
- * COS_FROM; FILM_N = 0 is a bare boundary, else a film of that index with
- * FILM_PHASE = 4 pi n d / wavelength. 1 at total reflection. */
+/* Returns the reflectance of one boundary for unpolarised light that meets it
+ * at COS_FROM; 1 at total reflection. FILM_N = 0 is a bare boundary, else the
+ * index of a film with FILM_PHASE = 4 pi n d / wavelength. */
 double glint_reflectance(double n_from, double n_to, double cos_from,
                          double film_n, double film_phase);
 
-/* Part of the vertex plane of the first surface, symmetric in y, that holds
- * every ray of a path that the stop and the barrels let through; the light is
+/* A part of the vertex plane of the first surface, symmetric in y, that holds
+ * every ray of a path that the stop and the barrels let through. The light is
  * in the x-z plane. */
 struct glint_pupil {
     double x0_mm, x1_mm, y1_mm;
-    double energy;       /* largest one seen inside */
-    double sensor_mm[4]; /* x0, x1, y0, y1 of its light on the sensor */
+    double energy;       /* largest energy of a ray seen inside */
+    double sensor_mm[4]; /* range of its light on the sensor: x0, x1, y0, y1 */
 };
 
-/* NEAR: unless NULL, what was found for another wavelength; the search then
- * looks only at it and its surroundings, for a third of the work. False:
- * nothing gets through. */
+/* Finds the pupil of PATH for light at THETA_DEG; returns false if nothing gets
+ * through. NEAR: NULL, or the pupil at another wavelength; the search then
+ * looks only at that and its surroundings, for a third of the work. */
 bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm,
                       const struct glint_pupil *near);
 
-/* The same for what also lands within FIELD_MM of the sensor's centre. */
+/* Finds the pupil of those rays that also land within FIELD_MM of the sensor's
+ * centre; otherwise as glint_pupil_find(). */
 bool glint_pupil_find_within(struct glint_pupil *pupil,
                              const struct glint_path *path, double theta_deg,
                              double stop_radius_mm, double field_mm,

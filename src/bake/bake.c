@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * From a lens table to its model: fit, quantise, prove, write, measure.
- */
+ * Makes the model of a lens table: fits, quantises, proves, writes and measures
+ * it. */
 #include "glint/bake.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 #include "bake/trace/cells.h"
 #include "bake/write_model.h"
 
-/* All that the making of one model takes. */
+/* All that is needed while one model is made. */
 struct bake_run {
     const struct glint_prescription *lens;
     struct glint_bake_options options;
@@ -27,7 +27,8 @@ struct bake_run {
     enum glint_status *status;                 /* [n_ghosts] */
     struct glint_draft draft;
     int *first;     /* index of each ghost's first system */
-    int *intruders; /* number of intruders of each ghost */
+    int *intruders; /* number of intruders of each ghost, see struct
+                       glint_bake_report */
     int *rays;
     struct glint_error *error;
 };
@@ -76,7 +77,8 @@ static enum glint_status fit_auto(struct bake_run *run, int ghost)
         .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
-        /* a sixteenth of that, or so much of f/10: models serve that, too */
+        /* 1/16 of that, or less if the lens opens wider than f/10, so that the
+         * model serves f/10, too */
         .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / 10),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
@@ -138,16 +140,17 @@ static void measure_job(void *ctx, int ghost, int worker)
     free(visible);
 }
 
-/* A job for every ghost, and the share of progress it stands for. */
+/* One round of jobs, a job for each ghost, and its share of the progress, 0 ..
+ * 1. */
 struct round {
     struct bake_run *run;
     glint_job_fn *job;
     double from, to;
-    int most; /* jobs that were begun */
+    int most; /* largest number of a job that worker 0 has ended */
 };
 
-/* Ghosts differ a hundredfold in time, so nobody waits for anybody; worker 0
- * tells how far it is. */
+/* Runs a job of a round. Ghosts differ a hundredfold in time, so workers do not
+ * wait for each other; worker 0 reports progress. */
 static void round_job(void *ctx, int job, int worker)
 {
     struct round *r = ctx;
@@ -187,8 +190,7 @@ static int parts_of(const struct glint_fitted_ghost *ghost)
     return n;
 }
 
-/* Gives the further parts of parted ghosts places of their own behind all
- * ghosts. */
+/* Makes the further parts of ghosts ghosts of their own, after all others. */
 static enum glint_status part_ghosts(struct bake_run *run)
 {
     struct glint_setup *s = &run->setup;
@@ -249,7 +251,7 @@ static void clear(struct bake_run *run)
     free(run->draft.data);
 }
 
-/* A model that no reader would take is not handed out. */
+/* Checks that readers will accept the model: else it is not handed out. */
 static enum glint_status check_draft(const struct bake_run *run)
 {
     struct glint_lens lens;

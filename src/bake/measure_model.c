@@ -14,7 +14,7 @@ struct random {
     uint64_t state;
 };
 
-/* -1 .. 1 [Steele14] */
+/* Returns a random number, -1 .. 1. [Steele14] */
 static double next(struct random *r)
 {
     uint64_t z = r->state += UINT64_C(0x9e3779b97f4a7c15);
@@ -24,7 +24,7 @@ static double next(struct random *r)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
 }
 
-/* A bundle and its exact counterpart. */
+/* A bundle of the model, its exact path, and the errors found so far. */
 struct meter {
     const struct glint_visible *visible;
     const struct glint_fitted_system *fitted;
@@ -54,8 +54,8 @@ static void note(struct meter *b, int kind, double error)
     b->error[kind][b->n_of[kind]++] = fabs(error);
 }
 
-/* Barrels count where they cut: the error of r is that of (1 + r^2) / 2 there.
- */
+/* Notes the errors of barrels near their rim, where they cut: there the error
+ * of r equals that of (1 + r^2) / 2. */
 static void note_barrels(struct meter *b, const struct glint_outputs *o,
                          double (*hits)[2])
 {
@@ -108,7 +108,7 @@ static bool passes(const struct meter *b, const struct glint_outputs *o)
     return clear;
 }
 
-/* Farther out than what any tolerance explains. */
+/* Returns whether a ray misses by more than any tolerance explains. */
 static bool well_outside(const struct meter *b, enum glint_ray_status status,
                          const struct glint_ray *ray)
 {
@@ -135,7 +135,8 @@ static void try_ray(struct meter *b, double u, double v)
         b->out->intruders++;
 }
 
-/* Energy counts by its share, down to a fiftieth of the most. */
+/* Turns errors of energy into shares of the ray's energy, or of 1/50 of the
+ * largest energy if that is more. */
 static void divide_energy(struct meter *b)
 {
     double most = 1e-30;
@@ -169,7 +170,8 @@ static struct glint_errors errors_of(double *error, int n)
     return e;
 }
 
-/* A bundle at a random angle and wavelength of the system. */
+/* Sets the bundle to a random angle and wavelength of the system; returns false
+ * if it belongs to another system. */
 static bool set_bundle(struct meter *b, const struct glint_lens *lens,
                        const struct glint_model_system *s, struct random *r)
 {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A model's errors, measured: random rays that get through, traced exactly and
- * taken through the integers of the run time.
- */
+ * Measures the errors of a model: random rays that get through are traced
+ * exactly and sent through the integers of the run time. */
 #ifndef GLINT_BAKE_MEASURE_MODEL_H
 #define GLINT_BAKE_MEASURE_MODEL_H
 
@@ -16,13 +15,13 @@ struct glint_errors {
 
 struct glint_measured {
     int rays;      /* number of rays that got through */
-    int intruders; /* rays that are cut, well outside of every edge,
-                      but pass in the model */
+    int intruders; /* rays that are cut, well outside of every edge, but pass
+                      the model */
     struct glint_errors of[GLINT_OUT_KINDS]; /* errors of each output, in the
                                                 model file's units */
 };
 
-/* Measures system SYSTEM of LENS, made from FITTED. Deterministic. */
+/* Measures system SYSTEM of LENS, which was made from FITTED. Deterministic. */
 void glint_measure_system(const struct glint_visible *visible,
                           const struct glint_lens *lens, int system,
                           const struct glint_fitted_system *fitted,

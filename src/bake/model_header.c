@@ -10,7 +10,8 @@
 
 enum { FLUX_NODES = 9 };
 
-/* FLUX at the nodes W of the band as a polynomial in w. */
+/* Sets COEF to the polynomial in w that fits FLUX at the nodes W of the band.
+ */
 static void fit_flux(const double *w, const double *flux, double scale,
                      struct glint_real *coef)
 {
@@ -35,15 +36,16 @@ static void fit_flux(const double *w, const double *flux, double scale,
         coef[poly.power[i][3]] = glint_real_of(poly.coef[i]);
 }
 
-/* The direct image's flux over the stop's area, of the whole one and of smaller
- * ones. Energy and the pupil's aberration are even in the place on the pupil,
- * so that it is smooth in the square of the stop's radius: three of these, the
- * first two an eighth and half of the last. */
+/* Sets the direct image's flux over the stop's area, for the whole stop and for
+ * smaller ones. Energy and the pupil's aberration are even in the place on the
+ * pupil, so the flux is smooth in the square of the stop's radius. It is traced
+ * at three squares: the whole, a half and an eighth. */
 static enum glint_status set_flux(const struct glint_bake_options *options,
                                   const struct glint_setup *whole,
                                   struct glint_model_header *h)
 {
-    static const double closed[2] = {0.5, 0.875}; /* share of the stop shut */
+    /* Closed shares of the stop's area. */
+    static const double closed[2] = {0.5, 0.875};
     const double *band = options->band_nm;
     const double lo = 1 / (band[1] * band[1]), hi = 1 / (band[0] * band[0]);
     double w[FLUX_NODES], flux[3][FLUX_NODES], more[2][FLUX_NODES];

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a model says of its lens, beside its ghosts.
- */
+ * Makes the header of a model: what it says of its lens besides the ghosts. */
 #ifndef GLINT_BAKE_MODEL_HEADER_H
 #define GLINT_BAKE_MODEL_HEADER_H
 
@@ -9,7 +8,7 @@
 #include "glint/model.h"
 #include "glint/setup.h"
 
-/* Fills HEADER but for ghosts and systems. GLINT_E_MEMORY. */
+/* Fills HEADER except for ghosts and systems. GLINT_E_MEMORY. */
 enum glint_status
 glint_model_header_of(const struct glint_prescription *lens,
                       const struct glint_bake_options *options,

@@ -8,8 +8,8 @@
 #include "glint/model.h"
 
 enum {
-    REVISION = 12 /* version of the models, raised when a lens would bake
-                     differently */
+    REVISION = 12 /* version of the models: raised if a lens would bake to
+                     another model */
 };
 
 void glint_bake_defaults(struct glint_bake_options *options)
@@ -56,7 +56,7 @@ double glint_bake_field_mm(const struct glint_prescription *lens,
                : 0.55 * hypot(lens->film_width_mm, lens->film_height_mm);
 }
 
-/* FNV-1a over the bytes of a number. */
+/* Adds the bytes of a number to a key, by FNV-1a. */
 static void mix(uint64_t *key, double value)
 {
     unsigned char byte[sizeof value];

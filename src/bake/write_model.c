@@ -12,8 +12,8 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* Adds BYTES from DATA (zeros where it is NULL) at a multiple of 4. Returns
- * where they are. */
+/* Appends BYTES from DATA (zeros if it is NULL), padded to a multiple of 4.
+ * Returns the offset of its beginning. */
 static uint32_t put(struct glint_draft *d, const void *data, size_t bytes)
 {
     const size_t padded = (bytes + 3) / 4 * 4, where = d->bytes;
@@ -40,7 +40,7 @@ static uint32_t put(struct glint_draft *d, const void *data, size_t bytes)
     return (uint32_t)where;
 }
 
-/* Overwrites what was put at WHERE. */
+/* Overwrites BYTES at the offset WHERE. */
 static void amend(struct glint_draft *d, uint32_t where, const void *data,
                   size_t bytes)
 {
@@ -62,7 +62,7 @@ static uint32_t put_terms(struct glint_draft *d,
     return put(d, power, (size_t)o->n_terms * sizeof *power);
 }
 
-/* One set: the wide coefficients, and behind them the narrow ones. */
+/* Appends one set of coefficients: the wide ones, then the narrow ones. */
 static uint32_t put_coefficients(struct glint_draft *d,
                                  const struct glint_fitted_output *o,
                                  const struct glint_quantised_output *q)
@@ -138,7 +138,8 @@ static uint32_t put_knots(struct glint_draft *d,
     return where;
 }
 
-/* Terms that are 0 in all three sides are left out. */
+/* Appends the box of a system. Terms that are 0 in all three sides are left
+ * out. */
 static uint32_t put_box(struct glint_draft *d,
                         const struct glint_quantised_system *q, bool knots,
                         uint8_t *terms)
@@ -162,7 +163,7 @@ static void write_system(struct glint_draft *d, uint32_t where,
                          const struct glint_fitted_system *f,
                          const struct glint_quantised_system *q)
 {
-    /* one after the other: the order is part of the file */
+    /* One after the other, as the order is part of the file. */
     const uint32_t knot_at = put_knots(d, f);
     uint8_t box_terms;
     const uint32_t box_at = put_box(d, q, f->n_knots > 0, &box_terms);
@@ -227,7 +228,7 @@ struct glint_lens glint_draft_lens(const struct glint_draft *draft)
                                (const void *)(draft->data + h->system_at)};
 }
 
-/* Rounds an error up to what glint_model_error_q20() reads. */
+/* Rounds an error up to a code of glint_model_error_q20(). */
 static uint16_t to_error(double x)
 {
     double mantissa = ceil(x * 0x1p20);

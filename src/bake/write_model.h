@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Writes a model: header, ghosts, systems, and behind them what they point to.
+ * Writes a model: header, ghosts, systems, then the tables that they point to.
  */
 #ifndef GLINT_BAKE_WRITE_MODEL_H
 #define GLINT_BAKE_WRITE_MODEL_H
@@ -9,29 +9,29 @@
 #include "bake/fit/quantise.h"
 #include "glint/setup.h"
 
-/* A model in the making; owned. */
+/* A model while it is written; owned. */
 struct glint_draft {
     unsigned char *data;
     size_t bytes, room;
     bool out_of_memory;
 };
 
-/* Lays out FITTED and QUANTISED [n_ghosts]; the errors are 0, size and CRC are
- * not set yet. GLINT_E_MEMORY. */
+/* Writes header, ghosts, and systems from FITTED and QUANTISED [n_ghosts].
+ * Errors are 0, size and checksum are not set yet. GLINT_E_MEMORY. */
 enum glint_status
 glint_draft_write(struct glint_draft *draft, const struct glint_setup *setup,
                   const struct glint_model_header *header,
                   const struct glint_fitted_ghost *fitted,
                   struct glint_quantised_system *const *quantised);
 
-/* The draft as a lens, not checked. */
+/* Returns the draft as a lens, without checking it. */
 struct glint_lens glint_draft_lens(const struct glint_draft *draft);
 
-/* Notes what was measured of SYSTEM. */
+/* Writes the measured errors of system SYSTEM. */
 void glint_draft_note(struct glint_draft *draft, int system,
                       const struct glint_measured *measured);
 
-/* Sets size and CRC: the model is done. */
+/* Sets size and checksum, which completes the model. */
 void glint_draft_close(struct glint_draft *draft);
 
 #endif

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * The exact picture: the reference that everything else is judged by.
+ * Draws the exact picture, the reference by which all others are judged.
  *
  *   in   every visible piece of every cell (cells.h) as a polygon with a flux
  *   out  linear light per pixel, by the exact area that polygons cover
  *
  * Method: the signed area to the right of each polygon edge goes into a
- * difference buffer, one running sum along each row at the end gives the
+ * difference buffer; at the end one running sum along each row gives the
  * picture. Work is split into rows of rays and bands of pixels; every pixel
- * receives its contributions in one order, so threads change nothing.
- */
+ * receives its contributions in one order, so threads change nothing. */
 #include "glint/exact.h"
 #include "glint/trace.h"
 
@@ -19,8 +18,8 @@
 
 #include "bake/trace/cells.h"
 
-enum { BAND = 32 }; /* pixel rows a job; the last may be shorter */
-/* Ghosts times lamps times wavelengths: more would be years of work. */
+enum { BAND = 32 }; /* pixel rows of a job; the last job may have fewer */
+/* Most products of ghosts, lamps and wavelengths: more would take years. */
 enum { MAX_BUNDLES = 1 << 24 };
 
 /* One ghost, lamp and wavelength. */
@@ -28,7 +27,7 @@ struct bundle {
     const struct glint_lamp *lamp;
     int ghost, wavelength;
     bool seen;
-    struct glint_cells cells; /* without its nodes and path */
+    struct glint_cells cells; /* without nodes and path */
 };
 
 struct picture {
@@ -37,7 +36,8 @@ struct picture {
     int n_bundles;
     struct glint_cells cells; /* cells of the bundle being drawn */
     struct glint_path *path;
-    double *row_y;      /* [n + 1][2]: lowest and highest pixel row of nodes */
+    /* [n + 1][2]: least and largest y of a row of nodes, pixels. */
+    double *row_y;
     double *difference; /* [height][3][width + 2] */
     double weight[3];   /* flux of half a cell at energy 1, per channel */
 };
@@ -51,15 +51,16 @@ static double *difference_row(const struct picture *p, int y, int channel)
 
 /* ------------------------------------------------------------------ deposit */
 
-/* One edge within one pixel row: DY of height between X0 and X1 (X0 <= X1),
- * signed; everything to the right gets all of it. */
+/* Adds one edge within one pixel row to its differences. AMOUNT is light times
+ * signed height, X0 .. X1 (X0 <= X1) its range; pixels to its right get all of
+ * it. */
 static void deposit_run(double *row, double x0, double x1, double amount)
 {
     const int first = (int)x0;
     const int last = (int)ceil(x1) - 1;
     double before = 0;
 
-    if (last <= first) { /* within one pixel */
+    if (last <= first) { /* the edge lies within one pixel */
         const double right = 1 - (0.5 * (x0 + x1) - first);
 
         row[first] += amount * right;
@@ -67,13 +68,13 @@ static void deposit_run(double *row, double x0, double x1, double amount)
         return;
     }
     for (int i = first; i <= last; i++) {
-        /* area to the right of the edge, summed up to pixel i */
+        /* Area to the right of the edge in pixel i. */
         const double a = i == first ? x0 : i;
         const double b = i == last ? x1 : i + 1;
         const double slope = amount / (x1 - x0);
         const double come = slope * (a - x0), go = slope * (b - x0);
-        /* height reached before this pixel counts fully, within it by the
-         * trapezium that lies right of the edge */
+        /* All pixels get the height reached before them; within the pixel the
+         * trapezium to the right of the edge is added. */
         const double area = come + (go - come) * (i + 1 - 0.5 * (a + b));
 
         row[i] += area - before;
@@ -113,8 +114,9 @@ static void deposit_edge(const struct picture *p, const struct band *band,
     }
 }
 
-/* Keeps what is on the inner side of a horizontal or vertical line: coordinate
- * AXIS times SIGN at most LIMIT. */
+/* Keeps the part of a polygon on the inner side of a horizontal or vertical
+ * line: coordinate AXIS times SIGN at most LIMIT. Returns its number of
+ * corners. */
 static int trim(double (*p)[2], int n, int axis, double sign, double limit)
 {
     double kept[GLINT_MAX_PIECE + 8][2];
@@ -152,8 +154,8 @@ static double signed_area(double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* A piece without area in the picture, as at the fold of a caustic: its light
- * goes to the pixel it lies in. */
+/* Adds the flux of a piece without area in the picture, as at the fold of a
+ * caustic, to the pixel in which it lies. */
 static void deposit_point(const struct picture *p, const struct band *band,
                           const double at[2], const double *flux)
 {
@@ -194,8 +196,8 @@ static void deposit_piece(const struct picture *p, const struct band *band,
         deposit_point(p, band, polygon[0], light);
         return;
     }
-    /* an edge deposits its height towards the right: sides that run down the
-     * picture count one way, sides that run up the other */
+    /* An edge adds its height to all on its right: sides that run down the
+     * picture count one way, sides that run up the other. */
     for (int c = 0; c < 3; c++)
         light[c] /= -area;
     if (low[1] < band->y0)
@@ -213,7 +215,7 @@ static void deposit_piece(const struct picture *p, const struct band *band,
 
 /* --------------------------------------------------------------------- jobs */
 
-/* Moves one row of nodes to pixels. */
+/* Turns the places of one row of nodes into pixels. */
 static void place_row(struct picture *p, int row)
 {
     const struct glint_view *view = &p->cfg->view;
@@ -234,7 +236,7 @@ static void place_row(struct picture *p, int row)
     }
 }
 
-/* Rays of one row and the one it mirrors. */
+/* Traces one row of rays, which also gives its mirror image. */
 static void trace_job(void *ctx, int job, int worker)
 {
     struct picture *p = ctx;
@@ -302,7 +304,8 @@ static enum glint_status list_bundles(struct picture *p)
     const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
     const uint64_t n = (uint64_t)c->n_lamps * (uint64_t)(ghosts * waves);
     const size_t most =
-        SIZE_MAX / 2 / sizeof *p->bundle; /* 32 bits hold less */
+        /* The address space of 32 bits holds fewer. */
+        SIZE_MAX / 2 / sizeof *p->bundle;
     const int all = n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 
     if (n <= MAX_BUNDLES && n < most)
@@ -360,7 +363,7 @@ static enum glint_status draw_all(struct picture *p)
     return status;
 }
 
-/* The running sums along the rows. */
+/* Sums up the differences along the rows. */
 static void integrate(const struct picture *p, double *rgb)
 {
     const int width = p->cfg->view.width;

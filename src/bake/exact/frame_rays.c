@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame of exact rays: planned, traced and handed over bundle by bundle.
- */
+ * Draws a frame of exact rays: plans, traces and adds bundle by bundle. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +8,11 @@
 #include "engine/frame/block.h"
 #include "engine/frame/frame_parts.h"
 
-/* One frame takes 65535 bundles and 0.8 GB of vertices at most. */
+/* Most bundles of a frame, and most vertices, 0.94 GB. */
 enum { MAX_BUNDLES = 65535, MAX_VERTICES = 1 << 25 };
 
-/* Bundles that are looked at before most of them turn out to miss the picture:
- * 2.3 GB of them. */
+/* Most bundles that are planned, 2.3 GB, before most turn out to miss the
+ * picture. */
 enum { MAX_PLANNED = 1 << 24 };
 
 /* --------------------------------------------------------------------- plan */
@@ -21,7 +20,7 @@ enum { MAX_PLANNED = 1 << 24 };
 struct traced {
     struct glint_traced_bundle *bundle;
     int n_bundles, max_bundles;
-    int n_dropped; /* bundles beyond what a frame may take */
+    int n_dropped; /* number of bundles beyond what a frame may take */
     /* Vertices of each traced bundle, in the flare's block. */
     struct glint_vertex **vertices;
 };
@@ -38,7 +37,7 @@ traced_config(const struct glint_frame *f, double scale)
                                                f->dials.fineness, f->uniform};
 }
 
-/* All wavelengths of one ghost and lamp. */
+/* Plans all wavelengths of one ghost and lamp. */
 static void plan_job(void *ctx, int job, int worker)
 {
     struct job *j = ctx;
@@ -53,7 +52,7 @@ static void plan_job(void *ctx, int job, int worker)
             glint_traced_bundle_plan(&j->cfg, &traced[wave], &traced[middle]);
 }
 
-/* N of them, of which MAX_PLANNED are as many as can be numbered and held. */
+/* Makes room for N bundles to be planned, at most MAX_PLANNED. */
 static enum glint_status reserve_feeds(struct glint_frame *f, uint64_t n)
 {
     struct traced *const t = f->traced;
@@ -83,7 +82,7 @@ static bool begin(struct glint_frame *f)
     return f->traced;
 }
 
-/* Every ghost, lamp and wavelength that reaches the picture. */
+/* Plans all bundles, and keeps those that reach the picture. */
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_lamp *lamps, int n_lamps)
 {
@@ -127,7 +126,7 @@ static double flux_of(const struct glint_frame *f,
            f->setup->unit_flux[traced->wavelength];
 }
 
-/* Pixels of the box that its light falls in. */
+/* Returns the size in pixels of the box that the bundle's light falls in. */
 static double pixels_of(const struct glint_frame *f,
                         const struct glint_traced_bundle *traced)
 {
@@ -163,7 +162,8 @@ static enum glint_status set_scale(struct glint_frame *frame,
 
 /* ------------------------------------------------------------------- memory */
 
-/* A new block of exactly what was needed so far; the vertices move over. */
+/* Moves the flare to a new block for the capacities needed so far, with its
+ * vertices. */
 static enum glint_status regrow(struct glint_frame *f,
                                 const struct glint_traced_bundle_config *cfg)
 {
@@ -207,7 +207,7 @@ static void trace_job(void *ctx, int job, int worker)
     glint_traced_bundle_trace(&j->cfg, &t->bundle[job], t->vertices[job]);
 }
 
-/* Takes all bundles in; makes room first where there is too little. */
+/* Adds all bundles to the flare; makes room first if there is too little. */
 static enum glint_status
 add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
 {
@@ -219,7 +219,7 @@ add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
         const int n = t->bundle[i].n_cells + 1;
 
         if (i == MAX_BUNDLES || n * n > MAX_VERTICES - vertices) {
-            t->n_dropped = t->n_bundles - i; /* the weakest lamps come last */
+            t->n_dropped = t->n_bundles - i; /* The faintest lamps come last. */
             t->n_bundles = i;
             break;
         }
@@ -242,7 +242,7 @@ add_bundles(struct glint_frame *f, const struct glint_traced_bundle_config *cfg)
     return GLINT_OK;
 }
 
-/* Bins, and where something did not fit, once more with room for it. */
+/* Bins, and repeats that with more room as long as something does not fit. */
 static enum glint_status bin(struct glint_frame *f,
                              const struct glint_traced_bundle_config *cfg,
                              struct glint_flare_stats *s)

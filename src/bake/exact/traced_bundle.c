@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Exact rays for the run-time half, where a model's are not wanted.
- */
+ * Plans and traces bundles of exact rays for the run-time half, in place of a
+ * model's. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,14 +10,14 @@
 #include "glint/traced_bundle.h"
 #include "lens/grid.h"
 
-/* cells per side of the sampling that decides cuts and grid */
+/* cells a side of the sampling that decides on barrels and grid */
 enum { SAMPLING = 24 };
-/* With fewer rays inside than FEW_INSIDE, sampling tells too little of the
- * grid, which then gets CELLS_A_RADIUS cells per stop radius. */
+/* If fewer rays than FEW_INSIDE get through, sampling tells too little to
+ * choose the grid, which then gets CELLS_A_RADIUS cells per stop radius. */
 enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
 
-/* The ghost's box on the sensor, turned by the light's azimuth, meets the
- * picture. */
+/* Returns whether the ghost's box on the sensor, turned by the light's azimuth,
+ * meets the picture. */
 static bool in_view(const struct glint_traced_bundle_config *cfg,
                     const struct glint_traced_bundle *traced)
 {
@@ -33,8 +33,8 @@ static bool in_view(const struct glint_traced_bundle_config *cfg,
            fabs(x * d) - fabs(d) * w - fabs(c) * h < half_h;
 }
 
-/* Grows the pupil by what a pixel is worth on each side: a pixel whose centre
- * lies just outside of the ghost still gets the light on its inner half. */
+/* Grows the pupil by a pixel on each side: a pixel whose centre lies just
+ * outside of the ghost still gets the light on its inner half. */
 static void add_rim(const struct glint_traced_bundle_config *cfg,
                     struct glint_traced_bundle *traced)
 {
@@ -54,9 +54,10 @@ static void add_rim(const struct glint_traced_bundle_config *cfg,
     s[3] *= 1 + 2 * y;
 }
 
-/* By the rule of lens/grid.h. And none that could step over the stop: where a
- * rim next to total reflection comes through as well, the pupil is the whole
- * front, of which the opening may be a hundredth. */
+/* Returns the cells a side by the rule of lens/grid.h, but not so few that they
+ * could step over the stop: where a rim next to total reflection comes through
+ * as well, the pupil is the whole front, of which the opening may be a
+ * hundredth. */
 static int cells_of(const struct glint_traced_bundle_config *cfg,
                     const struct glint_sampling *s)
 {
@@ -86,8 +87,8 @@ static void light_direction(const struct glint_traced_bundle *traced,
     direction[2] = glint_cos_deg(traced->lamp->theta_deg);
 }
 
-/* The barrels that cut, the one that is most of the outline first: the maximum
- * over the others may have kinks. */
+/* Chooses the barrels that cut. The one that makes up most of the outline comes
+ * first, as the maximum over the others may have kinks. */
 static void choose_cuts(struct glint_traced_bundle *traced,
                         struct glint_sampling *sampling)
 {
@@ -120,7 +121,7 @@ void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
     traced->found = glint_pupil_find(
         &traced->pupil, &path, traced->lamp->theta_deg,
         s->optics.stop_radius_mm, near && near->found ? &near->pupil : NULL);
-    /* some head-room over what the search for the pupil saw */
+    /* room above the largest energy that the search for the pupil saw */
     traced->energy_unit = 1.5 * traced->pupil.energy;
     if (traced->found && in_view(cfg, traced)) {
         light_direction(traced, direction);
@@ -132,8 +133,8 @@ void glint_traced_bundle_plan(const struct glint_traced_bundle_config *cfg,
     }
 }
 
-/* The colour of the bundle, and what it takes to bring its largest channel to
- * 1: saturated lamps exceed the range of the format by far. */
+/* Sets the colour of the bundle, with a largest channel of 1; returns what that
+ * was before. Saturated lamps exceed the range of the format by far. */
 static double colour_of(const struct glint_setup *s,
                         const struct glint_traced_bundle *traced, double rgb[3])
 {
@@ -172,7 +173,7 @@ void glint_traced_bundle_make(const struct glint_traced_bundle_config *cfg,
         bundle->rgb_q14[c] = (int32_t)lrint(rgb[c] * 16384);
 }
 
-/* (1 + r^2) / 2 at the barrel of event K. */
+/* Returns (1 + r^2) / 2 at the barrel of event K. */
 static double barrel_value(const struct glint_path *path, int k,
                            double (*hits)[2])
 {
@@ -199,8 +200,7 @@ struct landing {
     double x, y, stop_x, stop_y, energy, barrel[2];
 };
 
-/* Nothing outside these ranges may become a vertex: geometry never saturates.
- */
+/* Returns whether a vertex can hold the values: geometry never saturates. */
 static bool in_range(const struct landing *l)
 {
     return fabs(l->x) < 0x1p20 && fabs(l->y) < 0x1p20 &&
@@ -221,8 +221,9 @@ static void quantise(const struct landing *l, struct glint_vertex *v)
     v->energy_q16 = (int32_t)lrint(l->energy * 65536);
 }
 
-/* Turns a ray from the light's frame to the picture; MIRROR -1 is the ray on
- * the other side of the light's plane. */
+/* Returns where a ray lands, turned from the light's frame to the picture;
+ * MIRROR is -1 for its mirror image on the other side of the light's plane,
+ * else 1. */
 static struct landing land(const struct glint_traced_bundle_config *cfg,
                            const struct glint_traced_bundle *traced,
                            const struct glint_ray *ray, double mirror)

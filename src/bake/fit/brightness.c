@@ -9,7 +9,8 @@
 
 enum { ACROSS = 24, DOWN = 12, CELLS = ACROSS * DOWN };
 
-/* A cell on the sensor, and its mirror image at -y. */
+/* The light of a cell of the grid on the sensor. Its mirror image at -y counts,
+ * too. */
 struct patch {
     double irradiance, area_mm2, x_mm, y_mm;
 };
@@ -18,7 +19,7 @@ struct task {
     struct glint_brightness *out;
     const struct glint_setup *setup;
     double field_mm, nm;
-    double half_mm[2]; /* half the size of the picture */
+    double half_mm[2]; /* half the width and height of the picture */
     enum glint_status status[GLINT_BRIGHTNESS_ANGLES];
 };
 
@@ -88,7 +89,7 @@ static int brighter_first(const void *a, const void *b)
     return (x < y) - (x > y);
 }
 
-/* Whether X, Y lies in the picture when the light's azimuth is PHI. */
+/* Returns whether (X, Y) lies in the picture if the light's azimuth is PHI. */
 static bool in_picture(const struct task *t, double x, double y, double phi)
 {
     const double c = cos(phi), s = sin(phi);
@@ -97,8 +98,8 @@ static bool in_picture(const struct task *t, double x, double y, double phi)
            fabs(s * x + c * y) <= t->half_mm[1];
 }
 
-/* The irradiance that a thousandth of the picture exceeds, PATCH being sorted;
- * if there is less light than that, infinity. */
+/* Returns the irradiance that 1/1000 of the picture exceeds; HUGE_VAL if less
+ * of it has light. PATCH is sorted, the brightest first. */
 static double level_at(const struct task *t, const struct patch *patch, int n,
                        double phi)
 {
@@ -115,11 +116,11 @@ static double level_at(const struct task *t, const struct patch *patch, int n,
     return HUGE_VAL;
 }
 
-/* The least level of all azimuths: the brightest ghosts may lie outside of the
- * picture, which is then exposed for others. */
+/* Finds the level of one angle: the least over all azimuths, as the brightest
+ * ghosts may lie outside of the picture, which is then exposed for others. */
 static void angle_job(void *ctx, int job, int worker)
 {
-    enum { AZIMUTHS = 7 }; /* 0 to 90 degrees */
+    enum { AZIMUTHS = 7 }; /* azimuths from 0 to 90 degrees */
     struct task *t = ctx;
     const int ghosts = t->setup->n_ghosts;
     struct patch *patch = malloc(((size_t)ghosts * CELLS + 1) * sizeof *patch);

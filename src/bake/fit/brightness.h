@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * How bright a ghost must be to count.
+ * Finds how bright a ghost must be to count.
  *
  *   in   a lens, the field, the band
- *   out  for a few angles the irradiance that a thousandth of the picture has
- * or exceeds, at the azimuth where it is least: what an exposure goes by
+ *   out  for a few angles: the irradiance that 1/1000 of the picture reaches or
+ *        exceeds, at the azimuth at which it is least: the level that an
+ *        exposure goes by
  *
- * A ghost far below it may be off by more before anybody sees it. Ghosts count
- * one by one, not summed where they overlap, which is near enough for that.
+ * A ghost far below that level may be off by more before anybody sees it.
+ * Ghosts count one by one, not summed where they overlap, which is near enough.
  */
 #ifndef GLINT_BAKE_FIT_BRIGHTNESS_H
 #define GLINT_BAKE_FIT_BRIGHTNESS_H
@@ -23,14 +24,14 @@ struct glint_brightness {
                                               sensor area; 0: no light */
 };
 
-/* GLINT_E_MEMORY. Does not depend on WORKERS. */
+/* Finds the levels; they do not depend on WORKERS. GLINT_E_MEMORY. */
 enum glint_status glint_brightness_find(struct glint_brightness *brightness,
                                         const struct glint_setup *setup,
                                         double field_mm,
                                         const double band_nm[2],
                                         struct glint_workers *workers);
 
-/* The lower level of the two angles around SINE. */
+/* Returns the lower level of the two angles around SINE. */
 double glint_brightness_at(const struct glint_brightness *brightness,
                            double sine);
 

@@ -8,7 +8,8 @@
 #include "engine/setup/degrees.h"
 #include "bake/fit/zone_fit.h"
 
-/* Share of a box: a lower fill wastes the cells of the grids. */
+/* Least share of a box that a ghost must fill: less would waste cells of the
+ * grids. */
 #define LEAST_FILL 0.33
 #define CROWD_DEG                                                           \
     1.5 /* degrees: a wider zone with more than two barrels is halved, as a \
@@ -18,33 +19,35 @@
 /* Degrees: narrower zones are not halved. */
 #define LEAST_DEG 0.7
 #define BRIGHT_EASE                                                          \
-    1.5 /* ease below which a ghost is bright: its zones may be half as wide \
+    1.5 /* zones of ghosts with less ease are bright and may be half as wide \
          */
-#define STUCK                                                                 \
-    0.75 /* share of the whole zone's error: a half left with more has gained \
-            nothing from halving */
+#define STUCK                                                                  \
+    0.75 /* share of the error of the whole zone: a half whose error is larger \
+            gained nothing from halving */
 /* Degrees: a narrower zone which gained nothing is not halved again. */
 #define STUCK_DEG 1.2
-/* Tolerances: zones with a larger error are parted. Where the ghost is so faint
- * that it hides more, they may have up to MOST_HIDDEN times as much. */
+/* Tolerances: zones with a larger error are divided into parts. If the ghost is
+ * so faint that it hides more, the error may be up to MOST_HIDDEN times as
+ * large. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
-/* Factor on the error at which a zone is parted: more terms do not mend what is
- * worse. */
+/* Times that error: zones with a larger one are divided at once, as more terms
+ * would not help. */
 #define HOPELESS 20.0
 /* Tolerances: a wide zone with a larger error will be halved anyway. */
 #define HALVES_ANYWAY 10.0
-#define WANDERS                                                               \
-    0.5 /* half widths: a box that moves or grows more over the band makes it \
-           worth to halve the band */
+#define WANDERS                                                                \
+    0.5 /* half widths: if a box moves or grows by more over the band, halving \
+           the band is worth it */
 /* Width of a band in w, 0 .. 2: narrower ones are not halved. */
 #define LEAST_BAND 0.6
-/* Share of a part: cropping is repeated if it leaves less. */
+/* Share of a part: cropping goes on while it leaves less. */
 #define WORTH_CROP 0.8
 
 enum {
-    BAND_DEPTH = 2, /* times that a band can be halved, by LEAST_BAND */
-    CROPS = 2       /* most times that a part is cropped */
+    /* Times that a band can be halved, which follows from LEAST_BAND. */
+    BAND_DEPTH = 2,
+    CROPS = 2 /* most times that a part is cropped */
 };
 
 struct fitter {
@@ -56,8 +59,8 @@ struct fitter {
     struct glint_visible_profile profile;
     struct glint_visible in_band, in_part;
     struct glint_visible_profile band_profile;
-    double profiled[4]; /* angles and band that the profile is of */
-    int n_parts;        /* parts of the zone so far */
+    double profiled[4]; /* angles and band of band_profile */
+    int n_parts;        /* number of parts of the zone so far */
 };
 
 /* ------------------------------------------------------------------- zones */
@@ -103,15 +106,16 @@ static double degrees_between(double lo, double hi)
     return (asin(hi) - asin(lo)) * (180 / GLINT_PI);
 }
 
-/* A zone, or a part of one, to be fitted; BEFORE is what was left of it at the
- * last attempt. THOROUGH: with a box that follows the colours, a root of
- * the energy, and more terms. */
+/* A zone, or a part of one, that waits to be fitted. BEFORE is the error of the
+ * last attempt at the zone it is from. THOROUGH: it is fitted with a box that
+ * follows the colours, a root of the energy, and more terms. */
 struct pending {
     double lo, hi, before;
     double w0, w1; /* the part of the band, -1 .. 1 */
     bool thorough;
     struct glint_zone_part part;
-    int depth; /* halvings that led to the part; 0: the whole zone */
+    int depth; /* number of halvings that led to the part; 0: it is the whole
+                  zone */
 };
 
 static bool is_whole_band(double w0, double w1)
@@ -119,7 +123,7 @@ static bool is_whole_band(double w0, double w1)
     return w0 <= -1 && w1 >= 1;
 }
 
-/* The boxes for the angles and the part of the band of P. */
+/* Returns the boxes for the angles and the part of the band of P. */
 static const struct glint_visible_profile *profile_of(struct fitter *f,
                                                       const struct pending *p)
 {
@@ -128,7 +132,8 @@ static const struct glint_visible_profile *profile_of(struct fitter *f,
 
     if (is_whole_band(p->w0, p->w1))
         return &f->profile;
-    /* NOLINTNEXTLINE: other bits for equal numbers cost a profile, no more */
+    /* NOLINTNEXTLINE: numbers that are equal in other bits only cost a profile
+     */
     if (memcmp(key, f->profiled, sizeof key) != 0) {
         glint_visible_narrow(&f->in_band, f->visible, p->w0, p->w1);
         glint_visible_profile_find(&f->in_band, range, &f->band_profile);
@@ -137,7 +142,8 @@ static const struct glint_visible_profile *profile_of(struct fitter *f,
     return &f->band_profile;
 }
 
-/* Returns what is visible in the band of P's part, to which ZONE is cut. */
+/* Cuts ZONE to the part of P; returns the visibility of the ghost in its band.
+ */
 static const struct glint_visible *
 cut_out(struct fitter *f, const struct pending *p, struct glint_zone *zone)
 {
@@ -152,8 +158,9 @@ cut_out(struct fitter *f, const struct pending *p, struct glint_zone *zone)
     return &f->in_part;
 }
 
-/* Cuts P out of ZONE. A thorough fit leaves off what is not seen: a ghost
- * that comes through here in red and there in blue leaves much. */
+/* Cuts the part of P out of ZONE. A thorough fit also crops the part to what is
+ * seen: of a ghost that comes through here in red and there in blue much is
+ * not. Returns the visibility of the ghost in the part's band. */
 static const struct glint_visible *set_part(struct fitter *f, struct pending *p,
                                             struct glint_zone *zone)
 {
@@ -169,21 +176,21 @@ static const struct glint_visible *set_part(struct fitter *f, struct pending *p,
     return band;
 }
 
-/* How far off places of a zone may be, in tolerances. */
+/* Returns how large the error of places of a zone may be, in tolerances. */
 static double bearable(const struct glint_zone_aim *aim)
 {
     return PART_LEFT * fmin(aim->hidden, MOST_HIDDEN);
 }
 
-/* Times that P's box may be halved. */
+/* Returns how many times P's box may be halved. */
 static int most_depth(const struct fitter *f, const struct pending *p)
 {
     return p->lo <= 0 ? f->tolerance->axis_depth : GLINT_PART_DEPTH;
 }
 
-/* What is left of P that will be halved or parted, whatever comes of it. The
- * halves of wide zones are not yet at the end of halving, where what is left
- * has to be known. */
+/* Returns the error, in tolerances, beyond which P will be halved or divided
+ * anyway, so that its fit may stop early; 0: there is none. Narrow zones may be
+ * at the end of halving, where the error has to be known. */
 static double hopeless(const struct fitter *f, const struct pending *p,
                        const struct glint_zone_aim *aim)
 {
@@ -192,16 +199,17 @@ static double hopeless(const struct fitter *f, const struct pending *p,
     return degrees_between(p->lo, p->hi) > 2 * STUCK_DEG ? HALVES_ANYWAY : 0;
 }
 
-/* How the fit of a zone went. */
+/* The outcome of an attempt at a zone. */
 struct attempt {
     struct glint_zone_aim aim;
-    struct glint_zone_errors errors; /* errors, at most 1 if good; worst
-                                        HUGE_VAL: it was not tried */
-    double wanders;                  /* the box with the colour, half widths */
+    /* Errors in tolerances, at most 1 if good; worst is HUGE_VAL if nothing was
+     * fitted. */
+    struct glint_zone_errors errors;
+    double wanders; /* half widths that the box moves or grows over the band */
 };
 
-/* Traces and fits ZONE, in BAND. A part that nothing comes through has no
- * outputs afterwards. */
+/* Traces and fits ZONE in BAND. If nothing comes through a part of a zone, it
+ * gets no outputs. */
 static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
                                   const struct glint_zone *zone,
                                   const struct glint_visible *band,
@@ -229,8 +237,8 @@ static enum glint_status fit_zone(struct fitter *f, const struct pending *p,
     return status;
 }
 
-/* Fits P, unless its box or its barrels say that it is too wide. P's part may
- * shrink. */
+/* Fits P, unless its box or its barrels show that it is too wide. May crop P's
+ * part. */
 static enum glint_status try_zone(struct fitter *f, struct pending *p,
                                   struct glint_fitted_system *system,
                                   struct attempt *a)
@@ -265,8 +273,8 @@ static enum glint_status try_zone(struct fitter *f, struct pending *p,
     return fit_zone(f, p, &zone, band, system, a);
 }
 
-/* The next step for a zone after attempt A. Halves of bright ones are worth
- * more. */
+/* The next step for a zone after attempt A. For bright ghosts zones are halved
+ * further. */
 enum next { KEEP, HALVE, THOROUGH, BANDS, PART };
 
 static enum next next_step(const struct fitter *f, const struct pending *p,
@@ -294,9 +302,8 @@ static enum next next_step(const struct fitter *f, const struct pending *p,
 
 static const struct glint_zone_part whole = {-1, 1, 1, -1, 1, 0};
 
-/* Puts the halves of P on the stack: along v first, so that what is seen
- * through the middle gets apart from what is seen through the rim. Returns how
- * many there are then. */
+/* Puts the halves of P on the stack and returns how many entries it has then.
+ * Parts are halved along v first, which separates the middle from the rim. */
 static int push_halves(struct pending *stack, int n, struct pending p,
                        enum next how)
 {
@@ -317,10 +324,12 @@ static int push_halves(struct pending *stack, int n, struct pending p,
     return n + 2;
 }
 
-/* Zones from the lowest angle up; the upper halves wait on a stack. */
+/* Fits the zones of a range from the lowest angle up; upper halves wait on a
+ * stack. */
 static enum glint_status fit_range(struct fitter *f, const double range[2])
 {
-    /* halvings of a sine down to half of LEAST_DEG, or a tenth of it: 20 */
+    /* 20 halvings take a sine down to half of LEAST_DEG, or to a tenth of that
+     */
     enum { DEEP = 24 + BAND_DEPTH + GLINT_MAX_AXIS_DEPTH };
     struct pending stack[DEEP] = {
         {range[0], range[1], HUGE_VAL, -1, 1, false, whole, 0}};
@@ -373,7 +382,8 @@ enum glint_status glint_fit_ghost(const struct glint_visible *visible,
         return status;
     f->visible = visible;
     f->tolerance = tolerance;
-    f->profiled[0] = HUGE_VAL; /* there is no profile yet */
+    /* There is no profile of a part of the band yet. */
+    f->profiled[0] = HUGE_VAL;
     f->out = out;
     f->buffers.scratch = malloc(glint_regress_doubles(GLINT_ZONE_RAYS) *
                                 sizeof *f->buffers.scratch);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a fit leaves behind, in double precision, before it is made integers:
- * the shape of glint/model.h without its formats.
- */
+ * The result of a fit in double precision, before it is made integers: the
+ * shape of glint/model.h without its formats. */
 #ifndef GLINT_BAKE_FIT_FITTED_H
 #define GLINT_BAKE_FIT_FITTED_H
 
@@ -10,32 +9,35 @@
 #include "glint/model.h"
 #include "glint/status.h"
 
-/* One output. COEF is [sets][n_terms], sets as the system says; owned. */
+/* One output. COEF is [sets][n_terms], owned; there are n_knots sets, or one
+ * without knots. */
 struct glint_fitted_output {
     enum glint_channel kind;
     int n_terms; /* 1 .. GLINT_MAX_MODEL_TERMS */
     uint8_t power[GLINT_MAX_MODEL_TERMS][GLINT_VARIABLES];
     double *coef;
-    double grain; /* rounding of a coefficient that does no harm; 0: none */
+    double grain; /* rounding of a coefficient that does no harm; 0: there is
+                     none */
     int event;    /* event of the path, for a barrel */
-    int roots;    /* the energy is the polynomial squared so many times */
+    int roots;    /* times that the polynomial is squared to give the energy */
     double most;  /* largest value of the energy's polynomial where light gets
                      through; 0: unknown */
-    bool met;     /* the tolerance */
+    bool met;     /* true: the tolerance was met */
 };
 
 struct glint_fitted_system {
-    /* Number of the ghost, and of the part 0, 1 .. of its pupil. */
+    /* Index of the ghost, and the part of its pupil, 0, 1 ... */
     int ghost, part;
-    int annulus; /* see struct glint_model_system */
+    int annulus; /* as in struct glint_model_system */
     double sine_lo, sine_hi;
     double wave_lo, wave_hi; /* 1 / wavelength^2, um^-2 */
-    int n_knots;             /* 0, or as many sets of coefficients */
-    double *knot;            /* sines, rising; owned */
-    double *box;             /* mm, as in the model; owned */
-    double radius_mm;        /* radius of the sparse basis; else unused */
+    int n_knots;  /* number of knots and of sets of coefficients; 0: one set, no
+                     knots */
+    double *knot; /* sines, rising; owned */
+    double *box;  /* mm, with the layout of the model; owned */
+    double radius_mm; /* radius of the sparse basis; else unused */
     int n_outputs;
-    struct glint_fitted_output output[GLINT_OUT_KINDS]; /* kinds rising */
+    struct glint_fitted_output output[GLINT_OUT_KINDS]; /* by rising kind */
     bool met;
 };
 

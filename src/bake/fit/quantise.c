@@ -13,7 +13,7 @@ static int sets_of(const struct glint_fitted_system *s)
     return s->n_knots ? s->n_knots : 1;
 }
 
-/* The largest sum of magnitudes over the sets of N values. */
+/* Returns the largest, over SETS sets, of the sum of magnitudes of N values. */
 static double largest_sum(const double *value, int sets, int n)
 {
     double most = 0;
@@ -28,10 +28,10 @@ static double largest_sum(const double *value, int sets, int n)
     return most;
 }
 
-enum { LEAST_EXPONENT = -80 }; /* least binary exponent that a model may have */
+enum { LEAST_EXPONENT = -80 }; /* least binary exponent of a model */
 
-/* The sum of the N values' largest magnitudes over the sets: a bound on any sum
- * of values between those of the sets. */
+/* Returns the sum of the N values' largest magnitudes over SETS sets: a bound
+ * on the sum of values that lie between those of the sets. */
 static double hull_sum(const double *value, int sets, int n)
 {
     double sum = 0;
@@ -46,8 +46,8 @@ static double hull_sum(const double *value, int sets, int n)
     return sum;
 }
 
-/* The exponent at which a sum of N values of magnitude SUM, each rounded, stays
- * below the limit. */
+/* Returns the exponent at which the sum of N values, of magnitude SUM before
+ * each was rounded, stays below the limit. */
 static int exponent_for(double sum, int n)
 {
     int exponent;
@@ -81,8 +81,8 @@ static enum glint_status to_integers(const double *value, int n, int exponent,
 /* ---------------------------------------------------------------- intervals */
 
 /* The range of a number of the run time, and how far rounding may have taken it
- * from what it stands for, in steps of its unit. Doubles hold these exactly
- * enough: they stay below 2^31, and errors are rounded up at the end. */
+ * from its true value, in its unit. Doubles hold these exactly enough: they
+ * stay below 2^31, and errors are rounded up at the end. */
 struct range {
     double lo, hi, error;
 };
@@ -93,7 +93,7 @@ static double reach(struct range r)
 }
 
 struct proof {
-    double bound; /* bound of all intermediates so far */
+    double bound; /* largest magnitude of all intermediates so far */
 };
 
 static struct range seen(struct proof *p, struct range r)
@@ -107,7 +107,8 @@ static struct range plus(struct proof *p, struct range a, struct range b)
     return seen(p, (struct range){a.lo + b.lo, a.hi + b.hi, a.error + b.error});
 }
 
-/* q_mul(a, x, 30): X is a variable of -1 .. 1, its error in steps of 2^-30. */
+/* Returns the range of q_mul(a, x, 30). X is a variable within -1 .. 1, whose
+ * error counts in units of 2^-30. */
 static struct range times(struct proof *p, struct range a, struct range x)
 {
     const double c[4] = {a.lo * x.lo, a.lo * x.hi, a.hi * x.lo, a.hi * x.hi};
@@ -121,8 +122,8 @@ static struct range times(struct proof *p, struct range a, struct range x)
                               0.5});
 }
 
-/* X to the power N as the run time makes it, from a variable with an error of
- * its own. */
+/* Returns the range of X^N as the run time works it out; X is a variable with
+ * an error of its own. */
 static struct range power_of(struct range x, int n)
 {
     struct range r = {n % 2 ? x.lo : fmax(0, x.lo), 1,
@@ -135,12 +136,13 @@ static struct range power_of(struct range x, int n)
 
 static const struct range both_ways = {-1, 1, 0};
 
-/* x, y, r and 1 - r of the sparse basis, rounded from the box and u, v. */
+/* Ranges of x, y, r and 1 - r of the sparse basis, rounded from the box and u,
+ * v. */
 static const struct range place[4] = {
     {-1, 1, 1.5}, {-1, 1, 1.5}, {0, 1, 4}, {0, 1, 4}};
 
-/* Coefficient K: itself, or anything between the sets. Rounding it to an
- * integer, or to a multiple of 2^SHIFT, is part of the error. */
+/* Returns the range of coefficient K: its value, or all between the sets. Its
+ * error includes rounding to an integer, or to a multiple of 2^SHIFT. */
 static struct range coefficient(const int32_t *coef, int sets, int n, int k,
                                 int shift)
 {
@@ -154,7 +156,8 @@ static struct range coefficient(const int32_t *coef, int sets, int n, int k,
     return r;
 }
 
-/* Angle and wavelength go in: the table of what stays with u and v. */
+/* Proves the step that puts angle and wavelength in: TABLE receives the
+ * coefficients of u and v. */
 static void prove_table(struct proof *p, const struct glint_fitted_output *o,
                         const struct glint_quantised_output *q,
                         struct range table[][GLINT_MAX_POWER + 1])
@@ -208,7 +211,7 @@ static void prove_sparse(struct proof *p, const struct glint_fitted_output *o,
     }
 }
 
-/* Returns the range that the run time makes of the polynomial of the energy. */
+/* Returns the range of the energy that the run time makes of its polynomial. */
 static struct range energy_of(struct range x, int head, int roots)
 {
     if (head || roots)
@@ -232,7 +235,7 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
         prove_auto(&p, o, out, &result);
     while (out->head > 0 &&
            energy_of(result, out->head, o->roots).error >= 0x1p22)
-        out->head--; /* nothing but rounding up there */
+        out->head--; /* only rounding would go up there */
     result = energy_of(result, out->head, o->roots);
     out->proven = p.bound < 0x1p30 && result.error < 0x1p23;
     out->bound = out->proven ? (uint32_t)ceil(p.bound) : 0;
@@ -241,8 +244,7 @@ static void prove(const struct glint_fitted_output *o, int sets, bool knots,
 
 /* ------------------------------------------------------------------- narrow */
 
-/* Moves the coefficients that 16 bits are enough for to the end of the order.
- */
+/* Moves coefficients for which 16 bits are enough to the end of the order. */
 static void narrow(const struct glint_fitted_output *o,
                    struct glint_quantised_output *out)
 {
@@ -267,7 +269,8 @@ static void narrow(const struct glint_fitted_output *o,
 
 /* ------------------------------------------------------------------ systems */
 
-/* Exponents of x and y are one, so that they can be turned. */
+/* Returns the distance to the output with the other coordinate, or 0: x and y
+ * share an exponent, so that they can be turned. */
 static int paired(enum glint_channel kind)
 {
     return kind == GLINT_OUT_SENSOR_X || kind == GLINT_OUT_STOP_X   ? 1
@@ -282,9 +285,9 @@ static int output_exponent(const struct glint_fitted_system *s, int k)
     return exponent_for(hull_sum(o->coef, sets_of(s), o->n_terms), o->n_terms);
 }
 
-/* How many bits above what it is where light gets through a polynomial could
- * reach: above twice as much, or where that is its fourth power, above what is
- * twice the energy. Each bit more would take four of the energy's. */
+/* Returns how many bits a polynomial could rise above its values where light
+ * gets through: above twice the largest, or, for a fourth root, above that of
+ * twice the energy. Each bit more would take four bits of the energy. */
 static int head_of(const struct glint_fitted_output *o, int exponent)
 {
     const double most = o->roots ? 0x1.ap28 : 0x1p28;
@@ -323,7 +326,7 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
     return status;
 }
 
-/* Whether there is something to quantise: numbers everywhere. */
+/* Returns whether every output has terms and all numbers are finite. */
 static bool is_sound(const struct glint_fitted_system *s)
 {
     const int n_box = 3 * (s->n_knots ? s->n_knots : GLINT_BOX_TERMS);
@@ -350,7 +353,7 @@ enum glint_status glint_quantise(const struct glint_fitted_system *system,
     if (system->n_knots) {
         out->box_exponent = (int)lrint(log2(system->radius_mm)) - 30;
         if (ldexp(system->radius_mm, -out->box_exponent) != 0x1p30)
-            return GLINT_E_LENS; /* not a power of two */
+            return GLINT_E_LENS; /* The radius is no power of two. */
     } else {
         out->box_exponent = exponent_for(
             largest_sum(system->box, 3, GLINT_BOX_TERMS), GLINT_BOX_TERMS);

@@ -6,21 +6,24 @@
 #include <stddef.h>
 #include <string.h>
 
-/* A column this much shorter than it was is a combination of others. */
+/* Share of its first length: a shorter column is a combination of others. */
 #define DEPENDENT 1e-9
-/* A square this much smaller by differences has lost half of its digits. */
+/* Share of its first value: a smaller square, worked out by differences, has
+ * lost half of its digits. */
 #define DOUBTFUL 1e-8
 
-/* A candidate is told by three numbers, kept up to date by one product with
- * each direction that is chosen. Only when it is chosen itself, or is left with
- * so little that differences no longer tell, is it made orthogonal. */
+/* A candidate is represented by three numbers, was2, left2 and pull, which are
+ * kept up to date by one product with each direction that is chosen. It is made
+ * orthogonal only when it is chosen itself, or when left2 has become too small
+ * to be trusted. */
 struct column {
     uint8_t power[GLINT_VARIABLES];
     bool dead;
     double length;              /* length of the term's column */
-    double on[GLINT_MAX_TERMS]; /* its shares of the chosen directions */
-    int clean; /* number of chosen directions that AT is free of */
-    /* squared length of AT, now and without all chosen directions */
+    double on[GLINT_MAX_TERMS]; /* share of AT along each chosen direction */
+    int clean; /* number of chosen directions that AT is orthogonal to */
+    /* squared length of AT, and what it would be without all chosen directions
+     */
     double was2, left2;
     double pull; /* product of AT with the residual */
     double *at;  /* [n] */
@@ -40,7 +43,8 @@ size_t glint_regress_doubles(int n)
     return (size_t)n * (GLINT_MAX_CANDIDATES + 1);
 }
 
-/* Four sums at once: shorter chains of dependent additions. */
+/* Returns the dot product of A and B. Four sums at once make shorter chains of
+ * dependent additions. */
 WIDE_VECTORS static double dot(const double *a, const double *b, int n)
 {
     double s[4] = {0, 0, 0, 0};
@@ -72,7 +76,7 @@ static bool allowed(const struct glint_degrees *d, const uint8_t *power)
     return total <= d->total && (d->parity < 0 || power[1] % 2 == d->parity);
 }
 
-/* Notes what COLUMN has of the chosen direction of rank RANK. */
+/* Notes the share of COLUMN along the chosen direction of rank RANK. */
 static void note_share(const struct search *s, struct column *column, int rank)
 {
     const double share =
@@ -82,7 +86,7 @@ static void note_share(const struct search *s, struct column *column, int rank)
     column->left2 -= share * share;
 }
 
-/* Frees COLUMN of all chosen directions, twice against rounding. */
+/* Makes COLUMN orthogonal to all chosen directions, twice against rounding. */
 static void make_orthogonal(const struct search *s, struct column *column)
 {
     const int n = s->s->n;
@@ -133,7 +137,8 @@ static void add_candidate(struct search *s, const uint8_t *power)
     s->n_columns++;
 }
 
-/* All terms one power up; in a variable with parity, two. */
+/* Adds all terms with one power more in one variable as candidates; two more in
+ * a variable with parity. */
 static void add_neighbours(struct search *s, const struct column *column)
 {
     for (int k = 0; k < GLINT_VARIABLES; k++) {
@@ -154,7 +159,7 @@ static bool is_chosen(const struct search *s, int column)
     return false;
 }
 
-/* The candidate that explains most of the residual, or -1. */
+/* Returns the candidate that explains most of the residual, or -1. */
 static int best_candidate(struct search *s)
 {
     double most = 0;
@@ -208,7 +213,8 @@ static bool is_hopeless(const struct search *s, double left)
     return d->hopeless > 0 && left > d->hopeless && s->n_chosen >= d->patience;
 }
 
-/* Returns what is left, in units of what may be left. */
+/* Returns the residual in units of what it may be: the larger of RMS and peak.
+ */
 static double excess(const struct search *s, double rms, double peak)
 {
     const double sum2 = dot(s->residual, s->residual, s->s->n);
@@ -219,7 +225,8 @@ static double excess(const struct search *s, double rms, double peak)
     return fmax(sqrt(sum2 / s->s->n) / rms, most / peak);
 }
 
-/* Turns shares of orthogonal directions back into coefficients of the terms. */
+/* Works out the coefficients of the terms from the shares of orthogonal
+ * directions. */
 static void solve(const struct search *s, const double *y,
                   struct glint_poly *poly)
 {
@@ -261,7 +268,8 @@ double glint_regress_fit(double *scratch,
         choose(&s, best);
     }
     if (s.n_chosen == 0 && s.column[0].length > 0)
-        choose(&s, 0); /* a polynomial has a term, however little is asked */
+        choose(&s, 0); /* A polynomial has at least one term, however little is
+                          asked of it. */
     solve(&s, y, poly);
     return left;
 }

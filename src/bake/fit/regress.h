@@ -29,13 +29,13 @@ struct glint_poly {
 
 /* The terms that may be chosen. */
 struct glint_degrees {
-    uint8_t most[GLINT_VARIABLES];   /* power of each variable */
+    uint8_t most[GLINT_VARIABLES];   /* largest power of each variable */
     uint8_t weight[GLINT_VARIABLES]; /* weight of each power in the total */
-    int total;                       /* weighted sum of powers, at most */
+    int total;                       /* largest weighted sum of powers */
     int parity; /* parity of variable 1: 0 even, 1 odd, -1 any */
-    int terms;  /* 1 .. GLINT_MAX_TERMS */
-    /* More than HOPELESS times of what may be, left after so many terms, ends
-     * it; 0: never. */
+    int terms;  /* largest number of terms, 1 .. GLINT_MAX_TERMS */
+    /* The fit stops early if its error is HOPELESS times what it may be after
+     * PATIENCE terms; 0: it never does. */
     double hopeless;
     int patience;
 };
@@ -46,19 +46,19 @@ struct glint_regress_samples {
     const double *weight;
 };
 
-/* Doubles that regression over N samples needs. */
+/* Returns how many doubles the scratch for N samples needs. */
 size_t glint_regress_doubles(int n);
 
-/* Fits Y. Stops where the weighted residual is at most RMS in the mean and PEAK
- * everywhere, or where nothing more helps; there is a term at least, unless all
- * weights are 0. Returns how much of these is left,
- * the larger ratio: up to 1 it got there. */
+/* Fits Y. Stops when the weighted residual is at most RMS in the root mean
+ * square and PEAK everywhere, or when no term helps any more. There is at least
+ * one term, unless all weights are 0. Returns the residual in units of RMS or
+ * PEAK, the larger ratio: the fit succeeded if it is at most 1. */
 double glint_regress_fit(double *scratch,
                          const struct glint_regress_samples *samples,
                          const double *y, const struct glint_degrees *degrees,
                          double rms, double peak, struct glint_poly *poly);
 
-/* The polynomial of N terms at X. */
+/* Returns the value of the polynomial of N terms at X. */
 double glint_poly_at(int n, const uint8_t (*power)[GLINT_VARIABLES],
                      const double *coef, const double *x);
 

@@ -1,35 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * What polynomials of a lens are held to.
- */
+ * The tolerances that polynomials of a lens are fitted to. */
 #ifndef GLINT_BAKE_FIT_TOLERANCE_H
 #define GLINT_BAKE_FIT_TOLERANCE_H
 
 #include "bake/fit/brightness.h"
 
-/* Times that a zone's box may be halved. */
+/* Most times that a zone's box may be halved, in general and at the axis. */
 enum { GLINT_PART_DEPTH = 4, GLINT_MAX_AXIS_DEPTH = 8 };
 
-/* The root mean square that is aimed at; single rays may be off by five times
- * as much. Stop and barrel positions draw the outline: EDGE_MM is what they may
- * shift it on the sensor, but neither is asked for less than STOP (stop radii)
- * and BARREL (of its radius), or more than STOP_LEAST and a sixteenth of
- * BARREL: the outline of a ghost that is larger than the picture may lie beyond
- * it, but where the stop closes it comes in.
+/* Root mean squares that are aimed at; single rays may be off by five times as
+ * much. Positions in the stop and at barrels draw the outline: EDGE_MM is how
+ * far they may shift it on the sensor. From that follow their own tolerances,
+ * within STOP_LEAST .. STOP (stop radii) and within a sixteenth of BARREL ..
+ * BARREL (of the barrel's radius). The lower limits are needed as the outline
+ * of a ghost that is larger than the picture may lie beyond it, but comes in
+ * when the stop closes.
  *
- * For ghosts of the brightness that counts; sRGB shows an error in a ghost of a
- * share v of that by v^0.42 as much, so edges and energy may be off by more
- * there, up to EASE times. */
+ * The values are for ghosts of the brightness that counts. sRGB shows an error
+ * in a ghost of v times that brightness by v^0.42 as much, so edges and energy
+ * of fainter ghosts may be off by more, up to EASE times. */
 struct glint_tolerance {
     double sensor_mm, edge_mm, stop, stop_least, barrel, energy;
-    double faint_sensor_mm; /* the most for any ghost */
-    double escape; /* past a barrel that is left out, relative radius */
+    double faint_sensor_mm; /* largest tolerance of places for any ghost, mm */
+    double escape; /* relative radius that a ray may get past a barrel that is
+                      left out */
     double ease;
-    double axis;    /* zones at the axis, where light folds into rings: how
-                       narrow they may become, and how far off places may be,
-                       over the same of others */
-    int axis_depth; /* times that their boxes may be halved, GLINT_PART_DEPTH
-                       to GLINT_MAX_AXIS_DEPTH */
+    /* Factor for zones at the axis, where light folds into rings: on how narrow
+     * they may become, and on the tolerance of places. */
+    double axis;
+    int axis_depth; /* times that boxes of zones at the axis may be halved,
+                       GLINT_PART_DEPTH to GLINT_MAX_AXIS_DEPTH */
     const struct glint_brightness *brightness;
 };
 

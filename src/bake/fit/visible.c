@@ -9,8 +9,10 @@ enum {
     ACROSS = 64, /* cells of the finest grid */
     SCAN_DEG = 1,
     BISECTIONS = 8,
-    AFRESH = 4, /* angles after which to look for what has appeared elsewhere */
-    FARTHER = 4 /* steps that the ends of the band may outlast its middle */
+    AFRESH = 4, /* number of angles after which boxes are looked for everywhere
+                   again */
+    FARTHER = 4 /* steps of the scan by which the ends of the band may be seen
+                   for longer than its middle */
 };
 
 static double wave_of(const struct glint_visible *visible, double w)
@@ -73,7 +75,7 @@ bool glint_visible_passes(const struct glint_visible *visible,
 
 /* -------------------------------------------------------------------- boxes */
 
-/* Columns and rows of a grid that hold rays that get through. */
+/* Columns and rows of a grid that hold rays which get through. */
 struct extent {
     int i0, i1, j1;
 };
@@ -106,7 +108,7 @@ static bool sample_box(const struct glint_visible *h,
     return extent->i1 >= 0;
 }
 
-/* Shrinks BOX to the rays of a grid that get through and a cell around them.
+/* Shrinks BOX to those rays of a grid that get through, and a cell around them.
  * Returns whether there are any. */
 static bool shrink(const struct glint_visible *h, const struct glint_path *path,
                    double sine, int across, int down, struct glint_pupil *box)
@@ -123,7 +125,8 @@ static bool shrink(const struct glint_visible *h, const struct glint_path *path,
     return true;
 }
 
-/* Grows BOX on every side that light comes through, until none does. */
+/* Grows BOX on every side at which light still comes through, until none does.
+ */
 static bool enclose(const struct glint_visible *h,
                     const struct glint_path *path, double sine,
                     struct glint_pupil *box)
@@ -145,7 +148,7 @@ static bool enclose(const struct glint_visible *h,
     return false;
 }
 
-/* The box of the rays that get through, from one that holds it. */
+/* Shrinks BOX, which holds all rays that get through, to the box of these. */
 static bool tighten(const struct glint_visible *h,
                     const struct glint_path *path, double sine,
                     struct glint_pupil *box)
@@ -163,7 +166,7 @@ static bool tighten(const struct glint_visible *h,
     return found;
 }
 
-/* By how much RAY misses what it has to get through: 1 or less is visible. */
+/* Returns by how much RAY misses: 1 or less is visible. */
 static double miss_of(const struct glint_visible *h,
                       const struct glint_ray *ray)
 {
@@ -175,8 +178,8 @@ static double miss_of(const struct glint_visible *h,
     return fmax(ray->rel_radius, fmax(stop, field));
 }
 
-/* Closes BOX around the ray of a grid that misses by least, a cell and a half
- * to each side. Returns by how much it does; HUGE_VAL: all were lost. */
+/* Shrinks BOX to a cell and a half around the ray of a grid that misses by
+ * least. Returns its miss; HUGE_VAL if all rays are lost. */
 static double close_in(const struct glint_visible *h,
                        const struct glint_path *path, double sine,
                        struct glint_pupil *box)
@@ -205,8 +208,9 @@ static double close_in(const struct glint_visible *h,
     return least;
 }
 
-/* What a grid over BOX steps over: where the field is far smaller than the
- * front, so is the part of the pupil that it is seen through. */
+/* Finds a part of the pupil that a grid over BOX misses: if the field is far
+ * smaller than the front, so is the part of the pupil through which it is seen.
+ */
 static bool seek(const struct glint_visible *h, const struct glint_path *path,
                  double sine, struct glint_pupil *box)
 {
@@ -242,7 +246,7 @@ static bool find_box(const struct glint_visible *h,
     return seek(h, path, sine, box) && tighten(h, path, sine, box);
 }
 
-/* The same, looked for around NEAR first. */
+/* Finds the box at SINE, looking around NEAR first. */
 static bool follow_box(const struct glint_visible *h,
                        const struct glint_path *path, double sine,
                        const struct glint_pupil *near, struct glint_pupil *box)
@@ -259,11 +263,12 @@ static bool follow_box(const struct glint_visible *h,
 
 /* ------------------------------------------------------------------- angles */
 
-/* Ends and middle of the band. */
+/* Middle and ends of the band. */
 static const int waves[] = {GLINT_VISIBLE_WAVES / 2, 0,
                             GLINT_VISIBLE_WAVES - 1};
 
-/* Something gets through at the first N of these wavelengths. */
+/* Returns whether light gets through at one of the first N of these
+ * wavelengths. */
 static bool passes(const struct glint_visible *h, double sine, int n)
 {
     struct glint_pupil box;
@@ -274,8 +279,9 @@ static bool passes(const struct glint_visible *h, double sine, int n)
     return false;
 }
 
-/* The last sine at which something of any colour gets through, from one that
- * has it at the middle of the band towards one that has not. */
+/* Returns the last sine at which light of any of the three wavelengths gets
+ * through, from WITH, where it does in the middle of the band, towards WITHOUT,
+ * where it does not. */
 static double edge(const struct glint_visible *h, double with, double without)
 {
     for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
@@ -297,9 +303,9 @@ static double edge(const struct glint_visible *h, double with, double without)
     return with;
 }
 
-/* Ends range N - 1 of N at HI. Returns how many there are now: light that comes
- * through for a moment only is none, and where one range begins before the last
- * one has ended, they are one. */
+/* Ends range N - 1 of N at HI. Returns how many ranges there are then: an empty
+ * range is dropped, and one that begins before the last one has ended is joined
+ * to that. */
 static int end_range(double (*range)[2], int n, double hi)
 {
     double *last = range[n - 1];
@@ -344,7 +350,8 @@ void glint_visible_join(struct glint_pupil *a, const struct glint_pupil *b)
     a->y1_mm = fmax(a->y1_mm, b->y1_mm);
 }
 
-/* BOX moved on from BEFORE by as much as it had moved to get there. */
+/* Returns BOX moved on from BEFORE by RATIO times the way from BEFORE to BOX.
+ */
 static struct glint_pupil predict(const struct glint_pupil *before,
                                   const struct glint_pupil *box, double ratio)
 {
@@ -357,19 +364,19 @@ static struct glint_pupil predict(const struct glint_pupil *before,
     return p;
 }
 
-/* The boxes of what gets through, by angle and wavelength. */
+/* The boxes of visible light, by angle and wavelength. */
 struct box_samples {
     bool seen[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
     struct glint_pupil box[GLINT_PROFILE][GLINT_VISIBLE_WAVES];
 };
 
-/* Looks at one wavelength, at the angles that WANTED names. */
+/* Finds the boxes of one wavelength at the angles that WANTED marks. */
 static void look(const struct glint_visible *h, const double *sine,
                  const bool *wanted, int wave, struct box_samples *g)
 {
     const struct glint_path *path = &h->position_path[wave];
     struct glint_pupil box = {.y1_mm = 0}, before = box;
-    int have = 0; /* boxes in a row */
+    int have = 0; /* number of angles in a row with a box */
 
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const double *s = sine + k;
@@ -432,7 +439,8 @@ void glint_visible_profile_find(const struct glint_visible *visible,
     }
     for (int i = 0; i < 3; i++)
         look(visible, sine, wanted, waves[i], &g);
-    /* Boxes of other colours may lie between where only some get through. */
+    /* Where only some of the three colours get through, boxes of others may lie
+     * between them. */
     for (int k = 0; k < GLINT_PROFILE; k++)
         wanted[k] = !(g.seen[k][waves[0]] && g.seen[k][waves[1]] &&
                       g.seen[k][waves[2]]);

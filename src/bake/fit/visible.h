@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where a ghost is visible: at which angles of the light, and through which
- * part of the pupil.
+ * Finds where a ghost is visible: at which angles of the light, and through
+ * which part of the pupil.
  *
  *   in   a ghost of a lens, the band of wavelengths, the field that counts
  *   out  ranges of angles, and boxes on the pupil at many angles of a range
  *
- * A ghost may appear, vanish and come back. Limits: ranges narrower than the
- * step of the scan, or without the middle of the band, can be missed, and so
- * can a visible part that is smaller than a thirtieth of its own box (unless
- * the field is so small that it is closed in upon), or that is there for less
- * than four angles apart from the one that is followed.
- */
+ * A ghost may appear, vanish and come back. Limits: a range can be missed that
+ * is narrower than the step of the scan, or has no light at the middle of the
+ * band. A visible part can be missed that is smaller than a thirtieth of its
+ * own box (unless the field is so small that the search closes in on it), or
+ * that is there for less than four angles and apart from the one that is
+ * followed. */
 #ifndef GLINT_BAKE_FIT_VISIBLE_H
 #define GLINT_BAKE_FIT_VISIBLE_H
 
@@ -21,14 +21,16 @@
 enum {
     GLINT_VISIBLE_WAVES = 11,
     GLINT_MAX_RANGES = 8,
-    GLINT_PROFILE = 49 /* boxes over a range */
+    /* Number of angles of a range at which boxes are found. */
+    GLINT_PROFILE = 49
 };
 
-/* One ghost and what all its ranges share. */
+/* One ghost, and what all its ranges share. */
 struct glint_visible {
     const struct glint_setup *setup;
     int ghost;
-    double field_mm; /* light beyond this radius on the sensor is no loss */
+    double field_mm; /* radius about the sensor's centre beyond which light does
+                        not count */
     double wave_lo, wave_hi;                     /* 1 / wavelength^2, um^-2 */
     struct glint_path path[GLINT_VISIBLE_WAVES]; /* paths at wavelengths from
                                                     wave_lo to wave_hi */
@@ -45,23 +47,23 @@ void glint_visible_narrow(struct glint_visible *visible,
                           const struct glint_visible *whole, double w0,
                           double w1);
 
-/* The path at W, -1 .. 1 over the band. */
+/* Sets PATH for W, -1 .. 1 over the band. */
 void glint_visible_path(const struct glint_visible *visible, double w,
                         struct glint_path *path);
 
-/* Sines of the angles between which something gets through, up to MAX_DEG.
- * Returns how many ranges. */
+/* Finds the ranges of sines, up to MAX_DEG, at which light gets through.
+ * Returns how many. */
 int glint_visible_ranges(const struct glint_visible *visible, double max_deg,
                          double (*range)[2]);
 
-/* The box of what gets through at one angle and wavelength. */
+/* The box of visible light at one angle and wavelength. */
 struct glint_box_sample {
     double sine, w; /* w: -1 .. 1 over the band */
     struct glint_pupil box;
 };
 
-/* Boxes over a range: at each angle, the one that holds what gets through
- * anywhere in the band, and those of single wavelengths, by rising angle. */
+/* Boxes over a range of angles: at each angle, the one that holds the visible
+ * light of the whole band, and those of single wavelengths, by rising angle. */
 struct glint_visible_profile {
     int n, n_samples;
     double sine[GLINT_PROFILE];
@@ -73,7 +75,7 @@ void glint_visible_profile_find(const struct glint_visible *visible,
                                 const double range[2],
                                 struct glint_visible_profile *profile);
 
-/* Whether the stop, the barrels and the field let RAY through. */
+/* Returns whether the stop, the barrels and the field let RAY through. */
 bool glint_visible_passes(const struct glint_visible *visible,
                           const struct glint_ray *ray);
 

@@ -3,16 +3,15 @@
  * A range of angles of one ghost, and the box on the pupil that follows the
  * visible part through it.
  *
- *   in   boxes of what is visible at many angles and wavelengths
+ *   in   boxes of visible light at many angles and wavelengths
  *   out  the box's middle and half sizes as polynomials of s and w
  *
  * Coordinates of a zone, each -1 .. 1:
  *   u, v  place in the box, the light's plane along u
  *   s     the sine of the light's angle within the range
  *   w     1 / wavelength^2 within the band
- * In these coordinates a ghost is tame, and symmetric in v, so v >= 0 is all
- * that is traced.
- */
+ * In these coordinates a ghost varies smoothly. It is symmetric in v, so only v
+ * >= 0 is traced. */
 #ifndef GLINT_BAKE_FIT_ZONE_H
 #define GLINT_BAKE_FIT_ZONE_H
 
@@ -22,49 +21,49 @@
 #include "glint/trace.h"
 
 struct glint_zone {
-    double lo, hi;                  /* sine of the angle */
+    double lo, hi;                  /* range of the sine of the angle */
     double middle[GLINT_BOX_TERMS]; /* mm; terms as in a model */
     double half_x[GLINT_BOX_TERMS], half_y[GLINT_BOX_TERMS];
     double fill; /* mean share of the box that the ghost needs */
-    int annulus; /* same meaning as in struct glint_model_system */
+    int annulus; /* as in struct glint_model_system */
 };
 
-/* A part of a zone's box and band: U0 .. U1 of its u, up to TOP of its v, W0 ..
- * W1 of its w. */
+/* A part of a zone's box and band: u from U0 to U1, v up to TOP, w from W0 to
+ * W1. */
 struct glint_zone_part {
     double u0, u1, top, w0, w1;
     int annulus;
 };
 
-/* One of these at S and W. */
+/* Returns the middle or a half size of the box, SIDE, at S and W. */
 double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w);
 
-/* Sets the box for LO .. HI of PROFILE: one for all colours, or one that moves
- * with them and takes more terms. */
+/* Sets the box for LO .. HI of PROFILE. BY_COLOUR: it moves with the wavelength
+ * and takes more terms; else one box holds all colours. */
 void glint_zone_init(struct glint_zone *zone,
                      const struct glint_visible_profile *profile, double lo,
                      double hi, bool by_colour);
 
-/* Returns where an annular box begins, a share of its half height. */
+/* Returns |v| at which an annular box begins, as a share of its half height. */
 double glint_zone_rim(int annulus);
 
-/* The halves of PART, along v (inner and outer) or along u. */
+/* Halves PART along v (inner and outer half) or along u. */
 void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
                            struct glint_zone_part *first,
                            struct glint_zone_part *second);
 
-/* Reduces the box to PART of it. */
+/* Cuts the box of ZONE to PART. */
 void glint_zone_cut(struct glint_zone *zone,
                     const struct glint_zone_part *part);
 
-/* Reduces PART, to which ZONE has been cut and VISIBLE narrowed, to what can be
- * seen of it, and a margin. Returns by how much, 1: by nothing; 0: there is
- * nothing. */
+/* Crops PART to what can be seen of it, with a margin; ZONE has been cut to
+ * PART, and VISIBLE narrowed to its band. Returns the share that is left: 1 is
+ * all, 0 nothing. */
 double glint_zone_crop(const struct glint_zone *zone,
                        const struct glint_visible *visible,
                        struct glint_zone_part *part);
 
-/* Node K of N over -1 .. 1, the ends among them. */
+/* Returns node K of N over -1 .. 1, with nodes at both ends. */
 double glint_zone_node(int k, int n);
 
 #endif

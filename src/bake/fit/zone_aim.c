@@ -3,11 +3,13 @@
 
 #include <math.h>
 
-/* The rays of one angle and wavelength from FIRST on: what is seen of them. */
+/* The rays of one angle and wavelength: how many are seen, and where they land.
+ */
 struct sight {
     int n, n_all;
-    double low[2], high[2]; /* corners of the seen area on the sensor, mm */
-    double energy;          /* mean energy of the rays */
+    double low[2], high[2]; /* corners of the area on the sensor on which seen
+                               rays land, mm */
+    double energy;          /* mean energy of the seen rays */
 };
 
 static struct sight look(const struct glint_zone_rays *r, int first)
@@ -31,13 +33,13 @@ static struct sight look(const struct glint_zone_rays *r, int first)
     return s;
 }
 
-/* How bright the ghost is at its brightest in the zone, as a share of what is
- * as bright as counts. */
+/* Returns how bright the ghost is at its brightest in the zone, relative to the
+ * level that counts. */
 static double share_of(const struct glint_tolerance *tolerance,
                        const struct glint_zone *zone,
                        const struct glint_zone_rays *r)
 {
-    enum { FEW = 4 }; /* rays have no area to speak of */
+    enum { FEW = 4 }; /* this few rays have no area to speak of */
     double most = 0;
 
     for (int i = 0, next; i < r->n; i = next) {
@@ -49,7 +51,8 @@ static double share_of(const struct glint_tolerance *tolerance,
         const double level = glint_brightness_at(
             tolerance->brightness,
             0.5 * (zone->lo + zone->hi) + 0.5 * s * (zone->hi - zone->lo));
-        const double y = fmax(fabs(v.low[1]), fabs(v.high[1])); /* mirrored */
+        /* The light is symmetric in y. */
+        const double y = fmax(fabs(v.low[1]), fabs(v.high[1]));
 
         next = i + v.n_all;
         if (v.n >= FEW)

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the polynomials of a zone are held to: less where its ghost is faint.
+ * Sets the tolerances of a zone, which are larger where its ghost is faint.
  *
  *   in   rays of the zone, how bright a ghost is that an exposure goes by
- *   out  tolerances, root mean square
- */
+ *   out  tolerances, root mean square */
 #ifndef GLINT_BAKE_FIT_ZONE_AIM_H
 #define GLINT_BAKE_FIT_ZONE_AIM_H
 
@@ -16,23 +15,24 @@ struct glint_zone_aim {
     /* Tolerances of places and of outlines on the sensor. */
     double sensor_mm, edge_mm;
     double stop;   /* tolerance of places in the stop, radii */
-    double energy; /* share */
-    double ease;   /* over the tolerances of a bright ghost */
-    double hidden; /* error of places at which the ghost begins to show it, over
-                      sensor_mm */
+    double energy; /* tolerance of the energy, as a share */
+    double ease;   /* factor over the tolerances of a bright ghost */
+    double hidden; /* error of places at which the ghost begins to show it, in
+                      units of sensor_mm */
 };
 
 struct glint_zone_aim glint_zone_aim_of(const struct glint_tolerance *tolerance,
                                         const struct glint_zone *zone,
                                         const struct glint_zone_rays *rays);
 
-/* What an outline may be off, in units of which STRETCH_MM are a millimetre:
- * MOST, or as little as a sixteenth of it. */
+/* Returns the tolerance of an outline in a unit of which one is worth
+ * STRETCH_MM on the sensor: at most MOST, and at least a sixteenth of that. */
 double glint_zone_aim_outline(const struct glint_zone_aim *aim, double most,
                               double stretch_mm);
 
-/* Sensor millimetres for a unit of the place A, B (or A alone), root mean
- * square over neighbours; of barrels only where they cut, from NEAR up. */
+/* Returns how many mm on the sensor a unit of the place (A, B) is worth (of A
+ * alone if B is NULL), root mean square over neighbouring rays. Rays with A
+ * below NEAR do not count: barrels matter only where they cut. */
 double glint_zone_aim_stretch(const struct glint_zone_rays *rays,
                               const double *a, const double *b, double near);
 

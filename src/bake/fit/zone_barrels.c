@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * The barrels that cut in a zone: those past which no ray gets far.
- */
+ * Chooses the barrels that cut in a zone: those that let no ray get far past
+ * any other barrel. */
 #include <math.h>
 
 #include "bake/fit/zone_batch.h"
 #include "bake/fit/zone_rays.h"
 
-/* The samples of a zone: how far past each barrel each ray is. */
+/* Samples of a zone: the relative radius of each ray at each barrel. */
 struct sampling {
     int n, n_events;
     double (*radius)[GLINT_MAX_EVENTS + 1];
 };
 
-/* Notes the ray's radius at every event if the stop and the field let it pass,
- * so that only barrels can stop it. */
+/* Notes the relative radius of a ray at every event. Returns whether the ray
+ * counts: stop and field let it pass, so that only barrels can stop it, and one
+ * does. */
 static bool sample_ray(const struct glint_visible *h,
                        const struct glint_path *path,
                        enum glint_ray_status status,
@@ -41,8 +42,8 @@ static bool sample_ray(const struct glint_visible *h,
             hypot(ray->sensor_x_mm, ray->sensor_y_mm) < h->field_mm);
 }
 
-/* Rays at angles of their own: a barrel may cut between any two, and there
- * only. */
+/* Samples rays at scattered angles, as a barrel may cut in a narrow range of
+ * angles only. */
 static void sample_rays(const struct glint_zone *z,
                         const struct glint_visible *h,
                         struct sampling *sampling)
@@ -72,8 +73,8 @@ static void sample_rays(const struct glint_zone *z,
     }
 }
 
-/* How far ray RAY gets past the barrels that are not among the N CHOSEN, the
- * relative radius beyond 1; 0 if one of them stops it. */
+/* Returns how far ray RAY gets past the barrels that are not among the N
+ * CHOSEN: relative radius beyond 1; 0 if a chosen one stops it. */
 static double escape(const struct sampling *s, int ray, const int *chosen,
                      int n)
 {
@@ -88,8 +89,8 @@ static double escape(const struct sampling *s, int ray, const int *chosen,
     return fmin(most, 0.3);
 }
 
-/* Gives how much escapes with barrel K as the last of N: the sum, and the
- * largest. */
+/* Returns the sum of the escapes of all rays past N CHOSEN barrels; *MOST
+ * receives the largest. */
 static double escapes(const struct sampling *s, int *chosen, int n,
                       double *most)
 {
@@ -105,8 +106,8 @@ static double escapes(const struct sampling *s, int *chosen, int n,
     return sum;
 }
 
-/* Takes barrels, the most useful first, until no ray gets farther past the
- * others than SHOWS. */
+/* Chooses barrels, the most useful first, until no ray gets farther than SHOWS
+ * past one that was not chosen. */
 static void choose_barrels(const struct sampling *s, double shows,
                            struct glint_zone_rays *rays)
 {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rays of a zone that are traced together, as they share a path.
+ * Rays of a zone that share a path and are traced together.
  *
  *     batch.path = &path;
  *     for (batch.n = 0; batch.n < GLINT_ZONE_BATCH;)
  *         glint_zone_batch_add(&batch, &zone, x);
- *     glint_zone_batch_trace(&batch);
- */
+ *     glint_zone_batch_trace(&batch); */
 #ifndef GLINT_BAKE_FIT_ZONE_BATCH_H
 #define GLINT_BAKE_FIT_ZONE_BATCH_H
 
@@ -23,11 +22,11 @@ struct glint_zone_batch {
     struct glint_ray ray[GLINT_ZONE_BATCH];
     enum glint_ray_status status[GLINT_ZONE_BATCH];
     double hits[GLINT_ZONE_BATCH * (GLINT_MAX_EVENTS + 1)]
-               [2]; /* -1: not reached */
+               [2]; /* mm; -1: not reached */
 };
 
-/* Adds the ray at X of the zone, w being that of the path and v 0 .. 1 from the
- * inner end of what there is. */
+/* Adds the ray at X of the zone; its w is that of the path, its v 0 .. 1 from
+ * the middle, or the inner end, of the box to its rim. */
 void glint_zone_batch_add(struct glint_zone_batch *batch,
                           const struct glint_zone *zone,
                           const double x[GLINT_VARIABLES]);
@@ -41,8 +40,9 @@ static inline double (*glint_zone_batch_hits(struct glint_zone_batch *batch,
     return batch->hits + k * batch->path->n_events;
 }
 
-/* Number K of low-discrepancy places, -1 .. 1 in each variable: multiples of
- * powers of the root of x^5 = x + 1, which fill four dimensions evenly. */
+/* Sets X to place number K of a low-discrepancy sequence, -1 .. 1 in each
+ * variable: multiples of powers of the root of x^5 = x + 1, which fill four
+ * dimensions evenly. */
 void glint_zone_batch_scatter(int k, double x[GLINT_VARIABLES]);
 
 #endif

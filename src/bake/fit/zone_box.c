@@ -5,10 +5,11 @@
 #include "bake/fit/regress.h"
 #include "engine/setup/degrees.h"
 
-/* Share of a box that is seen, which is enough: a fuller one needs higher
- * powers of s, which everything that is seen through it has to undo. */
+/* Share of a box that is seen which is enough: a fuller box needs higher powers
+ * of s, and polynomials of what is seen through it would have to undo them. */
 #define ENOUGH_FILL 0.6
-#define FULLER      1.6 /* least factor in fill for another power */
+/* Least factor by which a power more must raise the fill. */
+#define FULLER 1.6
 
 double glint_zone_node(int k, int n)
 {
@@ -25,7 +26,7 @@ double glint_zone_at(const double side[GLINT_BOX_TERMS], double s, double w)
            w * (side[GLINT_BOX_POWERS] + s * side[GLINT_BOX_POWERS + 1]);
 }
 
-/* What a zone's box has to hold, with s and w for the zone. */
+/* The boxes that a zone's box has to hold, at places s and w of the zone. */
 enum { ROOM = GLINT_PROFILE * GLINT_VISIBLE_WAVES };
 
 struct seen {
@@ -48,7 +49,8 @@ static void add(struct seen *seen, double s, double w,
     seen->narrowest = fmin(seen->narrowest, seen->half_x[i]);
 }
 
-/* One angle beyond each end, too, so that the ends are covered. */
+/* Gathers the boxes of the zone and of one angle beyond each end, so that the
+ * ends are covered. */
 static void gather(const struct glint_visible_profile *p, double lo, double hi,
                    bool by_colour, struct seen *seen)
 {
@@ -71,8 +73,8 @@ static void gather(const struct glint_visible_profile *p, double lo, double hi,
     }
 }
 
-/* The polynomial that follows VALUE within TOLERANCE, or as well as it can with
- * powers of s up to DEGREE, and, BY_COLOUR, w and s w. */
+/* Sets SIDE to the polynomial that follows VALUE within TOLERANCE, or as well
+ * as it can: powers of s up to DEGREE and, BY_COLOUR, w and s w. */
 static void follow(const struct seen *seen, const double *value, int degree,
                    bool by_colour, double tolerance,
                    double side[GLINT_BOX_TERMS])
@@ -101,7 +103,7 @@ static void follow(const struct seen *seen, const double *value, int degree,
                              : fit.power[k][2]] = fit.coef[k];
 }
 
-/* Returns what HALF lacks to be above 0 everywhere. */
+/* Returns what must be added to HALF to make it 0 or more everywhere. */
 static double lacks(const double half[GLINT_BOX_TERMS])
 {
     double lowest = HUGE_VAL;
@@ -112,7 +114,7 @@ static double lacks(const double half[GLINT_BOX_TERMS])
     return -lowest;
 }
 
-/* Widens the box until it holds all that was seen, and a hundredth more. */
+/* Widens the box until it holds all that was seen, and by 1/100 more. */
 static void widen(struct glint_zone *z, const struct seen *seen)
 {
     double more_x = 0, more_y = 0;
@@ -176,7 +178,7 @@ void glint_zone_init(struct glint_zone *zone,
     }
 }
 
-/* Puts W0 + (1 + w) / 2 * (W1 - W0) in place of w. */
+/* Replaces w by W0 + (1 + w) / 2 * (W1 - W0). */
 static void narrow(double side[GLINT_BOX_TERMS], double w0, double w1)
 {
     double *of_w = side + GLINT_BOX_POWERS;
@@ -199,7 +201,8 @@ void glint_zone_part_halve(const struct glint_zone_part *part, bool along_v,
     const int k = part->annulus;
 
     *first = *second = *part;
-    if (along_v) { /* k .. k + 1 in steps of 1 / (k + 1) of the height */
+    if (along_v) { /* The part spans k .. k + 1 in units of 1 / (k + 1) of its
+                      height. */
         first->top *= (2 * k + 1) / (2 * k + 2.0);
         first->annulus = 2 * k;
         second->annulus = 2 * k + 1;
@@ -223,7 +226,7 @@ void glint_zone_cut(struct glint_zone *zone, const struct glint_zone_part *part)
 
 /* -------------------------------------------------------------------- crop */
 
-/* What LOW .. HIGH of -1 .. 1 is of *FROM .. *TO, which becomes that. */
+/* Reduces *FROM .. *TO to LOW .. HIGH of it, where -1 .. 1 is the whole. */
 static void reduce(double low, double high, double *from, double *to)
 {
     const double middle = 0.5 * (*from + *to), half = 0.5 * (*to - *from);
@@ -232,7 +235,7 @@ static void reduce(double low, double high, double *from, double *to)
     *to = middle + fmin(1, high) * half;
 }
 
-/* Bounds of what is seen, by u, v and w. */
+/* Bounds of the visible rays in u, v, s and w. */
 struct sighting {
     double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
 };

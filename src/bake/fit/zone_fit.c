@@ -9,13 +9,14 @@
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 
-#define PEAK        5.0 /* times the root mean square */
-#define WIDE_ENERGY 60  /* most over least energy of which to take a root */
+#define PEAK 5.0 /* times the root mean square: tolerance of a single ray */
+/* Ratio of most to least energy above which a root of it is fitted. */
+#define WIDE_ENERGY 60
 
 enum {
     FEW_TERMS = 64,
-    MANY_TERMS = 96, /* terms of places in thorough fits */
-    PATIENCE = 36    /* terms, with what looks hopeless */
+    MANY_TERMS = 96, /* terms of each output of places in thorough fits */
+    PATIENCE = 36    /* number of terms after which a hopeless fit stops */
 };
 
 /* ----------------------------------------------------------------- outputs */
@@ -31,13 +32,13 @@ static const struct glint_degrees energy_degrees = {.most = {6, 4, 4, 8},
                                                     .total = 10,
                                                     .terms = FEW_TERMS};
 
-/* Terms of thorough fits, where energy changes a lot over the pupil. */
+/* Terms of thorough fits of energies that change a lot over the pupil. */
 static const struct glint_degrees steep_degrees = {.most = {8, 6, 4, 8},
                                                    .weight = {1, 1, 1, 1},
                                                    .total = 12,
                                                    .terms = MANY_TERMS};
 
-/* One fit: what was given to it, and how it goes. */
+/* One fit: its task and tolerances, memory, and the errors so far. */
 struct fit {
     const struct glint_zone_task *task;
     const struct glint_zone_aim *aim;
@@ -45,8 +46,9 @@ struct fit {
     struct glint_zone_errors *errors;
 };
 
-/* Full weight a little past the edge, where cells straddle it; hardly any where
- * nothing is seen, which only has to stay unseen. */
+/* Returns the weight of a ray: full up to a little past the edge, as cells
+ * straddle it, and hardly any far outside, where a ray only has to stay unseen.
+ */
 static double weight_past_edge(double excess)
 {
     const double past = (excess - 1.02) / 0.05;
@@ -54,8 +56,9 @@ static double weight_past_edge(double excess)
     return past <= 0 ? 1 : fmax(0.002, exp(-past * past));
 }
 
-/* Light beyond the field only has to stay there: it may be off by a fifth of
- * how far it is out. */
+/* Returns the factor on the weight of a ray's position for light beyond the
+ * field, which only has to stay there: it may be off by a fifth of its distance
+ * from the field. */
 static double weight_past_field(const struct fit *f, double fields)
 {
     const double out_mm = (fields - 1.01) * f->task->visible->field_mm;
@@ -76,7 +79,8 @@ static void set_weights(struct fit *f)
     }
 }
 
-/* The polynomials let ray I pass, which the lens stops by far. */
+/* Returns whether the polynomials let ray I pass though the lens stops it by
+ * far. */
 static bool leaks(const struct glint_zone_rays *r, int i,
                   const struct glint_fitted_system *system, double field_mm)
 {
@@ -97,8 +101,8 @@ static bool leaks(const struct glint_zone_rays *r, int i,
            hypot(at[GLINT_OUT_SENSOR_X], at[GLINT_OUT_SENSOR_Y]) < field_mm;
 }
 
-/* Gives rays that leak a weight that they are heard with. Returns whether there
- * are any. */
+/* Gives rays that leak enough weight to matter in the next fit. Returns whether
+ * there are any. */
 static bool stop_leaks(struct fit *f, const struct glint_fitted_system *system)
 {
     bool any = false;
@@ -123,7 +127,8 @@ static enum glint_status keep(struct glint_fitted_system *system,
         return GLINT_E_MEMORY;
     o->kind = kind;
     o->n_terms = poly->n;
-    o->grain = rms / 6; /* a few dozen of these stay below a third of it */
+    o->grain = rms / 6; /* a few dozen of these sum up to less than a third of
+                           the tolerance */
     o->met = met;
     memcpy(o->power, poly->power, (size_t)poly->n * sizeof *o->power);
     memcpy(o->coef, poly->coef, (size_t)poly->n * sizeof *o->coef);
@@ -131,7 +136,8 @@ static enum glint_status keep(struct glint_fitted_system *system,
     return GLINT_OK;
 }
 
-/* Fits VALUE over RAYS with CHANNEL_WEIGHT; returns what is left. */
+/* Fits the values in the buffers over the rays R, weighted by channel_weight;
+ * returns the residual in tolerances. */
 static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
                        enum glint_channel kind, double rms,
                        struct glint_poly *poly)
@@ -154,7 +160,8 @@ static double fit_poly(struct fit *f, const struct glint_zone_rays *r,
                              &degrees, rms, PEAK * rms, poly);
 }
 
-/* *WORST becomes what is left, if larger. */
+/* Fits one output and adds it to SYSTEM; *WORST becomes its residual if that is
+ * larger. */
 static enum glint_status fit_output(struct fit *f,
                                     const struct glint_zone_rays *r,
                                     enum glint_channel kind, double rms,
@@ -183,7 +190,7 @@ static enum glint_status fit_channel(struct fit *f, int channel, double rms,
                       system, worst);
 }
 
-/* Least and most energy of what is seen. */
+/* Lowers *LEAST and raises *MOST to the energies of visible rays. */
 static void energies_of(const struct glint_zone_rays *r, double *least,
                         double *most)
 {
@@ -194,9 +201,9 @@ static void energies_of(const struct glint_zone_rays *r, double *least,
         }
 }
 
-/* Sets VALUE to the energy, or its fourth root, and CHANNEL_WEIGHT, so that
- * energy counts by its share, down to a two-hundredth of MOST. Returns the
- * largest weight. */
+/* Sets VALUE to the energy, or to its fourth root, and CHANNEL_WEIGHT so that
+ * errors count as shares of the energy, or of MOST / 200 if that is more.
+ * Returns the largest weight. */
 static double set_energies(struct fit *f, const struct glint_zone_rays *r,
                            double most, bool root)
 {
@@ -207,7 +214,7 @@ static double set_energies(struct fit *f, const struct glint_zone_rays *r,
         const double energy = r->at[RAY_ENERGY][i];
         const double share = fmax(energy, 0.005 * most);
 
-        /* an error of the root is a quarter of the energy's */
+        /* The relative error of the root is a quarter of the energy's. */
         f->buffers->value[i] = root ? sqrt(sqrt(energy)) : energy;
         f->buffers->channel_weight[i] =
             fmax(weight_past_edge(out), 0.001) /
@@ -217,9 +224,9 @@ static double set_energies(struct fit *f, const struct glint_zone_rays *r,
     return largest;
 }
 
-/* Towards total reflection energy grows a thousandfold; its fourth root is as
- * tame as a position. Where a coating lets all light of some colour through,
- * the root has a cusp and energy itself is tame. */
+/* Fits the energy. Towards total reflection it grows a thousandfold, while its
+ * fourth root is as smooth as a position. If a coating lets all light of some
+ * colour through, the root has a cusp and energy itself is smooth. */
 static enum glint_status
 fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
 {
@@ -255,7 +262,7 @@ fit_energy(struct fit *f, struct glint_fitted_system *system, double *worst)
                 left <= 1);
 }
 
-/* Fits a barrel; the place where it cuts is what counts. */
+/* Fits a barrel, with most weight where it cuts. */
 static enum glint_status fit_barrel(struct fit *f, int barrel,
                                     struct glint_fitted_system *system,
                                     double *worst)
@@ -314,11 +321,11 @@ static enum glint_status fit_outputs(struct fit *f,
 
 /* ------------------------------------------------------------------ checks */
 
-/* What may be left of rays that were not fitted, in tolerances. */
+/* Largest error, in tolerances, of rays that were not fitted. */
 #define CHECK_RMS 1.6
 
-/* The root mean square error of one output over the rays that get through, in
- * units of RMS. */
+/* Returns the root mean square error of one output over the rays that get
+ * through, in units of RMS. */
 static double check_output(const struct fit *f,
                            const struct glint_fitted_output *o,
                            const double *value, double rms)
@@ -341,8 +348,8 @@ static double check_output(const struct fit *f,
     return n ? sqrt(sum2 / n) / rms : 0;
 }
 
-/* How much worse than it may be the zone is at rays between those that were
- * fitted: a fit can be good at every node and nowhere else. */
+/* Returns how far the zone exceeds its tolerance at rays between those that
+ * were fitted: a fit can be good at every node and nowhere else. */
 static double check_zone(struct fit *f,
                          const struct glint_fitted_system *system)
 {

@@ -34,12 +34,13 @@ static void add_ray(const struct glint_visible *h,
     }
 }
 
-/* More nodes than powers in every variable, or a fit would be perfect at the
- * nodes and nowhere else. */
+/* Numbers of angles and of cells across and down. There are more nodes than
+ * powers in every variable, or a fit would be perfect at the nodes and nowhere
+ * else. */
 enum { SINES = 9, ACROSS = 24, DOWN = 12 };
 
-/* Rays at one angle and wavelength. Every third of those far outside of what is
- * seen is enough. */
+/* Traces rays at one angle and wavelength. In the finest grid only every third
+ * ray is kept of those far outside of what is seen. */
 static void trace_plane(const struct glint_zone *zone,
                         const struct glint_visible *visible, int sine, int wave,
                         int stride, struct glint_zone_rays *rays)
@@ -83,9 +84,9 @@ static int count_visible(const struct glint_zone_rays *rays)
     return n;
 }
 
-/* Positions are tame in w: four wavelengths at each angle, in turn, are enough.
- * A coarse grid first; a fine one where few of its rays got through.
- */
+/* Traces rays for positions. These change slowly with w: four wavelengths at
+ * each angle, in turn, are enough. The grid is coarse first, and fine if few of
+ * its rays got through. */
 static void trace_positions(const struct glint_zone *zone,
                             const struct glint_visible *visible,
                             struct glint_zone_rays *rays)
@@ -130,9 +131,9 @@ double glint_zone_rays_spread(const struct glint_zone_rays *rays)
     return spread;
 }
 
-/* Energy hardly changes over the pupil, but films make it swing with the
- * wavelength. Towards total reflection it is STEEP: a finer grid then, and at
- * each angle five wavelengths in turn. */
+/* Traces rays for energies. They hardly change over the pupil, but films make
+ * them swing with the wavelength. Towards total reflection they are STEEP: then
+ * the grid is finer, with five wavelengths in turn at each angle. */
 static void trace_energies(const struct glint_zone *zone,
                            const struct glint_visible *visible, bool steep,
                            struct glint_zone_rays *rays)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The rays that polynomials of a zone are fitted to.
+ * Traces the rays that polynomials of a zone are fitted to.
  *
  *   in   a zone, a ghost's paths at a few wavelengths
  *   out  rays in the zone's coordinates: where they land, their energy, how
- *        near they come to the barrels that cut
- */
+ *        near they come to the barrels that cut */
 #ifndef GLINT_BAKE_FIT_ZONE_RAYS_H
 #define GLINT_BAKE_FIT_ZONE_RAYS_H
 
@@ -20,8 +19,8 @@ enum {
     RAY_STOP_X, /* stop radii */
     RAY_STOP_Y,
     RAY_ENERGY,
-    RAY_EXCESS, /* the largest of all relative radii, the stop's too */
-    RAY_FIELD,  /* distance from the sensor's centre, fields */
+    RAY_EXCESS, /* largest relative radius at any surface and at the stop */
+    RAY_FIELD,  /* distance from the sensor's centre, in radii of the field */
     RAY_CHANNELS
 };
 
@@ -29,12 +28,12 @@ struct glint_zone_rays {
     int n;
     double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
     double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
-    /* relative radius at each barrel that limits the zone */
+    /* relative radius at each barrel that cuts in the zone */
     int n_barrels;
     int barrel[GLINT_MAX_BARRELS]; /* events of the path */
     double radius[GLINT_MAX_BARRELS][GLINT_ZONE_RAYS];
-    double missed_cut; /* largest relative distance that a ray gets past a
-                          barrel which is not listed here */
+    double missed_cut; /* largest relative distance by which a ray gets past a
+                          barrel that is not listed */
 };
 
 static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
@@ -43,11 +42,11 @@ static inline bool glint_zone_rays_seen(const struct glint_zone_rays *r,
     return r->at[RAY_EXCESS][ray] <= 1 && r->at[RAY_FIELD][ray] <= 1;
 }
 
-/* Whether nothing of them is seen. */
+/* Returns whether none of the rays is seen. */
 bool glint_zone_rays_dark(const struct glint_zone_rays *rays);
 
-/* The most energy over the least of what is seen at one angle and wavelength,
- * and what is much: films make all of it swing with the wavelength. */
+/* Returns the largest ratio of most to least energy of seen rays at one angle
+ * and wavelength, which films do not affect; above GLINT_STEEP it is large. */
 double glint_zone_rays_spread(const struct glint_zone_rays *rays);
 #define GLINT_STEEP 8
 
@@ -55,22 +54,22 @@ double glint_zone_rays_spread(const struct glint_zone_rays *rays);
 enum { GLINT_SAMPLING_RAYS = 6000 };
 typedef double glint_zone_sampling[GLINT_SAMPLING_RAYS][GLINT_MAX_EVENTS + 1];
 
-/* Chooses the barrels of RAYS: no ray gets farther past the others than SHOWS,
- * a relative radius. */
+/* Chooses the barrels of RAYS so that no ray gets farther than SHOWS, a
+ * relative radius, past any other. */
 void glint_zone_choose_barrels(const struct glint_zone *zone,
                                const struct glint_visible *visible,
                                double shows, glint_zone_sampling *sampling,
                                struct glint_zone_rays *rays);
 
-/* Traces the samples: RAYS for positions and barrels, ENERGIES at fewer places
- * but more wavelengths. */
+/* Traces RAYS for positions and barrels, and ENERGIES at fewer places but more
+ * wavelengths. */
 void glint_zone_trace(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays,
                       struct glint_zone_rays *energies);
 
-/* Random rays of the zone, at angles and wavelengths between those of the
- * samples. Barrels are not looked at. Deterministic. */
+/* Sets RAYS to scattered rays of the zone, at angles and wavelengths between
+ * those that were fitted, without barrels. Deterministic. */
 void glint_zone_check(const struct glint_zone *zone,
                       const struct glint_visible *visible,
                       struct glint_zone_rays *rays);

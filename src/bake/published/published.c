@@ -10,25 +10,27 @@
 #include "bake/published/shared_basis.h"
 
 enum {
-    SEARCH_ZONES = 15, /* the basis is looked for on so many */
-    ACROSS = 24,       /* rays over a box: 288 in its upper half */
+    SEARCH_ZONES = 15, /* zones on which the basis is searched for */
+    ACROSS = 24,       /* cells across a box, 288 in its upper half */
     DOWN = 12,
-    ENOUGH = 60 /* rays that get through; else four times as many are tried */
+    /* Rays that must get through; else four times as many are traced. */
+    ENOUGH = 60
 };
 
-/* Narrower ranges are a knot, not a system; sines. */
+/* Least range of sines; a narrower one would be a knot, not a system. */
 #define LEAST_RANGE 1e-6
 
-/* By kind: what counts as well fitted. */
+/* Errors, by kind, at which a fit counts as good. */
 static const double tolerance[GLINT_SHARED_OUTPUTS] = {0.0002, 0.0002, 0.0002,
                                                        0.0002, 0.001,  0.0002};
 
-/* The knots of one range of angles; the same for all wavelengths. */
+/* The knots of one range of angles, shared by all wavelengths. */
 struct knots {
     int n;
     double *sine;
-    struct glint_pupil *box;   /* box at the knot */
-    struct glint_pupil *joint; /* box joint with the neighbours' */
+    struct glint_pupil *box; /* box at the knot */
+    /* Box at the knot joined with those of its neighbours. */
+    struct glint_pupil *joint;
 };
 
 struct job {
@@ -73,7 +75,7 @@ static bool options_are_good(const struct glint_published_options *o)
     return good;
 }
 
-/* Longest wavelength first. */
+/* Sorts the wavelengths, the longest first. */
 static void sort_waves(struct job *job)
 {
     const double *nm = job->options->wavelength_nm;
@@ -99,7 +101,7 @@ static double mix(double a, double b, double part)
     return a + (b - a) * part;
 }
 
-/* The box at SINE, between those of the profile. */
+/* Returns the box at SINE, interpolated between those of the profile. */
 static struct glint_pupil box_at(const struct glint_visible_profile *p,
                                  double sine)
 {
@@ -119,8 +121,8 @@ static struct glint_pupil box_at(const struct glint_visible_profile *p,
     return box;
 }
 
-/* Both ends, and the equidistant angles between them that are not all but at
- * one of them. */
+/* Places knots at both ends of RANGE and at the equidistant angles between them
+ * that do not almost coincide with an end. Returns how many. */
 static int place_knots(const struct glint_published_options *o,
                        const double range[2], double *sine)
 {
@@ -184,8 +186,8 @@ static enum glint_status find_knots(struct job *job)
 
     for (int k = 0; k < n && status == GLINT_OK; k++)
         status = set_knots(job, range[k]);
-    /* A power of two scales the integers of a box in mm to 2^30 at the radius
-     * without rounding. */
+    /* With a power of two the integers of a box, scaled to 2^30 at this radius,
+     * need no rounding. */
     job->radius_mm = job->n_ranges ? exp2(ceil(log2(job->radius_mm))) : 0;
     return status;
 }
@@ -199,7 +201,7 @@ struct zone_trace {
     double direction[3];
 };
 
-/* Traces ray I, J of a grid of cells into entry RAYS->n. */
+/* Traces the ray at (I, J), 0 .. 1, of the box into entry RAYS->n. */
 static void trace_ray(const struct zone_trace *t, double i, double j,
                       struct glint_shared_rays *rays)
 {
@@ -229,9 +231,9 @@ static void trace_ray(const struct zone_trace *t, double i, double j,
                   hypot(ray.sensor_x_mm, ray.sensor_y_mm) / h->field_mm));
 }
 
-/* Rays at the middles of SCALE^2 * ACROSS * DOWN cells. Of a finer grid than
- * the first most of those far outside of what is seen are left out. Returns how
- * many get through. */
+/* Traces rays at the middles of SCALE^2 * ACROSS * DOWN cells. If SCALE is
+ * above 1, most rays far outside of what is seen are left out. Returns how many
+ * get through. */
 static int trace_grid(const struct zone_trace *t, int scale,
                       struct glint_shared_rays *rays)
 {
@@ -266,8 +268,8 @@ static void trace_zone(const struct job *job, const struct glint_path *path,
 
 /* ------------------------------------------------------------------- search */
 
-/* Rays of zones spread over all knots, of each wavelength in turn. Returns how
- * many. */
+/* Traces rays of zones spread over all knots, each of another wavelength in
+ * turn. Returns how many zones. */
 static int trace_some(struct job *job)
 {
     const int waves = job->options->n_wavelengths;
@@ -345,7 +347,7 @@ static bool init_system(const struct job *job, const struct knots *knots,
     return good;
 }
 
-/* The coefficients of all knots. */
+/* Fits the coefficients at all knots. */
 static void fit_system(struct job *job, const struct knots *knots, double nm,
                        struct glint_fitted_system *s)
 {

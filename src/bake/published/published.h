@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The published method of fitting a ghost [Bodonyi25], which ours is compared
- * with.
+ * Fits a ghost by the published method [Bodonyi25], for comparison with ours.
  *
  *   in   a ghost of a lens, wavelengths, the field that counts
  *   out  for every wavelength (and range of angles in which the ghost is seen)
@@ -10,19 +9,18 @@
  *        apart
  *
  * Method: a zone is the surroundings of a knot. Rays are traced all over the
- * ghost's pupil box there, joined with the boxes of the neighbours, so that
- * what is interpolated between two knots is good where either lets light
+ * ghost's pupil box there, joined with the boxes of the neighbouring knots, so
+ * that interpolated polynomials are good wherever either knot lets light
  * through. One sparse basis for each output, found on some of the zones
- * (shared_basis.h), serves all of them. It serves all wavelengths too,
- * which the method leaves open: the search takes its zones from each in turn,
- * for a third of the time.
+ * (shared_basis.h), serves all of them. It serves all wavelengths, too, which
+ * the method leaves open: the search takes zones of each wavelength in turn, in
+ * a third of the time.
  *
- * Limits: those of the search for what is visible (bake/fit/visible.h); ranges
- * and boxes are shared by all wavelengths; boxes run straight between those of
- * that search's profile. Between two knots the error is that of the
+ * Limits: those of the search for visible light (bake/fit/visible.h); ranges
+ * and boxes are shared by all wavelengths; boxes are interpolated between those
+ * of that search's profile. Between two knots the error is that of the
  * interpolation: where the box moves by its own size from knot to knot it is
- * much larger than at them.
- */
+ * much larger than at the knots. */
 #ifndef GLINT_BAKE_PUBLISHED_PUBLISHED_H
 #define GLINT_BAKE_PUBLISHED_PUBLISHED_H
 
@@ -30,25 +28,28 @@
 #include "glint/setup.h"
 
 struct glint_published_options {
-    int n_zones;    /* angles 0 .. max_deg, at least 2; 241 as published */
+    int n_zones;    /* number of angles from 0 to max_deg, at least 2; 241 as
+                       published */
     double max_deg; /* degrees, at most 89; 60 as published */
     int max_terms;  /* per output, 1 .. 12 */
-    const double *wavelength_nm; /* nanometres, in any order, no two the same */
+    const double *wavelength_nm; /* in any order, all different */
     int n_wavelengths;           /* 1 .. GLINT_MAX_WAVELENGTHS */
-    double field_mm; /* light beyond this radius on the sensor is no loss */
+    double field_mm; /* radius about the sensor's centre beyond which light does
+                        not count */
 };
 
-/* 241 zones, 60 degrees, 5 terms for lenses of up to 20 surfaces and 10 for
- * others, and the wavelengths and half the diagonal of SETUP's film. The
- * wavelengths are kept. */
+/* Sets OPTIONS to 241 zones, 60 degrees, 5 terms for lenses of up to 20
+ * surfaces and 10 for others, the wavelengths of SETUP, which are kept, and
+ * half the diagonal of its film. */
 void glint_published_defaults(struct glint_published_options *options,
                               const struct glint_setup *setup);
 
-/* Fits GHOST of SETUP. No systems: it is never seen. radius_mm is a power of
- * two, the same for all systems of the ghost, and r = hypot(x, y) is at most 1
- * in every box. An output met the tolerance if its root mean square error over
- * the knots did: 0.0002 mm, 0.0002 stop radii and relative radii, 0.1 % of the
- * energy. GLINT_E_ARGUMENT, GLINT_E_MEMORY: OUT is empty. Deterministic. */
+/* Fits GHOST of SETUP; OUT has no systems if it is never seen. radius_mm is a
+ * power of two, equal for all systems of the ghost, and r = hypot(x, y) is at
+ * most 1 in every box. An output met the tolerance if its root mean square
+ * error over the knots did: 0.0002 mm, 0.0002 stop radii and relative radii,
+ * 0.1 % of the energy. GLINT_E_ARGUMENT, GLINT_E_MEMORY: OUT is empty.
+ * Deterministic. */
 enum glint_status
 glint_published_fit(const struct glint_setup *setup, int ghost,
                     const struct glint_published_options *options,

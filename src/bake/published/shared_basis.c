@@ -13,7 +13,8 @@ struct search {
     enum glint_channel kind;
     int n_candidates;
     uint8_t candidate[MAX_CANDIDATES][GLINT_VARIABLES];
-    double remove[GLINT_SHARED_TERMS]; /* cost of dropping each term */
+    double remove[GLINT_SHARED_TERMS]; /* error that dropping each term would
+                                          add */
 };
 
 /* --------------------------------------------------------------- candidates */
@@ -52,7 +53,8 @@ static void add_candidate(struct search *s,
         s->n_candidates++;
 }
 
-/* Pure powers (times y for odd outputs) and the neighbours of what there is. */
+/* Lists candidates: pure powers (times y for odd outputs), and the neighbours
+ * of the terms of the basis. */
 static void find_candidates(struct search *s,
                             const struct glint_shared_basis *basis)
 {
@@ -78,7 +80,7 @@ static void find_candidates(struct search *s,
 
 /* ------------------------------------------------------------------- search */
 
-/* Fits all zones; returns the error. */
+/* Fits all zones; returns the mean squared error. */
 static double settle(struct search *s, struct glint_shared_basis *basis)
 {
     double coef[GLINT_SHARED_TERMS], sum = 0;
@@ -95,9 +97,10 @@ static double settle(struct search *s, struct glint_shared_basis *basis)
     return basis->square;
 }
 
-/* A change of the basis and the error that it promises. */
+/* A change of the basis, and the squared error that it promises. */
 struct change {
-    int candidate, place; /* place n: one more term */
+    int candidate, place; /* place is that of the term to replace; n: the
+                             candidate becomes one more term */
     double square;
 };
 
@@ -136,7 +139,7 @@ static void apply(const struct search *s, const struct change *change,
         basis->n++;
 }
 
-/* BASIS without the term that matters least. */
+/* Drops the term of BASIS that matters least. */
 static void drop(const struct search *s, struct glint_shared_basis *basis)
 {
     int least = 0;
@@ -150,12 +153,13 @@ static void drop(const struct search *s, struct glint_shared_basis *basis)
         memcpy(basis->power[k], basis->power[k + 1], GLINT_VARIABLES);
 }
 
-/* Best bases by size, index n; square HUGE_VAL: none. */
+/* The best basis of each size, by size; one with square HUGE_VAL was not found.
+ */
 struct record {
     struct glint_shared_basis best[GLINT_SHARED_TERMS + 1];
 };
 
-/* Takes CHANGED if it keeps what it promises: better than any of its size. */
+/* Accepts CHANGED if its fit is better than the best basis of its size. */
 static bool accept(struct search *s, struct glint_shared_basis changed,
                    struct glint_shared_basis *basis, struct record *record)
 {
@@ -169,7 +173,7 @@ static bool accept(struct search *s, struct glint_shared_basis changed,
     return false;
 }
 
-/* One step; false: nothing helps any more. */
+/* Changes the basis once; returns false if nothing helps any more. */
 static bool step(struct search *s, struct glint_shared_basis *basis,
                  struct record *record, int max_terms, double square)
 {
@@ -197,8 +201,8 @@ static bool step(struct search *s, struct glint_shared_basis *basis,
     return accept(s, changed, basis, record);
 }
 
-/* The smallest basis that is good enough, or that nothing larger betters by
- * much. */
+/* Picks the smallest basis that is good enough, or that no larger one improves
+ * on by more than 5 %. */
 static void pick(const struct record *record, int max_terms, double square,
                  struct glint_shared_basis *basis)
 {
@@ -231,7 +235,7 @@ void glint_shared_search(struct glint_shared_zone *zone,
     *basis = (struct glint_shared_basis){.n = 0};
     settle(&s, basis);
     try_candidates(&s, basis, &grow, &swap);
-    if (grow.candidate < 0) /* all is 0: any term will do */
+    if (grow.candidate < 0) /* all values are 0: any term will do */
         grow = (struct change){0, 0, 0};
     apply(&s, &grow, basis);
     settle(&s, basis);

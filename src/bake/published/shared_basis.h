@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * One sparse basis for many zones of a ghost.
+ * Finds one sparse basis for many zones of a ghost.
  *
  *   in   rays of some zones
  *   out  the few monomials that serve all of them
  *
  * Method: adaptive sparse regression [Zheng17], as [Bodonyi25] shares it among
- * zones. A basis begins with its best single term and then grows by a term that
- * is one exponent away from one it has, or by a pure power; terms are swapped
- * for such terms while that helps; a term leaves when what remains beats the
- * best known basis of that size. The error is the mean over the zones of the
- * weighted squared error (shared_zone.h). Outputs that are even in y have
- * even powers of y only, and odd ones odd powers, as symmetric rays choose.
+ * zones. A basis begins with its best single term. It then grows by a term that
+ * is one exponent away from one of its terms, or by a pure power; terms are
+ * swapped for such terms while that helps; a term is dropped if the basis
+ * without it beats the best known basis of that size. The error is the mean
+ * over the zones of the weighted squared error (shared_zone.h). Outputs that
+ * are even in y get even powers of y only, odd outputs odd powers.
  *
- * Limits: a local search; the neighbours it tries are those named above.
- */
+ * Limits: a local search; it tries only the neighbours named above. */
 #ifndef GLINT_BAKE_PUBLISHED_SHARED_BASIS_H
 #define GLINT_BAKE_PUBLISHED_SHARED_BASIS_H
 

@@ -4,27 +4,28 @@
 #include <math.h>
 #include <string.h>
 
-/* A coefficient of as much (mm, stop radii, ...) costs what an error of the
- * tolerance does. That keeps sums of coefficients below some thousand, so that
- * integers of 32 bits resolve 1e-5. */
+/* A coefficient of this size (mm, stop radii, ...) costs as much as an error of
+ * the tolerance. So sums of coefficients stay below some thousand, and integers
+ * of 32 bits resolve 1e-5. */
 #define LARGE 100.0
 
-/* A term this much shorter than it was, without what others have of it, is a
- * combination of them. */
+/* Share of its length: a term that is shorter than that without its shares of
+ * other terms is a combination of them. */
 #define DEPENDENT 1e-7
 
-/* Weight of a ray that is cut but needed between knots, and of one farther
- * out. */
+/* Weights of a ray that is cut but needed between knots, and of one farther
+ * out; the largest relative radius of the former. */
 #define NEAR_WEIGHT 0.2
 #define FAR_WEIGHT  0.01
 #define NEAR_EXCESS 1.1
 
-/* Relative radius that is asked for where a lost ray would get through. */
+/* Relative radius that a lost ray is fitted to if it would get through. */
 #define LOST_RADIUS 1.1
 
 /* ------------------------------------------------------------------ vectors */
 
-/* Four sums at once: shorter chains of dependent additions. */
+/* Returns the dot product of A and B. Four sums at once make shorter chains of
+ * dependent additions. */
 static double dot(const double *a, const double *b, int n)
 {
     double s[4] = {0, 0, 0, 0};
@@ -75,7 +76,7 @@ static bool stop_kind(enum glint_channel kind)
     return kind == GLINT_OUT_STOP_X || kind == GLINT_OUT_STOP_Y;
 }
 
-/* Whether FIT of a ray that is cut would let it through. */
+/* Returns whether the value FIT would let a ray through that is cut. */
 static bool wrongly_seen(const struct glint_shared_rays *rays, int i,
                          enum glint_channel kind, double fit)
 {
@@ -105,7 +106,7 @@ static double weight_of(const struct glint_shared_rays *rays, int i,
                                             : FAR_WEIGHT;
 }
 
-/* Values and weights of a zone before anything is fitted. */
+/* Sets values of a zone and forgets its last fit. */
 void glint_shared_begin(struct glint_shared_zone *z,
                         const struct glint_shared_rays *rays,
                         enum glint_channel kind, double tolerance)
@@ -124,14 +125,14 @@ void glint_shared_begin(struct glint_shared_zone *z,
     for (int i = 0; i < z->n; i++) {
         z->value[i] =
             rays->lost[i] ? LOST_RADIUS : z->scale * rays->at[kind][i];
-        z->fit[i] = HUGE_VAL; /* lets nothing through */
+        z->fit[i] = HUGE_VAL; /* This value lets no ray through. */
     }
 }
 
 static void weigh(struct glint_shared_zone *z,
                   const struct glint_shared_rays *rays, enum glint_channel kind)
 {
-    /* a zone in which next to nothing gets through counts less */
+    /* A zone in which next to nothing gets through counts less. */
     const double count = fmax(z->seen, 0.05 * z->n);
 
     for (int i = 0; i < z->n; i++) {
@@ -143,7 +144,7 @@ static void weigh(struct glint_shared_zone *z,
 
 /* ------------------------------------------------------------ least squares */
 
-/* Adds one more column; a dependent one becomes 0. */
+/* Adds one more column; a column that depends on others becomes 0. */
 static void add_column(struct glint_shared_zone *z, int rank,
                        const double *column)
 {
@@ -174,7 +175,7 @@ static void add_column(struct glint_shared_zone *z, int rank,
         q[i] /= length;
 }
 
-/* Coefficients from shares. */
+/* Works out coefficients from shares. */
 static void solve(const struct glint_shared_zone *z, int n, double *coef)
 {
     for (int k = n - 1; k >= 0; k--) {
@@ -208,7 +209,7 @@ static void factor(struct glint_shared_zone *z,
     }
 }
 
-/* Mean squared error with the weights that the fit deserves. */
+/* Returns the mean squared error with the weights that the fit itself gives. */
 static double square_of(const struct glint_shared_zone *z,
                         const struct glint_shared_rays *rays,
                         enum glint_channel kind)
@@ -225,7 +226,7 @@ static double square_of(const struct glint_shared_zone *z,
     return sum / count;
 }
 
-/* Fits a zone; rays that are wrongly seen enter, in a few rounds. */
+/* Fits a zone, in a few rounds if wrongly seen rays may enter. */
 double glint_shared_fit(struct glint_shared_zone *z,
                         const struct glint_shared_rays *rays,
                         enum glint_channel kind,
@@ -260,8 +261,8 @@ double glint_shared_solve(struct glint_shared_zone *z,
 
 /* -------------------------------------------------------------- other terms */
 
-/* Row I of the inverse of r gives the direction of term I that no other term
- * shares: terms times that direction are 0 but for I. */
+/* Row I of the inverse of r is the direction of term I that no other term
+ * shares: the product of any other term with it is 0. */
 void glint_shared_part(struct glint_shared_zone *z, int n, double *cost)
 {
     for (int i = 0; i < z->n; i++) {

@@ -6,14 +6,16 @@
 
 /* largest relative error of a stated focal length */
 #define STATED_TOLERANCE 1e-3
-/* share of the semi-diameter, the height at which surfaces must be apart */
+/* share of the smaller semi-diameter, the height at which neighbours are
+ * compared */
 #define CLEAR_SHARE 0.9
 #define CONTACT_MM  1e-6 /* mm of overlap that rounding may make */
 #define MIN_STOP_MM 1e-6
 /* relative error of the stop radius that rounding may make */
 #define STOP_SLACK 1e-9
 
-/* Depth of element E at HEIGHT from the axis, behind its vertex. */
+/* Returns the distance of element E at HEIGHT from the axis behind its vertex.
+ */
 static double sag_mm(const struct glint_prescription *lens, int e,
                      double height)
 {
@@ -23,10 +25,11 @@ static double sag_mm(const struct glint_prescription *lens, int e,
     return ch * height / (1.0 + sqrt(1.0 - ch * ch));
 }
 
-/* Each element ends before the next begins. The distance between two spheres
- * changes one way from the axis to the rim, and vertices are in order, so one
- * height decides. It is not the very rim, because published semi-diameters are
- * often estimates: surfaces of the Canon zoom meet at 0.92 of theirs. */
+/* Checks that each element ends before the next begins. The distance between
+ * two spheres only rises or only falls from the axis to the rim, and vertices
+ * are in order, so one height decides. It is not the very rim, as published
+ * semi-diameters are often estimates: surfaces of the Canon zoom meet at 0.92
+ * of theirs. */
 static bool check_rims(const struct glint_prescription *lens,
                        const struct glint_text *text,
                        const struct glint_places *places)
@@ -53,7 +56,7 @@ static bool check_rims(const struct glint_prescription *lens,
     return true;
 }
 
-/* STATED, at PLACE, is checked only where the table says it. */
+/* Checks that FOUND agrees with STATED, if the table states it, at PLACE. */
 static bool check_stated(const struct glint_text *text,
                          struct glint_text_place place, const char *name,
                          double stated, double found)
@@ -63,7 +66,7 @@ static bool check_stated(const struct glint_text *text,
                            name, found, stated);
 }
 
-/* Comparisons are such that a NaN fails. */
+/* Checks focal lengths and stop. Comparisons are such that a NaN fails. */
 static bool check_optics(const struct glint_prescription *lens,
                          const struct glint_text *text,
                          const struct glint_places *places)

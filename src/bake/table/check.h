@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whether a lens whose values are all in range can exist and work.
+ * Checks whether a lens whose values are all in range can exist and work.
  *
- *   in   a prescription read to the end, and where its table says what
+ *   in   a prescription read to the end, and the places of its numbers
  *   out  true, or the first mistake written as the error of the text
  *
  * Checked in this order: the last medium is air; elements do not overlap and
@@ -10,8 +10,7 @@
  * opens wide enough for the f-number; stated focal lengths agree with those of
  * the paraxial matrices. A new f-number must pass the same test of the stop.
  * Limits: neighbours are compared at one height, CLEAR_SHARE of the smaller
- * semi-diameter; that rays pass the barrels is not checked.
- */
+ * semi-diameter; whether rays pass the barrels is not checked. */
 #ifndef GLINT_BAKE_TABLE_CHECK_H
 #define GLINT_BAKE_TABLE_CHECK_H
 
@@ -20,7 +19,8 @@
 #include "bake/table/elements.h"
 #include "bake/table/text.h"
 
-#define GLINT_MAX_FOCAL_MM 1e6 /* a longer one is no power at all */
+/* Longest focal length; a lens with a longer one counts as without power. */
+#define GLINT_MAX_FOCAL_MM 1e6
 #define GLINT_MIN_F_NUMBER 0.5
 #define GLINT_MAX_F_NUMBER 1000.0
 
@@ -33,7 +33,7 @@ struct glint_places {
     struct glint_text_place medium; /* place of the last surface's medium */
 };
 
-/* False: the error is written. */
+/* Returns whether LENS is good; if not, the error of TEXT is written. */
 bool glint_prescription_check(const struct glint_prescription *lens,
                               const struct glint_text *text,
                               const struct glint_places *places);

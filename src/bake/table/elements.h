@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lens seen as a row of elements: its surfaces and, among them, the stop, in
- * the order of the table. Element E is the stop where E == lens->stop_after.
- */
+ * A lens seen as a row of elements: its surfaces and the stop among them, in
+ * the order of the table. Element E is the stop if E == lens->stop_after. */
 #ifndef GLINT_BAKE_TABLE_ELEMENTS_H
 #define GLINT_BAKE_TABLE_ELEMENTS_H
 
@@ -15,13 +14,13 @@ static inline int element_count(const struct glint_prescription *lens)
     return lens->n_surfaces + 1;
 }
 
-/* Surface of element E, -1 for the stop. */
+/* Returns the surface of element E, -1 for the stop. */
 static inline int element_surface(const struct glint_prescription *lens, int e)
 {
     return e == lens->stop_after ? -1 : e - (e > lens->stop_after);
 }
 
-/* Element of surface K. */
+/* Returns the element of surface K. */
 static inline int surface_element(const struct glint_prescription *lens, int k)
 {
     return k + (k >= lens->stop_after);
@@ -44,7 +43,7 @@ static inline double element_semi_mm(const struct glint_prescription *lens,
     return k < 0 ? lens->stop_semi_mm : lens->surface[k].semi_mm;
 }
 
-/* 1 / radius, 0 for a plane and the stop. */
+/* Returns 1 / radius of element E, 0 for a plane and the stop. */
 static inline double element_curvature(const struct glint_prescription *lens,
                                        int e)
 {

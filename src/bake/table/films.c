@@ -19,7 +19,7 @@ bool glint_film_of(const struct glint_text *text, const struct glint_word *word,
     return glint_text_value_of(text, word, &nm_range, &film->nm);
 }
 
-/* A film and, behind a slash, its index. */
+/* Reads a film and, after a slash, its index. */
 static bool read_film(const struct glint_text *text,
                       const struct glint_word *word, struct glint_film *film)
 {

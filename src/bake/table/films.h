@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Films of a lens table: words "none", "NM" and "NM/INDEX".
- */
+ * Reads films of a lens table: words "none", "NM" and "NM/INDEX". */
 #ifndef GLINT_BAKE_TABLE_FILMS_H
 #define GLINT_BAKE_TABLE_FILMS_H
 
@@ -12,12 +11,13 @@
 
 extern const struct glint_text_range glint_film_index_range;
 
-/* WORD as a film without its index, which is magnesium fluoride's. False: the
- * error is written. */
+/* Reads WORD, "none" or "NM", as a film with the index of magnesium fluoride.
+ * If it returns false the error is written. */
 bool glint_film_of(const struct glint_text *text, const struct glint_word *word,
                    struct glint_film *film);
 
-/* All words that are left of the line, one or more. */
+/* Reads films from the rest of the line, at least one word, to its end. If it
+ * returns false the error is written. */
 bool glint_films_read(struct glint_text *text,
                       struct glint_film films[GLINT_MAX_FILMS], int *n);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lens -> the pairs of surfaces whose reflections reach the sensor through the
- * stop once. Pairs across the stop cross it three times and hardly pass.
- */
+ * Lists the pairs of surfaces whose reflections reach the sensor through the
+ * stop once. Light of pairs across the stop would cross it three times and
+ * hardly gets through. */
 #include "glint/prescription.h"
 
 int glint_ghost_list(const struct glint_prescription *lens,

@@ -2,27 +2,27 @@
  *
  * First-order optics: lens -> focal lengths, pupil and stop, at the d line.
  *
- * Two paraxial rays (y, n u) meet all elements in turn: n u loses y times the
- * power of a surface, y gains n u times the reduced gap. A lens without power
- * has infinite focal lengths; glint_prescription_parse takes none of that kind.
- */
+ * Paraxial rays (y, n u) meet all elements in turn: n u loses y times the power
+ * of a surface, y gains n u times the reduced gap. A lens without power has
+ * infinite focal lengths; glint_prescription_parse() accepts none of these. */
 #include "bake/table/elements.h"
 
 #include <stddef.h>
 
-/* A ray at one element: height, and slope times the index around it. */
+/* A ray at one element: its height, and its slope times the index there. */
 struct paraxial_ray {
     double y_mm, nu;
 };
 
-/* Leads RAY from the vertex plane of the front surface to element LAST and
+/* Moves RAY from the vertex plane of the front surface to element LAST and
  * through it. */
 static void lead(struct paraxial_ray *ray,
                  const struct glint_prescription *lens, int last)
 {
     double n = 1.0;
 
-    if (lens->stop_after == 0) /* a stop in front: backwards through air */
+    /* a stop in front is reached backwards through air. */
+    if (lens->stop_after == 0)
         ray->y_mm -= ray->nu * element_gap_mm(lens, 0);
     for (int e = 0; e <= last; e++) {
         const int k = element_surface(lens, e);
@@ -53,8 +53,8 @@ void glint_optics_of(const struct glint_prescription *lens,
     optics->stop_radius_mm = optics->entrance_radius_mm * to_stop.y_mm;
     if (optics->stop_radius_mm < 0.0)
         optics->stop_radius_mm = -optics->stop_radius_mm;
-    /* A ray of height h and slope u meets the axis at -h / u and the stop at
-     * h to_stop.y + u slanted.y, which is to be its centre. */
+    /* A ray of height h and slope u meets the axis at -h / u, and the stop at h
+     * to_stop.y + u slanted.y, which is 0 at its centre. */
     optics->entrance_z_mm = slanted.y_mm / to_stop.y_mm;
     optics->length_mm = 0.0;
     for (int e = lens->stop_after == 0; e < element_count(lens); e++)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Text of a lens table -> struct glint_prescription, or the first mistake and
- * its place. lenses/README.md is the manual of the format.
+ * Reads the text of a lens table into a struct glint_prescription, or finds the
+ * first mistake and its place. lenses/README.md is the manual of the format.
  *
  * Reading stores values that are in range, one word at a time; the lens as a
- * whole is checked by check.h when all is read.
- */
+ * whole is checked by check.h when all is read. */
 #include "bake/table/elements.h"
 
 #include <math.h>
@@ -58,7 +57,8 @@ enum field {
 struct parser {
     struct glint_text text;
     struct glint_prescription lens;
-    struct glint_text_place word[N_FIELDS]; /* latest of each, line 0: none */
+    struct glint_text_place word[N_FIELDS]; /* place of the last line of each
+                                               kind; line 0: there was none */
     struct glint_places places;
     struct glint_film coating; /* coating of surfaces without their own */
     bool has_coating[GLINT_MAX_SURFACES];
@@ -144,7 +144,7 @@ static bool read_back_focal(struct parser *p)
                             &p->places.back_focal);
 }
 
-/* "none" or NM [INDEX]. */
+/* Reads "none" or NM [INDEX]. */
 static bool read_coating_value(struct parser *p, struct glint_film *coating)
 {
     struct glint_word word = glint_text_next_word(&p->text);
@@ -169,7 +169,8 @@ static bool read_mixed(struct parser *p)
 
 /* ------------------------------------------------------------------- glass */
 
-/* Index into p->glass, -1 if there is none of that name. */
+/* Returns the index of WORD in p->glass, -1 if there is no glass of that name.
+ */
 static int find_glass(const struct parser *p, const struct glint_word *word)
 {
     int i = p->n_glasses - 1;
@@ -216,7 +217,7 @@ static bool read_glass(struct parser *p)
            glint_text_value(&p->text, &vd_range, &p->glass[n].medium.vd, NULL);
 }
 
-/* "air", ND VD or the name of a glass. */
+/* Reads "air", ND VD or the name of a glass. */
 static bool read_medium(struct parser *p, struct medium *medium)
 {
     const struct glint_word word = glint_text_next_word(&p->text);
@@ -260,7 +261,7 @@ static bool read_radius(struct parser *p, double *radius_mm)
                                fabs(*radius_mm));
 }
 
-/* Thickness and semi-diameter of any element. */
+/* Reads thickness and semi-diameter of an element. */
 static bool read_gap_and_semi(struct parser *p, double *thickness_mm,
                               double *semi_mm, struct glint_text_place *semi)
 {
@@ -269,8 +270,8 @@ static bool read_gap_and_semi(struct parser *p, double *thickness_mm,
            glint_text_value(&p->text, &semi_range, semi_mm, semi);
 }
 
-/* The coating of surface K, if it has its own. CEMENTED: glass on both
- * sides. */
+/* Reads the coating of surface K, if it has its own. CEMENTED: there is glass
+ * on both sides. */
 static bool read_surface_coating(struct parser *p, int k, bool cemented)
 {
     struct glint_surface *s = &p->lens.surface[k];

@@ -11,7 +11,7 @@
 
 STATIC_ASSERT(GLINT_TEXT_BYTES < INT_MAX);
 
-#define FILE_NAME_SHOWN 100 /* bytes: the cause must fit behind it */
+#define FILE_NAME_SHOWN 100 /* bytes; the cause must fit behind it */
 
 static bool is_blank(char c)
 {
@@ -23,8 +23,8 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Bytes of the character at AT, or 0 where it is no well-formed UTF-8 or a
- * control character. */
+/* Returns the bytes of the character at AT, or 0 if it is a control character
+ * or no well-formed UTF-8. */
 static int character_length(const char *at, const char *end)
 {
     static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -54,7 +54,7 @@ static int character_length(const char *at, const char *end)
     return length;
 }
 
-/* Bytes of the line end at AT: 0, 1 (LF) or 2 (CRLF). */
+/* Returns the bytes of the line end at AT: 0, 1 (LF) or 2 (CRLF). */
 static int line_end_length(const char *at, const char *end)
 {
     if (at < end && *at == '\n')
@@ -101,10 +101,10 @@ bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
         return glint_text_fail(text, (struct glint_text_place){1, 1},
                                "text is longer than %d bytes",
                                GLINT_TEXT_BYTES);
-    if (!bytes) /* DATA may be NULL then */
+    if (!bytes) /* DATA may be NULL then. */
         data = "";
     if (bytes >= sizeof(mark) && memcmp(data, mark, sizeof(mark)) == 0) {
-        data += sizeof(mark); /* some editors put it before UTF-8 */
+        data += sizeof(mark); /* some editors put this mark before UTF-8 */
         bytes -= sizeof(mark);
     }
     text->next = text->line = text->at = text->stop = data;
@@ -210,14 +210,14 @@ const char *glint_word_quote(const struct glint_word *word,
     return quote;
 }
 
-/* The unread part of a number, and what was read of it. */
+/* The unread part of a number, and the value read so far. */
 struct digits {
     const char *at, *end;
     uint64_t value; /* value of the significant digits */
     int significant, n;
 };
 
-/* Reads digits as long as they fit 64 bits, counts all of them. */
+/* Reads digits up to GLINT_NUMBER_DIGITS significant ones, and counts all. */
 static void read_digits(struct digits *digits)
 {
     digits->n = 0;
@@ -230,7 +230,7 @@ static void read_digits(struct digits *digits)
     }
 }
 
-/* Steps over C1 or C2. */
+/* Skips C1 or C2; returns whether one of them was there. */
 static bool skip(struct digits *digits, char c1, char c2)
 {
     if (digits->at == digits->end || (*digits->at != c1 && *digits->at != c2))
@@ -247,7 +247,8 @@ static bool read_sign(struct digits *digits)
     return negative;
 }
 
-/* The power of ten after the e, held to +-1000; false: it is none. */
+/* Reads the power of ten after the e, clamped to +-1000; returns false if there
+ * is no number. */
 static bool read_exponent(struct digits *mantissa, int *exponent)
 {
     struct digits power = {mantissa->at, mantissa->end, 0, 0, 0};
@@ -262,7 +263,7 @@ static bool read_exponent(struct digits *mantissa, int *exponent)
     return power.n > 0;
 }
 
-/* 10^n, 0 <= n <= 22: exact in a double. */
+/* Returns 10^n, 0 <= n <= 22, which is exact in a double. */
 static double power_of_ten(int n)
 {
     double power = 1.0;

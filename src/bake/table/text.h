@@ -35,30 +35,31 @@ struct glint_text_place {
 
 struct glint_word {
     const char *start; /* not terminated */
-    int length;        /* 0: there is none, and place is where it would be */
+    int length;        /* 0: there is no word, and PLACE is where it would be */
     struct glint_text_place place;
 };
 
 struct glint_text {
     const char *file_name;
     struct glint_error *error;
-    const char *next, *end;       /* unread lines */
-    const char *line, *at, *stop; /* this line: start, unread words */
+    const char *next, *end;       /* lines not read yet */
+    const char *line, *at, *stop; /* the line being read: its start, and its
+                                     unread words AT .. STOP */
     int line_number;
 };
 
-/* The bytes stay where they are and must outlive TEXT, as must the other
- * pointers. False: they are no text, and ERROR says why. */
+/* Opens DATA[BYTES], which is not copied and must outlive TEXT, as must
+ * FILE_NAME and ERROR. Returns false if it is not text; ERROR says why. */
 bool glint_text_open(struct glint_text *text, const char *data, size_t bytes,
                      const char *file_name, struct glint_error *error);
 
-/* Steps to the next line; false at the end of the text. */
+/* Goes to the next line; returns false at the end of the text. */
 bool glint_text_next_line(struct glint_text *text);
 
-/* The next word of the line. */
+/* Returns the next word of the line. */
 struct glint_word glint_text_next_word(struct glint_text *text);
 
-/* All that is left of the line without blanks at either end. */
+/* Returns all that is left of the line, without blanks at either end. */
 struct glint_word glint_text_rest(struct glint_text *text);
 
 /* Returns the place where the text ends. */
@@ -68,14 +69,14 @@ struct glint_text_place glint_text_end(const struct glint_text *text);
 bool glint_text_fail(const struct glint_text *text,
                      struct glint_text_place place, const char *format, ...);
 
-/* A quantity and the values it may take. */
+/* The name of a quantity and the range of its values. */
 struct glint_text_range {
     const char *name;
     double min, max;
 };
 
-/* WORD as a number called NAME, whatever its size. False: the error is
- * written, as by the three functions below. */
+/* Reads WORD as a number called NAME, of any size. Returns false if it is none,
+ * and writes the error, as do the next three functions. */
 bool glint_text_number_of(const struct glint_text *text,
                           const struct glint_word *word, const char *name,
                           double *value);
@@ -84,25 +85,28 @@ bool glint_text_in_range(const struct glint_text *text,
                          struct glint_text_place place,
                          const struct glint_text_range *range, double value);
 
-/* WORD as a number in RANGE. */
+/* Reads WORD as a number in RANGE. */
 bool glint_text_value_of(const struct glint_text *text,
                          const struct glint_word *word,
                          const struct glint_text_range *range, double *value);
 
-/* The next word as a number in RANGE; PLACE, unless NULL, is where it is. */
+/* Reads the next word as a number in RANGE. PLACE, unless NULL, receives its
+ * place. */
 bool glint_text_value(struct glint_text *text,
                       const struct glint_text_range *range, double *value,
                       struct glint_text_place *place);
 
 bool glint_word_is(const struct glint_word *word, const char *string);
 
-/* WORD for an error message: printable ASCII only, and not too long. */
+/* Returns WORD for an error message: printable ASCII only, and cut if it is
+ * long. */
 #define GLINT_QUOTE_BYTES 32
 const char *glint_word_quote(const struct glint_word *word,
                              char quote[GLINT_QUOTE_BYTES]);
 
-/* The value of WORD: [+-] digits [. digits] [e [+-] digits]. NULL, or what is
- * wrong with it, to follow the word in a message; VALUE is unchanged then. */
+/* Reads WORD as [+-] digits [. digits] [e [+-] digits]. Returns NULL, or what
+ * is wrong with it, to follow the word in a message; VALUE is unchanged then.
+ */
 const char *glint_word_number(const struct glint_word *word, double *value);
 
 #endif

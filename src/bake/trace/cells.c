@@ -7,7 +7,8 @@
 #include "bake/trace/sampling.h"
 #include "engine/setup/degrees.h"
 
-enum { SAMPLING = 96 }; /* rays a side that decide which barrels matter */
+/* Rays a side of the sampling that decides which barrels matter. */
+enum { SAMPLING = 96 };
 
 static void find_cuts(struct glint_cells *c)
 {
@@ -62,7 +63,7 @@ double glint_cells_area(const struct glint_cells *cells)
     return (p->x1_mm - p->x0_mm) / cells->n * (2 * p->y1_mm / cells->n);
 }
 
-/* Angle 0 .. of a polygonal stop's side SIDE, as its outward normal. */
+/* Sets N to the outward normal of side SIDE of a polygonal stop. */
 static void side_normal(const struct glint_setup *s, int side, double n[2])
 {
     const double a = s->blade_rotation_deg + (side + 0.5) * 360.0 / s->n_blades;
@@ -76,8 +77,8 @@ static double inner_radius(const struct glint_setup *s)
     return s->n_blades ? cos(GLINT_PI / s->n_blades) : 1;
 }
 
-/* One ray as a node; MIRROR -1 is the ray on the other side of the light's
- * plane. */
+/* Fills NODE from a ray; MIRROR is -1 for its mirror image on the other side of
+ * the light's plane, else 1. */
 static void fill_node(const struct glint_cells *c, const struct glint_ray *ray,
                       double (*hits)[2], double mirror, double *node)
 {
@@ -143,8 +144,8 @@ void glint_cells_trace(const struct glint_cells *cells, int row)
 
 /* --------------------------------------------------------------------- clip */
 
-/* A triangle and the polygon left of it, in barycentric coordinates of its
- * second and third corner. */
+/* A triangle and the polygon that cuts leave of it, in barycentric coordinates
+ * of its second and third corner. */
 struct shape {
     const double *corner[3];
     int n;
@@ -159,8 +160,8 @@ static double channel(const struct shape *s, int index, const double uv[2])
            (s->corner[2][index] - a) * uv[1];
 }
 
-/* A cut: a half plane n . c <= limit, or the unit disc, of the channels FIRST
- * and FIRST + 1. */
+/* A cut of the channels FIRST and FIRST + 1: a half plane n . c <= limit, or
+ * the unit disc. */
 struct cut {
     int first;
     bool disc;
@@ -177,8 +178,8 @@ static double cut_value(const struct shape *s, const struct cut *cut,
                      : cut->limit - cut->normal[0] * x - cut->normal[1] * y;
 }
 
-/* Returns where between A (value FA) and B (value FB, other sign) the cut lies.
- */
+/* Returns the share of the way from A, with value FA, to B, with value FB of
+ * the other sign, at which the cut lies. */
 static double crossing(const struct shape *s, const struct cut *cut,
                        const double a[2], const double b[2], double fa,
                        double fb)
@@ -263,7 +264,8 @@ static double polygon_area(const double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* Diagonals mirror each other about the light's plane, so that the picture of a
+/* Picks the corners of triangle HALF of a cell; returns false if one is lost.
+ * Diagonals mirror each other about the light's plane, so that the picture of a
  * symmetric light is symmetric. */
 static bool pick_corners(const struct glint_cells *c, int i, int j, int half,
                          const double **corner)
@@ -276,7 +278,8 @@ static bool pick_corners(const struct glint_cells *c, int i, int j, int half,
 
     for (int k = 0; k < 3; k++) {
         corner[k] = q[pick[k]];
-        /* NOLINTNEXTLINE: all nodes were traced, with or by their mirror */
+        /* NOLINTNEXTLINE: every node was traced, by itself or as a mirror image
+         */
         if (corner[k][NODE_STATE] == 0)
             return false;
     }

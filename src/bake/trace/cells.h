@@ -6,9 +6,8 @@
  *   out  triangles of the grid, clipped by the stop and by every barrel that
  *        limits this path, each barrel by its own circle
  *
- * Between the rays everything is linear. A curved edge becomes a chord per
- * triangle, so errors fall with the square of the cell size.
- */
+ * Between rays all channels are linear. A curved edge becomes a chord in each
+ * triangle, so errors fall with the square of the cell size. */
 #ifndef GLINT_BAKE_TRACE_CELLS_H
 #define GLINT_BAKE_TRACE_CELLS_H
 
@@ -17,11 +16,12 @@
 
 enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
 
-/* Channels of a node; from CUT on, x and y over the semi-diameter for each
- * barrel that may cut. */
+/* Channels of a node. From NODE_CUT on there are x and y over the semi-diameter
+ * at each barrel that may cut. */
 enum {
     NODE_STATE, /* 0 lost, 1 traced, 2 traced and clear of every cut */
-    NODE_X,     /* sensor, mm in the light's frame or as the owner maps it */
+    NODE_X, /* place on the sensor: mm in the camera's frame, or as the owner
+               maps it */
     NODE_Y,
     NODE_STOP_X, /* stop radii, in the camera's frame */
     NODE_STOP_Y,
@@ -39,18 +39,18 @@ struct glint_cells {
     int n; /* cells a side, even */
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
-    int stride;   /* doubles a node */
+    int stride;   /* number of doubles of a node */
     double *node; /* [n + 1][n + 1][stride] */
 };
 
-/* Sets everything but NODE for a light at THETA, PHI; finds the barrels that
- * cut. False: nothing gets through. */
+/* Sets all members but NODE for a light at THETA, PHI, and finds the barrels
+ * that cut. Returns false if nothing gets through. */
 bool glint_cells_init(struct glint_cells *cells,
                       const struct glint_setup *setup,
                       const struct glint_path *path, double theta_deg,
                       double phi_deg, int n);
 
-/* Bytes that NODE needs. */
+/* Returns the bytes that NODE needs. */
 size_t glint_cells_bytes(const struct glint_cells *cells);
 
 /* Traces row ROW (0 .. n / 2) of the nodes and mirrors it into row n - ROW. */
@@ -58,7 +58,7 @@ void glint_cells_trace(const struct glint_cells *cells, int row);
 
 /* The visible part of a triangle: convex, in NODE_X and NODE_Y. */
 struct glint_piece {
-    int n; /* corners; 0: nothing */
+    int n; /* number of corners; 0: nothing is visible */
     double xy[GLINT_MAX_PIECE][2];
     double share;  /* share of the triangle's pupil area, 0 .. 1 */
     double energy; /* mean over the piece */
@@ -68,14 +68,16 @@ struct glint_piece {
 void glint_cells_clip(const struct glint_cells *cells, int i, int j, int half,
                       struct glint_piece *piece);
 
-/* Whether cell (I, J) has a NODE_Y between LOW and HIGH, or on both sides. */
+/* Returns whether NODE_Y of cell (I, J) has values between LOW and HIGH, or on
+ * both sides of that range. */
 bool glint_cells_touch(const struct glint_cells *cells, int i, int j,
                        double low, double high);
 
-/* Pupil area of a cell, mm^2. */
+/* Returns the area of a cell on the pupil, mm^2. */
 double glint_cells_area(const struct glint_cells *cells);
 
-/* Flux of the direct image at angle 0 for irradiance 1, mm^2; -1: no memory. */
+/* Returns the flux of the direct image at angle 0 for irradiance 1, mm^2, or -1
+ * if memory is short. */
 double glint_direct_flux(const struct glint_setup *setup, double wavelength_nm);
 
 #endif

@@ -10,7 +10,7 @@ double glint_reflectance(double n_from, double n_to, double cos_from,
     const double cos2 = 1.0 - ratio * ratio * (1.0 - cos_from * cos_from);
 
     if (!(cos_from > 0.0 && cos2 > 0.0))
-        return 1.0; /* grazing, or beyond the critical angle */
+        return 1.0; /* grazing incidence, or beyond the critical angle */
     if (film_n > 0.0) {
         const double inside = film_inside(n_from, cos_from, film_n);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a boundary between two media reflects, its cosines already known.
+ * Reflectance of a boundary between two media, from cosines that are known.
  *
  * Inline, because the tracer asks once per surface and has the cosines. With
  * one film the reflectance of the stack is Airy's sum over all orders, written
@@ -13,14 +13,13 @@
  *
  * multiplied through so that each polarisation takes one division. Beyond the
  * critical angle inside the film f becomes imaginary, C and S turn into cosh^2
- * and sinh^2, and one sign changes in each of the inner sums. [Hullin11]
- */
+ * and sinh^2, and one sign changes in each of the inner sums. [Hullin11] */
 #ifndef GLINT_BAKE_TRACE_COATING_H
 #define GLINT_BAKE_TRACE_COATING_H
 
 #include <math.h>
 
-/* (s / s_all + p / p_all) / 2 by one division, and never above 1. */
+/* Returns (s / s_all + p / p_all) / 2, at most 1, with one division. */
 static inline double mean_ratio(double s, double s_all, double p, double p_all)
 {
     const double mean = 0.5 * (s * p_all + p * s_all) / (s_all * p_all);
@@ -28,7 +27,8 @@ static inline double mean_ratio(double s, double s_all, double p, double p_all)
     return mean < 1.0 ? mean : 1.0;
 }
 
-/* A bare boundary met at the cosine C1 and left at C2, both > 0. */
+/* Returns the reflectance of a bare boundary met at the cosine C1 and left at
+ * C2, both > 0. */
 static inline double bare_reflectance(double n1, double c1, double n2,
                                       double c2)
 {
@@ -38,8 +38,8 @@ static inline double bare_reflectance(double n1, double c1, double n2,
     return mean_ratio(s * s, s_all * s_all, p * p, p_all * p_all);
 }
 
-/* The square of the cosine inside a film of index NF, negative where there is
- * none; never all but zero. */
+/* Returns the square of the cosine inside a film of index NF, negative beyond
+ * the critical angle; values near 0 are replaced by 1e-60. */
 static inline double film_inside(double n1, double c1, double nf)
 {
     const double ratio = n1 / nf;
@@ -48,25 +48,26 @@ static inline double film_inside(double n1, double c1, double nf)
     return fabs(inside) > 1e-60 ? inside : 1e-60;
 }
 
-/* sin^2 D of PHASE = 4 pi nf d / wavelength, or sinh^2. */
+/* Returns sin^2 D for PHASE = 4 pi nf d / wavelength, or sinh^2 |D| if INSIDE
+ * is negative. */
 static inline double film_sine2(double inside, double phase)
 {
     const double half = 0.5 * phase * sqrt(fabs(inside)); /* |D| */
-    /* sinh(100) is a film that nothing passes, and far from overflow. */
+    /* sinh(100) stands for a film that nothing passes, far from overflow. */
     const double root = inside < 0.0 ? sinh(fmin(half, 100.0)) : sin(half);
 
     return root * root;
 }
 
-/* The same as for a bare boundary, with a film of index NF and the two above.
- */
+/* Returns the reflectance of a boundary with a film of index NF; INSIDE is
+ * film_inside(), SIN2 film_sine2(), the rest as for bare_reflectance(). */
 static inline double film_reflectance(double n1, double c1, double n2,
                                       double c2, double nf, double inside,
                                       double sin2)
 {
     const double size = fabs(inside), sign = inside < 0.0 ? -1.0 : 1.0;
     const double cos2 = 1.0 - sign * sin2;
-    /* s times f, p times f cos(t1) cos(t2); f^2 carries SIGN */
+    /* s is multiplied by f, p by f cos(t1) cos(t2); f^2 carries SIGN */
     const double f2_s = nf * nf * size, f2_p = nf * nf;
     const double a_s = n1 * c1, b_s = n2 * c2;
     const double a_p = n1 * c2, b_p = n2 * c1; /* n / c, times c1 c2 */

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Glass: nd and Vd -> index of refraction at any wavelength.
+ * Index of refraction of a glass at any wavelength, from nd and Vd.
  *
  * Two-term Cauchy, n = A + B / wavelength^2, through the index at the d line
- * and the dispersion n_F - n_C = (nd - 1) / Vd. Exact at the d line and in
- * that difference; a real glass bends a little more towards the violet.
- */
+ * and the dispersion n_F - n_C = (nd - 1) / Vd. Exact at the d line and in that
+ * difference; a real glass bends a little more towards the violet. */
 #include "glint/trace.h"
 
-/* In air, as glass catalogues give them. Rounding them to 587.56, 486.13 and
- * 656.27 moves rays by some 1e-5 mm. */
+/* Lines in air, as glass catalogues give them. Rounding them to 587.56, 486.13
+ * and 656.27 nm moves rays by some 1e-5 mm. */
 #define LINE_C_NM 656.2725
 #define LINE_D_NM 587.5618
 #define LINE_F_NM 486.1327

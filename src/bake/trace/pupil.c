@@ -4,12 +4,11 @@
  *
  * A grid over the front element keeps the cells that may hold a visible ray,
  * judged by the box of their corners' stop positions and by their relative
- * radii, both with a margin for what bends in between; then a finer grid over
- * what was kept, until it no longer shrinks. Where that finds nothing, a spot
- * on the light's plane is looked for. Limits: a visible part that is smaller
- * than a 64th of the front element and whose surroundings bend by more than the
- * margin can be missed if it is long or lies aside.
- */
+ * radii, both with a margin for what bends between corners; then a finer grid
+ * covers the cells that were kept, until they no longer shrink. If nothing is
+ * found, the light's plane is searched for a spot. Limits: a visible part that
+ * is smaller than a 64th of the front element, and whose surroundings bend by
+ * more than the margin, can be missed if it is long or lies off that plane. */
 #include "glint/trace.h"
 
 #include <math.h>
@@ -20,16 +19,16 @@ enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
 
 enum {
     LINES = 4
-}; /* times ACROSS: cells of the line that spots are found on */
+}; /* times ACROSS: cells of the line on which spots are sought */
 
-/* Later rounds look at less and get by with a coarser grid. */
+/* Cells of later rounds, which cover less and get by with a coarser grid. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
 struct search {
     const struct glint_path *path;
     double direction[3];
     double stop_mm, field_mm;
-    int across, down; /* cells of this round */
+    int across, down; /* number of cells of this round */
     struct glint_ray ray[DOWN + 1][ACROSS + 1];
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
 };
@@ -57,7 +56,8 @@ static void sample_grid(struct search *s, const struct glint_pupil *p)
 
 struct bounds {
     int n;
-    double low[5], high[5]; /* stop x, y; radius; sensor x, y */
+    /* Ranges of stop x and y, relative radius, sensor x and y. */
+    double low[5], high[5];
 };
 
 static void bounds_add(struct bounds *b, const struct glint_ray *ray)
@@ -77,8 +77,8 @@ static double from_zero(double low, double high)
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Whether a cell may hold a ray that gets through. Cells with lost corners are
- * judged by what they have, with twice the margin. */
+/* Returns whether a cell may hold a ray that gets through. A cell with lost
+ * corners is judged by the others, with twice the margin. */
 static bool may_pass(const struct search *s, const struct bounds *b)
 {
     const double more = b->n == 4 ? 0.5 : 1;
@@ -99,7 +99,8 @@ static bool may_pass(const struct search *s, const struct bounds *b)
                s->field_mm;
 }
 
-/* Tallies one kept cell: where it is, its energy and its light's extent. */
+/* Adds one cell to those that are kept: its place, its energy and where its
+ * light lands. */
 static void keep(const struct search *s, int i, int j,
                  const struct bounds *cell, struct bounds *box,
                  struct glint_pupil *found)
@@ -128,7 +129,8 @@ static void keep(const struct search *s, int i, int j,
     }
 }
 
-/* Shrinks P to the cells that may pass. */
+/* Shrinks P to the cells that may let a ray through; returns whether there are
+ * any. */
 static bool shrink(struct search *s, struct glint_pupil *p)
 {
     struct glint_pupil found = *p;
@@ -151,7 +153,7 @@ static bool shrink(struct search *s, struct glint_pupil *p)
     found.x0_mm = column_x(s, p, (int)box.low[0]);
     found.x1_mm = column_x(s, p, (int)box.high[0]);
     found.y1_mm = p->y1_mm * box.high[2] / s->down;
-    /* mirrored in y */
+    /* The light is symmetric in y. */
     found.sensor_mm[3] =
         fmax(fabs(found.sensor_mm[2]), fabs(found.sensor_mm[3]));
     found.sensor_mm[2] = -found.sensor_mm[3];
@@ -159,8 +161,9 @@ static bool shrink(struct search *s, struct glint_pupil *p)
     return true;
 }
 
-/* All that can enter. A slanted ray crosses the vertex plane beside where it
- * meets the curved surface: by the sag at the rim times the tangent. */
+/* Returns the part of the vertex plane at which rays can enter. A slanted ray
+ * crosses this plane beside the place where it meets the curved surface, by up
+ * to the sag at the rim times its tangent. */
 static struct glint_pupil whole_front(const struct glint_event *front,
                                       const double direction[3])
 {
@@ -177,8 +180,8 @@ static double extent(const struct glint_pupil *p)
     return (p->x1_mm - p->x0_mm) * p->y1_mm;
 }
 
-/* BOX and half of its size around it, and a part of the whole front for boxes
- * that are slivers. */
+/* Returns BOX grown by half of its size on each side, and by a part of the
+ * whole front, as boxes may be slivers. */
 static struct glint_pupil surroundings(const struct glint_pupil *box,
                                        const struct glint_pupil *front)
 {
@@ -191,7 +194,8 @@ static struct glint_pupil surroundings(const struct glint_pupil *box,
         .y1_mm = fmin(front->y1_mm, 1.5 * box->y1_mm + 0.02 * front->y1_mm)};
 }
 
-/* Rounds of grids over P, the first of ACROSS x DOWN cells. */
+/* Shrinks P by rounds of grids, the first of ACROSS x DOWN cells; returns
+ * whether anything gets through. */
 static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
                       int down)
 {
@@ -211,8 +215,8 @@ static bool shrink_on(struct search *s, struct glint_pupil *p, int across,
 
 /* ----------------------------------------------------------------- slivers */
 
-/* The part of the light's plane that may hold rays that get through, judged by
- * near neighbours; FRONT is all that can enter. */
+/* Finds the part of the light's plane that may hold rays that get through,
+ * judged by neighbouring rays. FRONT is where rays can enter. */
 static bool find_on_line(struct search *s, const struct glint_pupil *front,
                          double x_mm[2])
 {
@@ -245,9 +249,9 @@ static bool find_on_line(struct search *s, const struct glint_pupil *front,
     return found;
 }
 
-/* What comes through a spot that is smaller than a cell of the first grid and
- * has lost rays around it: the light's plane goes through its middle. What is
- * far larger the other way lies at the rim of something and is no spot. */
+/* Finds a spot that is smaller than a cell of the first grid and has lost rays
+ * around it; the light's plane goes through its middle. A part that is much
+ * larger in y lies at the rim of something and is no spot. */
 static bool find_spot(struct search *s, const struct glint_pupil *front,
                       struct glint_pupil *p)
 {
@@ -274,7 +278,7 @@ bool glint_pupil_find_within(struct glint_pupil *pupil,
                              double stop_radius_mm, double field_mm,
                              const struct glint_pupil *near)
 {
-    struct search s; /* 120 KB: the offline half has the stack for it */
+    struct search s; /* 110 KB: the offline half has the stack for it */
     struct glint_pupil whole, p;
     const struct glint_event *front = NULL;
     bool found;

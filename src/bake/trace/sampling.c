@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Weight of a ray that shows a cut, against one that only suggests it. */
+/* Weight of a pair of rays that shows a cut; rays that only suggest one count
+ * 1. */
 enum { SHOWN = 1000 };
 
 /* A sampled ray. */
@@ -43,9 +44,10 @@ static void probe_ray(struct probe *p, const struct glint_path *path, double x,
     }
 }
 
-/* A barrel may cut if it stops a ray that everything else lets pass, with a
- * margin for what lies between the rays; and where many barrels stop a ray that
- * the stop lets pass, as beyond a fold, the tightest must be there to do it. */
+/* Adds weight to a barrel that stops a ray which all other barrels and the stop
+ * let pass, with a margin for what lies between rays. If many barrels stop a
+ * ray that the stop lets pass, as beyond a fold, the tightest gets the weight.
+ */
 static void mark_alone(const struct probe *p, int n, int *weight)
 {
     const double margin = 1.1;
@@ -68,15 +70,15 @@ static void mark_alone(const struct probe *p, int n, int *weight)
         weight[at]++;
 }
 
-/* How far from IN (inside) to OUT the way to A = 1 is; 2 where it is further.
- */
+/* Returns the share of the way from IN (below 1) to OUT at which 1 is reached;
+ * 2 if it is not. */
 static double crossing(double in, double out)
 {
     return out > 1 ? (1 - in) / (out - in) : 2;
 }
 
-/* Between a ray that passes and one that does not, the barrel that is met first
- * cuts, and so may those that are met little later. */
+/* Adds weight to the barrel that is reached first between a ray that passes and
+ * one that does not, and a little to those reached shortly after. */
 static void mark_between(const struct probe *a, const struct probe *b, int n,
                          int *weight)
 {
@@ -104,7 +106,8 @@ static void mark_between(const struct probe *a, const struct probe *b, int n,
 
 /* -------------------------------------------------------------------- bend */
 
-/* How a quantity changes along the grid's lines: sums of squares. */
+/* Sums of squares of the first and second differences of a quantity along the
+ * grid's lines. */
 struct change {
     double first, second;
 };
@@ -114,9 +117,9 @@ struct bend {
     struct change sensor; /* mm */
     struct change stop;
     struct change barrel[GLINT_MAX_EVENTS + 1]; /* changes of r^2 / 2 */
-    int up, down; /* cells by how they are turned */
+    int up, down; /* numbers of cells turned one way and the other */
     int n_steps;
-    double thick; /* rays a stop radius, sum */
+    double thick; /* sum of rays per stop radius */
 };
 
 static void add_change(struct change *change, double a, double b, double c)
@@ -125,7 +128,7 @@ static void add_change(struct change *change, double a, double b, double c)
     change->second += (a - 2 * b + c) * (a - 2 * b + c);
 }
 
-/* B in the middle of A and C. */
+/* Adds the differences at B, between its neighbours A and C. */
 static void add_bend(struct bend *bend, const struct probe *a,
                      const struct probe *b, const struct probe *c, int n_events)
 {
@@ -141,8 +144,8 @@ static void add_bend(struct bend *bend, const struct probe *a,
     bend->n++;
 }
 
-/* Returns what the bend of CUT is worth on the sensor, over one step of the
- * grid. */
+/* Returns the bend of CUT over one step of the grid, converted to mm on the
+ * sensor. */
 static double on_sensor_mm(const struct bend *bend, const struct change *cut)
 {
     return cut->first > 0
@@ -161,8 +164,9 @@ static double outline_bend_mm(const struct bend *bend, const int *weight,
     return most;
 }
 
-/* From A to B the opening may be passed: it is as near as they are far apart.
- * Where rays lie thick more light gets through, so that the mean is of that. */
+/* Adds the step from A to B on the stop, if the opening may lie between them:
+ * it is no farther away than they are apart. Where rays lie close together more
+ * light gets through, so the mean is taken of rays per radius. */
 static void add_step(struct bend *bend, const struct probe *a,
                      const struct probe *b)
 {
@@ -177,7 +181,8 @@ static void add_step(struct bend *bend, const struct probe *a,
     bend->thick += 1 / step;
 }
 
-/* A cell whose first corner is A, with B beside and C below it. */
+/* Adds the orientation of a cell with first corner A, B beside it and C below
+ * it. */
 static void add_turn(struct bend *bend, const struct probe *a,
                      const struct probe *b, const struct probe *c)
 {
@@ -228,7 +233,7 @@ void glint_sampling_run(struct glint_sampling *sampling,
 {
     int weight[GLINT_MAX_EVENTS + 1] = {0};
     struct bend bend = {.n = 0};
-    struct rows r; /* 350 KB: the offline half has the stack for it */
+    struct rows r; /* 460 KB: the offline half has the stack for it */
 
     for (int j = 0; j <= side / 2; j++)
         for (int i = 0; i <= side; i++) {
@@ -244,8 +249,8 @@ void glint_sampling_run(struct glint_sampling *sampling,
         sampling->bend_mm = sqrt(bend.sensor.second / bend.n) * side * side;
         sampling->outline_mm =
             outline_bend_mm(&bend, weight, path->n_events) * side * side;
-        /* r^2 / 2 changes as fast as the stop position S does at its outline,
-         * and bends by S'^2 */
+        /* r^2 / 2 changes as fast as the stop position s does at its outline,
+         * and bends by the square of the derivative of s. */
         sampling->round_mm =
             sqrt(bend.stop.first * bend.sensor.first) / bend.n * side * side;
     }

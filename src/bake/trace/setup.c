@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A setup of a lens table: its direct light is traced.
- */
+ * Makes a setup from a lens table: traces its direct light. */
 #include "engine/setup/setup.h"
 
 #include <stdio.h>

@@ -24,7 +24,7 @@
 
 /* ------------------------------------------------------------------- paths */
 
-/* The parts that a path is made from, and how far it has come. */
+/* A path that is being made, and how far it has come. */
 struct route {
     const struct glint_prescription *lens;
     struct glint_path *path;
@@ -32,7 +32,7 @@ struct route {
     int at; /* last element, -1: none yet */
 };
 
-/* Indices in front of surface K and behind it. */
+/* Sets the indices before surface K and after it. */
 static void media_of(const struct route *route, int k, double *front,
                      double *behind)
 {
@@ -42,7 +42,7 @@ static void media_of(const struct route *route, int k, double *front,
     *behind = glint_index(s->nd, s->vd, route->wavelength_nm);
 }
 
-/* z from the last event to element E, a neighbour. */
+/* Returns z from the last event to element E, a neighbour of it. */
 static double step_mm(const struct route *route, int e)
 {
     if (route->at < 0) /* A ray that has met nothing yet starts at the vertex
@@ -53,7 +53,8 @@ static double step_mm(const struct route *route, int e)
                          : -element_gap_mm(route->lens, e);
 }
 
-/* Appends the meeting with element E; FORWARD is the way it is met. */
+/* Appends the meeting with element E; FORWARD: the ray runs towards the sensor.
+ */
 static void append(struct route *route, int e, enum glint_event_kind kind,
                    bool forward)
 {
@@ -109,25 +110,27 @@ void glint_path_init(struct glint_path *path,
 
 /* -------------------------------------------------------------------- rays */
 
-/* Rays are traced some at a time: a root or a division has to wait for the one
- * before, but not for those of other rays. Everything is a loop over the lanes,
- * N of them, and what is a condition for one ray is a choice between two values
- * here, so that compilers can use vectors; a lost ray goes on as nonsense. The
- * operations of a ray do not depend on N, and neither do its bits. */
+/* Rays are traced eight at a time: a root or a division waits for the one
+ * before it in its own ray, but not for those of other rays. All code is loops
+ * over N lanes, and a condition of a ray is a choice between two values, so
+ * that compilers can use vectors; a lost ray goes on with meaningless values.
+ * The operations of a ray do not depend on N, and neither do its bits. */
 enum { LANES = 8 };
 
 struct beam {
     double x[LANES], y[LANES], z[LANES]; /* mm, from the vertex of the event */
     double l[LANES], m[LANES], n[LANES]; /* direction, unit length */
-    double cosine[LANES]; /* between ray and normal, where they meet */
+    double cosine[LANES]; /* cosine between ray and normal at the surface */
     double energy[LANES];
-    /* Largest height over semi-diameter so far, undivided. */
+    /* Height and semi-diameter where their ratio was largest so far, squared.
+     */
     double height2[LANES], semi2[LANES];
     double stop_x[LANES], stop_y[LANES];
     double status[LANES]; /* an enum glint_ray_status, as a number */
 };
 
-/* A ray that was fine so far is lost for the reason STATUS unless FINE. */
+/* Returns SO_FAR if the ray was lost already, else GLINT_RAY_OK if FINE, else
+ * STATUS. */
 static WHOLLY_INLINE double judge(double so_far, bool fine,
                                   enum glint_ray_status status)
 {
@@ -136,7 +139,7 @@ static WHOLLY_INLINE double judge(double so_far, bool fine,
     return so_far > GLINT_RAY_OK ? so_far : now;
 }
 
-/* Goes straight on to the plane ADVANCE away. */
+/* Moves rays straight to the plane ADVANCE away. */
 static WHOLLY_INLINE void go(struct beam *b, int n, double advance_mm)
 {
     for (int k = 0; k < n; k++) {
@@ -148,8 +151,8 @@ static WHOLLY_INLINE void go(struct beam *b, int n, double advance_mm)
     }
 }
 
-/* Goes from the vertex plane to the surface; its normal there is (-c x, -c y,
- * 1 - c z). Comparisons are such that a NaN misses. */
+/* Moves rays from the vertex plane to the surface; its normal there is (-c x,
+ * -c y, 1 - c z). Comparisons are such that a NaN misses. */
 static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
 {
     for (int k = 0; k < n; k++) {
@@ -171,8 +174,8 @@ static WHOLLY_INLINE void meet(struct beam *b, int n, double c)
     }
 }
 
-/* Adds PART times the normal to S times the direction. Rays that then do not go
- * on the way WAY, 1 as before or -1 back, are lost. */
+/* Sets the direction to S times itself plus PART times the normal. Rays that
+ * then do not run the way WAY, 1 as before or -1 back, are lost. */
 static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
                                double part, double way)
 {
@@ -185,8 +188,8 @@ static WHOLLY_INLINE void turn(struct beam *b, int k, double c, double s,
         judge(b->status[k], way * before * b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-/* PART becomes what E reflects of rays that leave it at the cosine OUT, all of
- * it where that is 0. */
+/* Sets PART to the share that E reflects of rays that leave it at the cosine
+ * OUT; 1 where OUT is 0. */
 static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
                                        const struct glint_event *e,
                                        const double *out, double *part)
@@ -208,7 +211,7 @@ static WHOLLY_INLINE void reflectances(const struct beam *b, int n,
         part[k] = out[k] > 0.0 ? part[k] : 1.0;
 }
 
-/* Bends or mirrors the rays, which have met the surface of E. */
+/* Refracts or reflects the rays at the surface of E. */
 static WHOLLY_INLINE void cross(struct beam *b, int n,
                                 const struct glint_event *e, bool energies)
 {
@@ -271,7 +274,8 @@ static WHOLLY_INLINE void start(struct beam *b, int k,
     b->status[k] = judge(GLINT_RAY_OK, b->n[k] > 0.0, GLINT_RAY_MISSED);
 }
 
-/* One meeting; HITS[k * n_events] is its place for lane K, below ASKED. */
+/* Takes rays through one event. HITS[k * n_events] receives the place of lane
+ * K, below ASKED. */
 static WHOLLY_INLINE void pass(struct beam *b, int n, int asked,
                                const struct glint_path *path,
                                const struct glint_event *e, bool energies,
@@ -302,14 +306,14 @@ static inline enum glint_ray_status arrive(const struct beam *b, int k,
     if (b->status[k] > GLINT_RAY_OK)
         return (enum glint_ray_status)b->status[k];
     if (!isfinite(b->x[k]) || !isfinite(b->y[k]))
-        return GLINT_RAY_MISSED; /* ran all but along the sensor */
+        return GLINT_RAY_MISSED; /* the ray runs almost along the sensor */
     *ray = (struct glint_ray){b->stop_x[k], b->stop_y[k],
                               b->x[k],      b->y[k],
                               b->energy[k], sqrt(b->height2[k] / b->semi2[k])};
     return GLINT_RAY_OK;
 }
 
-/* Traces the first N of LANES lanes; the others are not asked for. */
+/* Traces LANES lanes, of which the first N are real rays. */
 static WHOLLY_INLINE void trace(const struct glint_path *path, int lanes, int n,
                                 bool energies, const struct glint_launch *from,
                                 struct glint_ray *ray,

@@ -45,7 +45,7 @@ static inline int64_t glint_barrel_q16(int barrel, const struct glint_vertex *v)
  * the first corner after the last. */
 enum { GLINT_OUTLINE_CORNERS = GLINT_MAX_BLADES + 8 };
 
-/* 2 KiB: scratch of a worker. */
+/* Scratch of a worker, 2.3 KB. */
 struct glint_outline {
     int n; /* number of corners; 0: nothing is seen */
     int64_t x_q16[GLINT_OUTLINE_CORNERS], y_q16[GLINT_OUTLINE_CORNERS];
