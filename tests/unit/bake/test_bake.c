@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whole models: the same bytes whatever must not matter, nothing missing, and
- * errors as they are said to be.
+ * Whole baked models: their bytes must not depend on workers, order or
+ * repetition, no visible ghost may be missing, and errors must be as the file
+ * says.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -76,7 +77,7 @@ static void parse(struct glint_prescription *lens, const char *text)
         fail_msg("%s", error.text);
 }
 
-/* One pair of surfaces. */
+/* Makes a lens of one pair of surfaces. */
 static void make_singlet(struct glint_prescription *lens)
 {
     parse(lens, "name singlet\n"
@@ -97,7 +98,8 @@ static void make_singlet(struct glint_prescription *lens)
     "surface flat 2 17 air\n"         \
     "stop 46 17\n"
 
-/* So fast, and to be fitted so closely, that its pupil is parted. */
+/* Bakes TEXT. FAST_SINGLET is so fast that a small TOLERANCE makes the bake
+ * divide its pupil into parts. */
 static void bake_fast_singlet(struct baked *b, struct glint_prescription *lens,
                               const char *text, double tolerance,
                               double max_deg)
@@ -195,7 +197,8 @@ static void test_header(void **state)
     }
 }
 
-/* The polynomial of the direct image, against the flux itself. */
+/* The polynomial of the direct image's flux must be within 5e-5 of that
+ * flux. */
 static void test_flux(void **state)
 {
     static const double nm[] = {400, 450, 532, 650, 700};
@@ -229,7 +232,7 @@ static bool covered(const struct glint_lens *lens, int ghost, double theta_deg,
                                (int32_t)lrint(0x1p24 * 1e6 / (nm * nm)));
 }
 
-/* Found by the search that draws pictures: the bake must have it. */
+/* Each ghost that the search for pictures finds must be in the model. */
 static void test_nothing_missing(void **state)
 {
     static const double deg[] = {0, 3, 7, 11};
@@ -259,7 +262,8 @@ static void test_nothing_missing(void **state)
 
 /* -------------------------------------------------------------------- parts */
 
-/* Place of a ray in the box of a part. Returns whether the part has it. */
+/* Sets UV to the place of a ray in the box of a part. Returns whether the part
+ * contains it. */
 static bool is_in(const struct glint_transfer *t, double x_mm, double y_mm,
                   double uv[2])
 {
@@ -271,8 +275,8 @@ static bool is_in(const struct glint_transfer *t, double x_mm, double y_mm,
            fabs(uv[1]) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* How many parts have the ray from (X, Y), and in *OFF how far they take it
- * from where it goes, mm. */
+/* Returns how many of N parts contain the ray from (X, Y), and sets *OFF to the
+ * distance, mm, from where the last of them takes it to where RAY lands. */
 static int parts_of(const struct glint_transfer *part, int n, double x_mm,
                     double y_mm, const struct glint_ray *ray, double *off)
 {
@@ -297,8 +301,8 @@ static int parts_of(const struct glint_transfer *part, int n, double x_mm,
     return found;
 }
 
-/* Whatever comes through is one part's, and one's alone but on the lines where
- * parts meet, as the axis is one; and every part is there for something. */
+/* Each ray that comes through must be in exactly one part, but for rays on the
+ * lines where parts meet, as on the axis; and each part must have rays. */
 static void test_parts(void **state)
 {
     enum { MOST = 8, ANGLES = 16, SIDE = 61 };
@@ -350,8 +354,8 @@ static void test_parts(void **state)
     free(b.data);
 }
 
-/* Two barrels cut this ghost within 0.0008 radii of each other: the second
- * counts for who asks for that. */
+/* Two barrels cut this ghost within 0.0008 radii of each other: the second one
+ * must be used only where a smaller error is asked for. */
 static void test_near_barrels(void **state)
 {
     static const double band_nm[2] = {400, 700};
@@ -380,7 +384,7 @@ static void test_near_barrels(void **state)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
-/* A cut box is the box, in the part's coordinates. */
+/* A box that is cut must be the same box in the coordinates of the part. */
 static void test_cut(void **state)
 {
     struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
@@ -411,7 +415,8 @@ static void test_cut(void **state)
     }
 }
 
-/* What is cropped off was dark, in a zone wider than its ghost and colours. */
+/* Cropping a zone that is wider than its ghost and its colours must take away
+ * dark places only. */
 static void test_crop(void **state)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
@@ -515,8 +520,8 @@ static void try_ray(struct tally *tally, const struct glint_transfer *t,
     }
 }
 
-/* Root mean square errors of SYSTEM of GHOST in the file's units, without help
- * of the bake. */
+/* Measures the root mean square errors of SYSTEM of GHOST in the file's units,
+ * without functions of the bake. */
 static long measure(const struct glint_lens *lens, int ghost, int system,
                     double rms[TRIED])
 {
@@ -568,7 +573,8 @@ static double error_of(uint16_t stored)
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-/* What the file says is what is there. */
+/* The errors that the file states must be within 30 % of those measured
+ * here. */
 static void test_errors_are_true(void **state)
 {
     (void)state;
@@ -593,7 +599,7 @@ static void test_errors_are_true(void **state)
         }
 }
 
-/* And it is what was asked for. */
+/* The errors must be at most 1.6 times those that the tolerance stands for. */
 static void test_errors_are_small(void **state)
 {
     static const double aim[TRIED] = {0.08, 0.08, 4.5e-4, 4.5e-4, 1.2e-2};
@@ -610,7 +616,8 @@ static void test_errors_are_small(void **state)
     }
 }
 
-/* Where light folds into rings, a finer tolerance is finer still. */
+/* Near the axis, where light folds into rings, errors must fall with the square
+ * of the tolerance. */
 static void test_axis_is_finer(void **state)
 {
     const double tolerance = 0.25, aim_px = 0.04;
@@ -625,8 +632,8 @@ static void test_axis_is_finer(void **state)
     free(b.data);
 }
 
-/* A film as good as this lets all light of its colour through, and the energy
- * of a ghost has a zero there. */
+/* A film as good as this one reflects nothing at its wavelength, so the energy
+ * of a ghost has a zero there, which the fit must follow. */
 static void test_energy_has_zeros(void **state)
 {
     struct glint_prescription lens;
@@ -643,7 +650,8 @@ static void test_energy_has_zeros(void **state)
     free(b.data);
 }
 
-/* One coefficient's sign: both measurements tell, or they could not fail. */
+/* With one coefficient planted wrong, both measurements must show it: else they
+ * could not fail. */
 static void test_planted_error(void **state)
 {
     static const struct glint_fitted_system no_barrels;
@@ -676,7 +684,7 @@ static void test_planted_error(void **state)
     assert_true(after.of[0].rms > 50 * before.of[0].rms);
     assert_true(after.of[0].max > 50 * before.of[0].max);
     assert_true(rms[0] > 50 * before.of[0].rms);
-    assert_near(after.of[1].rms, before.of[1].rms, 0); /* y is as it was */
+    assert_near(after.of[1].rms, before.of[1].rms, 0); /* for x alone */
     free(b.data);
 }
 
@@ -779,7 +787,7 @@ static void test_no_ghosts(void **state)
 
     (void)state;
     make_singlet(&lens);
-    lens.n_surfaces = 1; /* into glass, and the sensor in it */
+    lens.n_surfaces = 1; /* The sensor lies in the glass. */
     lens.stop_after = 1;
     bake(&b, &lens, &options);
     assert_int_equal(b.lens.header->n_ghosts, 0);
@@ -788,7 +796,7 @@ static void test_no_ghosts(void **state)
     free(b.data);
 }
 
-/* However little is asked for. */
+/* However loose the tolerance, each polynomial must keep a term. */
 static void test_loosest(void **state)
 {
     static struct glint_prescription lens;
@@ -805,7 +813,8 @@ static void test_loosest(void **state)
     free(b.data);
 }
 
-/* So little of the sensor counts that a ghost shows at angle 0 alone. */
+/* With a field of only 1e-3 mm a ghost may show at angle 0 alone; each range
+ * must still have a width. */
 static void test_ranges_have_width(void **state)
 {
     static const double band_nm[2] = {400, 700};
@@ -829,8 +838,9 @@ static void test_ranges_have_width(void **state)
     }
 }
 
-/* The stop is seen so small through these ghosts that they come through a
- * twentieth of a millimetre of the front; they do so up to their ends. */
+/* Through these ghosts the stop looks so small that all light enters by a
+ * twentieth of a millimetre of the front. Their ranges must still reach to
+ * where the ghosts end. */
 static void test_ranges_of_spots(void **state)
 {
     static const struct {

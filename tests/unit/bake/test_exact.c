@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The exact picture: against an independent program, against itself at another
+ * The exact picture against an independent program, against itself with another
  * grid, and against the symmetries of optics; then the integer engine, fed by
- * exact rays, against it.
+ * exact rays, against the exact picture.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -86,8 +86,8 @@ struct golden {
     int grid;
 };
 
-/* Pictures of an independent program, beside the repository where it has them;
- * GLINT_SHARED names another place. */
+/* Loads the picture NAME of an independent program from ../shared, or from the
+ * folder that GLINT_SHARED names. Returns whether it is there. */
 static bool load_golden(const char *name, struct glint_float_image *image)
 {
     const char *shared = getenv("GLINT_SHARED");
@@ -141,7 +141,7 @@ static void test_golden_canon(void **state)
 {
     (void)state;
     if (getenv("GLINT_QUICK") &&
-        *getenv("GLINT_QUICK")) /* sanitizers would take minutes */
+        *getenv("GLINT_QUICK")) /* Sanitizers take minutes. */
         skip();
     compare_golden(&(struct golden){"canon-zoom-mid", 5.06, 10.2, 64});
 }
@@ -168,12 +168,13 @@ static void test_axis_light_is_symmetric(void **state)
                 peak = fmax(peak, v);
             }
     assert_true(peak > 0);
-    /* up and down to the last bits, left and right as the grid allows */
+    /* Up and down agree to the last bits, left and right as far as the grid
+     * allows. */
     assert_true(worst < 2e-3 * peak);
 }
 
-/* Turning the light by 90 degrees turns the picture: an octagonal stop looks
- * the same, a square picture too. */
+/* Turning the light by 90 degrees must turn the picture: a quarter turn leaves
+ * an octagonal stop and a square picture as they are. */
 static void test_quarter_turn(void **state)
 {
     const struct glint_view view = {160, 160, 24};
@@ -183,7 +184,7 @@ static void test_quarter_turn(void **state)
     load_setup(&setup, &lens, "double-gauss-angenieux");
     render(rgb, view, &lamp, 1, 96);
     render(other, view, &turned, 1, 96);
-    for (int y = 0; y < 160; y++) /* turn it back: (x, y) came from (y, -x) */
+    for (int y = 0; y < 160; y++) /* (x, y) is at (y, 159 - x) */
         for (int x = 0; x < 160; x++)
             for (int c = 0; c < 3; c++)
                 floats[0][3 * (y * 160 + x) + c] =
@@ -210,8 +211,8 @@ static void test_doubling_the_grid(void **state)
     assert_true(db > 60);
 }
 
-/* What a ghost brings to the sensor is no more than its reflectances leave of
- * what enters the front: 13 pairs of at most 5 % twice. */
+/* The light of all ghosts must be less than 13 pairs of surfaces, which reflect
+ * at most 5 % twice, leave of the light that enters the front. */
 static void test_flux_is_bounded(void **state)
 {
     const struct glint_view view = {200, 200, 2000};
@@ -289,14 +290,15 @@ static void test_integers_match(void **state)
         print_message("%s, %d light(s): %.1f dB\n", names[i / 2], 1 + i % 2,
                       db);
         assert_true(db >= 45);
-        /* the memory is exactly what the frame took */
+        /* The arena must have exactly the bytes that the frame used. */
         assert_int_equal(report.arena_bytes, report.peak_bytes);
         assert_int_equal(report.stats.dropped_bundles, 0);
     }
 }
 
-/* The hot spot of this lens is far fainter than its box makes it compositor,
- * and a hundredth of the light is green: it is drawn as if it were alone. */
+/* A lamp with a hundredth of green must give the same green light as a green
+ * lamp alone of that power: a faint colour has steps of its own. The hot spot
+ * of this lens is far fainter than the size of its box suggests. */
 static void test_faint_colour_keeps_steps(void **state)
 {
     const struct glint_view view = {480, 270, 36};

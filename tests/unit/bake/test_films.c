@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Films of a lens table and of --coating: what ends up on which surface, what
- * it reflects, what models are known by, and what is refused.
+ * Films of a lens table and of --coating: which surface gets which film, what
+ * it reflects, which key a model gets, and what is refused.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -14,7 +14,8 @@
 
 #include "glint/bake.h"
 
-/* A cemented doublet and a single lens: surfaces 0, 2, 3 and 4 meet air. */
+/* A cemented doublet and a single lens: surface 1 is cemented, surfaces 0, 2, 3
+ * and 4 meet air. */
 static const char table[] = "name films\n"
                             "f-number 10\n"
                             "film 36 24\n"
@@ -79,7 +80,7 @@ static void test_mixed_line(void **state)
     assert_true(lens.mixed[0].nm == 450 && lens.mixed[0].index == 1.38);
     assert_true(lens.mixed[1].nm == 0 && lens.mixed[1].index == 0);
     assert_true(lens.mixed[2].nm == 620 && lens.mixed[2].index == 1.46);
-    expect(&lens, all, mgf2); /* A mixed coating must be asked for. */
+    expect(&lens, all, mgf2); /* The mixed coating is not applied yet. */
 }
 
 static void test_mistakes(void **state)
@@ -176,9 +177,9 @@ static double reflectance(const struct glint_prescription *lens, int k,
                              3.14159265358979323846 * s->coating_nm / nm);
 }
 
-/* A quarter wave reflects least where it is one, so that one for the blue is
- * amber and one for the red is blue; a half wave reflects there as if there
- * were no film, and less on either side. */
+/* A quarter-wave film must reflect least at its own wavelength (surfaces 0, 2
+ * and 4). A half-wave film for 550 nm (surface 3) must reflect there as if it
+ * were not there, and less on either side. */
 static void test_reflects(void **state)
 {
     static struct glint_prescription lens, bare;
@@ -210,7 +211,7 @@ static void test_key(void **state)
     good(&lens, "");
     key = glint_bake_key(&lens, &options);
     good(&other, "mixed-coating 450 620\n");
-    /* A mixed coating is only offered until it is applied. */
+    /* A mixed coating must not change the key until it is applied. */
     assert_true(glint_bake_key(&other, &options) == key);
     glint_prescription_coat(&other, other.mixed, other.n_mixed);
     assert_true(glint_bake_key(&other, &options) != key);

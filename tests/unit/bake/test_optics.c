@@ -20,8 +20,9 @@ static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------- glass */
 
-/* N-BK7, catalogue: nd 1.5168, Vd 64.17, nF - nC 0.008054, nF 1.52238, nC
- * 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms miss the violet. */
+/* N-BK7 by its catalogue: nd 1.5168, Vd 64.17, nF - nC 0.008054, nF 1.52238, nC
+ * 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms are less exact in the
+ * violet. */
 static void test_glass(void **state)
 {
     (void)state;
@@ -50,16 +51,18 @@ static void test_bare_boundary(void **state)
     assert_near(bare(1.5, 1.0, 1.0), 0.04, 1e-16);
     assert_near(bare(1.0, 2.0, 1.0), 1.0 / 9.0, 1e-16);
     assert_near(bare(1.5, 1.6, 1.0), 1.0 / 961.0, 1e-16);
-    /* Brewster, tan = 1.5: p vanishes, s has (1.25 / 3.25)^2 */
+    /* At Brewster's angle, tan = 1.5, p is 0 and s is (1.25 / 3.25)^2. */
     assert_near(bare(1.0, 1.5, 1.0 / sqrt(3.25)), 0.5 * 25.0 / 169.0, 1e-16);
-    /* 45 degrees: rp = rs^2; rs = (1 - sqrt(3.5)) / (1 + sqrt(3.5)) */
+    /* At 45 degrees Rp = Rs^2, and Rs is the square of (1 - sqrt(3.5)) / (1 +
+     * sqrt(3.5)). */
     assert_near(bare(1.0, 1.5, sqrt(0.5)),
                 0.5 * (0.0920134 + 0.0920134 * 0.0920134), 1e-7);
     assert_near(bare(1.0, 1.5, 1e-9), 1.0, 1e-8);
     assert_true(bare(1.0, 1.5, 0.0) == 1.0);
 }
 
-/* The critical angle of 1.5 to 1 has the cosine sqrt(5) / 3. */
+/* From index 1.5 to 1 the critical angle has the cosine sqrt(5) / 3; smaller
+ * cosines must give total reflection. */
 static void test_total_reflection(void **state)
 {
     static const double film[] = {0.0, 1.38};
@@ -74,8 +77,9 @@ static void test_total_reflection(void **state)
     }
 }
 
-/* Quarter waves at normal incidence reflect ((n1 n2 - f^2) / (n1 n2 +
- * f^2))^2: none at all where f^2 = n1 n2. Half waves are not there. */
+/* At normal incidence a quarter-wave film of index f reflects ((n1 n2 - f^2) /
+ * (n1 n2 + f^2))^2, so nothing where f^2 = n1 n2. A half-wave film acts as if
+ * it were not there. */
 static void test_film_by_hand(void **state)
 {
     const double quarter = pi, half = 2.0 * pi;
@@ -87,7 +91,7 @@ static void test_film_by_hand(void **state)
                 5e-8);
     assert_near(glint_reflectance(1.0, 1.5, 1.0, 1.38, half), 0.04, 1e-15);
     assert_near(glint_reflectance(1.0, 1.5, 1.0, 1.38, 0.0), 0.04, 1e-15);
-    for (int i = 1; i <= 20; i++) { /* a film of the same stuff as a side */
+    for (int i = 1; i <= 20; i++) { /* a film of the index of one side */
         const double c = 0.05 * i;
 
         assert_near(glint_reflectance(1.0, 1.5, c, 1.5, 2.0), bare(1, 1.5, c),
@@ -97,8 +101,9 @@ static void test_film_by_hand(void **state)
     }
 }
 
-/* Airy's sum in complex numbers, as textbooks write it: cosines on all three
- * sides, amplitudes at both faces of the film. */
+/* Returns the reflectance of a film by Airy's sum in complex numbers, as
+ * textbooks write it: cosines in all three media, amplitudes at both faces of
+ * the film. */
 static double airy(double n1, double n2, double c1, double nf, double phase)
 {
     const double complex cf = csqrt(1 - n1 * n1 / (nf * nf) * (1 - c1 * c1));
@@ -116,7 +121,8 @@ static double airy(double n1, double n2, double c1, double nf, double phase)
 
 static void test_film_against_airy(void **state)
 {
-    /* from, film, to; the last three are beyond critical in the film */
+    /* Indices before, of and behind the film. In the last three, light at
+     * grazing angles passes only by frustrated total reflection. */
     static const double n[][3] = {
         {1, 1.38, 1.5},   {1.8, 1.38, 1},   {1, 2.3, 1.6},   {1.5, 1.7, 1.6},
         {1.7, 1.2, 1.65}, {1.9, 1.01, 1.5}, {1.5, 1.38, 1.9}};
@@ -137,19 +143,19 @@ static void test_film_against_airy(void **state)
     assert_true(frustrated > 1000);
 }
 
-/* Through a thin gap light passes that a thick one turns back altogether. */
+/* A thin gap must pass light that a thick one reflects totally. */
 static void test_frustrated_reflection(void **state)
 {
     (void)state;
     assert_true(glint_reflectance(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
     assert_near(glint_reflectance(1.7, 1.7, 0.6, 1.01, 60.0), 1.0, 1e-12);
     assert_near(glint_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0, 1e-12);
-    /* 1.36 = 1.7 sin: the critical angle of the film itself */
+    /* 1.7 times the sine 0.8 is 1.36, so the angle is critical for the film. */
     assert_near(glint_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
                 glint_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0), 1e-7);
 }
 
-/* Both ways across a boundary the reflectance is the same, 0 .. 1. */
+/* The reflectance must be 0 .. 1 and the same from both sides of a boundary. */
 static void test_reciprocity(void **state)
 {
     static const double film[] = {0.0, 1.38, 1.2, 2.4};
@@ -165,14 +171,16 @@ static void test_reciprocity(void **state)
 
                 assert_true(into >= 0.0 && into <= 1.0);
                 assert_true(out >= 0.0 && out <= 1.0);
-                /* a grazing cosine from its sine is that uncertain */
+                /* The cosine of a grazing angle is less exact, as it follows
+                 * from the sine. */
                 assert_near(into, out, 1e-14 / fmax(c1, 1e-8));
             }
 }
 
 /* ------------------------------------------------------------- first order */
 
-/* Biconvex, R = 50, d = 6, n = 1.5: the lensmaker's equation by hand. */
+/* Returns a biconvex lens, R = 50, d = 6, n = 1.5. The constants below follow
+ * from the lensmaker's equation by hand. */
 static struct glint_prescription biconvex(void)
 {
     struct glint_prescription lens;
@@ -201,7 +209,7 @@ static void test_biconvex_with_stop_behind(void **state)
     assert_near(optics.focal_mm, BICONVEX_F, 1e-12);
     assert_near(optics.back_focal_mm, BICONVEX_BACK, 1e-12);
     assert_near(optics.entrance_radius_mm, BICONVEX_F / 16.0, 1e-12);
-    /* the cone to the focus, 10 mm behind the lens */
+    /* The stop cuts the cone to the focus 10 mm behind the lens. */
     assert_near(optics.stop_radius_mm, (BICONVEX_BACK - 10.0) / 16.0, 1e-12);
     assert_near(optics.length_mm, 54.0, 1e-12);
     /* Newton: the stop is BACK - 10 before the rear focus, so its image is
@@ -231,8 +239,9 @@ static void test_biconvex_with_stop_in_front(void **state)
 
 /* ------------------------------------------------------- the eleven tables */
 
-/* As published with them: mm at the d line, surfaces before and after the
- * stop, ghosts. */
+/* Values that were published with the tables: focal length, back focal length
+ * and stop radius in mm at the d line, f-number, surfaces before and after the
+ * stop, and number of ghosts. */
 static const struct {
     const char *name;
     double focal, back_focal, stop_radius, f_number;
@@ -271,7 +280,7 @@ static void test_published_values(void **state)
         assert_near(optics.stop_radius_mm, tables[i].stop_radius, 5.1e-5);
         assert_near(lens.check_focal_mm, tables[i].focal, 0.0);
         assert_near(lens.check_back_mm, tables[i].back_focal, 0.0);
-        /* focused at infinity */
+        /* The lens is focused at infinity. */
         assert_near(lens.surface[lens.n_surfaces - 1].thickness_mm,
                     optics.back_focal_mm, 1e-6);
         assert_int_equal(lens.stop_after, tables[i].before);
@@ -283,7 +292,8 @@ static void test_published_values(void **state)
 
 /* ------------------------------------------------------------------ ghosts */
 
-/* Five surfaces before the stop, three after it. */
+/* Pairs must be listed in this order and not across the stop: five surfaces lie
+ * before it, three after it. */
 static void test_ghost_order(void **state)
 {
     static const struct glint_ghost expected[] = {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lens tables: what is read from a good one, and for every mistake the place
- * and the cause that are named.
+ * Lens tables: what the parser reads from a good one, and which place and cause
+ * it names for each mistake.
  */
 #include <dirent.h>
 #include <math.h>
@@ -20,24 +20,24 @@
 
 #define CORPUS "tests/fuzz/corpus/lens"
 
-/* This table is good. Each mistake below replaces a line, numbered at right. */
+/* This table is good. Each mistake below replaces one line of it. */
 static const char *const good[] = {
-    "name tiny-4",                       /* 1 */
-    "source Tiny, US 1,234",             /* 2 */
-    "f-number 8",                        /* 3 */
-    "film 36 24",                        /* 4 */
-    "glass N-BK7 1.5168 64.17",          /* 5 */
-    "surface   50  6 12  N-BK7",         /* 6 */
-    "surface  -50  3 12  air",           /* 7 */
-    "stop          5  8",                /* 8 */
-    "surface flat  2 10  1.62 36.3",     /* 9 */
-    "surface  -80 40 10  air  # behind", /* 10 */
+    "name tiny-4",                       /* line 1 */
+    "source Tiny, US 1,234",             /* line 2 */
+    "f-number 8",                        /* line 3 */
+    "film 36 24",                        /* line 4 */
+    "glass N-BK7 1.5168 64.17",          /* line 5 */
+    "surface   50  6 12  N-BK7",         /* line 6 */
+    "surface  -50  3 12  air",           /* line 7 */
+    "stop          5  8",                /* line 8 */
+    "surface flat  2 10  1.62 36.3",     /* line 9 */
+    "surface  -80 40 10  air  # behind", /* line 10 */
 };
 
 #define N_GOOD 10
 
-/* The good table with line NUMBER (from 1; 0: none) replaced; each line ends
- * with END. Returns its bytes. */
+/* Writes the good table to TEXT, with LINE in place of line NUMBER (from 1; 0:
+ * none) and END after each line. Returns its bytes. */
 static size_t compose(char text[4096], int number, const char *line,
                       const char *end)
 {
@@ -53,7 +53,8 @@ static enum glint_status parse(struct glint_prescription *lens,
                                const char *text, size_t bytes,
                                struct glint_error *error)
 {
-    /* A copy that ends where the text does, for the address sanitizer. */
+    /* The copy ends where the text does, so that the address sanitizer sees
+     * reads beyond it. */
     char *copy = malloc(bytes ? bytes : 1);
     enum glint_status status;
 
@@ -158,7 +159,7 @@ static void test_coatings(void **state)
 
     (void)state;
     expect_coatings(5, "coating none\nglass N-BK7 1.5 64", zero, zero);
-    expect_coatings(10, "surface -80 40 10 air\ncoating 480", /* anywhere */
+    expect_coatings(10, "surface -80 40 10 air\ncoating 480", /* last line */
                     (const double[]){480, 480, 480, 480},
                     (const double[]){1.38, 1.38, 1.38, 1.38});
     expect_coatings(7, "surface -50 3 12 air coating 600 1.46",
@@ -167,7 +168,8 @@ static void test_coatings(void **state)
     expect_coatings(7, "surface -50 3 12 air coating none",
                     (const double[]){550, 0, 550, 550},
                     (const double[]){1.38, 0, 1.38, 1.38});
-    /* surface 1 becomes cemented: bare whatever the others are */
+    /* Surface 1 becomes cemented, and so has no coating whatever coating the
+     * others get. */
     expect_coatings(7,
                     "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating "
                     "500 1.4",
@@ -197,7 +199,7 @@ static void test_stop_at_either_end(void **state)
     assert_int_equal(lens.stop_after, 0);
 }
 
-/* Decimals are rounded as the compiler rounds them. */
+/* The parser must round decimals as the compiler does. */
 static void test_numbers_are_exact(void **state)
 {
     static const struct {
@@ -231,7 +233,7 @@ static const struct {
     int number; /* line of the table that is replaced, from 1 */
     const char *line, *error;
 } mistakes[] = {
-    /* names and words */
+    /* mistakes in names and words */
     {1, "", "x.lens:11:1: there is no name line"},
     {1, "name", "x.lens:1:5: name is missing"},
     {1, "name Tiny", "x.lens:1:6: name may have a-z, 0-9 and, inside, -"},
@@ -247,7 +249,7 @@ static const struct {
     {2, "\xc3\xa9tude", "x.lens:2:1: unknown word '??tude'"},
     {2, "an-endless-word-of-forty-letters-or-more",
      "x.lens:2:1: unknown word 'an-endless-word-of-forty-let...'"},
-    /* f-number and film */
+    /* mistakes in f-number and film */
     {3, "", "x.lens:11:1: there is no f-number line"},
     {3, "f-number", "x.lens:3:9: f-number is missing"},
     {3, "f-number f8", "x.lens:3:10: f-number 'f8' is not a number"},
@@ -263,7 +265,7 @@ static const struct {
     {4, "film 36", "x.lens:4:8: film height is missing"},
     {4, "film 0 24", "x.lens:4:6: film width must be 0.1 .. 1000, not 0"},
     {4, "film 36 x24", "x.lens:4:9: film height 'x24' is not a number"},
-    /* numbers that C knows and we do not */
+    /* words that are no numbers of a table, though C may read them as some */
     {3, "f-number inf", "x.lens:3:10: f-number 'inf' is not a number"},
     {3, "f-number nan", "x.lens:3:10: f-number 'nan' is not a number"},
     {3, "f-number 0x8", "x.lens:3:10: f-number '0x8' is not a number"},
@@ -281,7 +283,7 @@ static const struct {
      "small"},
     {3, "f-number 8.000000000000001",
      "x.lens:3:10: f-number '8.000000000000001' has more than 15 digits"},
-    /* glasses */
+    /* mistakes in glasses */
     {5, "glass", "x.lens:5:6: glass name is missing"},
     {5, "glass N-BK7", "x.lens:5:12: index is missing"},
     {5, "glass N-BK7 1.5", "x.lens:5:16: Abbe number is missing"},
@@ -297,7 +299,7 @@ static const struct {
      "x.lens:6:7: glass of this name is already defined"},
     {5, "glass N-BK 1.5 60",
      "x.lens:6:21: no glass 'N-BK7' is defined above this line"},
-    /* surfaces */
+    /* mistakes in surfaces */
     {6, "surface", "x.lens:6:8: radius is missing"},
     {6, "surface 50 6 12",
      "x.lens:6:16: medium is missing: air, ND VD or a "
@@ -336,13 +338,13 @@ static const struct {
     {10, "surface -80 40 10 1.5 60",
      "x.lens:10:19: the last medium must be "
      "air"},
-    /* the stop */
+    /* mistakes in the stop */
     {8, "", "x.lens:11:1: there is no stop line"},
     {8, "stop 5 8\nstop 5 8",
      "x.lens:9:1: a second stop; the first is on line 8"},
     {8, "stop 5", "x.lens:8:7: semi-diameter is missing"},
     {8, "stop 5 8 9", "x.lens:8:10: '9' is more than stop takes"},
-    /* the lens as a whole */
+    /* mistakes that only the lens as a whole shows */
     {6, "surface 50 2.3 12 N-BK7",
      "x.lens:6:12: overlaps the next element by 0.06066 mm at 10.8 mm from "
      "the axis"},
@@ -364,7 +366,7 @@ static const struct {
      "x.lens:2:19: back-focal-length is 29.4328 mm, not the stated 40 mm"},
     {2, "focal-length -40",
      "x.lens:2:14: focal length must be 0.01 .. 1000000, not -40"},
-    /* bytes */
+    /* bytes that are not text */
     {2, "source a\rb", "x.lens:2:9: byte 0x0d is not text (UTF-8)"},
     {2, "# bell \a", "x.lens:2:8: byte 0x07 is not text (UTF-8)"},
     {2, "# \x7f", "x.lens:2:3: byte 0x7f is not text (UTF-8)"},
@@ -402,7 +404,7 @@ static void test_bytes(void **state)
     bytes = compose(text, 0, NULL, "\n");
     text[5] = 0;
     expect_error(text, bytes, "x.lens:1:6: byte 0x00 is not text (UTF-8)");
-    /* the last byte of the text begins a character */
+    /* The last byte of the text begins a character of several bytes. */
     bytes = compose(text, 0, NULL, "\n");
     text[bytes - 1] = '\xe2';
     expect_error(text, bytes, "x.lens:10:34: byte 0xe2 is not text (UTF-8)");
@@ -419,7 +421,7 @@ static void test_longest_line_and_text(void **state)
     char text[4096], line[300] = "source ";
 
     (void)state;
-    memset(line + 7, 'x', 193); /* 200 in all */
+    memset(line + 7, 'x', 193); /* a line of 200 bytes */
     expect_good(&lens, text, compose(text, 2, line, "\r\n"));
     assert_int_equal(strlen(lens.source), 193);
     memset(big, '\n', sizeof(big));
@@ -428,7 +430,7 @@ static void test_longest_line_and_text(void **state)
     expect_error(big, 65537, "x.lens:1:1: text is longer than 65536 bytes");
 }
 
-/* Comments may say anything in UTF-8, and # inside a word is no comment. */
+/* A comment may have any text in UTF-8; a # inside a word begins none. */
 static void test_utf8_and_comments(void **state)
 {
     static struct glint_prescription lens;
@@ -475,7 +477,8 @@ static void test_power(void **state)
     expect_whole_lens_error("stop 1 20\nsurface flat 3 9 1.5 60\n"
                             "surface flat 9 9 air\n",
                             "x.lens:7:1: the lens has no power");
-    /* R1 - R2 = d (n - 1) / n: afocal; exactly so in decimals */
+    /* With R1 - R2 = d (n - 1) / n, which these decimals fulfil exactly, the
+     * lens is afocal. */
     expect_whole_lens_error("stop 1 20\nsurface 40 60 9 1.5 60\n"
                             "surface 20 9 9 air\n",
                             "x.lens:7:1: the lens has no power");
@@ -484,8 +487,8 @@ static void test_power(void **state)
                             "x.lens:7:1: the lens has no focus behind it: "
                             "focal length -49.505 mm, back focal length "
                             "-50.495 mm");
-    /* the stop in the focus of a thick plano-convex rod, R n / (n - 1) long,
-     * whose image two relays pass on */
+    /* The stop lies in the focus of a thick plano-convex rod, which is R n / (n
+     * - 1) long; two relays pass on its image. */
     expect_whole_lens_error("surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
                             "stop 100 5\n"
                             "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
@@ -494,7 +497,7 @@ static void test_power(void **state)
                             "surfaces before it");
 }
 
-/* Stated values may be 0.1 % off. */
+/* The focal lengths that a table states may be 0.1 % off. */
 static void test_stated_values(void **state)
 {
     static struct glint_prescription lens;
@@ -511,7 +514,7 @@ static void test_stated_values(void **state)
                  "38.08 mm");
 }
 
-/* The cause survives a file name of any length. */
+/* The message must keep the cause however long the file's name is. */
 static void test_long_file_name(void **state)
 {
     static struct glint_prescription lens;
@@ -538,7 +541,7 @@ static void test_set_f_number(void **state)
     assert_int_equal(glint_prescription_set_f_number(&lens, 8.0, &error),
                      GLINT_OK);
     assert_true(lens.f_number == 8.0);
-    glint_optics_of(&lens, &optics); /* twice the 2.4868 mm at f/16 */
+    glint_optics_of(&lens, &optics); /* twice the stop radius at f/16 */
     assert_near(optics.stop_radius_mm, 2.0 * 2.4868, 1e-4);
     assert_int_equal(glint_prescription_set_f_number(&lens, 2.0, &error),
                      GLINT_E_ARGUMENT);
@@ -558,7 +561,7 @@ static void test_set_f_number(void **state)
     assert_true(lens.f_number == 8.0);
 }
 
-/* The example of the manual is one. */
+/* The example table of the manual must be good. */
 static void test_manual(void **state)
 {
     static const char fence[] = "```lens\n";
@@ -577,7 +580,8 @@ static void test_manual(void **state)
     assert_string_equal(lens.name, "achromat");
 }
 
-/* Seeds of the fuzzer, by name: good-* parse, bad-* do not, others may. */
+/* Tables of the fuzzer's corpus must fit their names: good-* parse, bad-* do
+ * not, others may do either. */
 static void test_corpus(void **state)
 {
     static struct glint_prescription lens;

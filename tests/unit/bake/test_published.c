@@ -29,7 +29,8 @@ static int load(void **state)
 
 /* ------------------------------------------------------------------- errors */
 
-/* A place between knot K and the next. */
+/* The place PART (0 to less than 1) of the way from knot KNOT to the next
+ * one. */
 struct place {
     int knot;
     double part;
@@ -62,7 +63,7 @@ struct tally {
     double square[KINDS], energy;
 };
 
-/* Adds one ray if it gets through. */
+/* Adds the errors of one ray to TALLY if the ray gets through. */
 static void compare(const struct glint_fitted_system *s, const struct place *at,
                     const struct glint_path *path, double px, double py,
                     const double direction[3], struct tally *tally)
@@ -111,8 +112,9 @@ static void compare_box(const struct glint_fitted_system *s,
                     box[2] * j / DOWN, direction, tally);
 }
 
-/* Root mean square errors over angles and wavelengths, the energy's relative
- * to its mean. PART 0: at the knots, else between. */
+/* Sets RMS to the root mean square errors over angles and wavelengths, for the
+ * energy relative to its mean. PART 0 measures at the knots, other values
+ * between them. */
 static void measure(const struct glint_fitted_ghost *ghost, double part,
                     double rms[KINDS])
 {
@@ -129,11 +131,12 @@ static void measure(const struct glint_fitted_ghost *ghost, double part,
 
 /* -------------------------------------------------------------------- tests */
 
-/* Half as much again as what was measured, at knots and between, in the order
- * of the kinds: mm, stop radii, share, relative radius. Where it is above the
- * tolerance five terms are all there is. Of the 12th ghost's sensor x only one
- * of them is odd in x, and near the axis no other helps: 0.09 mm there, 0.005
- * mm farther out. The relative radius has kinks. */
+/* Largest errors allowed, 1.5 times those that were measured at knots and
+ * between them, in the order of the kinds: mm, stop radii, share, relative
+ * radius. An error above the tolerance means that five terms are too few. In
+ * sensor x of ghost 12 only one of these is odd in x, and near the axis no
+ * other one helps: 0.09 mm there, 0.005 mm farther out. The relative radius has
+ * kinks. */
 static const struct {
     int ghost;
     double most[KINDS];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pupil box holds every ray that gets through: against a dense scan of the
- * whole front element.
+ * The pupil box must hold each ray that gets through, as a dense scan of the
+ * whole front element finds them.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -18,7 +18,7 @@ static struct glint_prescription lens;
 static struct glint_optics optics;
 static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
 
-/* Whether a ray passes, by its own record alone. */
+/* Returns whether a ray passes, by the ray's own record alone. */
 static bool passes(const struct glint_path *path, double x, double y,
                    const double direction[3], struct glint_ray *ray)
 {
@@ -27,7 +27,9 @@ static bool passes(const struct glint_path *path, double x, double y,
            hypot(ray->stop_x_mm, ray->stop_y_mm) <= optics.stop_radius_mm;
 }
 
-/* NEAR: start from what 532 nm gave, as a frame does. */
+/* Checks the pupil box of GHOST at an angle and wavelength against a scan, and
+ * adds the rays that passed to *N_SEEN. With NEAR the search for the box starts
+ * from that at 532 nm, as in a frame. */
 static void scan(int ghost, double theta_deg, double nm, bool near, int *n_seen)
 {
     const double t = theta_deg * 3.14159265358979 / 180;
@@ -94,8 +96,8 @@ static void test_itoh(void **state)
     scan_lens("itoh-zoom-long", 7);
 }
 
-/* The stop is seen so small through this ghost that all of its light comes
- * through a spot of a twentieth of a millimetre. */
+/* Through this ghost the stop looks so small that all light enters by a spot of
+ * a twentieth of a millimetre. */
 static void test_spot(void **state)
 {
     (void)state;
@@ -118,7 +120,7 @@ static void test_spot(void **state)
     }
 }
 
-/* Straight into the stop from far aside nothing gets through. */
+/* At 85 degrees no light of this ghost reaches the stop, so there is no box. */
 static void test_nothing_gets_through(void **state)
 {
     struct glint_pupil box;

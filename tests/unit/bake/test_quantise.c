@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Integers of a model against the polynomials they stand for: what is proven of
- * them holds for every input that was tried.
+ * Integers of a model against the polynomials that they stand for: what is
+ * proven of the integers must hold for every input that is tried.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -24,7 +24,7 @@ enum { ONE_Q30 = 1 << 30, KNOTS = 3, KINDS = GLINT_OUT_BARREL_0 + 1 };
 
 static uint32_t seed = 1;
 
-/* -1 .. 1 */
+/* Returns -1 .. 1. */
 static double random_unit(void)
 {
     return 2.0 * rng_xorshift(&seed) / UINT32_MAX - 1;
@@ -35,7 +35,8 @@ static int random_int(int lo, int hi)
     return lo + (int)(rng_xorshift(&seed) % (uint32_t)(hi - lo + 1));
 }
 
-/* Within +-2^30; one in four is at a corner or next to one. */
+/* Returns a number within +-2^30; one in four is an end, 0, or next to
+ * these. */
 static int32_t random_q30(void)
 {
     static const int32_t corner[] = {-ONE_Q30, 1 - ONE_Q30, -1,     0,
@@ -138,7 +139,7 @@ static void make_system(struct made *m, enum glint_basis basis)
         make_output(s, (enum glint_channel)kind);
 }
 
-/* The model of M, through the loader's gate. */
+/* Quantises M, writes its model, and opens the model as a program does. */
 static void make_model(struct made *m, enum glint_basis basis)
 {
     static struct glint_setup setup;
@@ -189,7 +190,8 @@ static double to_one(int32_t x_q30)
     return ldexp(x_q30, -30);
 }
 
-/* -1 .. 1 as the run time has it: that far the input is rounded. */
+/* Returns where X lies between LO and HI, as -1 .. 1 _q30, rounded as the run
+ * time rounds it. */
 static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t twice = 2 * (int64_t)x - lo - hi;
@@ -197,7 +199,8 @@ static int32_t within_q30(int32_t x, int32_t lo, int32_t hi)
     return (int32_t)(twice * ONE_Q30 / ((int64_t)hi - lo));
 }
 
-/* The fitted polynomial; sets of coefficients PART of the way from KNOT. */
+/* Returns the value of the fitted polynomial O at POWER, with coefficients that
+ * lie PART of the way from KNOT to the next knot. */
 static double polynomial(const struct glint_fitted_output *o, int knot,
                          double part, double power[4][16])
 {
@@ -224,13 +227,15 @@ static void set_powers(double power[4][16], const double x[4])
     }
 }
 
-/* How much of what is allowed the worst value took. */
+/* The largest parts of the proven bounds that were used, 0 .. 1: by values, by
+ * rounding errors. */
 struct used {
     double bound, rounding;
     long n;
 };
 
-/* What the run time is to make of the value of a polynomial. */
+/* Returns what the run time must make of VALUE, a polynomial of energy: limited
+ * by HEAD, then squared ROOTS times. */
 static double energy_of(int head, int roots, double value)
 {
     if (head || roots)
@@ -240,7 +245,8 @@ static double energy_of(int head, int roots, double value)
     return value;
 }
 
-/* The polynomial's variables are those of the run time, exactly. */
+/* Compares the run time's outputs OUT with the fitted polynomials. X holds the
+ * variables that the run time has, exactly. */
 static void compare(const struct made *m, const struct glint_outputs *out,
                     int knot, double part, const double x[4], struct used *used)
 {
@@ -256,7 +262,7 @@ static void compare(const struct made *m, const struct glint_outputs *out,
         const double error = fabs(out->at[o->kind] - truth);
         const double most = ldexp(q->rounding_q8, -8) + 1e-6;
 
-        if (q->head || o->roots) { /* beyond the bound of the polynomial */
+        if (q->head || o->roots) { /* limited to 2^29 and not by the bound */
             assert_true(error <= most && out->at[o->kind] <= 1 << 29);
             continue;
         }
@@ -354,7 +360,8 @@ static struct used check_proofs(enum glint_basis basis, int systems)
     return used;
 }
 
-/* Some input comes near to the bound, and rounding is no empty promise. */
+/* Some value must come near its bound, and some rounding error must be at least
+ * 2 % of its own. */
 static void test_proof_auto(void **state)
 {
     const struct used used = check_proofs(GLINT_BASIS_AUTO, 240);
@@ -375,7 +382,7 @@ static void test_proof_sparse(void **state)
     assert_in_range((long)(1000 * used.rounding), 20, 1000);
 }
 
-/* One coefficient off by a thousandth shows. */
+/* A coefficient that is off by a thousandth must exceed the proven rounding. */
 static void test_proof_can_fail(void **state)
 {
     struct glint_outputs out;
@@ -438,14 +445,14 @@ static void test_odd_reals(void **state)
         assert_int_equal(glint_real_of(odd[k]).mantissa, 0);
         assert_int_equal(glint_real_of(odd[k]).exponent, 0);
     }
-    /* all but the next power of two */
+    /* just below the next power of two */
     assert_int_equal(glint_real_of(nextafter(2, 0)).mantissa, INT32_MAX);
 }
 
 /* ---------------------------------------------------------------- exponents */
 
-/* The largest sum of magnitudes that sets of coefficients can be turned into.
- */
+/* Returns the largest sum of magnitudes that coefficients between the sets can
+ * have. */
 static int64_t hull(const struct glint_fitted_output *o,
                     const struct glint_quantised_output *q, int sets)
 {
@@ -465,7 +472,8 @@ static int64_t hull(const struct glint_fitted_output *o,
     return sum;
 }
 
-/* Sums use the room there is, at least half of it, whatever the sets are. */
+/* Sums of coefficients must fit, and use at least half of the room there is,
+ * whatever the sets are. */
 static void test_exponents(void **state)
 {
     (void)state;
@@ -493,7 +501,8 @@ static void test_exponents(void **state)
     }
 }
 
-/* Energies are not cut where light gets through, nor a little above. */
+/* The limit of an energy must be at least 1.2 times the largest one that gets
+ * through. */
 static void test_head(void **state)
 {
     int cut = 0;
@@ -518,7 +527,8 @@ static void test_head(void **state)
     assert_in_range(cut, 300, 900);
 }
 
-/* Too small for any exponent of the file: steps of the least one do. */
+/* Coefficients too small for any exponent of the file must be rounded to steps
+ * of the least exponent. */
 static void test_least_exponent(void **state)
 {
     struct made m;
@@ -529,7 +539,7 @@ static void test_least_exponent(void **state)
     for (int k = 0; k < KINDS; k++)
         for (int t = 0; t < m.fitted.system->output[k].n_terms; t++)
             m.fitted.system->output[k].coef[t] = k % 2 ? 0 : 0x1p-200;
-    make_model(&m, GLINT_BASIS_AUTO); /* opens */
+    make_model(&m, GLINT_BASIS_AUTO); /* checks that it opens */
     assert_int_equal(m.quantised.output[GLINT_OUT_ENERGY].exponent, -80);
     finish(&m);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Few wavelengths for all: where they are, that a flat spectrum is white, and
- * how near smooth ones come to the colour that 31 wavelengths give.
+ * Few wavelengths in place of all: where they lie, that a flat spectrum is
+ * white, and how near smooth spectra come to the colour that 31 wavelengths
+ * give.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +20,8 @@ enum { ALL = 31 };
 static double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS];
 static double rgb[GLINT_MAX_WAVELENGTHS][3];
 
-/* The observer over 400 .. 700 nm, each channel's sum 1. */
+/* Sets ALL to the observer at 400 .. 700 nm, each channel divided by its
+ * sum. */
 static void observe(double all[ALL][3])
 {
     double sum[3] = {0, 0, 0};
@@ -68,7 +70,8 @@ static void test_flat_is_white(void **state)
     }
 }
 
-/* A product of what two coated glasses reflect, as a ghost's is. */
+/* Returns the reflectances of two coated glasses at wavelength AT, nm,
+ * multiplied as in a ghost. */
 static double ghost(double first_nm, double second_nm, double index, double at)
 {
     const double pi = 3.14159265358979323846;
@@ -77,7 +80,8 @@ static double ghost(double first_nm, double second_nm, double index, double at)
            glint_reflectance(1, index, 1, 1.38, pi * second_nm / at);
 }
 
-/* The largest difference of a channel, over the largest channel. */
+/* Returns the largest error of a channel of a ghost's colour by N wavelengths,
+ * divided by the largest channel. */
 static double colour_error(int n, double first_nm, double second_nm,
                            double index)
 {
@@ -98,7 +102,8 @@ static double colour_error(int n, double first_nm, double second_nm,
     return wrong / most;
 }
 
-/* Quarter waves and half waves, as tables have them. */
+/* Films of quarter waves and of half waves, as lens tables have them, must have
+ * the right colours. */
 static void test_smooth_colours(void **state)
 {
     static const double film[] = {430, 460, 520, 560, 640, 680, 1080};
@@ -131,8 +136,8 @@ static void test_smooth_colours(void **state)
     }
 }
 
-/* Steps of an edge that moves with 1 / wavelength^2: the largest difference to
- * what very many would give, in the channel where it is largest. */
+/* Returns how far N wavelengths are off where an edge is spread by wavelength
+ * into steps: the largest difference, in any channel, from 3000 wavelengths. */
 static double stairs(int n)
 {
     enum { FINE = 3000 };

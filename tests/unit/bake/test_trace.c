@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Exact rays: against another program's, against geometry that can be done by
- * hand, and against the symmetries of a centred lens.
+ * Exact rays against those of another program, against geometry that can be
+ * done by hand, and against the symmetries of a centred lens.
  */
 #include <dirent.h>
 #include <math.h>
@@ -46,7 +46,8 @@ static void parse_bundle_name(struct bundle *bundle, const char *name)
                      4);
 }
 
-/* The next comma-separated number; NAN where the column is empty. */
+/* Returns the next comma-separated number and moves *AT beyond it; NAN where
+ * the column is empty. */
 static double next_column(const char **at)
 {
     char *end;
@@ -59,7 +60,7 @@ static double next_column(const char **at)
     return value;
 }
 
-/* Largest differences over all files, printed at the end. */
+/* Largest differences over all files, mm and relative; printed at the end. */
 static double worst_mm, worst_energy;
 
 static void compare_mm(double got, double expected, const char *where)
@@ -68,7 +69,7 @@ static void compare_mm(double got, double expected, const char *where)
 
     if (!(difference <= fmax(1e-7, 5e-9 * fabs(expected))))
         fail_msg("%s: %.12g mm, expected %.9g", where, got, expected);
-    if (fabs(expected) < 100.0) /* printed to 1e-7 or better */
+    if (fabs(expected) < 100.0) /* printed with 1e-7 mm or better */
         worst_mm = fmax(worst_mm, difference);
 }
 
@@ -104,7 +105,7 @@ static int compare_bundle(const struct bundle *bundle, FILE *file,
                 bundle->ghost);
     glint_path_init(&path, &lens, &ghosts[bundle->ghost],
                     bundle->wavelength_nm);
-    assert_non_null(fgets(line, sizeof(line), file)); /* header */
+    assert_non_null(fgets(line, sizeof(line), file)); /* skips the header */
     for (int i = 0; i < bundle->n * bundle->n; i++) {
         const double semi = lens.surface[0].semi_mm;
         const double step = 2.0 * semi / (bundle->n - 1);
@@ -161,8 +162,8 @@ static void test_golden(void **state)
 
 /* ------------------------------------------------------------------- paths */
 
-/* A lens that the parser need not like: SURFACES in air or glass of index
- * 1.5, bare, the stop behind them. */
+/* Returns a lens that the parser need not accept: N bare surfaces, alternately
+ * into glass of index 1.5 and into air, and the stop behind them. */
 static struct glint_prescription simple_lens(int n, const double *radius_mm,
                                              double thickness_mm)
 {
@@ -191,7 +192,8 @@ static void expect_event(const struct glint_event *event,
     assert_true(event->n_to == n_to);
 }
 
-/* Two surfaces 5 mm apart, the stop 5 mm behind them. */
+/* A ghost of two surfaces 5 mm apart, with the stop 5 mm behind them, must have
+ * these five events. */
 static void test_ghost_path_events(void **state)
 {
     static const double radii[] = {40.0, -40.0};
@@ -229,14 +231,15 @@ static void test_direct_path_of_front_stop(void **state)
     expect_event(&path.event[0], GLINT_STOP, -1, -8.0, 1.0, 1.0);
     expect_event(&path.event[1], GLINT_REFRACT, 0, 8.0, 1.0, 1.5);
     assert_true(path.to_sensor_mm == 5.0);
-    /* From (1, 2) at the vertex plane 8 mm back along a 3:4 slope. */
+    /* The stop lies 8 mm before the vertex plane, so the ray from (1, 2) goes
+     * back to it along its 3:4 slope. */
     assert_int_equal(glint_trace(&path, 1.0, 2.0, up, &ray, NULL),
                      GLINT_RAY_OK);
     assert_near(ray.stop_x_mm, 1.0, 1e-14);
     assert_near(ray.stop_y_mm, -4.0, 1e-14);
 }
 
-/* The longest path there is fits, across the stop too. */
+/* The longest possible path, across the stop, must fit. */
 static void test_longest_path(void **state)
 {
     static double radii[GLINT_MAX_SURFACES];
@@ -262,8 +265,8 @@ static enum glint_ray_status trace_one(const struct glint_prescription *lens,
     return glint_trace(&path, 0.0, py_mm, direction, ray, NULL);
 }
 
-/* A plane-parallel plate, n = 1.5, 5 mm: the ray at sin 0.6 leaves parallel,
- * sin 0.4 inside, having climbed 5 tan(asin 0.4) within it. */
+/* A plane-parallel plate, 5 mm of n = 1.5: a ray of sine 0.6 has sine 0.4
+ * inside, climbs by 5 tan(asin 0.4) there, and leaves parallel. */
 static void test_plate(void **state)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -300,8 +303,8 @@ static void test_huge_radius(void **state)
     assert_true(ray.sensor_y_mm == 0.0);
 }
 
-/* A sphere of 0.01 mm: rays through its centre go straight on, the aplanatic
- * ones too far out miss it. */
+/* A sphere of 0.01 mm radius: a ray to its centre must go straight on; rays
+ * that are 0.01 mm or more from the axis must miss it. */
 static void test_tiny_radius(void **state)
 {
     static const double tiny[1] = {0.01};
@@ -317,9 +320,9 @@ static void test_tiny_radius(void **state)
     assert_int_equal(trace_one(&lens, 0.02, along, &ray), GLINT_RAY_MISSED);
 }
 
-/* The aplanatic points of a sphere: rays aimed at n R behind the vertex plus R
- * meet at R + R / n without any aberration. Here R = 10, n = 1.5: aimed at 25,
- * they meet at 16.667 whatever their angle. */
+/* The aplanatic points of a sphere: rays that aim at R + n R behind the vertex
+ * meet at R + R / n, without any aberration. With R = 10 and n = 1.5, rays that
+ * aim at 25 must meet at 16.667 whatever their angle. */
 static void test_aplanatic_sphere(void **state)
 {
     static const double radius[1] = {10.0};
@@ -338,7 +341,7 @@ static void test_aplanatic_sphere(void **state)
     }
 }
 
-/* From glass into air, 45 degrees are beyond the critical 41.8. */
+/* From glass into air, 45 degrees are beyond the critical angle of 41.8. */
 static void test_total_reflection(void **state)
 {
     static const double curved[2] = {0.0, -10.0};
@@ -350,12 +353,13 @@ static void test_total_reflection(void **state)
     assert_int_equal(trace_one(&lens, 10.0 * sqrt(0.5), along, &ray),
                      GLINT_RAY_TOTAL_REFLECTION);
     assert_true(ray.stop_x_mm == 7.0 && ray.rel_radius == 7.0);
-    /* sin = 2/3 exactly is the critical angle; just inside it passes */
+    /* A sine of exactly 2/3 is critical; a ray of slightly less must pass. */
     assert_int_equal(trace_one(&lens, 6.66, along, &ray), GLINT_RAY_OK);
 }
 
-/* Mirrors: light onto a plate, back and forth once inside it, lands at three
- * times the way within, with energy (1 - R)^2 R^2, R = ((1.5 - 1) / 2.5)^2. */
+/* A ghost of a plate: light that is reflected twice inside must land three
+ * times as far within the plate as light that crosses it once, with energy (1 -
+ * R)^2 R^2 for R = ((1.5 - 1) / 2.5)^2. */
 static void test_plate_ghost(void **state)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -382,7 +386,8 @@ static void test_plate_ghost(void **state)
     assert_near(ray.energy, 0.96 * 0.96 * 0.04 * 0.04, 1e-16);
 }
 
-/* Nonsense in, a status out. */
+/* Rays that go back, go sideways or are not finite must be reported as
+ * missed. */
 static void test_hostile_rays(void **state)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -404,7 +409,8 @@ static void test_hostile_rays(void **state)
 
 /* ------------------------------------------------------------ many at once */
 
-/* As one by one, to the bit, hits too; those that are not reached stay. */
+/* Checks that N rays traced at once have the bits of rays traced one by one,
+ * their hits, too; hits that are not reached must stay as they were. */
 static void expect_same(const struct glint_path *path, int n,
                         const struct glint_launch *from)
 {
@@ -511,7 +517,8 @@ static void test_axis_goes_straight(void **state)
     }
 }
 
-/* A ray and its image in the plane y = 0: the same bits but for the sign. */
+/* Checks that a ray and its mirror image in the plane y = 0 have the same bits
+ * but for the sign of y. */
 static void expect_mirrored(const struct glint_path *path, double px, double py,
                             const double d[3])
 {
@@ -530,7 +537,8 @@ static void expect_mirrored(const struct glint_path *path, double px, double py,
     assert_true(a.rel_radius == b.rel_radius);
 }
 
-/* The same ray seen in a picture turned by 90 degrees. */
+/* Checks that a ray turned by 90 degrees lands at the turned place, to the
+ * bit. */
 static void expect_turned(const struct glint_path *path, double px, double py,
                           const double d[3])
 {
@@ -569,8 +577,8 @@ static void test_symmetry_to_the_bit(void **state)
     }
 }
 
-/* A distant point's image: f tan T from the axis, for a narrow pencil near it.
- * The focal lengths are the tables'. */
+/* A distant point must be imaged f tan T from the axis by a narrow pencil near
+ * it, where f is 49.992 mm by the table. */
 static void test_direct_image(void **state)
 {
     static struct glint_prescription lens;
@@ -586,12 +594,12 @@ static void test_direct_image(void **state)
         assert_int_equal(trace_one(&lens, 0.01 * i, up, &ray), GLINT_RAY_OK);
         assert_near(ray.sensor_y_mm, 49.992 * 1e-4, 2e-7);
     }
-    /* The chief ray passes the middle of the stop. */
+    /* The chief ray must pass the middle of the stop. */
     assert_int_equal(trace_one(&lens, -optics.entrance_z_mm * sine, up, &ray),
                      GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 0.0, 1e-9);
-    /* A ray at the rim of the entrance pupil passes the rim of the stop,
-     * 1.3200 mm says the table, up to aberrations. */
+    /* A ray at the rim of the entrance pupil must pass the rim of the stop,
+     * 1.3200 mm by the table, up to aberrations. */
     assert_int_equal(trace_one(&lens, optics.entrance_radius_mm,
                                (const double[3]){0.0, 0.0, 1.0}, &ray),
                      GLINT_RAY_OK);

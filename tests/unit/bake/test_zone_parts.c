@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Parts of a zone's box.
+ * Halves of the box of a zone, and halves of these.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +19,7 @@ static bool part_has(const struct glint_zone_part *p, double u, double v)
            v >= p->top * glint_zone_rim(p->annulus);
 }
 
-/* However often a box is halved, each place is in one half. */
+/* However often a box is halved, each place must be in exactly one part. */
 static void test_halves(void **state)
 {
     enum { DEPTH = 8, PARTS = 1 << DEPTH };

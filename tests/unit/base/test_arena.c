@@ -17,13 +17,13 @@
 
 static void test_measure_and_place(void **state)
 {
-    static uint8_t mem[256]; /* alignment is the caller's business */
+    static uint8_t mem[256]; /* Aligning it is the caller's business. */
     struct glint_arena m = glint_arena_measure(), p;
 
     (void)state;
-    assert_null(glint_arena_take(&m, 3, 4));  /* 64 */
-    assert_null(glint_arena_take(&m, 0, 4));  /* 0 */
-    assert_null(glint_arena_take(&m, 65, 1)); /* 128 */
+    assert_null(glint_arena_take(&m, 3, 4));  /* 64 bytes */
+    assert_null(glint_arena_take(&m, 0, 4));  /* 0 bytes */
+    assert_null(glint_arena_take(&m, 65, 1)); /* 128 bytes */
     assert_int_equal(m.used, 192);
     p = glint_arena_over(mem, 192);
     assert_ptr_equal(glint_arena_take(&p, 3, 4), mem);
@@ -43,7 +43,7 @@ static void test_overflow_is_full(void **state)
     assert_true(m.used > SIZE_MAX - 256);
 }
 
-/* To nearest, ties up, also below zero. */
+/* Rounding is to nearest, ties up, also below zero. */
 static void test_rounding(void **state)
 {
     (void)state;
@@ -64,8 +64,8 @@ static void test_rounding(void **state)
     assert_int_equal(bit_length(1 << 8), 9);
 }
 
-/* CONFIG=qcheck stops where a result does not fit; a release wraps or not as it
- * likes, and is not asked. */
+/* CONFIG=qcheck must stop where a result does not fit. Other builds may wrap or
+ * not, and skip this test. */
 static void test_overflow_traps(void **state)
 {
     (void)state;
@@ -77,7 +77,7 @@ static void test_overflow_traps(void **state)
         if (child == 0) {
             volatile int64_t big = INT64_C(1) << 40;
 
-            signal(SIGILL, SIG_DFL); /* cmocka catches it */
+            signal(SIGILL, SIG_DFL); /* cmocka catches SIGILL. */
             signal(SIGTRAP, SIG_DFL);
             _exit(q_narrow(big) == 0);
         }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The container of baked files: bytes written down here by hand, and each thing
- * that may be wrong with them.
+ * The container of baked files: bytes that are written here by hand, and each
+ * fault that they can have.
  */
 #include "base/blob.h"
 
@@ -15,7 +15,8 @@ enum { HEADER = 100, BYTES = 124 };
 
 static const struct glint_blob_kind kind = {UINT32_C(0x424f4c42), 3, HEADER};
 
-/* A file of 24 bytes of sections behind a header with two words of its own. */
+/* A file with two words of its own at the end of its header, then 24 bytes of
+ * sections. */
 struct file {
     uint32_t word[BYTES / 4];
 };
@@ -47,7 +48,7 @@ static void test_crc(void **state)
     assert_true(glint_blob_crc32("", 0) == 0);
 }
 
-/* Fields lie where files on disk have them. */
+/* Fields must lie where files on disk have them. */
 static void test_layout(void **state)
 {
     struct glint_blob blob;
@@ -93,7 +94,7 @@ static void test_faults(void **state)
                      GLINT_BLOB_UNALIGNED);
 }
 
-/* Every bit behind the checksum is in it. */
+/* Any bit that is wrong in the checksum or behind it must be noticed. */
 static void test_damage(void **state)
 {
     struct file f;

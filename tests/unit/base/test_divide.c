@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Division by words of 32 bits against the compiler's.
+ * Division that uses words of 32 bits, against the compiler's.
  */
 #include "base/divide.h"
 
@@ -25,7 +25,7 @@ static void expect(int64_t n, int64_t d)
     assert_int_equal(q_divide(n, d), n / d);
 }
 
-/* Of every size, of either sign. */
+/* Returns a number of any size and either sign. */
 static int64_t draw_any(void)
 {
     const int64_t size = (int64_t)(draw() >> (1 + draw() % 63));
@@ -44,7 +44,8 @@ static void test_any(void **state)
     }
 }
 
-/* Just at, below and above what divides, and powers of two. */
+/* Numerators at, below and above multiples of D, and powers of two, must be
+ * divided exactly. */
 static void test_borders(void **state)
 {
     (void)state;
@@ -87,7 +88,7 @@ static void test_reciprocal(void **state)
     }
 }
 
-/* Off the quotient by no more than what it says. */
+/* q_part_q30() must be off n / d by no more than 2^-30 up and 2^-29 down. */
 static void test_part(void **state)
 {
     (void)state;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Points of a lamp of some extent: power, place and RMS extent are the lamp's,
- * nothing jumps as it grows, and there are never too many.
+ * Points that stand for a lamp of some extent: their power, centroid and RMS
+ * extent must be the lamp's, nothing may jump as the lamp grows, and there are
+ * never too many.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -32,7 +33,8 @@ static void place_of(const struct glint_lamp *lamp, double *u, double *v)
     *v = PIXELS * tan(lamp->theta_deg * degree) * sin(lamp->phi_deg * degree);
 }
 
-/* Sums over its points: power, place about the lamp, squares along its axes. */
+/* Sums over the points of LAMP: power, place about the lamp, squares along its
+ * axes. Returns how many points there are. */
 static int sums_of(const struct glint_lamp *lamp, double thinning,
                    double sum[5])
 {
@@ -74,7 +76,7 @@ static void test_a_point_stays_one(void **state)
     (void)state;
     assert_int_equal(glint_area_plan(&area, &lamp, &rule), 1);
     point = glint_area_point(&area, 0);
-    /* A single point is the lamp itself, to the bit. */
+    /* A single point must be the lamp itself, to the bit. */
     assert_true(point.theta_deg == lamp.theta_deg);
     assert_true(point.phi_deg == lamp.phi_deg);
     assert_true(point.power == lamp.power);
@@ -94,7 +96,8 @@ static void test_sums_are_the_lamps(void **state)
     assert_true(fabs(sqrt(sum[4] / 5) - 10) < 10 * 0.05);
 }
 
-/* Squares of the spread and single points move by little at any step. */
+/* While a lamp grows by 0.005 px a step, its centroid must stay and the squares
+ * of its spread must change little at each step. */
 static void test_it_grows_without_jumps(void **state)
 {
     double last[5], sum[5];
@@ -142,7 +145,8 @@ static void test_all_have_room(void **state)
     assert_int_equal(total, 1);
 }
 
-/* Steps between points of a faint lamp show less. */
+/* A lamp of a sixteenth of the power must get a quarter of the points, as steps
+ * between faint points show less. */
 static void test_faint_lamps_get_fewer(void **state)
 {
     struct glint_lamp lamps[2] = {lamp_of(30, 30), lamp_of(30, 30)};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * --budget, on machines that are a formula: tool_seconds() is theirs.
+ * --budget on simulated machines: tool_seconds() returns the time that a
+ * formula gives.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +23,8 @@ static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {4, 80, 3e5, {1, 1, 1}, {0, 0}, 0}};
 
-/* What a frame takes, by the dials that it was drawn with; three intervals. */
+/* A simulated machine: the dials of a frame decide what it takes, in ms. The
+ * clock is read at the ends of three intervals a frame. */
 static struct machine {
     const struct glint_frame *frame;
     double base_ms, cells_ms, power, steps_ms;
@@ -50,7 +52,7 @@ double __wrap_tool_seconds(void)
     return machine.now_s;
 }
 
-/* The last of some frames under a budget. */
+/* Draws N frames under a budget and returns the report of the last. */
 static struct glint_frame_report run(struct glint_frame *frame,
                                      double budget_ms, int n)
 {
@@ -77,14 +79,14 @@ static void make(struct glint_frame *frame)
 }
 
 static const struct machine machines[] = {
-    {NULL, 1, 3, 1.3, 0.5, 0, 0}, /* much as the model has it */
-    {NULL, 0.2, 8, 2, 0, 0, 0},   /* rays are dear */
-    {NULL, 2, 1, 1, 1.5, 0, 0},   /* edges are */
-    {NULL, 1, 3, 1.3, 0.5, 0, 7}, /* 6 percent of noise */
+    {NULL, 1, 3, 1.3, 0.5, 0, 0}, /* much as the cost model expects */
+    {NULL, 0.2, 8, 2, 0, 0, 0},   /* costly rays */
+    {NULL, 2, 1, 1, 1.5, 0, 0},   /* costly edges */
+    {NULL, 1, 3, 1.3, 0.5, 0, 7}, /* +-6 percent of noise */
 };
 
-/* Whatever a machine finds dear, what it can do in time it does in time, and
- * not much sooner. */
+/* On each machine a frame must take 0.8 to 1.1 of its budget, and a larger
+ * budget must not give less quality. */
 static void test_keeps_to_it(void **state)
 {
     static const double budget_ms[] = {4.2, 5, 7, 10};
@@ -114,9 +116,10 @@ static void test_keeps_to_it(void **state)
     }
 }
 
-/* Settles at least; then there are MS, and rungs from FROM on are predicted to
- * take OCTAVES more. The next level of all pixels takes 4.2. How many of N
- * frames draw all pixels, and whether the last does. */
+/* Draws SETTLED frames under 2.2 ms; then N frames under MS, with levels from
+ * FROM on believed to take OCTAVES, factors of two, more than the cost model
+ * says. The cheapest level at full resolution takes 4.2 ms. Returns how many of
+ * the N frames have full resolution, and sets *LAST if the last one does. */
 static int draw_whole(double ms, int from, double octaves, int n, bool *last)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -144,7 +147,8 @@ static int draw_whole(double ms, int from, double octaves, int n, bool *last)
     return n_whole;
 }
 
-/* What a slow frame taught does not keep it for good from what fits. */
+/* Wrong predictions of slow levels must not keep these out for good where they
+ * fit. */
 static void test_tries_again(void **state)
 {
     bool last;
@@ -154,10 +158,10 @@ static void test_tries_again(void **state)
     assert_true(last);
 }
 
-/* What is predicted to miss the budget by a tenth, and does not, is found out
- * within some frames where all that is predicted to fit is far below; what does
- * is not tried again and again (52 of these frames, were there no end to it,
- * and 14 now). */
+/* A level that is wrongly predicted to miss the budget by a tenth must be tried
+ * within some frames where the levels that are predicted to fit take far less.
+ * A level that does not fit must not be tried again and again (14 of these 100
+ * frames; 52 if there were no limit). */
 static void test_tries_next(void **state)
 {
     bool last;
@@ -165,7 +169,7 @@ static void test_tries_next(void **state)
     (void)state;
     assert_in_range(draw_whole(4.6, 2, 1.25, 20, &last), 1, 20);
     assert_true(last);
-    /* A prediction that misses by half is not tried. */
+    /* A level that is predicted to miss by half must not be tried. */
     assert_int_equal(draw_whole(4.6, 2, 1.6, 20, &last), 0);
     assert_in_range(draw_whole(3.9, GLINT_QUALITY_LEVELS, 0, 100, &last), 1,
                     25);
@@ -182,13 +186,14 @@ static void test_ends(void **state)
     machine.frame = &frame;
     assert_true(run(&frame, 0.1, 10).quality == 0);
     assert_true(run(&frame, 1e4, 10).quality == 1);
-    /* back at once, not after it has been late for long */
+    /* The quality falls at once, not only after many late frames. */
     assert_true(run(&frame, 0.1, 2).quality == 0);
     machine.frame = NULL;
     glint_frame_finish(&frame);
 }
 
-/* A light more or less is in the plan: no frame is late for it. */
+/* The plan counts lights, so that the first frame with more of them must keep
+ * to the budget, too. */
 static void test_new_lights(void **state)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -202,7 +207,7 @@ static void test_new_lights(void **state)
     make(&frame);
     glint_image_place(&image, px);
     glint_budget_init(&frame.budget, 3);
-    /* The clock stands still, so this rate stays. */
+    /* The clock stands still, so this rate is not corrected. */
     frame.budget.ms_per_minsn = 0.1;
     frame.dials = glint_budget_dials(&frame.budget, &frame.dials);
     for (int i = 0; i < 4; i++)
@@ -215,7 +220,8 @@ static void test_new_lights(void **state)
     glint_frame_finish(&frame);
 }
 
-/* The counts are those of the plan, and scale as it would. */
+/* Counts of a plan must be those of the frame, and must scale with the dials as
+ * the counts of another plan do. */
 static void test_counts(void **state)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -238,7 +244,7 @@ static void test_counts(void **state)
     then = plan.dials;
     then.fineness = 128;
     predicted = glint_cost_of(&plan, &then);
-    /* the last ones may turn out to have no edges */
+    /* The last bundles may turn out to have no edges. */
     assert_true(coarse.count[GLINT_COST_BUNDLES] >= report.stats.bundles);
     assert_true(coarse.count[GLINT_COST_BUNDLES] <=
                 settings.setup.n_ghosts * settings.setup.n_wavelengths);
@@ -255,7 +261,7 @@ static void test_counts(void **state)
         assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
     }
     assert_true(glint_cost_minsn(&fine) > glint_cost_minsn(&coarse));
-    /* The same holds for half as many pixels each way. */
+    /* Counts must scale to half as many pixels each way, too. */
     then = plan.dials;
     then.flags |= GLINT_DIAL_HALF;
     predicted = glint_cost_of(&plan, &then);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The engine as programs embed it: what it refuses, what it reports, and that
- * memory of its own and of the caller's give the same pictures.
+ * its own memory and the caller's give the same pictures.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +17,7 @@
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
-/* A grey picture with two lamps. */
+/* Draws two white lamps on grey into PX and returns that as a picture. */
 static struct glint_image picture(uint8_t *px)
 {
     struct glint_image image = {
@@ -46,7 +46,8 @@ static struct glint_engine *make(void *arena, size_t bytes)
     return engine;
 }
 
-/* Finds and draws into PX; returns how many lamps there are. */
+/* Draws the picture into PX, US after the last one, with the flare of the lamps
+ * found; returns how many lamps there are. */
 static int run(struct glint_engine *engine, int32_t us, uint8_t *px,
                struct glint_engine_report *report)
 {
@@ -76,7 +77,8 @@ static void test_draws(void **state)
     glint_engine_destroy(engine);
 }
 
-/* Memory is whose it may be; of too little the report says what would do. */
+/* Memory of the engine and of the caller must give the same picture. Where it
+ * is too little, the report must still say how much would do. */
 static void test_arena(void **state)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -101,7 +103,8 @@ static void test_arena(void **state)
     free(mem);
 }
 
-/* Followed lamps rise; with the dials turned down there is less to draw. */
+/* Lamps that are followed must be there after 30 frames; with the dials turned
+ * down, fewer bundles must be drawn. */
 static void test_follows(void **state)
 {
     static uint8_t px[BYTES];
@@ -121,7 +124,8 @@ static void test_follows(void **state)
     glint_engine_destroy(engine);
 }
 
-/* A stop set later is as good as one that an engine is made with. */
+/* A stop that is set later must give the picture of an engine that is made with
+ * it. A wider stop than the model's must be refused. */
 static void test_stop(void **state)
 {
     static uint8_t open[BYTES], set[BYTES], made[BYTES];

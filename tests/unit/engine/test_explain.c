@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is said of a frame is so: its counts are those of the frame that is
- * drawn, parts add up to it, reasons occur where they must, and the picture
+ * What is said of a frame must be true: counts are those of the frame that is
+ * drawn, parts add up to it, each reason occurs where it must, and the picture
  * shows the tiles that were touched.
  */
 #include <math.h>
@@ -66,7 +66,8 @@ static int ghosts_drawn(const struct glint_explain *e)
     return n;
 }
 
-/* All that must be so whatever the frame. */
+/* Checks what must be true of any frame: E agrees with REPORT, and its parts by
+ * ghost, light and wavelength each add up to the whole. */
 static void assert_agrees(const struct glint_explain *e,
                           const struct glint_frame_report *report)
 {
@@ -102,8 +103,8 @@ static void assert_agrees(const struct glint_explain *e,
 
 /* ------------------------------------------------------------------- tests */
 
-/* One light is beyond the model, two are drawn; of each something is missing.
- */
+/* Of three lights one is beyond the model and two are drawn, each of them
+ * without some ghosts. */
 static void test_frame(void **state)
 {
     struct glint_frame_report report;
@@ -119,8 +120,8 @@ static void test_frame(void **state)
     assert_int_equal(glint_explain_bundles(&e.all), 2 * 13 * 3);
     for (int i = 0; i < N_LAMPS; i++)
         assert_int_equal(glint_frame_is_beyond(&frame, &lamps[i]), i == 2);
-    /* 5 and 7 let nothing through at 12 degrees; at 8 they do, but 5 beside
-     * the picture */
+    /* At 12 degrees ghosts 5 and 7 let nothing through. At 8 degrees they do,
+     * but ghost 5 falls beside the picture. */
     assert_int_equal(e.light[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_CLOSED], 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_OUTSIDE], 3);
@@ -129,7 +130,8 @@ static void test_frame(void **state)
     glint_frame_finish(&frame);
 }
 
-/* The brightest pixel is what codes say it is, and light is linear in UNIT. */
+/* The brightest light must be in the range that the codes mean, and light must
+ * be linear in UNIT. */
 static void test_light(void **state)
 {
     struct glint_frame_report report;
@@ -159,8 +161,8 @@ static void test_light(void **state)
     glint_frame_finish(&frame);
 }
 
-/* Each reason but beyond and room, in a frame of its own; then a frame for
- * which there was no room, and one without light. */
+/* Each reason but beyond and no room must occur in a frame of its own; then
+ * come a frame for which there is no room, and one without light. */
 static void test_reasons(void **state)
 {
     static const struct {
@@ -247,7 +249,8 @@ static void test_order(void **state)
     glint_frame_finish(&frame);
 }
 
-/* Whether most of the tile at (X, Y) is the shade of a touched one, black. */
+/* Returns whether most of the tile at (X0, Y0) has the shade of a touched tile
+ * of a black picture. */
 static int is_shaded(const struct glint_image *marked, int x0, int y0)
 {
     static const uint8_t shade[3] = {6, 12, 34};
@@ -260,7 +263,7 @@ static int is_shaded(const struct glint_image *marked, int x0, int y0)
     return 2 * n > all;
 }
 
-/* One ghost of a light on the other side leaves tiles alone. */
+/* The picture must shade the tiles that one ghost touches and no others. */
 static void test_picture(void **state)
 {
     struct explain_title title = {.lens = "heliar", .top = 20};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame whose memory is reserved: the picture of one that grows where it
- * fits, something left out and counted where not, and no call for memory.
+ * A frame in reserved memory: where that is enough, its picture must be that of
+ * a frame that takes memory as it needs it; else something is left out and
+ * counted. It must never ask for memory.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +23,7 @@ enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
 static struct settings settings, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
-static int n_asked; /* requests for memory since it was set to 0 */
+static int n_asked; /* requests for memory since this was set to 0 */
 static int fail_at; /* number of the request that is refused, from 1; 0: none */
 
 static bool is_refused(void)
@@ -113,7 +114,7 @@ static int n_brighter(const uint8_t *a, const uint8_t *b)
     return n;
 }
 
-/* Frames of more lamps and fewer, each as a frame of its own draws it. */
+/* Frames of more lamps and of fewer must be as a new frame draws them. */
 static void test_same_as_grown(void **state)
 {
     static const int n_of[] = {1, 5, 0, 2, 5, 3};
@@ -133,7 +134,8 @@ static void test_same_as_grown(void **state)
         assert_int_equal(n_asked, 0);
         make(&grown);
         draw(&grown, n_of[i], want, &other);
-        /* The count does see requests. */
+        /* A frame of its own must ask for memory, else the count sees
+         * nothing. */
         assert_true(n_of[i] == 0 || n_asked > 0);
         assert_int_equal(n_different(want, got), 0);
         assert_int_equal(report.stats.dropped_bundles, 0);
@@ -148,8 +150,8 @@ static void test_same_as_grown(void **state)
     glint_frame_finish(&reserved);
 }
 
-/* With ever less memory ever less is drawn, all of it counted; and what is left
- * out leaves the picture darker, never brighter. */
+/* With ever less memory ever less must be drawn, and all that is left out must
+ * be counted. It may make the picture darker, never brighter. */
 static void test_too_little(void **state)
 {
     static uint8_t full[BYTES], got[BYTES];
@@ -191,9 +193,8 @@ static void test_too_little(void **state)
     glint_frame_finish(&frame);
 }
 
-/* More lamps than were reserved for: merged as ever, no more memory. */
-/* Work and memory are bounded by the plan: coarser, or less, and said so; the
- * frame after that is as it was. */
+/* Limits of work and of memory must make a frame coarser or leave things out of
+ * it, and say so; without them the next frame must be as before. */
 static void test_bounds(void **state)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -215,7 +216,7 @@ static void test_bounds(void **state)
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
     make(&frame);
-    frame.most_bytes = full.need_bytes * 3 / 4; /* share 1.25: 15/16 */
+    frame.most_bytes = full.need_bytes * 3 / 4; /* times the share, 1.25 */
     draw(&frame, N_LAMPS, got, &held);
     assert_true(held.arena_bytes <= frame.most_bytes * 5 / 4);
     assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);
@@ -227,6 +228,8 @@ static void test_bounds(void **state)
     glint_frame_finish(&frame);
 }
 
+/* More lamps than the dial allows must be merged as ever, without a request
+ * for memory. */
 static void test_more_lamps(void **state)
 {
     static uint8_t got[BYTES];
@@ -246,8 +249,8 @@ static void test_more_lamps(void **state)
     glint_frame_finish(&frame);
 }
 
-/* Settings that changed on the way give the picture of a frame that had them
- * from the start. */
+/* Settings that change between frames must give the picture of a frame that has
+ * them from the start. */
 static void test_retune(void **state)
 {
     static const struct {
@@ -278,7 +281,7 @@ static void test_retune(void **state)
             both[k]->dials.cull_codes = setting[i].codes;
         }
         n_asked = 0;
-        /* The picture of the settings before is kept. */
+        /* Keeps the picture of the settings before. */
         memcpy(want, got, BYTES);
         draw(&frame, N_LAMPS, got, &report);
         assert_int_equal(n_asked, 0);
@@ -291,8 +294,9 @@ static void test_retune(void **state)
     glint_frame_finish(&frame);
 }
 
-/* Whichever allocation fails, a flare alone is whole or refused, never drawn as
- * if there were no light: of a model and of exact rays. */
+/* Whichever request for memory fails, a flare alone must be drawn whole or
+ * refused, never drawn as if there were no light: by a model and by exact
+ * rays. */
 static void test_no_memory(void **state)
 {
     static float want[BYTES], got[BYTES];
@@ -318,15 +322,15 @@ static void test_no_memory(void **state)
             assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
             if (status == GLINT_OK)
                 assert_memory_equal(want, nth ? got : want, sizeof want);
-            if (n_asked < nth) /* there is no such one */
+            if (n_asked < nth) /* there is no nth request */
                 break;
         }
         assert_true(n_refused >= 5);
     }
 }
 
-/* More lamps, ghosts and wavelengths than an int counts are refused before any
- * of them is written down. */
+/* Lamps, ghosts and wavelengths whose product does not fit an int must be
+ * refused before any of them is written. */
 static void test_too_many_feeds(void **state)
 {
     enum { N = 66577 };
@@ -354,8 +358,9 @@ static void test_too_many_feeds(void **state)
     free(many);
 }
 
-/* Points of wide lamps have a room of their own, which lamps that are more
- * than the dial says, or memory that is what it is, do not. */
+/* The points of wide lamps may be point_room lights where the lamps fit
+ * max_lights, but no more than max_lights in reserved memory or with more
+ * lamps. */
 static void test_room_for_points(void **state)
 {
     static const struct {

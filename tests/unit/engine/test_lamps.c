@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * From lamps in a picture or a list to lights at infinity: place and power.
+ * From lamps in a picture or a list to lights at infinity: direction and
+ * power.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -45,8 +46,7 @@ static void test_found_lamp(void **state)
     assert_near(x, 225, 0.02);
     assert_near(y, 45, 0.02);
     assert_near(lamp[0].power, 800, 1);
-    /* right of the middle and above it; film 36 mm wide, 65 and 55 pixels off
-     */
+    /* 65 pixels right of the middle and 55 above it, where 320 are 36 mm */
     assert_near(lamp[0].phi_deg, 40.236, 0.01);
     assert_near(lamp[0].theta_deg, 10.845, 0.01);
 }
@@ -59,9 +59,9 @@ static void draw_square(struct glint_image *image, int x0, int y0, int side)
         memset(image->plane[0] + y * W + x0, 255, (size_t)side);
 }
 
-/* Videos: what stands still has the same lamps as a picture by itself, to the
- * last bit; what comes on rises; what is of no use before does not count after
- * a restart. */
+/* In a video, a lamp that stands still must be as in a picture by itself, to
+ * the last bit; a new lamp must rise; after a restart a lamp must have its full
+ * power at once. */
 static void test_tracked_lamps(void **state)
 {
     static uint8_t grey[W * H];
@@ -89,7 +89,7 @@ static void test_tracked_lamps(void **state)
     assert_int_equal(
         glint_lamp_detector_frame(&finder, &image, 40000, &view, 50, lamp), 2);
     assert_int_equal(finder.n_tracks, 2);
-    assert_near(lamp[1].power, still[0].power / 5, 10); /* 40 of 200 ms */
+    assert_near(lamp[1].power, still[0].power / 5, 10); /* after 40 of 200 ms */
     assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
     glint_lamp_detector_restart(&finder);
@@ -134,7 +134,7 @@ static void test_lamp_in_glare(void **state)
     glint_lamp_detector_close(&finder);
 }
 
-/* Twelve lamps and four wanted, tracked and not: the four largest. */
+/* Of twelve lamps the four largest must be given, tracked or not. */
 static void test_most_lamps(void **state)
 {
     static uint8_t grey[W * H];
@@ -173,7 +173,8 @@ static void read_text(struct lamp_list *list, const char *text)
     remove(path);
 }
 
-/* CSV and JSON lines say the same; rows belong to their frame or to all. */
+/* CSV and JSON lines must read the same; a row belongs to its frame, or to all
+ * frames. */
 static void test_lists(void **state)
 {
     static const char *const texts[2] = {
@@ -207,8 +208,8 @@ static void test_lists(void **state)
     }
 }
 
-/* What is no list is refused, with its line; the third is where power times
- * colour is not finite in a picture any more. */
+/* A text that is no list must be refused, with the line of its mistake. In the
+ * third text power times colour is too large for a picture. */
 static void test_refused_lists(void **state)
 {
     static const char *const text_and_error[][2] = {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The metrics that everything is judged by, on pictures whose answer is known.
+ * The metrics by which pictures are judged, on pictures whose answer is
+ * known.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -53,7 +54,7 @@ static void test_known_difference(void **state)
     assert_true(m.psnr_db == 999 && fabs(m.factor - 2) < 1e-6);
 }
 
-/* What rounding to codes hides is not nothing. */
+/* A difference that rounding to codes hides must still be measured. */
 static void test_less_than_a_code(void **state)
 {
     struct glint_measure m;
@@ -66,13 +67,13 @@ static void test_less_than_a_code(void **state)
     b[0] = 0.6f;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(!m.same_codes && m.psnr_db < 100);
-    fill(1.5f); /* beyond white nothing is seen */
+    fill(1.5f); /* beyond white no difference shows */
     b[0] = 2;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db == 999);
 }
 
-/* The brightest thousandth does not set the exposure. */
+/* The brightest thousandth of all pixels must not set the exposure. */
 static void test_exposure_is_a_percentile(void **state)
 {
     (void)state;

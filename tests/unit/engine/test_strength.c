@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The automatic exposure: where it brings the flare of one lamp and of many,
- * what it does from frame to frame, and a lens's response.
+ * The automatic exposure: how bright it makes the flare of one lamp and of
+ * many, how it changes from frame to frame, and the response of a lens.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,11 +19,12 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 enum { PIXELS = 1000000, FRAME_US = 40000 };
 
-/* Of a lamp that is as bright as is common, with the responses below. */
+/* Power of a lamp, white x pixels, whose flare the responses below bring to a
+ * quarter of white by default. */
 static const double common = PIXELS / 8.0;
 
-/* A lens whose flare falls by SLOPE stops from the axis to 20 degrees; its
- * mean is MEAN stops below its peak. */
+/* Returns the response of a lens whose flare falls by SLOPE stops from the axis
+ * to 20 degrees and has its mean MEAN stops below its peak. */
 static struct glint_response response_of(double slope, double mean)
 {
     struct glint_response r = {.n = 3, .theta_deg = {0, 10, 20}};
@@ -41,7 +42,8 @@ static struct glint_lamp lamp_of(double theta_deg, double power)
     return (struct glint_lamp){theta_deg, 30, power, {1, 1, 1}, {0, 0}, 0};
 }
 
-/* The peak that N lamps are brought to, each at its LEVEL. */
+/* Returns the peak that the exposure gives the flare of N lamps, each at its
+ * LEVEL, US after the last frame. */
 static double peak_of(struct glint_strength *s, const struct glint_response *r,
                       struct glint_lamp *lamps, const double *level, int n,
                       int us)
@@ -90,8 +92,8 @@ static void test_rises_with_strength(void **state)
     }
 }
 
-/* Whatever its power: within a stop of a quarter of white, and more for more.
- */
+/* The flare of a lamp of any power must be within a stop of a quarter of white,
+ * and grow with the power. */
 static void test_any_power_is_seen(void **state)
 {
     const struct glint_response r = response_of(8, 7);
@@ -146,7 +148,7 @@ static void test_many_equal_lamps_share(void **state)
         lamps[i] = lamp_of(i, 1e4);
     glint_strength_defaults(&s);
     one = still(0.5, &r, 1, 1e4);
-    each = peak_of(&s, &r, lamps, NULL, 16, 0) / 2; /* 16^(1/4) */
+    each = peak_of(&s, &r, lamps, NULL, 16, 0) / 2; /* 2 = 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
 }
 
@@ -190,7 +192,8 @@ static void test_lamps_without_light(void **state)
     assert_true(s.scale == 0);
 }
 
-/* A picture by itself whose flare is not as the response has it, by STOPS. */
+/* Returns the corrected peak of a single picture whose flare is drawn STOPS
+ * brighter than its response, with the mean MEAN_STOPS below the peak. */
 static double corrected(double asked, double stops, double mean_stops)
 {
     const struct glint_response r = response_of(0, 7);
@@ -220,12 +223,12 @@ static void test_as_it_was_drawn(void **state)
         const double peak = corrected(0.5, stops, 7);
 
         assert_true(peak > 0.124 && peak < 0.501);
-        assert_true(corrected(0.5, stops, 0.5) > 1 / 16.0); /* a veil */
+        assert_true(corrected(0.5, stops, 0.5) > 1 / 16.0); /* a veil, too */
     }
     assert_true(corrected(0, 3, 7) == 0);
 }
 
-/* What is set by hand, or gives no light, stays. */
+/* A physical exposure, and a flare without light, must not be corrected. */
 static void test_not_as_it_was_drawn(void **state)
 {
     const struct glint_response_light bright = {{9, 9, 9}, {1, 1, 1}};
@@ -248,8 +251,8 @@ static void test_not_as_it_was_drawn(void **state)
 
 /* ------------------------------------------------------------------- videos */
 
-/* A lamp that crosses the picture in 200 frames: what is drawn of it changes by
- * no more than its own response and a frame's step of the factor. */
+/* A lamp crosses the picture in 200 frames: its flare may change by no more
+ * than its own response and the largest step of the factor between frames. */
 static void test_a_lamp_that_crosses(void **state)
 {
     const struct glint_response r = response_of(7, 7);
@@ -269,7 +272,8 @@ static void test_a_lamp_that_crosses(void **state)
     }
 }
 
-/* A sun comes among lamps: their factor falls gently, the sun is held. */
+/* A sun appears among lamps: the factor of all must fall gently, and the sun
+ * must be limited until it has fallen. */
 static void test_a_lamp_that_rises(void **state)
 {
     const struct glint_response r = response_of(0, 7);
@@ -288,14 +292,14 @@ static void test_a_lamp_that_rises(void **state)
         if (i > 0)
             assert_true(fabs(log2(s.scale / scale)) < 0.126);
         scale = s.scale;
-        if (i == 50) /* held to little more than by itself, at its level */
+        if (i == 50) /* The sun is limited to a hundredth of its power. */
             assert_true(lamps[1].power < 1e6 / 100);
         if (i == 249)
             assert_true(lamps[1].power > 0.99e6);
     }
 }
 
-/* And leaves: the others come back, slower. */
+/* The sun leaves: the factor must rise again, slower than it fell. */
 static void test_a_lamp_that_leaves(void **state)
 {
     const struct glint_response r = response_of(0, 7);
@@ -320,7 +324,8 @@ static void test_a_lamp_that_leaves(void **state)
     assert_true(scale > 300 * first);
 }
 
-/* The level of a lamp alone is what its flare has: no gain makes up for it. */
+/* The flare of a lamp that is alone must follow its level: no gain may make up
+ * for it. */
 static void test_rising_alone(void **state)
 {
     const struct glint_response r = response_of(0, 7);
@@ -340,7 +345,8 @@ static void test_rising_alone(void **state)
     }
 }
 
-/* After a cut, and where no lamp was, at once. */
+/* After a cut, and after frames without a lamp, the exposure must fit at
+ * once. */
 static void test_begins_anew(void **state)
 {
     const struct glint_response r = response_of(0, 7);
@@ -360,8 +366,8 @@ static void test_begins_anew(void **state)
 
 /* ------------------------------------------------------------------- lenses */
 
-/* Draws one lamp as the exposure says and looks at it: LENS's response holds
- * for every angle and power. */
+/* Draws one lamp as the exposure says and checks its flare: the response of
+ * LENS must hold for every angle and power. */
 static void check_lens(const char *lens, double corner_deg)
 {
     struct settings settings;
@@ -382,14 +388,15 @@ static void check_lens(const char *lens, double corner_deg)
         struct glint_response_light drawn;
         struct glint_strength s;
 
-        lamp.phi_deg = 29 + 180 * (i % 2); /* within the picture */
+        lamp.phi_deg = 29 + 180 * (i % 2); /* stays within the picture */
         glint_strength_defaults(&s);
         glint_strength_expose(&s, &r, &all, 0);
         assert_int_equal(glint_response_draw(&frame, &lamp, 1,
                                              GLINT_RESPONSE_FINE, NULL, &drawn,
                                              NULL),
                          GLINT_OK);
-        /* a ten thousandth is brighter than the thousandth of the response */
+        /* FINE takes the brightest ten-thousandth of all pixels, the response a
+         * thousandth, so that the bounds are wide. */
         assert_true(s.scale * glint_strength_largest(drawn.peak) > 1 / 16.0);
         assert_true(s.scale * glint_strength_largest(drawn.peak) < 2);
         assert_true(s.scale * glint_strength_largest(drawn.mean) < 0.1);
@@ -406,7 +413,7 @@ static void test_lenses(void **state)
     check_lens("lenses/nikon-zoom-mid.lens", 12.5);
 }
 
-/* Within the limits of memory that live has, too. */
+/* The response must be the same within the limits of memory that live has. */
 static void test_little_memory(void **state)
 {
     struct settings settings;
@@ -456,7 +463,7 @@ static void test_looks(void **state)
         rgb[3 * i + 1] = i == 7 ? 8 : 0;
         rgb[3 * i + 2] = 2;
     }
-    glint_response_around(rgb, 4000, &light); /* the brightest four */
+    glint_response_around(rgb, 4000, &light); /* brightest four of 4000 */
     assert_true(light.peak[0] == 3997.5 && light.mean[0] == 1999.5);
     assert_true(light.peak[1] == 2 && light.mean[1] == 0.002);
     assert_true(light.peak[2] == 2 && light.mean[2] == 2);

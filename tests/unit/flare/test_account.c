@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What became of a frame's bundles: every outcome by a cause of its own, counts
- * that are those of the frame that is drawn, and pictures of parts that add up
- * to the whole.
+ * What became of a frame's bundles: each outcome occurs for a cause of its own,
+ * counts are those of the frame that is drawn, and pictures of parts add up to
+ * the whole.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -41,7 +41,8 @@ struct fixture {
 static const int32_t square[4][2] = {
     {1 << 30, 0}, {0, 1 << 30}, {-(1 << 30), 0}, {0, -(1 << 30)}};
 
-/* Beams at a sine of 1/8, all round. */
+/* Opens a model with WAVES wavelengths and N_LIGHTS beams at a sine of 1/8, in
+ * different directions. */
 static void open_fixture(struct fixture *f, int n_lights)
 {
     const char *reason;
@@ -74,7 +75,7 @@ static void open_fixture(struct fixture *f, int n_lights)
                                          .max_primitives = 60000,
                                          .max_refs = 120000};
     f->cfg.stop.n_blades = 4;
-    f->cfg.stop.apothem_q16 = 26214; /* 0.4: cuts the ghost */
+    f->cfg.stop.apothem_q16 = 26214; /* 0.4 cuts the ghost */
     memcpy(f->cfg.stop.normal_q30, square, sizeof square);
 }
 
@@ -96,7 +97,7 @@ static void close_fixture(struct fixture *f)
     free(f->m.data);
 }
 
-/* The coefficient of term TERM of output KIND of system SYSTEM. */
+/* Returns the coefficient of term TERM of output KIND of system SYSTEM. */
 static int32_t *coefficient(struct fixture *f, int system, int kind, int term)
 {
     const struct glint_model_system *s = &f->lens.system[system];
@@ -113,7 +114,7 @@ struct sums {
     double flux;
 };
 
-/* The accounts of all bundles together, and what must be so of each. */
+/* Returns sums over the accounts of all bundles, and checks each account. */
 static struct sums accounts(struct fixture *f)
 {
     struct sums sums = {.n = 0};
@@ -155,7 +156,8 @@ static void assert_totals(struct fixture *f)
                 1e-6 * s.flux);
 }
 
-/* OUTCOME is that of so many, and they and the drawn are all there are. */
+/* Checks that N bundles have OUTCOME and that all others are drawn or
+ * closed. */
 static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
 {
     struct sums s;
@@ -172,7 +174,7 @@ static void assert_outcome(struct fixture *f, enum glint_outcome outcome, int n)
 
 /* ------------------------------------------------------------------- tests */
 
-/* Ghost 1 is never seen, ghost 2 not within a sine of 1/8. */
+/* Ghost 1 must never be drawn, ghost 2 not at sines below 1/8. */
 static void test_drawn_and_closed(void **state)
 {
     struct fixture f;
@@ -230,14 +232,14 @@ static void test_blocked(void **state)
 
     (void)state;
     open_fixture(&f, 2);
-    *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* 1.1 */
+    *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* 1.1 blocks all */
     *coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
     assert_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
     close_fixture(&f);
 }
 
-/* Ghost 0 to the right of the picture, which is 2.5 mm wide: far, and just so.
- */
+/* Ghost 0 is moved to the right of the picture, which is 2.5 mm wide: far off
+ * it must be outside, nearer it must be empty, then drawn. */
 static void test_outside(void **state)
 {
     struct fixture f;
@@ -254,7 +256,8 @@ static void test_outside(void **state)
     close_fixture(&f);
 }
 
-/* One light by itself, and many that are counted together. */
+/* Bundles must be faint below FAINTEST: of one light, which counts by itself,
+ * and of several, which are counted together. */
 static void test_faint(void **state)
 {
     struct fixture f;
@@ -307,9 +310,9 @@ static void draw(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* By ghost, by light, by wave: each way the parts are the whole, but for the
- * rounding of each to 2^-20; what an account says, and kept alone draws
- * nothing, has no light. */
+/* Pictures of single ghosts, of single lights and of single wavelengths must
+ * each add up to the whole, but for the rounding of each to 2^-20. Ghost 1,
+ * which is closed, must be dark. */
 static void test_parts(void **state)
 {
     static int32_t whole[3 * N], part[3 * N];
@@ -344,7 +347,7 @@ static void test_parts(void **state)
     close_fixture(&f);
 }
 
-/* Asking changes nothing. */
+/* Asking for accounts must not change the picture. */
 static void test_asking(void **state)
 {
     static int32_t before[3 * N], after[3 * N];
@@ -361,8 +364,9 @@ static void test_asking(void **state)
     close_fixture(&f);
 }
 
-/* The terms of ghost 0: x 2, and v^2 s but in the middle of the range of
- * angles; y 2, stop 1 and 2, energy 1 with the wavelength put in, barrel 2. */
+/* The account must have the terms of ghost 0: sensor x 2, and v^2 s except in
+ * the middle of the range of angles; sensor y 2, stop x 1 and stop y 2, energy
+ * 1 for a given wavelength, barrel 2. */
 static void test_terms(void **state)
 {
     struct glint_account a;
@@ -382,7 +386,8 @@ static void test_terms(void **state)
     close_fixture(&f);
 }
 
-/* Rows by looking at each: does any of it lie between the edge's ends? */
+/* Rows must be those of a count that looks at each row: does any part of it lie
+ * between the ends of an edge? */
 static void test_rows(void **state)
 {
     struct fixture f;
@@ -390,7 +395,7 @@ static void test_rows(void **state)
 
     (void)state;
     open_fixture(&f, 2);
-    f.rays.pixels_per_mm = real_of(200, 0); /* larger than the picture */
+    f.rays.pixels_per_mm = real_of(200, 0); /* beyond the picture */
     bin(&f);
     for (int i = 0; i < f.stats.primitives; i++)
         for (int y = 0; y < HEIGHT; y++)
@@ -409,7 +414,8 @@ static void test_rows(void **state)
     close_fixture(&f);
 }
 
-/* Light in the middle of PICTURE, as large as the small ones are. */
+/* Returns the light in the middle of a picture, over the size of a small
+ * one. */
 static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
 {
     int64_t sum = 0;
@@ -420,8 +426,8 @@ static int64_t light_in_middle(const int32_t *px_q20, int width, int height)
     return sum;
 }
 
-/* Makes the ghost come through a round stop as a small spot of the pupil, with
- * no ray of the probe near its edge. */
+/* Scales the stop's polynomials so that the ghost comes through a round stop as
+ * a small spot of the pupil, with no ray of the probe near the spot's edge. */
 static void shrink_stop(struct fixture *f)
 {
     const struct glint_model_output *o =
@@ -435,8 +441,9 @@ static void shrink_stop(struct fixture *f)
     f->cfg.stop.n_blades = 0;
 }
 
-/* A ghost that is said to lie outside has no light where the picture is: a
- * larger picture about it shows that. All azimuths, ever farther out. */
+/* A ghost whose outcome is outside must have no light where the picture is, as
+ * a larger picture about it shows. Tried at all azimuths and ever farther
+ * out. */
 static void check_outside(int small_stop)
 {
     enum { WIDE = 4 * WIDTH, HIGH = 4 * HEIGHT };

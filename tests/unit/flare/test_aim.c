@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frames made in integers: directions of pixels and weights of colours are
- * those that the engine works out in doubles, within the bounds of flare.h.
+ * Frames made in integers: directions of pixels and weights of colours must be
+ * those that the engine computes in doubles, within the bounds of flare.h.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -54,8 +54,9 @@ static void same(const struct glint_light *a, const struct glint_light *b)
     assert_memory_equal(a->rgb_q14, b->rgb_q14, sizeof a->rgb_q14);
 }
 
-/* Pixels in pictures of any shape and far beside them, lenses from fisheyes to
- * telescopes, and those that mirror. */
+/* Pixels of pictures of any shape, also far beside them, must have the right
+ * direction through lenses from fisheyes to telescopes and through those that
+ * mirror (negative focal lengths). */
 static void test_pixels(void **state)
 {
     uint32_t seed = 7;
@@ -81,15 +82,16 @@ static void test_pixels(void **state)
         doubles =
             by_doubles(width, height, focal_mm, x_q8 / 256.0, y_q8 / 256.0);
         if (x_q8 == width * 128 && y_q8 == height * 128)
-            doubles.cos_q30 = 1 << 30; /* any azimuth will do */
+            doubles.cos_q30 = 1 << 30; /* any azimuth will do here */
         same(&integers, &doubles);
     }
 }
 
-/* 45 degrees to the upper left by hand, and what lies farther than counts. */
+/* By hand: a pixel 45 degrees to the left; and pixels at the upper right that
+ * are farther than counts must all have one direction. */
 static void test_by_hand(void **state)
 {
-    const int32_t half_q30 = 759250125; /* sqrt(2) / 2, 2^30 = 1 */
+    const int32_t half_q30 = 759250125; /* sqrt(2) / 2 */
     struct glint_light light, farther;
 
     (void)state;
@@ -145,8 +147,9 @@ static void waves_are(const double flux[6])
     }
 }
 
-/* Flux by a polynomial as lenses have them, a flat one, and wavelengths
- * beyond either end of the band, which count as that. */
+/* Weights of wavelengths must be those in doubles: for a flux polynomial as
+ * lenses have it, for a flat one, and for wavelengths beyond the band, which
+ * count as its nearer end. */
 static void test_waves(void **state)
 {
     static const double lens_flux[6] = {312.4, -41.2, -10.7, 2.9, -0.4, 0.01};

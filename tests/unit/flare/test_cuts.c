@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where the sides of a square stop cut edges and cells that lie on it as they
- * do on the screen: 256 q8 to a stop radius.
+ * Where the sides of a square stop cut edges and cells. Each place in the stop
+ * lies at the same place of the screen, one pixel to a stop radius.
  */
 #include "flare/edges/cuts.h"
 
@@ -29,7 +29,7 @@ static struct glint_vertex at(int x_q16, int y_q16)
                                  .stop_y_q16 = y_q16};
 }
 
-/* The part of A to B that is seen. */
+/* Returns the part of the edge from A to B that is visible. */
 static struct glint_edge_part part_of(const struct glint_vertex *a,
                                       const struct glint_vertex *b)
 {
@@ -43,7 +43,8 @@ static struct glint_edge_part part_of(const struct glint_vertex *a,
     return part;
 }
 
-/* From inside to beyond the right side, and back: cut at x = 1. */
+/* An edge from inside to beyond the right side must be cut at x = 1, in both
+ * directions. */
 static void test_part(void **state)
 {
     (void)state;
@@ -64,7 +65,8 @@ static void test_part(void **state)
         }
 }
 
-/* Through the whole of it, over a corner of it, and past one. */
+/* An edge through the whole stop and one over a corner of it must be cut twice;
+ * an edge past a corner must be invisible. */
 static void test_part_of_two_cuts(void **state)
 {
     const struct glint_vertex left = at(-2 * ONE_Q16, 0);
@@ -87,8 +89,8 @@ static void test_part_of_two_cuts(void **state)
     assert_false(part_of(&right, &past).visible);
 }
 
-/* Where the right side and the upper one cross: within three quarters of a cell
- * of its middle, and nowhere else. */
+/* The corner of the right and the upper side must be found by cells whose
+ * middle is within three quarters of a cell of it, and by no others. */
 static void test_cross(void **state)
 {
     const int wide = ONE_Q16 / 4;

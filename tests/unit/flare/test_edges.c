@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The area to the right of an edge, worked out by hand: for pictures in codes
- * in 256ths of a pixel to the nearest, for linear ones in 65536ths.
+ * The area to the right of an edge, against values worked out by hand: rounded
+ * to 1/256 pixel for pictures in codes, to 1/65536 for linear ones.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -38,7 +38,7 @@ static struct glint_edge_sums sums_of(int linear)
                                     .touched = touched};
 }
 
-/* An edge from A to B, of red light to its right. */
+/* Adds an edge between two points, with red light to its right. */
 static void add(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
                 int y1_q8, int64_t light_q20)
 {
@@ -52,8 +52,8 @@ static void add(struct glint_edge_sums *s, int x0_q8, int y0_q8, int x1_q8,
     glint_edge_add(s, &edge, &red, &first, 1);
 }
 
-/* Red of pixel X of row Y, in codes' light; half white is 128 for each 256th of
- * the pixel. */
+/* Returns the red light of pixel X in row Y of a picture in codes, _q16. Half
+ * of white gives 128 for each 1/256 of the pixel's area. */
 static int code_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
@@ -62,7 +62,8 @@ static int code_light(struct glint_edge_sums *s, int x, int y)
     return light_q16[x];
 }
 
-/* Upright, so many 256ths from the pixel's left side, and so many high. */
+/* An upright edge, FROM_Q8 from the pixel's left side and HEIGHT_Q8 high, must
+ * light the area to its right. */
 static void test_upright(void **state)
 {
     (void)state;
@@ -86,8 +87,8 @@ static void test_upright(void **state)
         }
 }
 
-/* From the upper right corner of pixel 3 to the lower left one of pixel 2: to
- * its right lie a quarter of pixel 2 and three of pixel 3. */
+/* An edge from the upper right corner of pixel 3 to the lower left corner of
+ * pixel 2 must light a quarter of pixel 2 and three quarters of pixel 3. */
 static void test_slanted(void **state)
 {
     struct glint_edge_sums s = sums_of(0);
@@ -109,9 +110,9 @@ static int draw_below(int n)
     return (int)((uint64_t)rng_bits(&seed) * (uint32_t)n >> 32);
 }
 
-/* Random edges, in a whole tile and in its halves, which go other ways through
- * them: the same light to the last bit; none to their left, and all of their
- * height to their right. */
+/* A random edge must give the same light, to the last bit, in a whole tile and
+ * in both halves of it, through which it takes other ways: none to its left,
+ * and that of its full height to its right. */
 static void test_parts_of_tiles(void **state)
 {
     enum { FROM = 4 };
@@ -145,7 +146,7 @@ static void test_parts_of_tiles(void **state)
         }
         s = sums_of(1);
         for (int part = 0; part < 2;
-             part++) { /* the one carries to the other */
+             part++) { /* The first carries to the second. */
             s.tile.x0 = part ? FROM : 0;
             s.tile.x1 = part ? SIDE : FROM;
             add(&s, up ? x1 : x0, y0, up ? x0 : x1, y0 + high, 1 << 18);
@@ -158,7 +159,7 @@ static void test_parts_of_tiles(void **state)
     }
 }
 
-/* Light is held to 25 bits and no worse, up to 2^40. */
+/* Packed light must be exact to 25 bits, up to 2^40. */
 static void test_packing(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integer rasteriser on grids made by hand: independence of everything that
- * must not matter, and goldens.
+ * The integer rasteriser on grids made by hand: settings that must not matter,
+ * and goldens.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -81,7 +81,8 @@ static void test_order_does_not_matter(void **state)
     }
 }
 
-/* A picture of any format, on which a scene of a few random ghosts is drawn. */
+/* A picture of any format, in memory of its own, on which some random ghosts
+ * are drawn. */
 struct random_picture {
     struct glint_image image;
     uint8_t *mem;
@@ -127,7 +128,8 @@ static unsigned random_sets(void)
     return (unsigned)draw_number(8) & glint_system_sets();
 }
 
-/* From far below a code to far above what 32-bit sums hold: never darker. */
+/* Light that grows from far below a code to far beyond 32-bit sums must never
+ * make a pixel darker. */
 static void test_bright_stays_bright(void **state)
 {
     struct glint_flare_config c = base_config();
@@ -152,7 +154,8 @@ static void test_bright_stays_bright(void **state)
     }
 }
 
-/* The promise: the same bytes whatever does not matter, over many scenes. */
+/* The promise of the rasteriser: the same bytes for any tiles, kernels, workers
+ * and order of jobs, over many random scenes. */
 static void test_random_scenes(void **state)
 {
     (void)state;
@@ -168,7 +171,7 @@ static void test_random_scenes(void **state)
 
         for (int i = 0; i < n; i++) {
             list[i] = random_ghost();
-            if (draw_number(8) == 0) /* far beyond the picture */
+            if (draw_number(8) == 0) /* far beyond it */
                 list[i].size <<= draw_number(14);
             /* The light changes by factors of 2^-12 .. 2^7. */
             list[i].flux_exponent += draw_number(20) - 12;
@@ -213,8 +216,8 @@ static void test_bundle_order_does_not_matter(void **state)
     }
 }
 
-/* In place on 8 bits: what no ghost touches keeps its bytes, and padding too.
- */
+/* Drawing in place on 8 bits must keep the bytes of pixels that no ghost
+ * touches, and padding. */
 static void test_untouched_stays(void **state)
 {
     enum { STRIDE = WIDTH * 3 + 13 };
@@ -250,7 +253,8 @@ static void test_untouched_stays(void **state)
     free(mem);
 }
 
-/* Drawing into nothing does all but touch a picture, and leaves no trace. */
+/* Drawing into NULL must do all but touch a picture, and must not change the
+ * next frame. */
 static void test_into_nothing(void **state)
 {
     static uint8_t bytes[2][3 * WIDTH * HEIGHT];
@@ -314,7 +318,8 @@ static void golden_case(FILE *file, bool update, const char *name,
     assert_string_equal(line, expected);
 }
 
-/* The same bits on every CPU; GLINT_GOLDEN_UPDATE=1 writes them anew. */
+/* Hashes must be the same on every CPU; GLINT_GOLDEN_UPDATE=1 writes them
+ * anew. */
 static void test_golden(void **state)
 {
     const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;

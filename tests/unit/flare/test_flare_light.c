@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integer rasteriser on grids made by hand: where light arrives, how much,
- * clipped and folded.
+ * The integer rasteriser on grids made by hand: where light falls and how much
+ * of it, also of ghosts that are clipped or folded.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,8 +18,9 @@ static int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 
 /* ------------------------------------------------------------------- light */
 
-/* The octagon of radius 1 in a grid of 2.5 x 2.5 radii: area 2 sqrt 2 of 6.25,
- * flux 16 x 16 cells x 1.5e9 / 2^31 x 50000 / 65536 (energy is odd about 0). */
+/* The ghost must have the light of an octagonal stop of radius 1 in a grid of
+ * 2.5 x 2.5 radii: area 2 sqrt 2 of 6.25, flux 16 x 16 cells x 1.5e9 / 2^31 x
+ * 50000 / 65536, as the slope of the energy cancels. */
 static void test_energy(void **state)
 {
     const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -28,7 +29,8 @@ static void test_energy(void **state)
     struct glint_flare_config c = base_config();
 
     (void)state;
-    /* the barrel is as wide as the stop's corners: cut it out of the way */
+    /* The stop's corners lie on the rim of the barrel, so the stop alone
+     * cuts. */
     c.stop.apothem_q16 = 60547;
     for (int raster = 0; raster < 2; raster++) {
         const double off = raster == 0 ? 0.001 : 0.005;
@@ -41,7 +43,8 @@ static void test_energy(void **state)
     }
 }
 
-/* Twice as large, mirrored, other weights, merged or not: the same light. */
+/* A ghost that is twice as large and mirrored, with other weights or merged
+ * cells, must have the same light. */
 static void test_energy_is_kept(void **state)
 {
     struct ghost g = {16, 100, 75, 25, 0, 1, 0, 0, {16384, 0, 0}};
@@ -65,7 +68,8 @@ static void test_energy_is_kept(void **state)
                 total(pixels, 0) < 1.002 * first);
 }
 
-/* A ghost smaller than a pixel, anywhere in it: its light still arrives. */
+/* A ghost only two pixels wide, at several places and bent or not, must keep
+ * its light. */
 static void test_focused_light_arrives(void **state)
 {
     struct glint_flare_config c = base_config();
@@ -90,8 +94,8 @@ static int32_t at(const int32_t *p, int x, int y)
     return p[3 * (y * WIDTH + x)];
 }
 
-/* A flat ghost is flat inside: every pixel away from the rim has the same
- * irradiance, flux per cell over its area in pixels. */
+/* A flat ghost must have an even irradiance away from its rim: flux per cell
+ * over the cell's area in pixels. */
 static void test_flat_inside(void **state)
 {
     struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -103,7 +107,7 @@ static void test_flat_inside(void **state)
     c.raster = &glint_raster_cells;
     draw_list(c, &g, 1, pixels);
     for (int y = 65; y < 85; y++) {
-        /* energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40 */
+        /* Energy at the pixel: 50000 + sx / 8, sx = 65536 (x - 100) / 40. */
         for (int x = 90; x < 110; x++) {
             const double energy =
                 (50000 + (x + 0.5 - 100) / 40 * 65536 / 8) / 65536;
@@ -131,8 +135,8 @@ static void add_difference(const struct ghost *g, double *off, double *all)
     }
 }
 
-/* By edges a cell is even: the energy is that of its middle, at most half a
- * cell away. */
+/* By edges a cell has one irradiance, from the energy in its middle, so the
+ * picture must be within 0.6 % of that by cells. */
 static void test_edges_agree_with_cells(void **state)
 {
     const struct ghost g = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
@@ -145,7 +149,8 @@ static void test_edges_agree_with_cells(void **state)
     assert_true(total(pixels, 0) < 1.001 * total(want, 0));
 }
 
-/* Cells of two pixels, folded, cut by stop and barrel: sampled by cells. */
+/* Cells of two pixels, folded and cut by stop and barrel, must give nearly the
+ * light that the raster of cells samples. */
 static void test_small_cells_agree(void **state)
 {
     double off = 0, all = 0;
@@ -157,10 +162,10 @@ static void test_small_cells_agree(void **state)
 
         add_difference(&g, &off, &all);
     }
-    assert_true(off < 0.083 * all); /* pixel centres alone: 0.0896 */
+    assert_true(off < 0.083 * all); /* 0.0896 by pixel centres alone */
 }
 
-/* An outline that does not close to the last bit would leave a streak to the
+/* If an outline did not close to the last bit, it would leave a streak to the
  * right end of its rows. */
 static void test_outlines_close(void **state)
 {
@@ -180,14 +185,14 @@ static void test_outlines_close(void **state)
     }
 }
 
-/* A corner so far outside of the stop that the sides to it have no part worth a
- * step: the cell still closes. */
+/* A cell has a corner so far outside the stop that the visible parts of the
+ * sides to it are shorter than 1/256 pixel: its outline must still close. */
 static void test_far_corner_closes(void **state)
 {
     static const int32_t far_q16[] = {70000, 1 << 20, 700000000, 1000000000,
                                       0x3fffffff};
     const struct glint_image image = linear_image(pixels);
-    const int32_t half = 759250125; /* root of 1/2 */
+    const int32_t half = 759250125; /* sqrt(1/2) */
 
     (void)state;
     for (size_t k = 0; k < sizeof far_q16 / sizeof *far_q16; k++) {
@@ -213,7 +218,7 @@ static void test_far_corner_closes(void **state)
             v[i] = (struct glint_vertex){.x_q8 = i & 1 ? 7693 : 2573,
                                          .y_q8 = i & 2 ? 7757 : 2637,
                                          .energy_q16 = 65536};
-        v[1].stop_x_q16 = v[2].stop_y_q16 = 65534; /* just inside */
+        v[1].stop_x_q16 = v[2].stop_y_q16 = 65534; /* just inside the stop */
         v[3].stop_x_q16 = v[3].stop_y_q16 = far_q16[k];
         memset(pixels, 0, sizeof pixels);
         glint_flare_bin(f, &stats);
@@ -225,7 +230,8 @@ static void test_far_corner_closes(void **state)
     }
 }
 
-/* Steps change the light of a cell by half of one at most. */
+/* Steps of irradiance must change the light of a cell by at most half a
+ * step. */
 static void test_steps(void **state)
 {
     static int32_t stepped[3 * WIDTH * HEIGHT];
@@ -244,16 +250,17 @@ static void test_steps(void **state)
 
 /* ------------------------------------------------------- polygons by hand */
 
-/* One cell of flux 64 and energy 1, corners in order round it, in 1/256 px. */
+/* One cell of flux 64 and energy 1. Its corners are in order round it, in 1/256
+ * px. */
 struct quad {
     int32_t at[4][2];
     int32_t barrel_q16[4];
-    int lost; /* bits of corners that were lost */
+    int lost; /* bit k: corner k was lost */
 };
 
 static struct glint_flare_stats draw_quad(const struct quad *q)
 {
-    static const int corner[4] = {0, 1, 3, 2}; /* the grid goes row by row */
+    static const int corner[4] = {0, 1, 3, 2}; /* order of the grid */
     struct glint_flare_config c = base_config();
     const struct glint_image image = linear_image(pixels);
     const struct glint_bundle b = {.n_cells = 1,
@@ -295,7 +302,8 @@ static void assert_flux(double flux)
     assert_true(total(pixels, 0) < 1.001 * flux);
 }
 
-/* 10.25 .. 14.25 by 10.5 .. 12.5: eight pixels of area, 8 of light each. */
+/* A rectangle from (10.25, 10.5) to (14.25, 12.5) must spread its flux of 64
+ * over eight pixels of area. */
 static void test_rectangle_by_hand(void **state)
 {
     struct quad q = {{{2624, 2688}, {3648, 2688}, {3648, 3200}, {2624, 3200}},
@@ -313,7 +321,8 @@ static void test_rectangle_by_hand(void **state)
     assert_light(13, 11, 8);
     assert_light(14, 12, 1);
     assert_light(12, 13, 0);
-    /* a barrel from 0.5 on the left to 1.5 on the right leaves half */
+    /* A barrel of 0.5 on the left to 1.5 on the right must leave the left
+     * half. */
     q.barrel_q16[0] = q.barrel_q16[3] = 32768;
     q.barrel_q16[1] = q.barrel_q16[2] = 98304;
     draw_quad(&q);
@@ -323,7 +332,8 @@ static void test_rectangle_by_hand(void **state)
     assert_light(13, 11, 0);
 }
 
-/* A triangle of legs 8: area 32 and half of the flux, so that all is 1. */
+/* With one corner lost a cell becomes a triangle with legs of 8 pixels: area 32
+ * and half of the flux, so that each pixel must have light 1. */
 static void test_triangle_by_hand(void **state)
 {
     const struct quad q = {
@@ -340,22 +350,22 @@ static void test_triangle_by_hand(void **state)
     assert_flux(32);
 }
 
-/* Slivers, folds, lines and points keep their light, wherever they lie. */
+/* Slivers, folds, lines and points must keep their light wherever they lie. */
 static void test_thin_light_arrives(void **state)
 {
     static const struct quad quads[] = {
-        /* a step wide, 80 px long: upright, lying, aslant */
+        /* 1/256 px wide and 80 px long: upright, lying, aslant */
         {{{5000, 5000}, {5001, 5000}, {5001, 25480}, {5000, 25480}}, {0}, 0},
         {{{5000, 5000}, {25480, 5000}, {25480, 5001}, {5000, 5001}}, {0}, 0},
         {{{5000, 5000}, {5001, 5000}, {19001, 25480}, {19000, 25480}}, {0}, 0},
-        /* Lines, one there and back, and points have no area. */
+        /* no area: a line, a line there and back, a point */
         {{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}}, {0}, 0},
         {{{5000, 5000}, {9000, 5000}, {5000, 5000}, {9000, 5000}}, {0}, 0},
         {{{5120, 5120}, {5120, 5120}, {5120, 5120}, {5120, 5120}}, {0}, 0},
-        /* turned over: a bow tie, one with a dent */
+        /* turned over: a bow tie, a cell with a dent */
         {{{5000, 5000}, {9000, 5000}, {5000, 9000}, {9000, 9000}}, {0}, 0},
         {{{5000, 5000}, {9000, 5000}, {6000, 6000}, {5000, 9000}}, {0}, 0},
-        /* two steps wide, tiny */
+        /* tiny: 2/256 px wide and high */
         {{{5000, 5000}, {5002, 5000}, {5002, 5002}, {5000, 5002}}, {0}, 0},
     };
 
@@ -364,7 +374,7 @@ static void test_thin_light_arrives(void **state)
         assert_int_equal(draw_quad(&quads[i]).dropped_cells, 0);
         assert_flux(64);
     }
-    /* half of a line, cut by a barrel */
+    /* A barrel cuts a line in half. */
     draw_quad(
         &(struct quad){{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}},
                        {32768, 98304, 98304, 32768},
@@ -372,7 +382,8 @@ static void test_thin_light_arrives(void **state)
     assert_flux(32);
 }
 
-/* Light is linear: twice the flux is twice the picture, within rounding. */
+/* Light must be linear: eight times the flux is eight times the picture, within
+ * rounding. */
 static void test_linear_in_light(void **state)
 {
     struct ghost g = ghosts[1];
@@ -386,7 +397,8 @@ static void test_linear_in_light(void **state)
         assert_true(abs(pixels[i] - 8 * want[i]) <= 24);
 }
 
-/* A cell without area, rays that were lost, and light beyond all bounds. */
+/* Cells without area, lost rays, and light beyond all bounds must do no
+ * harm. */
 static void test_hostile_bundles(void **state)
 {
     struct glint_flare_config c = base_config();

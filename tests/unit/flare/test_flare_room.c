@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integer rasteriser on grids made by hand: capacities, configurations that
- * are refused, counts at their ends.
+ * The integer rasteriser on grids made by hand: capacities, settings that are
+ * refused, and counts that reach the largest int.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -25,7 +25,8 @@ static void same_as_want(struct glint_flare_config c)
 
 /* ---------------------------------------------------------------- capacity */
 
-/* Exactly what bin asked for is enough, and one byte less is refused. */
+/* The capacities that glint_flare_bin() asked for must do exactly; one byte of
+ * memory less must be refused. */
 static void test_exact_capacity(void **state)
 {
     struct glint_flare_config c = base_config();
@@ -49,7 +50,8 @@ static void test_exact_capacity(void **state)
     free(mem);
 }
 
-/* One less of anything: whole bundles go, counted, and the rest is right. */
+/* With any capacity one less, one whole bundle must be left out and counted,
+ * and all others drawn right. */
 static void check_capacity(const struct glint_raster *raster)
 {
     struct glint_flare_config full = base_config();
@@ -77,7 +79,8 @@ static void check_capacity(const struct glint_raster *raster)
     less = draw_scene(full, pixels);
     assert_int_equal(less.bundles, 0);
     assert_int_equal(less.need_primitives, s.need_primitives);
-    /* bundles without room are counted all the same, however little there is */
+    /* Bundles without room must be counted, too, however little room there
+     * is. */
     for (int k = 0; k < 8; k++) {
         full.max_primitives = (int)((int64_t)s.need_primitives * k / 8);
         full.max_refs = k % 2 ? s.need_refs / 3 : s.need_refs;
@@ -124,7 +127,7 @@ static void test_config_is_checked(void **state)
     assert_int_equal(glint_flare_bytes(&c), 0);
 }
 
-/* By way of bins that count a thousand million cells for each bundle. */
+/* Replaces a raster's bin function: counts 10^9 cells for each bundle. */
 static void count_many(struct glint_flare *f)
 {
     f->n_drawn = f->n_bundles;
@@ -133,7 +136,7 @@ static void count_many(struct glint_flare *f)
             1000000000;
 }
 
-/* Counts of a frame stop at the largest int, and do not turn over. */
+/* Counts of a frame must stop at the largest int instead of wrapping. */
 static void test_counts_are_held(void **state)
 {
     struct glint_flare_config c = base_config();

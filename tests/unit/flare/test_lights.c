@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Many lights made few: the same for every order, no light lost, the bright
- * ones where they were, at most as many as asked for.
+ * Many lights merged into few: the same for every order, no light lost, bright
+ * lights where they were, and at most as many as asked for.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -17,7 +17,7 @@
 #include "support/shuffle.h"
 #include "support/rng.h"
 
-enum { MANY = 3000, NEAR_Q30 = 60000 }; /* an eighth of 2000 pixels */
+enum { MANY = 3000, NEAR_Q30 = 60000 }; /* 1/8 pixel of 2000 */
 
 static double value(struct glint_real x)
 {
@@ -37,7 +37,7 @@ static int32_t q30(double x)
     return (int32_t)lrint(x * 0x1p30);
 }
 
-/* A light from direction sines X, Y. */
+/* Returns a light of POWER from the direction with the sines X, Y. */
 static struct glint_light beam_at(double x, double y, double power)
 {
     const double sine = hypot(x, y);
@@ -57,8 +57,8 @@ static double uniform(uint32_t *state)
     return rng_xorshift(state) * 0x1p-32;
 }
 
-/* Powers from 1e-6 to 1e9, most of them small; some lights coincide, some lie
- * on the axis, with any azimuth. */
+/* Fills B with lights of powers 1e-6 to 1e9, most of them small; some lights
+ * coincide, some lie on the axis with any azimuth. */
 static void scatter(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = 0; i < n; i++) {
@@ -98,7 +98,8 @@ static void flux_of(const struct glint_light *b, int n, double flux[3])
             flux[c] += value(b[i].power) * b[i].rgb_q14[c] / 16384;
 }
 
-/* What a light promises to those who draw it. */
+/* Checks what a light promises to those who draw it: unit vectors, a normal
+ * power, a largest colour of 1. */
 static void assert_sound(const struct glint_light *b)
 {
     const double off = hypot(b->sine_q30, b->cosine_q30) * 0x1p-30;
@@ -135,7 +136,7 @@ static void test_none_and_one(void **state)
     assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
 }
 
-/* Too few and too far apart to merge: every bit stays. */
+/* Lights that are too few and too far apart to merge must keep every bit. */
 static void test_untouched(void **state)
 {
     static struct glint_light b[200], was[200];
@@ -174,7 +175,7 @@ static void test_identical(void **state)
     assert_true(fabs(value(b->power) - 0.5 * MANY) < 1e-5 * MANY);
 }
 
-/* The chord from direction sines X, Y to P, Q. */
+/* Returns the chord between the directions with sines X, Y and P, Q. */
 static double chord(double x, double y, double p, double q)
 {
     const double z = sqrt(1 - x * x - y * y) - sqrt(1 - p * p - q * q);
@@ -182,8 +183,8 @@ static double chord(double x, double y, double p, double q)
     return sqrt((x - p) * (x - p) + (y - q) * (y - q) + z * z);
 }
 
-/* Pairs nearer than NEAR become one in between, by their powers; farther ones
- * do not. */
+/* Two lights nearer than NEAR must become one that lies in between by their
+ * powers; two that are farther apart must not. */
 static void test_near(void **state)
 {
     const double near = NEAR_Q30 * 0x1p-30;
@@ -226,7 +227,7 @@ static void test_axis(void **state)
 
     (void)state;
     b[1].cos_q30 = -(1 << 29);
-    b[1].sin_q30 = 929887697; /* 120 degrees */
+    b[1].sin_q30 = 929887697; /* azimuth of 120 degrees */
     assert_int_equal(glint_lights_merge(b, 4, NEAR_Q30, 4, &apart), 1);
     assert_sound(b);
     assert_true(b->sine_q30 <= 2);
@@ -254,7 +255,8 @@ static void test_horizon(void **state)
     assert_sound(b);
 }
 
-/* Bit for bit, for every number asked for. */
+/* The result must not depend on the order, bit for bit, for any number of
+ * lights asked for. */
 static void test_order(void **state)
 {
     static struct glint_light want[MANY], got[MANY];
@@ -297,7 +299,8 @@ static void test_cap_and_flux(void **state)
     }
 }
 
-/* A faint colour is not lost in the rounding of a bright light's. */
+/* The colour of many faint lights must not be lost in the rounding of a bright
+ * light's. */
 static void test_faint_colour(void **state)
 {
     static struct glint_light b[MANY];
@@ -316,7 +319,8 @@ static void test_faint_colour(void **state)
     assert_true(fabs(flux[1] - 1) < 1e-4 && fabs(flux[2] - 1) < 1e-4);
 }
 
-/* The ends of the range, far past it, and both together. */
+/* Powers at the ends of their range, far beyond it, and both together must add
+ * up. */
 static void test_powers(void **state)
 {
     static const double powers[] = {1e-6, 1e9, 1e-55, 1e55};
@@ -336,7 +340,7 @@ static void test_powers(void **state)
         }
 }
 
-/* Of a few bright lights among many faint ones the bright ones stay. */
+/* A few bright lights among many faint ones must stay where they are. */
 static void test_bright_ones_stay(void **state)
 {
     static struct glint_light b[MANY];

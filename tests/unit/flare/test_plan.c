@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a frame has to draw: what is seen is planned, what is not is not, and
- * rows that are computed as they go give the picture of a stored grid.
+ * What a frame has to draw: ghosts that are seen must be planned and no others,
+ * and rows of rays that are computed one by one must give the picture of a
+ * stored grid.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -116,7 +117,7 @@ static void open_fixture(struct fixture *f)
                                          .max_primitives = 20000,
                                          .max_refs = 40000};
     f->cfg.stop.n_blades = 4;
-    f->cfg.stop.apothem_q16 = 26214; /* 0.4: cuts the ghost */
+    f->cfg.stop.apothem_q16 = 26214; /* 0.4 cuts the ghost */
     memcpy(f->cfg.stop.normal_q30, square, sizeof square);
 }
 
@@ -164,12 +165,12 @@ static void test_what_is_seen(void **state)
     assert_int_equal(planned(&f, 1).bundles, 0);
     f.rays.faintest = real_of(1, -60);
     assert_int_equal(planned(&f, 1).bundles, all);
-    f.light.rgb_q14[0] = 0; /* no red */
+    f.light.rgb_q14[0] = 0; /* no red light */
     assert_true(planned(&f, 1).bundles < all);
     close_fixture(&f);
 }
 
-/* The middle of an annular box has no rays, which are not lost. */
+/* An annular box has no rays in its middle; these must not count as lost. */
 static void test_a_hole_loses_no_cells(void **state)
 {
     struct glint_model_system *system;
@@ -189,7 +190,7 @@ static void test_a_hole_loses_no_cells(void **state)
     close_fixture(&f);
 }
 
-/* The most that the flare adds to a pixel, display white. */
+/* Returns the most that the flare adds to a pixel, 1 = display white. */
 static double peak(struct fixture *f)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
@@ -211,8 +212,8 @@ static double peak(struct fixture *f)
     return most * 0x1p-20;
 }
 
-/* What is left out is fainter than asked for in every pixel, and nothing is
- * kept that is fainter by far. */
+/* A ghost that is left out must be fainter than FAINTEST in every pixel; one
+ * that is drawn must have at least an eighth of it somewhere. */
 static void test_faint(void **state)
 {
     struct fixture f;
@@ -262,8 +263,8 @@ static void draw(struct fixture *f, int32_t *px_q20,
     f->mem = NULL;
 }
 
-/* For codes the faint is drawn with fewer edges, and codes are nearly the
- * same, 50 dB. In linear light the faint has as many as the bright. */
+/* For codes, faint light must be drawn with fewer edges and nearly the same
+ * codes, 50 dB. In linear light it must have as many edges as bright light. */
 static void test_steps_follow_codes(void **state)
 {
     static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
@@ -297,7 +298,8 @@ static void test_steps_follow_codes(void **state)
     close_fixture(&f);
 }
 
-/* Edges on whole pixels keep all light, and codes are nearly the same. */
+/* Edges on whole pixels must keep all light, and codes must be nearly the
+ * same. */
 static void test_whole_edges(void **state)
 {
     static int32_t smooth[3 * WIDTH * HEIGHT], whole[3 * WIDTH * HEIGHT];
@@ -327,14 +329,15 @@ static void test_whole_edges(void **state)
             assert_true(fabs(off) < 5);
         }
         assert_true(sum / (3 * WIDTH * HEIGHT) < 0.05); /* 61 dB */
-        /* the sides of an upright outline may be half a pixel off */
+        /* Sides of an upright outline may be half a pixel off. */
         assert_true(fabs(flux[1] - flux[0]) < (e > 2 ? 1e-3 : 1e-2) * flux[0]);
     }
     assert_true(n_changed > 10000);
     close_fixture(&f);
 }
 
-/* A frame of F, half or not. */
+/* Draws a frame of F into IMAGE, with HALF as many pixels each way or with
+ * all. */
 static void draw_half(struct fixture *f, int half, struct glint_image *image,
                       void *mem)
 {
@@ -355,7 +358,7 @@ static void draw_half(struct fixture *f, int half, struct glint_image *image,
     f->mem = NULL;
 }
 
-/* Half as many pixels each way: nearly all light is where it was. */
+/* With half as many pixels each way, nearly all light must be where it was. */
 static void test_half(void **state)
 {
     static uint8_t codes[2][3 * WIDTH * HEIGHT];
@@ -379,12 +382,13 @@ static void test_half(void **state)
         flux[1] += pow(codes[1][i], 2.2);
     }
     assert_true(fabs(flux[1] - flux[0]) < 0.02 * flux[0]);
-    /* The two differ, yet agree to 32 dB. */
+    /* The two pictures must differ, yet agree to 32 dB. */
     assert_true(sum > 0.01 * n && sum < 40 * n);
     close_fixture(&f);
 }
 
-/* All four pixels have the light of one, down to the last row and column. */
+/* With half as many pixels each way, four pixels must have the same light, up
+ * to the last row and column. */
 static void test_half_of_linear(void **state)
 {
     static int32_t light_q20[2][3 * WIDTH * HEIGHT];
@@ -413,7 +417,8 @@ static void test_half_of_linear(void **state)
     close_fixture(&f);
 }
 
-/* On a picture that is not even, by quads and pixel by pixel. */
+/* On an uneven picture, light that four pixels share must be near the light of
+ * each pixel. */
 static void test_half_of_yuyv(void **state)
 {
     static uint8_t px[2][2 * WIDTH * HEIGHT];
@@ -488,7 +493,8 @@ static void test_same_bits(void **state)
     close_fixture(&f);
 }
 
-/* Lights that none shows by itself are seen together, in codes as well. */
+/* Lights that are too faint to be seen alone must be seen together, in codes,
+ * too. */
 static void test_many_faint_lights(void **state)
 {
     enum { MANY = 1024 };
@@ -520,7 +526,7 @@ static void test_many_faint_lights(void **state)
     memset(codes, 0, sizeof codes);
     start(&f);
     for (int turn = 0; turn < 2; turn++) {
-        f.rays.faintest = real_of(turn ? 163 : 0, -22); /* 1/8 code */
+        f.rays.faintest = real_of(turn ? 163 : 0, -22); /* 1/8 of a code */
         glint_flare_plan(f.flare, &f.rays, light, MANY);
         glint_flare_bin(f.flare, &s);
         assert_int_equal(s.dropped_bundles, 0);
@@ -567,7 +573,8 @@ static void picture(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* By edges rows of rays come and go; a stored grid has the same edges. */
+/* Edges from rows of rays, which are dropped on the way, must be those of a
+ * stored grid. */
 static void check_rows_and_grids(int32_t opening_q30)
 {
     static int32_t rows[3 * WIDTH * HEIGHT], grid[3 * WIDTH * HEIGHT];
@@ -619,8 +626,9 @@ static void test_rows_and_grids(void **state)
     check_rows_and_grids(1 << 28);
 }
 
-/* A hole of 0.4 of the model's stop is one of 0.8 of a stop half as wide: the
- * same light, but for the corners of cells; and closed further less of it. */
+/* A hole of 0.4 of the model's stop is 0.8 of a stop half as wide: both must
+ * have the same light but for the corners of cells, and a stop that is closed
+ * further must have less of it. */
 static void test_opening(void **state)
 {
     static int32_t whole[3 * WIDTH * HEIGHT], half[3 * WIDTH * HEIGHT];
@@ -631,7 +639,7 @@ static void test_opening(void **state)
 
     (void)state;
     open_fixture(&f);
-    f.light.power = real_of(1000, 4); /* enough steps to be compared by */
+    f.light.power = real_of(1000, 4); /* many steps of 2^-20 */
     draw(&f, whole, &s);
     f.cfg.stop.apothem_q16 *= 2;
     f.cfg.stop.opening_q30 = 1 << 29;
@@ -647,14 +655,15 @@ static void test_opening(void **state)
                   (double)off / (double)light, (double)left / (double)light);
     assert_true(light > 1 << 20);
     assert_true(off < light / 250);
-    /* 0.5 u^3 is 0.4 and 0.2 at 0.9283 and 0.7368; 0.5 v - 0.125 v^3 is below
-     * 0.4 everywhere, and 0.2 at 0.4183 */
+    /* 0.5 u^3 is 0.4 and 0.2 at u = 0.9283 and 0.7368; 0.5 v - 0.125 v^3 is
+     * below 0.4 everywhere, and 0.2 at v = 0.4183. */
     assert_true(fabs((double)left / (double)light - 0.7368 / 0.9283 * 0.4183) <
                 0.003);
     close_fixture(&f);
 }
 
-/* The stop of a flare is changed between frames, and as good as its first. */
+/* A stop that is set between frames must give the picture of a flare that has
+ * it from the start; openings out of range must be refused. */
 static void test_set_stop(void **state)
 {
     static const int32_t bad[] = {-1, 1, (1 << 20) - 1, (1 << 30) + 1};
@@ -685,8 +694,8 @@ static void test_set_stop(void **state)
     close_fixture(&f);
 }
 
-/* The finest grid there is has as many cells as its rows have room for, however
- * much a ghost bends. */
+/* The finest grid must have as many cells as a row has room for, however much a
+ * ghost bends. */
 static void test_finest_grid(void **state)
 {
     static struct glint_plan_scratch scratch;
@@ -715,8 +724,8 @@ static void test_finest_grid(void **state)
     close_fixture(&f);
 }
 
-/* The barrel's 0.5 + u^2 / 2 bends by 4 over the box, across only: straight
- * lines between rays lie 4 / 12 / n^2 above it in the mean. */
+/* The barrel's 0.5 + u^2 / 2 bends by 4 over the box, across only, so straight
+ * lines between rays must lie 4 / 12 / n^2 above it in the mean. */
 static void test_sag(void **state)
 {
     static struct glint_plan_scratch scratch;
@@ -742,8 +751,8 @@ static void test_sag(void **state)
     close_fixture(&f);
 }
 
-/* Of lights beyond the lens nothing is drawn, whatever its polynomials say, and
- * no room is asked for unless others come after them. */
+/* No light beyond the lens may be drawn, whatever the polynomials say; it must
+ * ask for no room unless another light follows. */
 static void test_beyond(void **state)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;
@@ -774,7 +783,8 @@ static void test_beyond(void **state)
     close_fixture(&f);
 }
 
-/* A frame without light after one with some leaves the picture alone. */
+/* A frame without light must leave the picture alone, also after a frame with
+ * light. */
 static void test_dark_frame(void **state)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Which wavelengths ghosts are drawn with: as many as their dispersion and
- * their light ask for, no step that 31 would not have, and lists as they are.
+ * their light need, without steps that 31 wavelengths do not have; and lists of
+ * wavelengths as they are given.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -46,7 +47,8 @@ static struct glint_frame_report drawn(struct glint_frame *frame,
     return report;
 }
 
-/* Waves that GHOST takes in FRAME, and how many of these are drawn. */
+/* Returns how many wavelengths GHOST takes in FRAME, and sets *N_DRAWN to how
+ * many of these are drawn. */
 static int waves_of(struct glint_frame *frame, int ghost, int *n_drawn)
 {
     int n = 0;
@@ -63,7 +65,7 @@ static int waves_of(struct glint_frame *frame, int ghost, int *n_drawn)
     return n;
 }
 
-/* Counts ghosts by the number of their waves. */
+/* Counts drawn ghosts by how many wavelengths each takes, and bundles drawn. */
 static void count(struct glint_frame *frame,
                   int ghosts[GLINT_MAX_WAVELENGTHS + 1], int *bundles)
 {
@@ -90,7 +92,7 @@ static void test_small_picture(void **state)
     struct glint_frame frame;
     struct glint_frame_report report;
 
-    (void)state; /* 32 pixels are too few for an outline to move by one. */
+    (void)state; /* 32 pixels are too few for an outline to move by a pixel. */
     report = drawn(&frame, &chosen, 32, 1, picture);
     count(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
@@ -109,11 +111,11 @@ static void test_large_picture(void **state)
     report = drawn(&frame, &chosen, WIDTH, 100, picture);
     count(&frame, ghosts, &bundles);
     more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
-    assert_true(ghosts[4] > 0 && more > 0); /* each its own */
+    assert_true(ghosts[4] > 0 && more > 0); /* each has its own */
     assert_int_equal(bundles, report.stats.bundles);
     assert_int_equal(report.stats.dropped_bundles, 0);
     glint_frame_finish(&frame);
-    /* faint ones need no more */
+    /* Faint ghosts need no more than four wavelengths. */
     drawn(&frame, &chosen, WIDTH, 0.01, other);
     count(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
@@ -141,7 +143,7 @@ static void test_dial(void **state)
     assert_true(before > 2 * least);
 }
 
-/* 0 is the three that there are by default, bit for bit. */
+/* A dispersion of 0 must give the three default wavelengths, bit for bit. */
 static void test_off(void **state)
 {
     struct settings settings = chosen;
@@ -156,7 +158,7 @@ static void test_off(void **state)
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* One set alone is the list of its waves. */
+/* A single set must give the picture of the list of its wavelengths. */
 static void test_one_set(void **state)
 {
     struct settings settings = chosen, list = three;
@@ -182,7 +184,8 @@ static void test_one_set(void **state)
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* What finds no room takes the first set, and nothing is dropped. */
+/* Ghosts without room for a larger set must take the first set, and nothing may
+ * be dropped. */
 static void test_little_room(void **state)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
@@ -197,7 +200,7 @@ static void test_little_room(void **state)
     drawn(&frame, &settings, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
-    /* Drawing raised the limit above 4 bundles a ghost. */
+    /* Drawing had raised the limit above 4 bundles a ghost. */
     assert_true(most > frame.cfg.max_bundles);
     bytes = glint_flare_bytes(&frame.cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
@@ -217,7 +220,8 @@ static void test_little_room(void **state)
     glint_frame_finish(&frame);
 }
 
-/* Whoever plans them, and however many lamps there are. */
+/* Pictures must have the same bits whether one worker plans them or several,
+ * with three lamps. */
 static void test_same_bits(void **state)
 {
     const struct glint_lamp lamps[3] = {
@@ -258,8 +262,9 @@ static int compare(const void *a, const void *b)
     return *(const int *)b - *(const int *)a;
 }
 
-/* Of two neighbours, by how many codes the step of R - G or B - G is another
- * one in PICTURE than in truth: what a thousandth of all places exceed. */
+/* Returns the hue step of RGB against truth, codes: by how much R - G or B - G
+ * changes otherwise than in truth between neighbours, exceeded by a thousandth
+ * of all pairs. */
 static int hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];
@@ -345,12 +350,12 @@ static void test_words(void **state)
     assert_false(settings_take_waves(&s, "9,17"));
     assert_false(settings_take_waves(&s, ""));
     s.waves = SETTINGS_WAVES_AUTO;
-    s.rays = SETTINGS_RAYS_EXACT; /* Exact rays choose no number of waves. */
+    s.rays = SETTINGS_RAYS_EXACT; /* Exact rays get nine. */
     settings_choose_waves(&s);
     assert_true(s.waves == SETTINGS_WAVES_COUNT && s.n_wavelengths == 9);
 }
 
-/* Behind an uncoated lens ghosts of a white lamp are white together. */
+/* All ghosts of a white lamp must be white together behind an uncoated lens. */
 static void test_white(void **state)
 {
     static float rgb[SAMPLES];

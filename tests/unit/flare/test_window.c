@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A window holds every ray that a narrower stop lets through, and little else,
- * wherever in the box that is, and moves without steps as the stop closes.
+ * A window must hold every ray that a narrower stop lets through, and little
+ * else, wherever in the box these rays are, and must move without jumps as the
+ * stop closes.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -21,8 +22,8 @@ struct shape {
     const char *name;
     uint16_t x_power[3], y_power[3];
     double x[3], y[3];
-    double barrel[2]; /* (1 + r^2) / 2 = [0] + [1] u; [0] 0: there is none */
-    double slack;     /* ratio, at most, of the size found to the size seen */
+    double barrel[2]; /* (1 + r^2) / 2 = [0] + [1] u; [0] 0: no barrel */
+    double slack;     /* largest ratio of the window's size to that seen */
 };
 
 #define P(u, v) MODEL_POWER(u, v, 0, 0)
@@ -65,7 +66,7 @@ static struct glint_lens open_shape(const struct shape *s,
                                     struct model_image *m)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
-    const int exponent = -28; /* sums below 4 */
+    const int exponent = -28; /* values up to 4 */
     struct model_polynomial p[] = {
         {GLINT_OUT_SENSOR_X, 1, -28, {P(1, 0)}, {{1 << 27}}},
         {GLINT_OUT_SENSOR_Y, 1, -28, {P(0, 1)}, {{1 << 27}}},
@@ -111,7 +112,8 @@ static bool is_seen(const struct glint_transfer *t, double radius, int i, int j)
                   t->exponent[GLINT_OUT_BARREL_0]) <= 1);
 }
 
-/* The rays that get through, found one by one: -1 .. 1 and 0 .. 1. */
+/* Where rays get through, found one by one: left and right, -1 .. 1, and
+ * height, 0 .. 1, in the box. */
 struct seen {
     double left, right, high;
     int n;
@@ -166,7 +168,7 @@ static void check(const struct shape *s, const struct glint_lens *lens,
         fail_msg("%s at %g: %g .. %g, %g instead of %g .. %g, %g", s->name,
                  opening, got.left, got.right, got.high, want.left, want.right,
                  want.high);
-    /* a step of what was looked at is not known */
+    /* The search for rays does not see less than its own step. */
     if (got.right - got.left >
             s->slack * (want.right - want.left + 4.0 / ACROSS) ||
         got.high > s->slack * (want.high + 2.0 / DOWN))
@@ -188,8 +190,8 @@ static void test_holds_what_is_seen(void **state)
     }
 }
 
-/* Where the stop closes by 0.002 of itself sides move by that much, and by less
- * than a hundredth. */
+/* While the stop closes by 0.002 of itself, sides must move by less than a
+ * hundredth of it. */
 static void test_moves_smoothly(void **state)
 {
     static struct glint_window_nodes nodes;
@@ -218,7 +220,7 @@ static void test_moves_smoothly(void **state)
     free(m.data);
 }
 
-/* Where nothing gets through, that is said. */
+/* Where nothing gets through, there must be no window. */
 static void test_closed(void **state)
 {
     static const struct shape beside = {
@@ -238,7 +240,7 @@ static void test_closed(void **state)
     free(m.data);
 }
 
-/* Of an annular box both sides of the rim move. */
+/* In an annular box the window must have a lower and an upper end. */
 static void test_annulus(void **state)
 {
     static struct glint_window_nodes nodes;
@@ -246,7 +248,8 @@ static void test_annulus(void **state)
     static const struct shape aside = {
         "upwards", {P(1, 0)}, {P(0, 1), P(0, 3)}, {1}, {-0.64, 1}, {0}, 1};
     struct model_image m;
-    const struct glint_lens lens = open_shape(&aside, &m); /* 0 at v = 0.8 */
+    const struct glint_lens lens = open_shape(&aside, &m); /* y is 0 at v =
+                                                            * 0.8 */
     double low, high;
 
     (void)state;

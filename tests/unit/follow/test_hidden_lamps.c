@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps that something hides, or that come together: the energy of what is
- * shown does not pop, and numbers stay.
+ * Lamps that something hides, or that come together: the energy that is shown
+ * must not jump, and tracks must keep their numbers.
  */
 #include "glint/lamp_tracker.h"
 
@@ -26,8 +26,8 @@ static void open_night(int width, int height, double sigma)
     assert_true(night_open(&night));
 }
 
-/* The largest step of the energy from picture to picture, over the power of
- * the brightest that there was. */
+/* The largest step of the energy from picture to picture, and the largest
+ * energy. */
 struct steps {
     double last, most, largest;
     int n;
@@ -41,7 +41,8 @@ static void note(struct steps *s, double energy)
     s->last = energy;
 }
 
-/* What is shown of the lamps of the lower half, and by which number. */
+/* Returns the energy of all tracks in the lower half, which must have the
+ * number *ID; where that is 0, it becomes theirs. */
 static double energy_below(const struct night *n, uint32_t *id)
 {
     double energy = 0;
@@ -58,10 +59,10 @@ static double energy_below(const struct night *n, uint32_t *id)
     return energy;
 }
 
-/* A lamp passes behind a pole of 20 pixels, which hides it for half a second
- * or more. Its energy changes by a quarter of it a frame at most, where the
- * spot's own goes by all of it, and it comes back with its number. Another
- * lamp stands still, or there is none. */
+/* A lamp passes behind a pole of 20 pixels, at several speeds. The energy of
+ * its track must change by less than a quarter from picture to picture, though
+ * that of its spot goes to 0 at once, and the track must keep its number. Where
+ * N_LAMPS is 2, a second lamp stands still. */
 static void pass_behind_a_pole(int n_lamps)
 {
     static const double speeds[] = {0.7, 1, 2, 4, 6};
@@ -99,15 +100,15 @@ static void test_a_pole_makes_nothing_pop(void **state)
     pass_behind_a_pole(2);
 }
 
-/* What is left of the glow is not the picture's white, though nothing in the
- * picture is brighter. */
+/* The glow that remains must not count as white, though nothing in the picture
+ * is brighter. */
 static void test_a_pole_hides_a_lamp_alone(void **state)
 {
     (void)state;
     pass_behind_a_pole(1);
 }
 
-/* White is kept while a lamp is known, for as long as it is remembered. */
+/* White must be kept, ever less of it, for as long as a lamp is remembered. */
 static void test_white_is_kept_for_a_while(void **state)
 {
     const struct night_lamp lamp = {160, 100, 5, 3};
@@ -129,8 +130,8 @@ static void test_white_is_kept_for_a_while(void **state)
     night_close(&night);
 }
 
-/* Two lamps meet and part again, closer than the finder tells apart in between.
- * The energy of both together stays within bounds, and neither jumps. */
+/* Two lamps meet, until the finder takes them for one, and part again. Their
+ * energy together must stay within bounds, and neither may jump. */
 static void test_merging_and_splitting(void **state)
 {
     struct steps energy = {0, 0, 0, 0};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights over time, in drawn night scenes seen through the real finder: that
- * noise does not show, that motion does, and that nothing pops.
+ * Lamps over time, in drawn night scenes and through the real finder: noise
+ * must not show, motion must, and nothing may jump.
  */
 #include "glint/lamp_tracker.h"
 
@@ -119,7 +119,8 @@ static double mean(const struct moments *m)
     return m->sum / m->n;
 }
 
-/* 300 frames of six lamps, noise of 3 codes. Columns: spots, tracks. */
+/* Six lamps must stand still over 300 frames with noise of 3 codes. The columns
+ * printed are spots and tracks. */
 static void test_static_scene_stands_still(void **state)
 {
     static const struct night_lamp lamp[] = {
@@ -176,8 +177,8 @@ static void test_static_scene_stands_still(void **state)
     night_close(&night);
 }
 
-/* How far the axis of a tube that lies at DEGREES turns from frame to frame,
- * RMS, as seen with noise of 3.5 degrees. */
+/* Returns by how much the axis of a track turns from frame to frame, degrees
+ * RMS, where a tube at DEGREES is seen with noise of 3.5 degrees. */
 static double turns_of(double degrees)
 {
     struct moments turn = {0, 0, 0};
@@ -224,9 +225,9 @@ static void test_axes_are_steady_however_they_lie(void **state)
     assert_true(lying < 1 && standing < 1);
 }
 
-/* A lamp of 8 x 8 pixels, far from white, and one pixel of it 41 times as
- * bright (code 255 against 43, linear 1 against 0.0242): another one in each
- * picture, or now and then. */
+/* Returns how far, pixels, the track of a dim lamp of 8 x 8 pixels moves while
+ * in every EVERY-th picture another pixel of it is 41 times as bright (code 255
+ * against 43, linear 1 against 0.0242). */
 static double sparkle_moves(int every, uint32_t seed)
 {
     double furthest = 0;
@@ -272,8 +273,8 @@ static void test_sparkle_moves_less_than_a_pixel(void **state)
     assert_true(rarely < 1);
 }
 
-/* A lamp whose brightest pixels hover about the upper threshold: seen or not,
- * the finder says, and often; but a track stays. */
+/* The brightest pixels of a lamp are about the upper threshold, so that its
+ * spot is often faint: the track must stay. */
 static void test_hysteresis(void **state)
 {
     uint32_t id = 0;
@@ -298,7 +299,8 @@ static void test_hysteresis(void **state)
     night_close(&night);
 }
 
-/* What is faint from the start is no light, nor is a wall next to one. */
+/* A spot that is faint from the start must begin no track, and a faint spot
+ * much larger than a lamp, such as a wall, must not continue its track. */
 static void test_faint_spots_begin_no_track(void **state)
 {
     struct glint_spot spot[2] = {{.x_q8 = 100 << 8,
@@ -317,7 +319,7 @@ static void test_faint_spots_begin_no_track(void **state)
                                              night.track, NIGHT_MAX),
                      1);
     spot[0].faint = 1;
-    spot[0].area = 161; /* more than four times */
+    spot[0].area = 161; /* more than 4 x 40 */
     glint_lamp_tracker_step(night.tracks, spot, 1, FPS30, night.track,
                             NIGHT_MAX);
     assert_int_equal(night.track[0].state, GLINT_LAMP_FADING);
@@ -343,7 +345,8 @@ static bool is_spot(const struct glint_lamp_track *t,
            memcmp(t->rgb_q15, s->rgb_q15, sizeof t->rgb_q15) == 0;
 }
 
-/* Every light has a track that says what it says, and faint spots may. */
+/* Returns whether each track is exactly its spot, and each spot that is not
+ * faint has a track. */
 static bool all_settled(void)
 {
     int n_lights = 0;
@@ -360,8 +363,9 @@ static bool all_settled(void)
     return night.n_tracks >= n_lights;
 }
 
-/* Whatever went before, noise or motion, pictures that repeat are what their
- * track says after attack + 1 s or five pictures; at any rate. */
+/* Whatever noise or motion there was before, tracks must be exactly the spots
+ * of a picture that repeats: after attack + 1 s or five pictures, at any
+ * rate. */
 static void test_repeated_pictures_are_met_exactly(void **state)
 {
     static const int32_t rates[] = {1000, FPS60, FPS30, 200000, 1000000};
@@ -403,7 +407,8 @@ static void test_repeated_pictures_are_met_exactly(void **state)
 
 /* ------------------------------------------------------------------ motion */
 
-/* Speeds in pixels a frame, without noise and with. */
+/* A lamp that moves must be followed within half a pixel, at speeds of 0.05 to
+ * 12 pixels a frame, without noise and with it. */
 static void test_a_moving_lamp_does_not_lag(void **state)
 {
     static const double speeds[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 4, 8, 12};
@@ -438,8 +443,8 @@ static void test_a_moving_lamp_does_not_lag(void **state)
     }
 }
 
-/* A lamp that stood still for two seconds and goes off at 2 pixels a frame is
- * followed from the first frame on. */
+/* A lamp that stood still for two seconds and then moves by 2 pixels a frame
+ * must be followed from the first frame on. */
 static void test_a_lamp_that_starts_is_followed(void **state)
 {
     (void)state;
@@ -456,8 +461,9 @@ static void test_a_lamp_that_starts_is_followed(void **state)
     }
 }
 
-/* What comes back after a second may be farther off than what was there in the
- * picture before (0.06 of 320 is 19 pixels); it rises from where it is. */
+/* After a second a lamp may come back 25 pixels off, which is too far from one
+ * picture to the next (0.06 of 320 is 19 pixels). Its track must rise from
+ * where the lamp is now. */
 static void test_a_lamp_that_comes_back(void **state)
 {
     (void)state;
@@ -490,8 +496,8 @@ static void test_a_lamp_that_comes_back(void **state)
     }
 }
 
-/* Two lamps that meet and pass keep their numbers: they are told apart by where
- * they are going. */
+/* Two lamps that meet and pass must keep their numbers, as they are told apart
+ * by where they go. */
 static void test_lamps_that_pass_keep_their_numbers(void **state)
 {
     uint32_t id[2] = {0, 0};
@@ -516,8 +522,8 @@ static void test_lamps_that_pass_keep_their_numbers(void **state)
     night_close(&night);
 }
 
-/* A fast lamp leaves to the right: its track goes on at its speed, outside, and
- * fades in 400 ms without a step of more than 1 / 12. */
+/* A fast lamp leaves to the right: its track must go on outside at that speed,
+ * and fade in 400 ms by steps of at most 1 / 12. */
 static void test_leaving_lamp_moves_on_and_fades(void **state)
 {
     double last_x = 0, last_power = 0;
@@ -552,7 +558,8 @@ static void test_leaving_lamp_moves_on_and_fades(void **state)
 
 /* ---------------------------------------------------------- rise, fade, cut */
 
-/* The level T us after the lamp came on, at a rate. */
+/* Returns the level of a lamp US microseconds after it came on, with a picture
+ * every ELAPSED_US. */
 static double level_after(int32_t us, int32_t elapsed_us, int32_t attack_ms)
 {
     const struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 120, 5, 3}};
@@ -589,8 +596,8 @@ static void test_rise_does_not_depend_on_the_rate(void **state)
     assert_true(level_after(4 * 50000, 50000, 200) == 1);
 }
 
-/* Other lamps elsewhere, in one picture: all old tracks are gone and all new
- * ones at full level at once. */
+/* Where lamps are elsewhere from one picture to the next, all old tracks must
+ * be gone and all new ones at full level at once. */
 static void test_cut_restarts_in_one_frame(void **state)
 {
     static const struct night_lamp before[] = {
@@ -627,8 +634,8 @@ static void test_cut_restarts_in_one_frame(void **state)
     night_close(&night);
 }
 
-/* Three lamps that go or come all at once are a cut to the dark or from it; two
- * may be behind something, and fade. */
+/* Three lamps that go or come at once must be a cut to the dark or from it; two
+ * may be hidden, and must fade. */
 static void test_cut_to_the_dark(void **state)
 {
     static const struct night_lamp lamp[] = {
@@ -654,7 +661,8 @@ static void test_cut_to_the_dark(void **state)
     }
 }
 
-/* One lamp of three going out, another coming on, a pan: no cuts. */
+/* A lamp of three that goes out, another one that comes on, and a pan must be
+ * no cuts. */
 static void test_what_is_no_cut(void **state)
 {
     (void)state;
@@ -674,9 +682,9 @@ static void test_what_is_no_cut(void **state)
 
 /* -------------------------------------------------------------------- many */
 
-/* Ten lamps, four shown: with noise that makes them take turns for the last
- * place in the finder's order, the same four are shown; and when another gets
- * much brighter it fades in while one fades out. */
+/* Of ten lamps four are shown: these must stay the same four while noise makes
+ * others take the fourth place of the finder in turns. A lamp that gets much
+ * brighter must fade in while another one fades out. */
 static void test_cap_does_not_flicker(void **state)
 {
     struct night_lamp lamp[10];
@@ -713,8 +721,8 @@ static void test_cap_does_not_flicker(void **state)
     night_close(&night);
 }
 
-/* More lights than tracks: the brightest have them, and a brighter one takes
- * the place of one that is not shown. */
+/* With more lights than tracks, the five brightest must be shown in each
+ * picture. */
 static void test_more_lights_than_tracks(void **state)
 {
     static struct glint_spot spot[NIGHT_MAX];

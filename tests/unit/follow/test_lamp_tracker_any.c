@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps over time from any input: what comes out is sound, and the same in
+ * Lamps over time from any input: results must be in bounds, and the same in
  * whatever order spots come.
  */
 #include "glint/lamp_tracker.h"
@@ -78,7 +78,7 @@ static void assert_sound(int n)
     }
 }
 
-/* SPOT in another order. */
+/* Sets MIXED to the N spots of SPOT in random order. */
 static void mix(struct glint_spot *mixed, const struct glint_spot *spot, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -89,8 +89,8 @@ static void mix(struct glint_spot *mixed, const struct glint_spot *spot, int n)
     }
 }
 
-/* Two trackers get the same spots, one of them shuffled. Some of them come back
- * from step to step, moved a little. */
+/* Two trackers get the same spots, one of them shuffled, and must give the same
+ * tracks. Some spots come back from step to step, moved a little. */
 static void test_order_of_spots_changes_nothing(void **state)
 {
     static struct glint_spot spot[NIGHT_MAX], mixed[NIGHT_MAX];
@@ -127,7 +127,7 @@ static void test_order_of_spots_changes_nothing(void **state)
                     spot[i].x_q8 += rng_below(&night.seed, 2048);
             }
             n = n_new;
-            if (n > 3) /* the same twice; and the same but for one number */
+            if (n > 3) /* equal spots, and one that is equal but for faint */
                 spot[1] = spot[0], spot[2] = spot[0], spot[2].faint ^= 1;
             mix(mixed, spot, n);
             night.n_tracks = glint_lamp_tracker_step(night.tracks, spot, n, us,

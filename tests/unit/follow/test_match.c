@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights and spots paired: the nearest first, against a search of all pairs.
+ * Tracks and spots in pairs, the nearest first, against a search of all
+ * pairs.
  */
 #include "support/rng.h"
 #include "follow/match.h"
@@ -61,7 +62,8 @@ static void scatter(int n_seekers, int n_spots, int side_q8)
                                       .faint = rng_below(&seed, 4) == 0};
 }
 
-/* As the header says it; -1: out of reach. */
+/* Returns what pairing S with P costs by the definition in the header; -1: they
+ * are out of reach. */
 static int64_t glint_cost_of(const struct glint_seeker *s,
                              const struct glint_spot *p)
 {
@@ -76,7 +78,8 @@ static int64_t glint_cost_of(const struct glint_seeker *s,
     return p->faint || s->is_lost ? 4 * (d2 + 65536) : d2;
 }
 
-/* The cheapest pair of all that are left, again and again. */
+/* Takes the cheapest of all pairs that remain, again and again. Sets PARTNER,
+ * and returns how many pairs there are. */
 static int match_slowly(int n_spots, int32_t *partner)
 {
     static uint8_t taken[MAX];
@@ -103,7 +106,8 @@ static int match_slowly(int n_spots, int32_t *partner)
     }
 }
 
-/* No two costs are the same here, so there is one right answer. */
+/* No two costs are equal here, so the pairs must be those of the slow
+ * search. */
 static void test_against_all_pairs(void **state)
 {
     static int32_t partner[MAX];
@@ -111,7 +115,7 @@ static void test_against_all_pairs(void **state)
 
     (void)state;
     for (int round = 0; round < 300; round++) {
-        const int is_near = round % 3 == 0; /* eight that want the same */
+        const int is_near = round % 3 == 0; /* up to eight for the same spots */
         const int n_seekers = rng_below(&seed, is_near ? 9 : 40);
         const int n_spots = rng_below(&seed, 40);
 
@@ -129,7 +133,7 @@ static void test_against_all_pairs(void **state)
     assert_true(n_matched > 1000);
 }
 
-/* Spots that are nearer to S than spot AT. */
+/* Returns how many spots are nearer to S than spot AT. */
 static int count_nearer(const struct glint_seeker *s, int at)
 {
     int n = 0;
@@ -142,8 +146,8 @@ static int count_nearer(const struct glint_seeker *s, int at)
     return n;
 }
 
-/* The most there can be, all in reach of each other: no spot is given twice,
- * and each is one of the eight nearest. */
+/* With as many as there can be, all in reach of each other, no spot may be
+ * given twice, and each must be one of the eight nearest. */
 static void test_crowd(void **state)
 {
     static uint8_t seen[MAX];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light of a program's own: what the definition says in linear light, in every
- * format and size alike, and nothing beside it.
+ * Light of a program's own must do what its definition in linear light says, in
+ * every format and size alike, and change nothing beside it.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +19,8 @@ enum { MOST = 150, N_MOST = MOST * MOST };
 
 static uint16_t light[3][N_MOST];
 
-/* A lamp of three colours near (30, 20), none from column 100 on. */
+/* Returns a layer with a lamp of three colours near (30, 20) and no light from
+ * column 100 on. */
 static struct glint_layer lamp(int width, int height)
 {
     static const int most[3] = {65535, 30000, 900};
@@ -94,7 +95,8 @@ static void test_definition(void **state)
     }
 }
 
-/* Sets give the same bits; what has no light stays; guards are not touched. */
+/* All instruction sets must give the same bits; pixels without light and guard
+ * bytes must stay. */
 static void test_formats(void **state)
 {
     enum { GUARD = 256, BYTES = 3 * N_MOST + 2 * GUARD };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Curves, and codes under light, against libm; matrices against the colours
- * that the standards give.
+ * Curves, and codes under added light, against libm; matrices against the
+ * colours that the standards give.
  */
 #include "image/curve.h"
 
@@ -18,7 +18,8 @@
 
 static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB, GLINT_TONE_BT709};
 
-/* Standards: IEC 61966-2-1 and ITU-R BT.709, inverse. */
+/* Returns the light of V, both 0 .. 1, by IEC 61966-2-1 or the inverse of ITU-R
+ * BT.709. */
 static double light_of(enum glint_tone transfer, double v)
 {
     if (transfer == GLINT_TONE_SRGB)
@@ -79,8 +80,8 @@ static void test_decode_rises(void **state)
     }
 }
 
-/* Errors of the codes that light makes of all codes, against exact ones that
- * are not rounded. */
+/* Errors of codes after light is added to each code, against codes in double
+ * that are not rounded. */
 struct errors {
     double worst, squares;
     int n;
@@ -118,7 +119,8 @@ static struct errors errors_of(enum glint_tone transfer)
     return e;
 }
 
-/* Rounding alone is 0.5 at most, 0.289 root mean square. */
+/* Added light must be right within 0.62 code and 0.3 RMS; rounding alone takes
+ * 0.5 and 0.289. */
 static void test_added_light(void **state)
 {
     (void)state;
@@ -144,7 +146,8 @@ static void assert_rgb(const struct glint_ycc *ycc, int y, int cb, int cr,
     assert_true(abs(rgb_q7[2] - b * 128) <= within);
 }
 
-/* 100 % bars of the standards, rounded there to whole codes. */
+/* The standards' colour bars of 100 %, which they round to whole codes, must be
+ * right within 1.5 codes. */
 static void test_ycc_bars(void **state)
 {
     struct glint_ycc ycc;
@@ -167,7 +170,8 @@ static void test_ycc_bars(void **state)
     assert_rgb(&ycc, 76, 85, 255, 255, 0, 0, 192);
 }
 
-/* Row sums, and both matrices multiplied. */
+/* Checks the sums of rows, Y_Q15 for luma and 0 for chroma, and that the
+ * product of both matrices is 1. */
 static void check_inverse(const struct glint_ycc *ycc, int y_q15)
 {
     for (int i = 0; i < 3; i++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light added to pictures of every coding, against the same in double: through
- * the standards' own curves and matrices, not the tables.
+ * Light added to pictures of every coding, against the same in double: by the
+ * curves and matrices of the standards, not by tables.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -29,8 +29,8 @@ enum {
 
 #define WHITE_Q20 INT64_C(1048576)
 
-/* A picture with guard bytes around and between its rows, what it was before,
- * and the light to add. */
+/* A picture with guard bytes around and between its rows, its bytes before
+ * light is added, and the light to add. */
 struct fixture {
     struct glint_image image;
     uint8_t plane[3][PLANE_BYTES], before[3][PLANE_BYTES];
@@ -41,7 +41,8 @@ static struct fixture fixture;
 static struct glint_resolve resolve;
 static uint32_t seed = 1;
 
-/* Strides of 5 bytes more than the row; UPSIDE_DOWN: negative ones. */
+/* Sets up a picture of guard bytes whose strides are 5 bytes more than a row,
+ * and negative for UPSIDE_DOWN. */
 static void set_up(enum glint_pixel_format format, int width, int height,
                    int upside_down)
 {
@@ -71,7 +72,7 @@ static uint8_t *sample(int plane, int x, int y)
            x;
 }
 
-/* Samples of plane PLANE in a row. */
+/* Returns the bytes of a row of plane PLANE. */
 static int across(int plane)
 {
     const struct glint_image *image = &fixture.image;
@@ -94,7 +95,7 @@ static void fill(int plane, int low, int high)
                 (uint8_t)(low + rng_below(&seed, high - low + 1));
 }
 
-/* What the kernels see of light _q20. */
+/* Returns light _q20 as kernels get it, 0 .. 65535. */
 static uint16_t light_q16(int32_t light_q20)
 {
     const int32_t l = (light_q20 >> 4) + (light_q20 >> 3 & 1);
@@ -107,7 +108,7 @@ static double lit(int i, int at)
     return light_q16(fixture.light_q20[i][at]) / 65535.0;
 }
 
-/* Adds the light to IMAGE, stretch by stretch, the last one first. */
+/* Adds the light to IMAGE in stretches of two rows, the last stretch first. */
 static void add_light_to(const struct glint_image *image, int dither,
                          unsigned sets)
 {
@@ -120,7 +121,7 @@ static void add_light_to(const struct glint_image *image, int dither,
             const int x1 = x0 + TILE < image->width ? x0 + TILE : image->width;
             const int y1 = y0 + 2 < image->height ? y0 + 2 : image->height;
 
-            memset(&light, 0x55, sizeof light); /* much where unused */
+            memset(&light, 0x55, sizeof light); /* bright where unused */
             for (int i = 0; i < 3; i++)
                 for (int y = y0; y < y1; y++)
                     for (int x = x0; x < x1; x++)
@@ -159,7 +160,7 @@ static void assert_guards_whole(void)
 
 /* --------------------------------------------------------------- reference */
 
-/* Change of V, 1 = white, under LIGHT. */
+/* Returns by how much V, 1 = white, changes under LIGHT. */
 static double change(double v, double light)
 {
     const double held = fmax(0, fmin(v, 1));
@@ -188,7 +189,7 @@ static struct coding coding(void)
     return c;
 }
 
-/* Change of R'G'B' of pixel (X, Y) of a Y'CbCr picture. */
+/* Sets RGB to how much R'G'B' of pixel (X, Y) change in a Y'CbCr picture. */
 static void ycc_pixel_change(const struct coding *c, int x, int y, int cx,
                              int cy, double rgb[3])
 {
@@ -211,7 +212,8 @@ static void assert_code(double want, int got, double within)
         fail_msg("code %d where %.3f is right", got, want);
 }
 
-/* Checks the pixels that share the sample (CX, CY), and it. */
+/* Checks the chroma sample (CX, CY) and the luma of the pixels that share
+ * it. */
 static void check_block(int cx, int cy, double within)
 {
     const enum glint_pixel_format format = fixture.image.format;
@@ -302,7 +304,7 @@ static const int sizes[][2] = {{1, 1}, {3, 1}, {1, 3}, {7, 5}, {33, 18}};
 
 enum { N_SIZES = sizeof sizes / sizeof *sizes };
 
-/* Light of all magnitudes, and none or less than none for a third. */
+/* Fills in light of all magnitudes, a third of it below 0. */
 static void fill_light(void)
 {
     for (int i = 0; i < 3; i++)
@@ -315,7 +317,7 @@ static void fill_light(void)
         }
 }
 
-/* Sets one of the 16 codings of a format. */
+/* Sets curve, range and matrix of the picture by the bits of K. */
 static void set_coding(int k)
 {
     fixture.image.transfer = k & 1 ? GLINT_TONE_BT709 : GLINT_TONE_SRGB;
@@ -323,7 +325,7 @@ static void set_coding(int k)
     fixture.image.matrix = k & 4 ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 }
 
-/* CHROMA: how far from neutral. */
+/* Checks random pictures whose chroma is up to CHROMA codes from neutral. */
 static void check_random(int chroma, double within)
 {
     for (int f = 0; f < 5; f++)
@@ -351,7 +353,7 @@ static void test_light_adds_up(void **state)
         check_random(40, 0.65);
 }
 
-/* Any codes at all: far outside the cube, too. */
+/* All codes must do, also those of colours far outside the RGB cube. */
 static void test_wild_codes(void **state)
 {
     (void)state;
@@ -383,7 +385,7 @@ static void test_untouched_pixels_stay(void **state)
     check_untouched(1);
 }
 
-/* Light too faint to move a code by half, on one pixel in four. */
+/* Light that is too faint to move a code by half must change nothing. */
 static void test_faint_light_changes_nothing(void **state)
 {
     (void)state;
@@ -424,8 +426,8 @@ static void test_white_saturates(void **state)
         }
 }
 
-/* sRGB by hand: code 128 is 226346 steps of light; two and a half times that is
- * code 194.0, four times 239.0, and a quarter of white is 137.0. */
+/* sRGB by hand: code 128 has a light of 226346 / 2^20; two and a half times
+ * that is code 194, four times is 239, and a quarter of white is 137. */
 static void test_codes_by_hand(void **state)
 {
     (void)state;
@@ -440,8 +442,8 @@ static void test_codes_by_hand(void **state)
     assert_int_equal(*sample(0, 2, 0), 137);
 }
 
-/* One lit pixel of four moves the shared sample by a quarter of what four do;
- * alone in the corner of an odd picture, by all of it. */
+/* A lit pixel of four must move their chroma sample by a quarter, and one that
+ * is alone in the corner of an odd picture by all of it. */
 static void test_chroma_is_the_mean_of_those_that_exist(void **state)
 {
     (void)state;
@@ -460,8 +462,7 @@ static void test_chroma_is_the_mean_of_those_that_exist(void **state)
     assert_int_equal(*sample(2, 1, 1), 107); /* 128 - 0.114 * 127.5 / 0.701 */
 }
 
-/* An even picture, at each of many levels between two codes: 64 thresholds
- * give the level to 1/64. */
+/* With dither, the mean of an even picture must be right within 0.1 code. */
 static void test_dither_has_the_right_mean(void **state)
 {
     (void)state;
@@ -483,7 +484,8 @@ static void test_dither_has_the_right_mean(void **state)
     }
 }
 
-/* Each of 64 thresholds once, so that neighbours differ. */
+/* The pattern must have each of 64 thresholds once, and neighbours far
+ * apart. */
 static void test_dither_pattern(void **state)
 {
     int seen[64] = {0};
@@ -521,7 +523,7 @@ static void test_dither_in_ycc_stays_within_a_code(void **state)
 
 static void test_linear_adds_and_saturates(void **state)
 {
-    static int32_t px_q20[2][9]; /* two rows of three pixels, one unused */
+    static int32_t px_q20[2][9]; /* three pixels a row, the third unused */
     const int32_t light_q20[3][2][2] = {{{5, INT32_MAX}, {-7, 1}},
                                         {{-9, INT32_MIN}, {1 << 20, 2}},
                                         {{0, INT32_MAX}, {INT32_MAX - 9, 3}}};
@@ -545,7 +547,7 @@ static void test_linear_adds_and_saturates(void **state)
     assert_memory_equal(px_q20, want_q20, sizeof px_q20);
 }
 
-/* Two formats that hold the same codes, and where each has its samples. */
+/* Pairs of formats that hold the same codes at other places. */
 static const enum glint_pixel_format twins[][2] = {
     {GLINT_I420, GLINT_NV12},   {GLINT_I420, GLINT_NV21},
     {GLINT_I422, GLINT_YUYV},   {GLINT_I422, GLINT_UYVY},
@@ -602,8 +604,8 @@ static void test_layouts_agree(void **state)
         }
 }
 
-/* A row of packed pixels in one stretch and in stretches of eight: vectors end
- * anywhere in the long one. */
+/* A row of packed pixels must be the same in one stretch, in which vectors end
+ * anywhere, and in stretches of eight. */
 static void test_long_stretches_are_short_ones(void **state)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
@@ -638,8 +640,7 @@ static void test_long_stretches_are_short_ones(void **state)
         }
 }
 
-/* Of a picture that is even over 2 x 2 pixels, light of as many pixels does
- * what it does to each. */
+/* Makes the picture even over 2 x 2 pixels, where light of quads is exact. */
 static void make_even(void)
 {
     const struct glint_image *image = &fixture.image;
@@ -707,9 +708,9 @@ static void test_quads_of_even_pictures(void **state)
         }
 }
 
-/* Of others change falls towards white: light of any strength makes nothing
- * darker or whiter than white, orders stay, and much of it leaves all four
- * white. */
+/* Where the four pixels differ, their change falls towards white: no light may
+ * make one darker or whiter than white, or change their order, and much light
+ * must make all four white. */
 static void test_quads_of_edges(void **state)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
@@ -735,7 +736,7 @@ static void test_quads_of_edges(void **state)
     }
 }
 
-/* How far quads are from pixel by pixel, codes: the root mean square over
+/* Returns how far light of quads is from light pixel by pixel, codes RMS, over
  * pictures whose pixels differ by up to DIFFER codes. */
 static double quads_off(int differ)
 {
@@ -776,7 +777,8 @@ static void test_quads_are_near(void **state)
     assert_true(quads_off(40) < 1.5);
 }
 
-/* One stretch is as many short ones, whatever is left of whole steps. */
+/* A stretch of quads must be as many short ones, whatever remains at its
+ * end. */
 static void test_long_quads_are_short_ones(void **state)
 {
     static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
@@ -818,7 +820,8 @@ static void test_long_quads_are_short_ones(void **state)
         }
 }
 
-/* All codes of 16 bits come back without light, and turn white with much. */
+/* All codes of RGB565 must stay without light, and have the largest green under
+ * much green light. */
 static void test_565(void **state)
 {
     static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
@@ -846,7 +849,7 @@ static void test_565(void **state)
     }
 }
 
-/* The bytes of a fixed picture, so that they are the same everywhere. */
+/* The bytes of fixed pictures must be the same on every machine. */
 static void test_same_on_every_machine(void **state)
 {
     uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Every variant of a kernel gives the bits of its C definition, and touches
- * nothing but its arrays. With GLINT_BENCH=1 it is also timed. Needs nothing
- * but the kernels, so that it runs in an emulator, too.
+ * Every variant of a kernel must give the bits of its C definition, and touch
+ * nothing but its arrays. GLINT_BENCH=1 times it, too. The program needs
+ * nothing but the kernels, so that it runs in an emulator.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,7 +40,7 @@ static uint32_t draw(void)
 static void *blocks[400];
 static int n_blocks;
 
-/* BYTES that end at a page which traps. */
+/* Returns BYTES bytes that end at a page which traps. */
 static void *fenced(size_t bytes)
 {
     void *mem;
@@ -71,7 +71,7 @@ static const struct variant variants[] = {{"sse41", GLINT_SET_SSE41},
                                           {"avx2", GLINT_SET_AVX2},
                                           {"neon", GLINT_SET_NEON}};
 
-/* What defines them, by name: some programs have no use for it. */
+/* The C definitions of all kernels. */
 static const struct glint_kernels kernels_c = {
     glint_add_luma_c, glint_add_pairs_c, glint_add_packed_c, glint_add_code_c,
     glint_run_sum_c};
@@ -88,7 +88,8 @@ static double now_ns(void)
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
-/* The least time of many rounds, next to that of C. */
+/* Prints the least time of many rounds, for C and for the variant, where
+ * GLINT_BENCH is set. */
 #define BENCH(what, name, of_c, of_variant)                                \
     do {                                                                   \
         double best[2] = {1e9, 1e9};                                       \
@@ -109,7 +110,7 @@ static double now_ns(void)
                name, N, best[0] / 20, best[1] / 20, best[0] / best[1]);    \
     } while (0)
 
-/* 0, the largest and what lies between, all often. */
+/* Returns light that is often 0, often the largest, and else of any size. */
 static uint16_t draw_light(void)
 {
     const uint32_t x = draw();
@@ -260,7 +261,8 @@ static void add_packed(const struct glint_kernels *k, uint8_t *pixels,
     k->add_packed(pixels, rgb, n, luma_at, mix, round, round + 8);
 }
 
-/* Dark stretches among them, and pixels that begin at odd addresses. */
+/* Checks packed pixels that begin at odd addresses, with dark stretches among
+ * them. */
 static void check_packed(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
@@ -289,7 +291,7 @@ static void check_packed(const struct glint_kernels *k, const char *name)
           add_packed(k, got, light, N, 0, &mix, round));
 }
 
-/* Two rows of luma and of chroma, or of packed pixels in their places. */
+/* Two rows of luma and of chroma; rows of packed pixels are in luma. */
 struct quads {
     uint8_t *luma[2], *chroma[2];
 };
@@ -309,7 +311,8 @@ static void add_quads(const struct glint_quad_kernels *k,
         k->add(rows->luma, rows->chroma, rgb, n, mix, r, r_chroma);
 }
 
-/* Rows that are one, or share their chroma, and dark stretches among them. */
+/* Checks quads with dark stretches among them, whose two rows may be one row,
+ * or share their chroma. */
 static void check_quads(const struct glint_quad_kernels *k, const char *name)
 {
     const struct glint_quad_kernels *plain = &quad_kernels_c;
@@ -355,7 +358,7 @@ static void check_quads(const struct glint_quad_kernels *k, const char *name)
           add_quads(k, &b, light, N, 1, &mix, round));
 }
 
-/* Every code under every light. */
+/* Checks every code under every light. */
 static void check_code(const struct glint_kernels *k, const char *name)
 {
     const int16_t round[8] = {64, 0, 127, 1, 63, 65, 100, 30};
@@ -413,7 +416,8 @@ static void check_sum(const struct glint_kernels *k, const char *name)
           k->run_sum(got, &carry[1], light[1], N));
 }
 
-/* Coefficients whose magnitudes sum to less than 2^30, as bake proves. */
+/* Checks polynomials whose coefficients have magnitudes that sum to less than
+ * 2^30, as the bake proves. */
 static void check_horner(const struct glint_horner *k, const char *name)
 {
     const struct glint_horner *plain = glint_horner_of(0);
@@ -444,7 +448,7 @@ static void check_horner(const struct glint_horner *k, const char *name)
           k->across(got, c, 32, 4, x[0], 16));
 }
 
-/* Below MOST in magnitude, of every size, its ends among them. */
+/* Returns a number of any size below MOST in magnitude, often MOST - 1. */
 static int32_t draw_below(int64_t most)
 {
     const uint32_t x = draw();
@@ -508,7 +512,7 @@ static void test_same_bits(void)
     }
 }
 
-/* Encode undoes decode within 0.1 code, and more light is never darker. */
+/* Without light a code must stay, and more light must never make it darker. */
 static void test_codes_of_c(void)
 {
     const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is bright in random pictures of every format and threshold, against
- * pixel by pixel; and how far pixels are the same.
+ * Bright pixels in random pictures of every format and threshold, against a
+ * look at each pixel; and how far equal pixels reach.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -29,7 +29,7 @@ enum { N_FORMATS = sizeof formats / sizeof *formats };
 
 static uint32_t seed = 1;
 
-/* Random bytes, most of them low. */
+/* Fills IMAGE with random bytes, of which one in RARE may be more than 63. */
 static void fill(const struct glint_image *image, int rare)
 {
     const size_t bytes =
@@ -66,7 +66,8 @@ static int widen(int v, int bits)
     return v << (8 - bits) | v >> (2 * bits - 8);
 }
 
-/* Largest channel, and luma, by the definition of YCbCr. */
+/* Sets *LARGEST to the largest channel and *LUMA to the luma of a pixel, by the
+ * definition of YCbCr. */
 static void judge_ycc(const struct glint_image *image, const int code[3],
                       double *largest, int *luma)
 {
@@ -89,7 +90,7 @@ static const uint8_t *at(const struct glint_image *image, int plane, int x,
     return image->plane[plane] + y * image->stride_bytes[plane] + x;
 }
 
-/* Y, Cb, Cr of a pixel. */
+/* Sets CODE to Y, Cb, Cr of the pixel (X, Y). */
 static void codes_at(const struct glint_image *image, int x, int y, int code[3])
 {
     const int cx = x / 2, cy = y / 2;
@@ -129,9 +130,9 @@ static int value_of_rgb(int r, int g, int b)
     return largest < 250 ? largest : clipped_value(weigh(r, g, b));
 }
 
-/* Brightness by the definition of each format. It is between LEAST and MOST
- * where chroma makes a code so nearly a half that rounding may fall either way.
- */
+/* Sets *LEAST and *MOST to the brightness of a pixel by the definition of its
+ * format. The two differ where chroma makes a code so nearly a half that
+ * rounding may fall either way. */
 static void value_at(const struct glint_image *image, int x, int y, int *least,
                      int *most)
 {
@@ -227,7 +228,8 @@ static void test_scan_against_every_pixel(void **state)
     }
 }
 
-/* One pixel of exactly the threshold, anywhere, and one of a code less. */
+/* A single pixel of exactly the threshold must be found anywhere, and a pixel
+ * of a code less must not. */
 static void test_no_pixel_is_missed(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 96, HEIGHT);
@@ -256,8 +258,8 @@ static void test_no_pixel_is_missed(void **state)
     free(image.plane[0]);
 }
 
-/* Blocks of one dim grey, in which one code is another: four that are looked at
- * together, and one. */
+/* In a row of one dim grey the one code that differs must be judged, in the
+ * four blocks that are looked at together and in the fifth. */
 static void test_no_colour_is_missed(void **state)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
@@ -288,7 +290,7 @@ static void test_no_colour_is_missed(void **state)
     }
 }
 
-/* Spans of the same codes end where the light changes, or sooner where other
+/* A span of equal codes must end where the light changes, or sooner where other
  * codes have the same light. */
 static void test_same_pixels(void **state)
 {

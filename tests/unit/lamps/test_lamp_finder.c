@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps found in drawn pictures: where they are, that they stay there, and what
- * is no lamp.
+ * Lamps in drawn pictures: where they are found, that they stay there, and what
+ * must not be found.
  */
 #include "glint/lamps.h"
 
@@ -19,7 +19,8 @@
 #include "support/finder.h"
 #include "support/rng.h"
 
-/* Eight uniform numbers: a bell curve of standard deviation SIGMA. */
+/* Returns noise of standard deviation SIGMA, nearly normal: a sum of eight
+ * uniform numbers. */
 static double draw_noise(double sigma)
 {
     double sum = 0;
@@ -123,7 +124,7 @@ static void test_one_pixel(void **state)
     free(image.plane[0]);
 }
 
-/* sRGB code 188 is linear 0.5029: two of it and one white one beside. */
+/* sRGB code 188 is linear 0.5029: three such pixels touch a white one. */
 static void test_moments_by_hand(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 16, 8);
@@ -141,7 +142,7 @@ static void test_moments_by_hand(void **state)
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 2.5087) < 1e-3);
     assert_true(fabs(finder_x(0) - 11.5) < 1.0 / 256);
     assert_true(fabs(finder_y(0) - (5.5 + 0.5029 / 2.5087)) < 1.0 / 256);
-    /* variance: x 2 * 0.5029 / 2.5087, y 0.2005 - 0.2005^2 */
+    /* Variances: x 2 * 0.5029 / 2.5087, y 0.2005 - 0.2005^2. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(0.4009 + 0.1603)) <
                 1.0 / 128);
     free(image.plane[0]);
@@ -170,8 +171,8 @@ static void test_disc_is_found_to_a_sixteenth(void **state)
     }
 }
 
-/* Adds a lamp of RADIUS that is four times white and whose light falls off over
- * FALL pixels, to a grey picture. */
+/* Adds a lamp of RADIUS to a grey picture: it is four times white, and beyond
+ * the radius its light falls by e every FALL pixels. */
 static void draw_lamp(const struct glint_image *image, double cx, double cy,
                       double radius, double fall)
 {
@@ -189,7 +190,8 @@ static void draw_lamp(const struct glint_image *image, double cx, double cy,
         }
 }
 
-/* With the defaults the rim is cut off, evenly. */
+/* With the defaults, which cut off the rim evenly, a lamp must be found within
+ * 0.35 pixels. */
 static void test_disc_with_defaults(void **state)
 {
     (void)state;
@@ -209,7 +211,8 @@ static void test_disc_with_defaults(void **state)
 
 /* --------------------------------------------------------------- stability */
 
-/* A lamp with a blurred rim in camera noise of 3 codes, 100 frames. */
+/* A lamp with a blurred rim must be found within 0.25 pixels RMS in 100 frames
+ * with camera noise of 3 codes. */
 static void test_noise_does_not_move_a_light(void **state)
 {
     double square = 0;
@@ -237,7 +240,8 @@ static void test_noise_does_not_move_a_light(void **state)
     assert_true(sqrt(square / 100) < 0.25);
 }
 
-/* One pixel of a lamp of 8 x 8 flickers to white, anywhere. */
+/* One pixel of a lamp of 8 x 8 that flickers to white, any of them, must move
+ * the lamp by less than 0.1 pixels. */
 static void test_sparkle_does_not_move_a_light(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 64, 64);
@@ -256,8 +260,8 @@ static void test_sparkle_does_not_move_a_light(void **state)
     free(image.plane[0]);
 }
 
-/* The same next to the darkest lamp there is: one hot pixel, 40 times the rest,
- * nearest to the centre of 64. */
+/* One hot pixel, 40 times as bright as the other 63 of the darkest lamp that
+ * can be found, must move the lamp by less than a pixel. */
 static void test_hot_pixel_among_dim_ones(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 64, 64);
@@ -310,12 +314,12 @@ static void test_black_and_white(void **state)
     assert_int_equal(finder_spot[0].y_q8, 25 * 256);
     assert_int_equal(finder_spot[0].area, 5000);
     assert_true(finder_spot[0].flux_q16 == INT64_C(5000) << 16);
-    /* (100^2 + 50^2 - 2) / 12 */
+    /* The square of the RMS radius is (100^2 + 50^2 - 2) / 12. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - 32.2723) < 1.0 / 128);
     free(image.plane[0]);
 }
 
-/* A large picture, all white: the worst case of moments that are summed. */
+/* A large picture that is all white is the worst case for sums of moments. */
 static void test_large_picture(void **state)
 {
     enum { SIDE = 8192 };
@@ -349,8 +353,8 @@ static struct glint_region region_of(int x0, int y0, int x1, int y1)
     return r;
 }
 
-/* White rectangles of the largest picture, all of it too: where they are, how
- * large and how bright. */
+/* White rectangles of the largest picture, and all of it, must have the right
+ * place, size and light. */
 static void test_largest_regions(void **state)
 {
     enum { S = GLINT_MAX_SIDE };
@@ -378,7 +382,7 @@ static void test_largest_regions(void **state)
     }
 }
 
-/* Lamps at both ends of the longest pictures. */
+/* Lamps at both ends of the longest pictures must be found where they are. */
 static void test_longest_pictures(void **state)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, OFF = 20, SIDE = 6 };
@@ -418,7 +422,7 @@ static void test_sky_is_no_light(void **state)
     struct glint_lamp_finder_config cfg = finder_plain(&image, 200, 250);
 
     (void)state;
-    cfg.max_share_q15 = 32768 / 10; /* 999.9 pixels, rounded */
+    cfg.max_share_q15 = 32768 / 10; /* 999.8 pixels, rounded up */
     canvas_fill_grey(&image, 0, 0, 100, 10, 255);
     canvas_fill_grey(&image, 40, 50, 44, 54, 255);
     assert_int_equal(finder_find(&cfg, &image), 2);
@@ -428,8 +432,8 @@ static void test_sky_is_no_light(void **state)
     free(image.plane[0]);
 }
 
-/* A lit surface where fewer than one pixel in 8 reach the upper threshold; a
- * lamp's glow has as many. */
+/* A lit surface must be no lamp while fewer than one pixel in 8 reach the upper
+ * threshold; the glow of a lamp has as many. */
 static void test_few_seeds_are_no_light(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 100);
@@ -445,8 +449,8 @@ static void test_few_seeds_are_no_light(void **state)
     free(image.plane[0]);
 }
 
-/* Around a core: a ring that belongs, a darker ring that does not, and beyond
- * it a bright one without a seed. */
+/* A ring around a core belongs to the lamp; a darker ring around that does not,
+ * nor does a bright one beyond it, which has no seed. */
 static void test_hysteresis(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 60, 60);
@@ -471,8 +475,8 @@ static void test_hysteresis(void **state)
     free(image.plane[0]);
 }
 
-/* The same pictures with faint regions kept: the lights are as they were, and
- * then come those that are none, marked. */
+/* With faint regions kept, lamps must be as they are without, and faint regions
+ * must follow them, marked. */
 static void test_faint_regions_come_last(void **state)
 {
     static struct glint_spot light[FINDER_SPOTS];
@@ -516,7 +520,8 @@ static void test_faint_regions_come_last(void **state)
     assert_true(most_faint > 20);
 }
 
-/* Patches of one code and noise, all in one region, against sums in doubles. */
+/* Sums of one large region, of noise and patches of one code, must be those in
+ * doubles. */
 static void test_sums_of_a_large_region(void **state)
 {
     (void)state;
@@ -601,7 +606,8 @@ static void test_ties_go_by_position(void **state)
     free(image.plane[0]);
 }
 
-/* Nine white pixels and three, 4 apart: the middle is 1 from the greater. */
+/* Nine white pixels and three, 4 apart, must merge into one lamp, 1 pixel from
+ * the greater. */
 static void test_near_ones_merge(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 128, 64);
@@ -611,13 +617,14 @@ static void test_near_ones_merge(void **state)
     canvas_fill_grey(&image, 20, 20, 23, 23, 255);
     canvas_fill_grey(&image, 25, 20, 26, 23, 255);
     cfg.merge_q15 = 4 * 32768 / 128;
-    assert_int_equal(finder_find(&cfg, &image), 2); /* 4 is not closer than 4 */
+    assert_int_equal(finder_find(&cfg, &image), 2); /* not closer than 4 */
     cfg.merge_q15 = 5 * 32768 / 128;
     assert_int_equal(finder_find(&cfg, &image), 1);
     assert_true(finder_x(0) == 22.5 && finder_y(0) == 21.5);
     assert_int_equal(finder_spot[0].area, 12);
     assert_true(finder_spot[0].flux_q16 == 12 << 16);
-    /* x: (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5; y: 2 / 3 */
+    /* Square of the RMS radius: x (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5, y 2
+     * / 3. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(3.5 + 0.6667)) <
                 0.01);
     free(image.plane[0]);
@@ -647,8 +654,8 @@ static void test_merged_ones_keep_their_distance(void **state)
     free(image.plane[0]);
 }
 
-/* Four lights, two wanted: the third is near the first and joins it, the fourth
- * is far from all and goes. */
+/* Of four lights two are wanted: the third is near the first and must join it,
+ * the fourth is far from all and must be dropped. */
 static void test_cap(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 64);
@@ -657,10 +664,10 @@ static void test_cap(void **state)
 
     (void)state;
     cfg.merge_q15 = 4 * 32768 / 256;
-    canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 */
-    canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 */
-    canvas_fill_grey(&image, 35, 20, 37, 26, 255);   /* 12, 13 away */
-    canvas_fill_grey(&image, 200, 20, 202, 22, 255); /* 4 */
+    canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 px */
+    canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 px */
+    canvas_fill_grey(&image, 35, 20, 37, 26, 255);   /* 12 px, 13 away */
+    canvas_fill_grey(&image, 200, 20, 202, 22, 255); /* 4 px */
     assert_int_equal(finder_find_at_most(&cfg, &image, 2, &dropped), 2);
     assert_int_equal(dropped, 1);
     assert_int_equal(finder_spot[0].area, 48);
@@ -677,9 +684,9 @@ static void test_joining_can_change_the_order(void **state)
 
     (void)state;
     cfg.merge_q15 = 4 * 32768 / 256;
-    canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 */
-    canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 */
-    canvas_fill_grey(&image, 110, 20, 114, 25, 255); /* 20 */
+    canvas_fill_grey(&image, 20, 20, 26, 26, 255);   /* 36 px */
+    canvas_fill_grey(&image, 100, 20, 105, 25, 255); /* 25 px */
+    canvas_fill_grey(&image, 110, 20, 114, 25, 255); /* 20 px */
     assert_int_equal(finder_find_at_most(&cfg, &image, 2, &dropped), 2);
     assert_int_equal(dropped, 0);
     assert_int_equal(finder_spot[0].area, 45);
@@ -687,7 +694,7 @@ static void test_joining_can_change_the_order(void **state)
     free(image.plane[0]);
 }
 
-/* 4096 lights: the 2048 brightest are held, 1024 come out. */
+/* Of 4096 lights the finder keeps the 2048 brightest and must give 1024. */
 static void test_more_lights_than_can_be_held(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 256, 256);

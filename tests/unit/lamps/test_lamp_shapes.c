@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Regions of every shape against a flood fill, and the colours of what is found
- * in every format.
+ * Regions of every shape against a flood fill, and the colours of lamps in
+ * every format.
  */
 #include "glint/lamps.h"
 
@@ -44,7 +44,7 @@ static void test_u_shape(void **state)
     assert_one_region(&image);
 }
 
-/* Walls 1 wide, 1 apart, winding inwards. */
+/* A spiral, its walls 1 pixel wide and 1 apart, must be one region. */
 static void test_spiral(void **state)
 {
     static const int step[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
@@ -67,8 +67,8 @@ static void test_spiral(void **state)
     assert_one_region(&image);
 }
 
-/* As many runs as a row can have, joined by corners alone; then as a comb, by
- * the last row alone. */
+/* As many runs as a row can have must be one region: a checkerboard, which is
+ * joined by corners alone, and a comb, which is joined by its last row. */
 static void test_checkerboard_and_comb(void **state)
 {
     (void)state;
@@ -86,7 +86,7 @@ static void test_checkerboard_and_comb(void **state)
     }
 }
 
-/* Area of the region at (X, Y), which it clears. */
+/* Clears the region at (X, Y) and returns its area. */
 static int flood(const struct glint_image *image, int x, int y)
 {
     static int stack[64 * 64 * 8][2];
@@ -160,7 +160,8 @@ static void fill_rgb(const struct glint_image *image, int x0, int y0, int x1,
             canvas_set_rgb(image, x, y, r, g, b);
 }
 
-/* Linear (240, 200, 120) is (0.8714, 0.5776, 0.1878), luminance 0.6119. */
+/* The codes (240, 200, 120) are linear (0.8714, 0.5776, 0.1878), of luminance
+ * 0.6119. */
 static void test_colour_unclipped(void **state)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
@@ -174,7 +175,8 @@ static void test_colour_unclipped(void **state)
     free(image.plane[0]);
 }
 
-/* A core clipped to white in a rim of that colour, and without one. */
+/* A core that is clipped to white must have the colour of its rim; without a
+ * rim it must be white. */
 static void test_colour_of_the_rim(void **state)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 60, 40);
@@ -185,14 +187,13 @@ static void test_colour_of_the_rim(void **state)
     fill_rgb(&image, 10, 10, 20, 20, 255, 255, 255);
     fill_rgb(&image, 30, 10, 39, 19, 255, 255, 255);
     assert_int_equal(finder_find(&cfg, &image), 2);
-    assert_true(finder_spot[0].rgb_q15[0] >
-                45000); /* 1.42, white not quite out */
-    assert_true(finder_spot[0].rgb_q15[2] < 13000); /* 0.31 */
+    assert_true(finder_spot[0].rgb_q15[0] > 45000); /* The rim has 1.42. */
+    assert_true(finder_spot[0].rgb_q15[2] < 13000); /* The rim has 0.31. */
     assert_colour(1, 1, 1, 1);
     free(image.plane[0]);
 }
 
-/* Clipped in one channel everywhere: the mean is all there is. */
+/* Where a channel is clipped everywhere, the colour must be the mean. */
 static void test_colour_partly_clipped(void **state)
 {
     struct glint_image image = canvas_new(GLINT_RGB24, 40, 40);
@@ -205,7 +206,8 @@ static void test_colour_partly_clipped(void **state)
     free(image.plane[0]);
 }
 
-/* Limited range: 235 is white, 16 + 219 * 200 / 255 = 187.8 is code 200. */
+/* In limited range 235 is white, and code 200 of 255 is 16 + 219 * 200 / 255 =
+ * 187.8. */
 static void test_ycc_formats(void **state)
 {
     static const enum glint_pixel_format formats[3] = {GLINT_I420, GLINT_I422,
@@ -227,7 +229,7 @@ static void test_ycc_formats(void **state)
             memset(image.plane[i], 128,
                    glint_image_row_bytes(formats[f], i, 41) *
                        (size_t)glint_image_plane_height(formats[f], i, 31));
-        canvas_fill_grey(&image, 36, 26, 41, 31, 187); /* 199.1: not in */
+        canvas_fill_grey(&image, 36, 26, 41, 31, 187); /* 199.1: too dark */
         canvas_fill_grey(&image, 38, 28, 41, 31, 188);
         canvas_fill_grey(&image, 39, 29, 41, 31, 235);
         assert_int_equal(finder_find(&cfg, &image), 1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Short cuts of the finder of lights against the long way: the light of runs as
+ * Short cuts of the lamp finder against the long way: the light of runs as
  * differences of sums against pixel by pixel, and scores without a look around
  * against scores with one.
  */
@@ -36,18 +36,17 @@ struct fixture {
     void *mem;
 };
 
-/* A picture of random codes, of which many are as the one before. */
+/* Sets up a picture of random codes, many of which repeat the pixel before. */
 static void set_up(struct fixture *f, enum glint_pixel_format format)
 {
     struct glint_arena arena = glint_arena_measure();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
     const int dark =
-        4 *
-        rng_below(&seed, 2); /* bits, 0 or 4: half of the pictures are dark */
+        4 * rng_below(&seed, 2); /* bits: 0, or 4 for dark pictures */
     uint8_t *codes = malloc(bytes);
-    const size_t pixel = /* bytes, 3 or 4: a pixel, or two of them */
+    const size_t pixel = /* bytes of a pixel, or of two */
         format == GLINT_RGB24 || format == GLINT_BGR24 ? 3 : 4;
-    int alike = 0; /* bytes that repeat those before */
+    int alike = 0; /* bytes that still repeat */
 
     assert_non_null(codes);
     for (size_t i = 0; i < bytes; i++, alike--) {
@@ -79,7 +78,7 @@ static void tear_down(struct fixture *f)
     free(f->mem);
 }
 
-/* The same as glint_row_light_add, pixel by pixel. */
+/* Adds what glint_row_light_add() adds, pixel by pixel. */
 static void add_plainly(const struct fixture *f, struct glint_region *region,
                         int x0, int x1, int y)
 {
@@ -103,7 +102,7 @@ static void add_plainly(const struct fixture *f, struct glint_region *region,
     }
 }
 
-/* Some runs in one or two stretches of a row, which may overlap. */
+/* Checks some runs in two stretches of a row, which may overlap. */
 static void check_row(struct fixture *f, int y)
 {
     const int from = rng_below(&seed, 20), to = from + rng_below(&seed, 20);
@@ -124,7 +123,8 @@ static void check_row(struct fixture *f, int y)
 
         if (x0 >= x1)
             continue;
-        /* The first run is whole, the others are parts of it. */
+        /* The first run is the whole stretch, the other three are parts of
+         * it. */
         for (int j = 0; j < 4; j++) {
             const int begin = j ? x0 + rng_below(&seed, x1 - x0) : x0;
             const int end = j ? begin + 1 + rng_below(&seed, x1 - begin) : x1;
@@ -149,7 +149,8 @@ static void test_light_of_runs(void **state)
     }
 }
 
-/* A region anywhere in the picture, of any light, that fills its box or not. */
+/* Returns a random region in the picture, of any light, that fills its box or
+ * not. */
 static struct glint_candidate draw_candidate(void)
 {
     const int x0 = rng_below(&seed, WIDTH - 1),
@@ -157,7 +158,8 @@ static struct glint_candidate draw_candidate(void)
     const int x1 = x0 + 1 + rng_below(&seed, WIDTH - x0);
     const int y1 = y0 + 1 + rng_below(&seed, HEIGHT - y0);
     struct glint_candidate c = {.sum = {.x0 = x0, .y0 = y0}};
-    const int hidden = 10 + rng_below(&seed, 11); /* bits below white */
+    const int hidden = 10 + rng_below(&seed, 11); /* bits of light below
+                                                   * white */
     const int32_t rgb_q20[3] = {(1 << 20) - rng_below(&seed, 1 << hidden),
                                 (1 << 20) - rng_below(&seed, 1 << hidden),
                                 (1 << 20) - rng_below(&seed, 1 << hidden)};
@@ -175,7 +177,8 @@ static struct glint_candidate draw_candidate(void)
     return c;
 }
 
-/* Scores from -SCORE_DOUBT on are the same; others stay below that. */
+/* Where the full score is -SCORE_DOUBT or more, the brief one must be equal;
+ * else it must lie between the full one and -SCORE_DOUBT. */
 static void test_brief_scores(void **state)
 {
     int n_kept = 0, n_brief = 0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a lamp is behind the white: power, colour and extent from its profile.
+ * Power, colour and extent of lamps that are clipped to white, from the profile
+ * of the light around them.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -24,7 +25,7 @@ static uint32_t seed = 1;
 
 /* --------------------------------------------------------------- by hand */
 
-/* A lamp like any other, in the middle of the picture. */
+/* Returns an ordinary lamp in the middle of the picture. */
 static struct power_lamp lamp_of(enum power_shape shape, double radius)
 {
     return (struct power_lamp){.shape = shape,
@@ -51,7 +52,8 @@ static void measure(const struct glint_image *image, int n)
     free(mem);
 }
 
-/* Finds all that is bright, and measures it. */
+/* Finds all that is bright in IMAGE, measures it, and returns how many spots
+ * there are. */
 static int look(const struct glint_image *image)
 {
     struct glint_lamp_finder_config cfg;
@@ -86,7 +88,8 @@ static struct glint_image picture_of(uint8_t *px, int width, int height)
     return image;
 }
 
-/* Draws what is in light[] at POWER and finds it. */
+/* Draws the light in light[] at POWER over BLACK, with noise of SIGMA codes,
+ * and finds it; returns how many spots there are. */
 static int expose(const struct power_lamp *lamp, double power, double black,
                   double sigma)
 {
@@ -126,8 +129,8 @@ static void test_logarithms(void **state)
     }
 }
 
-/* What is not clipped counts as it is: 5 and 20 white pixels, all of which a
- * bell curve of 1.6 and 3 pixels shows. */
+/* A lamp that is not clipped must have its flux for a power: 13 and 45 white
+ * pixels, blurred by bell curves of 1.6 and 3 pixels. */
 static void test_unclipped_is_the_flux(void **state)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 0.4);
@@ -146,8 +149,8 @@ static void test_unclipped_is_the_flux(void **state)
     assert_true(power() > 0.85 * 45 && power() < 1.1 * 45);
 }
 
-/* A tube of 2 x 18 pixels, 30 degrees clockwise from across: its longer RMS
- * semi-axis is 18 / root 3; a disc's are half of its radius. */
+/* A tube 36 pixels long, turned clockwise by 30 degrees, must have a longer RMS
+ * semi-axis of 18 / sqrt(3); a disc must have two of half its radius. */
 static void test_extent(void **state)
 {
     struct power_lamp lamp = lamp_of(POWER_TUBE, 18);
@@ -171,8 +174,8 @@ static void test_extent(void **state)
     assert_true(abs(spot[0].axis_q8[1] - 6 * 256) < 200);
 }
 
-/* A lamp of a pixel, sixteen thousand times white, is a core of clipped glare
- * some pixels wide; its extent is not the core's. */
+/* A lamp two pixels wide with the light of 16384 white ones has a core of
+ * clipped glare some pixels wide; its extent must not be that of the core. */
 static void test_glare_is_no_extent(void **state)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 1);
@@ -187,8 +190,8 @@ static void test_glare_is_no_extent(void **state)
     assert_true(spot[0].axis_q8[0] < spot[0].size_q8 / 3);
 }
 
-/* Sodium light clipped to yellow and white: the fringe says what it is. Of
- * luminance 1 it is 1.99, 0.79, 0.04. */
+/* Sodium light, clipped to yellow and white, must have the colour of its
+ * fringe: 1.99, 0.79, 0.04 at luminance 1. */
 static void test_colour_is_that_of_the_fringe(void **state)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 3);
@@ -210,8 +213,8 @@ static void test_colour_is_that_of_the_fringe(void **state)
     }
 }
 
-/* Lamps of 2^4 .. 2^14 white pixels, sizes and shapes: none is off by more than
- * four and a half, half of them by less than one. */
+/* Lamps of 2^4 .. 2^14 white pixels, several sizes and shapes: no power may be
+ * off by more than 4.5 stops, and half of them must be within one. */
 static void test_power_of_clipped_lamps(void **state)
 {
     int n = 0, n_near = 0;
@@ -238,9 +241,9 @@ static void test_power_of_clipped_lamps(void **state)
     assert_true(n > 40 && 2 * n_near > n);
 }
 
-/* Exposure rises by 1/32 of a stop: so does the power, from where nothing is
- * clipped to where all is. A lamp rises by less than a quarter of a stop; a
- * flat face of 18 pixels, which clips all at once, by two fifths. */
+/* While exposure rises by 1/32 of a stop at a time, from where nothing is
+ * clipped to where all is, the power must rise by less than 0.4 stops and fall
+ * by less than 0.1. */
 static void test_power_rises_smoothly(void **state)
 {
     (void)state;
@@ -266,7 +269,8 @@ static void test_power_rises_smoothly(void **state)
         }
 }
 
-/* A sun comes in over the left border, half a pixel at a time. */
+/* While a sun comes in over the left border, half a pixel at a time, its power
+ * must rise by less than 0.1 and fall by less than 0.13 of the whole. */
 static void test_a_sun_that_enters(void **state)
 {
     enum { OUT = 48, WIDE = W + OUT };
@@ -292,7 +296,7 @@ static void test_a_sun_that_enters(void **state)
     assert_true(most < 0.1 && least > -0.13);
 }
 
-/* Noise of 3 codes scatters the power by less than a tenth. */
+/* Noise of 3 codes must scatter the power by less than a tenth. */
 static void test_noise(void **state)
 {
     const struct power_lamp lamp = lamp_of(POWER_DISC, 4);
@@ -314,7 +318,8 @@ static void test_noise(void **state)
     assert_true(sum2 - sum * sum < 0.01 * sum * sum);
 }
 
-/* Two lamps side by side count as each by itself, not twice. */
+/* Two lamps side by side must have the power of one that is alone, not twice as
+ * much. */
 static void test_neighbours(void **state)
 {
     struct power_lamp lamp = lamp_of(POWER_DISC, 3);
@@ -336,8 +341,8 @@ static void test_neighbours(void **state)
                     0.7);
 }
 
-/* A white lamp on grey says the same in all formats, but for the bits they
- * have. */
+/* A white lamp must have nearly the same power in all formats: within 0.1
+ * stops, but within one in RGB565. */
 static void test_formats(void **state)
 {
     static uint8_t px[4 * W * H];
@@ -423,7 +428,7 @@ static void test_a_lamp_of_one_pixel(void **state)
     assert_int_equal(spot[0].axis_q8[1], 0);
 }
 
-/* Whatever the spots say, and in any picture, the results are in bounds. */
+/* Whatever the spots say, and in any picture, results must be in bounds. */
 static void test_any_spots(void **state)
 {
     static const int32_t any[] = {INT32_MIN, -1, 0, 1, 256, 40000, INT32_MAX};

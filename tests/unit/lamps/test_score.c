@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is a lamp and what is only bright, in drawn pictures: coloured lamps in
- * every format, underexposed nights, lamps before walls and in haze; and paper,
+ * Which bright regions are lamps, in drawn pictures: coloured lamps in three
+ * formats, underexposed nights, lamps before walls and in haze; and paper,
  * text, snow, skies and noise, which have none.
  */
 #include <math.h>
@@ -39,8 +39,8 @@ static struct settings new_settings(int width, int height, double light)
     return s;
 }
 
-/* A lamp at (X, Y), both as shares of the width, whose face is LIGHT and whose
- * light falls off over FALL. */
+/* Adds a lamp at (X, Y) whose face is LIGHT and whose light falls by e every
+ * FALL beyond RADIUS; all lengths are shares of the width. */
 static void add_lamp(const struct settings *s, double x, double y,
                      double radius, double fall, const double light[3])
 {
@@ -55,7 +55,7 @@ static void add_lamp(const struct settings *s, double x, double y,
         }
 }
 
-/* A box of even light, by shares of the width. */
+/* Fills a box, given by shares of the width, with even LIGHT. */
 static void fill_box(const struct settings *s, double x0, double y0, double x1,
                      double y1, double light)
 {
@@ -78,7 +78,7 @@ static int held(double code)
     return (int)fmax(0, fmin(255, floor(code + 0.5)));
 }
 
-/* Full-range BT.601. */
+/* Sets YCC to the codes RGB in full-range BT.601. */
 static void ycc_of(const double rgb[3], double ycc[3])
 {
     ycc[0] = 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
@@ -107,8 +107,8 @@ static void put(const struct glint_image *image, int x, int y,
     }
 }
 
-/* What is found in the scene as a picture of FORMAT, with SIGMA codes of noise.
- */
+/* Returns how many lamps are found in S as a picture of FORMAT with SIGMA codes
+ * of noise. */
 static int find(const struct settings *s, enum glint_pixel_format format,
                 double sigma)
 {
@@ -163,8 +163,8 @@ static void assert_none(struct settings *s)
 
 /* -------------------------------------------------------------------- lamps */
 
-/* A lamp that clips one channel, or two, alone: by luma none but the yellow one
- * comes near white. */
+/* A lamp of any colour must be found, and nothing else. Most clip one channel
+ * or two, and by luma only the yellow and the white one come near white. */
 static void test_lamps_of_every_colour(void **state)
 {
     static const double colours[][3] = {
@@ -186,7 +186,7 @@ static void test_lamps_of_every_colour(void **state)
     }
 }
 
-/* All a quarter or a third as bright as white, where nothing clips. */
+/* Two lamps of 0.1 to 0.4 of white must be found where nothing clips. */
 static void test_underexposed_night(void **state)
 {
     static const double colour[3] = {0.25, 0.22, 0.15};
@@ -218,8 +218,8 @@ static void test_lamp_before_a_bright_wall(void **state)
     free(s.light);
 }
 
-/* The sky is brighter than any lamp's glow, and red clips far around the sun.
- */
+/* The sun must be found where the sky is brighter than the glow of any lamp,
+ * and red clips far around it. */
 static void test_sun_in_haze(void **state)
 {
     static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
@@ -233,7 +233,7 @@ static void test_sun_in_haze(void **state)
     free(s.light);
 }
 
-/* The same scene at 320 to 2000 pixels has the same lamps. */
+/* The same scene must have the same lamps at widths of 320 to 2000 pixels. */
 static void test_every_resolution(void **state)
 {
     static const double lamp[3] = {4, 3, 1.5};
@@ -255,7 +255,7 @@ static void test_every_resolution(void **state)
 
 /* --------------------------------------------------------------- none there */
 
-/* Lines of words, dark on white or white on dark. */
+/* Draws lines of words in LIGHT. */
 static void write_text(const struct settings *s, double light)
 {
     for (int line = 0; line < 18; line++)
@@ -287,7 +287,7 @@ static void test_paper_and_text(void **state)
     assert_none(&desk);
 }
 
-/* Grains of every brightness, many of them white. */
+/* Grains of every brightness, many of them white, must give no lamp. */
 static void test_snow(void **state)
 {
     struct settings s = new_settings(600, 400, 0.7);
@@ -301,7 +301,8 @@ static void test_snow(void **state)
     assert_none(&s);
 }
 
-/* From blue above to white at the horizon, over dark ground; and all even. */
+/* A sky from blue to white at the horizon, over dark ground, and an even sky
+ * must give no lamp. */
 static void test_skies(void **state)
 {
     struct settings s = new_settings(600, 400, 0.03);
@@ -320,7 +321,7 @@ static void test_skies(void **state)
     assert_none(&overcast);
 }
 
-/* A lens cap on: noise of the dark, and a little more of it. */
+/* With the lens cap on, noise of up to 9 codes must give no lamp. */
 static void test_noise_in_the_dark(void **state)
 {
     struct settings s = new_settings(600, 400, 0.001);
@@ -333,8 +334,8 @@ static void test_noise_in_the_dark(void **state)
 
 /* ----------------------------------------------------------------- company */
 
-/* A candidate of SCORE in a box of 4 x 4 pixels at X, of LEVEL, which is within
- * those of lower levels at the same place. */
+/* Returns a candidate of SCORE_Q8 and LEVEL in a box of 4 x 4 pixels at X. It
+ * lies within candidates of lower levels at the same X. */
 static struct glint_candidate one_at(int x, int level, int32_t score_q8)
 {
     return (struct glint_candidate){
@@ -355,8 +356,8 @@ static int32_t least_of(struct glint_candidate *candidate, int n)
     return least_q8;
 }
 
-/* Two sure lamps speak for others: not one, nor a lamp and its own core, nor
- * one that is faint. */
+/* Two sure lamps must speak for others, which one lamp must not, nor a lamp and
+ * its own core, nor one that is faint. */
 static void test_company(void **state)
 {
     struct glint_candidate c[4] = {one_at(0, 0, -50), one_at(10, 0, 80),
