@@ -108,7 +108,9 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
 
 /* The white of the next picture is taken to be no darker than PART (0 .. 2^15)
  * of the last one's: for a video, in which the glow of a lamp that is hidden
- * for a moment would be white otherwise, and a lamp. Holds for one find. */
+ * for a moment would be white otherwise, and a lamp. Of a video, too, the best
+ * region of a picture with no lamp has to be a little better to be one: there
+ * are other pictures that it may be found in. Holds for one find. */
 void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
                                   int32_t part_q15);
 

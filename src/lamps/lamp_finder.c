@@ -91,6 +91,7 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
     glint_bright_init(&f->bright, cfg->width);
     f->n = f->dropped = 0;
     f->white->light_q20 = f->least_white_q20 = 0;
+    f->alone_q8 = SCORE_ALONE;
     merge_q8 = q_shift((int64_t)cfg->width * cfg->merge_q15, 7);
     f->merge2_q16 = merge_q8 * merge_q8;
     f->max_area =
@@ -105,7 +106,8 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 static void judge(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
-                                      f->cfg.height, f->level, 1};
+                                      f->cfg.height, f->level, 1,
+                                      f->alone_q8};
     const int n = f->n;
     int32_t least_q8;
 
@@ -152,6 +154,7 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
     glint_lamps_collect(finder, image);
     if (finder->cfg.judge)
         judge(finder);
+    finder->alone_q8 = SCORE_ALONE;
     glint_lamps_merge(finder);
     glint_lamps_cap(finder, max < MAX_SPOTS ? max : MAX_SPOTS);
     for (int i = 0; i < finder->n; i++)
@@ -163,6 +166,7 @@ void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
                                   int32_t part_q15)
 {
     finder->least_white_q20 = q_mul(finder->white->light_q20, part_q15, 15);
+    finder->alone_q8 = SCORE_ALONE_VIDEO;
 }
 
 int glint_lamp_finder_dropped(const struct glint_lamp_finder *finder)

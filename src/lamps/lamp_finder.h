@@ -27,6 +27,8 @@ struct glint_lamp_finder {
     struct glint_white *white;
     int32_t least_white_q20; /* white of the next picture is no less; linear
                                 light */
+    int32_t alone_q8;        /* of the next picture, as struct glint_score has
+                                it */
     struct glint_row_light row;
     struct glint_regions regions[LIGHT_LEVELS];
     struct glint_level level[LIGHT_LEVELS]; /* levels, by rising brightness */

@@ -487,7 +487,7 @@ int32_t glint_score_least(const struct glint_score *score,
         }
     }
     if (n_over == 0)
-        return best_q8 >= -SCORE_ALONE ? best_q8 : 0;
+        return best_q8 >= -score->alone_q8 ? best_q8 : 0;
     glint_score_choose(score, candidate, order, n_over);
     for (int i = 0; i < n_over; i++) {
         n_lamps += !candidate[order[i]].gone;

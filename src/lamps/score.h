@@ -8,7 +8,9 @@
  *        its odds; below -SCORE_DOUBT it is none even if it was one before.
  *        Lamps are seldom alone: where a picture has SCORE_SEVERAL, what is
  *        above -SCORE_COMPANY is one, too; where it has none, the best
- *        one is from -SCORE_ALONE on: who asks for a flare mostly has a lamp
+ *        one is from a little below 0 on: who asks for a flare mostly has a
+ *        lamp. A picture by itself has one chance of that, a lamp of a video
+ *        one in each frame, and so has what is none
  *
  * The score is a sum of terms, each a measure held to a range and weighed; so
  * it moves little where the picture does. Regions of the levels lie within each
@@ -35,7 +37,8 @@ enum {
     SCORE_DOUBT = 256,
     SCORE_SEVERAL = 2,
     SCORE_COMPANY = 96,
-    SCORE_ALONE = 32,
+    SCORE_ALONE = 48, /* of a picture by itself: tests/figures/finder.md */
+    SCORE_ALONE_VIDEO = 32,
     SCORE_LEVELS = 8
 };
 
@@ -97,6 +100,8 @@ struct glint_score {
     int is_brief; /* 1: of what must fall below -SCORE_DOUBT the surroundings
                      are not read; its score is some number below that, and no
                      less than it would be */
+    int32_t alone_q8; /* how far below 0 the best one may be where it is alone
+                       */
 };
 
 /* Sets the score of the N candidates of ORDER. */

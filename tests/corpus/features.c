@@ -26,8 +26,8 @@ static void put(const char *name, const struct glint_lamp_finder *f,
 
 static void score(struct glint_lamp_finder *f)
 {
-    const struct glint_score all = {&f->bright,    f->white, f->cfg.width,
-                                    f->cfg.height, f->level, 0};
+    const struct glint_score all = {
+        &f->bright, f->white, f->cfg.width, f->cfg.height, f->level, 0, 0};
 
     glint_score_all(&all, f->candidate, f->order, f->n);
 }

@@ -60,6 +60,7 @@ lens-sheet: all oiio
 # The weights of src/lamps/score.c, from the pictures that are there to tune on.
 corpus-fit: corpus $(OUT)/corpus-features
 	@OUT=$(OUT) tests/corpus/fit
+	@OUT=$(OUT) tests/corpus/fit --alone | tools/report/write-figures finder
 $(OUT)/tests/corpus/%.o: CPPFLAGS += -Itools/examples
 $(OUT)/corpus-%: $(OUT)/tests/corpus/%.o $(libs)
 	$(link)

@@ -195,8 +195,8 @@ static void test_brief_scores(void **state)
         glint_white_measure(&white, &f.bright, HEIGHT);
         c[0] = c[1] = draw_candidate();
         for (int brief = 0; brief < 2; brief++) {
-            const struct glint_score score = {&f.bright, &white, WIDTH,
-                                              HEIGHT,    &level, brief};
+            const struct glint_score score = {&f.bright, &white, WIDTH, HEIGHT,
+                                              &level,    brief,  0};
 
             glint_score_all(&score, &c[brief], &order, 1);
         }

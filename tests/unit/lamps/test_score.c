@@ -26,6 +26,8 @@ struct settings {
 
 static struct glint_spot spot[MOST];
 static uint32_t seed;
+static int n_before; /* frames that find sees before, as of a video */
+static int n_video;  /* lamps in the last of these */
 
 static struct settings new_settings(int width, int height, double light)
 {
@@ -138,6 +140,10 @@ static int find(const struct settings *s, enum glint_pixel_format format,
     assert_int_equal(glint_lamp_finder_init(&finder, &cfg, mem,
                                             glint_lamp_finder_bytes(&cfg)),
                      GLINT_OK);
+    for (int i = 0; i < n_before; i++) {
+        glint_lamp_finder_keep_white(finder, 0);
+        n_video = glint_lamp_finder_find(finder, &image, spot, MOST);
+    }
     n = glint_lamp_finder_find(finder, &image, spot, MOST);
     free(mem);
     free(image.plane[0]);
@@ -344,10 +350,12 @@ static struct glint_candidate one_at(int x, int level, int32_t score_q8)
         .level = (int16_t)level};
 }
 
+enum { ALONE = 40 };
+
 static int32_t least_of(struct glint_candidate *candidate, int n)
 {
     const struct glint_level level[2] = {{.low = 1}, {.low = 2}};
-    const struct glint_score score = {.level = level};
+    const struct glint_score score = {.level = level, .alone_q8 = ALONE};
     int32_t order[4] = {0, 1, 2, 3};
     const int32_t least_q8 = glint_score_least(&score, candidate, order, n);
 
@@ -379,18 +387,42 @@ static void test_company(void **state)
 static void test_best_one_alone(void **state)
 {
     struct glint_candidate c[4] = {
-        one_at(0, 0, -300), one_at(10, 0, -SCORE_ALONE - 1),
-        one_at(20, 0, -SCORE_ALONE), one_at(30, 0, -SCORE_ALONE + 1)};
+        one_at(0, 0, -300), one_at(10, 0, -ALONE - 1), one_at(20, 0, -ALONE),
+        one_at(30, 0, -ALONE + 1)};
 
     (void)state;
     assert_int_equal(least_of(c, 2), 0);
-    assert_int_equal(least_of(c, 3), -SCORE_ALONE);
-    assert_int_equal(least_of(c, 4), -SCORE_ALONE + 1);
+    assert_int_equal(least_of(c, 3), -ALONE);
+    assert_int_equal(least_of(c, 4), -ALONE + 1);
     c[3].faint = 1;
-    assert_int_equal(least_of(c, 4), -SCORE_ALONE);
+    assert_int_equal(least_of(c, 4), -ALONE);
     c[3] = one_at(30, 0, 0);
     assert_int_equal(least_of(c, 4), 0);
     assert_int_equal(least_of(c, 0), 0);
+}
+
+/* A lamp before a wall that is ever brighter is found longer in a picture by
+ * itself than in a video, and after one as without. */
+static void test_video_needs_more(void **state)
+{
+    static const double white[3] = {4, 4, 4};
+    int n_alone = 0, n_after = 0, n_of_video = 0;
+
+    (void)state;
+    for (double wall = 0.2; wall < 0.9; wall += 0.01) {
+        struct settings s = new_settings(300, 200, wall);
+
+        add_lamp(&s, 0.4, 0.3, 0.03, 0.02, white);
+        n_before = 0;
+        n_alone += find(&s, GLINT_RGB24, 0);
+        n_before = 1;
+        n_after += find(&s, GLINT_RGB24, 0);
+        n_of_video += n_video;
+        free(s.light);
+    }
+    n_before = 0;
+    assert_int_equal(n_after, n_alone);
+    assert_in_range(n_of_video, 1, n_alone - 1);
 }
 
 int main(void)
@@ -407,6 +439,7 @@ int main(void)
         cmocka_unit_test(test_noise_in_the_dark),
         cmocka_unit_test(test_company),
         cmocka_unit_test(test_best_one_alone),
+        cmocka_unit_test(test_video_needs_more),
     };
 
     return cmocka_run_group_tests_name("score", tests, NULL, NULL);
