@@ -6,14 +6,14 @@
 #define ONE_Q15   (1 << 15)
 #define SETTLE_US 60000
 
-/* Drift over spread between which noise becomes change. Noise of a bell curve
- * is above the first in one picture of 100, and more than so many times the
- * spread in one of 1000. */
+/* Ratios of drift to spread up to which an error is noise, and from which it is
+ * change. Noise of a bell curve passes the first in one picture of 100, and
+ * exceeds SUDDEN times the spread in one of 1000. */
 #define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
 #define SUDDEN     6
 
-/* X times GAIN, away from 0, so that what is left ends in 0. */
+/* Returns X times GAIN, rounded away from 0, so that a remainder ends in 0. */
 static int64_t part_of(int64_t x, int32_t gain_q15)
 {
     return x < 0 ? -((-x * gain_q15 + ONE_Q15 - 1) >> 15)
@@ -62,7 +62,8 @@ void glint_follow_blend(struct glint_follow *f, int32_t elapsed_us,
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Judges by the errors so far whether they are noise, 0, or a change, 1. */
+/* Returns whether the errors so far are noise, 0, or a change, 1, or between.
+ */
 static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
 {
     const int64_t one_way_q15 = (size_of(f->drift) << 15) / (f->spread + floor);
@@ -72,13 +73,14 @@ static int32_t judge_q15(const struct glint_follow *f, int64_t floor)
                        0, ONE_Q15);
 }
 
-/* Takes ERROR in; returns how much of a change it is. */
+/* Takes ERROR into drift and spread; returns how much of a change it is, 0 ..
+ * 1. */
 static int32_t learn_q15(struct glint_follow *f, int64_t error, int64_t floor,
                          int32_t smooth_q15, enum glint_follow_as as)
 {
     if (as == GLINT_FOLLOW_CHANGED ||
         size_of(error) > SUDDEN * (f->spread + floor)) {
-        f->drift = error / 2; /* errors from before are of no use */
+        f->drift = error / 2; /* Earlier errors are of no use after a change. */
         f->spread = size_of(error / 2);
         return ONE_Q15;
     }

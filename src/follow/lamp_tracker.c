@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lights over time: spots of one picture after the other become tracks.
+ * Lamps over time: spots of one picture after the other become tracks.
  *
- * A step: tracks move to where they should be by now and take the spots they
- * find there (match.h); each goes on from its spot or without (record.h); what
- * spots are left over become tracks; the strongest are shown.
- */
+ * In each step tracks move to where they should be by now and take the spots
+ * they find there (match.h); each goes on with its spot or without (record.h);
+ * spots that are left over become tracks; the strongest tracks are shown. */
 #include "glint/lamp_tracker.h"
 
 #include "base/arena.h"
@@ -23,10 +22,12 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-#define REACH_US       1000000 /* a lost lamp may be as far again */
-#define MAX_REACHES    3
-#define WHITE_US \
-    1442695 /* time in which white darkens to 1/e: a stop a second */
+/* Time after which a lost lamp may be found one reach farther away. */
+#define REACH_US    1000000
+#define MAX_REACHES 3
+#define WHITE_US                                                          \
+    1442695 /* microseconds in which white darkens to 1/e; a stop takes a \
+               second */
 
 struct glint_lamp_tracker {
     struct glint_lamp_tracker_config cfg;
@@ -36,8 +37,8 @@ struct glint_lamp_tracker {
     struct glint_record_step step;
     struct glint_record *record; /* [max_tracks] */
     struct glint_match match;
-    int32_t *owner; /* index of the record of each of match.seeker */
-    int32_t *order; /* indices of spots or records */
+    int32_t *owner; /* [max_tracks]: index of the record of each match.seeker */
+    int32_t *order; /* [MAX_SPOTS]: indices of spots or records */
 };
 
 /* ------------------------------------------------------------------- memory */
@@ -59,7 +60,8 @@ static int is_valid(const struct glint_lamp_tracker_config *c)
            is_time(c->smooth_ms);
 }
 
-/* Runs twice: to measure, and to place. NULL if measuring or full. */
+/* Runs twice: once to measure, and once to place. Returns NULL if measuring or
+ * full. */
 static struct glint_lamp_tracker *
 carve(struct glint_arena *a, const struct glint_lamp_tracker_config *c)
 {
@@ -165,7 +167,7 @@ static int32_t reach_of_q8(const struct glint_lamp_tracker *t,
     return t->reach_q8 + (more_q8 < most_q8 ? (int32_t)more_q8 : most_q8);
 }
 
-/* All tracks look where they should be by now. */
+/* Makes a seeker of each track, at the place where it should be by now. */
 static void send_seekers(struct glint_lamp_tracker *t)
 {
     struct glint_match *m = &t->match;
@@ -188,8 +190,8 @@ static void send_seekers(struct glint_lamp_tracker *t)
     }
 }
 
-/* Returns how near a spot must be to be the same lamp where there are N spots:
- * among many there is always one in reach, by chance. */
+/* Returns the squared distance within which a spot is the same lamp if there
+ * are N spots: among many, one always is in reach by chance. */
 static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
 {
     const int64_t reach2_q16 = (int64_t)t->reach_q8 * t->reach_q8;
@@ -197,8 +199,8 @@ static int64_t near2_q16(const struct glint_lamp_tracker *t, int n)
     return n > FEW_SPOTS ? reach2_q16 * FEW_SPOTS / n : reach2_q16;
 }
 
-/* Returns the part that spot NOW keeps of the lamp that was seen as BEFORE and
- * should be where S says. */
+/* Returns how much flux spot NOW shares with BEFORE, which the lamp was last
+ * seen as; 0 if NOW is too far from where S says it should be. */
 static int64_t kept_of(const struct glint_seeker *s,
                        const struct glint_spot *before,
                        const struct glint_spot *now, int64_t limit2_q16)
@@ -213,14 +215,15 @@ static int64_t kept_of(const struct glint_seeker *s,
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-/* One side of a cut: what is seen in one picture, and what of it both have. */
+/* One side of a cut: the flux seen in one picture, and how much of it the other
+ * picture has, too. */
 struct side {
     int64_t flux, kept;
     int n;
 };
 
-/* Returns whether most of A is not in B. Many lamps on one side speak for a cut
- * where the other has none: they came or went all at once. */
+/* Returns whether most of A is not in B. If A has no flux, several lamps in B
+ * speak for a cut: they all came, or went, at once. */
 static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                     const struct side *b)
 {
@@ -228,8 +231,8 @@ static int is_apart(const struct glint_lamp_tracker *t, const struct side *a,
                        : b->n >= MANY_LIGHTS;
 }
 
-/* Returns whether most of the lamps seen before are gone and most of those seen
- * now are new. */
+/* Returns whether most of the flux seen before is gone and most of that seen
+ * now is new. */
 static int is_cut(const struct glint_lamp_tracker *t,
                   const struct glint_spot *spots, int n)
 {
@@ -257,7 +260,7 @@ static int is_cut(const struct glint_lamp_tracker *t,
     return is_apart(t, &before, &now) && is_apart(t, &now, &before);
 }
 
-/* Gives each track its spot, or after a cut none. */
+/* Gives each track its spot; after a cut all tracks are forgotten. */
 static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
                   int n)
 {
@@ -273,7 +276,7 @@ static void match(struct glint_lamp_tracker *t, const struct glint_spot *spots,
 
 /* --------------------------------------------------------------------- new */
 
-/* Returns whether P should make room before Q: lost lamps first, then faint
+/* Returns whether P should make room before Q: lost lamps do first, then faint
  * ones, then young ones. */
 static int yields_first(const struct glint_record *p,
                         const struct glint_record *q)
@@ -286,8 +289,8 @@ static int yields_first(const struct glint_record *p,
     return p_q16 != q_q16 ? p_q16 < q_q16 : p->id > q->id;
 }
 
-/* The place for a new lamp of POWER: a free one, else that of one which is not
- * shown and either lost or fainter. NULL: none. */
+/* Returns the place for a new lamp of POWER: a free one, else that of a track
+ * which is not shown and is lost or fainter; NULL if there is none. */
 static struct glint_record *place_for(struct glint_lamp_tracker *t,
                                       int64_t power_q16)
 {
@@ -321,7 +324,7 @@ static int is_brighter(const void *ctx, int32_t a, int32_t b)
     return p_q16 != q_q16 ? p_q16 > q_q16 : a < b;
 }
 
-/* Spots that no track took become tracks, the brightest first. */
+/* Makes tracks of the spots that no track took, the brightest first. */
 static void begin_tracks(struct glint_lamp_tracker *t,
                          const struct glint_spot *spots, int n)
 {
@@ -347,8 +350,8 @@ static void begin_tracks(struct glint_lamp_tracker *t,
 
 /* -------------------------------------------------------------------- shown */
 
-/* Those that are shown stay so until another is brighter by a quarter: two of
- * the same power do not take turns. */
+/* Returns the power of R for ranking. A track that is shown counts for a
+ * quarter more, so that two of similar power do not take turns. */
 static int64_t score_of(const struct glint_record *r)
 {
     const int64_t power_q16 = r->of[GLINT_CHANNEL_POWER].value;
@@ -365,7 +368,7 @@ static int is_stronger(const void *ctx, int32_t a, int32_t b)
 }
 
 /* Lists all tracks in t->order, the strongest first, and picks those that are
- * shown. */
+ * shown. Returns how many there are. */
 static int rank_tracks(struct glint_lamp_tracker *t)
 {
     int n = 0, n_shown = 0;

@@ -6,8 +6,8 @@
 
 enum {
     NEAREST_SPOTS = 8,
-    FAR_LOG2 = 2, /* log2 of the factor on squared distances where a spot is
-                     faint or a lamp was lost */
+    FAR_LOG2 = 2, /* log2 of the factor on squared distances for a faint spot,
+                     and again for a lost lamp */
     PIXEL2_Q16 = 1 << 16
 };
 
@@ -51,8 +51,8 @@ static void list_numbers(const struct glint_spot *s, int64_t v[SPOT_NUMBERS])
     v[14] = s->sin_q15;
 }
 
-/* Orders spots by all their members: two that are equal in these may change
- * places. */
+/* Orders spots by all their members; only spots that are equal in all of these
+ * may change places. */
 static int spot_before(const void *ctx, int32_t a, int32_t b)
 {
     const struct glint_spot *spots = ctx;
@@ -82,7 +82,8 @@ static int pair_before(const void *ctx, int32_t a, int32_t b)
 
 /* -------------------------------------------------------------------- pairs */
 
-/* -1: too far, or something else. */
+/* Returns the squared distance of SPOT, more if it is faint or the lamp lost;
+ * -1 if it is too far away, or too large a faint spot. */
 static int64_t cost_q16(const struct glint_seeker *s,
                         const struct glint_spot *spot)
 {
@@ -101,7 +102,7 @@ static int64_t cost_q16(const struct glint_seeker *s,
     return is_far ? (d2_q16 + PIXEL2_Q16) << (is_far * FAR_LOG2) : d2_q16;
 }
 
-/* The first of by_x at X or right of it. */
+/* Returns the index in by_x of the first spot at X or to the right of it. */
 static int first_from(const struct glint_match *m,
                       const struct glint_spot *spots, int n, int64_t x_q8)
 {
@@ -118,8 +119,8 @@ static int first_from(const struct glint_match *m,
     return low;
 }
 
-/* Keeps PAIR if it is among the NEAREST_SPOTS of its seeker, whose pairs begin
- * at FIRST, by rising cost. Equals stay in the order of by_x. */
+/* Keeps PAIR if it is among the NEAREST_SPOTS of its seeker. The seeker's pairs
+ * begin at FIRST, by rising cost; equal ones stay in the order of by_x. */
 static void keep_near(struct glint_match *m, int first, struct glint_pair pair)
 {
     int at = m->n_pairs;

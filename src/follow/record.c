@@ -11,7 +11,8 @@
 #define FULL_Q30     (INT32_C(1) << 30)
 #define ONE_Q15      (1 << 15)
 
-enum { REPEATS = 2 }; /* the same once more may be chance */
+/* Repetitions in a row that count; a single one may be chance. */
+enum { REPEATS = 2 };
 
 enum {
     X = GLINT_CHANNEL_X,
@@ -41,8 +42,8 @@ int64_t glint_record_power_q16(const struct glint_spot *spot)
     return clamp(spot->power_q16, 0, MAX_FLUX_Q16);
 }
 
-/* Doubles the angle whose cosine and sine are C and S: the double is the same
- * for both directions of an axis. */
+/* Sets cosine and sine of twice the orientation of S: both directions of an
+ * axis give the same. */
 static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
                          int64_t *sin2_q15)
 {
@@ -53,7 +54,7 @@ static void double_angle(const struct glint_spot *s, int64_t *cos2_q15,
     *sin2_q15 = (2 * c * d) >> 15;
 }
 
-/* Lists a spot's values by channel, held to what a picture can show. */
+/* Lists a spot's values by channel, clamped to what a picture can show. */
 static void list_targets(const struct glint_spot *s,
                          int64_t target[GLINT_CHANNELS])
 {
@@ -70,7 +71,8 @@ static void list_targets(const struct glint_spot *s,
         target[GLINT_CHANNEL_RED + i] = clamp(s->rgb_q15[i], 0, 1 << 20);
 }
 
-/* An error of VALUE that does no harm: 1/32 pixel, 1/64 of light. */
+/* Returns an error of VALUE that does no harm: 1/32 pixel for places, 1/64 for
+ * all other channels, and 1/16 pixel more for sizes. */
 static int64_t floor_of(int channel, int64_t value)
 {
     switch (channel) {
@@ -100,8 +102,8 @@ static int is_same(const struct glint_spot *a, const struct glint_spot *b)
            a->rgb_q15[2] == b->rgb_q15[2];
 }
 
-/* A flux that changes by a quarter from picture to picture is another shape:
- * lamps merged, parted, or something came before them. */
+/* Returns whether the shape of a lamp changed: its flux differs by a quarter
+ * from picture to picture, as lamps merged, separated or were covered. */
 static int is_other_shape(const struct glint_spot *a,
                           const struct glint_spot *b)
 {
@@ -131,9 +133,9 @@ static void slow_down(struct glint_record *r,
     r->velocity_q16[axis] -= r->velocity_q16[axis] * part_q15 / (1 << 15);
 }
 
-/* The velocity is that of the value, which was BEFORE; of noise half as fast. A
- * lamp that crosses the picture in less than a sixteenth of a second is not
- * followed. */
+/* Averages the velocity with that of the last step from BEFORE; noise counts
+ * half as much as change. Velocities are clamped to 16 times the picture's
+ * width a second. */
 static void learn_velocity(struct glint_record *r,
                            const struct glint_record_step *step, int axis,
                            int64_t before_q16, int32_t change_q15)
@@ -152,9 +154,10 @@ static void learn_velocity(struct glint_record *r,
         (now_q16 - r->velocity_q16[axis]) * part_q15 / (1 << 15);
 }
 
-/* A place that belongs to another shape is not motion. Well within the lamp
- * it is taken for noise; beyond it what is shown goes on as it went, and comes
- * round in time. */
+/* Takes a place that belongs to a changed shape, which is no motion. Close to
+ * the expected place, within half the lamp's radius, it counts as noise;
+ * farther away the shown place moves on as before, and is blended to the new
+ * one. */
 static void doubt_place(struct glint_record *r,
                         const struct glint_record_step *step, int axis,
                         int64_t target_q16)
@@ -170,7 +173,8 @@ static void doubt_place(struct glint_record *r,
         glint_follow_jump(f, target_q16, ahead_q16 + f->offset);
 }
 
-/* An error of the lamp's own extent is no noise. */
+/* Returns how to follow a place: an error of more than three quarters of the
+ * lamp's radius is change, not noise. */
 static enum glint_follow_as judge_place(const struct glint_record *r,
                                         int64_t error_q16, int is_repeat)
 {
@@ -179,8 +183,8 @@ static enum glint_follow_as judge_place(const struct glint_record *r,
     return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
 }
 
-/* Returns whether no motion explains TARGET: it is twice the lamp's extent and
- * an eighth of the match distance from its expected place. It may be motion
+/* Returns whether TARGET is too far for the lamp's motion: twice its radius and
+ * an eighth of the match distance from the expected place. It may be motion
  * that begins, or another lamp. */
 static int is_leap(const struct glint_record *r,
                    const struct glint_record_step *step, int axis,
@@ -214,7 +218,7 @@ static void follow_place(struct glint_record *r,
     learn_velocity(r, step, axis, before_q16, change_q15);
 }
 
-/* A lamp without a spot moves on; a hidden one slower and slower. */
+/* Moves a lamp without a spot on; a hidden one slows down. */
 static void coast(struct glint_record *r, const struct glint_record_step *step)
 {
     for (int axis = 0; axis < 2; axis++) {
@@ -224,7 +228,7 @@ static void coast(struct glint_record *r, const struct glint_record_step *step)
     }
 }
 
-/* Returns whether the lamp moves out of the picture, through a border next to
+/* Returns whether the lamp moves out of the picture, through a side close to
  * it. */
 static int is_leaving(const struct glint_record *r,
                       const struct glint_record_step *step)
@@ -258,15 +262,15 @@ static enum glint_follow_as judge_light(int64_t change, int64_t larger,
     return is_repeat ? GLINT_FOLLOW_REPEATED : GLINT_FOLLOW_JUDGED;
 }
 
-/* The time that all of a lamp takes to come or go. */
+/* Returns the time in us in which all of a lamp may appear or vanish. */
 static int32_t blend_us(const struct glint_lamp_tracker_config *cfg,
                         int64_t change)
 {
     return 1000 * (change > 0 ? cfg->attack_ms : cfg->release_ms);
 }
 
-/* Follows TARGET; a change that is faster than all of it in the attack or
- * release time is stretched to that. */
+/* Follows TARGET. A change that is faster than all of the light in the attack
+ * or release time is blended over that time. */
 static void follow_light(struct glint_record *r,
                          const struct glint_record_step *step, int channel,
                          int64_t target, int is_repeat)
@@ -275,7 +279,7 @@ static void follow_light(struct glint_record *r,
     const int64_t before = f->value, shown = glint_follow_shown(f);
     const int64_t larger =
         channel == GLINT_CHANNEL_COS2 || channel == GLINT_CHANNEL_SIN2
-            ? ONE_Q15 /* whichever way the axis lies */
+            ? ONE_Q15 /* in units of a full axis, whichever way it lies */
         : target > before ? target
                           : before;
     const int64_t floor = floor_of(channel, larger);
@@ -352,7 +356,7 @@ void glint_record_see(struct glint_record *r,
     r->lost_us = 0;
 }
 
-/* Returns whether the lamp is so far out that it never comes back, or into any
+/* Returns whether the lamp is so far out that it never comes back, nor into any
  * picture's flare. */
 static int is_far(const struct glint_record *r)
 {
@@ -383,7 +387,8 @@ void glint_record_miss(struct glint_record *r,
 
 /* -------------------------------------------------------------------- level */
 
-/* The part of full level that passes in the time of STEP. */
+/* Returns the part of full level by which a level may change in the time of
+ * STEP, if all of it takes MS. */
 static int32_t level_step_q30(const struct glint_record_step *step, int32_t ms)
 {
     const int64_t part_q30 =
@@ -421,7 +426,7 @@ void glint_record_set_level(struct glint_record *r,
         fade(r, step);
 }
 
-/* The axis that lies at half the angle; across where none is known. */
+/* Sets the axis to half the angle; it is horizontal if both are 0. */
 static void set_axis(struct glint_lamp_track *track, int64_t cos2_q15,
                      int64_t sin2_q15)
 {

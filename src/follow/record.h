@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * One lamp over time: what is held of it, and what a picture makes of that.
+ * One lamp over time: its record, and how a picture changes it.
  *
  *     glint_record_begin(r, id, spot);               once
  *     glint_record_look_ahead(r, &step);             each picture
  *     glint_record_see(r, &step, spot);              or
  *     glint_record_miss(r, &step);
- *     glint_record_set_level(r, &step);
- */
+ *     glint_record_set_level(r, &step); */
 #ifndef GLINT_FOLLOW_RECORD_H
 #define GLINT_FOLLOW_RECORD_H
 
 #include "follow/follow.h"
 #include "glint/lamp_tracker.h"
 
-/* The channels that are followed: places _q16, the rest as in a spot. */
+/* The channels that are followed: places in _q16, all others as in struct
+ * glint_spot. */
 enum glint_record_channel {
     GLINT_CHANNEL_X,
     GLINT_CHANNEL_Y,
@@ -32,35 +32,38 @@ enum glint_record_channel {
 };
 
 struct glint_record {
-    uint32_t id; /* 0: forgotten */
+    uint32_t id; /* 0: the record is free */
     enum glint_lamp_state state;
     struct glint_follow of[GLINT_CHANNELS];
-    struct glint_spot last;  /* it was seen as */
-    int n_same;              /* pictures in a row before that showed the same */
+    struct glint_spot last; /* the spot that it was last seen as */
+    int n_same; /* number of pictures in a row, after the first, that showed the
+                   same spot */
     int64_t velocity_q16[2]; /* pixels a second */
-    int64_t ahead_q16[2];    /* the lamp's expected place now */
+    int64_t ahead_q16[2];    /* pixels: place where the lamp should be by now */
     int32_t level_q30;
-    int32_t lost_us; /* since it was seen; 0: seen now */
-    int is_shown;    /* the caller's: its level rises while it is seen */
+    int32_t lost_us; /* time since it was last seen; 0: it is seen now */
+    int is_shown; /* set by the caller: the level rises while the lamp is seen
+                   */
 };
 
 /* The values that all records of a picture share. */
 struct glint_record_step {
     const struct glint_lamp_tracker_config *cfg;
     struct glint_pace pace;
-    int is_fresh; /* a lamp that begins is at full level at once */
+    int is_fresh; /* 1: a lamp that begins is at full level at once */
 };
 
-/* The flux of a spot, held to 0 .. 2^42: the largest picture, all white. */
+/* Returns the flux of a spot, clamped to 0 .. 2^42: the largest picture, all
+ * white. */
 int64_t glint_record_flux_q16(const struct glint_spot *spot);
 
-/* Its power, held to the same. */
+/* Returns the power of a spot, clamped to 0 .. 2^42. */
 int64_t glint_record_power_q16(const struct glint_spot *spot);
 
 void glint_record_begin(struct glint_record *r, uint32_t id,
                         const struct glint_spot *spot);
 
-/* Sets where the lamp should be by now. */
+/* Sets the place where the lamp should be by now. */
 void glint_record_look_ahead(struct glint_record *r,
                              const struct glint_record_step *step);
 
@@ -68,11 +71,12 @@ void glint_record_see(struct glint_record *r,
                       const struct glint_record_step *step,
                       const struct glint_spot *spot);
 
-/* There is no spot: the lamp moves on, and is forgotten in time. */
+/* Continues a record without a spot: the lamp moves on, and is forgotten in
+ * time. */
 void glint_record_miss(struct glint_record *r,
                        const struct glint_record_step *step);
 
-/* Lets the level rise or fall by the time of the step; sets the state. */
+/* Raises or lowers the level by the time of the step, and sets the state. */
 void glint_record_set_level(struct glint_record *r,
                             const struct glint_record_step *step);
 
