@@ -33,6 +33,24 @@ static void assert_one_region(const struct glint_image *image)
     free(image->plane[0]);
 }
 
+/* A pixel touches those at its corners, on both sides and across the blocks in
+ * which runs are found, and none further. */
+static void test_corners(void **state)
+{
+    (void)state;
+    for (int x = 4; x < 68; x++)
+        for (int off = -3; off <= 3; off++) {
+            struct glint_image image = canvas_new(GLINT_GREY, 72, 8);
+            const struct glint_lamp_finder_config cfg =
+                finder_plain(&image, 200, 250);
+
+            canvas_set_grey(&image, x, 3, 255);
+            canvas_set_grey(&image, x + off, 4, 255);
+            assert_int_equal(finder_find(&cfg, &image), abs(off) > 1 ? 2 : 1);
+            free(image.plane[0]);
+        }
+}
+
 static void test_u_shape(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 20, 20);
@@ -284,6 +302,7 @@ static void test_negative_stride(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_corners),
         cmocka_unit_test(test_u_shape),
         cmocka_unit_test(test_spiral),
         cmocka_unit_test(test_checkerboard_and_comb),
