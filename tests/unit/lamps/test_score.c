@@ -382,8 +382,8 @@ static void test_company(void **state)
     assert_int_equal(least_of(c, 4), -SCORE_COMPANY);
 }
 
-/* Where none is sure, the best one is taken a little below: not one that is
- * faint, nor a second, nor one beside a sure one. */
+/* Where no lamp is sure, the best candidate must pass a little below the limit,
+ * but not if it is faint, nor the second best, nor one beside a sure lamp. */
 static void test_best_one_alone(void **state)
 {
     struct glint_candidate c[4] = {

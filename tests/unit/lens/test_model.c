@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The model file's gate, rule by rule, and rays whose integers are worked out
- * by hand.
+ * The checks of the model file, rule by rule, and rays whose integers are
+ * worked out by hand.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,7 @@
 #include "support/shuffle.h"
 #include "support/rng.h"
 
-/* NULL: accepted. */
+/* Returns why a model is refused; NULL: it is accepted. */
 static const char *reason_of(const void *data, size_t bytes)
 {
     struct glint_lens lens = {NULL, NULL, NULL};
@@ -31,7 +31,7 @@ static const char *reason_of(const void *data, size_t bytes)
         return NULL;
     }
     assert_non_null(reason);
-    assert_null(lens.header); /* untouched */
+    assert_null(lens.header); /* left alone */
     return reason;
 }
 
@@ -69,7 +69,7 @@ static void test_accepted(void **state)
 
 /* ------------------------------------------------------------------- damage */
 
-/* Each in memory of exactly its size, so that an overrun shows. */
+/* Each cut copy has memory of exactly its size, so that an overrun shows. */
 static void test_truncated(void **state)
 {
     struct model_image m = model_auto();
@@ -145,8 +145,8 @@ static void test_not_a_model(void **state)
 
 enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX, KNOT };
 
-/* Some bytes that are changed, and what is then said. Outputs are of system 0,
- * terms and coefficients of output 0. */
+/* Bytes that are changed, and what must then be said; NULL: nothing. Outputs
+ * are those of system 0, terms and coefficients those of output 0. */
 struct rule {
     enum table table;
     size_t at, bytes;
@@ -251,7 +251,7 @@ static const struct rule auto_rules[] = {
     {GHOST_(0, n_systems), 5, no_systems},
     {GHOST_(0, first_system), UINT32_MAX, no_systems},
     {GHOST_(2, n_systems), UINT32_MAX, no_systems},
-    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* Ghost 1 has none. */
+    {GHOST_(1, first_system), UINT32_MAX, NULL}, /* Ghost 1 has no systems. */
     {GHOST_(2, first_system), 1, shared},
     {GHOST_(0, n_systems), 1, NULL},
     {SYSTEM_(0, sine_lo_q30), -1, bad_angles},
@@ -288,9 +288,9 @@ static const struct rule auto_rules[] = {
     {BOX, 0, 4, (1 << 30) - (1 << 19), far_box},
     {BOX, 0, 4, (1 << 30) - (1 << 19) - 1, NULL},
     {BOX, 3 * 4, 4, 0, small_box}, /* half width -s */
-    {BOX, 3 * 4, 4, 1 << 20, NULL}, /* 1 - s */
+    {BOX, 3 * 4, 4, 1 << 20, NULL}, /* half width 1 - s */
     {BOX, 3 * 4, 4, (1 << 20) - 1, small_box},
-    {BOX, 5 * 4, 4, 3 << 20, NULL}, /* w */
+    {BOX, 5 * 4, 4, 3 << 20, NULL}, /* half width 4 - s + 3 w */
     {BOX, 5 * 4, 4, (3 << 20) + 1, small_box},
     {BOX, 5 * 4, 4, -(3 << 20) - 1, small_box},
     {BOX, 6 * 4, 4, -1, small_box},
@@ -422,7 +422,7 @@ static void test_no_ghosts(void **state)
     free(m.data);
 }
 
-/* Many systems over the same tables would take quadratic time. */
+/* Many systems with the same tables would take quadratic time to check. */
 static void test_shared_tables(void **state)
 {
     enum { N = 1000 };
@@ -458,7 +458,7 @@ static struct glint_outputs ray(const struct glint_transfer *t, int32_t u,
     return out;
 }
 
-/* The first range, s from -1 to 1 over the sines 0 .. 1/4. */
+/* Rays of the first range of angles: s is -1 .. 1 over sines of 0 .. 1/4. */
 static void test_rays(void **state)
 {
     struct model_image m = model_auto();
@@ -497,9 +497,9 @@ static void test_rays(void **state)
     free(m.data);
 }
 
-/* An energy that is the square, or the square of the square, of its polynomial,
- * which counts 2^head times: half of the most is a quarter of it, and a
- * sixteenth; what is below 0 is none. */
+/* An energy is its polynomial, the square of it or the square of the square,
+ * and counts 2^head times: half of the most must give a half, a quarter or a
+ * sixteenth, and what is below 0 must give 0. */
 static void test_roots(void **state)
 {
     const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
@@ -531,7 +531,7 @@ static void test_roots(void **state)
         }
 }
 
-/* Ranges, bands, and the box. */
+/* A transfer must take system and box by the ranges of angles and bands. */
 static void test_init(void **state)
 {
     struct model_image m = model_auto();
@@ -587,7 +587,8 @@ static void test_sparse_rays(void **state)
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 134217728);   /* 0.25 */
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 0);
     assert_int_equal(out.at[GLINT_OUT_RADIUS], 134217728);
-    /* between the knots of 1/4 and 1/2: middle 0.375, halves 0.5, 0.75 */
+    /* Halfway between the knots of 1/4 and 1/2 the box has its middle at 0.375
+     * and halves of 0.5 and 0.75. */
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 3 * (ONE / 8), 1), 1);
     assert_int_equal(t.box[0], 3 * (ONE / 8));
     assert_int_equal(t.box[1], ONE / 2);
@@ -600,7 +601,7 @@ static void test_sparse_rays(void **state)
     free(m.data);
 }
 
-/* Every coefficient as large as it may be, the box too, signs by SEED. */
+/* Sets coefficients and box to the largest values allowed, signs by SEED. */
 static void fill_up(struct model_image *m, uint32_t *seed)
 {
     const struct glint_model_header *h = model_header(m);
@@ -631,7 +632,7 @@ static void fill_up(struct model_image *m, uint32_t *seed)
     model_seal(m);
 }
 
-/* Nothing leaves its range; CONFIG=qcheck looks at every step. */
+/* No output may leave its range; CONFIG=qcheck looks at every step. */
 static void test_extremes(void **state)
 {
     struct model_image m[2] = {model_auto(), model_sparse()};
@@ -663,7 +664,7 @@ static void test_extremes(void **state)
 
 /* ----------------------------------------------------------------- vertices */
 
-/* 64 pixels a millimetre about (1000, 500). */
+/* Returns a place of 64 pixels a millimetre about (1000, 500). */
 static struct glint_place upright(void)
 {
     const struct glint_place place = {.cos_q30 = ONE,
@@ -693,10 +694,10 @@ static void test_grid(void **state)
     assert_int_equal(v[8].barrel_q16[0], 65536);
     assert_int_equal(v[8].barrel_q16[1], 0);
     assert_int_equal(v[8].energy_q16, 49152);
-    /* u = -1, v = 1: (-0.125, 0.25); rows are of rising v */
+    /* u = -1, v = 1: sensor (-0.125, 0.25) mm; v rises from row to row */
     assert_int_equal(v[6].x_q8, (1000 - 8) << 8);
     assert_int_equal(v[6].y_q8, (500 - 16) << 8);
-    /* mirrored in the light's plane */
+    /* The first row is the last one mirrored in the plane of the light. */
     for (int i = 0; i < 3; i++) {
         assert_int_equal(v[i].x_q8, v[6 + i].x_q8);
         assert_int_equal(v[i].y_q8 - (500 << 8), (500 << 8) - v[6 + i].y_q8);
@@ -705,7 +706,7 @@ static void test_grid(void **state)
         assert_int_equal(v[3 + i].y_q8, 500 << 8);
     }
     place.cos_q30 = 0;
-    place.sin_q30 = ONE; /* the light above: x becomes up, y becomes left */
+    place.sin_q30 = ONE; /* light above: x becomes up, y left */
     glint_transfer_grid(&t, &place, 2, turned);
     for (int k = 0; k < 9; k++) {
         assert_int_equal(turned[k].x_q8 - (1000 << 8), v[k].y_q8 - (500 << 8));
@@ -717,8 +718,8 @@ static void test_grid(void **state)
     free(m.data);
 }
 
-/* An annular one's rows lie between its rim and the box's, on both sides, where
- * a finer grid of the whole box has them too. */
+/* Rows of an annular grid lie between its rim and that of the box, on both
+ * sides. They must have the vertices of a finer grid of the whole box. */
 static void test_hollow_grid(void **state)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
@@ -751,7 +752,7 @@ static void test_hollow_grid(void **state)
     free(m.data);
 }
 
-/* The sparse basis has no mirror, and squares its radius. */
+/* A grid of the sparse basis is not mirrored, and squares its radius. */
 static void test_sparse_grid(void **state)
 {
     struct model_image m = model_sparse();
@@ -785,7 +786,7 @@ static void test_lost(void **state)
     place.pixels_per_mm.exponent = -10; /* 2^20 pixels a millimetre */
     glint_transfer_grid(&t, &place, 1, v);
     assert_true(v[1].energy_q16 < 0 && v[3].energy_q16 < 0);
-    assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0); /* 0.25 mm */
+    assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0); /* 0.25 mm off */
     for (int e = -200; e <= 200; e++) {
         place.pixels_per_mm.exponent = e;
         glint_transfer_grid(&t, &place, 1, v);
@@ -794,8 +795,8 @@ static void test_lost(void **state)
     free(m.data);
 }
 
-/* Sums of 2^30 - 1 at two knots are 2^30 halfway, where two coefficients are
- * rounded up: half of that rounds to 1/65536 at a shift of 31. */
+/* Between two knots with sums of 2^30 - 1 the sum is 2^30, as two coefficients
+ * are rounded up: shifted by 31 it must round to 1/65536. */
 static void test_strays_between_knots(void **state)
 {
     static const int32_t sum[2][2] = {{1, ONE - 2}, {2, ONE - 3}};
@@ -812,7 +813,7 @@ static void test_strays_between_knots(void **state)
     (void)state;
     for (int knot = 0; knot < MODEL_KNOTS; knot++)
         memcpy(coef[knot], sum[knot % 2], sizeof sum[0]);
-    o[5].kind = GLINT_OUT_BARREL_0; /* was the radius */
+    o[5].kind = GLINT_OUT_BARREL_0; /* in place of the radius */
     o[5].n_terms = 2;
     o[5].exponent = -47;
     o[5].term_at = model_put(&m, one_and_x, sizeof one_and_x);
@@ -824,7 +825,7 @@ static void test_strays_between_knots(void **state)
     glint_transfer_grid(
         &t, &(struct glint_place){.cos_q30 = ONE, .pixels_per_mm = {ONE, -40}},
         1, v);
-    for (int k = 1; k < 4; k += 2) { /* those of x = 1 */
+    for (int k = 1; k < 4; k += 2) { /* vertices at x = 1 */
         assert_true(v[k].energy_q16 >= 0);
         assert_int_equal(v[k].barrel_q16[0], 1);
     }
@@ -850,8 +851,8 @@ static void check_corpus(const char *path, struct model_image m)
     free(m.data);
 }
 
-/* What the fuzzer starts from is of today's layout; GLINT_GOLDEN_UPDATE=1
- * writes it anew. */
+/* Models that the fuzzer starts from must have today's layout;
+ * GLINT_GOLDEN_UPDATE=1 writes them anew. */
 static void test_corpus(void **state)
 {
     (void)state;

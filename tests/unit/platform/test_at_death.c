@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What must be put right is, whatever ends the process.
+ * Functions for the end of a process must run whatever ends it.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,7 @@
 
 #include "posix/at_death.h"
 
-static int told[2]; /* a pipe */
+static int told[2]; /* pipe from the child */
 
 static void tell(char c)
 {
@@ -37,8 +37,8 @@ static void second(void)
     tell('2');
 }
 
-/* Runs DIE in a child that has two functions to run, and gives how it ended and
- * what they wrote. */
+/* Runs DIE in a child that has two functions to run at its end. Returns how the
+ * child ended, and sets TEXT to what the functions wrote. */
 static int end_of(void (*die)(int), int number, char text[8])
 {
     const struct rlimit no_core = {0, 0};
@@ -50,7 +50,7 @@ static int end_of(void (*die)(int), int number, char text[8])
     child = fork();
     if (child == 0) {
         for (int i = 1; i < SIGRTMIN; i++)
-            signal(i, SIG_DFL); /* cmocka takes faults */
+            signal(i, SIG_DFL); /* in place of cmocka's */
         close(told[0]);
         setrlimit(RLIMIT_CORE, &no_core);
         if (!glint_at_death(first) || !glint_at_death(second) ||
@@ -89,7 +89,7 @@ static void by_quick_exit(int number)
     _exit(number);
 }
 
-/* A true fault, not one that a sanitizer sees coming. */
+/* Ends the process by a true fault, not one that a sanitizer sees coming. */
 static void by_fault(int number)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
@@ -167,7 +167,8 @@ static void test_exit(void **state)
     assert_string_equal(text, "");
 }
 
-/* An application's handler that has had enough. */
+/* A handler of the application's own that ends the process by
+ * glint_at_death_by() must have the functions run. */
 static void test_own_handler(void **state)
 {
     char text[8];
@@ -189,7 +190,8 @@ static void test_ignored(void **state)
     how = end_of(by_ignored, SIGHUP, text);
     assert_true(WIFEXITED(how));
     assert_int_equal(WEXITSTATUS(how), 5);
-    /* SIGPIPE is ignored from the first call on: exit code 0 of end_of */
+    /* SIGPIPE and SIGXFSZ are ignored from the first call on, so that end_of()
+     * comes to its exit code 0. */
     how = end_of(by_raise, SIGPIPE, text);
     assert_true(WIFEXITED(how));
     assert_int_equal(WEXITSTATUS(how), 0);

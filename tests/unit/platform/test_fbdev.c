@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A framebuffer and a console that are files with ioctl() answered here: what
- * is drawn where, and that any call may fail.
+ * A framebuffer and a console that are files, and an ioctl() that answers for
+ * them: what is drawn where, and that any call may fail.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,8 @@
 
 /* ---------------------------------------------------------------- scenery */
 
-/* 8 x 6 pixels of XRGB8888 in rows of 40 bytes, one screen of memory. */
+/* Resets the framebuffer to 8 x 6 pixels of XRGB8888 in rows of 40 bytes, with
+ * memory for one screen. */
 static void reset(void)
 {
     uint8_t old[256];
@@ -61,7 +62,8 @@ static void reset(void)
     fake_fb_calls = fake_fb_fail_at = fake_fb_maps = 0;
 }
 
-/* As of vc4: two screens, panned line by line. */
+/* Resets the framebuffer to two screens that pan line by line, as vc4 has
+ * them. */
 static void reset_pages(void)
 {
     reset();
@@ -88,7 +90,7 @@ static void scribble(off_t at, uint8_t value)
     close(fd);
 }
 
-/* A grey picture of one code. */
+/* Returns a grey picture of one code. */
 static const struct glint_image *grey(int width, int height, int code)
 {
     static uint8_t mem[64 * 64];
@@ -119,8 +121,8 @@ static void must_put(struct glint_fbdev *fb, const struct glint_image *image)
         fail_msg("%s", error.text);
 }
 
-/* Rows of 40 bytes from FIRST on: CODE in the 32 of each that are pixels, and
- * what was there before behind. */
+/* Checks six rows of 40 bytes from FIRST on: CODE in the 32 bytes that are
+ * pixels, and what was there before in the others. */
 static void expect_screen(size_t first, int code)
 {
     const uint8_t *const mem = memory() + first;
@@ -157,7 +159,8 @@ static void test_draws(void **state)
     assert_int_equal(fake_fb_maps, 0);
 }
 
-/* What is not the picture's is black, whatever the last one covered. */
+/* Where the picture does not reach, black must be drawn, whatever the last
+ * picture covered. */
 static void test_borders(void **state)
 {
     struct glint_fbdev fb;
@@ -171,7 +174,7 @@ static void test_borders(void **state)
     mem = memory();
     for (int y = 0; y < 6; y++)
         assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
-    scribble(0, 123); /* Black borders are drawn once only. */
+    scribble(0, 123); /* Black is not drawn again. */
     must_put(&fb, grey(8, 2, 50));
     assert_int_equal(memory()[0], 123);
     fb.sink.close(&fb.sink);
@@ -189,7 +192,7 @@ static void test_odd_start(void **state)
     expect_screen(0x64, 77);
     assert_int_equal(memory()[0x63], 0xaa);
     fb.sink.close(&fb.sink);
-    /* a console that scrolled: what is looked at begins lower down */
+    /* After a console has scrolled, the part in view begins lower down. */
     reset();
     fake_fb->var.yres_virtual = 20;
     fake_fb->var.yoffset = 5;
@@ -247,7 +250,7 @@ static void test_no_pages(void **state)
     fb.sink.close(&fb.sink);
 
     reset_pages();
-    fake_fb->fix.smem_len = 11 * 40; /* less than it says */
+    fake_fb->fix.smem_len = 11 * 40; /* less than 12 lines */
     must_open(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     assert_int_equal(fake_fb->n_pan, 0);
@@ -259,7 +262,7 @@ static void test_no_pages(void **state)
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
 
-    reset_pages(); /* The driver can pan at first, and then no longer. */
+    reset_pages(); /* The driver can pan at first, then not. */
     must_open(&fb, NULL);
     must_put(&fb, grey(8, 6, 9));
     fake_fb->can_pan = false;
@@ -267,7 +270,7 @@ static void test_no_pages(void **state)
     must_put(&fb, grey(8, 6, 11));
     assert_int_equal(memory()[fake_fb->var.yoffset * 40], 11);
     must_put(&fb, grey(8, 6, 12));
-    assert_int_equal(fake_fb->n_pan, 1); /* tried no more */
+    assert_int_equal(fake_fb->n_pan, 1); /* not tried again */
     fb.sink.close(&fb.sink);
 }
 
@@ -318,7 +321,8 @@ static void test_goes_away(void **state)
     assert_int_equal(fake_fb_maps, 0);
 }
 
-/* Another program sets 16 bits, and two screens, and back. */
+/* Another program sets 16 bits, then two screens of 32: both must be
+ * followed. */
 static void test_mode_changes(void **state)
 {
     struct glint_fbdev fb;
@@ -349,7 +353,7 @@ static void test_mode_changes(void **state)
     fb.sink.close(&fb.sink);
 }
 
-/* A driver that says nothing of its bits. */
+/* A driver that reports no bit fields must get the usual ones. */
 static void test_no_fields(void **state)
 {
     static const struct fb_bitfield none;
@@ -475,7 +479,7 @@ static void test_console(void **state)
     (void)state;
     reset();
     check_console(true, KD_GRAPHICS, KD_TEXT);
-    fake_fb->tty_mode = KD_GRAPHICS; /* A killed program left it behind. */
+    fake_fb->tty_mode = KD_GRAPHICS; /* A killed program left it so. */
     check_console(true, KD_GRAPHICS, KD_TEXT);
     fake_fb->tty_mode = KD_GRAPHICS; /* An X server has the console. */
     fake_fb->tty_switching = VT_PROCESS;
@@ -485,7 +489,8 @@ static void test_console(void **state)
     check_console(false, KD_TEXT, KD_TEXT);
 }
 
-/* Once given back, the console is nobody's, and descriptors are used again. */
+/* A console that was given back must be left alone at the end of the process,
+ * even though another file has its descriptor. */
 static void test_let_go(void **state)
 {
     int how;
@@ -506,7 +511,8 @@ static void test_let_go(void **state)
     assert_int_equal(fake_fb->tty_mode, KD_GRAPHICS);
 }
 
-/* Ends by HOW after an odd number of frames, the second screen in view. */
+/* Runs in a child: shows the second screen, then ends by signal HOW; 0: by
+ * exit(). */
 static void end_child(int how)
 {
     static const struct glint_fbdev_options options = {.console = true};
@@ -514,14 +520,14 @@ static void end_child(int how)
 
     for (int i = 1; i < SIGRTMIN; i++)
         signal(i, SIG_DFL);
-    must_open(&fb, NULL); /* the order of lists is not that of opening */
+    must_open(&fb, NULL); /* lists in another order than opening */
     fb.sink.close(&fb.sink);
     must_open(&fb, &options);
     must_put(&fb, grey(8, 6, 1));
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
         _exit(99);
     if (fork() == 0)
-        exit(0); /* a child of its own changes nothing */
+        exit(0); /* The end of its own child changes nothing. */
     while (wait(NULL) < 0)
         ;
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
@@ -531,7 +537,9 @@ static void end_child(int how)
     raise(how);
 }
 
-/* Must come first: the first open takes the signals for the whole process. */
+/* Whatever ends a process, the console must be text and the first screen in
+ * view. This test must come first: the first open takes the signals for the
+ * whole process. */
 static void test_every_end(void **state)
 {
     static const int ends[] = {0,       SIGINT,  SIGTERM, SIGHUP,
@@ -553,14 +561,15 @@ static void test_every_end(void **state)
             assert_int_equal(WTERMSIG(how), ends[i]);
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
-        /* Panning back came before text. */
+        /* Panning back must come before text. */
         assert_int_equal(fake_fb->yoffset_at_text, 0);
     }
 }
 
 /* ---------------------------------------------------------------- failures */
 
-/* Three frames of two sizes; false: something failed, and says so. */
+/* Draws three frames of two sizes. Returns false if something failed, which
+ * must have been reported. */
 static bool live(void)
 {
     static const struct glint_fbdev_options options = {.console = true,

@@ -53,7 +53,7 @@ static void test_formats(void **state)
     expect_format("RGBP", GLINT_RGB565);
 }
 
-/* The words are spelled by hand: 'Y' is the lowest byte. */
+/* FOURCCs by hand: 'Y' is the lowest byte. */
 static void test_words(void **state)
 {
     (void)state;
@@ -128,7 +128,7 @@ static void test_colour_defaults(void **state)
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
     assert_int_equal(i.transfer, GLINT_TONE_SRGB);
-    /* JPEG is of full range */
+    /* JPEG has full range. */
     assert_true(read_colour(&i, GLINT_I420, V4L2_COLORSPACE_JPEG, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
@@ -157,7 +157,8 @@ static void test_colour_stated(void **state)
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    /* Not all that a driver may say has a counterpart. */
+    /* A driver may name colours that have no counterpart; this must be
+     * reported. */
     assert_false(read_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_false(read_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,

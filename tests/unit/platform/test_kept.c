@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Picture files that are opened, lit and written with all that they hold: PNM
- * and PFM, which need no plug-in.
+ * Picture files that are opened, lit and written must keep all that they hold:
+ * PNM and PFM, which need no plug-in.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -32,7 +32,7 @@ static void expect_file(const char *name, const char *data, size_t bytes)
     assert_memory_equal(got, data, bytes);
 }
 
-/* Opens, adds LIGHT to all of it, and writes it as NAME again. */
+/* Opens NAME, adds LIGHT to all of it, and writes it as TO. */
 static void light_up(const char *name, const char *to, float light)
 {
     struct glint_kept kept;
@@ -65,7 +65,7 @@ static void check_same(const char *name, const char *data, size_t bytes)
                 data, bytes);
 }
 
-/* Comments, depth, byte order and what follows the picture stay. */
+/* Comments, depth, byte order and bytes behind the picture must stay. */
 static void test_stays(void **state)
 {
     (void)state;
@@ -89,7 +89,8 @@ static void test_light(void **state)
     expect_file("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
 }
 
-/* Another type has the depth that it takes, and says what it does not. */
+/* A file of another type must have a depth that this type takes, and losses
+ * must be reported. */
 static void test_converts(void **state)
 {
     struct glint_kept kept;
@@ -153,7 +154,7 @@ static void test_refuses(void **state)
     refuse(GLINT_E_UNSUPPORTED, BYTES("YUV4MPEG2 W2 H2\n"), "is a video");
     assert_int_equal(glint_kept_open(&kept, "/nowhere/x", &error), GLINT_E_IO);
     assert_int_equal(glint_kept_check("a.y4m", &error), GLINT_E_UNSUPPORTED);
-    if (!stated) { /* once loaded it stays */
+    if (!stated) { /* A loaded plug-in stays. */
         setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
         refuse(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"), "plug-in");
         unsetenv("GLINT_OIIO");

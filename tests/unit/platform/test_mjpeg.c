@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * MJPEG: frames that libjpeg writes here come back as the planes they were made
- * of, and as libjpeg's own scan lines; then what cameras do to frames, and what
- * cables do.
+ * MJPEG: frames that libjpeg writes here must come back as the planes that they
+ * were made of, and as libjpeg's own scan lines; then habits of cameras, and
+ * damage on the way.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,7 +41,7 @@ static const struct coding y422 = {64, 48, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 0};
 static const struct coding grey = {64, 48, {{1, 1}, {0, 0}, {0, 0}}, 0, 0, 0};
 
 struct bytes {
-    uint8_t *data; /* A block of exactly N bytes shows reads beyond them. */
+    uint8_t *data; /* exactly N bytes: reads beyond show */
     size_t n;
 };
 
@@ -54,7 +54,8 @@ static struct bytes copy_of(const void *data, size_t n)
     return b;
 }
 
-/* What plane P holds: gradients that differ, and noise on top where asked. */
+/* Returns the sample of plane P at (X, Y): gradients that differ by plane, with
+ * noise on top where asked. */
 static uint8_t sample(const struct coding *c, int p, int x, int y)
 {
     static const int base[] = {20, 60, 200}, dx[] = {2, 1, -1},
@@ -88,7 +89,8 @@ static void write_planes(struct jpeg_compress_struct *j, const struct coding *c)
     }
 }
 
-/* TUNE may change what it likes before the frame is written. */
+/* Returns a frame of coding C; TUNE may change settings before it is
+ * written. */
 static struct bytes encode(const struct coding *c,
                            void (*tune)(struct jpeg_compress_struct *))
 {
@@ -125,7 +127,7 @@ static struct bytes encode(const struct coding *c,
     return exact;
 }
 
-/* Offset of the first segment MARKER at or after AT. */
+/* Returns the offset of the first segment MARKER at or after AT. */
 static size_t find(const struct bytes *b, int marker, size_t at)
 {
     while (at + 1 < b->n && (b->data[at] != 0xff || b->data[at + 1] != marker))
@@ -170,7 +172,7 @@ static struct glint_mjpeg *open_decoder(int width, int height)
     return d;
 }
 
-/* Decodes what must decode. */
+/* Returns the picture of a frame that must decode. */
 static struct glint_image decode(struct glint_mjpeg *d, const struct bytes *b)
 {
     struct glint_image image;
@@ -218,7 +220,8 @@ static void expect_planes(const struct glint_image *i, const struct coding *c)
         assert_null(i->plane[p]);
 }
 
-/* Against scan lines of libjpeg, its chroma repeated without a filter. */
+/* Checks the planes against scan lines of libjpeg, with chroma repeated and not
+ * filtered. */
 static void expect_scanlines(const struct glint_image *i, const struct bytes *b)
 {
     const int halved = i->format == GLINT_I420 || i->format == GLINT_I422;
@@ -276,7 +279,7 @@ static void test_codings(void **state)
         {{{1, 2}, {1, 2}, {1, 2}}, GLINT_I444},
         {{{1, 3}, {1, 3}, {1, 3}}, GLINT_I444},
         {{{2, 1}, {1, 1}, {1, 1}}, GLINT_I422},
-        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* ffmpeg writes 4:2:2 so. */
+        {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422}, /* as ffmpeg does */
         {{{2, 2}, {1, 1}, {1, 1}}, GLINT_I420},
     };
     static const int size[][2] = {
@@ -295,9 +298,10 @@ static void test_codings(void **state)
         }
 }
 
-/* Written by hand, without Huffman tables: one block of 8 x 8, all steps of the
- * quantiser 1. Difference of DC 400: class 9, 1111110; 110010000; then end of
- * block, 1010; padding. 128 + 400 / 8 = 178. */
+/* A frame written by hand, without Huffman tables: one block of 8 x 8, with all
+ * steps of the quantiser 1. The difference of DC is 400: class 9, 1111110;
+ * 110010000; then end of block, 1010; padding. All samples must be 128 + 400 /
+ * 8 = 178. */
 static void test_by_hand(void **state)
 {
     static const uint8_t head[] = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
@@ -342,7 +346,7 @@ static void test_no_huffman_tables(void **state)
     expect_planes(&image, &y422);
     image = decode(d, &other);
     expect_planes(&image, &own);
-    image = decode(d, &b); /* The other frame's tables are not kept. */
+    image = decode(d, &b); /* not by the other's tables */
     expect_planes(&image, &y422);
     free(other.data);
     free(b.data);
@@ -364,7 +368,7 @@ static void test_nothing_is_kept(void **state)
     glint_mjpeg_close(d);
 }
 
-/* Each habit on its own, then all of them. */
+/* Frames must decode with every combination of these habits of cameras. */
 static void test_camera_habits(void **state)
 {
     static const uint8_t avi1[] = {0xff, 0xe0, 0, 16, 'A', 'V', 'I', '1', 0,
@@ -390,7 +394,7 @@ static void test_camera_habits(void **state)
             splice(&b, find(&b, 0xdb, 0), 0, soi, sizeof soi);
         if (habits & 4) /* A second start of image comes at once. */
             splice(&b, 0, 0, soi, sizeof soi);
-        if (habits & 8) /* Stray bytes precede the third restart marker. */
+        if (habits & 8) /* Two bytes precede the third restart marker. */
             splice(&b, find(&b, 0xd2, 300), 0, "\x12\x34", 2);
         if (habits & 16) /* Half of the frame follows once more. */
             splice(&b, b.n, 0, b.data, b.n / 2);
@@ -510,7 +514,7 @@ static void test_deep_and_odd_processes(void **state)
     b.data[frame + 1] = 0xc3;
     expect_refusal(d, &b, GLINT_E_UNSUPPORTED, "SOF type 0xc3");
     b.data[frame + 1] = 0xc0;
-    b.data[frame + 6] = 0; /* height, to follow in a marker of its own */
+    b.data[frame + 6] = 0; /* height 0: given later by a marker */
     expect_refusal(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
     free(b.data);
     glint_mjpeg_close(d);
@@ -578,7 +582,7 @@ static void test_every_truncation(void **state)
     check_truncations(c);
 }
 
-/* STDERR_FILENO goes to FILE; returns what brings it back. */
+/* Sends stderr to FILE; returns a descriptor to bring it back with. */
 static int divert(FILE *file)
 {
     const int kept = dup(STDERR_FILENO);
@@ -587,8 +591,8 @@ static int divert(FILE *file)
     return kept;
 }
 
-/* Whatever the damage, an answer comes, in silence, and the next frame is
- * right. */
+/* Whatever the damage, decoding must return without a message, and the next
+ * frame must be right. */
 static void test_damage(void **state)
 {
     struct coding c = {48, 32, {{2, 1}, {1, 1}, {1, 1}}, 3, 0, 1};
@@ -620,7 +624,7 @@ static void test_damage(void **state)
     assert_int_equal(fseek(said, 0, SEEK_END), 0);
     assert_int_equal(ftell(said), 0);
     fclose(said);
-    assert_in_range(n_refused, 300, 2999); /* some damage goes unseen */
+    assert_in_range(n_refused, 300, 2999); /* some is not noticed */
     image = decode(d, &whole);
     expect_planes(&image, &c);
     free(whole.data);
@@ -654,7 +658,8 @@ static void test_garbage(void **state)
     glint_mjpeg_close(d);
 }
 
-/* A restart interval that is lost shifts the rest: seen by its number. */
+/* A restart interval that is lost shifts all that follow: their numbers must
+ * show it. */
 static void test_lost_interval(void **state)
 {
     struct coding c = y422;
@@ -673,7 +678,7 @@ static void test_lost_interval(void **state)
     glint_mjpeg_close(d);
 }
 
-/* The heap after a hundred frames, good and bad, is that after ten. */
+/* The heap after a hundred frames, good and bad, must be that after ten. */
 static void test_memory_is_constant(void **state)
 {
     struct glint_mjpeg *const d = open_decoder(720, 405);

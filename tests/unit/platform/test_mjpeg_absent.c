@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Without libjpeg an MJPEG camera is refused in words.
+ * Without libjpeg an MJPEG camera must be refused with a message.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Output files are whole or not there, whatever goes wrong.
+ * Output files must be whole or not be there, whatever goes wrong.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -146,7 +146,8 @@ static void test_follows_links(void **state)
     unlink(path);
 }
 
-/* Small writes, large ones, and one of exactly the buffer, in order. */
+/* Small writes, large ones, and one of exactly the buffer's size must be
+ * written in order. */
 static void test_sizes(void **state)
 {
     static const size_t sizes[] = {1, 65535, 1, 65536, 3, 200000, 65537, 7};
@@ -192,7 +193,7 @@ static void test_full_device(void **state)
     assert_int_equal(glint_output_write(&out, data, 1, &error), GLINT_E_OUTPUT);
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
 
-    /* Data that fits the buffer fails at the end only. */
+    /* Data that fits the buffer fails at the end alone. */
     assert_int_equal(
         glint_output_open(&out, "/dev/full", GLINT_OUTPUT_TEXT, &error),
         GLINT_OK);
@@ -201,7 +202,8 @@ static void test_full_device(void **state)
     assert_int_equal(out.fd, -1);
 }
 
-/* A limit on the size of files stands for a disk that is full. */
+/* Returns 0 if a full disk is reported; a limit on the size of files stands for
+ * it. */
 static int overflow_disk(void)
 {
     static uint8_t data[100000];
@@ -255,7 +257,8 @@ static void test_closed_pipe(void **state)
     close(fd[1]);
 }
 
-/* A pipe that does not block and is read slowly takes everything in the end. */
+/* A pipe that does not block and is read slowly must get everything in the
+ * end. */
 static void test_nonblocking_pipe(void **state)
 {
     static uint8_t data[300000];
@@ -319,7 +322,8 @@ static void check_death(int signal_number, int handled)
     assert_int_equal(scratch_count(scratch_dir), 0);
 }
 
-/* Must come first: the first open takes the signals for the whole process. */
+/* A signal must leave no file behind. This test must come first: the first open
+ * takes the signals for the whole process. */
 static void test_signals(void **state)
 {
     (void)state;
@@ -370,7 +374,7 @@ static void test_refuses(void **state)
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
     refuse(scratch_dir, text);
 
-    /* a name that is too long loses its beginning, not the cause */
+    /* A name that is too long must lose its beginning, not the cause. */
     snprintf(name, sizeof name, "/nowhere/%0250d/x\n.ppm", 1);
     assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
                      GLINT_E_OUTPUT);

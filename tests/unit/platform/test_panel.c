@@ -21,8 +21,8 @@ static const struct glint_pixel_layout xrgb8888 = {
 
 /* ------------------------------------------------------------------ colours */
 
-/* The standards' own constants, 6 digits: R' per Cr, G' per Cb and Cr, B' per
- * Cb; codes of full range. */
+/* Constants of the standards, 6 digits: R' per Cr, G' per Cb and per Cr, B' per
+ * Cb, for codes of full range. */
 static const double constants[2][4] = {
     [GLINT_MATRIX_BT601] = {1.402, -.344136, -.714136, 1.772},
     [GLINT_MATRIX_BT709] = {1.5748, -.187324, -.468124, 1.8556},
@@ -52,7 +52,7 @@ struct tally {
     int worst;
 };
 
-/* One row of all luma codes with this chroma. */
+/* Checks a row of all luma codes with chroma CB, CR, and counts it in T. */
 static void tally_row(struct tally *t, struct glint_row_rgb *row,
                       struct glint_image *image, int cb, int cr)
 {
@@ -116,7 +116,8 @@ static void test_every_colour(void **state)
 
 /* ------------------------------------------------------------------- bars */
 
-/* Red, green, blue, white, black, mid grey as pixels, by hand. */
+/* Layouts, with the pixels of red, green, blue, white, black and mid grey by
+ * hand. */
 static const struct layout_case {
     const char *name;
     struct glint_pixel_layout layout;
@@ -214,7 +215,8 @@ static void test_layouts(void **state)
     }
 }
 
-/* As the core writes 16 bits: what was widened comes back. */
+/* Codes of RGB565, which are widened to 8 bits on the way, must come back on a
+ * panel of 16 bits. */
 static void test_565_there_and_back(void **state)
 {
     static uint8_t codes[2 * 65536], mem[2 * 65536];
@@ -241,7 +243,7 @@ static void test_565_there_and_back(void **state)
     glint_panel_close(&panel);
 }
 
-/* Every code in every number of bits up to 8 is rounded to the nearest. */
+/* A code in 1 to 8 bits must be the nearest, for every code. */
 static void test_fewer_bits(void **state)
 {
     uint8_t ramp[256], mem[2 * 256];
@@ -272,15 +274,15 @@ static void test_fewer_bits(void **state)
 static void test_refuses_layouts(void **state)
 {
     static const struct glint_pixel_layout bad[] = {
-        {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits */
-        {5, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* 40 */
-        {2, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* beyond the word */
-        {4, {16, 8}, {12, 8}, {0, 8}, {0, 0}},    /* overlap */
+        {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits a pixel */
+        {5, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* 40 bits a pixel */
+        {2, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* red beyond the word */
+        {4, {16, 8}, {12, 8}, {0, 8}, {0, 0}},    /* green overlaps red */
         {4, {16, 8}, {8, 8}, {0, 8}, {20, 8}},    /* alpha overlaps */
         {4, {16, 8}, {8, 8}, {0, 0}, {0, 0}},     /* no blue */
-        {4, {-1, 8}, {8, 8}, {16, 8}, {0, 0}},    /* before the word */
-        {4, {16, 8}, {8, 8}, {0, 8}, {28, 8}},    /* alpha beyond */
-        {4, {16, 2000}, {8, 8}, {0, 8}, {28, 8}}, /* nonsense */
+        {4, {-1, 8}, {8, 8}, {16, 8}, {0, 0}},    /* red before the word */
+        {4, {16, 8}, {8, 8}, {0, 8}, {28, 8}},    /* alpha beyond the word */
+        {4, {16, 2000}, {8, 8}, {0, 8}, {28, 8}}, /* red of 2000 bits */
     };
     struct glint_panel_config cfg = {.width = 8,
                                      .height = 8,
@@ -310,8 +312,9 @@ static void test_refuses_layouts(void **state)
 
 /* ------------------------------------------------------------------ formats */
 
-/* A picture in FORMAT of random codes, rows apart by PAD bytes more than they
- * need, upside down in memory where PAD is negative; malloc'ed. */
+/* Returns the malloc'ed memory of a picture in FORMAT with random codes. Its
+ * rows are PAD bytes farther apart than they need be, and upside down in memory
+ * where PAD is negative. */
 static uint8_t *make_picture(struct glint_image *image,
                              enum glint_pixel_format format, int width,
                              int height, int pad)
@@ -342,7 +345,7 @@ static uint8_t *make_picture(struct glint_image *image,
     return mem;
 }
 
-/* The sample I of a pixel, by each format's own definition. */
+/* Returns sample I of a pixel, by each format's own definition. */
 static int sample_of(const struct glint_image *im, int i, int x, int y)
 {
     const uint8_t *row[3];
@@ -394,7 +397,7 @@ static void pixel_of(int rgb[3], const struct glint_image *im, int x, int y)
     case GLINT_RGB565: {
         const int word = row[2 * x] | row[2 * x + 1] << 8;
 
-        rgb[0] = (word >> 11) * 255 / 31; /* the same as repeating bits, or 1 */
+        rgb[0] = (word >> 11) * 255 / 31; /* repeated bits, within 1 */
         rgb[1] = (word >> 5 & 63) * 255 / 63;
         rgb[2] = (word & 31) * 255 / 31;
         return;
@@ -447,8 +450,8 @@ static void check_format(enum glint_pixel_format format, int width, int height,
     free(mem);
 }
 
-/* Blocks from malloc end where the picture ends, so that a sanitizer sees what
- * is read beyond it. */
+/* Every format must be shown right. Blocks from malloc end where the picture
+ * ends, so that a sanitizer sees reads beyond it. */
 static void test_formats(void **state)
 {
     (void)state;
@@ -503,8 +506,8 @@ static void test_areas(void **state)
     expect_area(480, 320, 640, 360, GLINT_PANEL_CENTRE, 0, 0, 480, 320);
 }
 
-/* Draws the grey ramp 0 1 2 .. 8 as 9 x 1 or 1 x 9 and gives what each pixel of
- * the panel shows. */
+/* Draws the grey ramp 0 .. 8 as 9 x 1 pixels, or as 3 x 3 with DOWN, and sets
+ * SHOWN to what each pixel of the panel shows. */
 static void draw_ramp(uint8_t *shown, bool down, int panel_width,
                       int panel_height, int bytes)
 {
@@ -554,7 +557,7 @@ static void test_nearest(void **state)
     }
 }
 
-/* Around the picture, and behind the rows, nothing is touched. */
+/* Nothing may be touched around the picture and behind the rows. */
 static void test_borders(void **state)
 {
     enum { STRIDE = 53, ROWS = 12 };
@@ -590,7 +593,8 @@ static void test_borders(void **state)
 
 /* ------------------------------------------------------------------- dither */
 
-/* Over 8 x 8 pixels of one code, the mean in 5 bits is the code to 1/64. */
+/* Over 8 x 8 pixels of one code, the mean in 5 bits must be the code within
+ * 1/64. */
 static void test_dither(void **state)
 {
     struct glint_panel_config cfg = {

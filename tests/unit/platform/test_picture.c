@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Picture files: told apart by content, saved by extension. What needs the
- * image plug-in is skipped where $GLINT_OIIO does not name it.
+ * Picture files are told apart by content and saved by extension. Tests of the
+ * image plug-in are skipped where $GLINT_OIIO does not name it.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,7 +41,7 @@ static void test_by_content(void **state)
     (void)state;
     expect_load("a.png", BYTES("P6 2 1 255 abcdef"), "abcdef");
     expect_load("a", BYTES("P5 2 1 255 ab"), "aaabbb");
-    /* linear 0, 0.5 and 1; then below, above, and not a number */
+    /* Linear 0, 0.5 and 1; then -1, 2 and not a number. */
     expect_load("a.ppm",
                 BYTES("PF 2 1 1 \0\0\0\0\x3f\0\0\0\x3f\x80\0\0"
                       "\xbf\x80\0\0\x40\0\0\0\x7f\xc0\0\0"),
@@ -149,7 +149,8 @@ static void check_8bit(const char *name)
     unlink(scratch_path(name));
 }
 
-/* EXR and PFM keep floats exactly; values here suit HDR's 8 bits too. */
+/* Checks that floats come back within 1 %: EXR and PFM keep them exactly, and
+ * these values suit the 8 bits of HDR. */
 static void check_float(const char *name)
 {
     float values[] = {0, 0.5F, 1, 1000, 500, 250};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * PPM, PGM and PFM: bytes by hand, hostile headers, every truncation.
+ * PPM, PGM and PFM: files written by hand, hostile headers, every
+ * truncation.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +22,7 @@
 
 static struct glint_error error;
 
-/* A copy without its terminating zero, so that overruns are seen by ASan. */
+/* Returns a copy without the 0 at its end, so that ASan sees overruns. */
 static void *copy_of(const void *data, size_t bytes)
 {
     void *const copy = malloc(bytes ? bytes : 1);
@@ -141,7 +142,7 @@ static void test_hostile_headers(void **state)
     refuse_pnm(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
     refuse_pnm(GLINT_E_UNSUPPORTED,
                BYTES("P6 99999999999999999999 4294967297 255 abc"));
-    /* sizes are believed only when the samples are there */
+    /* A size is believed only where the samples are there. */
     refuse_pnm(GLINT_E_FORMAT, BYTES("P6 8192 8192 65535 abc"));
     assert_string_equal(
         error.text,
@@ -163,7 +164,7 @@ static void test_truncated_pnm(void **state)
 
 /* --------------------------------------------------------------------- PFM */
 
-/* 1, -2, 0.5; 0, 3, 4: the bottom row comes first. */
+/* The bottom row comes first: 0, 3, 4, then 1, -2, 0.5. */
 #define ONE   "\x00\x00\x80\x3f"
 #define TWO   "\x00\x00\x00\xc0"
 #define HALF  "\x00\x00\x00\x3f"
@@ -315,7 +316,8 @@ static void test_write_pfm(void **state)
     expect_path(&out, BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
 }
 
-/* Longer than what is encoded at a time, and of odd width. */
+/* Rows of odd width, more of them than are encoded at a time, must come
+ * back. */
 static void test_pfm_round_trip(void **state)
 {
     enum { W = 333, H = 3, N = W * H * 3 };

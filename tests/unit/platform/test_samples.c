@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pixels as files hold them: what is seen, what light changes, what stays.
+ * Pixels as files hold them: what is seen of them, what light changes, and what
+ * stays.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +16,8 @@
 #include "formats/half.h"
 #include "formats/samples.h"
 
-/* WIDTH x HEIGHT of three channels of SAMPLE over MEM, or four with alpha. */
+/* Returns WIDTH x HEIGHT pixels over MEM, of three channels of SAMPLE, or of
+ * four with alpha. */
 static struct glint_samples samples_of(int width, int height,
                                        enum glint_sample sample, bool has_alpha,
                                        void *mem)
@@ -59,7 +61,7 @@ static void test_half(void **state)
     assert_true(isnan(glint_half_decode(glint_half_encode(NAN))));
 }
 
-/* By hand: sRGB of 0.5 is 0.21404, BT.709 of 0.5 is 0.25959. */
+/* Curves by hand: sRGB of 0.5 is 0.21404, BT.709 of 0.5 is 0.25959. */
 static void test_curves(void **state)
 {
     struct glint_tone_curve t;
@@ -75,14 +77,15 @@ static void test_curves(void **state)
     assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-9);
 }
 
-/* Big-endian words of a profile. */
+/* Writes V as a big-endian word of a profile. */
 static void put32(uint8_t *at, uint32_t v)
 {
     for (int i = 0; i < 4; i++)
         at[i] = (uint8_t)(v >> (24 - 8 * i));
 }
 
-/* A profile of one gamma in 8.8 fixed point and Adobe RGB's primaries. */
+/* Makes a profile of one gamma in 8.8 fixed point and of Adobe RGB's primaries;
+ * returns its bytes. */
 static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
 {
     static const char *const names[] = {"rXYZ", "gXYZ", "bXYZ",
@@ -110,8 +113,8 @@ static size_t make_profile(uint8_t p[400], unsigned gamma_q8)
     return 400;
 }
 
-/* Adobe RGB: half is 0.5^2.19922 = 0.21776, its green is -0.3981 of sRGB red.
- */
+/* Adobe RGB by hand: a half is 0.5^2.19922 = 0.21776, and its green has -0.398
+ * of sRGB's red. */
 static void test_profile(void **state)
 {
     struct glint_colours c;
@@ -139,7 +142,7 @@ static void test_profile(void **state)
     }
 }
 
-/* Floats may hold what is no place in a table. */
+/* A curve of entries must take any float, also one beyond its ends. */
 static void test_tables_of_any_float(void **state)
 {
     struct glint_tone_curve t = {
@@ -173,7 +176,7 @@ static void test_light_is_added(void **state)
     assert_memory_equal(mem + 3, before + 3, 6);
 }
 
-/* Floats go beyond white; what is no number stays. */
+/* Floats must go beyond white; a value that is no number must stay. */
 static void test_floats(void **state)
 {
     float mem[] = {2, -0.25F, NAN};
@@ -184,7 +187,7 @@ static void test_floats(void **state)
 
     (void)state;
     assert_int_equal(glint_samples_proxy(&s, &proxy, &white), GLINT_OK);
-    assert_true(white >= 2); /* a hundredth of it is all of it */
+    assert_true(white >= 2); /* the brightest hundredth is this pixel */
     assert_int_equal(proxy.plane[0][1], 0);
     assert_int_equal(proxy.plane[0][2], 0);
     free(proxy.plane[0]);
@@ -194,7 +197,8 @@ static void test_floats(void **state)
     assert_true(isnan(mem[2]));
 }
 
-/* Transparent pixels hold no lamps, and alpha does not change. */
+/* Transparent pixels must show no lamps unless they are premultiplied, and
+ * alpha must not change. */
 static void test_alpha(void **state)
 {
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
@@ -218,7 +222,8 @@ static void test_alpha(void **state)
     assert_in_range(mem[4], 201, 203);
 }
 
-/* 2 x 3 stored, as EXIF numbers it; the letter of each upright pixel. */
+/* A picture stored as 2 x 3 pixels must stand upright by each orientation of
+ * EXIF. Each string has the letters of the upright pixels. */
 static void test_orientations(void **state)
 {
     static const char *const upright[] = {"abcdef", "badcfe", "fedcba",
@@ -243,7 +248,8 @@ static void test_orientations(void **state)
     }
 }
 
-/* A data window that is smaller than what is seen, and beyond it. */
+/* The data window is smaller than the part that is seen, and reaches beyond
+ * it. */
 static void test_windows(void **state)
 {
     float mem[] = {1, 1, 1, 0.5F, 0.5F, 0.5F};
@@ -253,7 +259,7 @@ static void test_windows(void **state)
     float rgb[3];
 
     (void)state;
-    s.x = -1; /* the second pixel is the first that is seen */
+    s.x = -1; /* The second pixel is the first in view. */
     s.window_width = 1;
     s.window_height = 2;
     glint_samples_light(&s, 0, 0, rgb);
@@ -265,7 +271,8 @@ static void test_windows(void **state)
     assert_true(mem[0] <= 1 && mem[3] >= 4.5F);
 }
 
-/* Straight 8 bits to premultiplied floats and back, and over black. */
+/* Straight alpha in 8 bits must become premultiplied floats and come back, and
+ * opaque pixels must be over black. */
 static void test_convert(void **state)
 {
     uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];

@@ -28,7 +28,7 @@
 #include "support/fakes/wrapped.h"
 #include "support/scratch.h"
 
-/* An image over MEM. */
+/* Returns an image over MEM. */
 static struct glint_image image_of(enum glint_pixel_format format, int width,
                                    int height, void *mem)
 {
@@ -44,7 +44,8 @@ static struct glint_image image_of(enum glint_pixel_format format, int width,
 
 /* ------------------------------------------------------------------ planes */
 
-/* FROM of 3 x 3 becomes WANT, whose planes lie one after the other. */
+/* Checks that FROM, 3 x 3 pixels of FORMAT, becomes WANT, its planes one after
+ * the other. */
 static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
                           enum glint_pixel_format planar, const char *want)
 {
@@ -68,7 +69,7 @@ static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
     assert_int_equal(mem[n], '-');
 }
 
-/* Letters: luma a.., Cb A.., Cr 1.. */
+/* Letters stand for samples: luma a.., Cb A.., Cr 1.. */
 static void test_planes(void **state)
 {
     (void)state;
@@ -86,7 +87,8 @@ static void test_planes(void **state)
                   "abcdefghi");
 }
 
-/* Y', Cb, Cr of one colour, by the standards' weights of red and blue. */
+/* Sets YCC to Y', Cb, Cr of a colour by the standards' weights of red and
+ * blue. */
 static void reference(int ycc[3], const int rgb[3],
                       const struct glint_image *as)
 {
@@ -134,7 +136,8 @@ static void check_colours(enum glint_matrix matrix, enum glint_range range)
     assert_true(n_off < 256 * 256 * 3 / 500); /* Only ties may differ. */
 }
 
-/* Pure blue and red of full range: 255.5, which is no code. */
+/* Pure blue and red of full range would have a chroma of 255.5, and must get
+ * 255. */
 static void check_last_codes(void)
 {
     uint8_t rgb[] = {0, 0, 255, 255, 0, 0}, ycc[6], work[64];
@@ -154,8 +157,7 @@ static void test_from_rgb(void **state)
     static const uint8_t colours[] = {255, 255, 255, 0, 0, 0,   255, 0,   0,
                                       0,   255, 0,   0, 0, 255, 128, 128, 128,
                                       0,   0,   0,   0, 0, 0,   0,   0,   0};
-    /* white, black, red, green, blue, grey of BT.601 as everybody writes them
-     */
+    /* white, black, red, green, blue, grey in BT.601, limited range */
     static const char want[] = "\xeb\x10\x51\x91\x29\x7e\x10\x10\x10"
                                "\x80\x80\x5a\x36\xf0\x80\x80\x80\x80"
                                "\x80\x80\xf0\x22\x6e\x80\x80\x80\x80";
@@ -205,7 +207,8 @@ static void test_y4m(void **state)
     expect_file(want, sizeof want - 1);
 }
 
-/* What Y4M knows is not copied first; RGB is said to be limited. */
+/* A format that Y4M has must not be copied first; RGB must be converted and
+ * declared limited. */
 static void test_y4m_formats(void **state)
 {
     static const char planes[] = "YUV4MPEG2 W2 H2 F0:0 Ip A1:1 C420jpeg "
@@ -231,7 +234,8 @@ static void test_y4m_formats(void **state)
     expect_file(white, sizeof white - 1);
 }
 
-/* A pipe of 64 KiB that nobody reads: frames are dropped, not waited for. */
+/* A pipe of 64 KiB that nobody reads: frames must be dropped, not waited
+ * for. */
 static void test_y4m_slow_reader(void **state)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
@@ -245,7 +249,7 @@ static void test_y4m_slow_reader(void **state)
     assert_int_equal(pipe(fd), 0);
     snprintf(name, sizeof name, "/dev/fd/%d", fd[1]);
     glint_y4m_sink_open(&y4m, name, 25, 1);
-    for (int i = 0; i < 4; i++) /* fill it: 12288 and a line each */
+    for (int i = 0; i < 4; i++) /* 12288 bytes and a line each */
         assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_OK);
     assert_int_equal(y4m.n_dropped, 0);
     assert_int_equal(fcntl(fd[1], F_SETFL, O_NONBLOCK), 0);
@@ -402,7 +406,7 @@ static void test_v4l2(void **state)
     assert_int_equal(out.fd, -1);
 }
 
-/* Rows longer than they need, of the device or of the picture. */
+/* Rows of the device or of the picture may be longer than they need be. */
 static void test_v4l2_strides(void **state)
 {
     static const uint8_t zero;
@@ -517,7 +521,7 @@ static void test_v4l2_refuses(void **state)
     node.fail_request = VIDIOC_QUERYCAP;
     node.fail_errno = ENODEV;
     expect_refused(GLINT_E_DEVICE, "VIDIOC_QUERYCAP: No such device");
-    node.caps = 0; /* a file */
+    node.caps = 0; /* a plain file */
     expect_refused(GLINT_E_DEVICE, "is not a video device");
     image.format = GLINT_I444;
     assert_int_equal(
@@ -528,14 +532,14 @@ static void test_v4l2_refuses(void **state)
         glint_v4l2_sink_open(&out, "/dev/video-none", &image, 0, 0, &error),
         GLINT_E_DEVICE);
     assert_non_null(strstr(error.text, "modprobe v4l2loopback"));
-    /* another word for the same */
+    /* The driver names these pixels by another FOURCC. */
     reset_node();
     node.fourcc = V4L2_PIX_FMT_BGR32;
     image.format = GLINT_XRGB8888;
     must_open(&out, &image);
     out.sink.close(&out.sink);
     image.format = GLINT_YUYV;
-    /* a rate that the driver does not want to know */
+    /* The driver takes no rate. */
     reset_node();
     node.fail_request = VIDIOC_S_PARM;
     node.fail_errno = ENOTTY;

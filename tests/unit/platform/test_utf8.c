@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Text from files: what reaches a terminal, and what stands in JSON.
+ * Text from files: what of it reaches a terminal, and what is written in
+ * JSON.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -25,7 +26,7 @@ static const struct {
      "\"K\xc3\xb6ln \xe2\x98\x85 \xf0\x9f\x94\xa6\""},
     {"\xc2\x9b"
      "31m",
-     "??31m", "\"\\ufffd\\ufffd31m\""}, /* CSI */
+     "??31m", "\"\\ufffd\\ufffd31m\""}, /* U+009B, CSI */
     {"\x9b"
      "31m",
      "?31m", "\"\\ufffd31m\""},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The V4L2 source with a driver that does what it should: which format is
- * chosen, where its planes lie, which frames are seen and which are counted.
+ * The V4L2 source with a driver that behaves: which format is chosen, where its
+ * planes lie, which frames are shown and which are counted.
  */
 #include "support/fakes/camera_check.h"
 
@@ -9,7 +9,7 @@
 
 /* ------------------------------------------------------------------ formats */
 
-/* What is chosen of LIST for 64 x 48 at FPS. */
+/* Returns the FOURCC chosen from the N modes of LIST for 64 x 48 at FPS. */
 static uint32_t chosen(const struct fake_mode *list, int n, int fps)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -51,12 +51,13 @@ static void test_cheapest(void **state)
     assert_int_equal(chosen(equal, 2, 30), V4L2_PIX_FMT_RGB24);
     assert_int_equal(chosen(slow, 3, 30), V4L2_PIX_FMT_MJPEG);
     assert_int_equal(chosen(slow, 3, 10), V4L2_PIX_FMT_YUYV);
-    assert_int_equal(chosen(slow, 3, 60), V4L2_PIX_FMT_YUYV); /* none does */
+    assert_int_equal(chosen(slow, 3, 60), V4L2_PIX_FMT_YUYV); /* no mode can */
     assert_int_equal(chosen(small, 2, 30), V4L2_PIX_FMT_RGB24);
     assert_int_equal(chosen(foreign, 2, 30), V4L2_PIX_FMT_GREY);
 }
 
-/* Without a size the one that the camera is set to counts. */
+/* Without a size, a rate must be looked for at the size that the camera is set
+ * to. */
 static void test_rate_alone(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -73,8 +74,8 @@ static void test_rate_alone(void **state)
     must_close();
 }
 
-/* 333334 units of 100 ns, as some USB cameras say it, are 30 frames a second;
- * so are 1001/30000. */
+/* 333334 units of 100 ns, as some USB cameras say it, must count as 30 frames a
+ * second, and so must 1001/30000; 24 must not count as 25. */
 static void test_almost_the_rate(void **state)
 {
     static const struct fake_mode usb[] = {
@@ -114,7 +115,7 @@ static void test_stepwise(void **state)
     must_close();
 }
 
-/* Built without libjpeg MJPG is no format that glint reads. */
+/* Without libjpeg MJPG must not be chosen. */
 static void test_no_jpeg(void **state)
 {
     (void)state;
@@ -142,7 +143,7 @@ static void test_unread_format(void **state)
     must_refuse(&wish, GLINT_E_DEVICE, "has no NV12 (gives YUYV instead)");
 }
 
-/* A camera may choose another format than was asked for: it is believed. */
+/* A camera that chooses another format than was asked for must be believed. */
 static void test_believes(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -223,7 +224,8 @@ static void test_colours(void **state)
     must_close();
 }
 
-/* Names as udev makes them are longer than /dev/video0. */
+/* A device may have a long name, as udev makes them, but not a longer one than
+ * there is room for. */
 static void test_long_names(void **state)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -240,7 +242,7 @@ static void test_long_names(void **state)
     name[120] = 'x';
     name[399] = '\0';
     must_refuse(&wish, GLINT_E_DEVICE, "name is too long");
-    wish.device = "77"; /* a number will do */
+    wish.device = "77"; /* for /dev/video77 */
     must_open(&wish);
     must_close();
 }
@@ -256,7 +258,7 @@ static void use_format(uint32_t fourcc, bool multiplanar)
         camera.caps = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
 }
 
-/* The plane's offset from the start of the block, and its stride. */
+/* Checks a plane's offset from the start of BLOCK, and its stride. */
 static void expect_plane(int plane, const uint8_t *block, ptrdiff_t offset,
                          ptrdiff_t stride)
 {
@@ -333,7 +335,7 @@ static void test_several_blocks(void **state)
     use_format(V4L2_PIX_FMT_YUV420M, true);
     must_open(NULL);
     f = fake_camera_deliver(0, 9);
-    f->is_odd = true; /* the last two say all that there is */
+    f->is_odd = true; /* Sizes below are meant literally. */
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = f->bytesused[2] = 32 * 24;
     assert_int_equal(next(), GLINT_OK);
@@ -344,12 +346,12 @@ static void test_several_blocks(void **state)
     f->is_odd = true;
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = 32 * 24;
-    must_get_nothing(); /* the third is missing */
+    must_get_nothing(); /* the third plane is empty */
     assert_int_equal(frame.n_corrupt, 1);
     must_close();
 }
 
-/* Something of the driver's comes before the picture. */
+/* Data of the driver's own may come before the picture. */
 static void test_data_offset(void **state)
 {
     struct fake_frame *f;
@@ -373,7 +375,7 @@ static void test_data_offset(void **state)
     assert_int_equal(frame.n_corrupt, 1);
     f = fake_camera_deliver(2, 9);
     f->is_odd = true;
-    f->data_offset[0] = 4000; /* beyond all that is used */
+    f->data_offset[0] = 4000; /* beyond the used bytes */
     f->bytesused[0] = 100;
     must_get_nothing();
     assert_int_equal(frame.n_corrupt, 1);
@@ -388,7 +390,7 @@ static void test_too_small(void **state)
     must_refuse(NULL, GLINT_E_DEVICE,
                 "64x48 YUYV does not fit the 6143 bytes that the driver says");
     fake_camera_reset();
-    camera.length_less = 1; /* The driver does not say so. */
+    camera.length_less = 1; /* The driver hides this. */
     must_open(NULL);
     fake_camera_deliver(0, 9);
     must_get_nothing();
@@ -428,7 +430,8 @@ static void test_damaged(void **state)
     must_close();
 }
 
-/* A damaged frame does not take the place of a whole one, early or late. */
+/* A damaged frame must not take the place of a whole one that comes after or
+ * before it. */
 static void test_damaged_among_whole(void **state)
 {
     (void)state;
@@ -462,7 +465,7 @@ static void test_newest(void **state)
     fake_camera_deliver(3, 13);
     done();
     assert_int_equal(camera.n_queued, 4);
-    done(); /* twice is once */
+    done(); /* A second time changes nothing. */
     assert_int_equal(camera.n_queued, 4);
     must_get(13);
     must_close();
@@ -478,8 +481,8 @@ static int64_t stamp_of(int64_t stamp_us, bool unknown_clock)
     return frame.time_us;
 }
 
-/* A stamp of no clock in particular is believed if it can be; none lies ahead.
- */
+/* A stamp of an unknown clock must be believed if it can be right; no stamp may
+ * be later than now. */
 static void test_stamps(void **state)
 {
     const int64_t now_us = fake_camera_now();
@@ -495,7 +498,7 @@ static void test_stamps(void **state)
     must_close();
 }
 
-/* The lent frame stays as it is while others come and go. */
+/* A lent frame must stay as it is while others come and go. */
 static void test_lent(void **state)
 {
     struct glint_source_frame kept;
@@ -533,7 +536,7 @@ static void test_sequence(void **state)
     assert_int_equal(dropped(1001), 0);
     assert_int_equal(dropped(1005), 3);
     assert_int_equal(dropped(1005), 0);
-    assert_int_equal(dropped(3), 0); /* begun anew */
+    assert_int_equal(dropped(3), 0); /* the count began anew */
     assert_int_equal(dropped(4), 0);
     must_close();
     must_open(NULL);
@@ -543,7 +546,7 @@ static void test_sequence(void **state)
     assert_int_equal(dropped(2), 1);
     must_close();
     must_open(NULL);
-    assert_int_equal(dropped(0), 0); /* an old one, as of v4l2loopback */
+    assert_int_equal(dropped(0), 0); /* from before, as of v4l2loopback */
     assert_int_equal(dropped(28), 0);
     assert_int_equal(dropped(30), 1);
     must_close();
@@ -553,13 +556,13 @@ static void test_sequence(void **state)
     must_close();
 }
 
-/* A gap and damage before the frame that is shown add up. */
+/* Gaps and damage before the frame that is shown must be added up. */
 static void test_gaps_add_up(void **state)
 {
     (void)state;
     fake_camera_reset();
     must_open(NULL);
-    assert_int_equal(dropped(6), 0); /* an old number */
+    assert_int_equal(dropped(6), 0); /* a number from before */
     assert_int_equal(dropped(0), 0);
     fake_camera_deliver(2, 1)->flags = V4L2_BUF_FLAG_ERROR;
     fake_camera_deliver(5, 2);
@@ -571,7 +574,8 @@ static void test_gaps_add_up(void **state)
     must_close();
 }
 
-/* Leaps are no gaps, and their sum does not overflow. */
+/* Leaps of the sequence must not count as gaps, and their sum must not
+ * overflow. */
 static void test_leaps(void **state)
 {
     (void)state;
@@ -641,7 +645,8 @@ static void test_memory(void **state)
     check_io(GLINT_V4L2_READ, GLINT_V4L2_READ);
 }
 
-/* What the device does not do is said so, and not as a failed request. */
+/* A kind of memory that the device lacks must be reported as such, not as a
+ * failed request. */
 static void test_no_such_memory(void **state)
 {
     (void)state;
@@ -672,7 +677,7 @@ static void test_few_buffers(void **state)
     must_refuse(NULL, GLINT_E_DEVICE, "VIDIOC_REQBUFS: Cannot allocate memory");
 }
 
-/* The request that failed is the one that is named, also where another way was
+/* The message must name the request that failed, even where another way was
  * tried after it or something was put right. */
 static void test_names_what_failed(void **state)
 {

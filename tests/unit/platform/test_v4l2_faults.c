@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The V4L2 source when things go wrong: what it comes through, what it gives up
- * on, after how long and in which words; and that nothing is left behind.
+ * The V4L2 source when things go wrong: what it survives, what it gives up on,
+ * after how long and with which message; and that nothing is left behind.
  */
 #include "support/fakes/camera_check.h"
 #include "support/scratch.h"
@@ -25,7 +25,7 @@ static void test_queueing_fails_once(void **state)
     assert_int_equal(camera.n_queued, 4);
     assert_int_equal(v4l2.source.n_restarts, 0);
     must_close();
-    fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* A start may fail, too. */
+    fake_camera_refuse(VIDIOC_QBUF, EIO, 1); /* at the start, too */
     must_open(NULL);
     assert_int_equal(camera.n_queued, 3);
     must_get_nothing();
@@ -81,7 +81,7 @@ static void test_refuses(void **state)
     must_refuse(NULL, GLINT_E_DEVICE, "'Fake' captures no pictures here");
 }
 
-/* These are of no consequence. */
+/* The source must do without these requests. */
 static void test_does_without(void **state)
 {
     static const unsigned long request[] = {
@@ -102,7 +102,7 @@ static void test_does_without(void **state)
 
 /* ---------------------------------------------------------- broken streams */
 
-/* The next frame is of WIDTH, CODE all over. */
+/* Checks that the next frame is WIDTH wide and that its first byte is CODE. */
 static void must_get_wide(int width, int code)
 {
     assert_int_equal(next(), GLINT_OK);
@@ -112,7 +112,8 @@ static void must_get_wide(int width, int code)
     done();
 }
 
-/* Another program set another size while the stream was down. */
+/* A stream that breaks must be begun anew, at the size that another program has
+ * set meanwhile. */
 static void test_broken_stream(void **state)
 {
     (void)state;
@@ -128,11 +129,12 @@ static void test_broken_stream(void **state)
     assert_int_equal(v4l2.device.format.width, 32);
     fake_camera_deliver(0, 2);
     must_get_wide(32, 2);
-    assert_int_equal(frame.n_dropped, 0); /* counted from anew */
+    assert_int_equal(frame.n_dropped, 0); /* counted from 0 again */
     must_close();
 }
 
-/* The format may change to one that is decoded, and back. */
+/* When it is begun anew, the format may be another one that is read, and change
+ * back. */
 static void test_other_format(void **state)
 {
     (void)state;
@@ -154,7 +156,8 @@ static void test_other_format(void **state)
     must_close();
 }
 
-/* Refusals while it is begun anew are come through for a while. */
+/* Requests that fail while the stream is begun anew must be tried again for a
+ * while. */
 static void test_stubborn(void **state)
 {
     static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON,
@@ -175,7 +178,8 @@ static void test_stubborn(void **state)
     }
 }
 
-/* For ever is not: within a second, and the request is named. */
+/* Where the stream cannot be begun anew, this must end with a message that
+ * names the request. */
 static void test_never_again(void **state)
 {
     static const struct {
@@ -212,7 +216,7 @@ static void test_never_again(void **state)
     }
 }
 
-/* Patience begins anew after each frame. */
+/* The time for trying must begin anew after each frame. */
 static void test_patience(void **state)
 {
     (void)state;
@@ -258,7 +262,8 @@ static void test_gone(void **state)
     }
 }
 
-/* Frames that the driver says are damaged, or that do not decode. */
+/* Checks that a stream of damaged frames alone ends with a message: frames that
+ * the driver marks, or that do not decode. */
 static void damaged_to_the_end(bool as_jpeg)
 {
     static const char garbage[] = "not a JPEG at all";
@@ -286,7 +291,7 @@ static void damaged_to_the_end(bool as_jpeg)
     assert_int_equal(status, GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": all frames are damaged, and "
                                              "starting anew does not help");
-    assert_int_equal(n_frames, 60); /* two seconds */
+    assert_int_equal(n_frames, 60); /* in two seconds */
     assert_int_equal(n_corrupt, 60);
     must_close();
 }
@@ -299,7 +304,7 @@ static void test_all_damaged(void **state)
         damaged_to_the_end(true);
 }
 
-/* Now and then a whole one is no reason for anything. */
+/* One whole frame in thirty must be enough to go on without a restart. */
 static void test_many_damaged(void **state)
 {
     (void)state;
@@ -318,7 +323,8 @@ static void test_many_damaged(void **state)
     must_close();
 }
 
-/* A driver that hands out what it was not given. */
+/* A driver that gives back a buffer which it does not have must lead to a
+ * restart. */
 static void test_wrong_index(void **state)
 {
     struct glint_source_frame kept;
@@ -335,7 +341,7 @@ static void test_wrong_index(void **state)
     assert_int_equal(next(), GLINT_OK);
     kept = frame;
     fake_camera_deliver(1, 2);
-    camera.says_index = 1; /* 1 stands for buffer 0, which is lent. */
+    camera.says_index = 1; /* buffer 0, which is lent */
     must_get_nothing();
     assert_int_equal(v4l2.source.n_restarts, 2);
     camera.says_index = 0;
@@ -358,13 +364,13 @@ static void test_silence(void **state)
     fake_camera_pass(2100000);
     must_get_nothing();
     assert_int_equal(v4l2.source.n_restarts, 0);
-    fake_camera_pass(40000); /* 2 s and 4 frames */
+    fake_camera_pass(40000); /* 2 s and 4 frames in all */
     must_get_nothing();
     assert_int_equal(v4l2.source.n_restarts, 1);
-    fake_camera_deliver(0, 1); /* Starting anew helped. */
+    fake_camera_deliver(0, 1); /* helped by the restart */
     must_get(1);
     assert_int_equal(follow(10000, &failed_ms), GLINT_E_DEVICE);
-    /* Starting anew did not help here. */
+    /* The restart did not help. */
     assert_in_range(failed_ms, 4200, 4400);
     assert_string_equal(said.text, FAKE_PATH ": no frames come, and starting "
                                              "anew does not help");
@@ -418,7 +424,7 @@ static void test_timings_change(void **state)
     use_hdmi();
     must_open(NULL);
     assert_true(v4l2.device.has_signal);
-    camera.n_events = 1; /* The event tells nothing new. */
+    camera.n_events = 1; /* The event brings no change. */
     fake_camera_deliver(0, 1);
     must_get(1);
     assert_int_equal(v4l2.source.n_restarts, 0);
@@ -432,7 +438,8 @@ static void test_timings_change(void **state)
     must_close();
 }
 
-/* It may be silent for as long as it likes, and be back as it was or not. */
+/* A signal may be away for as long as it likes, and come back, with events or
+ * without. */
 static void test_signal_lost(void **state)
 {
     int failed_ms;
@@ -459,7 +466,8 @@ static void test_signal_lost(void **state)
     }
 }
 
-/* Without one there are no timings to set; what the input has will do. */
+/* Without a signal there are no timings to set, and those of the input must
+ * do. */
 static void test_no_signal_yet(void **state)
 {
     (void)state;
@@ -473,8 +481,8 @@ static void test_no_signal_yet(void **state)
     must_close();
 }
 
-/* Changes without a frame between them, for longer than patience: a cable
- * being plugged in. */
+/* The signal comes and goes without a frame between, for longer than the time
+ * for trying: a cable is being plugged in. */
 static void test_signal_wavers(void **state)
 {
     int failed_ms;
@@ -501,7 +509,8 @@ static void test_signal_wavers(void **state)
     must_close();
 }
 
-/* A driver that calls every beginning a change does not spin. */
+/* A driver that reports a change at every start must not keep the program
+ * busy. */
 static void test_endless_changes(void **state)
 {
     int64_t start;
@@ -552,7 +561,8 @@ static void test_anew_otherwise(void **state)
 
 static int n_got;
 
-/* Frames, a broken stream, another source; whatever fails. */
+/* Runs through frames, a broken stream and a changed source, whatever fails.
+ * Sets *N_CALLS to the calls that could fail. */
 static enum glint_status live(enum glint_v4l2_io io, int *n_calls)
 {
     enum glint_status status = try_open(NULL, io);

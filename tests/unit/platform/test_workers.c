@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pool runs every job exactly once, whatever the number of threads.
+ * The pool must run every job exactly once, whatever the number of threads.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +27,7 @@
 #define MAX_JOBS 1000
 
 struct tally {
-    int runs[MAX_JOBS];          /* times each job ran, on one thread */
+    int runs[MAX_JOBS];          /* how often each job ran */
     int busy[GLINT_MAX_WORKERS]; /* atomic: threads now in this worker */
     int n_workers;
     int clashes; /* atomic */
@@ -83,7 +83,7 @@ static void add(void *ctx, int job, int worker)
     sums[worker] += (uint64_t)job;
 }
 
-/* What the jobs wrote is there when run returns, round after round. */
+/* Results of jobs must be there when run() returns, round after round. */
 static void test_results_are_visible(void **state)
 {
     struct glint_workers *workers;
@@ -146,7 +146,7 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
     return __real_pthread_create(thread, attr, start, arg);
 }
 
-/* Where there are no more threads, those that there are do all the work. */
+/* Where no more threads can start, those that did must do all the work. */
 static void test_fewer_threads(void **state)
 {
     (void)state;
@@ -170,8 +170,8 @@ static void test_fewer_threads(void **state)
 
 /* ------------------------------------------------------------------- stacks */
 
-/* Fills as much of the stack as baking may need; in whoever calls it, only
- * then. */
+/* Fills as much of the stack as baking may need. A function of its own, so that
+ * its callers do not need that much. */
 __attribute__((noinline)) static int dig(void *ctx)
 {
     volatile char hole[GLINT_BAKE_STACK_BYTES];
@@ -181,7 +181,8 @@ __attribute__((noinline)) static int dig(void *ctx)
     return *(int *)ctx + hole[512];
 }
 
-/* The helper digs; the caller waits for it, so that it is the helper. */
+/* Only the helper fills its stack; the caller waits, so that the helper gets
+ * the job. */
 static void dig_job(void *ctx, int job, int worker)
 {
     int *const dug = ctx;
@@ -193,7 +194,7 @@ static void dig_job(void *ctx, int job, int worker)
         sched_yield();
 }
 
-/* In a child, whose threads get 256 KiB by default. */
+/* Runs WORK in a child whose threads get 256 KiB of stack by default. */
 static void with_little(int (*work)(void))
 {
     const struct rlimit little = {256 << 10, 256 << 10};
@@ -232,14 +233,14 @@ static void test_stacks(void **state)
     (void)state;
     with_little(dig_in_pool);
     with_little(dig_on_stack);
-    threads_left = 0; /* then it is called directly */
+    threads_left = 0; /* Without threads dig() must be called directly. */
     assert_int_equal(glint_process_on_stack(SIZE_MAX / 4, dig, &(int){4}), 5);
     threads_left = -1;
 }
 
 /* ------------------------------------------------------------------- faults */
 
-static int told[2]; /* a pipe */
+static int told[2]; /* pipe from the child */
 
 static void tell(void)
 {
@@ -247,7 +248,7 @@ static void tell(void)
         _exit(98);
 }
 
-/* Only a helper does it; the caller waits. */
+/* Faults in the helper alone; the caller waits. */
 static void fault_job(void *ctx, int job, int worker)
 {
     volatile char *const nowhere = ctx;
@@ -258,7 +259,7 @@ static void fault_job(void *ctx, int job, int worker)
     *nowhere = 1;
 }
 
-/* What a helper's own fault ends puts right what there is to be put right. */
+/* A fault of a helper must run the functions for the end of a process. */
 static void test_fault_in_helper(void **state)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
@@ -274,7 +275,7 @@ static void test_fault_in_helper(void **state)
     assert_int_equal(pipe(told), 0);
     child = fork();
     if (child == 0) {
-        signal(SIGSEGV, SIG_DFL); /* cmocka takes it */
+        signal(SIGSEGV, SIG_DFL); /* in place of cmocka's */
         signal(SIGBUS, SIG_DFL);
         setrlimit(RLIMIT_CORE, &no_core);
         if (!glint_at_death(tell) || glint_pool_create(&workers, 2))

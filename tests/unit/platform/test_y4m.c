@@ -18,7 +18,7 @@
 #include "video/y4m.h"
 #include "video/y4m_light.h"
 
-/* Luma 9 bytes, chroma 4 and 4: 17 a frame. */
+/* Two frames of 9 bytes of luma and 4 and 4 of chroma, 17 in all. */
 #define SMALL                  \
     "YUV4MPEG2 W3 H3 F25:1\n"  \
     "FRAME\nabcdefghiCDEFcdef" \
@@ -26,7 +26,7 @@
 
 static struct glint_error error;
 
-/* Bytes that arrive CHUNK at a time, then fail or end. */
+/* A source of bytes that come CHUNK at a time, then fail or end. */
 struct memory {
     const char *data;
     size_t bytes, at, chunk;
@@ -81,7 +81,7 @@ static void test_ffmpeg_header(void **state)
     assert_memory_equal(printed, line, sizeof line - 1);
     assert_int_equal(printed[len - 1], '\n');
 
-    h.range = GLINT_RANGE_FULL; /* overruled: the output says so */
+    h.range = GLINT_RANGE_FULL; /* another range than was read */
     glint_y4m_header_print(printed, &h);
     assert_non_null(strstr(printed, " XCOLORRANGE=FULL\n"));
     assert_null(strstr(printed, "LIMITED"));
@@ -140,7 +140,7 @@ static void test_range_and_matrix(void **state)
     assert_int_equal(h.range, GLINT_RANGE_LIMITED);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
     assert_string_equal(h.extra, " XCOLORRANGE=OTHER");
-    /* A picture decoded from JPEG is BT.601 at any size. */
+    /* Full range in C420jpeg is BT.601 at any size. */
     assert_int_equal(
         parse(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"), GLINT_OK);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
@@ -262,7 +262,8 @@ static void test_frames(void **state)
     }
 }
 
-/* Reads DATA to its end or its first error; FRAMES: how many came whole. */
+/* Reads DATA to its end or its first error, and sets *FRAMES to the number of
+ * whole frames. */
 static enum glint_status read_all(const char *data, size_t bytes, long *frames,
                                   bool fails)
 {
@@ -280,7 +281,8 @@ static enum glint_status read_all(const char *data, size_t bytes, long *frames,
     return status;
 }
 
-/* Header 22 bytes, first frame 6 + 17, second 14 + 17. */
+/* Cut at any byte, the stream must end with the right message. The header has
+ * 22 bytes, the first frame 6 + 17, the second 14 + 17. */
 static void test_every_truncation(void **state)
 {
     long frames;
@@ -374,7 +376,7 @@ static void expect_path(const char *want, size_t want_bytes)
     free(data);
 }
 
-/* Copies DATA to PATH frame by frame; the copy is DATA again. */
+/* Checks that DATA copied frame by frame to a file is the same again. */
 static void check_copy(const char *data, size_t bytes)
 {
     struct memory memory = {data, bytes, 0, 5000, false};
@@ -414,7 +416,7 @@ static void test_copies(void **state)
 
 /* --------------------------------------------------------- depth and layout */
 
-/* Frames as they are stored, and what is seen of them. */
+/* Checks what is seen of a frame as it is stored. */
 static void check_planes(const char *data, size_t bytes, const char *seen,
                          size_t n_seen)
 {
@@ -433,7 +435,7 @@ static void check_planes(const char *data, size_t bytes, const char *seen,
 static void test_deep_frames(void **state)
 {
     (void)state;
-    /* 3 x 3 of 10 bits: luma 9, chroma 4 and 4 samples of two bytes */
+    /* 3 x 1 of 10 bits: luma 3, chroma 2 and 2 samples of two bytes */
     check_planes(BYTES("YUV4MPEG2 W3 H1 C420p10\nFRAME\n"
                        "\x40\x00\xac\x03\xff\x03"
                        "\x00\x02\x04\x02"
@@ -448,7 +450,8 @@ static void test_deep_frames(void **state)
     check_planes(BYTES("YUV4MPEG2 W1 H1 C444alpha\nFRAME\nabcd"), BYTES("abc"));
 }
 
-/* Light on one frame of 3 x 3 of TAG, all samples CODE but chroma. */
+/* Sets PLANES to a frame of 3 x 3 pixels of TAG, luma CODE and chroma MIDDLE,
+ * and adds LAYER to it. */
 static void light_up(const char *tag, int code, int middle, const float *layer,
                      uint8_t planes[72])
 {
@@ -478,8 +481,8 @@ static int wide_at(const uint8_t *planes, int i)
     return planes[2 * i] | planes[2 * i + 1] << 8;
 }
 
-/* White light of 0.18: BT.709 makes 0.409 of it (by hand: 1.099 * 0.18^0.45 -
- * 0.099 = 0.4090), 64 + 876 * 0.4090 = 422.3 of 10 bits. */
+/* White light of 0.18 must become 0.409 by BT.709 (by hand: 1.099 * 0.18^0.45 -
+ * 0.099 = 0.4090), which is 64 + 876 * 0.4090 = 422.3 in 10 bits. */
 static void test_light(void **state)
 {
     float layer[27] = {0};
@@ -495,7 +498,7 @@ static void test_light(void **state)
         assert_int_equal(wide_at(planes, i), i == 4 ? 422 : i < 9 ? 64 : 512);
     light_up("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
     assert_int_equal(wide_at(planes, 4), 1675); /* 4095 * 0.40901 */
-    layer[3 * 8] = 9; /* red alone, beyond white, at the odd corner */
+    layer[3 * 8] = 9;                           /* red of 9 at the odd corner */
     light_up("C420p10", 64, 512, layer, planes);
     assert_int_equal(wide_at(planes, 8), 326);  /* 64 + 876 * 0.299 */
     assert_int_equal(wide_at(planes, 12), 361); /* 512 - 896 * 0.1687 */
@@ -503,8 +506,7 @@ static void test_light(void **state)
     assert_int_equal(wide_at(planes, 9), 512);
 }
 
-/* A code that is white stays; one that is beyond does, too; alpha is not
- * touched. */
+/* A code that is white or beyond must stay, and alpha, too. */
 static void test_light_stays(void **state)
 {
     float layer[27];
@@ -523,7 +525,8 @@ static void test_light_stays(void **state)
     assert_in_range(planes[0], 170, 176);
 }
 
-/* 720 x 405 as ffmpeg writes it: chroma has 203 rows. */
+/* 720 x 405 pixels as ffmpeg writes them, with 203 rows of chroma, must be
+ * copied. */
 static void test_odd_video(void **state)
 {
     enum { FRAME = 720 * 405 + 2 * 360 * 203, HEADER = 80 };
@@ -545,7 +548,7 @@ static void test_odd_video(void **state)
     free(data);
 }
 
-/* Rows with padding, and rows upside down. */
+/* Rows with padding, and rows upside down, must be written without it. */
 static void test_strides(void **state)
 {
     uint8_t luma[] = "ab--cd--ef--", cb[] = "y-z-", cr[] = "Y-Z-";

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Multiplications in place of divisions give what the divisions do: those of
- * y4m_share for every number, those of y4m_part at both ends of each run of
- * numbers with one quotient, which is enough as both of them never fall.
+ * Multiplications in place of divisions must give what divisions do:
+ * y4m_share() for every number, y4m_part() at both ends of each run of numbers
+ * with one quotient. That is enough, as neither of them ever falls.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,13 +12,13 @@
 
 #include "video/y4m_divide.h"
 
-/* To nearest, ties away from 0; D is above 0. */
+/* Returns N / D to nearest, ties away from 0; D is above 0. */
 static int64_t divide(int64_t n, int64_t d)
 {
     return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
 }
 
-/* How many of K from -MOST to MOST have another share K 2^UP / D. */
+/* Returns for how many K from -MOST to MOST the share K 2^UP / D is wrong. */
 static long wrong_shares(int32_t most, int up, int32_t d)
 {
     const int64_t factor = y4m_share_factor(up, d);
@@ -29,7 +29,7 @@ static long wrong_shares(int32_t most, int up, int32_t d)
     return wrong;
 }
 
-/* Codes of all depths, of full and limited range. */
+/* Codes of all depths must be divided right, in full and limited range. */
 static void test_codes(void **state)
 {
     (void)state;
@@ -44,7 +44,7 @@ static void test_codes(void **state)
 
 static const int32_t kr_q16[2] = {13933, 19595}, kb_q16[2] = {4732, 7471};
 
-/* Differences of colour, of BT.709 and BT.601. */
+/* Differences of colour must be divided right, for BT.709 and BT.601. */
 static void test_differences(void **state)
 {
     (void)state;
@@ -69,7 +69,7 @@ static void test_green(void **state)
         const int64_t factor = y4m_part_factor(d);
 
         for (int64_t q = -2; q <= (1 << 20) + 2; q++) {
-            const int64_t first = q * d - d / 2; /* first N of quotient Q */
+            const int64_t first = q * d - d / 2; /* first with quotient Q */
 
             for (int64_t n = first - 2; n <= first + 2; n++)
                 wrong += y4m_part(n, d, factor) != held(divide(n, d));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Extreme angles: the axis and a millionth of a degree beside it, the borders
- * of zones and of what is seen of each ghost, the largest angles, all azimuths,
+ * Extreme angles: the axis and a millionth of a degree beside it, borders of
+ * zones and of where each ghost is seen, the largest angles, all azimuths,
  * lights on pixel borders.
  */
 #include <math.h>
@@ -24,9 +24,10 @@ static uint8_t codes[3][3 * W * H];
 
 #define DEGREE 0.017453292519943295
 
-/* What another grid may make of the same light: in codes outlines are off by
- * 0.1 pixel over (3/4)^2, as grids have 3/4 of the cells, and an outline that
- * moves so far along a block of 8 x 8 changes its mean by 255 x 0.18 / 8. */
+/* Largest difference that another grid may make of the same light. In codes an
+ * outline is off by 0.1 pixel over (3/4)^2, as grids have 3/4 of the cells, and
+ * one that moves by so much along a block of 8 x 8 changes its mean by 255 x
+ * 0.18 / 8. */
 #define GRID_CODES 5.7
 
 static int open_stage(void **state)
@@ -51,11 +52,11 @@ static double against_exact(struct stage *s, const struct glint_lamp *lamp)
 
 /* -------------------------------------------------------------------- axis */
 
-/* Nothing is special about the axis: 45 dB is what pictures so small have
- * anywhere else (test_exact asks the same of 480x270). A light a millionth of a
- * degree away is one: its ghosts move by 1e-6 pixel, and a cell whose
+/* On the axis a picture must be as exact as anywhere: 45 dB for pictures so
+ * small (test_exact asks the same of 480x270). A light a millionth of a degree
+ * away must look the same: its ghosts move by 1e-6 pixel, and a cell whose
  * irradiance lies between two steps of a percent, 1.2 codes where it is bright,
- * may take the other one. */
+ * may take the other step. */
 static void test_near_the_axis(void **state)
 {
     static const double theta[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
@@ -82,7 +83,8 @@ static void test_near_the_axis(void **state)
                                 1.2, "codes"));
 }
 
-/* On the axis the azimuth means nothing but where the grid's rows run. */
+/* On the axis the azimuth must change nothing but the way that rows of the grid
+ * run. */
 static void test_azimuth_on_the_axis(void **state)
 {
     struct glint_lamp lamp = stage_lamp(0, 0, 1);
@@ -103,9 +105,9 @@ static void test_azimuth_on_the_axis(void **state)
 
 /* ---------------------------------------------------------------- azimuths */
 
-/* Where all light lands in the picture its sum cannot depend on the azimuth;
- * half a percent is what steps of a percent and chords of outlines may add
- * here, where ghosts are ten pixels wide. */
+/* Where all light falls into the picture, its sum must not depend on the
+ * azimuth. Half a percent is left to steps of irradiance and to chords of
+ * outlines, where ghosts are ten pixels wide as here. */
 static void test_flux_of_all_azimuths(void **state)
 {
     double least = HUGE_VAL, most = 0;
@@ -113,7 +115,7 @@ static void test_flux_of_all_azimuths(void **state)
     (void)state;
     stage_view(&heliar, SIDE, SIDE, 400);
     for (int k = 0; k < 4 * 24; k++) {
-        /* Angles beside the quarters differ by a step of q30 or so, too. */
+        /* Azimuths just beside the quarters are tried, too. */
         const double phi = k % 4 == 0 ? 15.0 * k / 4
                            : k % 4 == 1
                                ? 15.0 * (k / 4) + 1e-9 * (k & 8 ? 1 : -1)
@@ -131,8 +133,9 @@ static void test_flux_of_all_azimuths(void **state)
                                 most / least - 1, 0.005, ""));
 }
 
-/* An octagon looks the same after a quarter turn, and so does a square picture:
- * rows and columns change places, which shows in how edges are rounded. */
+/* A quarter turn of the light must turn the picture: stop (an octagon) and
+ * picture (a square) stay as they are. Rows and columns change places, which
+ * shows in how edges are rounded. */
 static void test_quarter_turns(void **state)
 {
     double worst = 0;
@@ -166,13 +169,13 @@ static void test_quarter_turns(void **state)
 
 /* ------------------------------------------------------------------- zones */
 
-/* The light whose beam has exactly this sine. */
+/* Returns the light whose beam has exactly this sine. */
 static struct glint_lamp at_sine(int32_t sine_q30, double power)
 {
     return stage_lamp(asin(sine_q30 * 0x1p-30) / DEGREE, 33, power);
 }
 
-/* Whether SINE is a border between two zones of ghost G. */
+/* Returns whether SINE is a border between two zones of ghost G. */
 static int is_inner(const struct glint_lens *lens,
                     const struct glint_model_ghost *g, int32_t sine_q30)
 {
@@ -187,7 +190,8 @@ static int is_inner(const struct glint_lens *lens,
     return ends && begins;
 }
 
-/* One step of 2^-30 to either side of SINE: how much the picture jumps. */
+/* Returns by how much block means change at the sine, codes, between it and
+ * 2^-29 to either side; *FLUX gets the largest relative change of all codes. */
 static double jump_at(int32_t sine_q30, double *flux)
 {
     const struct glint_lamp middle = at_sine(sine_q30, 1);
@@ -211,11 +215,11 @@ static double jump_at(int32_t sine_q30, double *flux)
     return jump;
 }
 
-/* Neighbouring zones are fitted by themselves, energies to 0.6 % and what lies
- * between rays to a percent; a flat part that is nearly white changes by 2
- * codes at most, and by another two where either side falls on the next step of
- * irradiance. Ghosts begin and end where nothing of them is left in the field,
- * so these borders must not show at all. */
+/* Neighbouring zones are fitted separately, energies to 0.6 % and what lies
+ * between rays to a percent. So a flat part that is nearly white may change by
+ * 2 codes at their border, and by 2 more where a side falls on the next step of
+ * irradiance. A ghost begins and ends where none of it is left in the field, so
+ * those borders must not show. */
 static void test_zone_borders(void **state)
 {
     const struct glint_lens *lens;
@@ -238,7 +242,7 @@ static void test_zone_borders(void **state)
                     continue;
                 if (is_inner(lens, ghost, border[e])) {
                     if (e == 0)
-                        continue; /* has been */
+                        continue; /* seen as an end */
                     inner = fmax(inner, jump_at(border[e], &flux));
                 } else
                     outer = fmax(outer, jump_at(border[e], &flux_outer));
@@ -261,8 +265,8 @@ static void test_zone_borders(void **state)
 
 /* ------------------------------------------------------------- wide angles */
 
-/* Up to the last step of the model it draws what is there; beyond it nothing,
- * which is counted; nothing is undefined up to the horizon. */
+/* Up to 60 degrees the model must draw what is there; a light beyond must be
+ * counted and draw nothing, and no pixel may be undefined up to the horizon. */
 static void test_wide(void **state)
 {
     static const double theta[] = {59.9, 60, 60.0001, 89, 89.9, 90};
@@ -282,7 +286,7 @@ static void test_wide(void **state)
                                  worst, 60, "dB"));
 }
 
-/* A ball lens sees to all sides: 45 dB as everywhere. */
+/* A ball lens, which sees to all sides, must be drawn with 45 dB, too. */
 static void test_wide_ball(void **state)
 {
     static struct stage ball;
@@ -314,8 +318,8 @@ static void test_wide_ball(void **state)
 
 /* ----------------------------------------------------------- pixel borders */
 
-/* A light whose image lies on the corner of a pixel or of a tile is one like
- * any other: against the exact picture, and no jump where it crosses. */
+/* A light whose image lies on the corner of a pixel or of a tile must be drawn
+ * as exactly as any other, and must not jump where it crosses. */
 static void test_pixel_borders(void **state)
 {
     static const double at[][2] = {{120, 80},  {64, 64},   {128, 64},  {0, 0},
@@ -342,7 +346,7 @@ static void test_pixel_borders(void **state)
     }
     assert_true(extreme_at_least(
         "angles: lights on borders of pixels and tiles", worst, 45, "dB"));
-    /* A lamp that passes the axis also turns the grid round. */
+    /* A lamp that passes the axis also turns the grid. */
     assert_true(extreme_at_most("angles: across the border of a pixel", jump,
                                 GRID_CODES, "codes"));
 }

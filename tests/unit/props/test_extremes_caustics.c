@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Caustics and sizes: all light of a lens arrives, folds are as bright as they
- * are, a ghost may be in focus or a hundred times larger than the
+ * Caustics and sizes: all light of a lens must arrive, and folds must be as
+ * bright as they are, with a ghost in focus or a hundred times larger than the
  * frame.
  */
 #include <math.h>
@@ -30,10 +30,10 @@ static double peak(const float *rgb)
     return most;
 }
 
-/* The light of all ghosts, folds and foci among them, adds up to the exact
- * picture's: 1 %, as outlines are 0.1 pixel off and ghosts some twenty pixels
- * wide. A fold's light grows without bound towards
- * its edge, but a pixel has a mean of it, which a grid may miss by a tenth. */
+/* The light of all ghosts, folds and foci among them, must add up to the exact
+ * picture's within 1 %, as outlines are 0.1 pixel off and ghosts some twenty
+ * pixels wide. At its edge the light of a fold grows without bound, but a pixel
+ * has a mean of it, which a grid may miss by a tenth. */
 static void test_folds(void **state)
 {
     double flux = 0, high = 0;
@@ -58,7 +58,7 @@ static void test_folds(void **state)
         "caustics: brightest pixel, above the exact one", high, 0.1, ""));
 }
 
-/* A lens whose one ghost comes to a focus on the sensor, GAP_MM behind it. */
+/* Opens a lens with a single ghost and its sensor GAP_MM behind the stop. */
 static void open_singlet(double gap_mm, double f_number)
 {
     char text[300];
@@ -75,7 +75,8 @@ static void open_singlet(double gap_mm, double f_number)
     assert_true(stage_prepare(&stage, 0));
 }
 
-/* Where rays near the axis meet: they run straight behind the stop. */
+/* Returns the gap at which rays near the axis meet on the sensor; behind the
+ * stop they are straight lines. */
 static double focus_mm(void)
 {
     const struct glint_ghost ghost = {0, 1};
@@ -95,10 +96,10 @@ static double focus_mm(void)
     return 5 + x[0] / (x[0] - x[1]);
 }
 
-/* Where rays near the axis meet on the sensor, the middle of the ghost is a
- * point and the rest a halo of its aberrations. 6 %: the halo's outermost part
- * comes from next to where rays are lost to total reflection, and cells that
- * have lost two corners are not drawn. */
+/* With rays near the axis in focus on the sensor, the middle of the ghost is a
+ * point with a halo of aberrations. 6 % are allowed: the outermost part of the
+ * halo comes from next to rays that are lost to total reflection, and cells
+ * that have lost two corners are not drawn. */
 static void test_focus(void **state)
 {
     double flux = 0;
@@ -120,7 +121,7 @@ static void test_focus(void **state)
         extreme_at_most("caustics: a ghost in focus, flux", flux, 0.06, ""));
 }
 
-/* The sum of the 7 x 7 pixels around AT. */
+/* Returns the sum of the 7 x 7 pixels around AT. */
 static double around(const float *rgb, int at)
 {
     double sum = 0;
@@ -141,11 +142,11 @@ static int brightest(const float *rgb)
     return most / 3;
 }
 
-/* Stopped down, the ghost is a point: cells are smaller than the 1/256 pixel
- * that corners are rounded to, and yet their light arrives, in the pixels that
- * they touch. Around the point, as a rim next to total reflection throws faint
- * light far away, which the exact picture needs a grid of a thousand for. 2 %:
- * the exact grid has six rays across the stop at f/400. */
+/* Stopped down, the ghost is a point whose cells are smaller than the 1/256
+ * pixel to which corners are rounded: their light must still arrive. It is
+ * measured around the point, as a rim next to total reflection throws faint
+ * light far away, for which the exact picture needs a grid of a thousand. 2 %
+ * are allowed, as the exact grid has six rays across the stop at f/400. */
 static void test_point(void **state)
 {
     static const double f_number[] = {80, 150, 400};
@@ -180,8 +181,8 @@ static void test_point(void **state)
         "caustics: a ghost that is a point, model, flux", apart[1], 0.02, ""));
 }
 
-/* The frame shows a hundredth of the ghost, or nothing: the light of a few
- * cells, drawn thousands of pixels wide, is that of the exact picture. */
+/* The frame shows a hundredth of a ghost: a few cells, drawn thousands of
+ * pixels wide, must have the light of the exact picture. */
 static void test_huge(void **state)
 {
     const struct glint_lamp lamp = stage_lamp(2, 33, 1);

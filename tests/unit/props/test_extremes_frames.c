@@ -17,8 +17,8 @@
 
 static struct stage heliar;
 
-/* Well exposed by a light 7.5 degrees off at one pixel a millimetre; as pixels
- * shrink, so does the light that falls on one. */
+/* Power at which a light 7.5 degrees off is well exposed at one pixel a
+ * millimetre; it must grow with the square of the pixels a millimetre. */
 static double power_of_mm;
 
 static int open_stage(void **state)
@@ -42,7 +42,8 @@ static void *take(size_t bytes)
     return p;
 }
 
-/* Draws FORMAT at WIDTH x HEIGHT, PX_MM pixels a millimetre. */
+/* Draws onto a picture of FORMAT, WIDTH x HEIGHT, with PX_MM pixels a
+ * millimetre. */
 static void draw(enum glint_pixel_format format, int width, int height,
                  double px_mm, uint8_t *bytes)
 {
@@ -60,10 +61,10 @@ static void draw(enum glint_pixel_format format, int width, int height,
 
 /* ------------------------------------------------------------------- sizes */
 
-/* A picture is the middle of every larger one of the same scale whose sides
- * have the same parity: light that a small frame leaves out lies outside of it.
- * Not a bit may differ, but where one frame leaves out a ghost that the other
- * has, as what lies beside a picture may count as lit there. */
+/* Returns how many samples of a small picture differ from the middle of a
+ * larger one of the same scale, whose sides have the same parity. None may,
+ * except where one frame leaves out a ghost that the other has, as light beside
+ * a picture may count as lit there. */
 static int differing(int width, int height, const uint8_t *large, int large_w,
                      int large_h, double px_mm)
 {
@@ -105,8 +106,8 @@ static void test_every_size(void **state)
                                 n, 0, "samples"));
 }
 
-/* The largest frame there is against its own middle drawn by itself: places
- * far from the middle have no fewer bits, and nothing runs over. */
+/* The largest frame must have the same middle as a small frame: places far from
+ * the middle must not lose bits, and nothing may overflow. */
 static void test_largest(void **state)
 {
     enum { SIDE = 8192, MIDDLE = 512 };
@@ -133,7 +134,7 @@ static void test_largest(void **state)
         "frames: 8192x8192 against its middle by itself", n, 0, "samples"));
 }
 
-/* The longest frames, likewise. */
+/* The longest frames must have the same middles as short ones. */
 static void test_longest(void **state)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, MIDDLE = 512 };
@@ -168,8 +169,9 @@ static void test_longest(void **state)
 
 /* ----------------------------------------------------------------- strides */
 
-/* Every format with rows apart, rows upside down and both: the same samples,
- * and not a byte beside them is touched. */
+/* Returns how many rows or bytes are wrong where rows are PAD bytes apart, and
+ * upside down for DOWN -1: samples must be the same, and no byte beside them
+ * may change. */
 static int strided(enum glint_pixel_format format, int pad, int down)
 {
     enum { W = 157, H = 83, ROOM = 1 << 19 };
@@ -208,7 +210,7 @@ static int strided(enum glint_pixel_format format, int pad, int down)
 
             n += memcmp(row, plain.plane[p] + y * plain.stride_bytes[p],
                         bytes) != 0;
-            memset(row, 90, bytes); /* All else must have stayed 90. */
+            memset(row, 90, bytes); /* All others must still be 90. */
         }
     for (int i = 0; i < ROOM; i++)
         n += got[i] != 90;
@@ -221,7 +223,7 @@ static void test_strides(void **state)
 
     (void)state;
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
-        /* YUYV and UYVY have an even stride by nature; int32 four bytes */
+        /* YUYV and UYVY need even strides, int32 multiples of 4. */
         n += strided((enum glint_pixel_format)format, 52, 1);
         n += strided((enum glint_pixel_format)format, 0, -1);
         n += strided((enum glint_pixel_format)format, 4, -1);
@@ -233,8 +235,8 @@ static void test_strides(void **state)
 
 /* ------------------------------------------------------------------- tiles */
 
-/* A cell whose sides lie exactly on borders of tiles and of pixels lights the
- * pixels within and no other, whatever the tiles are: what it brings is its
+/* A cell whose sides lie exactly on borders of tiles and of pixels must light
+ * the pixels within it and no others, whatever the tiles are, with exactly its
  * flux. */
 static void test_on_tile_borders(void **state)
 {
@@ -254,7 +256,7 @@ static void test_on_tile_borders(void **state)
                                        .max_refs = 10000};
         const struct glint_bundle b = {.n_cells = 1,
                                        .flux_q31 = 1 << 30,
-                                       .flux_exponent = 13, /* 4096 */
+                                       .flux_exponent = 13, /* 4096: 64 x 64 */
                                        .rgb_q14 = {16384, 16384, 16384}};
         struct glint_image image = {
             .format = GLINT_LINEAR_Q20, .width = W, .height = H};

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Extreme lenses: f-numbers up to 1000, stops of 3 to 64 blades, sensors of 1
- * to 100 mm, focal lengths of 1 mm to 10 m, the same lens a thousand times
- * smaller and larger, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and
- * two thousand. Pictures of models against exact ones.
+ * to 100 mm, focal lengths of 1 mm to 10 m, one lens a thousand times smaller
+ * and larger, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and two
+ * thousand. Pictures of models are compared with exact ones.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -18,9 +18,9 @@
 #include "support/extreme.h"
 #include "support/stage.h"
 
-/* So small that each takes a tenth of a second. 40 dB is what a draft
- * (tolerance 4: errors of 0.12 pixel, for faint ghosts of a pixel and of 2.4 %
- * of energy) keeps of ghosts that are some ten pixels wide; most have 50. Flux
+/* Pictures are so small that each takes a tenth of a second. A draft (tolerance
+ * 4: errors of 0.12 pixel, for faint ghosts of a pixel and of 2.4 % of energy)
+ * has 40 dB where ghosts are some ten pixels wide; most have 50. Flux must be
  * within 3 %: these 2.4 %, and an outline a tenth of a pixel off. */
 enum { W = 144, H = 96 };
 
@@ -65,7 +65,8 @@ static bool report(const char *what, struct worst worst)
     return extreme_at_most(name, worst.flux, MOST_FLUX, "") && ok;
 }
 
-/* Two cemented surfaces, one free one, a stop behind: three ghosts. */
+/* Two cemented surfaces and a free one, with the stop behind them: three
+ * ghosts. */
 static const char doublet[] = "name doublet\nf-number 5.6\nfilm 36 24\n"
                               "surface 61.47 6 13 1.5168 64.17\n"
                               "surface -44.64 2.5 13 1.6727 32.21\n"
@@ -125,9 +126,9 @@ static void test_blades(void **state)
     assert_true(report("stops of 3 to 64 blades and a circle", worst));
 }
 
-/* The image of a round stop 300 pixels wide, of which hardly anything but the
- * outline bends: its chords must not show. 50 dB: 44.4 is what 8 cells across
- * have, 54.5 what is planned for it. */
+/* The outline of a round stop 300 pixels wide, whose ghost hardly bends
+ * elsewhere, must show no chords. 50 dB lie between the 44.4 of 8 cells across
+ * and the 54.5 of the cells that are planned. */
 static void test_round_stop(void **state)
 {
     enum { WIDE = 432, HIGH = 288 };
@@ -154,9 +155,9 @@ static void test_round_stop(void **state)
                                  db, 50, "dB"));
 }
 
-/* Barrels that cut half of the light away, by 8 cells across and by 128: the
- * outline's chords lie on both sides of it, not all within. 48 dB: 46.0 is what
- * chords within have, 49.9 those about it. */
+/* Barrels that cut away half of the light must have nearly the same outline by
+ * 8 cells across as by 128: chords lie on both sides of it. 48 dB lie between
+ * the 46.0 of chords within the outline and the 49.9 of chords about it. */
 static void test_barrels(void **state)
 {
     static const char narrow[] = "name narrow\nf-number 5.6\nfilm 36 24\n"
@@ -190,8 +191,8 @@ static void test_barrels(void **state)
 
 /* ----------------------------------------------------------------- lengths */
 
-/* A model is good for its film and a tenth more; larger sensors need another,
- * as tools/options/settings.c bakes it. */
+/* A model is good for its film and a tenth more, so a larger sensor needs
+ * another, as tools/options/settings.c bakes it. */
 static void test_sensors(void **state)
 {
     static const double mm[] = {1, 2.5, 6.4, 36, 100};
@@ -211,7 +212,8 @@ static void test_sensors(void **state)
     assert_true(report("sensors of 1 to 100 mm", worst));
 }
 
-/* All lengths of the lens times FACTOR; films are not wavelengths and stay. */
+/* Multiplies all lengths of the lens by FACTOR but those of films, which belong
+ * to wavelengths. */
 static void scale(struct glint_prescription *l, double factor)
 {
     for (int k = 0; k < l->n_surfaces; k++) {
@@ -236,13 +238,12 @@ static void open_scaled(double factor, double max_deg)
     stage_view(&stage, W, H, 0);
 }
 
-/* Angles are all there is to optics without diffraction: a lens a thousand
- * times smaller or larger throws the same picture on a film that went with it.
- * With a factor of a power of two not even a rounding of double differs, so the
- * exact picture has the same bits; with 1000 rays differ by 1e-15, and what
- * they decide by a threshold may fall the other way for single rays. Models are
- * held to 50 dB, as they are fitted anew: tighter than any bound on accuracy,
- * so that a length in mm hidden in the bake shows. */
+/* Without diffraction only angles count, so a lens that is a thousand times
+ * smaller or larger must throw the same picture on a film of its scale. With a
+ * power of two no rounding of a double differs, and the exact picture must have
+ * the same bits; with 1000 rays differ by 1e-15, and single ones may fall on
+ * the other side of a threshold. Models are fitted anew and must agree to 50
+ * dB: less would hide a length in mm in the bake. */
 static void test_scaled(void **state)
 {
     static const double factor[] = {0x1p-10, 0x1p10, 1e-3, 1e3};
@@ -313,7 +314,8 @@ static void test_smallest_ball(void **state)
 
     (void)state;
     stage_close(&stage);
-    /* Radii of 1/100 mm, scaled from 1.1, are the least a table takes. */
+    /* Radii of 1/100 mm, scaled from 1.1, are the smallest that a table
+     * takes. */
     assert_true(stage_parse(&stage, "name ball\nf-number 4\nfilm 1 0.7\n"
                                     "surface 1.1 1.1 1 1.5168 64.17\n"
                                     "stop 1.1 0.3\n"
@@ -326,8 +328,8 @@ static void test_smallest_ball(void **state)
     assert_true(report("radii of 1e-2 mm", worst));
 }
 
-/* A radius of 1e7 mm is a plane but for 1e-6 of a wavelength: its picture is
- * the plane's. */
+/* A radius of 1e7 mm differs from a plane by 1e-6 of a wavelength, and must
+ * give the picture of the plane. */
 static void test_nearly_planes(void **state)
 {
     static const char *const radius[] = {"flat", "1e7", "-1e7", "1e9"};
@@ -361,8 +363,8 @@ static void test_nearly_planes(void **state)
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* N surfaces of 100 mm together, the stop behind SPLIT of them; its sensor
- * where the light comes to a focus. */
+/* Opens a lens of N surfaces of 100 mm together, with the stop behind SPLIT of
+ * them and the sensor where light comes to a focus. */
 static void open_many(int n, int split)
 {
     struct glint_prescription *l = &stage.lens;
@@ -372,7 +374,7 @@ static void open_many(int n, int split)
     assert_true(stage_parse(&stage, doublet));
     l->n_surfaces = n;
     l->stop_after = split;
-    for (int k = 0; k < n; k++) /* planes behind, so that all have one power */
+    for (int k = 0; k < n; k++) /* planes behind: all have one power */
         l->surface[k] = (struct glint_surface){
             .radius_mm = k % 2 ? -3000.0 - 100 * k : 52.0 * n / 2,
             .thickness_mm = k % 2 ? 0.6 : 1.5,
@@ -395,8 +397,9 @@ static void open_many(int n, int split)
     assert_true(stage_prepare(&stage, 8));
 }
 
-/* One surface alone is no lens: it has the same medium on both sides, and the
- * table is refused. A stop between two leaves no pair on either side. */
+/* A single surface has the same medium on both sides, and its table must be
+ * refused. Two surfaces with the stop between have no ghost; more must be drawn
+ * with the right picture. */
 static void test_surfaces(void **state)
 {
     static const int n[] = {2, 4, 8, 16, 32, 64};
@@ -422,7 +425,7 @@ static void test_surfaces(void **state)
                        worst));
 }
 
-/* No ghosts: the model is empty, and the picture stays as it was. */
+/* With a model without ghosts the picture must stay as it was. */
 static void test_no_ghosts(void **state)
 {
     const struct glint_lamp lamp = stage_lamp(2, 25, 1e9);
@@ -440,8 +443,8 @@ static void test_no_ghosts(void **state)
                                 0, "samples"));
 }
 
-/* 64 surfaces before the stop: 2016 pairs. Rays are exact here, as the bake of
- * so many takes an hour; what they ask of plan, bins and sums is the same. */
+/* 64 surfaces before the stop have 2016 pairs. Rays are exact here, as a bake
+ * of so many takes an hour; plan, bins and sums have as much to do. */
 static void test_two_thousand_ghosts(void **state)
 {
     const struct glint_lamp lamp = stage_lamp(2, 25, 1);

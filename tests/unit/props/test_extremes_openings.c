@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * One model for all f-numbers: baked for the full opening, it is stopped down
- * and held against exact pictures and against models baked at that f-number.
- * From the full opening to an eleventh of it, as from f/2 to f/22, nothing
- * pops.
+ * One model for all f-numbers: baked for the full opening, then stopped down,
+ * it is compared with exact pictures and with models baked at that f-number.
+ * Nothing may jump from the full opening to an eleventh of it, as from f/2 to
+ * f/22.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -25,7 +25,8 @@ enum { W = 216, H = 144, BLOCKS = W / 8 * (H / 8) };
 static struct stage stage;
 static float drawn[3 * W * H], exact[3 * W * H], native[3 * W * H];
 
-/* Two cemented surfaces, one free one, a stop behind: three ghosts. */
+/* Two cemented surfaces and a free one, with the stop behind them: three
+ * ghosts. */
 static const char doublet[] = "name doublet\nf-number 5.1\nfilm 36 24\n"
                               "surface 61.47 6 13 1.5168 64.17\n"
                               "surface -44.64 2.5 13 1.6727 32.21\n"
@@ -41,7 +42,7 @@ static void open_wide(int n_blades)
     stage_view(&stage, W, H, 0);
 }
 
-/* The same lens at F_NUMBER, baked there. */
+/* Draws the lens by a model that is baked at F_NUMBER. */
 static void draw_native(double f_number, int n_blades,
                         const struct glint_lamp *lamp)
 {
@@ -93,8 +94,8 @@ static void test_against_exact(void **state)
                 is_near);
 }
 
-/* As many edges as of a model baked there, within a third, and the same
- * picture. */
+/* A model that is stopped down must have the picture of one baked there, with
+ * at most a third more edges. */
 static void test_against_native(void **state)
 {
     static const double f[] = {8, 22};
@@ -128,7 +129,7 @@ static double code_of(double x)
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
 }
 
-/* Means of blocks of 8 x 8 pixels in codes, green. */
+/* Sets MEAN to the means of green over blocks of 8 x 8 pixels, codes. */
 static void set_blocks(const float *rgb, double exposure, double *mean)
 {
     memset(mean, 0, BLOCKS * sizeof *mean);
@@ -138,9 +139,9 @@ static void set_blocks(const float *rgb, double exposure, double *mean)
                 code_of(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
 }
 
-/* As the stop closes ghosts shrink, exactly and as drawn: no block's error
- * changes by a code and a half from frame to frame, where steps of the exact
- * picture itself go to tens. */
+/* As the stop closes, ghosts shrink: the error of a block against the exact
+ * picture must change by at most 1.5 codes from frame to frame, where blocks of
+ * the exact picture change by tens. */
 static void test_closing(void **state)
 {
     const int frames = extreme_long() ? 100 : 34;
@@ -160,7 +161,7 @@ static void test_closing(void **state)
         assert_true(stage_exact(&stage, &lamp, 1, 128, exact));
         if (k == 0)
             exposure = stage_power(&stage, &lamp);
-        /* irradiance is as it was, of a direct image ever fainter */
+        /* Irradiance stays while the direct image gets fainter. */
         set_blocks(drawn, exposure * pow(OPEN_F / f, 2), now);
         set_blocks(exact, exposure * pow(OPEN_F / f, 2), exactly);
         for (int b = 0; k > 0 && b < BLOCKS; b++) {

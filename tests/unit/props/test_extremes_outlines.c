@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What --error says of outlines, in pixels: ghost by ghost, where light ends in
- * pictures of the grids that it asks for, against the finest.
+ * How far outlines are off by --error, in pixels: ghost by ghost, where light
+ * ends in pictures of the grids that it asks for, against the finest grid.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -24,15 +24,15 @@ static const double error_px[ERRORS] = {0.05, 0.1, 0.25, 0.5, 1};
 static struct stage stage;
 static float finest[N], drawn[N];
 
-/* Of all places where light ends that were looked at. */
+/* Offsets, pixels, of all places where light ends. */
 struct offsets {
     int n;
     double sum, squares, most;
 };
 
-/* How much of the window's light there is, over that of its innermost pixel:
- * where it ends, in pixels from there. AT is the last pixel of the window's
- * inner part, STEP leads outwards. */
+/* Returns where light ends, in pixels outwards from the start of the window:
+ * the window's light over that of the pixel before it. AT is the last pixel of
+ * the inner part, STEP leads outwards. */
 static double end_of(const float *rgb, int at, int step)
 {
     double sum = 0;
@@ -42,7 +42,7 @@ static double end_of(const float *rgb, int at, int step)
     return sum / (double)rgb[at - 3 * step];
 }
 
-/* A clean end: even light within, none outside. */
+/* Returns whether light ends cleanly: even within, none outside. */
 static bool is_end(const float *rgb, int at, int step)
 {
     const double first = (double)rgb[at - INSIDE * step];
@@ -56,7 +56,8 @@ static bool is_end(const float *rgb, int at, int step)
     return first > 0 && (double)rgb[at] < 0.98 * first;
 }
 
-/* Square of the cosine between STEP and where light falls off. */
+/* Returns the square of the cosine between STEP and the way that light
+ * falls. */
 static double along(const float *rgb, int at, int step)
 {
     const int aside = step == 3 || step == -3 ? 3 * W : 3;
@@ -113,16 +114,16 @@ static void compositor_at(double theta_deg, struct offsets *o)
         for (int k = 0; k < ERRORS; k++) {
             f->dials =
                 glint_quality_at(glint_quality_for_error(error_px[k])).dials;
-            f->dials.irradiance_steps = 0; /* outlines have none */
+            f->dials.irradiance_steps = 0; /* Outlines need no steps. */
             assert_true(stage_linear(&stage, &lamp, 1, drawn));
             add_ghost(&o[k]);
         }
     }
 }
 
-/* What is asked for is what no place may be off by, but for half as much again
- * and a twentieth of a pixel: grids go by how a ghost bends in the mean. Most
- * places are far better, so that the mean is a fifth. */
+/* No outline may be off by more than --error, half as much again and a
+ * twentieth of a pixel, as grids follow how a ghost bends in the mean. Most are
+ * far better, so the mean must be at most a fifth of --error. */
 static void outlines(const char *lens)
 {
     struct offsets o[ERRORS] = {{0, 0, 0, 0}};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Extreme powers: a millionth of white to a thousand suns, none at all, and
- * what files may say instead of a number.
+ * what files may say in place of a number.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -34,10 +34,10 @@ static int open_stage(void **state)
  * light
  */
 
-/* Linear pictures are drawn at a scale of a power of two, so that of powers
- * that are powers of two each picture is the one of power 1 to the last bit of
- * a float. Of decades, irradiance falls on other steps of a percent: half of
- * one on each side, and the sum is far better. */
+/* Linear pictures are drawn at a scale of a power of two, so for powers of two
+ * each picture must be that of power 1 to the last bit of a float. For decades,
+ * irradiance falls on other steps of a percent, by half a step up or down, and
+ * the sum must be far better. */
 static void test_linear_in_power(void **state)
 {
     const struct glint_lamp lamp = stage_lamp(7.5, 33, 1);
@@ -70,10 +70,10 @@ static void test_linear_in_power(void **state)
 
 /* ------------------------------------------------------------------- codes */
 
-/* From what no code shows to what saturates all, in factors of 4: no sample is
- * darker than the ground (a sum that wraps would make it so) nor than with a
- * quarter of the power, which is far more than steps of irradiance and grids
- * move. The brightest light leaves white what it reaches. */
+/* While the power rises by factors of 4 from what no code shows to what
+ * saturates all, no sample may get darker than the ground, as from a sum that
+ * wraps, nor darker than at the power before. The brightest light must leave
+ * white what it reaches. */
 static void test_codes_never_fall(void **state)
 {
     uint64_t r = 5;
@@ -107,7 +107,7 @@ static void test_codes_never_fall(void **state)
                                  (double)white / lit, 0.999, ""));
 }
 
-/* Nothing, less than nothing and no number at all draw nothing, alone and
+/* A power of 0, below 0 or that is no number must draw nothing, alone and
  * beside a light, in codes and in linear light. */
 static void test_no_power(void **state)
 {
@@ -154,7 +154,8 @@ static enum glint_status read_text(const char *text, struct lamp_list *list,
     return status;
 }
 
-/* What a file says is either a power that can be drawn, or refused by line. */
+/* A power in a file must be one that can be drawn, else its line must be
+ * refused. */
 static void test_files(void **state)
 {
     static const char *const bad[] = {"nan",       "inf",   "-inf", "-1",

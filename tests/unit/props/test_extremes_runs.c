@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Long runs: a light that goes round and round gives the same frames each time,
- * bit for bit, from the same memory. 600 frames, or 100 000 with GLINT_LONG.
+ * Long runs: a light that goes round and round must give the same frames each
+ * time, bit for bit, and take no more memory. 600 frames, or 100 000 with
+ * GLINT_LONG.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -30,7 +31,7 @@ static uint64_t hash_of(const uint8_t *codes)
     return hash;
 }
 
-/* KiB of this process, 0 where that cannot be known. */
+/* Returns the memory of this process, KiB; 0 where that cannot be known. */
 static long resident_kib(void)
 {
     FILE *file = fopen("/proc/self/statm", "r");
@@ -43,9 +44,9 @@ static long resident_kib(void)
     return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* Out of the picture on one side and in on the other, near the axis in between,
- * and a second light that comes and goes: what a frame needs rises and falls.
- */
+/* Sets the lamps of frame K: a light that leaves the picture on one side, comes
+ * in on the other and passes near the axis, and a second one that comes and
+ * goes, so that what a frame needs rises and falls. */
 static int lamps_at(int k, struct glint_lamp *lamp)
 {
     const double t = 6.283185307179586 * k / ROUND;
@@ -87,7 +88,7 @@ static void test_round_and_round(void **state)
     }
     if (extreme_long())
         fprintf(stderr, "\r%d frames            \n", n);
-    /* Frames that were all alike would pass what follows. */
+    /* Frames that are all alike would hide a difference. */
     assert_true(first[0] != first[ROUND / 4]);
     assert_true(extreme_at_most(extreme_long()
                                     ? "runs: 100 000 frames, that differ from "
@@ -97,8 +98,7 @@ static void test_round_and_round(void **state)
                                 differ, 0, "frames"));
     assert_int_equal(heliar.frame.bytes, bytes);
 #ifndef GLINT_SANITIZED
-    /* stdio and the allocator may take this once, whatever the number of
-     * frames. */
+    /* stdio and the allocator may take this once, for any number of frames. */
     assert_true(extreme_at_most("runs: memory at the end, above the second "
                                 "round's",
                                 (double)(resident_kib() - resident), 256,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Sums at their bounds: thousands of lights, bundles that add up to the most
- * that a picture holds and one more, and the traps of CONFIG=qcheck.
+ * that a picture holds and beyond, and the traps of CONFIG=qcheck.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -33,8 +33,8 @@ static int open_stage(void **state)
 
 /* ------------------------------------------------------------------ lights */
 
-/* 10 000 lights at one place are one of 10 000 times the power: powers are
- * added with 31 bits, 10 000 times. */
+/* 10 000 lights at one place must be as one of 10 000 times the power, which is
+ * added with 31 bits. */
 static void test_same_place(void **state)
 {
     const struct glint_lamp sum = stage_lamp(7.5, 33, LIGHTS);
@@ -54,9 +54,9 @@ static void test_same_place(void **state)
                                 apart / most, 1e-5, "of the brightest pixel"));
 }
 
-/* Spread over the frame they merge to 128; the light of all is there: merged
- * ones draw their ghosts in one place, of which some leave the frame that would
- * have stayed, so 3 % rather than none. */
+/* Spread over the frame, lights must merge to 128 without losing any light.
+ * Merged ones draw their ghosts in one place, so that some leave the frame that
+ * would have stayed: 3 % are allowed. */
 static void test_spread(void **state)
 {
     const int n = extreme_long() ? LIGHTS : 1000;
@@ -83,7 +83,7 @@ static void test_spread(void **state)
                         fabs(stage_flux(&heliar, test) / whole - 1), 0.03, ""));
 }
 
-/* And 10 000 suns leave white, not what is left of it modulo anything. */
+/* 10 000 suns must leave white everywhere, and no sum that wraps. */
 static void test_ten_thousand_suns(void **state)
 {
     static uint8_t codes[N];
@@ -106,10 +106,10 @@ static void test_ten_thousand_suns(void **state)
 
 enum { SIDE = 64, MANY = 1 << 15 };
 
-/* COUNT bundles of 2^LOG2 times white over the whole picture, in codes and in
- * linear light. Returns what one pixel holds in linear light, -1: not all hold
- * the same, or codes are not white. HELD: what was cut down, of cells before
- * they were added and of samples where they were. */
+/* Draws COUNT bundles of 2^LOG2 times white over the whole picture, in codes
+ * and in linear light. Returns what each pixel holds in linear light; -1 if
+ * pixels differ or codes are not white. HELD gets the counts of what was cut
+ * down: cells before they were added, and samples. */
 static double pile(int count, int log2, int held[2])
 {
     struct glint_flare_config c = {.width = SIDE,
@@ -121,7 +121,7 @@ static double pile(int count, int log2, int held[2])
                                    .max_refs = 8 * count};
     const struct glint_bundle b = {.n_cells = 1,
                                    .flux_q31 = 1 << 30,
-                                   .flux_exponent = 13 + log2, /* 64^2 px */
+                                   .flux_exponent = 13 + log2, /* for 64^2 px */
                                    .rgb_q14 = {16384, 16384, 16384}};
     static int32_t linear[3 * SIDE * SIDE];
     static uint8_t codes[3 * SIDE * SIDE];
@@ -154,7 +154,7 @@ static double pile(int count, int log2, int held[2])
     image.format = GLINT_RGB24;
     glint_image_place(&image, codes);
     glint_flare_draw(f, &image);
-    assert_int_equal(glint_flare_held(f), 0); /* codes are white, no more */
+    assert_int_equal(glint_flare_held(f), 0); /* Codes saturate uncounted. */
     free(mem);
     value = linear[0] == INT32_MAX ? 2048 : linear[0] / 1048576.0;
     for (int i = 0; i < 3 * SIDE * SIDE; i++)
@@ -163,10 +163,10 @@ static double pile(int count, int log2, int held[2])
     return value;
 }
 
-/* A pixel of linear light holds 2048 times white less a step: what adds up to a
- * whole number below is that number, what reaches it or passes it by any
- * factor is held there. A cell gives a pixel 2048 at most, and all together
- * 2^24; more is cut down before it is added (by_edges.c). Both are counted. */
+/* A pixel of linear light holds just below 2048 times white: sums below that
+ * must be exact, and all others must saturate there. A cell gives a pixel 2048
+ * at most, and all cells together 2^24; more is cut down before it is added
+ * (by_edges.c). Both must be counted. */
 static void test_piles(void **state)
 {
     static const struct {
@@ -204,13 +204,13 @@ static void test_piles(void **state)
 
 /* ------------------------------------------------------------------- traps */
 
-/* Whether F traps: 1, or 0. */
+/* Returns whether F traps, in a child process. */
 static int traps(void (*f)(void))
 {
     const pid_t pid = fork();
     int status = 0;
 
-    if (pid == 0) { /* cmocka would catch it */
+    if (pid == 0) { /* without cmocka's handlers */
         signal(SIGILL, SIG_DFL);
         signal(SIGTRAP, SIG_DFL);
         f();
@@ -253,8 +253,8 @@ static void multiply_above(void)
     sink = q_mul((int32_t)(INT32_MAX * one), INT32_MAX, 30);
 }
 
-/* The bound itself passes everywhere; one more traps where ranges are checked,
- * and only there. */
+/* The bounds of each range must pass everywhere; one more must trap where
+ * ranges are checked, and only there. */
 static void test_traps(void **state)
 {
 #ifdef GLINT_Q_CHECK

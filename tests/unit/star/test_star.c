@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The starburst: tables against direct summation in doubles, and what is drawn
- * of them under motion, rotation and in extremes.
+ * of them in motion, in rotation and at extremes.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -25,7 +25,8 @@
 enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT, MAX_LIGHTS = 16 };
 enum { MAX_WORKERS = 3 };
 
-/* A picture, and who draws it. */
+/* A flare and a star that draw into a picture, with their memory and
+ * workers. */
 struct canvas {
     struct glint_flare *flare;
     struct glint_star *star;
@@ -85,7 +86,7 @@ static struct glint_star_tables *tables_of(int n_blades, double rotation_deg,
     return t;
 }
 
-/* White, in pixels; its core is drawn. */
+/* Returns a white light at (X, Y), pixels, whose core is drawn. */
 static struct glint_star_light light_at(double x, double y, double power_log2)
 {
     return (struct glint_star_light){.x_q8 = (int32_t)lrint(256 * x),
@@ -95,7 +96,7 @@ static struct glint_star_light light_at(double x, double y, double power_log2)
                                      .rgb_q14 = {16384, 16384, 16384}};
 }
 
-/* Linear light of LIGHTS. */
+/* Draws N lights into LINEAR_Q20, linear light. */
 static void draw_linear(const struct glint_star_tables *t,
                         const struct glint_star_light *lights, int n,
                         int32_t *linear_q20)
@@ -116,7 +117,7 @@ static void draw_linear(const struct glint_star_tables *t,
 static int32_t linear_q20[N];
 static uint8_t codes[N], others[N];
 
-/* Light of all pixels of channel C, of a light of 2^10. */
+/* Returns the sum of channel C over all pixels, divided by a power of 2^10. */
 static double sum_of(const int32_t *q20, int c)
 {
     double sum = 0;
@@ -138,7 +139,8 @@ static double at(double x, double y)
 
 /* ------------------------------------------------------------------- shape */
 
-/* Maxima of light at RADIUS about the middle that are above twice the mean. */
+/* Returns how many peaks above twice the mean there are on a circle of RADIUS
+ * pixels. */
 static int count_spikes(double radius)
 {
     enum { STEPS = 720 };
@@ -176,7 +178,7 @@ static void test_spikes(void **state)
     }
 }
 
-/* The first dark ring of a circle. */
+/* The first dark ring of a round stop must be at 1.21967. */
 static void test_ring(void **state)
 {
     double dark = 0, least = 1;
@@ -191,7 +193,8 @@ static void test_ring(void **state)
     assert_true(fabs(dark / 1.21967 - 1) < 1e-3);
 }
 
-/* The same in a picture, of all light: of 550 nm in green. */
+/* In a picture, whose light has all wavelengths, the dark ring must be that of
+ * 550 nm, measured in green. */
 static void test_drawn_ring(void **state)
 {
     struct glint_star_tables *t = tables_of(0, 0, 5);
@@ -216,7 +219,7 @@ static void test_drawn_ring(void **state)
     glint_star_tables_free(t);
 }
 
-/* What is in the picture and what lies beyond are all the light. */
+/* Light in the picture and beyond it must add up to all light. */
 static void test_energy(void **state)
 {
     static const int blades[] = {0, 3, 5, 8, 64};
@@ -233,8 +236,8 @@ static void test_energy(void **state)
                          GLINT_OK);
         draw_linear(t, &light, 1, linear_q20);
         for (int c = 0; c < 3; c++) {
-            /* the picture's sides are 1.08 times as far as a circle of its
-             * least half would be */
+            /* The sides of the picture are 1.08 times as far as a circle of its
+             * least half would be. */
             const double beyond = glint_psf_beyond(&psf, 48, c);
 
             assert_true(fabs(sum_of(linear_q20, c) + beyond - 1) < 0.01);
@@ -248,7 +251,8 @@ static void test_energy(void **state)
 
 enum { WAVES = 48 };
 
-/* Light of a pixel about (X, Y) from the light, from POINTS^2 points in it. */
+/* Sets RGB to the light of a pixel at (X, Y) from the light, summed over
+ * POINTS^2 points in it. */
 static void sum_pixel(int n_blades, double rotation_deg, double airy_px,
                       double x, double y, int points, double rgb[3])
 {
@@ -301,8 +305,9 @@ static void draw_codes(const struct glint_star_tables *t,
     glint_star_draw(c->star, c->flare, &image);
 }
 
-/* At least 50 dB, of three stops and three powers. In so small a picture all is
- * near the light: at 1080p the same errors are 24 dB less. */
+/* Pictures must have at least 50 dB for three stops and three powers. In one so
+ * small all pixels are near the light: the same errors are 24 dB less at
+ * 1080p. */
 static void test_direct(void **state)
 {
     static const struct {
@@ -353,8 +358,9 @@ static void test_direct(void **state)
     free(direct);
 }
 
-/* Light along a line across the spike to the right, 30 px away; *WIDTH is how
- * much of it is at least half as bright as in its middle. */
+/* Returns the light along a line across the spike, 30 px right of the light,
+ * and sets *WIDTH to how many pixels of it are at least half as bright as its
+ * middle. */
 static double across_spike(double *width)
 {
     double sum = 0;
@@ -369,8 +375,8 @@ static double across_spike(double *width)
     return sum;
 }
 
-/* A lamp that the picture shows as a disc throws lines as wide as that, which
- * carry as much light. */
+/* A lamp that the picture shows as a disc must throw a spike as wide as the
+ * disc, with as much light as that of a point. */
 static void test_extent(void **state)
 {
     struct glint_star_tables *t = tables_of(4, 45, 0.5);
@@ -394,7 +400,8 @@ static void test_extent(void **state)
 
 /* ------------------------------------------------------------------ motion */
 
-/* A light that moves by 0.05 pixels: neither all light nor any pixel jumps. */
+/* While a light moves by 0.05 pixels a frame, neither the sum of light nor any
+ * pixel may jump. */
 static void test_motion(void **state)
 {
     struct glint_star_tables *t = tables_of(7, 3, 0.2);
@@ -422,12 +429,13 @@ static void test_motion(void **state)
                   "of the brightest at most\n",
                   least, most, jump / peak);
     assert_true(most - least < 0.002);
-    /* the middle is 0.3 px wide: a sixth of it may go from pixel to pixel */
+    /* The middle of the star is 0.3 px wide: a sixth of it may go from a pixel
+     * to the next one. */
     assert_true(jump / peak < 0.16);
     glint_star_tables_free(t);
 }
 
-/* The angle of the spike about ANGLE, in degrees, y up. */
+/* Returns the angle of the spike near ANGLE_DEG, degrees, y up. */
 static double spike_angle(double angle_deg)
 {
     double sum = 0, turn = 0;
@@ -482,7 +490,7 @@ static struct glint_star_light any_light(uint32_t *seed)
     return l;
 }
 
-/* Workers, tiles and the order of jobs do not show. */
+/* Workers, tiles and the order of jobs must not change a bit. */
 static void test_same_bits(void **state)
 {
     static const int blades[] = {0, 3, 4, 8, 64};
@@ -512,8 +520,8 @@ static void test_same_bits(void **state)
     }
 }
 
-/* Twice the power is nowhere less light, from what cannot be seen to what
- * saturates, and on every side. */
+/* Twice the power must nowhere give less light, from what cannot be seen to
+ * what saturates, with the light in the picture and on every side of it. */
 static void test_powers(void **state)
 {
     static const double place[][2] = {{48, 41},   {48.5, 41.5}, {0, 0},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What passes hide and add, against the definition in linear light: in every
- * way of coding, at full and half resolution, two of them in either order.
+ * Light and cover of passes against the definition in linear light: in every
+ * coding, at full and half resolution, with two passes in either order.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -18,7 +18,7 @@ enum { WIDTH = 91, HEIGHT = 53, N = WIDTH * HEIGHT, GREY_CODE = 120 };
 static int32_t light_q20[3 * N];
 static uint8_t *const px = (uint8_t *)light_q20;
 
-/* Stripes of which some hide, some shine and some do both. */
+/* A pass of stripes, of which some hide, some shine and some do both. */
 struct stripes {
     int step, light_q16[3];
     int linear;
@@ -69,7 +69,7 @@ static enum glint_given give(void *state, const struct glint_pass_rows *rows)
     return s->step < WIDTH ? GLINT_GIVES_COVER : GLINT_GIVES_LIGHT;
 }
 
-/* Draws N_PASSES of S onto IMAGE. */
+/* Draws the N_PASSES passes of S onto IMAGE. */
 static void draw(const struct glint_image *image, int half, struct stripes *s,
                  int n_passes)
 {
@@ -115,7 +115,7 @@ static double code_of(double x)
                                  : 1.055 * pow(fmin(1, x), 1 / 2.4) - 0.055);
 }
 
-/* What the pixel is then: linear light. */
+/* Returns what a channel of pixel (X, Y) must then have, linear light. */
 static double want_of(const struct stripes *s, int n_passes, int half, int x,
                       int y, int channel)
 {
@@ -131,7 +131,7 @@ static double want_of(const struct stripes *s, int n_passes, int half, int x,
     return light;
 }
 
-/* A picture of one grey. */
+/* Returns a picture of one grey. */
 static struct glint_image grey_image(enum glint_pixel_format format)
 {
     struct glint_image image = {
@@ -156,8 +156,8 @@ static struct stripes grey(int step, int light_q16)
     return (struct stripes){step, {light_q16, light_q16, light_q16}, 0, {0}};
 }
 
-/* The first sample of each pixel, STEP bytes apart, is within OFF of what it is
- * to be. */
+/* Checks that the first sample of each pixel, STEP bytes apart, is within OFF
+ * of what it must be. */
 static void check_codes(enum glint_pixel_format format, int step, int half,
                         struct stripes *s, int n_passes, double off)
 {
@@ -210,15 +210,17 @@ static void test_linear(void **state)
                 want_of(s, 2, i / 4, k / 3 % WIDTH, k / 3 / WIDTH, k % 3) *
                 0x1p20;
 
-            assert_true(fabs(light_q20[k] - want) < 20); /* 65536 / 65535 */
+            assert_true(fabs(light_q20[k] - want) < 20); /* 65535 and not
+                                                          * 65536 */
         }
     }
 }
 
-/* What is hidden wholly has no colour left, and shared chroma is the mean. */
+/* A pixel that is hidden wholly must keep no colour, and shared chroma must be
+ * the mean. */
 static void test_chroma(void **state)
 {
-    struct stripes s = grey(2, 0); /* 0, 1/4, 1/2, 3/4, 1, by pairs */
+    struct stripes s = grey(2, 0); /* cover 0, 1/4, 1/2, 3/4, 1 by pairs */
     struct glint_image image = {
         .format = GLINT_I420, .width = WIDTH, .height = HEIGHT};
 

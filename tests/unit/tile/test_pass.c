@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * A second pass beside the flare, small enough to read: a flat triangle that
- * sets pixels and is the light of the flare that is drawn over it. What it
- * gives is worked out here at 4 x 4 points of each pixel.
+ * sets pixels and is the light of the flare drawn over it. Its cover is
+ * computed here from 4 x 4 points of each pixel.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,7 @@ struct triangle {
     struct on_row *at; /* [MAX_WORKERS] */
 };
 
-/* What a worker keeps of a row of tiles. */
+/* The state of a worker on a row of tiles. */
 struct on_row {
     const struct triangle *triangle;
     struct glint_box row, tile;
@@ -47,7 +47,7 @@ static int is_inside(const struct triangle *t, int x_q3, int y_q3)
     return in;
 }
 
-/* Cover of pixel (X, Y), _q8. */
+/* Returns the cover of pixel (X, Y), _q8. */
 static int cover_of(const struct triangle *t, int x, int y)
 {
     int n = 0;
@@ -102,7 +102,8 @@ static enum glint_given set_rows(void *state, const struct glint_pass_rows *out)
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* The light it hands to the flare: its own, times its pixels. */
+/* Returns the light that the triangle hands to the flare: its own, times its
+ * pixels. */
 static struct glint_light light_of(const struct triangle *t)
 {
     const int(*p)[2] = t->corner;
@@ -120,7 +121,7 @@ struct glint_frame {
     struct glint_image image;
     struct triangle triangle;
     struct glint_flare_config cfg;
-    int half, n_workers, n_lights, alone; /* 1: glint_flare_draw() draws it. */
+    int half, n_workers, n_lights, alone; /* 1: by glint_flare_draw() */
     uint32_t order;
 };
 
@@ -153,7 +154,7 @@ static void draw_passes(struct glint_frame *f, struct glint_flare *flare)
     glint_flare_draw_over(flare, &f->image, &under);
 }
 
-/* Byte I of the picture before. */
+/* Returns byte I of the picture before it is drawn on. */
 static uint8_t ground_of(int i)
 {
     return (uint8_t)(40 + i * 7 / 2 % 90);
@@ -181,7 +182,7 @@ static void draw(struct glint_frame f, uint8_t *px)
     const char *reason;
     void *mem;
 
-    for (int i = 0; i < BYTES; i++) /* each fourth: light below white */
+    for (int i = 0; i < BYTES; i++) /* every fourth 0: light below white */
         px[i] =
             f.image.format == GLINT_LINEAR_Q20 && i % 4 == 3 ? 0 : ground_of(i);
     glint_image_place(&f.image, px);
@@ -205,7 +206,7 @@ static void draw(struct glint_frame f, uint8_t *px)
     free(m.data);
 }
 
-/* Light with 2^20 = 1, or codes. */
+/* Linear light with 2^20 = 1, or codes. */
 static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4];
 static uint8_t *const one = (uint8_t *)one_q20, *const other =
                                                     (uint8_t *)other_q20;
@@ -214,7 +215,7 @@ static const enum glint_pixel_format formats[N_FORMATS] = {
     GLINT_RGB24, GLINT_I420, GLINT_NV12,       GLINT_YUYV,  GLINT_I422,
     GLINT_I444,  GLINT_GREY, GLINT_LINEAR_Q20, GLINT_RGB565};
 
-/* Workers, tiles, the order of jobs and kernels do not show. */
+/* Workers, tiles, the order of jobs and kernels must not change a bit. */
 static void test_same_bits(void **state)
 {
     uint32_t seed = 5;
@@ -237,7 +238,8 @@ static void test_same_bits(void **state)
     }
 }
 
-/* Off: the flare alone. On: something else. */
+/* With the triangle off, the picture must be that of the flare alone; with it
+ * on, another one. */
 static void test_off(void **state)
 {
     (void)state;
@@ -257,8 +259,8 @@ static void test_off(void **state)
     }
 }
 
-/* On any ground what it covers wholly is its own, and what it does not cover
- * stays; the flare lies over both. */
+/* On any ground, pixels that the triangle covers wholly must be its own, and
+ * those that it does not cover must stay; the flare must lie over both. */
 static void test_sets(void **state)
 {
     struct glint_frame f = first;
@@ -275,7 +277,7 @@ static void test_sets(void **state)
         n_set += cover_q8 == GLINT_COVER_ALL;
         n_kept += cover_q8 == 0;
         n_lit += cover_q8 == GLINT_COVER_ALL && other[i + 1] > one[i + 1];
-        if (cover_q8 == GLINT_COVER_ALL) /* sRGB of 1, 0.397, 0.137 */
+        if (cover_q8 == GLINT_COVER_ALL) /* codes of 1, 0.397, 0.137 */
             assert_true(one[i] == 255 && one[i + 1] == 169 &&
                         one[i + 2] == 104);
         else if (cover_q8 == 0)

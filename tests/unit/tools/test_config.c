@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Options from files: what is taken, in which order, and that every mistake is
- * named with its line and takes nothing along.
+ * Options from files: which entries are taken, in which order, and that every
+ * mistake is named with its line and takes no entry along.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +28,7 @@ static const struct option options[] = {
     {"config", required_argument, NULL, 'C'},
     TOOL_COMMON_OPTIONS};
 
-/* What a command makes of its options; its own words for a bad grid. */
+/* A command that logs its options, with a message of its own for a bad grid. */
 struct command {
     struct tool tool;
     char log[1024]; /* "name=value;" for each, in order */
@@ -139,14 +139,16 @@ static void test_layout(void **state)
                  "grid=5;");
     expect_taken(BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
                  "grid=7;lens=a;b;lens=c # d;");
-    /* an indented line is one of its own, not more of the one before */
+    /* An indented line is a line of its own and does not continue the one
+     * before. */
     expect_taken(BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
                  "lens=a;grid=9;light=1,2;");
     expect_taken(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
                  "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
 }
 
-/* The longest line, and a comment that is longer. */
+/* The longest line must be taken; a longer one must be refused unless it is a
+ * comment. */
 static void test_long_lines(void **state)
 {
     char text[1000], log[1000];
@@ -172,7 +174,7 @@ static void test_long_lines(void **state)
     }
 }
 
-/* Values outlive the text and the parser. */
+/* Values must outlive the text, until config_free(). */
 static void test_values_stay(void **state)
 {
     struct config config = start();
@@ -238,8 +240,8 @@ static void test_mistakes(void **state)
                    "x.ini:1: holds a control character");
 }
 
-/* The command's own refusal, in its words, with the line; the entries before
- * have been taken, those after are not. */
+/* A refusal by the command must come in its own words, with the line; entries
+ * before it are taken, those after it are not. */
 static void test_bad_value(void **state)
 {
     struct config config = start();
@@ -310,7 +312,8 @@ static void write_file(const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
-/* The order a command goes by: its file first, its line later. */
+/* Options must go in the order of a command: first those of its file, then
+ * those of its line, which win. */
 static void test_line_wins(void **state)
 {
     char *line[] = {"live",     "--grid", "32",         "in", "--conf",
@@ -335,7 +338,7 @@ static void test_line_wins(void **state)
     config_free(&config);
 }
 
-/* As on SIGHUP: what was read before stays while the new file is bad. */
+/* While a new file is bad, as on SIGHUP, what was read before must stay. */
 static void test_reload(void **state)
 {
     struct config first = start(), second;

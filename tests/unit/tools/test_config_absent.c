@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Without inih a configuration is refused in words, whatever is in it.
+ * Without inih a configuration must be refused with a message, whatever is in
+ * it.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint live from its command line to its exit code, with a camera that is
- * answered by the test: what it leaves behind, what a frame costs it, what
- * signals and lost cameras do.
+ * glint live from its command line to its exit code, with a camera that the
+ * test answers for: what it leaves behind, what a frame takes, and what signals
+ * and lost cameras do.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +30,7 @@ static char shot_dir[] = "/tmp/glint-test-shot-XXXXXX";
 static int n_waits, n_unwaited;
 static void (*script)(int wait); /* Each wait calls this with its number. */
 
-/* A frame comes at each wait, unless the script takes it away again. */
+/* Each wait brings a frame, unless the script takes it away again. */
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
                  const sigset_t *mask);
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
@@ -50,7 +50,7 @@ int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
     return 1;
 }
 
-/* Who asks again and again without waiting would do so for ever here. */
+/* A program that asks again and again without waiting is stopped here. */
 static void on_dequeue(void)
 {
     if (++n_unwaited == 1000)
@@ -71,7 +71,8 @@ static void write_config(const char *text)
     fclose(f);
 }
 
-/* Runs `glint live -d FAKE -o null -q LINE`, with what it says in a file. */
+/* Runs `glint live -d FAKE -o null -q LINE`, with stderr to a file; returns its
+ * exit code. */
 static int live(const char *line)
 {
     static char words[1024];
@@ -96,7 +97,7 @@ static int live(const char *line)
     return code;
 }
 
-/* How often it said TEXT. */
+/* Returns how often TEXT was printed to stderr. */
 static int n_said(const char *text)
 {
     static char all[100000];
@@ -141,7 +142,7 @@ static void test_frames(void **state)
     must_leave_nothing();
     assert_int_equal(n_waits, 150);
     assert_true(asked[2] >= 5);
-    assert_int_equal(asked[149] - asked[2], 0); /* a frame takes no memory */
+    assert_int_equal(asked[149] - asked[2], 0); /* Frames take no memory. */
 }
 
 static void test_skip(void **state)
@@ -174,7 +175,7 @@ static void test_stops(void **state)
 
 static void reload_often(int wait)
 {
-    if (wait == 3 || wait == 149) /* frames of one code */
+    if (wait == 3 || wait == 149) /* Both frames have one code. */
         raise(SIGUSR2);
     if (wait % 10 == 5)
         raise(SIGHUP);
@@ -197,7 +198,8 @@ static const char *snapshot(int number)
     return into;
 }
 
-/* Nothing piles up, and the picture stays what it was. */
+/* Many reloads must not let memory grow, and the picture must stay as it
+ * was. */
 static void test_reloads(void **state)
 {
     char line[200];
@@ -265,7 +267,8 @@ static void snapshot_at_2(int wait)
         raise(SIGUSR2);
 }
 
-/* The flare alone is on black, in every kind of codes. */
+/* With --layer flare and no light to speak of, the picture must be black in
+ * every format and range. */
 static void test_black(void **state)
 {
     static const uint32_t kind[] = {V4L2_PIX_FMT_YUYV,  V4L2_PIX_FMT_UYVY,
@@ -295,7 +298,7 @@ static void test_black(void **state)
     }
 }
 
-/* It waits for the next frame, and so does the program. */
+/* A snapshot must wait for the next frame, and the program must wait, too. */
 static void test_snapshot_waits(void **state)
 {
     char line[100], path[60], said[80];
@@ -367,8 +370,8 @@ static void test_other_sizes(void **state)
 
 /* ---------------------------------------------------------------- failures */
 
-/* Each call in turn fails, once: frames go on or there is an exit code and a
- * line that says why. */
+/* Whichever call fails once, frames must go on, or there must be an exit code
+ * and a message. */
 static void test_every_failure(void **state)
 {
     int n = 0, n_failed = 0, n_calls;
@@ -421,7 +424,7 @@ int main(void)
         cmocka_unit_test(test_comes_back),
         cmocka_unit_test(test_other_sizes),
         cmocka_unit_test(test_every_failure),
-        /* the last: a stop stays */
+        /* last, as a stop lasts */
         cmocka_unit_test(test_stops),
     };
 

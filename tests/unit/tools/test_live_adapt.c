@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What holds the frame rate, against machines that are a cost for each step.
+ * Control of the frame rate, against machines that have a time for each
+ * step.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,15 +18,15 @@
 
 static struct live_adapt adapt;
 
-/* What a run of frames saw. */
+/* Counts and times of a run. */
 static struct seen {
     int n_frames, n_missed;
     int n_down, n_up;
     double first_down_s, last_change_s;
 } seen;
 
-/* Runs a machine that takes COST_MS[step] for a frame, for SECONDS. What takes
- * longer than a period misses the frames that come meanwhile. */
+/* Runs a machine that takes COST_MS[step] for a frame, for SECONDS. A frame
+ * that takes longer than a period misses those that come meanwhile. */
 static void run(const double *cost_ms, double seconds)
 {
     double now_s = 0;
@@ -67,10 +68,10 @@ static void test_easy(void **state)
     live_adapt_init(&adapt);
     run(cost, 600);
     assert_int_equal(adapt.step, 0);
-    assert_true(seen.last_change_s < 0); /* none */
+    assert_true(seen.last_change_s < 0); /* no change */
 }
 
-/* Half a second of misses is what it takes, and more steps at once where a
+/* Half a second of misses must lead to a change, by more than one step where a
  * frame takes more than two periods. */
 static void test_overload(void **state)
 {
@@ -103,7 +104,7 @@ static void test_worst(void **state)
     assert_int_equal(seen.n_up, LIVE_MAX_STEP);
 }
 
-/* One slow frame is no reason, as when a picture is saved. */
+/* A single slow frame, as when a picture is saved, must change nothing. */
 static void test_hiccup(void **state)
 {
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
@@ -117,8 +118,8 @@ static void test_hiccup(void **state)
     assert_int_equal(seen.n_down, 0);
 }
 
-/* A burst of many lights passes: back within some seconds a step, however many
- * steps it took down. */
+/* After a burst of many lights all steps down must be taken back, within some
+ * seconds each. */
 static void test_recovers(void **state)
 {
     static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
@@ -133,7 +134,7 @@ static void test_recovers(void **state)
     assert_int_equal(seen.n_down, 0);
 }
 
-/* Where the next step up is too much it is tried ever more rarely. */
+/* A next step up that takes too long must be tried ever more rarely. */
 static void test_does_not_oscillate(void **state)
 {
     static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
@@ -146,11 +147,11 @@ static void test_does_not_oscillate(void **state)
     assert_int_equal(adapt.step, 3);
     assert_in_range(n_early, 1, 6);
     run(cost, 600);
-    assert_in_range(seen.n_up, 5, 12); /* each minute */
+    assert_in_range(seen.n_up, 5, 12); /* once a minute */
     assert_true(seen.n_missed < seen.n_frames / 100);
 }
 
-/* What was too much once is not for ever. */
+/* A step up that took too long once must be tried again later. */
 static void test_forgets(void **state)
 {
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
@@ -159,11 +160,12 @@ static void test_forgets(void **state)
     (void)state;
     live_adapt_init(&adapt);
     run(heavy, 300);
-    run(light, 75); /* a minute at most, and then on as at first */
+    run(light, 75); /* a minute at most, then as at first */
     assert_int_equal(adapt.step, 0);
 }
 
-/* Step 0 is what was asked for, and no step is finer than the one before. */
+/* Step 0 must be the dials that were asked for, and no step may be finer than
+ * the one before. */
 static void test_steps(void **state)
 {
     static const struct glint_dials ask[] = {

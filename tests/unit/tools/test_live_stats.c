@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Statistics of a live run: percentiles against all latencies sorted, sums
- * against ones made by hand, lines to the letter, counts beyond 32 bits.
+ * against sums by hand, lines to the letter, counts beyond 32 bits.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -49,7 +49,7 @@ static void check_percentiles(int n, int64_t low_us, int64_t span_us)
     }
     qsort(us, (size_t)n, sizeof *us, compare);
     for (int percent = 1; percent <= 100; percent++) {
-        const int rank = (n * percent + 99) / 100; /* the nearest, from 1 */
+        const int rank = (n * percent + 99) / 100; /* nearest rank, from 1 */
         const double want = 1e-3 * (double)us[rank - 1];
         const double is = live_stats_latency_ms(&stats.second, percent);
 
@@ -88,7 +88,7 @@ static void test_extreme_latencies(void **state)
     assert_true(live_stats_latency_ms(&stats.second, 100) == 3e9);
 }
 
-/* A full bin halves them all; shares and the rare ones stay. */
+/* A full bin must halve all bins, and shares and rare latencies must stay. */
 static void test_full_bin(void **state)
 {
     (void)state;
@@ -157,7 +157,7 @@ static void test_json(void **state)
         "\"ghosts\":39,\"bytes\":3000,\"quality\":0.375}");
 }
 
-/* The second starts anew, the total goes on. */
+/* After a second its figures must begin anew, and those of the total go on. */
 static void test_seconds(void **state)
 {
     (void)state;
@@ -216,7 +216,7 @@ static void test_lines(void **state)
         "5.00 show 0.00  3000 bytes\n");
 }
 
-/* Everything as large as it gets. */
+/* Every count and time as large as it can be must be printed in full. */
 static void test_large_counts(void **state)
 {
     struct live_frame_times t = {.shown = true,

@@ -22,7 +22,7 @@ static const enum glint_pixel_format formats[] = {
     GLINT_UYVY,  GLINT_BGR24, GLINT_XRGB8888, GLINT_RGB565};
 enum { N_FORMATS = sizeof formats / sizeof *formats };
 
-/* The picture lies between guards of 0xee; grey all over. */
+/* Returns a grey picture between guards of bytes 0xee. */
 static struct glint_image new_image(enum glint_pixel_format format,
                                     uint8_t **mem)
 {
@@ -57,7 +57,8 @@ static struct glint_lamp_track track_at(int x, int y)
                                      .size_q8 = 2 << 8};
 }
 
-/* What is drawn with one pixel a line: a cross of 5, a box of +-8, digits. */
+/* With lines one pixel wide, a mark must be a cross of 5 pixels, a box of +-8
+ * and the digits 907. */
 static void test_what_is_drawn(void **state)
 {
     static const char *const number[5] = {"### ### ###", "# # # #   #",
@@ -90,8 +91,8 @@ static void test_what_is_drawn(void **state)
     free(mem);
 }
 
-/* Green at the middle: (0, 255, 0) in BT.601 limited is (145, 54, 34), in
- * BT.709 full (182, 30, 12). */
+/* Green must be right at the middle: (0, 255, 0) is (145, 54, 34) in BT.601
+ * limited and (182, 30, 12) in BT.709 full. */
 static void test_colours_of_formats(void **state)
 {
     static const struct {
@@ -143,7 +144,8 @@ static void test_565(void **state)
     free(mem);
 }
 
-/* Anywhere, inside, across the borders and far away. */
+/* A mark may be anywhere, inside, across the borders or far away, and must not
+ * touch the guards. */
 static void test_clipped_at_the_borders(void **state)
 {
     static const int places[] = {-(1 << 20), -100, -9, -1,     0,      5,

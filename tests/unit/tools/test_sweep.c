@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The parts of glint sweep that measure nothing: fronts, PNG, the quality
- * table.
+ * The parts of glint sweep that measure nothing: fronts, PNG, dials and
+ * levels.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +16,8 @@
 #include "support/rng.h"
 #include "lab/sweep.h"
 
-/* Cheaper and no worse, or better and no dearer. */
+/* Returns whether A beats B: it is cheaper and no worse, or better and no more
+ * costly. */
 static int dominates(const double *cost, const double *quality, int a, int b)
 {
     return cost[a] <= cost[b] && quality[a] >= quality[b] &&
@@ -38,8 +39,9 @@ static void test_front_by_hand(void **state)
     assert_int_equal(sweep_front(cost, quality, 0, front), 0);
 }
 
-/* A dial on the line between two rungs, above it, dearer than its like, cheaper
- * than all, and between rungs of which one draws half of the pixels. */
+/* Heights above the line through the levels, dB: of a dial on the line between
+ * two levels, one above it, one more costly than a level like it, one cheaper
+ * than all, and one between levels of which one draws half the pixels. */
 static void test_above_the_ladder(void **state)
 {
     struct sweep_setting level = {.kind = SWEEP_QUALITY}, halves = level;
@@ -66,8 +68,8 @@ static void test_above_the_ladder(void **state)
     assert_true(fabs(sweep_above(mean, n, 8) + 2) < 1e-9);
 }
 
-/* Nothing dominates what is on it, and something on it whatever is not. Few
- * values, so that many are equal. */
+/* No setting may beat one on the front, and some setting on the front must be
+ * as good as each one off it. Values are few, so that many are equal. */
 static void test_front_of_many(void **state)
 {
     enum { N = 60 };
@@ -100,7 +102,7 @@ static void test_front_of_many(void **state)
     }
 }
 
-/* The smallest PNG: its checksums are those of zlib. */
+/* The smallest PNG must have the checksums of zlib. */
 static void test_png(void **state)
 {
     static const uint8_t red[] = {255, 0, 0};
@@ -148,8 +150,8 @@ static int is_half(const struct settings *settings)
     return glint_dials_half(&settings->dials);
 }
 
-/* Better is never coarser, among levels that draw all pixels and among those
- * that do not; the middle is what settings have anyway. */
+/* A better level must never be coarser, among levels that draw all pixels and
+ * among those that draw half; the middle level must be the default settings. */
 static void test_ladder(void **state)
 {
     struct settings last, settings, plain;
@@ -168,7 +170,7 @@ static void test_ladder(void **state)
     for (int i = 1; i <= 100; i++) {
         settings_set_quality(&settings, i / 100.);
         if (is_half(&settings) ==
-            is_half(&last)) { /* Otherwise only pixels get finer. */
+            is_half(&last)) { /* Else only pixels get finer. */
             assert_in_range(settings.dials.fineness, last.dials.fineness,
                             GLINT_MAX_CELLS);
             assert_true(settings.quantum <= last.quantum);
