@@ -5,8 +5,8 @@
  *     cfg.dials = glint_dials_at(1 << 14);                  the default
  *     cfg.dials = glint_dials_coarser(cfg.dials, glint_dials_at(1 << 12));
  *
- * A small struct that is copied freely: what is asked for, what a budget has
- * chosen and what a measurement turns are each one of these.
+ * A small struct that is copied freely. The settings that are asked for, those
+ * that a budget chose and those that a measurement turns are each one of these.
  */
 #ifndef GLINT_DIALS_H
 #define GLINT_DIALS_H
@@ -16,33 +16,35 @@ extern "C" {
 #endif
 
 enum glint_dial_flag {
-    GLINT_DIAL_HALF = 1,       /* pictures in codes are drawn by edges with half
-                                  as many pixels each way */
-    GLINT_DIAL_ALWAYS_HALF = 2 /* the same, whatever a budget chooses */
+    GLINT_DIAL_HALF = 1, /* pictures in codes are drawn by edges with half
+                            as many pixels each way */
+    /* GLINT_DIAL_HALF, and a budget does not change it. */
+    GLINT_DIAL_ALWAYS_HALF = 2
 };
 
 struct glint_dials {
     int fineness; /* cells a side of ray grids, 4 .. GLINT_MAX_CELLS; with 64
                      what lies between rays is off by 0.01 pixel */
-    int irradiance_steps; /* an octave, 1 .. 4096; 0: not rounded */
-    int snap_codes_q8;    /* codes: weaker edges lie on whole pixels; 0: none */
-    int dispersion_q8;    /* pixels that outlines of neighbouring wavelengths
-                             may be apart; 0: three wavelengths for all */
-    int max_lights; /* lights are merged until there are so many, the faint ones
-                       first */
-    unsigned flags; /* enum glint_dial_flag */
-    double cull_codes;  /* codes near black that may be left out */
+    int irradiance_steps; /* steps an octave, 1 .. 4096; 0: irradiance is not
+                             rounded */
+    int snap_codes_q8;  /* codes: edges weaker than this lie on whole pixels; 0:
+                           none do */
+    int dispersion_q8;  /* pixels that outlines of neighbouring wavelengths
+                           may be apart; 0: three wavelengths for all */
+    int max_lights;     /* largest number of lights; more are merged, faint ones
+                           first */
+    unsigned flags;     /* enum glint_dial_flag */
+    double cull_codes;  /* codes near black below which light may be left out */
     double area_points; /* points, at most, that a lamp with an extent is drawn
                            as */
 };
 
-/* The dials at QUALITY_Q15, 0 .. 2^15, along the measured front of accuracy
- * over time; 2^14 is the default. */
+/* Returns the dials at QUALITY_Q15, 0 .. 2^15, along the measured front of
+ * accuracy over time; 2^14 is the default. */
 struct glint_dials glint_dials_at(int quality_q15);
 
-/* Takes each dial from A or B, whichever is coarser. Steps of irradiance that
- * are not rounded stay so, and three wavelengths are neither coarse nor fine.
- */
+/* Returns each dial of A or B, whichever is coarser. If either does not round
+ * irradiance, or draws three wavelengths, so does the result. */
 struct glint_dials glint_dials_coarser(struct glint_dials a,
                                        struct glint_dials b);
 

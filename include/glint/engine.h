@@ -10,11 +10,10 @@
  *     glint_engine_draw(engine, lamps, n, &image, &report);  each picture
  *     glint_engine_destroy(engine);
  *
- * This is what glint overlay and glint live draw with, for programs on
- * machines with floating point and malloc: libglint-engine.a over libglint.a.
- * It needs neither an operating system nor libglint-bake.a; a clock is handed
- * in. Where there is no malloc, glint/flare.h draws by itself.
- */
+ * This is what glint overlay and glint live draw with, for programs on machines
+ * with floating point and malloc: libglint-engine.a over libglint.a. It needs
+ * neither an operating system nor libglint-bake.a; the caller passes a clock.
+ * Where there is no malloc, glint/flare.h draws by itself. */
 #ifndef GLINT_ENGINE_H
 #define GLINT_ENGINE_H
 
@@ -32,34 +31,36 @@
 extern "C" {
 #endif
 
-/* Seconds since any moment, never falling. */
+/* Returns seconds since any moment; never falls. */
 typedef double glint_clock_fn(void);
 
 enum { GLINT_ENGINE_MAX_LAMPS = 1024 }; /* lamps of one picture, at most */
 
 struct glint_engine_config {
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    const struct glint_lens *model; /* kept; to be set */
+    const struct glint_lens *model; /* kept; the caller sets it */
     struct glint_workers *workers;  /* kept; NULL: serial. Changes no output */
-    unsigned sets; /* instruction sets, as glint/flare.h has them; 0: plain C */
+    unsigned sets; /* instruction sets, as in glint/flare.h; 0: plain C */
     glint_clock_fn *clock; /* kept; NULL: reports have no times, and no budget
                               is kept */
 
-    /* The camera: sides of the stop, 0 (a circle) or 3 to 64, the first corner
-     * of it, the f-number, 0: what the model was baked for, which is the widest
-     * there is, and the sensor's size; 0: the film of the model. */
+    /* The camera. n_blades: sides of the stop, 3 .. 64, or 0 for a circle;
+     * blade_rotation_deg: angle of its first corner; f_number: 0 for that which
+     * the model was baked for, the widest allowed; width and height of the
+     * sensor: 0 for those of the model's film. */
     int n_blades;
     double blade_rotation_deg, f_number, sensor_width_mm, sensor_height_mm;
 
-    /* How a picture is searched: how bright a lamp must be and down to what it
-     * extends, in stops from the picture's white; how far clipped pixels exceed
-     * white, below 0: as the halo of each lamp has it; lamps at most. */
+    /* How a picture is searched. threshold_ev, in stops from the picture's
+     * white: how bright a lamp must be, and down to what brightness it extends.
+     * headroom_ev: stops by which clipped pixels exceed white; below 0: as the
+     * halo of each lamp tells. */
     double threshold_ev[2], headroom_ev;
     int max_found; /* 1 .. GLINT_ENGINE_MAX_LAMPS / 2 */
 
-    /* How bright the flare comes out: strength, 0 .. 100, 0.5 is a quarter of
-     * white at its brightest, whatever lamps and lens; or, where by_hand is not
-     * 0, exposure_ev stops. Either times gain. */
+    /* How bright the flare is. strength, 0 .. 100: at 0.5 its brightest part is
+     * a quarter of white, whatever the lamps and the lens. If by_hand is not 0,
+     * exposure_ev stops are used instead. Both are multiplied by gain. */
     double strength, exposure_ev, gain;
     int by_hand;
 
@@ -72,27 +73,30 @@ struct glint_engine_config {
     double budget_ms; /* milliseconds a frame, which the dials are turned to
                          keep; 0: no budget */
 
-    /* Memory for drawing. With 0 bytes the engine takes exactly what a frame
-     * needs, and more as one needs more; else it keeps to these, leaves out and
-     * counts what does not fit, and draws at most 2 * max_found lights. ARENA,
-     * aligned to 64, is kept; NULL: the engine allocates. */
+    /* Memory for drawing. If arena_bytes is 0 the engine takes exactly what a
+     * frame needs, and more when a frame needs more. Else it keeps to
+     * arena_bytes, leaves out and counts what does not fit, and draws at most 2
+     * * max_found lights. ARENA, aligned to 64, is kept; NULL: the engine
+     * allocates it. */
     void *arena;
     size_t arena_bytes;
 };
 
 struct glint_engine_report {
     int lamps;        /* number of lamps given */
-    int lamps_beyond; /* lamps of these farther out than the model goes */
-    int lights;       /* drawn, after merging those too near or too many */
+    int lamps_beyond; /* lamps of these farther off the axis than the model goes
+                       */
+    int lights;       /* lights drawn, after lamps that are too near or too many
+                         merged */
     /* Number of ghosts seen, and of bundles of rays drawn. */
     int ghosts, bundles;
     int dropped_bundles; /* bundles left out for want of memory */
     int dropped_cells;   /* cells left out of ghosts that were drawn, as rays of
                             them were lost */
-    size_t bytes;        /* bytes that drawing has */
-    size_t need_bytes; /* bytes that would have drawn everything, shared out for
-                          this very picture */
-    double scale;      /* factor that powers of lamps were multiplied by */
+    size_t bytes;        /* size of the memory for drawing */
+    size_t need_bytes;   /* size that would have drawn everything in this very
+                            picture */
+    double scale;        /* factor on the powers of lamps */
     double plan_ms, bin_ms, draw_ms;
     double quality; /* quality that the budget chose; below 0: there is no
                        budget */
@@ -100,14 +104,14 @@ struct glint_engine_report {
 
 struct glint_engine; /* opaque */
 
-/* Sets CFG to what glint overlay draws with; the model and the workers are to
- * be set. */
+/* Sets CFG to the values that glint overlay draws with; the caller still sets
+ * the model and the workers. */
 void glint_engine_defaults(struct glint_engine_config *cfg, int width,
                            int height);
 
-/* Makes an engine; CFG is copied. GLINT_E_ARGUMENT, GLINT_E_LENS,
- * GLINT_E_MEMORY with ERROR. Draws small pictures to see how bright the lens
- * answers. */
+/* Makes an engine; CFG is copied. Draws small pictures to measure how bright
+ * flares of the lens are. With ERROR: GLINT_E_ARGUMENT, GLINT_E_LENS,
+ * GLINT_E_MEMORY. */
 enum glint_status glint_engine_create(struct glint_engine **engine,
                                       const struct glint_engine_config *cfg,
                                       struct glint_error *error);
@@ -117,25 +121,26 @@ void glint_engine_destroy(struct glint_engine *engine);
 /* Changes the dials for the frames to come. */
 void glint_engine_turn(struct glint_engine *engine, struct glint_dials dials);
 
-/* Sets the stop of the pictures to come to F_NUMBER, at least what the model
- * was baked for, and sees anew how bright the lens answers. GLINT_E_ARGUMENT
- * with ERROR: the stop stays as it is. GLINT_E_MEMORY. */
+/* Sets the f-number of the pictures to come, at least that which the model was
+ * baked for, and measures anew how bright flares of the lens are.
+ * GLINT_E_ARGUMENT with ERROR: the stop stays as it is. GLINT_E_MEMORY. */
 enum glint_status glint_engine_stop(struct glint_engine *engine,
                                     double f_number, struct glint_error *error);
 
-/* Writes the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
- * ELAPSED_US after the one before: lamps are followed from picture to picture,
- * and rise and fade. 0: a picture by itself, whose flare is drawn small first,
- * unless an arena or a budget was given, to see how bright it comes out. The
- * strongest first, at most MAX; returns how many. */
+/* Finds the lamps of IMAGE, in any format but GLINT_LINEAR_Q20, which comes
+ * ELAPSED_US after the last picture: lamps are followed from picture to
+ * picture, and rise and fade. 0: a picture by itself; glint_engine_draw() then
+ * draws its flare small first, to see how bright it is, unless there is an
+ * arena or a budget. Writes at most MAX lamps, the strongest first; returns how
+ * many. */
 int glint_engine_find(struct glint_engine *engine,
                       const struct glint_image *image, int32_t elapsed_us,
                       struct glint_lamp *lamps, int max);
 
-/* Adds the flare of LAMPS to IMAGE: those found last, for which the exposure
- * follows those of the pictures before, or any others, N at most
- * GLINT_ENGINE_MAX_LAMPS, where N 0 leaves it as it is. GLINT_E_ARGUMENT: IMAGE
- * has another size. GLINT_E_MEMORY. */
+/* Adds the flare of N LAMPS, at most GLINT_ENGINE_MAX_LAMPS, to IMAGE: those
+ * found last, for which the exposure follows that of the pictures before, or
+ * any others. N 0 leaves IMAGE as it is. GLINT_E_ARGUMENT: IMAGE has another
+ * size, or N is out of range. GLINT_E_MEMORY. */
 enum glint_status glint_engine_draw(struct glint_engine *engine,
                                     const struct glint_lamp *lamps, int n,
                                     const struct glint_image *image,

@@ -17,21 +17,22 @@ extern "C" {
 #endif
 
 #define GLINT_MAX_WAVELENGTHS 32
-#define GLINT_SET_WAVES       65 /* waves of all sets together, see _spread */
+/* Waves of all sets together, see glint_setup_spread(). */
+#define GLINT_SET_WAVES 65
 
-/* N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that stand for light of all
- * wavelengths: WAVELENGTH_NM rises, and RGB[i] times what is at wavelength i,
- * summed, is nearly what all of 400 .. 700 nm give to linear BT.709 by the CIE
- * 1931 observer [Wyman13], exactly if that is a polynomial of a degree below
- * 4 and N. Each channel sums to 1, so that a flat spectrum is white; single
- * colours lie outside of BT.709 and are negative in part. SHARE[i] is that of
- * the mean over the wavelengths and sums to 1. Wavelengths lie where steps
- * between them, as a ghost's outline moves in proportion to 1 / wavelength^2,
- * are smallest in the mean of squares over the channels. */
+/* Chooses N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that stand for all of 400
+ * .. 700 nm. WAVELENGTH_NM rises. The sum of RGB[i] times the light at
+ * wavelength i is nearly the linear BT.709 that the CIE 1931 observer [Wyman13]
+ * sees of the whole spectrum, exactly if that is a polynomial of a degree below
+ * 4 and N. Each channel of RGB sums to 1, so that a flat spectrum is white;
+ * single colours lie outside of BT.709 and are negative in part. SHARE[i] is
+ * the part of wavelength i in the mean over all, and sums to 1. Outlines of
+ * ghosts move in proportion to 1 / wavelength^2; the wavelengths make the steps
+ * between them smallest in the mean of squares over the channels. */
 void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
                     double *share);
 
-/* One of a set. */
+/* One wave of a set. */
 struct glint_set_wave {
     double nm, rgb[3];
     double direct_flux, unit_flux; /* fluxes as in struct glint_setup, mm^2 */
@@ -40,13 +41,14 @@ struct glint_set_wave {
 /* A lens made ready for drawing: everything that no light and no frame
  * changes. */
 struct glint_setup {
-    const struct glint_prescription *lens; /* kept; NULL: made from a model */
+    /* kept; NULL: the setup is made from a model. */
+    const struct glint_prescription *lens;
     struct glint_optics optics;
     int n_ghosts;
-    int n_parts; /* the last so many ghosts of a model are further parts of the
-                    pupil of some of those before them */
+    int n_parts; /* the last n_parts ghosts of a model are further parts of the
+                    pupil of ghosts before them */
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
-    double opening; /* radius of the stop, in those of the model's: at most 1 */
+    double opening; /* radius of the stop over that of the model's, at most 1 */
     int n_blades;   /* blades of the stop; 0: circle */
     double blade_rotation_deg; /* angle of the stop's first corner, from x
                                   towards y */
@@ -60,8 +62,8 @@ struct glint_setup {
                                                 mm^2: the mean of direct_flux,
                                                 or itself after
                                                 glint_setup_balance() */
-    /* After _spread: sets of wavelengths, one after the other, the smallest
-     * first, of which each ghost takes its own. */
+    /* Set by glint_setup_spread(): sets of wavelengths, one after the other,
+     * the smallest first. Each ghost takes one of them. */
     int n_sets, set_size[GLINT_MAX_WAVE_SETS];
     struct glint_set_wave set_wave[GLINT_SET_WAVES];
 };
@@ -77,8 +79,9 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
                                    const double *wavelength_nm, int n,
                                    struct glint_error *error);
 
-/* The same from a model, without its lens table: everything but exact rays. A
- * wavelength outside of the model's band counts as the nearest one inside. */
+/* Prepares a model as glint_setup_init() does a lens table, for everything but
+ * exact rays. A wavelength outside of the model's band counts as the nearest
+ * one inside. */
 enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          const struct glint_lens *lens,
                                          int n_blades,
@@ -86,32 +89,33 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          const double *wavelength_nm, int n,
                                          struct glint_error *error);
 
-/* Stops SETUP, made from LENS and nothing else done to it, to F_NUMBER, down to
- * a 1024th of the opening that the model was baked for. GLINT_E_ARGUMENT:
- * farther, or wider than that. */
+/* Sets the f-number of SETUP, made from LENS and not changed since, down to a
+ * 1024th of the opening that the model was baked for. GLINT_E_ARGUMENT:
+ * F_NUMBER asks for less, or for more than the model's opening. */
 enum glint_status glint_setup_stop_down(struct glint_setup *setup,
                                         const struct glint_lens *lens,
                                         double f_number,
                                         struct glint_error *error);
 
-/* Takes the colours of glint_spectrum() for SETUP, which is for its N
- * wavelengths. */
+/* Gives SETUP the colours of glint_spectrum(), if its N wavelengths are those
+ * of that. */
 void glint_setup_weigh(struct glint_setup *setup);
 
-/* Gives SETUP, made from LENS, the sets for each ghost to choose from. */
+/* Gives SETUP, made from LENS, the sets of wavelengths from which each ghost
+ * chooses. */
 void glint_setup_spread(struct glint_setup *setup,
                         const struct glint_lens *lens);
 
 /* Measures each wavelength by its own direct image, as a camera does that is
  * balanced to white behind this lens. Otherwise the lens's own tint shows in
- * the ghosts as it shows in everything else. */
+ * the ghosts, as it does in everything else. */
 void glint_setup_balance(struct glint_setup *setup);
 
-/* The stop of SETUP as a flare takes it. */
+/* Sets STOP to the stop of SETUP, in the form that a flare takes. */
 void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop);
 
-/* Signed distances of that stop at the nodes of a square mask of NODES^2 over
- * +-SPAN stop radii, q13, row 0 at the lowest y. */
+/* Sets MASK to signed distances to the outline of that stop at the nodes of a
+ * square of NODES^2 over +-SPAN stop radii, q13, row 0 at the lowest y. */
 void glint_setup_mask(const struct glint_setup *setup, int16_t *mask_q13,
                       int nodes, double span);
 

@@ -13,15 +13,16 @@ extern "C" {
 
 /* A light at infinity. */
 struct glint_lamp {
-    double theta_deg; /* off the axis, 0 .. 89.9 */
-    double phi_deg;   /* about it: 0 = +x, 90 = up */
+    double theta_deg; /* angle off the axis, 0 .. 89.9 */
+    double phi_deg;   /* angle about the axis: 0 = +x, 90 = up */
     double power;  /* value that the lamp's in-focus image would have if it were
                       spread over one pixel, linear; 1 = display white */
     double rgb[3]; /* colour, linear BT.709; white is 1 1 1 */
     double axis[2];  /* RMS semi-axes of its extent, the major one first, in
-                        tangents of angles off the axis: image over focal
-                        length; 0 0: a point. Here for who makes many points
-                        of it; the picture and traced bundles take it for one. */
+                        tangents of angles off the axis (image over focal
+                        length); 0 0: a point. Only functions that make many
+                        points of a lamp use it; the exact picture and traced
+                        bundles take the lamp for one point. */
     double turn_deg; /* direction of the major axis, 0 = +x, 90 = up */
 };
 
@@ -31,17 +32,17 @@ struct glint_view {
     double sensor_width_mm; /* mm that the whole width of the picture takes */
 };
 
-/* The largest view of WIDTH x HEIGHT that fits FILM. */
+/* Returns the largest view of WIDTH x HEIGHT that fits the film. */
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,
                                  double film_height_mm);
 
-/* Returns the tangent that a pixel on the axis takes behind a lens of FOCAL_MM.
- */
+/* Returns the tangent of the angle that a pixel on the axis covers behind a
+ * lens of FOCAL_MM. */
 double glint_view_pixel_tangent(const struct glint_view *view, double focal_mm);
 
-/* Gives the direction of a light whose image lies at pixel (X, Y) of VIEW
- * behind a lens of FOCAL_MM, and the reverse. Pixels count from the top left
- * corner, y down. */
+/* Convert between the direction of a light, theta_deg and phi_deg of LAMP, and
+ * its image's place (X, Y) in VIEW behind a lens of FOCAL_MM. Pixels count from
+ * the top left corner, y down. */
 void glint_view_to_angles(const struct glint_view *view, double focal_mm,
                           double x, double y, struct glint_lamp *lamp);
 void glint_view_to_pixel(const struct glint_view *view, double focal_mm,

@@ -6,7 +6,8 @@
 
 #include "engine/frame/block.h"
 
-/* Some more tracks than are shown, so that those that come up are known. */
+/* Returns how many tracks are kept if MAX lamps are shown: more, so that a lamp
+ * that becomes strong is already known. */
 static int tracks_for(int max)
 {
     const int wanted = max < 64 ? 128 : 2 * max;
@@ -14,13 +15,13 @@ static int tracks_for(int max)
     return wanted < GLINT_LAMP_DETECTOR_MAX ? wanted : GLINT_LAMP_DETECTOR_MAX;
 }
 
-/* BYTES rounded up to what init wants its memory aligned to. */
+/* Returns BYTES rounded up to the alignment of memory for init. */
 static size_t padded(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
 }
 
-/* Takes one block and places everything in it. */
+/* Takes one block of memory and places everything in it. */
 static enum glint_status place(struct glint_lamp_detector *f,
                                const struct glint_lamp_finder_config *lights,
                                const struct glint_lamp_tracker_config *tracks)
@@ -90,9 +91,8 @@ static int32_t larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* The least semi-axis of what a picture by itself shows as SPOT. The rim of a
- * core in its glare may hide any lamp in there; one that is taken for a point
- * has ghosts as if cut out of paper, which no lamp's look like. */
+/* Sets the power of a spot as if each clipped pixel were 2^headroom. Above 2^8
+ * it is kept in units of 2^(headroom - 8), as tracks hold at most 2^42. */
 static int32_t least_axis_q8(const struct glint_spot *spot)
 {
     return spot->size_q8 / 6;
@@ -119,8 +119,9 @@ static struct glint_lamp_track still(const struct glint_spot *spot, uint32_t id)
         .rgb_q15 = {spot->rgb_q15[0], spot->rgb_q15[1], spot->rgb_q15[2]}};
 }
 
-/* Clipped pixels count 2^headroom: in units of 2^8 below that, for tracks hold
- * no more than 2^42. */
+/* Finds spots, and measures profiles of as many of the strongest as can be
+ * followed: for a thousand, as in a city at night, that would cost several
+ * times as much as finding them. */
 static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
 {
     const double each = 65536 * (exp2(f->headroom_ev) - 1);
@@ -130,9 +131,7 @@ static void set_power(struct glint_lamp_detector *f, struct glint_spot *spot)
         ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
 }
 
-/* Finds spots, and what is behind as many of the strongest as are followed: in
- * a city by night a thousand would cost several times what finding them does.
- */
+/* Finds the lamps of IMAGE by itself; returns how many. */
 static int find(struct glint_lamp_detector *f, const struct glint_image *image,
                 int max)
 {
@@ -147,7 +146,8 @@ static int find(struct glint_lamp_detector *f, const struct glint_image *image,
     return n;
 }
 
-/* The lights of IMAGE by itself. */
+/* Returns whether a spot is about as compact as a disc, whose area is 2 pi
+ * times its squared RMS radius. */
 static int find_still(struct glint_lamp_detector *f,
                       const struct glint_image *image)
 {

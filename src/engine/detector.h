@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds lamps in pictures of one size, and follows them where these are a
- * video. What it needs is taken by open.
- */
+ * Finds lamps in pictures of one size, and follows them if these are a video.
+ * All memory is taken by open. */
 #ifndef GLINT_ENGINE_DETECTOR_H
 #define GLINT_ENGINE_DETECTOR_H
 
@@ -15,11 +14,11 @@ enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
     double headroom_ev; /* stops by which clipped pixels really exceed white;
-                           below 0: the profile of each lamp tells */
+                           below 0: taken from the profile of each lamp */
     int max; /* most lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
-    /* The lamps of the last frame, as found, the strongest first; untracked
-     * ones are numbered from 1. */
+    /* The lamps of the last frame, as found, the strongest first; those of a
+     * picture by itself are numbered from 1. */
     struct glint_lamp_track *track;
     int n_tracks;
 
@@ -27,36 +26,37 @@ struct glint_lamp_detector {
     struct glint_lamp_finder *lights;
     struct glint_lamp_tracker *tracks;
     struct glint_profile *profile;
-    double scale;            /* factor of the powers of tracks */
+    double scale;            /* factor on the powers of tracks */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
     int n_spots; /* spots of the last frame, lamps and doubtful ones */
     int max_tracks;
     void *mem;
 };
 
-/* Sets headroom_ev and max before. CFG says what a light is; keep_faint is the
- * detector's own. */
+/* Opens DETECTOR, whose headroom_ev and max are set. CFG says what a lamp is;
+ * its keep_faint is not used. */
 enum glint_status
 glint_lamp_detector_open(struct glint_lamp_detector *detector,
                          const struct glint_lamp_finder_config *cfg);
 void glint_lamp_detector_close(struct glint_lamp_detector *detector);
 
-/* Writes the lamps of IMAGE, which comes ELAPSED_US after the one before:
- * rising and fading as glint/lamp_tracker.h has it, so a few more than max may
- * be there for a while. 0: a picture by itself. LAMPS has room for
- * GLINT_LAMP_DETECTOR_MAX. */
+/* Writes the lamps of IMAGE, which comes ELAPSED_US after the last frame, to
+ * LAMPS, which has room for GLINT_LAMP_DETECTOR_MAX; returns how many. They
+ * rise and fade as in glint/lamp_tracker.h, so for a while there may be a few
+ * more than max. ELAPSED_US 0: IMAGE is a picture by itself. */
 int glint_lamp_detector_frame(struct glint_lamp_detector *detector,
                               const struct glint_image *image,
                               int32_t elapsed_us, const struct glint_view *view,
                               double focal_mm, struct glint_lamp *lamps);
 
-/* The strongest place of the last frame that was taken for no lamp, yet is
- * within a stop of white on average and about as compact as a disc; NULL: there
- * is none. */
+/* Returns the strongest spot of the last frame that was not taken for a lamp,
+ * yet is within a stop of white on average and about as compact as a disc; NULL
+ * if there is none. */
 const struct glint_spot *
 glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector);
 
-/* The next frame has nothing to do with the last: another camera, a jump. */
+/* Tells that the next frame has nothing to do with the last: another camera, a
+ * jump. */
 void glint_lamp_detector_restart(struct glint_lamp_detector *detector);
 
 #endif

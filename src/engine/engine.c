@@ -19,10 +19,11 @@ struct glint_engine {
     struct glint_response response;
     struct glint_strength strength;
     double starburst;
-    double seen_px[GLINT_LAMP_DETECTOR_MAX]; /* extent of what was found */
-    bool has_arena; /* drawing takes no memory of its own */
+    double seen_px[GLINT_LAMP_DETECTOR_MAX]; /* extent, in pixels, of each lamp
+                                                found */
+    bool has_arena; /* true: drawing takes no memory of its own */
     int n_found;
-    int32_t elapsed_us; /* between the pictures searched last */
+    int32_t elapsed_us; /* time between the last two pictures searched */
     struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     double level[GLINT_LAMP_DETECTOR_MAX]; /* level of each lamp found */
 };
@@ -66,7 +67,7 @@ static const char *check(const struct glint_engine_config *c)
 
 /* ------------------------------------------------------------------- making */
 
-/* F_NUMBER 0: as the model was baked. */
+/* Makes a setup of MODEL; F_NUMBER 0: of the one that it was baked for. */
 static enum glint_status set_up(struct glint_setup *setup,
                                 const struct glint_lens *model, int n_blades,
                                 double rotation_deg, double f_number,
@@ -78,7 +79,7 @@ static enum glint_status set_up(struct glint_setup *setup,
 
     if (status == GLINT_OK && f_number != 0)
         status = glint_setup_stop_down(setup, model, f_number, error);
-    /* the sparse basis holds its three wavelengths and no others */
+    /* The sparse basis has its own three wavelengths and no others. */
     if (status == GLINT_OK && model->header->basis != GLINT_BASIS_SPARSE)
         glint_setup_spread(setup, model);
     return status;
@@ -247,7 +248,8 @@ int glint_engine_find(struct glint_engine *engine,
     return e->n_found;
 }
 
-/* Returns whether LAMPS are those found last; their powers may have changed. */
+/* Returns whether LAMPS lie where those found last do; their powers may differ.
+ */
 static bool are_found(const struct glint_engine *e,
                       const struct glint_lamp *lamps, int n)
 {
@@ -258,8 +260,8 @@ static bool are_found(const struct glint_engine *e,
     return n == e->n_found;
 }
 
-/* There is time for a picture by itself. Lamps that were not found in it may be
- * those of a video that the program made. */
+/* Exposes a picture by itself, for which there is time, by drawing its flare
+ * small. */
 static void expose_as_drawn(struct glint_engine *e, int n,
                             const struct glint_image *image)
 {
@@ -278,8 +280,8 @@ static void expose_as_drawn(struct glint_engine *e, int n,
     free(ground);
 }
 
-/* Sets what the powers of N lamps are multiplied by, and holds those that are
- * too bright yet. */
+/* Sets the factor on the powers of N lamps, and lowers those that are still too
+ * bright for it. */
 static void expose(struct glint_engine *e, int n, bool is_found,
                    const struct glint_image *image)
 {

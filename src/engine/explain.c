@@ -11,7 +11,8 @@ static double work_in(enum glint_cost_kind kind, double n)
     return 1e3 * glint_cost_weight[kind].counted * n;
 }
 
-/* All but pixels, which are nobody's own. */
+/* Returns the instructions of P, and sets STAGE to those of each kind. Lit
+ * pixels do not count, as they belong to no ghost, light or wave alone. */
 static double work_of(const struct glint_explain_part *p, double *stage)
 {
     const double count[GLINT_COST_LIT] = {
@@ -46,7 +47,8 @@ int glint_explain_bundles(const struct glint_explain_part *p)
 static void add(struct glint_explain_part *p, const struct glint_account *a)
 {
     p->probed += a->probed;
-    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* drawn all the same */
+    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The ghost is drawn with
+                                                  another set of waves. */
         return;
     p->of[a->outcome]++;
     if (a->outcome != GLINT_OUTCOME_DRAWN && a->outcome != GLINT_OUTCOME_EMPTY)
@@ -61,7 +63,8 @@ static void add(struct glint_explain_part *p, const struct glint_account *a)
     p->refs += a->refs;
 }
 
-/* Returns the part that wave WAVE belongs to. */
+/* Returns the index of the part that wave WAVE belongs to: its set, or itself.
+ */
 static int part_of(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->rays.sets;
@@ -117,7 +120,7 @@ void glint_explain_draw(struct glint_explain *explain, int ghost)
     draw(explain, ghost, -1, -1);
 }
 
-/* Measures the light that PART, just drawn, gives to the picture. */
+/* Measures the light that PART, which was just drawn, gives to the picture. */
 static void measure(struct glint_explain *e, struct glint_explain_part *part)
 {
     const struct glint_view *view = &e->frame->view;

@@ -10,7 +10,7 @@ static size_t samples(const struct glint_float_image *image)
     return 3 * (size_t)image->width * (size_t)image->height;
 }
 
-/* A pixel's luminance as a number that grows with it, below 0, too. */
+/* Returns a number that rises with the luminance of a pixel, also below 0. */
 static uint32_t key_of(const float rgb[3])
 {
     const float y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
@@ -29,9 +29,8 @@ static double value_of(uint32_t key)
     return (double)y;
 }
 
-/* The luminance that RANK pixels stay below or at, of 0 .. pixels - 1: its bits
- * are found a byte at a time, so that no memory is needed that might be short.
- */
+/* Returns the luminance of the pixel of rank RANK, 0 .. pixels - 1, by rising
+ * luminance. Its bits are found a byte at a time, which needs no memory. */
 static double luminance_at(const struct glint_float_image *image, size_t rank)
 {
     const size_t n = samples(image) / 3;
@@ -62,7 +61,7 @@ double glint_measure_exposure(const struct glint_float_image *image)
     return at > 0 ? 1 / at : 1;
 }
 
-/* The sRGB code of X, 0 .. 255, not rounded. */
+/* Returns the sRGB code of X, 0 .. 255, not rounded. */
 static double encode(double x)
 {
     const double v = fmin(1, fmax(0, x));
@@ -131,7 +130,7 @@ static double luma(const uint8_t *p)
     return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
 }
 
-/* One 8 x 8 block. [Wang04] with a flat window. */
+/* Returns the SSIM of one 8 x 8 block, by [Wang04] with a flat window. */
 static double block_ssim(const uint8_t *a, const uint8_t *b, int stride)
 {
     double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, va, vb, ab;
@@ -170,8 +169,8 @@ void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
     result->ssim = ssim(reference, test, width, height);
 }
 
-/* Returns the PSNR, dB, of codes with fractions: the differences that rounding
- * to codes hides. */
+/* Returns the PSNR, dB, of codes before rounding, for differences that rounding
+ * hides. */
 static double fine_db(const struct glint_float_image *reference,
                       const struct glint_float_image *test,
                       const struct glint_measure *m)

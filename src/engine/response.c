@@ -7,21 +7,24 @@
 
 #include "engine/frame/area.h"
 
-/* The most of the brightest that are looked for. */
+/* Most pixels that find_top() is asked for. */
 enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;
 
-/* Tracing every ray takes fifty times as long as a model does. */
+/* Numbers of angles and fineness of grids. Exact rays get fewer of both, as
+ * they take fifty times as long as a model. */
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
-/* The brightest pixels are brought to this, display white: far from where
- * samples saturate, with as many steps below for what is faint. */
+/* Display white: the brightest pixels are brought to 2^AIM_LOG2, within a
+ * factor of 2^AIM_SPAN: far from where samples saturate, and with as much room
+ * for faint light. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
 /* ----------------------------------------------------------------- looking */
 
-/* Puts VALUE among the N largest, which fall; returns the least of them. */
+/* Inserts VALUE into the N largest values, sorted from the largest; returns the
+ * smallest of them. */
 static float insert(float *top, int n, float value)
 {
     int i = n - 1;
@@ -32,7 +35,7 @@ static float insert(float *top, int n, float value)
     return top[n - 1];
 }
 
-/* Puts the N largest of one channel of PIXELS into TOP. */
+/* Sets TOP to the N largest values of one channel of PIXELS. */
 static void find_top(const float *rgb, size_t pixels, int channel, float *top,
                      int n)
 {
@@ -44,13 +47,13 @@ static void find_top(const float *rgb, size_t pixels, int channel, float *top,
             least = insert(top, n, rgb[3 * i + (size_t)channel]);
 }
 
-/* Returns the pixels that are one in PARTS of N. */
+/* Returns how many pixels are 1 / PARTS of N, 1 .. TOP_MAX. */
 static int count_of_part(size_t n, int parts)
 {
     return (int)fmin(fmax(floor((double)n / parts), 1), TOP_MAX);
 }
 
-/* The mean of the largest thousandth of one channel. */
+/* Returns the mean of the largest 1/1000 of one channel. */
 static double peak_of(const float *rgb, size_t n, int channel)
 {
     float top[TOP_MAX];
@@ -87,8 +90,8 @@ static struct glint_view proxy_of(struct glint_view view, int pixels)
     return view;
 }
 
-/* A frame for proxies of another's view and its picture; it has to be closed
- * either way. */
+/* A small frame with a view like that of a larger frame, and its picture. It
+ * must be closed even if opening fails. */
 struct proxy {
     struct glint_view view;
     struct glint_frame frame;
@@ -96,7 +99,7 @@ struct proxy {
     float *rgb;
 };
 
-/* Opens a small frame that is LIKE as far as brightness goes. */
+/* Opens a small frame with all settings of LIKE that matter for brightness. */
 static enum glint_status open_proxy(const struct glint_frame *like, int pixels,
                                     size_t bytes, struct proxy *p)
 {
@@ -131,7 +134,7 @@ static double largest(const double rgb[3])
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
 
-/* Draws and looks once, all times 2^BY. */
+/* Draws LAMPS times 2^BY, and sets LIGHT to the light at scale 1. */
 static enum glint_status draw_once(struct proxy *p,
                                    const struct glint_lamp *lamps, int n,
                                    double by,
@@ -154,7 +157,8 @@ static enum glint_status draw_once(struct proxy *p,
     return status;
 }
 
-/* *PEAK_LOG2 is what the brightest should come to, and what it came to. */
+/* Draws until the brightest pixels lie in the range aimed at. *PEAK_LOG2 is
+ * what they are expected to be, and then what they were. */
 static enum glint_status draw(struct proxy *p, const struct glint_lamp *lamps,
                               int n, double *peak_log2,
                               struct glint_response_light *light)
@@ -183,8 +187,8 @@ static double corner_deg(struct glint_view view, double focal_mm)
     return atan(half / fabs(focal_mm)) * 180 / GLINT_PI;
 }
 
-/* The angles that are looked at, denser near the axis, where ghosts lie on top
- * of each other; none where the model has ended. */
+/* Sets the angles to be measured: denser near the axis, where ghosts lie on top
+ * of each other, and none beyond the end of the model. */
 static void set_angles(struct glint_response *r, int n, double corner,
                        double end)
 {
@@ -252,7 +256,7 @@ static enum glint_status measure_extents(struct proxy *p,
 
 static enum glint_status measure(struct proxy *p, struct glint_response *r)
 {
-    const double azimuth = /* direction from the middle into the corner */
+    const double azimuth = /* direction from the middle to the corner */
         atan2(p->view.height, p->view.width) * 180 / GLINT_PI;
     const double all = (double)p->view.width * p->view.height;
     struct glint_lamp lamp = {
@@ -328,15 +332,15 @@ double glint_response_softening(const struct glint_response *r,
     while (i + 2 < GLINT_RESPONSE_EXTENTS && r->extent[i + 1] < extent)
         i++;
     if (!(r->extent[i + 1] > r->extent[i]))
-        return 1; /* nothing was measured */
+        return 1; /* Nothing was measured. */
     part = (extent - r->extent[i]) / (r->extent[i + 1] - r->extent[i]);
     return mix(r->softened_log2[i], r->softened_log2[i + 1], fmin(part, 1));
 }
 
 /* ---------------------------------------------------------- what was drawn */
 
-/* Sets the peak of LIGHT to what a ten thousandth of the pixels drawn last
- * reach. */
+/* Sets the peak of LIGHT to the least value of the brightest 1/10000 of the
+ * pixels drawn last. */
 static void set_least_top(const struct proxy *p,
                           struct glint_response_light *light)
 {

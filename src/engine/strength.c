@@ -3,30 +3,30 @@
 
 #include <math.h>
 
-/* The sum of powers of many, as one: 4 lets sixteen equal flares, which lie
- * side by side for the most part, count as two on top of each other. */
+/* Exponent of the sum of many lights: with 4, sixteen equal flares, which
+ * mostly lie side by side, count as two on top of each other. */
 static const double norm = 4;
 
-/* Display light of the mean at strength 1: a third of that of the brightest. */
+/* Display light of the mean at strength 1, about a third of the largest. */
 static const double mean_most = 0.32;
 
-/* Display light at --exposure 0 that is neither much nor little. */
+/* log2 of display light at --exposure 0 that is neither much nor little. */
 static const double common_log2 = -5;
-static const double compression = 0.15; /* stops a stop */
+/* Stops of change for a stop of light. */
+static const double compression = 0.15;
 
-/* Display light of the brightest part, and of the mean, that a flare at the
- * strength of 0.5 may be lifted to where the picture hides it; and what the
- * brightest part keeps of one that veils the picture. */
+/* How the factor follows: stops a second, most stops a frame, and the time
+ * constant. */
 static const double seen_peak = 0.7, seen_mean = 0.04, veil_peak = 0.08;
 
 /* The part of what is seen that a quarter of the picture may get. */
 static const double veil_light = 0.5;
 
-/* Following. */
+/* --------------------------------------------------------------- one frame */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-/* largest relative excess of a lamp over what it comes to by itself */
+/* Sets LIGHT to that of lamp I at full level, by channel. */
 static const double overshoot = 0.5;
 
 void glint_strength_defaults(struct glint_strength *strength)
@@ -39,7 +39,7 @@ double glint_strength_largest(const double rgb[3])
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
 
-/* --------------------------------------------------------------- one frame */
+/* Returns the factor that LIGHT asks for, in stops. */
 
 /* Light by channel of lamp I, of all its power. */
 static void light_of(const struct glint_response *response,
@@ -92,7 +92,8 @@ static double together(double a, double b)
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
 
-/* The factor that LIGHT asks for, in stops. */
+/* Returns the factor that lowers TIMES: 1 up to TIMES 1, then such that the
+ * product rises ever more slowly to 1 + overshoot. */
 static double target_log2(const struct glint_strength *s,
                           const struct glint_response_light *light)
 {
@@ -104,7 +105,8 @@ static double target_log2(const struct glint_strength *s,
     return 2 * log2(s->asked) - log2(together(peak * exp2(-tanh(more)), mean));
 }
 
-/* --------------------------------------------------------------- over time */
+/* Lowers lamp I towards the exposure that it would get by itself; LIGHT is its
+ * own light. */
 
 static double step(double towards, double elapsed_s)
 {
@@ -115,7 +117,7 @@ static double step(double towards, double elapsed_s)
     return fmin(fmax(part * towards, -most), most);
 }
 
-/* 1 up to 1, then ever slower towards 1 + overshoot. */
+/* Returns the factor, in stops, for all lamps at full level. */
 static double held(double times)
 {
     return times <= 1 ? 1

@@ -17,9 +17,8 @@
 
 enum { ACROSS = 64, DOWN = 32, ROUNDS = 8 };
 
-enum {
-    LINES = 4
-}; /* times ACROSS: cells of the line on which spots are sought */
+/* times ACROSS: cells of the line on which spots are sought */
+enum { LINES = 4 };
 
 /* Cells of later rounds, which cover less and get by with a coarser grid. */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };

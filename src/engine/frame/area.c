@@ -10,8 +10,8 @@ static double power_of(const struct glint_lamp *lamp)
     return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
 }
 
-/* Before thinning. A uniform ellipse has twice its RMS semi-axes for semi-axes.
- */
+/* Returns the number of points of a lamp before thinning. A uniform ellipse has
+ * semi-axes of twice its RMS semi-axes. */
 static double points_of(const struct glint_lamp *lamp,
                         const struct glint_area_rule *rule)
 {
@@ -38,7 +38,8 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
         const double points = points_of(&lamps[i], &rule);
 
         more += points - 1;
-        n_wide += points > 1; /* numbers of points are rounded up */
+        /* The number of points of each wide lamp is rounded up. */
+        n_wide += points > 1;
     }
     if (n_wide && more > room - n - n_wide)
         rule.thinning = fmax(room - n - n_wide, 0) / more;
@@ -48,7 +49,8 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
     return rule;
 }
 
-/* Point I of the sunflower within a circle of radius 1. */
+/* Sets PLACE to point I of a sunflower pattern in a circle of radius 1; returns
+ * its share of the power. */
 static double at(const struct glint_area *a, int i, double place[2])
 {
     const double golden = 2.39996322972865332;
@@ -60,8 +62,9 @@ static double at(const struct glint_area *a, int i, double place[2])
     return weight / a->points;
 }
 
-/* Few points lie beside the middle and too close together; one cannot be
- * spread, and two to four are so by and by. */
+/* Sets the centre and spread of the first N points. A few points lie off the
+ * middle and too close together. One point cannot be spread; from two to four
+ * the spread sets in gradually. */
 static void set_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Memory aligned as the run-time half asks for it.
- */
+ * Takes memory with the alignment that the run-time half needs. */
 #ifndef GLINT_ENGINE_FRAME_BLOCK_H
 #define GLINT_ENGINE_FRAME_BLOCK_H
 
@@ -9,8 +8,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* BYTES, aligned to 64, within *MEM, which is to be freed. NULL: there are not
- * so many, or none is asked for; then *MEM is NULL, too. */
+/* Returns BYTES, aligned to 64, within *MEM, which the caller frees. If memory
+ * is short or BYTES is 0, returns NULL and sets *MEM to NULL. */
 static inline void *glint_block_take(size_t bytes, void **mem)
 {
     const uintptr_t last = 63;

@@ -3,22 +3,29 @@
 
 #include <math.h>
 
-#define FIRST      1    /* octaves that a first frame takes more, for memory */
-#define ROOM       0.98 /* share of the budget that is planned for */
-#define SPARE      0.9  /* less than so much of it: finer */
-#define TRY        1.15 /* share that is tried now and then, to learn more */
-#define LEARNING   0.5  /* share of an error that is learned, in octaves */
-#define MOST_WRONG 0.8  /* octaves that one frame can say */
-#define SPREAD     0.1  /* share of that for other qualities, at least */
-#define FORGETTING 0.01 /* share of what those learned, a frame */
+/* octaves that a first frame takes longer, as it takes memory */
+#define FIRST 1
+/* share of the budget that frames are planned for */
+#define ROOM 0.98
+/* share of the budget below which a finer quality is tried */
+#define SPARE 0.9
+/* share of the budget that a quality may be predicted to take for a trial */
+#define TRY 1.15
+/* share of an error, in octaves, that one frame teaches */
+#define LEARNING 0.5
+/* largest error, in octaves, that one frame can teach */
+#define MOST_WRONG 0.8
+/* least share of an error that other qualities learn */
+#define SPREAD 0.1
+/* share of what other qualities learned that is forgotten each frame */
+#define FORGETTING 0.01
 
-/* Plans of one frame; of fineness far from the one that is chosen they tell
- * little, so one more may be needed. */
+/* Most plans of one frame. A plan tells little about fineness far from its own,
+ * so that one more may be needed. */
 enum { MAX_TRIES = 3 };
 
-enum {
-    TRIALS = 4
-}; /* frames of a quality that is predicted to take too long */
+/* most frames drawn at a quality that is predicted to take too long */
+enum { TRIALS = 4 };
 
 void glint_budget_init(struct glint_budget *b, double ms)
 {
@@ -37,7 +44,8 @@ void glint_budget_begin(struct glint_budget *b)
     b->n_frames += b->n_frames < 2;
 }
 
-/* No cost model covers sets of wavelengths, so a budget draws with three. */
+/* Returns the dials at STEP. The cost model does not cover sets of wavelengths,
+ * so a budget draws with three. */
 static struct glint_dials dials_at(int step, const struct glint_dials *asked)
 {
     struct glint_dials d =
@@ -70,7 +78,8 @@ static double octaves_at(const struct glint_budget *b, int step)
            (at - below) * (b->octaves[below + 1] - b->octaves[below]);
 }
 
-/* Predicts the milliseconds that PLAN would take at another quality. */
+/* Returns the milliseconds that PLAN would take at quality STEP, as predicted.
+ */
 static double predict(const struct glint_budget *b,
                       const struct glint_cost_plan *plan, int step)
 {
@@ -81,7 +90,7 @@ static double predict(const struct glint_budget *b,
            exp2(octaves_at(b, step) + (b->n_frames > 1 ? 0 : FIRST));
 }
 
-/* The best within the budget, or the coarsest. */
+/* Returns the best quality within the budget, or the coarsest. */
 static int best_step(const struct glint_budget *b,
                      const struct glint_cost_plan *plan)
 {
@@ -98,9 +107,9 @@ static int best_step(const struct glint_budget *b,
     return low;
 }
 
-/* If no level lies between STEP, which leaves much of the budget, and the next,
- * which is predicted to miss it by little, takes the latter for a few frames in
- * all: the prediction may be too high. */
+/* Returns STEP + 1 for a few frames in all if no level lies between STEP, which
+ * leaves much of the budget, and STEP + 1, which is predicted to miss it by
+ * little: the prediction may be too high. Else returns STEP. */
 static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
                     int step)
 {
@@ -111,7 +120,8 @@ static int try_next(struct glint_budget *b, const struct glint_cost_plan *plan,
         predict(b, plan, step + 1) > TRY * b->ms)
         return step;
     b->n_trials++;
-    b->n_tries = MAX_TRIES; /* the prediction says that the level is too slow */
+    b->n_tries = MAX_TRIES; /* no more plans, as their prediction would reject
+                               this quality again */
     return step + 1;
 }
 
@@ -134,17 +144,17 @@ bool glint_budget_choose(struct glint_budget *b,
     return true;
 }
 
-/* Learns from a frame that took MS. The same prediction would be less wrong by
- * LEARNING. Qualities beside this one learn with it; the more the prediction
- * was wrong, the more do all, as when the machine has become slower. What other
- * qualities learned long ago is forgotten, lest one slow frame keeps a level
- * from ever being tried again. */
+/* Learns from a frame that took MS, so that the same prediction would be less
+ * wrong by LEARNING. Neighbouring qualities learn, too, and all qualities learn
+ * more the more wrong the prediction was, as when the machine has become
+ * slower. What other qualities learned long ago is forgotten, or one slow frame
+ * could keep a level from ever being tried again. */
 void glint_budget_note(struct glint_budget *b, double ms)
 {
     const double at = place_of(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
-    /* a frame that waited for other programs says little */
+    /* A frame that waited for other programs says little. */
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));

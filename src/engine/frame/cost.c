@@ -9,22 +9,22 @@
 /* Octaves that light typically varies over within a ghost. */
 #define VARIATION 0.35
 
-#define QUAD 2 /* pixels that four at once take as long as */
+#define QUAD 2 /* number of single pixels that take as long as four at once */
 
 /* Counted: least squares of the relative errors of 35 frames, each drawn a
  * second time under callgrind, so that none is binned twice: heliar-tronnier,
  * double-gauss-angenieux and nikon-zoom-mid at qualities draft, default and
- * high, a lamp at 5, 12 or 25 degrees, RGB of 640x360 and some of 1280x720. Off
- * by 4 percent in the median, by 8 at most.
+ * high, a lamp at 5, 12 or 25 degrees, RGB of 640x360 and some of 1280x720.
+ * They are off by 4 percent in the median, by 8 at most.
  *
- * Planned: the weights of what glint_cost_of() expects, which is of another
- * kind: bundles are looked at, not rays, and there are 1 to 2.6 times as many
- * edges, 1.4 to 3.5 times as many rows and 1 to 6 times as many lit pixels as
- * are drawn then. Least squares of relative errors over 43 frames of five
- * lenses at both sizes, along an earlier quality table. Of the 35 frames they
- * give 0.78 times the instructions, which a budget makes good when it is
- * calibrated; beside that they are off by 11 percent in the median, by 32 nine
- * times of ten, by 40 at most. */
+ * Planned: the weights of the counts that glint_cost_of() expects. These differ
+ * from counted ones: bundles are looked at, not rays, and there are 1 to 2.6
+ * times as many edges, 1.4 to 3.5 times as many rows and 1 to 6 times as many
+ * lit pixels as are drawn then. Least squares of relative errors over 43 frames
+ * of five lenses at both sizes, along an earlier quality table. For the 35
+ * frames above they predict 0.78 times the instructions, which calibrating a
+ * budget corrects; apart from that they are off by 11 percent in the median, by
+ * 32 or less in nine of ten, by 40 at most. */
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
     {"looking", 0.6, 1.35},  {"bundles", 75, 43},
     {"vertices", 0.6, 0.25}, {"edges", 0.03, 1.08},
@@ -39,12 +39,11 @@ double glint_cost_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* Plans take no fewer than GLINT_LEAST_CELLS a side; a grid of so few could
- * have done with these. */
+/* cells a side with which a grid might have done that got GLINT_LEAST_CELLS */
 enum { LESS_CELLS = 6 };
 
-/* Returns the cells that the plan would have chosen for grids FINER times as
- * fine. */
+/* Returns the cells a side that the plan would have chosen for grids FINER
+ * times as fine. */
 static double cells_at(int planned, double finer)
 {
     const double free =
@@ -53,7 +52,8 @@ static double cells_at(int planned, double finer)
     return fmax(GLINT_LEAST_CELLS, fmin(free * finer, GLINT_MAX_CELLS));
 }
 
-/* Steps an octave of a ghost that is OCTAVES below white, in codes. */
+/* Returns the steps an octave for a ghost that is OCTAVES below white, in
+ * codes. */
 static double steps_at(int steps, double octaves)
 {
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
@@ -67,7 +67,8 @@ struct glint_cost glint_cost_of(const struct glint_cost_plan *p,
     const double width = p->width / (half ? 2. : 1);
     const double height = p->height / (half ? 2. : 1);
     const double finer = (double)then->fineness / p->dials.fineness;
-    const double larger = pow(4, was_half - half); /* pixels planned for */
+    /* Factor on the number of pixels that were planned for. */
+    const double larger = pow(4, was_half - half);
     const int steps = then->irradiance_steps;
     struct glint_cost cost = {{p->n_looked_at, 1}};
     struct glint_planned b;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The cost of a frame, predicted from its plan: counts that the plan knows or
- * finds cheaply, times the cost of each.
- */
+ * Predicts the cost of a frame from its plan: counts that the plan knows or
+ * finds cheaply, times the cost of each. */
 #ifndef GLINT_ENGINE_FRAME_COST_H
 #define GLINT_ENGINE_FRAME_COST_H
 
@@ -11,13 +10,13 @@
 #include "glint/dials.h"
 #include "glint/flare.h"
 
-/* Counts of what is worked through: of a plan, before anything is drawn, or of
- * a frame that is (engine/explain.h). */
+/* Kinds of items whose number decides the cost: of a plan, before anything is
+ * drawn, or of a frame that was drawn (engine/explain.h). */
 enum glint_cost_kind {
-    GLINT_COST_LOOKED_AT, /* bundles that a plan looks at, or rays that it took
-                             of them */
-    GLINT_COST_BUNDLES, /* bundles drawn: a few rays each, and a polynomial each
-                           row */
+    GLINT_COST_LOOKED_AT, /* bundles that a plan looks at, or for a drawn frame
+                             the rays that it traced for them */
+    GLINT_COST_BUNDLES,  /* bundles drawn: a few rays each, and a polynomial for
+                            each row */
     GLINT_COST_VERTICES, /* vertices of grids */
     GLINT_COST_EDGES,    /* edges across which light changes */
     GLINT_COST_ROWS,     /* rows of pixels that edges cross */
@@ -25,12 +24,12 @@ enum glint_cost_kind {
     GLINT_COST_KINDS
 };
 
-/* The cost of one of each, thousand instructions of a processor with 8 lanes of
+/* The cost of one item, in thousand instructions of a processor with 8 lanes of
  * 32 bits. */
 struct glint_cost_weight {
     const char *name;
-    double planned; /* cost of each that glint_cost_of() expects */
-    double counted; /* cost of each that a frame had */
+    double planned; /* for counts that glint_cost_of() expects */
+    double counted; /* for counts of a frame that was drawn */
 };
 extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 
@@ -41,20 +40,21 @@ struct glint_cost {
 /* A frame that was planned, not yet binned. */
 struct glint_cost_plan {
     const struct glint_flare *flare;
-    int width, height;        /* size of the picture */
-    double n_looked_at;       /* bundles */
-    bool can_half;            /* it is in codes, by edges */
+    int width, height;  /* size of the picture */
+    double n_looked_at; /* number of bundles */
+    bool can_half;      /* true: the picture is in codes and drawn by edges */
     struct glint_dials dials; /* dials that the frame was planned with */
 };
 
-/* Predicts the cost of the bundles of PLAN if the dials were THEN. Fineness has
- * to be within a factor of 4 of the planned one, or grids at the limits are
- * misjudged. */
+/* Predicts the cost of the bundles of PLAN if the dials were THEN. Their
+ * fineness must be within a factor of 4 of the planned one, or grids at the
+ * limits are misjudged. */
 struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
                                 const struct glint_dials *then);
 
-/* Instructions, in millions, of a processor with 8 lanes of 32 bits; times what
- * one takes on this machine it is time. Fitted to counts of callgrind. */
+/* Returns millions of instructions of a processor with 8 lanes of 32 bits;
+ * multiplied by their time on this machine that is the frame's time. Fitted to
+ * counts of callgrind. */
 double glint_cost_minsn(const struct glint_cost *cost);
 
 #endif

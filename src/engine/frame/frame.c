@@ -121,7 +121,7 @@ double glint_frame_pixels_per_tangent(const struct glint_frame *f)
                 f->view.sensor_width_mm);
 }
 
-/* The angle in which lights are one. */
+/* Returns the chord of the angle within which lights are one. */
 static int32_t near_q30(const struct glint_frame *f)
 {
     const double pixels = glint_frame_pixels_per_tangent(f);
@@ -156,7 +156,7 @@ static int add_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     return within;
 }
 
-/* Lights that points of N lamps may come to. */
+/* Returns how many lights the points of N lamps may become. */
 static int room_for(const struct glint_frame *f, int n)
 {
     const int most = f->dials.max_lights;
@@ -166,7 +166,7 @@ static int room_for(const struct glint_frame *f, int n)
     return n <= most ? larger(most, f->point_room) : most;
 }
 
-/* Makes F's lights of LAMPS, those merged that are too many. */
+/* Makes F's lights of LAMPS; merges those that are too near or too many. */
 static enum glint_status set_lights(struct glint_frame *f,
                                     const struct glint_lamp *lamps, int n,
                                     double scale)
@@ -210,7 +210,7 @@ double glint_frame_codes_light(const struct glint_frame *f,
                      (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
 }
 
-/* IMAGE: NULL for a linear one. */
+/* Returns the frame of rays for IMAGE; NULL stands for a linear picture. */
 static struct glint_flare_frame rays_of(struct glint_frame *f,
                                         const struct glint_image *image)
 {
@@ -241,14 +241,14 @@ void glint_frame_retune(struct glint_frame *f)
         glint_flare_init(&f->flare, &f->cfg, f->block, f->bytes);
 }
 
-/* The flare has the steps of the dials. */
+/* Gives the flare the steps of irradiance of the dials. */
 static void follow_dials(struct glint_frame *f)
 {
     if (f->cfg.irradiance_steps != f->dials.irradiance_steps)
         glint_frame_retune(f);
 }
 
-/* Plans, with room for all bundles there can be. */
+/* Plans, after making room for all bundles there can be. */
 static enum glint_status plan(struct glint_frame *f,
                               const struct glint_flare_frame *rays)
 {
@@ -334,8 +334,8 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     return GLINT_OK;
 }
 
-/* Merges LAMPS for exact rays, and gives how many are left in N. NULL: no
- * memory. */
+/* Merges LAMPS for exact rays; sets *N to how many are left. NULL: memory is
+ * short. */
 static const struct glint_lamp *
 merged_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {
@@ -403,7 +403,7 @@ enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
                  : GLINT_E_MEMORY;
 }
 
-/* Bundles whose ghosts are known. */
+/* Returns the number of bundles whose ghosts are known. */
 static int n_drawn(const struct glint_frame *f,
                    const struct glint_frame_report *r)
 {
@@ -421,7 +421,7 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     enum glint_status status;
 
     *report = (struct glint_frame_report){.lights = n_lamps, .quality = -1};
-    if (n_lamps == 0) { /* the picture is not so much as looked at */
+    if (n_lamps == 0) { /* the picture is not even read */
         report->arena_bytes = frame->bytes;
         return GLINT_OK;
     }
@@ -443,7 +443,8 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->predicted_ms = frame->budget.predicted_ms;
         report->calibrated_minsn = frame->budget.calibrated_minsn;
         report->quality = glint_budget_quality(&frame->budget);
-        if (frame->bytes == bytes) /* else it made room, once */
+        /* a frame that took memory says nothing of others. */
+        if (frame->bytes == bytes)
             glint_budget_note(&frame->budget, 1e3 * (times[4] - times[0]));
     }
     report->beyond_lights = frame->n_beyond;

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * A frame's flare, end to end: lamps -> grids of rays -> run-time half.
+ * Draws a frame's flare from lamps: lamps -> grids of rays -> run-time half.
  *
  *     glint_frame_init(&frame, &setup, view, workers);    then set options
  *     glint_frame_draw(&frame, lamps, n, scale, &image, &report);
  *     glint_frame_finish(&frame);
  *
  * The run-time half gets one block of memory, exactly as large as the most
- * demanding frame so far needed.
- */
+ * demanding frame so far needed. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_H
 #define GLINT_ENGINE_FRAME_FRAME_H
 
@@ -27,38 +26,38 @@
 #define GLINT_FRAME_STEP_CODES \
     2.0 /* steps between wavelengths that do not show */
 
-/* Bounds of what a frame of a model may take, unless others are set: bytes, and
- * millions of instructions as glint_cost_minsn() has them, some ten seconds of
- * one processor. Each light further may take 1 / GLINT_FRAME_PER_LIGHT of them
- * more. */
+/* Limits of a frame of a model, unless others are set: bytes, and millions of
+ * instructions as of glint_cost_minsn(), some ten seconds of one processor.
+ * Each further light raises both by 1 / GLINT_FRAME_PER_LIGHT. */
 #define GLINT_FRAME_MOST_BYTES ((size_t)384 << 20)
 #define GLINT_FRAME_MOST_MINSN 30000.0
 #define GLINT_FRAME_PER_LIGHT  16
 
 struct glint_frame;
 
-/* Powers of two, as their logarithms. */
+/* Two scales, as logarithms to base 2. */
 struct glint_frame_scale {
-    int likely; /* brings the brightest ghost near 32 times display white, of
-                   the 2048 that a pixel may reach */
-    int most;   /* no light is cut down: together it is below 2^24 */
+    int likely; /* brings the brightest ghost near 32 times display white; a
+                   pixel may reach 2048 */
+    int most;   /* the largest at which no light is clamped: the sum of all is
+                   below 2^24 */
 };
 
-/* Makes a scale of the brightest ghost's mean light and the flux of all
- * together. */
+/* Makes a scale from log2 of the brightest ghost's mean light and of the flux
+ * of all together. */
 struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
                                               int together_log2);
 
-/* Rays that no model gives. */
+/* A source of rays other than a model. */
 struct glint_frame_rays {
-    /* TIMES: the moments between plan, transfer, bin and draw, and before and
-     * after. */
+    /* Draws a frame. TIMES receives the moments before plan, transfer, bin and
+     * draw, and after draw. */
     enum glint_status (*draw)(struct glint_frame *frame,
                               const struct glint_lamp *lamps, int n_lamps,
                               double scale, const struct glint_image *image,
                               struct glint_flare_stats *stats, double times[5]);
-    /* SCALE becomes {0, 0} where there is no light. GLINT_E_MEMORY: it is not
-     * known, or LAMPS have more bundles than can be held. */
+    /* Predicts SCALE; {0, 0} if there is no light. GLINT_E_MEMORY: memory is
+     * short, or LAMPS have more bundles than can be held. */
     enum glint_status (*scale)(struct glint_frame *frame,
                                const struct glint_lamp *lamps, int n_lamps,
                                struct glint_frame_scale *scale);
@@ -68,28 +67,31 @@ struct glint_frame_rays {
     void (*finish)(struct glint_frame *frame);
 };
 
-/* Traced for each frame: of libglint-bake, for programs that link it. */
+/* Rays traced for each frame; only programs that link libglint-bake have it. */
 extern const struct glint_frame_rays glint_frame_traces;
 
 struct glint_frame {
     const struct glint_setup *setup;
-    /* Model of the lens, or NULL where rays are traced: */
+    /* Model of the lens; NULL: rays come from TRACE. */
     const struct glint_lens *lens;
-    const struct glint_frame_rays *trace; /* then this is not */
+    const struct glint_frame_rays *trace; /* not NULL if LENS is NULL */
     glint_clock_fn *clock;                /* NULL: nothing is timed */
     struct glint_view view;
-    struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop;
-                                      capacities are the frame's own */
+    struct glint_flare_config cfg; /* sizes, tiles, weights, merging, stop; the
+                                      frame sets the capacities itself */
     struct glint_dials dials;      /* may be turned between frames */
-    struct glint_dials asked;      /* the same before a budget turned them */
-    int point_room;  /* lights that points of wide lamps may come to, where it
-                        is more than the dial and lamps are no more than that */
-    double apart_px; /* lights whose images are nearer are one */
-    bool for_codes;  /* a linear picture is planned as if for codes */
-    bool can_half;   /* the last picture was in codes, by edges */
-    bool uniform;    /* the same grid for all ghosts */
-    int only_ghost;  /* -1: all */
-    int16_t *mask;   /* distances of the stop's outline, unless NULL */
+    struct glint_dials asked;      /* the dials before a budget turned them */
+    int point_room; /* most lights that points of wide lamps may become, if that
+                       is more than max_lights and there are no more lamps than
+                       max_lights */
+    double apart_px; /* pixels: lights whose images are nearer are merged */
+    bool for_codes;  /* true: a linear picture is planned as if it were in codes
+                      */
+    bool can_half;  /* true: the last picture was in codes and drawn by edges */
+    bool uniform;   /* true: all ghosts get the same grid */
+    int only_ghost; /* index of the only ghost drawn; -1: all are */
+    int16_t *mask; /* signed distances to the stop's outline; NULL: the stop has
+                      no mask */
     struct glint_frame_star star;
     struct glint_budget budget; /* turns the dials; only for models */
     bool reserved;              /* memory is what it is */
@@ -104,28 +106,29 @@ struct glint_frame {
     struct glint_light *light;
     int n_lights, light_capacity;
     int n_apart;  /* lights that can be told apart */
-    int n_beyond; /* left out before: the model ends before them */
+    int n_beyond; /* lights left out before that, as they are beyond the model
+                   */
     int n_more;   /* lights that are further points of a lamp */
     /* Frame that was planned last from a model. */
     struct glint_flare_frame rays;
-    double scale; /* factor of the lights of the last frame */
-    bool *seen;   /* ghosts in the last frame, [GLINT_MAX_GHOSTS] */
+    double scale; /* factor on the lights of the last frame */
+    bool *seen;   /* [GLINT_MAX_GHOSTS]: true for ghosts in the last frame */
 
-    /* Lamps to trace, where some merged; [n_lights]. */
+    /* [n_lights]: lamps to be traced, if some merged. */
     struct glint_lamp *merged;
-    void *traced; /* state that the trace keeps, NULL: none */
+    void *traced; /* state of the trace; NULL: there is none */
     struct glint_flare *flare;
-    void *mem, *block; /* taken, unless NULL; the aligned part of it, or what
-                          was given */
+    void *mem, *block; /* memory taken, or NULL; its aligned part, or the block
+                          that was given */
     size_t bytes;      /* bytes of the block */
 };
 
 struct glint_frame_report {
     struct glint_flare_stats stats;
     int lights;        /* lights given */
-    int beyond_lights; /* lights of these farther out than the model goes */
+    int beyond_lights; /* lights of these beyond the model */
     int apart_lights;  /* lights that can be told apart */
-    int drawn_lights;  /* after merging more, for their number */
+    int drawn_lights;  /* lights drawn, after merging because of their number */
     int ghosts, tiles;
     int held_samples;   /* samples of a linear picture that saturated */
     size_t arena_bytes; /* bytes that the run-time half was given */
@@ -143,26 +146,26 @@ void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
 
-/* The same with the options of LIKE, as they were asked for, but without its
- * mask and its budget. */
+/* Makes a frame with the options that were asked for in LIKE, without its mask
+ * and its budget. */
 void glint_frame_like(struct glint_frame *frame, const struct glint_frame *like,
                       struct glint_view view);
 
 /* Takes BYTES for all frames to come, of up to N_LAMPS lamps each, of which
  * N_DRAWN are drawn and more merge: nothing is allocated while drawing, and
- * what does not fit is left out and counted. MEM: as many that were taken
- * already, aligned to 64, which stay the caller's; or NULL. GLINT_E_MEMORY:
- * there are not so many, or they do not hold one light. */
+ * what does not fit is left out and counted. MEM: the caller's own BYTES,
+ * aligned to 64, or NULL. GLINT_E_MEMORY: memory is short, or BYTES are too few
+ * for one light. */
 enum glint_status glint_frame_reserve(struct glint_frame *frame, void *mem,
                                       size_t bytes, int n_lamps, int n_drawn);
 
-/* Reads the stop from a mask of NODES^2 distances rather than its sides; RASTER
- * is one that takes it. */
+/* Takes the stop from a mask of NODES^2 distances instead of its sides; RASTER
+ * must be one that takes masks. */
 enum glint_status glint_frame_use_mask(struct glint_frame *frame,
                                        const struct glint_raster *raster,
                                        int nodes);
 
-/* Draws a lamp a few times to see what an instruction takes here, for the
+/* Draws a lamp a few times to measure the time of an instruction here, for the
  * budget. GLINT_E_MEMORY. */
 enum glint_status glint_frame_calibrate(struct glint_frame *frame);
 

@@ -13,7 +13,7 @@ struct glint_frame_scale glint_frame_scale_of(int brightest_log2,
     return (struct glint_frame_scale){likely < most ? likely : most, most};
 }
 
-/* The size of the largest of N values. */
+/* Returns the largest magnitude of N values. */
 static uint32_t peak_of(const int32_t *linear_q20, size_t n)
 {
     uint32_t peak = 0;
@@ -27,8 +27,9 @@ static uint32_t peak_of(const int32_t *linear_q20, size_t n)
     return peak;
 }
 
-/* Octaves that a picture with that PEAK should have been drawn brighter; of
- * held light nobody knows how bright it is. A single one is not worth it. */
+/* Returns the octaves by which a picture with PEAK should have been drawn
+ * brighter; one octave is not worth it. If light was clamped its peak is
+ * unknown, and the picture should be fainter. */
 static int octaves_up(uint32_t peak, struct glint_frame_scale scale)
 {
     const int room = scale.most - scale.likely;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the files of a frame share: its memory, lights and a block for the
+ * Shared by the files of a frame: its memory, lights and a block for the
  * run-time half that grows to what frames need (frame_room.c), and what drawing
- * alone (frame_alone.c) asks of the plan.
- */
+ * alone (frame_alone.c) needs of the plan. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_PARTS_H
 #define GLINT_ENGINE_FRAME_FRAME_PARTS_H
 
@@ -19,7 +18,7 @@ static inline int smaller(int a, int b)
     return a < b ? a : b;
 }
 
-/* Seconds of the frame's clock; 0: it has none. */
+/* Returns the time of the frame's clock in seconds; 0 if it has none. */
 static inline double now(const struct glint_frame *f)
 {
     return f->clock ? f->clock() : 0;
@@ -31,40 +30,41 @@ double glint_frame_pixels_per_tangent(const struct glint_frame *frame);
 /* Returns whether ghosts choose among the setup's sets of wavelengths. */
 bool glint_frame_has_sets(const struct glint_frame *frame);
 
-/* Room for N lights. GLINT_E_MEMORY. */
+/* Makes room for N lights. GLINT_E_MEMORY. */
 enum glint_status glint_frame_hold_lights(struct glint_frame *frame, int n);
 
-/* A new block for the capacities there are, in which the flare begins. */
+/* Replaces the block by one for the present capacities, in which the flare
+ * begins anew. */
 enum glint_status glint_frame_regrow(struct glint_frame *frame);
 
-/* Returns how many ghosts the last frame has, of N bundles. */
+/* Returns how many ghosts the N bundles of the last frame belong to. */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
-/* Returns the bundles that N_LIGHTS need; with sets of wavelengths, those to
- * choose from. */
+/* Returns how many bundles N_LIGHTS need; with sets of wavelengths, those of
+ * the first set. */
 int glint_frame_bundles(const struct glint_frame *frame, int n_lights);
 
-/* Returns whether all fitted; if not, asks for more room. */
+/* Returns whether everything fitted; if not, raises the capacities. */
 bool glint_frame_is_served(struct glint_frame *frame,
                            const struct glint_flare_stats *stats);
 
-/* Returns the bytes that the frame took, by the same measure that sized the
- * block. */
+/* Returns the bytes that the frame used, as glint_flare_bytes() counts them. */
 size_t glint_frame_bytes_used(const struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
-/* Returns the bytes that would have drawn all of it. */
+/* Returns the bytes that would have drawn everything. */
 size_t glint_frame_bytes_needed(const struct glint_frame *frame,
                                 const struct glint_flare_stats *stats);
 
-/* Gives the scale of LAMPS as the plan predicts it, without drawing anything;
- * {0, 0}: there is no light. GLINT_E_MEMORY. */
+/* Sets *SCALE to that of LAMPS as the plan predicts it, without drawing; {0,
+ * 0}: there is no light. GLINT_E_MEMORY. */
 enum glint_status glint_frame_plan_scale(struct glint_frame *frame,
                                          const struct glint_lamp *lamps,
                                          int n_lamps,
                                          struct glint_frame_scale *scale);
 
-/* The light of CODES near black of IMAGE; 0: it is NULL or linear. */
+/* Returns the light of CODES near black in IMAGE; 0 if IMAGE is NULL or linear.
+ */
 double glint_frame_codes_light(const struct glint_frame *frame,
                                const struct glint_image *image, double codes);
 

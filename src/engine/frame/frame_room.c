@@ -7,7 +7,7 @@
 
 #include "engine/frame/block.h"
 
-/* Most bundles that one frame may take, by edges and by other rasters. */
+/* Most bundles that a frame may have by edges, and by other rasters. */
 enum { MAX_BUNDLES = 1 << 20, MAX_BUNDLES_OTHER = 65535 };
 
 bool glint_frame_has_sets(const struct glint_frame *f)
@@ -71,7 +71,7 @@ bool glint_frame_is_served(struct glint_frame *f,
         return true;
     c->max_bundles = larger(c->max_bundles, bundles);
     c->max_vertices = larger(c->max_vertices, s->need_vertices);
-    /* workers' shares are never quite even */
+    /* Workers' shares are never quite even. */
     c->max_primitives = larger(
         c->max_primitives,
         (int)fmin(INT_MAX,
@@ -82,7 +82,8 @@ bool glint_frame_is_served(struct glint_frame *f,
     return false;
 }
 
-/* References for each primitive, and vertices by cells: rather too many. */
+/* Returns the bytes for a number of primitives, with references for each and,
+ * by cells, vertices: rather too many. */
 static size_t bytes_for(struct glint_frame *f, int primitives)
 {
     const bool by_edges = is_by_edges(f);
@@ -94,7 +95,8 @@ static size_t bytes_for(struct glint_frame *f, int primitives)
     return glint_flare_bytes(&f->cfg);
 }
 
-/* The capacities that BYTES have room for. False: none. */
+/* Sets the capacities that BYTES have room for; returns false if there is none.
+ */
 static bool fit(struct glint_frame *f, size_t bytes)
 {
     int most = 0;
@@ -134,7 +136,7 @@ enum glint_status glint_frame_reserve(struct glint_frame *f, void *mem,
 {
     f->dials.max_lights =
         smaller(f->dials.max_lights, smaller(n_drawn, n_lamps));
-    /* not all ghosts are seen, and few take the largest set */
+    /* Not all ghosts are seen, and few take the largest set. */
     f->cfg.max_bundles =
         bundles_within(f, (glint_frame_has_sets(f) ? 2. : 1) *
                               glint_frame_bundles(f, f->dials.max_lights));

@@ -8,8 +8,8 @@
 #include "engine/frame/block.h"
 #include "engine/frame/frame_parts.h"
 
-/* Lights farther from the picture's corner than so many pixels are not drawn.
- */
+/* Lights farther from the picture's top left corner than this many pixels,
+ * across or down, are not drawn. */
 static const double most_px = 1 << 16;
 
 /* Radius of a point in a picture that is sharp. */
@@ -150,7 +150,7 @@ void glint_frame_paint(struct glint_frame *frame,
         glint_flare_draw(frame->flare, image);
 }
 
-/* The largest channel of all lamps' power. */
+/* Returns the largest channel of the powers of all lamps. */
 static double brightest(const struct glint_lamp *lamps, int n)
 {
     double most = 0;
@@ -170,7 +170,7 @@ enum glint_status glint_frame_star_alone(struct glint_frame *frame,
     const size_t samples = 3 * (size_t)width * (size_t)height;
     struct glint_image layer = {
         .format = GLINT_LINEAR_Q20, .width = width, .height = height};
-    /* no pixel has more than all of a lamp's light */
+    /* No pixel gets more than all of a lamp's light. */
     const double most = brightest(lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;
     enum glint_status status;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The starburst of a frame: tables of its stop, and its lamps as they lie in
- * the picture.
- */
+ * the picture. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_STAR_H
 #define GLINT_ENGINE_FRAME_FRAME_STAR_H
 
@@ -35,8 +34,8 @@ struct glint_frame_star {
     bool is_set; /* true: the star is set for this frame */
 };
 
-/* Sets the star of LAMPS times SCALE on pictures like IMAGE, making tables
- * where there are none of the frame's stop. Without a share nothing is done.
+/* Sets the star of LAMPS times SCALE for pictures like IMAGE, and makes tables
+ * if there are none for the frame's stop. Does nothing if the share is 0.
  * GLINT_E_MEMORY. */
 enum glint_status glint_frame_star_set(struct glint_frame *frame,
                                        const struct glint_lamp *lamps, int n,
@@ -50,8 +49,8 @@ enum glint_status glint_frame_star_hold(struct glint_frame *frame, int n);
 void glint_frame_paint(struct glint_frame *frame,
                        const struct glint_image *image);
 
-/* Adds the star of LAMPS alone, times GAIN, to RGB, linear light as
- * glint_frame_draw_alone() has it, which drew before. */
+/* Adds the star of LAMPS alone, times GAIN, to RGB, linear light into which
+ * glint_frame_draw_alone() has drawn the ghosts. */
 enum glint_status glint_frame_star_alone(struct glint_frame *frame,
                                          const struct glint_lamp *lamps, int n,
                                          double gain, int32_t *linear_q20,

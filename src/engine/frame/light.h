@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * From lamps and wavelengths in degrees and nanometres to what the run-time
- * half draws.
- */
+ * Converts lamps and wavelengths in degrees and nanometres into lights and
+ * waves of the run-time half. */
 #ifndef GLINT_ENGINE_FRAME_LIGHT_H
 #define GLINT_ENGINE_FRAME_LIGHT_H
 
@@ -12,13 +11,14 @@
 struct glint_wave glint_wave_of(double nm, const double rgb[3],
                                 double unit_flux);
 
-/* LAMP as a point, its power times SCALE. */
+/* Returns LAMP as a point, its power times SCALE. */
 struct glint_light glint_light_of(const struct glint_lamp *lamp, double scale);
 
-/* The reverse, a point. */
+/* Returns LIGHT as a lamp without extent. */
 struct glint_lamp glint_lamp_of(const struct glint_light *light);
 
-/* Returns whether LENS, unless NULL, ends before LIGHT. */
+/* Returns whether LIGHT is beyond the largest angle of LENS; 0 if LENS is NULL.
+ */
 int glint_light_is_beyond(const struct glint_lens *lens,
                           const struct glint_light *light);
 

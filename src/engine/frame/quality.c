@@ -4,15 +4,16 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { MAX_LIGHTS = 128 }; /* cost less than three times what 64 do */
+/* Most lights; so many cost less than three times as much as 64. */
+enum { MAX_LIGHTS = 128 };
 
-/* Along the front that glint sweep measures over five lenses at 1280x720
- * (tests/figures/trade.md), the coarsest first. What is not on it: coarser
- * models, which save nothing and cost 6 dB. Finer models cost next to nothing
- * but bytes and their baking, which is why the default has none and all above
- * it do. Dispersion has a front of its own (make colour-table): what is for
- * small boards draws three wavelengths. Of light left out, an eighth of a code
- * is the most that hundreds of ghosts may hide without being seen together. */
+/* Levels along the front that glint sweep measures over five lenses at 1280x720
+ * (tests/figures/trade.md), the coarsest first. Coarser models are not on it:
+ * they save nothing and cost 6 dB. Finer models cost next to nothing but bytes
+ * and time to bake, so all levels above the default have them. Dispersion has a
+ * front of its own (make colour-table): levels for small boards draw three
+ * wavelengths. An eighth of a code is the most that may be left out: hundreds
+ * of ghosts below it still hide nothing that would be seen together. */
 /* clang-format off */
 static const struct level {
     double quality, grid, quantum, snap, cull, tolerance, dispersion, points;
@@ -42,7 +43,7 @@ double glint_quality_named(int name)
     return (double)name / (GLINT_QUALITY_NAMES - 1);
 }
 
-/* PART of the way from A to B, in equal ratios. */
+/* Returns the value PART of the way from A to B, in equal ratios. */
 static double between(double a, double b, double part)
 {
     return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
@@ -61,8 +62,9 @@ double glint_quality_place(double quality)
     return level[i].half == level[i + 1].half ? i + part : i + (part >= 0.5);
 }
 
-/* Between the levels of QUALITY; what has no between is of the nearer one, but
- * models, of which the finer one costs no time. */
+/* Returns the level of QUALITY, interpolated between those of the table. Values
+ * that cannot be interpolated are those of the nearer level, except for models:
+ * the finer one costs no time. */
 static struct level level_at(double quality)
 {
     const double at = glint_quality_place(quality);
@@ -93,7 +95,7 @@ struct glint_quality glint_quality_at(double quality)
     const struct level l = level_at(quality);
 
     return (struct glint_quality){
-        /* Grids come in steps of four cells. */
+        /* The fineness of grids comes in steps of four cells. */
         .dials = {.fineness = 4 * (int)lrint(l.grid / 4),
                   .irradiance_steps = glint_quality_steps(l.quantum),
                   .snap_codes_q8 = (int)lrint(l.snap * 256),
@@ -111,7 +113,8 @@ struct glint_dials glint_dials_at(int quality_q15)
     return glint_quality_at(quality_q15 * 0x1p-15).dials;
 }
 
-/* Outlines, a tenth of a pixel at fineness 64, and by the square of it. */
+/* Outlines are off by 0.1 pixel at fineness 64, and by its inverse square
+ * otherwise. */
 double glint_quality_for_error(double px)
 {
     const double grid = 64 * sqrt(0.1 / px);

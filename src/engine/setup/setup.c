@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lens, stop and wavelengths, made ready once: colours of the wavelengths and
- * the flux of the direct image that everything is measured by.
- */
+ * Prepares lens, stop and wavelengths once: colours of the wavelengths, and the
+ * flux of the direct image by which all light is measured. */
 #include "engine/setup/setup.h"
 
 #include <math.h>
@@ -13,9 +12,10 @@
 #include "engine/setup/spectrum.h"
 #include "glint/model.h"
 
-/* Scales each channel to the sum 1, so that a flat spectrum is white. A channel
- * that the wavelengths hardly excite, or excite negatively, takes them all
- * alike: few wavelengths make a grey picture rather than a wrong one. */
+/* Scales each channel to the sum 1, so that a flat spectrum is white. If the
+ * wavelengths hardly contribute to a channel, or their sum is negative, all get
+ * the same value: few wavelengths make a grey picture rather than a wrong one.
+ */
 static void normalise(struct glint_setup *s)
 {
     const int n = s->n_wavelengths;
@@ -104,8 +104,8 @@ enum glint_status glint_setup_units(struct glint_setup *s, const char *name,
     return GLINT_OK;
 }
 
-/* Area of the stop as a share of its circle's: the direct light is even enough
- * over it for a ten-thousandth. */
+/* Returns the area of the stop as a share of its circle's. The direct light is
+ * even over it to 1/10000. */
 static double share_of_circle(int n_blades)
 {
     return n_blades ? 0.5 * n_blades * sin(2 * GLINT_PI / n_blades) / GLINT_PI
@@ -122,8 +122,8 @@ static double of_powers(const struct glint_real *coef, int n, double w)
     return sum;
 }
 
-/* Returns the model's flux through a stop of OPENING at a wavelength, which is
- * held to the model's band. */
+/* Returns the model's flux through a stop of OPENING at NM, which is clamped to
+ * the model's band. */
 static double model_flux(const struct glint_model_header *h, double opening,
                          double nm)
 {
@@ -181,7 +181,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
 {
     const struct glint_model_header *h = lens->header;
     const double widest = glint_real_value(h->f_number);
-    /* The f-number asked for may be a rounded print of the widest one. */
+    /* F_NUMBER may be a rounded print of the widest one. */
     const double by =
         fabs(widest / f_number - 1) < 1e-6 ? 1 : widest / f_number;
 

@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * What setups of a model and of a lens table have in common.
- */
+ * Shared by setups of a model and of a lens table. */
 #ifndef GLINT_ENGINE_SETUP_SETUP_H
 #define GLINT_ENGINE_SETUP_SETUP_H
 
 #include "glint/setup.h"
 
-/* GLINT_E_ARGUMENT: no such stop, or no such wavelengths. */
+/* Checks stop and wavelengths. GLINT_E_ARGUMENT: one is out of range, and ERROR
+ * says which. */
 enum glint_status glint_setup_check(int n_blades, double rotation_deg,
                                     const double *wavelength_nm, int n,
                                     struct glint_error *error);
 
-/* Takes stop and wavelengths, checked already. */
+/* Sets stop, wavelengths and colours of SETUP; the arguments have been checked.
+ */
 void glint_setup_common(struct glint_setup *setup, int n_blades,
                         double rotation_deg, const double *wavelength_nm,
                         int n);
 
-/* Light is measured by the mean over the wavelengths of what direct_flux has.
- * GLINT_E_LENS: that of NAME is dark. */
+/* Sets unit_flux of all wavelengths to the mean of direct_flux. GLINT_E_LENS:
+ * no light gets through lens NAME at some wavelength. */
 enum glint_status glint_setup_units(struct glint_setup *setup, const char *name,
                                     struct glint_error *error);
 

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Few wavelengths that stand for all.
+ * Chooses a few wavelengths that stand for all.
  *
  *   in   how many
- *   out  which, and the colour of each
+ *   out  the wavelengths, and the colour of each
  *
- * Method: a spectrum is taken at the wavelengths and interpolated by cubics
- * through the four nearest; the colours are what the observer sees of each of
- * these, summed over 31 wavelengths that are as good as all. An edge that
- * moves with the wavelength becomes so many steps. Places with the density
- * (sum of squares of the colour over 1 / wavelength^2)^(1/3) make the squares
- * of the differences to the smooth edge least.
- */
+ * Method: a spectrum is sampled at the wavelengths and interpolated by cubics
+ * through the four nearest; the colour of each wavelength is what the observer
+ * sees of its part, summed over 31 wavelengths that are as good as all. An edge
+ * that moves with the wavelength becomes as many steps as there are
+ * wavelengths. Places with the density (sum of squares of the colour over 1 /
+ * wavelength^2)^(1/3) make the sum of squared differences to the smooth edge
+ * least. */
 #include "engine/setup/spectrum.h"
 
 #include <math.h>
@@ -23,11 +23,12 @@ enum {
     FIRST_NM = 400,
     LAST_NM = 700,
     STEP_NM = 10,
-    BEYOND_NM = 15, /* cubics go on beyond the outermost wavelengths */
+    /* Nm by which cubics go on beyond the outermost wavelengths. */
+    BEYOND_NM = 15,
     POINTS = 4
 };
 
-/* A Gaussian with one width on either side. */
+/* Returns a Gaussian with different widths below and above its centre. */
 static double lobe(double nm, double centre, double below, double above)
 {
     const double t = (nm - centre) / (nm < centre ? below : above);
@@ -35,8 +36,8 @@ static double lobe(double nm, double centre, double below, double above)
     return exp(-0.5 * t * t);
 }
 
-/* CIE 1931 2 degree observer, multi-lobe fit [Wyman13] table 1; within 1 % of
- * the peak of the tabulated functions. */
+/* Sets XYZ of the CIE 1931 2 degree observer by the multi-lobe fit of
+ * [Wyman13], table 1; within 1 % of the peak of the tabulated functions. */
 static void observer(double nm, double xyz[3])
 {
     xyz[0] = 1.056 * lobe(nm, 599.8, 37.9, 31.0) +
@@ -66,8 +67,8 @@ void glint_observer_rgb(double nm, double rgb[3])
     to_bt709(xyz, rgb);
 }
 
-/* Gives the colour of light at each of all wavelengths, scaled so that a flat
- * spectrum is white. */
+/* Sets the colours of all wavelengths, scaled so that a flat spectrum is white.
+ */
 static void all_colours(double rgb[N_ALL][3])
 {
     for (int j = 0; j < N_ALL; j++)
@@ -82,7 +83,8 @@ static void all_colours(double rgb[N_ALL][3])
     }
 }
 
-/* Wavelengths that should lie within a nanometre of NM. */
+/* Returns how many wavelengths should lie in a nanometre about NM, in any unit.
+ */
 static double density(double nm)
 {
     double rgb[3], squares = 0;
@@ -93,7 +95,8 @@ static double density(double nm)
     return cbrt(squares / (nm * nm * nm)); /* d (1 / nm^2) ~ nm^-3 */
 }
 
-/* Each has as much of the density on either side. */
+/* Places N wavelengths so that each has equal parts of the density on either
+ * side. */
 static void place(int n, double *wavelength_nm)
 {
     double sum = 0, passed = 0;
@@ -110,7 +113,8 @@ static void place(int n, double *wavelength_nm)
     }
 }
 
-/* The first of the wavelengths that what is at NM is interpolated from. */
+/* Returns the index of the first of the wavelengths between which NM is
+ * interpolated. */
 static int first_near(int n, const double *wavelength_nm, double nm)
 {
     int i = 0;
@@ -122,7 +126,8 @@ static int first_near(int n, const double *wavelength_nm, double nm)
     return i > 0 ? i : 0;
 }
 
-/* The share of wavelength K in what is at NM: Lagrange's polynomial. */
+/* Returns the share of wavelength K in the value at NM: Lagrange's polynomial.
+ */
 static double share_of(int n, const double *wavelength_nm, int k, double nm)
 {
     const double at = fmin(fmax(nm, wavelength_nm[0] - BEYOND_NM),

@@ -5,8 +5,8 @@
 #ifndef GLINT_ENGINE_SETUP_SPECTRUM_H
 #define GLINT_ENGINE_SETUP_SPECTRUM_H
 
-/* Linear BT.709 of light of NM, by the CIE 1931 observer; negative where it is
- * more saturated than any mixture of the primaries. */
+/* Sets RGB to linear BT.709 of light of NM, by the CIE 1931 observer; negative
+ * where the light is more saturated than any mixture of the primaries. */
 void glint_observer_rgb(double nm, double rgb[3]);
 
 #endif

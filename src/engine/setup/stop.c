@@ -23,8 +23,9 @@ void glint_setup_stop(const struct glint_setup *setup, struct glint_stop *stop)
     }
 }
 
-/* Signed distance of a point to the sides of the stop: exact inside and beside
- * a side, short of the truth beyond a corner, where only the sign matters. */
+/* Returns the signed distance of a point to the outline of the stop. It is
+ * exact inside and beside a side; beyond a corner it is too short, but only its
+ * sign matters there. */
 static double stop_distance(const struct glint_stop *stop, double x, double y)
 {
     double d = stop->n_blades ? 4 : 1 - hypot(x, y);

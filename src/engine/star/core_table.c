@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
+ * Makes the core table of a starburst.
+ *
  *   in   a pattern, and the tables of its far field
- *   out  the table of what is missing near the light
+ *   out  the table of what these lack near the light
  *
  * Method: light of the pattern is summed in cells of a quarter of a pixel, from
- * as many points each as it takes; what the sum over all cells and what lies
- * beyond lack of 1 goes to the four in the middle, which have what no point
- * caught. A node of the core is the sum of the cells of a pixel about it, less
- * the far field, and fades out towards the core's rim.
- */
+ * as many points each as it takes. The four cells in the middle get the rest:
+ * what the sum over all cells and the light beyond them lack of 1, which no
+ * point caught. A node of the core is the sum of the cells of a pixel about it,
+ * minus the far field, and fades out towards the core's rim. */
 #include "engine/star/core_table.h"
 
 #include <math.h>
@@ -16,11 +17,12 @@
 
 #include "glint/view.h"
 
-enum { CELLS = 4 }; /* cells per pixel, each way */
+enum { CELLS = 4 }; /* cells per pixel, across and down */
 
-/* Square of cells about the middle, and their sums from the first one on. */
+/* A square of cells about the light, and the sums over all cells from its first
+ * corner. */
 struct cells {
-    int half, side;   /* cells from the middle to a side; 2 half */
+    int half, side;   /* cells from the middle to a side, and cells across */
     double (*sum)[3]; /* [side + 1][side + 1] */
 };
 
@@ -29,7 +31,8 @@ static double (*at(const struct cells *s, int i, int k))[3]
     return &s->sum[(i + s->half) * (s->side + 1) + k + s->half];
 }
 
-/* Points of a cell whose middle is R pixels from the light, each way. */
+/* Returns how many points across a cell takes whose middle is R pixels from the
+ * light. */
 static int points_of(const struct glint_psf *psf, double r)
 {
     const double fine = r < 12 * psf->airy_px + 0.5
@@ -58,7 +61,8 @@ static void cell_light(const struct glint_psf *psf, int i, int k, double rgb[3])
     }
 }
 
-/* Light of each cell, where its sum will be; the half above is a mirror. */
+/* Sets the light of each cell, at the place of its sum; the half above the
+ * light mirrors the one below. */
 static void set_cells(const struct glint_psf *psf, struct cells *s)
 {
     double missing[3] = {0, 0, 0};
@@ -94,7 +98,7 @@ static void sum_up(struct cells *s)
                                              (*at(s, i, k))[c];
 }
 
-/* Light of the pixel about (X, Y), in cells. */
+/* Sets RGB to the light of the pixel about (X, Y), in cells. */
 static void pixel_light(const struct cells *s, int y, int x, double rgb[3])
 {
     const int h = CELLS / 2;
@@ -162,8 +166,8 @@ static uint16_t code_of(double light)
     return (uint16_t)(sign | e << 10 | ((unsigned)lrint(size) - 1024));
 }
 
-/* Cells from node to node: as fine as shows rings, and as few as reach where
- * they have gone. */
+/* Returns the cells from node to node: so few that rings are resolved, but
+ * enough that the core reaches the place where they have faded. */
 static int cells_of(const struct glint_psf *psf)
 {
     const double far = 9 * psf->airy_px / GLINT_STAR_CORE;

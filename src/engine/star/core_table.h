@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * The core of a starburst: the exact pattern over each pixel, less what lines
- * and halo give there.
- */
+ * The core of a starburst: the exact pattern over each pixel, minus the light
+ * of lines and halo there. */
 #ifndef GLINT_ENGINE_STAR_CORE_TABLE_H
 #define GLINT_ENGINE_STAR_CORE_TABLE_H
 
 #include "engine/star/psf.h"
 #include "star/starburst.h"
 
-/* Sets the core of TABLES, all else of which is set. GLINT_E_MEMORY. */
+/* Sets the core of TABLES, whose other members are set. GLINT_E_MEMORY. */
 enum glint_status glint_star_set_core(struct glint_star_tables *tables,
                                       const struct glint_psf *psf);
 
-/* What lines and halo give at (X, Y) from a light of power 1, as drawn but for
- * the rounding of integers. */
+/* Sets RGB to the light of lines and halo at (X, Y) from a light of power 1, as
+ * drawn except for the rounding of integers. */
 void glint_star_tabled(const struct glint_star_tables *tables, double x,
                        double y, double rgb[3]);
 

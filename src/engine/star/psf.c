@@ -10,7 +10,8 @@
 
 enum { ORDERS = 20, BLEND_FROM = 15 };
 
-static const double span = 32; /* widths that a profile is tabled for */
+/* Number of widths over which a profile is tabled. */
+static const double span = 32;
 
 /* --------------------------------------------------------------- transform */
 
@@ -21,7 +22,7 @@ static double sinc(double x)
     return fabs(t) < 1e-4 ? 1 - t * t / 6 : sin(t) / t;
 }
 
-/* Bessel's function of order 1, as an integral over a period. */
+/* Returns Bessel's function of order 1 at X, as an integral over a period. */
 static double bessel1(double x)
 {
     const int n = 32 + (int)(fabs(x) * 0.7);
@@ -43,9 +44,9 @@ static double circle(double q)
     return f * f;
 }
 
-/* Sides of a stop of circumradius 1. */
+/* The sides of a stop of circumradius 1. */
 struct sides {
-    int n, n_pair; /* 2: the other half of n are opposite, and not here */
+    int n, n_pair; /* 2: the opposite sides are not listed, but counted */
     double length, apothem, area;
     /* cosines and sines of the sides' normals */
     double c[GLINT_MAX_BLADES], s[GLINT_MAX_BLADES];
@@ -68,7 +69,7 @@ static void set_sides(struct sides *p, int n, double rotation_deg)
     }
 }
 
-/* |F|^2 / area^2 */
+/* Returns |F|^2 / area^2 of a polygon at (QX, QY). */
 static double polygon(const struct sides *p, double qx, double qy)
 {
     const double q2 = qx * qx + qy * qy;
@@ -137,7 +138,7 @@ static void set_profile(struct glint_psf *p)
     }
 }
 
-/* The mean over a fringe about each place. */
+/* Sets the smooth profile: the mean over a fringe about each place. */
 static void set_smooth(struct glint_psf *p)
 {
     const int half = (int)(0.6 / span * GLINT_PSF_PROFILE);
@@ -181,7 +182,8 @@ void glint_psf_profile(const struct glint_psf *p, double v, double rgb[3])
 
 /* -------------------------------------------------------------------- near */
 
-/* The transform at rows of PSF_STEPS an order of 400 nm, and columns. */
+/* Returns a table of the transform: rows of 1 / GLINT_PSF_STEPS order of 400
+ * nm, and columns of angles; NULL if memory is short. */
 static double *transforms(const struct glint_psf *p, int n_rows)
 {
     double *table =
@@ -192,8 +194,8 @@ static double *transforms(const struct glint_psf *p, int n_rows)
     if (p->n_blades)
         set_sides(&sides, p->n_blades, 0);
     for (int k = 0; k < p->n_columns && table; k++) {
-        /* The table is of a stop without rotation, where angles begin half an
-         * edge on from a corner. */
+        /* The table is for a stop without rotation. Angles begin at the normal
+         * of a side, half a side on from a corner. */
         const double angle =
             p->n_blades ? GLINT_PI / p->n_blades + half * k / (p->n_columns - 1)
                         : 0;
@@ -284,7 +286,7 @@ void glint_psf_finish(struct glint_psf *psf)
 double glint_psf_angle(const struct glint_psf *p, int i)
 {
     const double step = 180.0 / p->n_lines;
-    /* y up to y down turns it the other way round */
+    /* y up becomes y down, which turns the other way round */
     const double one =
         p->n_blades ? -(p->rotation_deg + 180.0 / p->n_blades) : 0;
 
@@ -293,8 +295,9 @@ double glint_psf_angle(const struct glint_psf *p, int i)
 
 /* --------------------------------------------------------------------- far */
 
-/* The light of edges, without corners; SUM becomes the sum of products of cot
- * of the angles to neighbours, which end where profiles do. */
+/* Adds the light of edges, without corners. SUM receives the sum of products of
+ * cotangents of the angles to neighbouring edges, limited where profiles end.
+ */
 static void add_edges(const struct glint_psf *p, double x, double y,
                       glint_psf_window_fn *window, const void *self,
                       double rgb[3], double *sum)
@@ -351,7 +354,7 @@ double glint_psf_beyond(const struct glint_psf *p, double r, int c)
 
 /* -------------------------------------------------------------------- both */
 
-/* The angle of (X, Y) to the nearest line. */
+/* Returns the angle of (X, Y) to the nearest line. */
 static double to_line(const struct glint_psf *p, double x, double y)
 {
     const double step = GLINT_PI / p->n_lines;

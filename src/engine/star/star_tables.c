@@ -8,15 +8,15 @@
 #include "engine/star/psf.h"
 #include "glint/view.h"
 
-/* Wavelengths and pixels for which tables are made: outside, patterns are drawn
- * as if within. */
+/* Range of 550 nm times the f-number, in pixels, for which tables are made;
+ * outside of it the nearest end is used. */
 static const double least_airy_px = 1.0 / 64, most_airy_px = 16;
 
-/* Profiles reach as far as so many of their widths, or pixels if these are
- * more; in the outer half they fade into the halo. */
+/* Widths of a profile, or pixels if these are wider, up to which it is tabled;
+ * it fades into the halo in the outer half. */
 static const double widths = 4;
 
-/* Half a diagonal of a pixel. */
+/* Half of a pixel's diagonal. */
 static const double filter_px = 0.7072;
 
 struct window {
@@ -52,7 +52,8 @@ static void set_direction(struct glint_star_line *line, double angle,
         held(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
 }
 
-/* The profile at V through a pixel that is turned by ANGLE: two boxes. */
+/* Sets RGB to the profile at V averaged over a pixel that is turned by ANGLE,
+ * which is a convolution with two boxes. */
 static void filtered(const struct glint_psf *psf, const struct window *window,
                      double angle, double v, double rgb[3])
 {
@@ -112,7 +113,7 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
 
 /* -------------------------------------------------------------------- halo */
 
-/* log2 of light times r^2 at ROW and COLUMN. */
+/* Sets log2 of light times r^2 at ROW and COLUMN of the halo. */
 static void halo_at(const struct glint_psf *psf, const struct window *window,
                     double reach, int row, int column, double log2_of[3])
 {

@@ -10,7 +10,7 @@
 struct glint_star_optics {
     int n_blades; /* 0 or 3 .. GLINT_MAX_BLADES */
     double rotation_deg, f_number;
-    double pixel_um; /* side of a pixel on the sensor */
+    double pixel_um; /* side of a pixel on the sensor, um */
 };
 
 /* Returns the pixels that a wavelength of 550 nm times the f-number takes. */
@@ -19,7 +19,8 @@ static inline double glint_star_airy_px(const struct glint_star_optics *o)
     return 0.55 * o->f_number / o->pixel_um;
 }
 
-/* Takes memory that glint_star_tables_free() gives back. GLINT_E_MEMORY. */
+/* Makes the tables for optics O; glint_star_tables_free() frees them.
+ * GLINT_E_MEMORY. */
 enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
                                          const struct glint_star_optics *o);
 /* TABLES may be NULL. */
