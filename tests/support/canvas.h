@@ -25,7 +25,7 @@ void canvas_fill_grey(const struct glint_image *image, int x0, int y0, int x1,
 /* canvas_light() returns the light of V, a code divided by 255; canvas_code()
  * is its inverse. White is 1; negative values are mirrored. */
 double canvas_light(double v, enum glint_tone tone);
-double canvas_code(double light, enum glint_tone tone); /* 1 at most */
+double canvas_code(double light, enum glint_tone tone); /* returns 1 at most */
 
 int canvas_srgb_code(double light); /* 0 .. 255 for light 0 .. 1 */
 

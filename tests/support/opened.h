@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The Heliar, opened as commands open lenses: with its model, and the settings
- * that a user gets who says nothing. Run from the root of the tree.
+ * The Heliar as a command opens it by default, with its model and settings. Run
+ * from the root of the tree.
  *
  *     cmocka_run_group_tests(tests, opened_heliar, opened_close);
  */

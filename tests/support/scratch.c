@@ -68,5 +68,5 @@ int scratch_count(const char *dir)
     while (readdir(d))
         n++;
     closedir(d);
-    return n - 2; /* . and .. */
+    return n - 2; /* not . and .. */
 }

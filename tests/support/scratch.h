@@ -32,7 +32,7 @@ const char *scratch_path(const char *name);
 /* Writes DATA to the file NAME in the folder; the test fails if it cannot. */
 void scratch_put(const char *name, const char *data, size_t bytes);
 
-/* Returns how many files DIR has, hidden ones and folders, too. */
+/* Returns how many entries the folder DIR has, hidden ones included. */
 int scratch_count(const char *dir);
 
 #endif

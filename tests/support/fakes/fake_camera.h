@@ -31,7 +31,7 @@ struct fake_frame {
     int code;         /* value of every byte, 0 .. 255 */
     const void *data; /* bytesused[0] bytes that replace code; NULL: none */
     uint32_t flags;
-    uint32_t bytesused[3]; /* 0: all, unless is_odd */
+    uint32_t bytesused[3]; /* 0: the whole frame, unless is_odd */
     uint32_t data_offset[3];
     int64_t time_us;
     bool unknown_clock; /* The driver does not tell which clock it used. */
@@ -52,15 +52,16 @@ struct fake_camera {
     bool multiplanar, has_dv, has_no_sizes, is_stepwise;
     uint32_t n_inputs;
     struct fake_mode mode[FAKE_MODES];
-    uint32_t stride_more;   /* bytes that a stride has above a row */
-    uint32_t length_less;   /* bytes that a buffer has below sizeimage */
-    uint32_t sizeimage;     /* bytes that the driver says; 0: the format's */
+    uint32_t stride_more;   /* bytes by which a stride exceeds a row */
+    uint32_t length_less;   /* bytes that a buffer lacks of sizeimage */
+    uint32_t sizeimage;     /* bytes that the driver reports; 0: the right
+                             * ones */
     bool says_no_stride;    /* The driver gives a bytesperline of 0. */
     bool rounds;            /* Sizes become multiples of 16. */
     bool ignores_fourcc;    /* S_FMT always sets the first mode's fourcc. */
     bool lacks_mmap;        /* REQBUFS refuses MMAP. */
     uint32_t max_buffers;   /* buffers that REQBUFS gives at most */
-    struct v4l2_fract rate; /* G_PARM gives this rate; 0/x: the mode's. */
+    struct v4l2_fract rate; /* G_PARM reports this rate; 0/x: the mode's */
     uint32_t quantization, ycbcr_enc, colorspace;
 
     /* These members are the settings, and what the cable carries. */
@@ -72,7 +73,7 @@ struct fake_camera {
     /* These members are the state of the stream. */
     int fd; /* file descriptor; -1: closed */
     bool streams, is_gone, is_broken;
-    int n_events; /* number of source changes that wait */
+    int n_events; /* number of source changes to be reported */
     uint32_t n_buffers;
     struct fake_buffer buffer[FAKE_BUFFERS];
     uint32_t order[FAKE_BUFFERS]; /* queued buffers, the oldest first */

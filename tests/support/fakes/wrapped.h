@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Calls that more than one test answers itself or lets fail: the linker sends
- * them to __wrap_NAME(), and __real_NAME() is the library's (--wrap, in
+ * Calls that several tests answer themselves or let fail: the linker sends them
+ * to __wrap_NAME(), and __real_NAME() is the library's (--wrap, in
  * tools/make/check.mk).
  */
 #ifndef GLINT_SUPPORT_WRAPPED_H

@@ -99,8 +99,9 @@ static void test_tracked_lamps(void **state)
     glint_lamp_detector_close(&finder);
 }
 
-/* A glare whose clipped core falls off over as much as its radius: the lamp in
- * it may be a point, and is none in a picture by itself. */
+/* A lamp in a glare whose clipped core falls off over as much as its radius: in
+ * a video it may be a point, but in a picture by itself its axes must be a
+ * sixth of its size. */
 static void test_lamp_in_glare(void **state)
 {
     static uint8_t grey[W * H];

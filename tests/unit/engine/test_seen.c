@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What of a flare is seen on the picture under it, and what the exposure makes
- * of that.
+ * What of a flare is seen on the picture under it, and how the exposure takes
+ * account of that.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -25,7 +25,7 @@ static void set_ground(int code)
     memset(&ground, code, sizeof ground);
 }
 
-/* LIGHT in the first ROWS rows of the flare, in one channel. */
+/* Sets the flare to light OF in the green of its first ROWS rows. */
 static void set_flare(int rows, double of)
 {
     memset(light, 0, sizeof light);
@@ -42,7 +42,8 @@ static struct glint_seen look(void)
     return seen;
 }
 
-/* What 32 codes take on black counts as 1, and 1/14 as much beside code 120. */
+/* A light that takes 32 codes on black must count as 1 there, as a ninth on
+ * code 120, and not at all on code 240. */
 static void test_ground(void **state)
 {
     struct glint_seen dark, lit;
@@ -59,7 +60,7 @@ static void test_ground(void **state)
     assert_true(fabs(log2(lit.few * (canvas_linear(152) - canvas_linear(120)) /
                           each)) <= 0.126);
     set_ground(240);
-    assert_true(look().few == 0); /* nothing shows on white */
+    assert_true(look().few == 0); /* Nothing shows on white. */
 }
 
 static void test_area(void **state)
@@ -71,11 +72,12 @@ static void test_area(void **state)
     set_flare(HEIGHT / 3, 4 * canvas_linear(32));
     assert_true(look().few == look().many);
     assert_true(fabs(log2(look().many) - 2) <= 0.126);
-    light[0][0][0] = 1; /* a speck */
+    light[0][0][0] = 1; /* A speck must not count. */
     assert_true(fabs(log2(look().few) - 2) <= 0.126);
 }
 
-/* On the picture itself: its left half is white. */
+/* The ground of a picture whose left half is white must be white in its left
+ * half. */
 static void test_taken(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 100, 50);
@@ -90,7 +92,8 @@ static void test_taken(void **state)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* The brightest part at the strength ASKED of a flare with PEAK and MEAN. */
+/* Returns the peak that the exposure at strength ASKED gives a flare with PEAK
+ * and MEAN of which SEEN is seen. */
 static double exposed(double asked, double peak, double mean,
                       struct glint_seen seen)
 {
@@ -110,15 +113,16 @@ static void test_lifted(void **state)
     const struct glint_seen plain = {1, 0}, hidden = {0, 0}, half = {0.0625, 0};
 
     (void)state;
-    /* as it was: a quarter of white */
+    /* A flare that is seen keeps a quarter of white. */
     assert_true(fabs(exposed(0.5, peak, mean, plain) - 0.25) < 0.001);
-    /* to where it is seen, and to 0.7 of white at most */
+    /* A flare that is not must be lifted until it is, to 0.7 of white at
+     * most. */
     assert_true(fabs(exposed(0.5, peak, mean, half) - 0.5) < 0.001);
     assert_true(fabs(exposed(0.5, peak, mean, hidden) - 0.7) < 0.001);
-    /* strengths keep their steps of two stops */
+    /* Strengths must keep their steps of two stops. */
     assert_true(fabs(exposed(0.25, peak, mean, half) - 0.125) < 0.001);
     assert_true(fabs(exposed(0.25, peak, mean, plain) - 0.0625) < 0.001);
-    /* no mean over 0.04 */
+    /* The mean must not exceed 0.04. */
     assert_true(fabs(exposed(0.5, peak, peak / 10, hidden) - 0.4) < 0.001);
 }
 

@@ -164,7 +164,7 @@ static void test_waves(void **state)
     waves_are(lens_flux);
 }
 
-/* Where the model has no light there is no colour either. */
+/* Where the model has no light, weights must be 0 and not undefined. */
 static void test_no_light(void **state)
 {
     struct glint_wave wave[GLINT_FLARE_WAVES];

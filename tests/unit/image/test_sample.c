@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Codes at a few places of pictures of every format.
+ * Codes that are sampled at a few places of pictures of every format.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,7 @@ static void check_near(int code, int wanted, int most)
     assert_true(abs(code - wanted) <= most);
 }
 
-/* Row Y of CODE, without colour. */
+/* Sets row Y to CODE, without colour. */
 static void set_row(const struct glint_image *image, int y, int code)
 {
     const int n = (int)glint_image_row_bytes(image->format, 0, image->width);
@@ -40,7 +40,8 @@ static void set_row(const struct glint_image *image, int y, int code)
                    (size_t)glint_image_plane_height(image->format, p, HEIGHT));
 }
 
-/* Three parts from the top: black, grey, bright. */
+/* Checks samples of a picture of three parts, from the top: black, grey,
+ * bright. */
 static void check_format(enum glint_pixel_format format, enum glint_range range)
 {
     struct glint_image image = canvas_new(format, WIDTH, HEIGHT);
@@ -70,7 +71,8 @@ static void test_formats(void **state)
     check_format(GLINT_GREY, GLINT_RANGE_LIMITED);
 }
 
-/* The middle of three pixels is orange. */
+/* Checks the sample of three pixels, of which the middle one is orange and has
+ * the N bytes BYTES. */
 static void check_orange(enum glint_pixel_format format, const uint8_t *bytes,
                          size_t n)
 {
@@ -88,7 +90,7 @@ static void check_orange(enum glint_pixel_format format, const uint8_t *bytes,
 static void test_colours(void **state)
 {
     static const uint8_t rgb[] = {255, 96, 24}, bgrx[] = {24, 96, 255, 0};
-    static const uint8_t packed[] = {0x03, 0xfb}; /* 31, 24, 3 */
+    static const uint8_t packed[] = {0x03, 0xfb}; /* RGB565 31, 24, 3 */
 
     (void)state;
     check_orange(GLINT_RGB24, rgb, 3);
@@ -97,7 +99,8 @@ static void test_colours(void **state)
     check_orange(GLINT_RGB565, packed, 2);
 }
 
-/* Larger and smaller than the parts; linear pictures have no codes. */
+/* A picture smaller than the samples must give its pixel everywhere; a linear
+ * one has no codes and must give 0. */
 static void test_sizes(void **state)
 {
     struct glint_image image = canvas_new(GLINT_GREY, 1, 1);

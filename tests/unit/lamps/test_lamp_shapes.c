@@ -33,8 +33,8 @@ static void assert_one_region(const struct glint_image *image)
     free(image->plane[0]);
 }
 
-/* A pixel touches those at its corners, on both sides and across the blocks in
- * which runs are found, and none further. */
+/* A pixel must touch those at its corners, on both sides and across the blocks
+ * in which runs are found, and none farther away. */
 static void test_corners(void **state)
 {
     (void)state;

@@ -26,8 +26,8 @@ struct settings {
 
 static struct glint_spot spot[MOST];
 static uint32_t seed;
-static int n_before; /* frames that find sees before, as of a video */
-static int n_video;  /* lamps in the last of these */
+static int n_before; /* frames that find() shows first, as in a video */
+static int n_video;  /* lamps found in the last of these frames */
 
 static struct settings new_settings(int width, int height, double light)
 {
@@ -401,8 +401,8 @@ static void test_best_one_alone(void **state)
     assert_int_equal(least_of(c, 0), 0);
 }
 
-/* A lamp before a wall that is ever brighter is found longer in a picture by
- * itself than in a video, and after one as without. */
+/* A lamp before an ever brighter wall must be found longer in a picture by
+ * itself than in a video; a video before that picture must not matter. */
 static void test_video_needs_more(void **state)
 {
     static const double white[3] = {4, 4, 4};

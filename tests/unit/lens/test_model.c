@@ -478,21 +478,21 @@ static void test_rays(void **state)
     assert_int_equal(out.at[GLINT_OUT_BARREL_1], 0);
     assert_int_equal(out.at[GLINT_OUT_RADIUS], 0);
     out = ray(&t, ONE, ONE);
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 234881024); /* 0.875 */
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 234881024); /* 0.875 mm */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 268435456);   /* 0.5 */
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 201326592);   /* 0.375 */
     assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456); /* 1 */
     out = ray(&t, -ONE, ONE / 2);
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 */
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 mm */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], -268435456);
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 125829120); /* 0.234375 */
     /* s = 0, w = 1 */
     glint_transfer_init(&t, &lens, 0, ONE / 8, MODEL_WAVE_HI_Q24);
     out = ray(&t, ONE, -ONE);
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 */
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -201326592); /* -0.75 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 mm */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -201326592); /* -0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 27);
     free(m.data);
 }
@@ -579,11 +579,11 @@ static void test_sparse_rays(void **state)
     (void)state;
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, 1), 1);
     out = ray(&t, ONE, ONE);                                 /* x = y = r = 1 */
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592); /* 0.75 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592); /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 134217728);
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 0);
     out = ray(&t, ONE / 2, 0);                               /* r = 1/2 */
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 100663296); /* 0.375 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 100663296); /* 0.375 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 134217728);   /* 0.25 */
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 0);
     assert_int_equal(out.at[GLINT_OUT_RADIUS], 134217728);
@@ -597,7 +597,7 @@ static void test_sparse_rays(void **state)
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 0);
     assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 26);
     out = ray(&t, -3 * (ONE / 4), -ONE);
-    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -100663296); /* -0.375 */
+    assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -100663296); /* -0.375 mm */
     free(m.data);
 }
 

@@ -152,7 +152,7 @@ static void test_draws(void **state)
     expect_screen(0, 100);
     must_put(&fb, grey(16, 12, 50));
     expect_screen(0, 50);
-    assert_int_equal(memory()[6 * 40], 0xaa); /* Nothing is drawn beyond. */
+    assert_int_equal(memory()[6 * 40], 0xaa); /* below the screen */
     fb.sink.close(&fb.sink);
     fb.sink.close(&fb.sink);
     assert_int_equal(fb.fd, -1);
@@ -348,7 +348,7 @@ static void test_mode_changes(void **state)
     must_put(&fb, grey(8, 6, 3));
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(memory()[6 * 40], 3);
-    /* A page was mapped anew and the old one unmapped. */
+    /* The page must be mapped anew and its old map undone. */
     assert_int_equal(fake_fb_maps, 0);
     fb.sink.close(&fb.sink);
 }

@@ -81,7 +81,7 @@ static void test_commit(void **state)
     (void)state;
     open_text(&out, "one");
     assert_int_equal(access(path, F_OK), -1);
-    assert_int_equal(scratch_count(scratch_dir), 1); /* the temporary one */
+    assert_int_equal(scratch_count(scratch_dir), 1); /* the temporary file */
     assert_string_equal(strrchr(out.tmp, '.'), ".ppm");
     assert_int_equal(glint_output_commit(&out, &error), GLINT_OK);
     umask(old);

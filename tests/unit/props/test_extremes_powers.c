@@ -93,8 +93,8 @@ static void test_codes_never_fall(void **state)
             last[i] = codes[0][i];
         }
     }
-    /* At power 1e28 every pixel that light reaches is white, but for pixels
-     * that an edge crosses. */
+    /* At the last power, 1e29, every pixel that light reaches must be white,
+     * but for pixels that an edge crosses. */
     for (int i = 0; i < N; i++) {
         lit += last[i] != ground[i];
         white += last[i] == 255 && ground[i] != 255;

@@ -25,7 +25,7 @@ struct triangle {
     int on, half, linear;
     int corner[3][2]; /* pixels, counter-clockwise where y runs down */
     int light_q16[3];
-    struct on_row *at; /* [MAX_WORKERS] */
+    struct on_row *at; /* [worker] */
 };
 
 /* The state of a worker on a row of tiles. */

@@ -44,7 +44,7 @@ static void check_percentiles(int n, int64_t low_us, int64_t span_us)
     for (int i = 0; i < n; i++) {
         const int64_t r = (rng_bits(&seed) >> 8) % span_us;
 
-        us[i] = low_us + r * r / span_us; /* more short ones than long */
+        us[i] = low_us + r * r / span_us; /* most are short */
         add_latency(us[i]);
     }
     qsort(us, (size_t)n, sizeof *us, compare);
