@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/frame/frame_parts.h"
+
 /* Instructions of N of a kind. */
 static double work_in(enum glint_cost_kind kind, double n)
 {
@@ -88,7 +90,7 @@ static void take_accounts(struct glint_explain *e)
 
                 glint_flare_account(e->frame->flare, ghost, light, wave, &a);
                 add(&e->all, &a);
-                /* NOLINTNEXTLINE: set_pairs() has set all of them */
+                /* NOLINTNEXTLINE: set_numbers() has set all of them */
                 add(&e->ghost[e->ghost_of[ghost]], &a);
                 add(&e->light[light], &a);
                 add(&e->wave[part_of(e, wave)], &a);
@@ -177,20 +179,13 @@ static void set_shares(const struct glint_explain *e,
 
 /* ----------------------------------------------------------------- opening */
 
-/* Parts have the pair of surfaces of the ghost that they are parts of. */
-static void set_pairs(struct glint_explain *e)
+static void set_numbers(struct glint_explain *e)
 {
     const struct glint_setup *s = e->frame->setup;
 
     e->n_ghosts = s->n_ghosts - s->n_parts;
-    for (int k = 0; k < s->n_ghosts; k++) {
-        int pair = 0;
-
-        while (s->ghost[pair].i != s->ghost[k].i ||
-               s->ghost[pair].j != s->ghost[k].j)
-            pair++;
-        e->ghost_of[k] = pair;
-    }
+    for (int k = 0; k < s->n_ghosts; k++)
+        e->ghost_of[k] = glint_frame_number(s, k);
 }
 
 static int tiles_of(const struct glint_frame *f)
@@ -222,7 +217,7 @@ enum glint_status glint_explain_open(struct glint_explain *e,
                sizeof *e->linear_q20);
     if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
         return GLINT_E_MEMORY;
-    set_pairs(e);
+    set_numbers(e);
     take_accounts(e);
     measure_parts(e);
     e->stage[GLINT_COST_LIT] = work_in(GLINT_COST_LIT, e->all.lit);

@@ -215,18 +215,6 @@ static void take_logs(struct glint_response_light *light)
     }
 }
 
-/* Without asin(), which is 25 KB of glint-live. */
-static double model_end_deg(const struct glint_frame *frame)
-{
-    const double degree = GLINT_PI / 180;
-    double sine;
-
-    if (!frame->lens)
-        return 89;
-    sine = frame->lens->header->sine_hi_q30 * 0x1p-30;
-    return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
-}
-
 /* Lamps as LAMP, of up to an eighth of the picture's diagonal. */
 static enum glint_status measure_extents(struct proxy *p,
                                          struct glint_response *r,
@@ -265,7 +253,7 @@ static enum glint_status measure(struct proxy *p, struct glint_response *r)
 
     set_angles(r, p->frame.lens ? GLINT_RESPONSE_ANGLES : EXACT_ANGLES,
                corner_deg(p->view, p->frame.setup->optics.focal_mm),
-               model_end_deg(&p->frame));
+               glint_frame_end_deg(&p->frame));
     for (int i = 0; i < r->n; i++) {
         enum glint_status status;
 

@@ -5,8 +5,6 @@
 #include "base/real.h"
 #include "glint/flare.h"
 
-enum { POWERS = 6 };
-
 /* Returns the flux of the direct image times 2^FRAC, mm^2, at W_Q30, the place
  * in the band of wavelengths. Each coefficient is clamped to 2^27, so sums stay
  * below 2^30. */
@@ -15,7 +13,7 @@ static int32_t direct_flux(const struct glint_model_header *h, int32_t w_q30,
 {
     int32_t flux = 0;
 
-    for (int k = POWERS - 1; k >= 0; k--)
+    for (int k = GLINT_FLUX_TERMS - 1; k >= 0; k--)
         flux = q_mul(flux, w_q30, 30) +
                (int32_t)real_integer(h->direct_flux[k], frac, 1 << 27);
     return flux;

@@ -111,12 +111,11 @@ static int seen_to(const struct glint_star_tables *t, int32_t least_log2_q16)
     const int64_t least =
         q_exp2_q16(q_clamp_sat(least_log2_q16, -65536, 17 * 65536)) >> 16;
 
-    for (int i = GLINT_STAR_PROFILE; i > 0; i--)
-        for (int k = 0; k < t->n_lines; k++)
-            for (int c = 0; c < 3; c++)
-                if (t->line[k].profile[i - 1][c] > least)
-                    return i;
-    return 0;
+    int i = GLINT_STAR_PROFILE;
+
+    while (i > 0 && t->line_most[i - 1] <= least)
+        i--;
+    return i;
 }
 
 /* Zones of distances out to the lamp's reach. OVER: light of a step of a

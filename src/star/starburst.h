@@ -64,6 +64,7 @@ struct glint_star_tables {
     int first; /* line of the sector that begins at angle 0: the last, or 0 */
     /* light that the value 1 stands for in all profiles */
     struct glint_real step;
+    uint16_t line_most[GLINT_STAR_PROFILE]; /* largest value of all profiles */
     int32_t reach_q8;           /* reach of a profile, 1 .. 2^14 pixels */
     int32_t reach_log2_q16;     /* log2 of reach_q8 */
     int32_t per_pixel_q16;      /* steps of a profile per pixel, at most 128 */

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "command/explain.h"
+#include "model/model_summary.h"
 #include "options/tool.h"
 
 enum { WIDE = 100 };
@@ -39,11 +40,6 @@ const char *explain_word(enum glint_outcome outcome)
 static double degrees(double y, double x)
 {
     return atan2(y, x) * 180 / GLINT_PI;
-}
-
-static double model_degrees(const struct glint_explain *e)
-{
-    return asin(e->frame->lens->header->sine_hi_q30 * 0x1p-30) * 180 / GLINT_PI;
 }
 
 /* Ghosts of which something is drawn. */
@@ -206,7 +202,7 @@ static void print_lost_lights(const struct glint_explain *e,
                               const struct explain_title *t)
 {
     const struct glint_frame_report *r = t->report;
-    const double most = model_degrees(e);
+    const double most = model_degrees(e->frame->lens->header->sine_hi_q30);
     int n = 0, dark = 0;
 
     for (int i = 0; i < t->n_lamps; i++) {
@@ -288,7 +284,8 @@ static void json_lights(const struct glint_explain *e,
     for (int i = 0; i < t->n_lamps; i++)
         if (glint_frame_is_beyond(e->frame, &t->lamp[i]))
             printf("%s%.6g", n++ ? ", " : "", t->lamp[i].theta_deg);
-    printf("], \"model_max_deg\": %.6g", model_degrees(e));
+    printf("], \"model_max_deg\": %.6g",
+           model_degrees(e->frame->lens->header->sine_hi_q30));
 }
 
 void explain_json(const struct glint_explain *e, const struct explain_title *t)

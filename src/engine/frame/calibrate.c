@@ -4,26 +4,16 @@
 
 #include "engine/frame/frame.h"
 
-/* The angle that a model ends at, without asin(): that is 25 KB of glint-live.
- */
-static double widest_deg(const struct glint_model_header *h)
-{
-    const double sine = h->sine_hi_q30 * 0x1p-30;
-
-    return 22.5 / atan(1) * atan2(sine, sqrt(1 - sine * sine));
-}
-
 /* Draws a few frames of FRAME, and gives what the quickest took in LEAST_MS. */
 static enum glint_status draw_some(struct glint_frame *frame,
                                    const struct glint_image *image,
                                    struct glint_frame_report *report,
                                    double *least_ms)
 {
-    struct glint_lamp lamp = {12, 33, 1e6, {1, 1, 1}, {0, 0}, 0};
+    const struct glint_lamp lamp = {
+        fmin(12, glint_frame_end_deg(frame)), 33, 1e6, {1, 1, 1}, {0, 0}, 0};
     enum glint_status status = GLINT_OK;
 
-    if (frame->lens) /* whose model may end before */
-        lamp.theta_deg = fmin(lamp.theta_deg, widest_deg(frame->lens->header));
     for (int i = 0; i < 4 && status == GLINT_OK; i++) {
         status = glint_frame_draw(frame, &lamp, 1, 1, image, report);
         if (i > 0) /* the first one takes memory */

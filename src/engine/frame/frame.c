@@ -137,6 +137,18 @@ bool glint_frame_is_beyond(const struct glint_frame *frame,
     return glint_light_is_beyond(frame->lens, &b);
 }
 
+/* Without asin(), which is 25 KB of glint-live. */
+double glint_frame_end_deg(const struct glint_frame *frame)
+{
+    const double degree = GLINT_PI / 180;
+    double sine;
+
+    if (!frame->lens)
+        return 89;
+    sine = frame->lens->header->sine_hi_q30 * 0x1p-30;
+    return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
+}
+
 /* Beams that give nothing must not be merged with others into one that does.
  * Appends the lights of LAMP's points that the model reaches; WITHIN are there
  * already. Returns how many there are then. */

@@ -183,6 +183,10 @@ struct glint_cost_plan glint_frame_plan(const struct glint_frame *frame);
 bool glint_frame_is_beyond(const struct glint_frame *frame,
                            const struct glint_lamp *lamp);
 
+/* Returns the angle off the axis up to which FRAME's model goes; 89: rays are
+ * exact. */
+double glint_frame_end_deg(const struct glint_frame *frame);
+
 /* Takes over what changed in cfg since memory was taken; no more of it is. */
 void glint_frame_retune(struct glint_frame *frame);
 

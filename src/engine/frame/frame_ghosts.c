@@ -9,15 +9,21 @@ bool glint_frame_is_ghost(const struct glint_setup *s, int ghost, int number)
            s->ghost[ghost].j == s->ghost[number].j;
 }
 
-/* Returns whether it is the first of its ghost in the frame. */
-static bool note_ghost(struct glint_frame *frame, int ghost)
+int glint_frame_number(const struct glint_setup *s, int ghost)
 {
-    const struct glint_setup *s = frame->setup;
     int number = ghost;
 
     if (ghost >= s->n_ghosts - s->n_parts)
         for (number = 0; !glint_frame_is_ghost(s, ghost, number);)
             number++;
+    return number;
+}
+
+/* Returns whether it is the first of its ghost in the frame. */
+static bool note_ghost(struct glint_frame *frame, int ghost)
+{
+    const int number = glint_frame_number(frame->setup, ghost);
+
     if (frame->seen[number])
         return false;
     return frame->seen[number] = true;

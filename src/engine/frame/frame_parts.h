@@ -72,6 +72,9 @@ double glint_frame_codes_light(const struct glint_frame *frame,
 bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
                           int number);
 
+/* Returns the number of the ghost that GHOST of SETUP is, or is a part of. */
+int glint_frame_number(const struct glint_setup *setup, int ghost);
+
 /* Returns what the lights of F may take together, over what one may. */
 double glint_frame_share(const struct glint_frame *f);
 

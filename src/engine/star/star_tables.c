@@ -101,9 +101,12 @@ static void set_lines(struct glint_star_tables *t, struct glint_star_line *line,
         set_direction(&line[i], angle, fmod(angle + half, GLINT_PI));
         for (int k = 0; k < GLINT_STAR_PROFILE; k++) {
             filtered(psf, window, angle, reach * k / GLINT_STAR_PROFILE, rgb);
-            for (int c = 0; c < 3; c++)
+            for (int c = 0; c < 3; c++) {
                 line[i].profile[k][c] =
                     (uint16_t)lrint(fmin(rgb[c] / peak, 1) * 65535);
+                if (line[i].profile[k][c] > t->line_most[k])
+                    t->line_most[k] = line[i].profile[k][c];
+            }
         }
     }
     t->first = glint_psf_angle(psf, psf->n_lines - 1) + half >= GLINT_PI
