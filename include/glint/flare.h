@@ -271,6 +271,9 @@ int glint_flare_planned(const struct glint_flare *flare, int i,
 void glint_flare_light(const struct glint_flare *flare,
                        struct glint_real *brightest, struct glint_real *flux);
 
+/* Rays that the last plan looked at. */
+int64_t glint_flare_looked(const struct glint_flare *flare);
+
 /* Turns the grids of all bundles into primitives and sorts these into tiles.
  * Bundles that do not fit are left out whole, the last ones added first. */
 void glint_flare_bin(struct glint_flare *flare,

@@ -10,7 +10,8 @@
  * nothing is allocated. After glint_lens_open() has accepted it nothing can go
  * wrong; but what a frame costs is not bounded by the size of the file: ghosts
  * that fold, in their thousands, take minutes. Where models are not trusted,
- * hold memory by the capacities of glint/flare.h and time from outside.
+ * hold memory by the capacities of glint/flare.h and time from outside, or draw
+ * by glint/engine.h, which bounds both.
  *
  * Variables of a polynomial, each -1 .. 1:
  *   u, v   place in the ghost's box on the vertex plane of the first surface,

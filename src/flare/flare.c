@@ -171,6 +171,8 @@ void glint_flare_begin(struct glint_flare *flare)
     set_size(flare, 0);
     flare->n_bundles = flare->n_vertices = flare->n_drawn = 0;
     flare->plan.frame = NULL;
+    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
+        flare->worker[i].plan->n_rays = 0;
     flare->stats = (struct glint_flare_stats){0};
 }
 
@@ -350,6 +352,15 @@ void glint_flare_light(const struct glint_flare *flare,
 {
     *brightest = flare->brightest;
     *flux = flare->flux;
+}
+
+int64_t glint_flare_looked(const struct glint_flare *flare)
+{
+    int64_t n = 0;
+
+    for (int i = 0; i < glint_workers_count(flare->cfg.workers); i++)
+        n += flare->worker[i].plan->n_rays;
+    return n;
 }
 
 /* Sets the totals of the statistics; they count only bundles that the bins

@@ -197,10 +197,10 @@ static int set_window(const struct glint_plan *plan,
     return any;
 }
 
-enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
-                                     struct glint_bundle_plan *planned,
-                                     struct glint_bundle *bundle,
-                                     struct glint_plan_scratch *scratch)
+static enum glint_outcome plan_bundle(const struct glint_plan *plan,
+                                      struct glint_bundle_plan *planned,
+                                      struct glint_bundle *bundle,
+                                      struct glint_plan_scratch *scratch)
 {
     const struct glint_flare_frame *r = plan->frame;
     const struct glint_light *b = &plan->light[planned->light];
@@ -250,4 +250,16 @@ enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
     glint_plan_sags(planned, s, transfer, bundle->n_cells, plan->round);
     set_flux(bundle, transfer, planned->flux);
     return GLINT_OUTCOME_DRAWN;
+}
+
+enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
+                                     struct glint_bundle_plan *planned,
+                                     struct glint_bundle *bundle,
+                                     struct glint_plan_scratch *scratch)
+{
+    const enum glint_outcome outcome =
+        plan_bundle(plan, planned, bundle, scratch);
+
+    scratch->n_rays += scratch->probe.n_rays;
+    return outcome;
 }

@@ -55,6 +55,7 @@ struct glint_plan_scratch {
     struct glint_transfer transfer;
     struct glint_probe probe;
     struct glint_window_nodes window;
+    int64_t n_rays; /* rays looked at since the plan began */
 };
 
 /* Returns whether LIGHT comes from beyond the largest angle that the model was

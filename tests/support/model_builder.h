@@ -17,7 +17,7 @@
 #include "glint/model.h"
 
 enum {
-    MODEL_ROOM = 1 << 17,
+    MODEL_ROOM = 1 << 20,
     MODEL_KNOTS = 3,
     MODEL_TERMS = 3,
     MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* s^0, s^1 and w */

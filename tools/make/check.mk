@@ -1,7 +1,7 @@
 # Tests, sanitizers, analysis.
 
 # What tests share; fakes answer calls of those alone that want them.
-$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c))
+$(OUT)/libglint-tests.a: $(patsubst %.c,$(OUT)/%.o,$(wildcard tests/support/*.c tests/support/models/*.c))
 
 # Unit tests, each a program: tests/unit/ROOM/test_NAME.c is OUT/tests/unit/test_NAME.
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))

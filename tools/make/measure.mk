@@ -77,6 +77,8 @@ size: $(OUT)/libglint.a $(example_bins)
 trade: all
 	@build/glint sweep -o build/trade $(TRADE)
 	@echo build/trade/index.html
+hostile-table: $(OUT)/hostile_models
+	@$(OUT)/hostile_models | tools/report/write-figures hostile
 memory-table: all
 	@tools/report/memory-table | tools/report/write-figures memory
 budget: all
@@ -90,4 +92,4 @@ budget: all
 .PHONY: video-report demo inputs table bake-table accuracy-table colour-table ray-table power-table \
         power-fit \
         corpus corpus-evaluate corpus-sheet corpus-report corpus-fit lens-sheet \
-        bench bench-insn growth size trade memory-table budget
+        bench bench-insn growth size trade hostile-table memory-table budget

@@ -202,6 +202,9 @@ static enum glint_status set_lights(struct glint_frame *f,
     f->n_lights =
         glint_lights_merge(f->light, within, near_q30(f),
                            larger(room, f->dials.max_lights), &f->n_apart);
+    if (!f->is_held) /* else those that are left may take what all may */
+        f->share =
+            1 + larger(f->n_lights - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
         f->n_lights = 0;
     return GLINT_OK;
@@ -276,6 +279,8 @@ static enum glint_status plan(struct glint_frame *f,
             return status;
     }
     glint_flare_plan(f->flare, rays, f->light, f->n_lights);
+    f->n_plans++;
+    f->n_looked += glint_flare_looked(f->flare);
     return GLINT_OK;
 }
 
@@ -314,9 +319,13 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
     f->rays = rays_of(f, image);
     f->scale = scale;
     f->is_held = f->is_full = false;
+    f->n_plans = f->n_binned = 0;
+    f->n_looked = 0;
     glint_budget_begin(&f->budget);
     times[0] = now(f);
     status = set_lights(f, lamps, n_lamps, scale);
+    if (status == GLINT_OK && f->budget.ms <= 0 && glint_frame_hold_looking(f))
+        status = set_lights(f, lamps, n_lamps, scale);
     while (status == GLINT_OK) {
         status = plan(f, &f->rays);
         if (status != GLINT_OK)
@@ -332,6 +341,7 @@ draw_model(struct glint_frame *f, const struct glint_lamp *lamps, int n_lamps,
         }
         times[1] = times[2] = now(f);
         glint_flare_bin(f->flare, stats);
+        f->n_binned++;
         if (glint_frame_is_served(f, stats))
             break;
         status = glint_frame_regrow(f);
@@ -387,9 +397,10 @@ static enum glint_status model_scale(struct glint_frame *frame,
 {
     struct glint_real brightest, together;
     struct glint_flare_frame rays;
-    enum glint_status status = set_lights(frame, lamps, n_lamps, 1);
+    enum glint_status status;
 
-    frame->can_half = false;
+    frame->is_held = frame->can_half = false;
+    status = set_lights(frame, lamps, n_lamps, 1);
     rays = rays_of(frame, NULL);
     if (status == GLINT_OK)
         status = plan(frame, &rays);
@@ -462,6 +473,9 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
     report->beyond_lights = frame->n_beyond;
     report->apart_lights = larger(frame->n_apart - frame->n_more, 1);
     report->coarsened = frame->is_held;
+    report->plans = frame->n_plans;
+    report->binned = frame->n_binned;
+    report->looked = frame->n_looked;
     report->drawn_lights = larger(frame->n_lights - frame->n_more, 1);
     report->tiles = glint_flare_tiles(frame->flare);
     report->held_samples = glint_flare_held(frame->flare);

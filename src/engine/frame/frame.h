@@ -97,9 +97,14 @@ struct glint_frame {
     bool reserved;              /* memory is what it is */
     size_t most_bytes; /* bound of the block for one light, where it is not
                           reserved; 0: any */
+    double share;      /* what the lights may take, over what one may */
     bool is_full;      /* the block has as many as it may */
     double most_minsn; /* bound of a plan for one light; 0: any */
     bool is_held;      /* the last frame was coarser for it */
+    /* Plans of the last frame, of these that were binned, and rays that all
+     * looked at. */
+    int n_plans, n_binned;
+    long long n_looked;
 
     struct glint_wave wave[GLINT_SET_WAVES];
     struct glint_wave_sets sets;
@@ -135,6 +140,9 @@ struct glint_frame_report {
     size_t peak_bytes;  /* bytes that this frame took of these */
     size_t need_bytes;  /* bytes that would have drawn all of it, exactly */
     bool coarsened;     /* its plan passed the bound of work */
+    int plans, binned;  /* plans until one was within the bounds and had room,
+                           and how many of these were binned */
+    long long looked;   /* rays that the plans looked at */
     double plan_ms, trace_ms, bin_ms, draw_ms;
     /* Prediction and quality with a budget; else 0 and -1. */
     double predicted_ms, quality;

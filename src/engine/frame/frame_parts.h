@@ -75,12 +75,14 @@ bool glint_frame_is_ghost(const struct glint_setup *setup, int ghost,
 /* Returns the number of the ghost that GHOST of SETUP is, or is a part of. */
 int glint_frame_number(const struct glint_setup *setup, int ghost);
 
-/* Returns what the lights of F may take together, over what one may. */
-double glint_frame_share(const struct glint_frame *f);
+/* Makes lights fewer where looking at all bundles of all of them could take
+ * half of what the frame may. Returns whether it did, so that they have to be
+ * merged anew. */
+bool glint_frame_hold_looking(struct glint_frame *f);
 
-/* Turns the dials down where the plan would take more than the frame may:
- * grids first, then wavelengths, then lights. Returns whether it did, so that
- * the frame has to be planned anew; at most a dozen times. */
+/* Turns the dials down where the plan would take more than what is left of what
+ * the frame may: grids first, then wavelengths, then lights. Returns whether it
+ * did, so that the frame has to be planned anew; at most a dozen times. */
 bool glint_frame_hold_work(struct glint_frame *f);
 
 #endif

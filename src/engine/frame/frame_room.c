@@ -15,11 +15,6 @@ bool glint_frame_has_sets(const struct glint_frame *f)
     return f->lens && f->setup->n_sets && f->dials.dispersion_q8 > 0;
 }
 
-double glint_frame_share(const struct glint_frame *f)
-{
-    return 1 + (f->n_lights > 1 ? f->n_lights - 1. : 0) / GLINT_FRAME_PER_LIGHT;
-}
-
 enum glint_status glint_frame_hold_lights(struct glint_frame *f, int n)
 {
     struct glint_light *light;
@@ -112,7 +107,7 @@ static bool fit(struct glint_frame *f, size_t bytes)
 
 enum glint_status glint_frame_regrow(struct glint_frame *f)
 {
-    const size_t most = (size_t)((double)f->most_bytes * glint_frame_share(f));
+    const size_t most = (size_t)((double)f->most_bytes * f->share);
     size_t bytes = glint_flare_bytes(&f->cfg);
 
     if (f->lens && !f->reserved && most && bytes > most) {
@@ -180,22 +175,92 @@ size_t glint_frame_bytes_needed(const struct glint_frame *f,
     return glint_flare_bytes(&needed);
 }
 
+/* Millions of instructions that N rays take a plan. */
+static double looking_minsn(double n)
+{
+    return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n;
+}
+
+static double bound_of(const struct glint_frame *f)
+{
+    return f->most_minsn * f->share;
+}
+
+bool glint_frame_hold_looking(struct glint_frame *f)
+{
+    enum { RAYS = 200 }; /* a coarse probe, a fine one */
+    const int waves = glint_frame_has_sets(f) ? f->setup->set_size[0]
+                                              : f->setup->n_wavelengths;
+    const double light =
+        looking_minsn((double)RAYS * f->setup->n_ghosts * waves);
+    const int n = f->n_lights;
+
+    if (f->most_minsn <= 0)
+        return false;
+    while (f->n_lights > 1 && f->n_lights * light > bound_of(f) / 2)
+        f->n_lights--;
+    if (f->n_lights == n)
+        return false;
+    f->dials.max_lights = f->n_lights;
+    return f->is_held = true;
+}
+
+/* Grids as fine as leave PLAN within MINSN, or the coarsest there may be.
+ * Returns what they take. */
+static double hold_grids(struct glint_frame *f,
+                         const struct glint_cost_plan *plan, double minsn)
+{
+    enum { LEAST_FINENESS = 8, STEP = 8 };
+    struct glint_cost cost = glint_cost_of(plan, &f->dials);
+
+    while (glint_cost_minsn(&cost) > minsn &&
+           f->dials.fineness > LEAST_FINENESS) {
+        f->dials.fineness =
+            larger(f->dials.fineness - (f->dials.fineness + STEP - 1) / STEP,
+                   LEAST_FINENESS);
+        cost = glint_cost_of(plan, &f->dials);
+    }
+    return glint_cost_minsn(&cost);
+}
+
+/* Returns what is left of MINSN, as all grids are as coarse as can be, where
+ * ghosts take three wavelengths. */
+static double hold_waves(struct glint_frame *f, double minsn)
+{
+    enum { WAVES = 3 };
+    const double jobs = (double)f->n_lights * f->setup->n_ghosts;
+    struct glint_planned planned;
+    int n = 0;
+
+    while (glint_flare_planned(f->flare, n, &planned))
+        n++;
+    f->dials.dispersion_q8 = 0;
+    return minsn * fmin(1, WAVES * jobs / fmax(1, n));
+}
+
 bool glint_frame_hold_work(struct glint_frame *f)
 {
-    enum { LEAST_FINENESS = 8, STEP = 4 };
+    enum { MOST_PLANS = 12 };
     const struct glint_cost_plan plan = glint_frame_plan(f);
     const struct glint_cost cost = glint_cost_of(&plan, &f->dials);
+    const double spent = looking_minsn((double)f->n_looked);
+    const double again = spent / f->n_plans;
+    const double left = bound_of(f) - spent;
+    const struct glint_dials before = f->dials;
+    double then;
 
-    if (f->most_minsn <= 0 ||
-        glint_cost_minsn(&cost) <= f->most_minsn * glint_frame_share(f))
+    if (f->most_minsn <= 0 || f->n_plans >= MOST_PLANS ||
+        glint_cost_minsn(&cost) <= left)
         return false;
-    if (f->dials.fineness > LEAST_FINENESS)
-        f->dials.fineness = larger(f->dials.fineness / STEP, LEAST_FINENESS);
-    else if (glint_frame_has_sets(f))
-        f->dials.dispersion_q8 = 0;
-    else if (f->n_lights > 1)
-        f->dials.max_lights = larger(f->n_lights / STEP, 1);
-    else
+    then = hold_grids(f, &plan, left - again);
+    if (then > left - again && glint_frame_has_sets(f))
+        then = hold_waves(f, then);
+    if (then > left - again && f->n_lights > 1)
+        f->dials.max_lights = larger(
+            1, (int)(f->n_lights * fmin(0.75, fmax(0, left / (then + again)))));
+    if (f->dials.fineness == before.fineness &&
+        f->dials.dispersion_q8 == before.dispersion_q8 &&
+        f->dials.max_lights == before.max_lights)
         return false;
     return f->is_held = true;
 }

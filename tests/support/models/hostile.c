@@ -1,0 +1,560 @@
+/* SPDX-License-Identifier: MIT */
+#include "support/models/hostile.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "flare/by_edges.h"
+#include "glint/kernels.h"
+#include "support/rng.h"
+
+enum { POWERS = 10, SURFACES = 64, PAIRS = SURFACES * (SURFACES - 1) / 2 };
+
+const char *const hostile_name[HOSTILE_FAMILIES] = {
+    [HOSTILE_WHOLE] = "2016 whole-frame ghosts",
+    [HOSTILE_FOLDS] = "the same, folded and cut",
+    [HOSTILE_LOST] = "lost rays",
+    [HOSTILE_SYSTEMS] = "thousands of systems",
+    [HOSTILE_NUMBERS] = "largest coefficients",
+    [HOSTILE_POINTS] = "boxes of no size",
+    [HOSTILE_HUGE] = "boxes of the largest size",
+    [HOSTILE_WINDOWS] = "no window of the stop",
+    [HOSTILE_HEADERS] = "numbers of the header",
+    [HOSTILE_COLOURS] = "far apart by wavelength"};
+
+/* ------------------------------------------------------------- polynomials */
+
+/* A polynomial: of u alone or of v alone, and of w to the first. */
+struct polynomial {
+    double u[POWERS], v[POWERS], w;
+};
+
+/* N of those whose values swing between -1 and 1, SIZE of it [Chebyshev]. */
+static void add_swings(double *power, int n, double size)
+{
+    double last[POWERS] = {1}, here[POWERS] = {0, 1};
+
+    for (int k = 1; k < n; k++)
+        for (int i = POWERS - 1; i >= 0; i--) {
+            const double next = 2 * (i ? here[i - 1] : 0) - last[i];
+
+            last[i] = here[i];
+            here[i] = next;
+        }
+    for (int i = 0; i < POWERS; i++)
+        power[i] += size * (n ? here[i] : i == 0);
+}
+
+/* Writes P as output KIND; steps are as fine as its sum allows. */
+static struct glint_model_output put_output(struct model_image *m, int kind,
+                                            const struct polynomial *p,
+                                            int exponent)
+{
+    uint16_t power[2 * POWERS + 1];
+    int32_t coef[2 * POWERS + 1];
+    struct glint_model_output o = {.kind = (uint8_t)kind,
+                                   .exponent = (int16_t)exponent,
+                                   .bound = (1 << 30) - 1};
+
+    for (int i = 0; i < 2 * POWERS; i++) {
+        const double x = i < POWERS ? p->u[i] : p->v[i - POWERS];
+
+        if (x == 0 || i == POWERS)
+            continue;
+        power[o.n_terms] = (uint16_t)(i < POWERS ? i : (i - POWERS) * 16);
+        coef[o.n_terms++] = (int32_t)lrint(ldexp(x, -exponent));
+    }
+    if (p->w != 0 || o.n_terms == 0) {
+        power[o.n_terms] = 1 << 12;
+        coef[o.n_terms++] = (int32_t)lrint(ldexp(p->w, -exponent));
+    }
+    o.term_at = model_put(m, power, o.n_terms * sizeof *power);
+    o.coef_at = model_put(m, coef, o.n_terms * sizeof *coef);
+    return o;
+}
+
+static int exponent_of(const struct polynomial *p)
+{
+    double sum = fabs(p->w);
+    int exponent;
+
+    for (int i = 0; i < POWERS; i++)
+        sum += fabs(p->u[i]) + fabs(p->v[i]);
+    (void)frexp(sum, &exponent);
+    return sum > 0 ? exponent - 29 : 0;
+}
+
+/* Writes polynomials of the first N kinds. Returns where the outputs are. */
+static uint32_t put_outputs(struct model_image *m, const struct polynomial *p,
+                            int n)
+{
+    struct glint_model_output o[GLINT_OUT_KINDS];
+
+    for (int k = 0; k < n; k++) {
+        /* x and y have one exponent */
+        const int pair = k < GLINT_OUT_ENERGY ? k ^ 1 : k;
+        const int a = exponent_of(&p[k]), b = exponent_of(&p[pair]);
+
+        o[k] = put_output(m, k, &p[k], a > b ? a : b);
+    }
+    return model_put(m, o, (size_t)n * sizeof *o);
+}
+
+/* ------------------------------------------------------------------- ghosts */
+
+/* A ghost as large as the frame, seen whole. */
+static void set_whole(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
+{
+    memset(p, 0, GLINT_OUT_KINDS * sizeof *p);
+    p[GLINT_OUT_SENSOR_X].u[1] = 18 + rng_unit(seed);
+    p[GLINT_OUT_SENSOR_X].u[3] = rng_unit(seed);
+    p[GLINT_OUT_SENSOR_X].v[2] = rng_unit(seed);
+    p[GLINT_OUT_SENSOR_Y].v[1] = 12 + rng_unit(seed);
+    p[GLINT_OUT_SENSOR_Y].v[3] = rng_unit(seed);
+    p[GLINT_OUT_STOP_X].u[1] = 1;
+    p[GLINT_OUT_STOP_Y].v[1] = 1;
+    p[GLINT_OUT_ENERGY].u[0] = 0.5;
+}
+
+/* Folded up to nine times each way. */
+static void set_folds(struct polynomial p[GLINT_OUT_KINDS], uint32_t *seed)
+{
+    set_whole(p, seed);
+    memset(p, 0, 2 * sizeof *p);
+    add_swings(p[GLINT_OUT_SENSOR_X].u, 9 - rng_below(seed, 3), 18);
+    add_swings(p[GLINT_OUT_SENSOR_X].v, 2 * rng_below(seed, 5), 3);
+    add_swings(p[GLINT_OUT_SENSOR_Y].v, 9 - 2 * rng_below(seed, 2), 12);
+    for (int k = GLINT_OUT_RADIUS; k < GLINT_OUT_KINDS; k++) {
+        p[k].u[0] = 0.8;
+        add_swings(p[k].u, 1 + rng_below(seed, 9), 0.3);
+        add_swings(p[k].v, 2 * rng_below(seed, 5), 0.3);
+    }
+}
+
+static struct glint_model_system system_of(const struct model_image *m,
+                                           uint32_t outputs, int n_outputs,
+                                           uint32_t box)
+{
+    const struct glint_model_header *h = model_header(m);
+
+    return (struct glint_model_system){.sine_hi_q30 = MODEL_ONE_Q30 / 2,
+                                       .wave_lo_q24 = h->wave_lo_q24,
+                                       .wave_hi_q24 = h->wave_hi_q24,
+                                       .box_at = box,
+                                       .box_exponent = -20,
+                                       .output_at = outputs,
+                                       .n_outputs = (uint8_t)n_outputs,
+                                       .box_terms = 1};
+}
+
+/* As many ghosts as a lens can have, of VARIANTS shapes. */
+static void put_pairs(struct model_image *m, enum hostile_family family,
+                      uint32_t *seed)
+{
+    enum { VARIANTS = 300 };
+    static struct glint_model_ghost ghost[PAIRS];
+    static struct glint_model_system of[PAIRS];
+    const int32_t side[] = {0, 4 << 20, 4 << 20};
+    const int folds = family == HOSTILE_FOLDS;
+    const uint32_t box = model_put(m, side, sizeof side);
+    uint32_t output[VARIANTS], n = 0;
+
+    for (int k = 0; k < VARIANTS; k++) {
+        struct polynomial p[GLINT_OUT_KINDS];
+
+        if (folds)
+            set_folds(p, seed);
+        else
+            set_whole(p, seed);
+        if (family == HOSTILE_COLOURS)
+            p[GLINT_OUT_SENSOR_X].w = 30;
+        output[k] =
+            put_outputs(m, p, folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1);
+    }
+    for (uint32_t j = 1; j < SURFACES; j++)
+        for (uint32_t i = 0; i < j; i++, n++) {
+            ghost[n] = (struct glint_model_ghost){i, j, n, 1};
+            of[n] =
+                system_of(m, output[n % VARIANTS],
+                          folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1, box);
+            of[n].annulus = folds && n % 5 == 0 ? GLINT_MAX_ANNULUS : 0;
+        }
+    model_end(m, ghost, PAIRS, of, PAIRS);
+}
+
+/* Rays without energy: all, all that land nowhere, or stripes. */
+static void put_lost(struct model_image *m, int number, uint32_t *seed)
+{
+    enum { N = 300 };
+    static struct glint_model_ghost ghost[N];
+    static struct glint_model_system of[N];
+    const int32_t side[] = {0, 4 << 20, 4 << 20};
+    const uint32_t box = model_put(m, side, sizeof side);
+    struct polynomial p[GLINT_OUT_KINDS];
+    uint32_t output;
+
+    set_whole(p, seed);
+    if (number % 3 == 0)
+        p[GLINT_OUT_ENERGY].u[0] = -0.5;
+    if (number % 3 == 1)
+        add_swings(p[GLINT_OUT_ENERGY].u, 9, 0.6);
+    if (number % 3 == 2)
+        add_swings(p[number % 2].v, 8 + number % 2, 0x1p30);
+    output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
+    for (uint32_t k = 0; k < N; k++) {
+        ghost[k] = (struct glint_model_ghost){k % 63, 63, k, 1};
+        of[k] = system_of(m, output, GLINT_OUT_ENERGY + 1, box);
+    }
+    model_end(m, ghost, N, of, N);
+}
+
+/* Bands and angles in their thousands; shared, so that the file is small. */
+static void put_systems(struct model_image *m, int number, uint32_t *seed)
+{
+    enum { ANGLES = 100, BANDS = 100, N = ANGLES * BANDS };
+    static struct glint_model_system of[N];
+    const struct glint_model_header h = *model_header(m);
+    const struct glint_model_ghost ghost[] = {
+        {0, 1, 0, number < 5 ? N : N / 2},
+        {0, 2, number < 5 ? N : N / 2, number < 5 ? 0 : N / 2}};
+    const int32_t side[] = {0, 4 << 20, 4 << 20};
+    const uint32_t box = model_put(m, side, sizeof side);
+    const int32_t wide = (h.wave_hi_q24 - h.wave_lo_q24) / BANDS;
+    const int32_t turn = MODEL_ONE_Q30 / 2 / ANGLES;
+    struct polynomial p[GLINT_OUT_KINDS];
+    uint32_t output;
+
+    set_whole(p, seed);
+    output = put_outputs(m, p, GLINT_OUT_ENERGY + 1);
+    for (int k = 0; k < N; k++) {
+        of[k] = system_of(m, output, GLINT_OUT_ENERGY + 1, box);
+        of[k].sine_lo_q30 = turn * (k / BANDS);
+        of[k].sine_hi_q30 = of[k].sine_lo_q30 + turn;
+        of[k].wave_lo_q24 = h.wave_lo_q24 + wide * (k % BANDS);
+        of[k].wave_hi_q24 = of[k].wave_lo_q24 + wide;
+    }
+    model_end(m, ghost, 2, of, N);
+}
+
+/* The sparse basis: one system of thousands of knots. */
+static void put_knots(struct model_image *m, uint32_t *seed)
+{
+    enum { KNOTS = 8000, KINDS = GLINT_OUT_RADIUS + 1 };
+    static int32_t knot[KNOTS], box[KNOTS][3], coef[KNOTS][2];
+    static const uint16_t power[2] = {0x0001, 0x0100};
+    const struct glint_model_ghost ghost = {0, 1, 0, 1};
+    struct glint_model_system s = system_of(m, 0, KINDS, 0);
+    struct glint_model_output o[KINDS];
+
+    model_header(m)->basis = GLINT_BASIS_SPARSE;
+    for (int k = 0; k < KNOTS; k++) {
+        knot[k] = k * (MODEL_ONE_Q30 / 2 / (KNOTS - 1)) + (k ? KNOTS : 0);
+        box[k][0] = 0;
+        box[k][1] = box[k][2] = 1 + rng_below(seed, 1 << 24) * 50;
+        coef[k][0] = (1 << 29) - rng_below(seed, 1 << 20);
+        coef[k][1] = rng_below(seed, 1 << 24) * 20;
+    }
+    for (int k = 0; k < KINDS; k++)
+        o[k] = (struct glint_model_output){
+            .kind = (uint8_t)k,
+            .n_terms = 2,
+            .exponent = -25,
+            .term_at = model_put(m, power, sizeof power),
+            .coef_at = model_put(m, coef, sizeof coef)};
+    s.box_terms = 0;
+    s.box_exponent = -27;
+    s.n_knots = KNOTS;
+    s.knot_at = model_put(m, knot, sizeof knot);
+    s.box_at = model_put(m, box, sizeof box);
+    s.output_at = model_put(m, o, sizeof o);
+    model_end(m, &ghost, 1, &s, 1);
+}
+
+/* ------------------------------------------------------------------ editing */
+
+/* Where OFFSET of M lies; what is baked is edited where it is. */
+static void *at(const struct model_image *m, uint32_t offset)
+{
+    return m->data + offset;
+}
+
+/* Coefficients of output O anew: their sum is just below 2^30. */
+static void edit_coefficients(const struct model_image *m,
+                              struct glint_model_output *o, uint32_t *seed)
+{
+    const int n_wide = o->n_terms - o->n_narrow;
+    int32_t *wide = at(m, o->coef_at);
+    int16_t *narrow = (int16_t *)(void *)(wide + n_wide);
+    int64_t left = (INT64_C(1) << 30) - 1;
+
+    for (int k = 0; k < o->n_narrow; k++) {
+        narrow[k] = (int16_t)(rng_below(seed, 1 << 9) - (1 << 8));
+        left -= (int64_t)abs(narrow[k]) << o->narrow_shift;
+    }
+    for (int k = 0; k < n_wide && left > 0; k++) {
+        const int64_t part =
+            k == n_wide - 1 ? left : left * rng_below(seed, 1 << 20) >> 20;
+
+        wide[k] = (int32_t)(rng_below(seed, 2) ? part : -part);
+        left -= part;
+    }
+}
+
+static void edit_numbers(const struct model_image *m,
+                         struct glint_model_system *s, uint32_t *seed)
+{
+    struct glint_model_output *o = at(m, s->output_at);
+
+    for (int k = 0; k < s->n_outputs; k++) {
+        const int kind = o[k].kind;
+
+        if (rng_below(seed, 3))
+            edit_coefficients(m, &o[k], seed);
+        if (rng_below(seed, 2) && kind > GLINT_OUT_STOP_Y)
+            o[k].exponent = (int16_t)(rng_below(seed, 121) - 80);
+        if (rng_below(seed, 4) == 0)
+            o[k].exponent = (int16_t)(o[k].exponent + rng_below(seed, 9) - 4);
+        if (kind == GLINT_OUT_SENSOR_Y || kind == GLINT_OUT_STOP_Y)
+            o[k].exponent = o[k - 1].exponent;
+        if (kind == GLINT_OUT_ENERGY && !s->n_knots) {
+            o[k].head = (uint8_t)rng_below(seed, 29);
+            o[k].roots = (uint8_t)rng_below(seed, 3);
+        }
+    }
+}
+
+static void edit_box(const struct model_image *m, struct glint_model_system *s,
+                     int huge, uint32_t *seed)
+{
+    int n = 0;
+    int32_t *box = at(m, s->box_at);
+
+    for (int bit = 0; bit < GLINT_BOX_TERMS; bit++)
+        n += s->box_terms >> bit & 1;
+    for (int side = 0; side < 3; side++)
+        for (int k = 0; k < n; k++)
+            box[side * n + k] =
+                k == 0 && huge ? (1 << 30) - 1 - (side == 0) * (1 << 29) : 0;
+    s->box_exponent =
+        huge && rng_below(seed, 2) ? 40 - rng_below(seed, 40) : s->box_exponent;
+}
+
+/* A stop that all rays miss, all meet in one place, or that they cross in the
+ * breadth of a hair. */
+static void edit_stop(const struct model_image *m, struct glint_model_system *s,
+                      int number)
+{
+    struct glint_model_output *o = at(m, s->output_at);
+
+    for (int k = GLINT_OUT_STOP_X; k <= GLINT_OUT_STOP_Y; k++) {
+        int32_t *wide = at(m, o[k].coef_at);
+
+        if (number % 3 == 2) {
+            o[k].exponent = (int16_t)(-20 + 2 * number);
+            continue;
+        }
+        memset(wide, 0,
+               4 * (size_t)(o[k].n_terms - o[k].n_narrow) +
+                   2 * (size_t)o[k].n_narrow);
+        if (number % 3 == 1 && o[k].n_terms > o[k].n_narrow)
+            wide[0] = number << 25;
+    }
+}
+
+static void edit_header(struct glint_model_header *h, uint32_t *seed)
+{
+    struct glint_real *const real[] = {
+        &h->focal_mm,       &h->back_focal_mm,  &h->entrance_radius_mm,
+        &h->stop_radius_mm, &h->f_number,       &h->film_width_mm,
+        &h->film_height_mm, &h->field_mm,       &h->front_mm,
+        &h->direct_flux[0], &h->direct_flux[1], &h->stopped_flux[0][0]};
+
+    for (size_t k = 0; k < sizeof real / sizeof *real; k++)
+        if (rng_below(seed, 3) == 0)
+            real[k]->exponent = rng_below(seed, 401) - 200;
+    if (rng_below(seed, 3) == 0)
+        h->wave_lo_q24 = 1;
+    if (rng_below(seed, 3) == 0)
+        h->wave_hi_q24 = INT32_MAX;
+    if (rng_below(seed, 3) == 0)
+        h->sine_hi_q30 = rng_below(seed, 2) ? 1 : 1 << 30;
+    if (rng_below(seed, 3) == 0)
+        h->n_parts = h->n_ghosts;
+}
+
+static void edit(struct model_image *m, const struct glint_lens *baked,
+                 enum hostile_family family, int number, uint32_t *seed)
+{
+    struct glint_model_header *h;
+    struct glint_model_system *s;
+
+    m->bytes = baked->header->bytes;
+    m->data = malloc(m->bytes);
+    if (!m->data)
+        abort();
+    memcpy(m->data, baked->header, m->bytes);
+    h = model_header(m);
+    s = at(m, h->system_at);
+    for (uint32_t k = 0; k < h->n_systems; k++)
+        if (family == HOSTILE_NUMBERS)
+            edit_numbers(m, &s[k], seed);
+        else if (family == HOSTILE_WINDOWS)
+            edit_stop(m, &s[k], number);
+        else if (family != HOSTILE_HEADERS)
+            edit_box(m, &s[k], family == HOSTILE_HUGE, seed);
+    if (family == HOSTILE_HEADERS)
+        edit_header(h, seed);
+    model_seal(m);
+}
+
+/* ------------------------------------------------------------------ drawing */
+
+/* Rows of pixels that the edges of FLARE cross. */
+static double rows_of(const struct glint_flare *flare)
+{
+    double rows = 0;
+
+    for (int i = 0; i < flare->n_drawn; i++)
+        for (int k = 0; k < flare->slot[i].n; k++) {
+            const struct glint_edge *e =
+                &glint_by_edges_of(flare)->edge[flare->slot[i].first + k];
+            const int first = e->y_q8 > 0 ? e->y_q8 >> 8 : 0;
+            const int end = (e->end_y_q8 + 255) >> 8;
+
+            rows += (end < flare->height ? end : flare->height) - first;
+        }
+    return rows;
+}
+
+/* All plans, all that was binned, and what was drawn, by what each takes. */
+static double work_of(const struct glint_frame *f,
+                      const struct glint_frame_report *r)
+{
+    double count[GLINT_COST_KINDS] = {
+        [GLINT_COST_LOOKED_AT] = (double)r->looked,
+        [GLINT_COST_BUNDLES] = (double)f->flare->n_bundles * r->binned,
+        [GLINT_COST_EDGES] = (double)r->stats.need_primitives * r->binned,
+        [GLINT_COST_ROWS] = rows_of(f->flare),
+        [GLINT_COST_LIT] = (double)r->tiles * (1 << 2 * f->cfg.tile_log2)};
+    double work = 0;
+
+    for (int i = 0; i < f->flare->n_bundles; i++) {
+        const double n = f->flare->bundle[i].n_cells + 1.;
+
+        count[GLINT_COST_VERTICES] += n * n * r->binned;
+    }
+    for (int k = 0; k < GLINT_COST_KINDS; k++)
+        work += 1e-3 * glint_cost_weight[k].counted * count[k];
+    return work;
+}
+
+static bool make_setup(const struct hostile_scene *scene,
+                       const struct glint_lens *lens, struct glint_setup *setup)
+{
+    static const double nm[3] = {650, 532, 450};
+    const double widest = glint_real_value(lens->header->f_number);
+    struct glint_error error;
+
+    if (glint_setup_from_model(setup, lens, 8, 0, nm, 3, &error) != GLINT_OK)
+        return false;
+    if (scene->opening < 1 &&
+        glint_setup_stop_down(setup, lens, widest / scene->opening, &error) !=
+            GLINT_OK)
+        return false;
+    glint_setup_spread(setup, lens);
+    return true;
+}
+
+static bool draw(const struct hostile_scene *scene, struct glint_frame *frame,
+                 struct hostile_result *result)
+{
+    enum { W = HOSTILE_WIDTH, H = HOSTILE_HEIGHT };
+    struct glint_image image = {.format = scene->linear ? GLINT_LINEAR_Q20
+                                                        : GLINT_RGB24,
+                                .width = W,
+                                .height = H,
+                                .range = GLINT_RANGE_FULL};
+    void *pixels = calloc((size_t)W * H, 12);
+    struct glint_frame_report report;
+    bool drawn;
+
+    glint_image_place(&image, pixels);
+    drawn = pixels && glint_frame_draw(frame, scene->lamp, scene->n_lamps, 1,
+                                       &image, &report) == GLINT_OK;
+    free(pixels);
+    if (!drawn)
+        return false;
+    *result = (struct hostile_result){
+        .outcome = report.stats.dropped_bundles ? HOSTILE_LESS
+                   : report.coarsened           ? HOSTILE_COARSER
+                   : report.stats.primitives    ? HOSTILE_DRAWN
+                                                : HOSTILE_EMPTY,
+        .minsn = work_of(frame, &report),
+        .most_minsn = frame->most_minsn * frame->share,
+        .bytes = (double)report.arena_bytes,
+        .most_bytes = (double)frame->most_bytes * frame->share,
+        .plans = report.plans};
+    return true;
+}
+
+bool hostile_draw(const struct hostile_scene *scene,
+                  struct hostile_result *result)
+{
+    static struct glint_setup setup;
+    struct glint_lens lens;
+    struct glint_frame frame;
+    bool drawn;
+
+    *result = (struct hostile_result){.outcome = HOSTILE_REFUSED,
+                                      .reason = "its setup"};
+    if (glint_lens_open(&lens, scene->model.data, scene->model.bytes,
+                        &result->reason) != GLINT_OK ||
+        !make_setup(scene, &lens, &setup))
+        return true;
+    glint_frame_init(
+        &frame, &setup,
+        glint_view_fit(HOSTILE_WIDTH, HOSTILE_HEIGHT,
+                       glint_real_value(lens.header->film_width_mm),
+                       glint_real_value(lens.header->film_height_mm)),
+        NULL);
+    frame.lens = &lens;
+    frame.cfg.sets = glint_sets_here();
+    drawn = draw(scene, &frame, result);
+    glint_frame_finish(&frame);
+    return drawn;
+}
+
+/* -------------------------------------------------------------------- scene */
+
+void hostile_make(struct hostile_scene *scene, enum hostile_family family,
+                  int number, const struct glint_lens *baked)
+{
+    struct model_image *m = &scene->model;
+    uint32_t seed = 1 + 1000 * (uint32_t)family + (uint32_t)number;
+
+    *scene = (struct hostile_scene){
+        .opening = family == HOSTILE_WINDOWS ? exp2(-number) : 1,
+        .n_lamps = number % 2 ? HOSTILE_LAMPS : 1,
+        .linear = number % 5 == 4};
+    for (int i = 0; i < scene->n_lamps; i++) {
+        scene->lamp[i] = (struct glint_lamp){.power = exp2(8 + number * 4),
+                                             .rgb = {1, 1, 1}};
+        scene->lamp[i].theta_deg = 1 + 25 * rng_unit(&seed);
+        scene->lamp[i].phi_deg = 360 * rng_unit(&seed);
+    }
+    if (family >= HOSTILE_NUMBERS && family <= HOSTILE_HEADERS) {
+        edit(m, baked, family, number, &seed);
+        return;
+    }
+    model_begin(m, GLINT_BASIS_AUTO, "hostile");
+    model_header(m)->n_surfaces = SURFACES;
+    if (family == HOSTILE_LOST)
+        put_lost(m, number, &seed);
+    else if (family == HOSTILE_SYSTEMS && number % 3 == 2)
+        put_knots(m, &seed);
+    else if (family == HOSTILE_SYSTEMS)
+        put_systems(m, number, &seed);
+    else
+        put_pairs(m, family, &seed);
+}

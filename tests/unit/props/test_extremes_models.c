@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Hostile models: a frame of each of a hundred (tests/support/models/hostile.h)
+ * is drawn, or the model refused, and takes no more work and memory than frames
+ * may. Work is counted, not timed.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "support/extreme.h"
+#include "support/models/hostile.h"
+#include "support/stage.h"
+
+static struct stage stage;
+
+/* Those that take seconds have thousands of ghosts. */
+static bool is_heavy(int family)
+{
+    return family == HOSTILE_WHOLE || family == HOSTILE_FOLDS ||
+           family == HOSTILE_COLOURS;
+}
+
+static bool is_drawn(int family, int number)
+{
+    return extreme_long() || number == 8 || (number == 3 && !is_heavy(family));
+}
+
+/* What is drawn is twice as much as a plan tells where memory has to grow, and
+ * plans are off by some. */
+#define MOST_WORK 1.5
+
+static void test_hostile_models(void **state)
+{
+    double work = 0, memory = 0;
+    int n_of[HOSTILE_OUTCOMES] = {0}, n_failed = 0;
+
+    (void)state;
+    assert_true(stage_open(&stage, "heliar-tronnier", 96, 64));
+    for (int family = 0; family < HOSTILE_FAMILIES; family++)
+        for (int number = 0; number < HOSTILE_EACH; number++) {
+            struct hostile_scene scene;
+            struct hostile_result r;
+
+            if (!is_drawn(family, number))
+                continue;
+            hostile_make(&scene, (enum hostile_family)family, number,
+                         &stage.file.lens);
+            n_failed += !hostile_draw(&scene, &r);
+            free(scene.model.data);
+            n_of[r.outcome]++;
+            if (r.outcome == HOSTILE_REFUSED)
+                continue;
+            work = fmax(work, r.minsn / r.most_minsn);
+            memory = fmax(memory, r.bytes / r.most_bytes);
+        }
+    stage_close(&stage);
+    /* Most are no damaged files: they reach what draws. */
+    assert_true(n_of[HOSTILE_COARSER] >= 2);
+    assert_true(n_of[HOSTILE_DRAWN] >= 5);
+    assert_true(extreme_at_most("models: hostile ones, frames that failed",
+                                n_failed, 0, "frames"));
+    assert_true(extreme_at_most("models: hostile ones, work", work, MOST_WORK,
+                                "of the bound"));
+    assert_true(extreme_at_most("models: hostile ones, memory", memory, 1,
+                                "of the bound"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_hostile_models)};
+
+    return cmocka_run_group_tests_name("extremes_models", tests, NULL, NULL);
+}
