@@ -36,7 +36,7 @@ struct model_polynomial {
     uint8_t kind, n_terms;
     int16_t exponent;
     uint16_t power[MODEL_TERMS];
-    int32_t coef[MODEL_KNOTS][MODEL_TERMS]; /* without knots: coef[0] */
+    int32_t coef[MODEL_KNOTS][MODEL_TERMS]; /* coef[0] without knots */
 };
 
 /* Appends BYTES bytes, padded to whole words; returns where they are. */

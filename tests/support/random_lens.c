@@ -230,7 +230,8 @@ static bool try_one(uint64_t *r, struct glint_prescription *l, int number,
                     char *text)
 {
     struct glint_error error;
-    /* Most lenses get few surfaces, as ghosts grow with the square of these. */
+    /* Most lenses get few surfaces: ghosts grow with the square of their
+     * number. */
     const double u = stage_uniform(r, 0, 1);
     const int n = (int)floor(2 * pow(32.5, u * u));
 

@@ -216,7 +216,7 @@ static void test_bounds(void **state)
     assert_memory_equal(got, want, BYTES);
     glint_frame_finish(&frame);
     make(&frame);
-    frame.most_bytes = full.need_bytes * 3 / 4; /* times the share, 1.25 */
+    frame.most_bytes = full.need_bytes * 3 / 4; /* the arena is 1.25 of it */
     draw(&frame, N_LAMPS, got, &held);
     assert_true(held.arena_bytes <= frame.most_bytes * 5 / 4);
     assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);

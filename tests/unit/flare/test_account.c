@@ -232,7 +232,8 @@ static void test_blocked(void **state)
 
     (void)state;
     open_fixture(&f, 2);
-    *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* 1.1 blocks all */
+    *coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001; /* above 1: none
+                                                             * pass */
     *coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
     assert_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
     close_fixture(&f);
@@ -256,8 +257,8 @@ static void test_outside(void **state)
     close_fixture(&f);
 }
 
-/* Bundles must be faint below FAINTEST: of one light, which counts by itself,
- * and of several, which are counted together. */
+/* Bundles fainter than FAINTEST must be counted as faint: those of one light,
+ * which counts by itself, and those of several, which are counted together. */
 static void test_faint(void **state)
 {
     struct fixture f;

@@ -260,7 +260,7 @@ struct quad {
 
 static struct glint_flare_stats draw_quad(const struct quad *q)
 {
-    static const int corner[4] = {0, 1, 3, 2}; /* order of the grid */
+    static const int corner[4] = {0, 1, 3, 2}; /* corners by rows */
     struct glint_flare_config c = base_config();
     const struct glint_image image = linear_image(pixels);
     const struct glint_bundle b = {.n_cells = 1,

@@ -441,7 +441,7 @@ static void test_few_seeds_are_no_light(void **state)
 
     (void)state;
     canvas_fill_grey(&image, 10, 10, 42, 42, 240); /* 1024 pixels */
-    canvas_fill_grey(&image, 10, 10, 42, 14, 255); /* 128 of them */
+    canvas_fill_grey(&image, 10, 10, 42, 14, 255); /* 128 of these pixels */
     canvas_set_grey(&image, 41, 13, 240);
     assert_int_equal(finder_find(&cfg, &image), 0);
     canvas_set_grey(&image, 41, 13, 255);

@@ -482,7 +482,7 @@ static void test_rays(void **state)
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 268435456);   /* 0.5 */
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 201326592);   /* 0.375 */
-    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456); /* 1 */
+    assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456); /* 1: at the rim */
     out = ray(&t, -ONE, ONE / 2);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 mm */

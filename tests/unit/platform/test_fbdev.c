@@ -121,8 +121,8 @@ static void must_put(struct glint_fbdev *fb, const struct glint_image *image)
         fail_msg("%s", error.text);
 }
 
-/* Checks six rows of 40 bytes from FIRST on: CODE in the 32 bytes that are
- * pixels, and what was there before in the others. */
+/* Checks six rows of 40 bytes from FIRST on: CODE in the 32 bytes of pixels (0
+ * in their fourth), and untouched bytes behind these. */
 static void expect_screen(size_t first, int code)
 {
     const uint8_t *const mem = memory() + first;
@@ -520,7 +520,7 @@ static void end_child(int how)
 
     for (int i = 1; i < SIGRTMIN; i++)
         signal(i, SIG_DFL);
-    must_open(&fb, NULL); /* lists in another order than opening */
+    must_open(&fb, NULL); /* so that lists are in another order */
     fb.sink.close(&fb.sink);
     must_open(&fb, &options);
     must_put(&fb, grey(8, 6, 1));

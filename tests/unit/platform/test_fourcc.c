@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Names of formats and colours, as V4L2 has them.
+ * FOURCCs and colours of V4L2, to formats of glint and back.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -346,7 +346,7 @@ static void test_no_huffman_tables(void **state)
     expect_planes(&image, &y422);
     image = decode(d, &other);
     expect_planes(&image, &own);
-    image = decode(d, &b); /* not by the other's tables */
+    image = decode(d, &b); /* tables of OTHER are forgotten */
     expect_planes(&image, &y422);
     free(other.data);
     free(b.data);

@@ -466,7 +466,7 @@ static void test_formats(void **state)
         check_format(format, 37, 5, 11, 37);
         check_format(format, 37, 5, -3, 37);
         check_format(format, 66, 3, 0, 63); /* cut, from an odd pixel */
-        check_format(format, 33, 3, 0, 70); /* centred */
+        check_format(format, 33, 3, 0, 70); /* centred on a wider panel */
     }
 }
 

@@ -271,8 +271,8 @@ static void test_windows(void **state)
     assert_true(mem[0] <= 1 && mem[3] >= 4.5F);
 }
 
-/* Straight alpha in 8 bits must become premultiplied floats and come back, and
- * opaque pixels must be over black. */
+/* Straight alpha in 8 bits must become premultiplied floats and come back;
+ * without alpha, pixels must be as over black. */
 static void test_convert(void **state)
 {
     uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];

@@ -169,9 +169,9 @@ static void test_longest(void **state)
 
 /* ----------------------------------------------------------------- strides */
 
-/* Returns how many rows or bytes are wrong where rows are PAD bytes apart, and
- * upside down for DOWN -1: samples must be the same, and no byte beside them
- * may change. */
+/* Returns how many rows or bytes are wrong where rows are PAD bytes farther
+ * apart than they need be, and upside down for DOWN -1: samples must be the
+ * same, and no byte beside them may change. */
 static int strided(enum glint_pixel_format format, int pad, int down)
 {
     enum { W = 157, H = 83, ROOM = 1 << 19 };
@@ -210,7 +210,7 @@ static int strided(enum glint_pixel_format format, int pad, int down)
 
             n += memcmp(row, plain.plane[p] + y * plain.stride_bytes[p],
                         bytes) != 0;
-            memset(row, 90, bytes); /* All others must still be 90. */
+            memset(row, 90, bytes); /* so that all bytes must be 90 again */
         }
     for (int i = 0; i < ROOM; i++)
         n += got[i] != 90;

@@ -65,8 +65,7 @@ static bool report(const char *what, struct worst worst)
     return extreme_at_most(name, worst.flux, MOST_FLUX, "") && ok;
 }
 
-/* Two cemented surfaces and a free one, with the stop behind them: three
- * ghosts. */
+/* A cemented doublet with the stop behind it: three surfaces, three ghosts. */
 static const char doublet[] = "name doublet\nf-number 5.6\nfilm 36 24\n"
                               "surface 61.47 6 13 1.5168 64.17\n"
                               "surface -44.64 2.5 13 1.6727 32.21\n"

@@ -25,8 +25,7 @@ enum { W = 216, H = 144, BLOCKS = W / 8 * (H / 8) };
 static struct stage stage;
 static float drawn[3 * W * H], exact[3 * W * H], native[3 * W * H];
 
-/* Two cemented surfaces and a free one, with the stop behind them: three
- * ghosts. */
+/* A cemented doublet with the stop behind it: three surfaces, three ghosts. */
 static const char doublet[] = "name doublet\nf-number 5.1\nfilm 36 24\n"
                               "surface 61.47 6 13 1.5168 64.17\n"
                               "surface -44.64 2.5 13 1.6727 32.21\n"

@@ -424,7 +424,7 @@ int main(void)
         cmocka_unit_test(test_comes_back),
         cmocka_unit_test(test_other_sizes),
         cmocka_unit_test(test_every_failure),
-        /* last, as a stop lasts */
+        /* This must come last: the stop remains. */
         cmocka_unit_test(test_stops),
     };
 

@@ -170,7 +170,7 @@ static void test_ladder(void **state)
     for (int i = 1; i <= 100; i++) {
         settings_set_quality(&settings, i / 100.);
         if (is_half(&settings) ==
-            is_half(&last)) { /* Else only pixels get finer. */
+            is_half(&last)) { /* Else the number of pixels rises. */
             assert_in_range(settings.dials.fineness, last.dials.fineness,
                             GLINT_MAX_CELLS);
             assert_true(settings.quantum <= last.quantum);
