@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake: a lens table becomes a model.
+ * glint bake: turns a lens table into a model.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -149,7 +149,8 @@ static int bake_into(struct glint_output *out, struct tool *tool,
     return code;
 }
 
-/* The output is opened first: a bake can take minutes. */
+/* Bakes the lens NAME. The output is opened before, as baking can take
+ * minutes. */
 static int run(struct tool *tool, struct bake *b, const char *name)
 {
     struct glint_prescription *lens = malloc(sizeof *lens);

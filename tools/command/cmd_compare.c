@@ -81,7 +81,7 @@ static void print(const struct glint_measure *m, bool identical)
 
 /* ---------------------------------------------------------------- comparing */
 
-/* Takes back that IMAGE was exposed so. */
+/* Divides IMAGE by the EXPOSURE at which it was drawn. */
 static void unexpose(struct glint_float_image *image, double exposure)
 {
     const size_t n = 3 * (size_t)image->width * (size_t)image->height;
@@ -90,7 +90,8 @@ static void unexpose(struct glint_float_image *image, double exposure)
         image->rgb[i] /= (float)exposure;
 }
 
-/* The name of a pipe gives no type. */
+/* Checks whether the picture NAME may have floats: by its extension, or as a
+ * pipe, which has none. */
 static bool has_floats(const char *name)
 {
     return glint_picture_is_float(name) || strcmp(name, "-") == 0;

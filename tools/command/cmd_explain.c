@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint explain: what one frame models, what it leaves out and why, and what
- * each part of it costs and gives.
+ * glint explain: tells what one frame models, what it leaves out and why, and
+ * what each part of it costs and gives.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -165,7 +165,8 @@ static int load(struct tool *tool, struct explain_command *c)
     return EXIT_OK;
 }
 
-/* As glint render does; the picture is what it would show of it. */
+/* Draws the flare as glint render does, and sets c->image to the picture of 8
+ * bits that glint render would save. */
 static enum glint_status draw_linear(struct explain_command *c)
 {
     struct compositor *compositor = &c->compositor;

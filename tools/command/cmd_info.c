@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint info: what a lens is.
+ * glint info: prints the data of a lens table or of a model.
  */
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint lenses: what there is to choose from, and their models all at once.
+ * glint lenses: lists the lenses that come with glint, or bakes all of them.
  */
 #include <errno.h>
 #include <math.h>
@@ -51,8 +51,8 @@ struct entry {
     bool is_baked;
 };
 
-/* The settings that overlay, live and explain have without options, or PLAIN
- * that of render. */
+/* Sets SETTINGS to those that overlay, live and explain have without options,
+ * or if PLAIN to those of render. Returns an exit code. */
 static int set_settings(struct settings *settings, bool plain)
 {
     struct compositor *compositor =
@@ -145,7 +145,8 @@ static int save_model(const struct tool *tool, const char *path,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Bakes it, unless it lies there already or where models are kept. */
+/* Puts the model of E into the folder, unless it is there already: the one that
+ * is kept, or a new one. */
 static int put_model(const struct lenses *l, const struct entry *e)
 {
     const uint64_t key = glint_bake_key(&e->settings.lens, &e->options);
@@ -178,7 +179,8 @@ static bool is_wanted(const struct lenses *l, const char *name)
     return l->n_only == 0;
 }
 
-/* A table with a mistake is said and passed over. */
+/* Lists the lens NAME, or puts its models into the folder. Returns whether to
+ * go on, as after a mistake in a table, which is reported. */
 static bool one(void *ctx, const char *name)
 {
     struct lenses *l = ctx;

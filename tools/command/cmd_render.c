@@ -50,12 +50,13 @@ struct render {
     bool linear; /* the output takes floats */
     int width, height;
     bool exact;
-    /* Bytes reserved beforehand, which the flare must do with; 0: as many as it
-     * needs. */
+    /* Bytes reserved for the flare's memory, which does not grow then; 0: it
+     * takes what it needs. */
     size_t reserve_bytes;
     const char *lights_file;
     int n_lamps;
-    struct glint_lamp *lamp; /* room for SETTINGS_MAX_LAMPS by hand */
+    struct glint_lamp *lamp; /* lamps by hand, at most SETTINGS_MAX_LAMPS, then
+                                those of the file */
     struct glint_float_image image;
     double ms;
 };
@@ -139,7 +140,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct render *r)
 
 /* ------------------------------------------------------------------ engines */
 
-/* All points of all lamps, N of them. NULL: no memory. */
+/* Returns the points of all lamps, malloc'ed, and sets *N to their number.
+ * Returns NULL without memory. */
 static struct glint_lamp *points_of(const struct render *r, int *n)
 {
     const struct glint_view view =
@@ -279,7 +281,8 @@ static int save(struct tool *tool, struct render *r)
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Refuses an output that cannot be written before there is much work. */
+/* Refuses, before there is much work, an output that cannot be written. Sets
+ * r->linear. */
 static int check_output(struct tool *tool, struct render *r)
 {
     struct glint_error error = {""};
@@ -297,7 +300,7 @@ static int check_output(struct tool *tool, struct render *r)
     return EXIT_OUTPUT;
 }
 
-/* Adds the lamps of the file to those by hand. */
+/* Adds the lamps of frame 0 of the file to those by hand. */
 static int read_lamps(struct tool *tool, struct render *r)
 {
     const struct glint_view view =

@@ -85,7 +85,8 @@ static int parse(struct tool *tool, int argc, char **argv, struct options *o)
 
 /* ----------------------------------------------------------------- by rays */
 
-/* What takes a ray from (PX, PY) on the front's vertex plane to the sensor. */
+/* Takes rays from (PX, PY) on the front's vertex plane to the sensor, exactly
+ * or by a model. */
 struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
@@ -126,7 +127,8 @@ static double rel_radius(const struct glint_transfer *t,
     return most;
 }
 
-/* U and V of a ray in the box of a part. Returns whether it is the part's. */
+/* Sets U and V to the place of a ray in the box of the part T. Returns whether
+ * the ray is one of that part. */
 static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
                   double *u, double *v)
 {
@@ -138,8 +140,8 @@ static bool is_in(const struct glint_transfer *t, double px_mm, double py_mm,
            fabs(*v) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Lights on the other side of the axis and rays on the other side of its plane
- * are mirrored. */
+/* Traces a ray by the model, which knows angles and y from 0 on only: lights at
+ * negative angles and rays at negative y are mirrored. */
 static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
                                          double py_mm, struct glint_ray *ray)
 {
@@ -167,7 +169,7 @@ static enum glint_ray_status trace_model(const struct tracer *t, double px_mm,
     return GLINT_RAY_OK;
 }
 
-/* The number of a model, which has 31 bits of it, is that of the lens. */
+/* Checks whether A, which a model holds with 31 bits, is B. */
 static bool agrees(struct glint_real a, double b)
 {
     return fabs(model_real_of(a) - b) <= 1e-8 * fabs(b);
@@ -180,7 +182,8 @@ static bool is_part(const struct glint_lens *model, uint32_t entry,
            model->ghost[entry].j == model->ghost[ghost].j;
 }
 
-/* The parts of GHOST that there are at this angle. */
+/* Sets tracer->part to the parts of GHOST that the model has at this angle and
+ * wavelength. GLINT_E_MEMORY. */
 static enum glint_status prepare_parts(const struct glint_lens *model,
                                        uint32_t ghost, int32_t sine_q30,
                                        int32_t wave_q24, struct tracer *tracer)

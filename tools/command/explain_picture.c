@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Explained as a picture: the frame dimmed, touched tiles shaded, ghosts
- * outlined and numbered, a legend below.
+ * A frame explained by a picture: the frame dimmed, touched tiles shaded,
+ * ghosts outlined and numbered, a legend below.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +41,8 @@ static void set_palette(struct paint *p, int k)
 
 /* ------------------------------------------------------------------- tiles */
 
-/* Whether any pixel of the tile at (X0, Y0) has light. */
+/* Checks whether any pixel of the tile at (X0, Y0), SIDE pixels wide, has
+ * light. */
 static bool is_lit(const struct marking *m, int x0, int y0, int side)
 {
     for (int y = y0; y < y0 + side && y < m->height; y++)
@@ -55,7 +56,8 @@ static bool is_lit(const struct marking *m, int x0, int y0, int side)
     return false;
 }
 
-/* A touched tile is bluish within a border; others are darker. */
+/* Shades a tile: bluish, with a brighter line at its left and top, if TOUCHED,
+ * else darker. */
 static void shade(const struct marking *m, int x0, int y0, int side,
                   bool touched)
 {
@@ -96,7 +98,7 @@ static bool lit_at(const struct marking *m, int x, int y)
     const int32_t *px;
 
     if (x < 0 || y < 0 || x >= m->width || y >= m->height)
-        return true; /* the picture's sides are no outline */
+        return true; /* The picture's sides are no outline. */
     px =
         m->explain->linear_q20 + 3 * ((size_t)y * (size_t)m->width + (size_t)x);
     return (px[0] | px[1] | px[2]) != 0;
@@ -119,8 +121,9 @@ static bool is_free(const struct marking *m, const struct label *l)
     return true;
 }
 
-/* A place for a label of W x H at the ghost's rim, else in its light: the first
- * that is free, from row START on and round. */
+/* Finds a place L for a label of W x H at the ghost's rim, else in its light:
+ * the first free one from row START down, then from the top. Returns false if
+ * there is none. */
 static bool find_place(const struct marking *m, int start, int w, int h,
                        struct label *l)
 {
@@ -142,7 +145,7 @@ static bool find_place(const struct marking *m, int start, int w, int h,
 static void put_label(struct marking *m, int k, int number)
 {
     struct paint p = {.image = m->image, .line = m->scale};
-    const int start = k * 5 % 16 * m->height / 16; /* all over the picture */
+    const int start = k * 5 % 16 * m->height / 16; /* spread over the picture */
     struct label l;
     char text[16];
 
@@ -210,7 +213,8 @@ static void put_title(const struct marking *m, const struct explain_title *t)
     paint_text(&p, 12 * p.line, y, text);
 }
 
-/* Number, share of the light, share of the work. */
+/* Draws entry K of the legend: the number of GHOST, its shares of light and
+ * work. */
 static void put_entry(const struct marking *m, int k, int ghost)
 {
     struct paint p = {.image = m->image, .line = m->scale};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Explained as a table of at most 100 columns, and as JSON.
+ * A frame explained by tables of at most 100 columns, and by JSON.
  */
 #include <math.h>
 #include <stdio.h>
@@ -42,7 +42,7 @@ static double degrees(double y, double x)
     return atan2(y, x) * 180 / GLINT_PI;
 }
 
-/* Ghosts of which something is drawn. */
+/* Returns the number of ghosts of which something is drawn. */
 static int ghosts_drawn(const struct glint_explain *e)
 {
     int n = 0;
@@ -62,7 +62,7 @@ static void print_percent(double x)
         printf("%8.1f", 100 * x);
 }
 
-/* What each row of all tables ends with. */
+/* Prints the columns that all tables end with. */
 static void print_costs(const struct glint_explain_part *p)
 {
     printf(" %9lld %8lld %9lld %8d %5d", p->vertices, p->edges, p->rows, p->lit,
@@ -86,7 +86,7 @@ static void print_title(const struct glint_explain *e,
 
     printf("%s, %dx%d, %s\n", t->lens, e->frame->view.width,
            e->frame->view.height, t->linear ? "linear light" : "codes");
-    /* a lamp of visible extent is drawn as several points */
+    /* A lamp of visible extent is drawn as several points. */
     printf(e->n_lights > t->n_lamps ? "drawn: %d points of %d lights"
                                     : "drawn: lights %d of %d",
            e->n_lights, t->n_lamps);
@@ -160,8 +160,8 @@ static void print_ghosts(const struct glint_explain *e,
         printf("      and %d more (--top)\n", n - t->top);
 }
 
-/* The numbers of ghosts that OUTCOME befell, as many as the line has room for.
- */
+/* Prints the numbers of the ghosts that have OUTCOME, as many as fit ROOM
+ * characters, and ends the line. */
 static void print_numbers(const struct glint_explain *e,
                           enum glint_outcome outcome, int room)
 {

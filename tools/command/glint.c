@@ -48,7 +48,8 @@ static const struct command commands[] = {
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
-/* As getopt says ARGV[0] in what it complains of. */
+/* Runs COMMAND with "glint COMMAND" as ARGV[0], which getopt prints in its
+ * errors. */
 static int run_command(const struct command *command, int argc, char **argv)
 {
     char name[32];
@@ -81,7 +82,7 @@ static int no_command(const char *name)
     return EXIT_USAGE;
 }
 
-/* glint help [COMMAND] */
+/* Prints the help of the command NAME, or that of glint if NAME is NULL. */
 static int help_of(const char *name)
 {
     char argument[] = "--help", *argv[] = {NULL, argument, NULL};
@@ -130,7 +131,8 @@ static int run_words(void *ctx)
     return run(words->argc, words->argv);
 }
 
-/* Baking takes more stack than some systems give. */
+/* Runs the command on a large stack, as baking takes more than some systems
+ * give. */
 int main(int argc, char **argv)
 {
     struct words words = {argc, argv};

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
  * add_glow IN.ppm X Y RADIUS >OUT.ppm - a warm glow about a point, added in
- * linear light. Links of glint the compositor alone.
+ * linear light. It links only the compositor of glint.
  */
 #include "glint/composite.h"
 #include "glint/kernels.h"
 #include "ppm.h"
 
-/* X squared, below 1. */
+/* Returns the square of X, 0 .. 1, cut. */
 static uint16_t squared_q16(uint16_t x_q16)
 {
     return (uint16_t)((uint32_t)x_q16 * x_q16 >> 16);
 }
 
-/* White in the middle, a quarter of it RADIUS pixels off, redder farther out.
- */
+/* Sets RGB to a glow about X0, Y0: white in the middle, redder farther out,
+ * where red falls to a quarter at RADIUS pixels. */
 static void glow(uint16_t *const rgb[3], int width, int height, int x0, int y0,
                  int radius)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * draw_flare MODEL IN.ppm X Y STOPS >OUT.ppm - the ghosts of a white lamp at a
- * pixel, so many stops brighter than white. Written as for a board: no malloc
- * and no floating point (make lint sees to it), all memory is static, and of
- * glint it links what draws a flare of a model into 8-bit pictures, by edges.
+ * pixel, STOPS stops brighter than white. Written as for a board: no malloc
+ * and no floating point (make lint checks that), all memory is static, and it
+ * links only the part of glint that draws flares by edges into 8-bit pictures.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,8 +22,8 @@ __attribute__((aligned(64)))
 #endif
 static uint8_t flare_memory[MAX_FLARE];
 
-/* Reads the file PATH into BLOCK. Returns its bytes; 0: it is not there, or
- * does not fit. */
+/* Reads the file PATH into BLOCK. Returns its bytes, or 0 if it cannot be read
+ * or has ROOM bytes or more. */
 static size_t load(const char *path, void *block, size_t room)
 {
     FILE *file = fopen(path, "rb");
@@ -38,7 +38,7 @@ static size_t load(const char *path, void *block, size_t room)
     return bytes;
 }
 
-/* Reads the number at *AT, after one blank, and moves *AT behind it. */
+/* Reads the number at *AT, after one blank, and moves *AT past it. */
 static int number(const uint8_t **at)
 {
     int n = 0;
@@ -48,8 +48,8 @@ static int number(const uint8_t **at)
     return n;
 }
 
-/* Finds the image in the binary PPM of BYTES that the picture is. Returns
- * whether it is one of 8 bits, without comments. */
+/* Sets IMAGE to the pixels of the binary PPM of BYTES in picture. Returns 0 if
+ * that is not one of 8 bits without comments. */
 static int find_image(struct glint_image *image, size_t bytes)
 {
     const uint8_t *at = picture + 2;
@@ -68,7 +68,8 @@ static int find_image(struct glint_image *image, size_t bytes)
                         3 * (size_t)image->width * (size_t)image->height;
 }
 
-/* Adds the flare of LIGHT. Returns 0: it takes more memory than there is. */
+/* Adds the flare of LIGHT to IMAGE. Returns 1, or 0 if that takes more than
+ * flare_memory. */
 static int draw(const struct glint_lens *lens, const struct glint_image *image,
                 const struct glint_light *light)
 {
@@ -96,7 +97,8 @@ static int draw(const struct glint_lens *lens, const struct glint_image *image,
     return 1;
 }
 
-/* The middle of the pixel that TEXT numbers. */
+/* Returns the middle of the pixel whose number is TEXT, kept near the
+ * picture. */
 static int32_t middle_q8(const char *text)
 {
     const int pixel = atoi(text);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * find_lamps PICTURE.ppm - where the lamps of a picture are. Links of glint the
- * finder alone.
+ * find_lamps PICTURE.ppm - prints where the lamps of a picture are. It links
+ * only the finder of glint.
  */
 #include "glint/lamps.h"
 #include "ppm.h"

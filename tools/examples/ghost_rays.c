@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ghost_rays MODEL GHOST SINE - where a fan of rays of a ghost lands, for a
- * light whose angle off the axis has that sine. Links of glint the transfer
- * alone.
+ * ghost_rays MODEL GHOST SINE - prints where a fan of rays of a ghost lands,
+ * for a light whose angle off the axis has that sine. It links only the
+ * transfer of glint.
  */
 #include <math.h>
 
@@ -11,7 +11,8 @@
 
 enum { FAN = 9 };
 
-/* Of the middle of the band, in the plane of the light. */
+/* Prints a fan of rays of GHOST in the plane of the light, at the middle of the
+ * band of wavelengths. */
 static int print_fan(const struct glint_lens *lens, int ghost, double sine)
 {
     static struct glint_transfer transfer; /* too large for small stacks */

@@ -10,7 +10,8 @@
 
 #include "glint/model.h"
 
-/* The whole file, to be freed. NULL: it cannot be read. */
+/* Returns the whole file PATH, which the caller frees, and its *BYTES; NULL if
+ * it cannot be read. */
 static inline void *read_all(const char *path, size_t *bytes)
 {
     FILE *file = fopen(path, "rb");
@@ -31,8 +32,8 @@ static inline void *read_all(const char *path, size_t *bytes)
     return data;
 }
 
-/* Opens the model in PATH; what it lies in is to be freed. NULL, after saying
- * why: it is none. */
+/* Opens the model in the file PATH. Returns its memory, which the caller frees,
+ * or NULL after printing why it is no model. */
 static inline void *model_read(const char *path, struct glint_lens *lens)
 {
     const char *reason = "cannot be read";

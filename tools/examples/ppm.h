@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The simplest of pictures, for the examples: binary PPM of 8 bits.
+ * Pictures for the examples: binary PPM of 8 bits.
  */
 #ifndef GLINT_TOOLS_EXAMPLES_PPM_H
 #define GLINT_TOOLS_EXAMPLES_PPM_H
@@ -41,7 +41,7 @@ static inline int ppm_read(const char *path, struct glint_image *image)
     return 0;
 }
 
-/* To standard output. Returns 0, or 6. */
+/* Writes IMAGE to standard output. Returns 0, or 6 on failure. */
 static inline int ppm_write(const struct glint_image *image)
 {
     const size_t bytes = 3 * (size_t)image->width * (size_t)image->height;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What glint bench times: cases of a lens, a picture and options, that take
- * turns.
+ * The cases that glint bench times in turn: each a lens, a picture and options.
  */
 #ifndef GLINT_TOOLS_LAB_BENCH_H
 #define GLINT_TOOLS_LAB_BENCH_H
@@ -15,8 +14,8 @@ enum {
     MAX_BUDGETS = 16
 };
 
-/* Drawing is accumulating light, which is timed by itself, and compositing it
- * with the picture, which is the rest. */
+/* DRAW is ACCUMULATE, the light of all pixels, which is timed by itself, and
+ * COMPOSITE, the rest: light onto the picture. */
 enum stage { PLAN, TRANSFER, BIN, DRAW, ACCUMULATE, COMPOSITE, WHOLE, STAGES };
 
 struct bench_canvas {
@@ -33,11 +32,12 @@ struct test {
     const char *kernels;
     double scale, psnr_db; /* NAN: not measured */
     const char *series;    /* growth: name of the series, or NULL */
-    /* A lens with some ghosts only, and these; NULL: the whole lens is used. */
+    /* growth: a lens with some of the ghosts only, and the memory of these;
+     * NULL: the whole lens is used. */
     struct glint_lens some;
     struct glint_model_ghost *some_ghosts;
     struct glint_frame_report report;
-    double cpu_ms; /* growth: time of all threads, the least of a frame; or 0 */
+    double cpu_ms; /* growth: least time of a frame, of all threads; else 0 */
     double ms[STAGES][MAX_ROUNDS];
     double wrong[MAX_ROUNDS]; /* budgets: predicted over measured - 1 */
 };
@@ -58,27 +58,28 @@ struct bench {
     double budget_ms[MAX_BUDGETS];
 };
 
-/* Adds the cases of SETTINGS that are asked for, or the plain one. Returns an
- * exit code, as all here that return int. */
+/* Adds the cases of SETTINGS that are asked for, or the plain one. Like all
+ * functions here that return int, it returns an exit code. */
 int bench_add(struct bench *b, const struct settings *settings);
 
-/* Adds one of this size, 0 as asked, and so many lights, if there is room. */
+/* Adds a case of WIDTH x HEIGHT (0: as asked for) and LIGHTS lights, if there
+ * is room for one. */
 int bench_add_one(struct bench *b, const struct settings *settings, int width,
                   int height, int lights);
 
-/* Adds those of b->growth. */
+/* Adds the cases of --growth. */
 int bench_add_growth(struct bench *b, const struct settings *settings);
 
-/* Puts the light of a case where it is in round ROUND of N, if it moves. */
+/* Moves the first light of T to its place in round ROUND of N. */
 void bench_move(struct test *t, int round, int n);
 
-/* Times round ROUND of a case. */
+/* Draws a frame of T and notes its times as those of round ROUND. */
 enum glint_status bench_run(struct test *t, int round);
 
-/* Compares T with exact rays of the lens's table: t->psnr_db. */
+/* Sets t->psnr_db: T's flare alone against exact rays of the lens's table. */
 int bench_psnr(struct bench *b, struct test *t);
 
-/* Medians, as a table for people or for programs. */
+/* Print the medians of all cases, as a table or as JSON. */
 void bench_print(const struct bench *b);
 void bench_print_json(const struct bench *b);
 

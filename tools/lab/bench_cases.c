@@ -31,14 +31,14 @@ static struct bench_canvas *canvas_of(struct bench *b, int width, int height)
 struct variation {
     int width, height; /* 0: as asked */
     int lights;
-    int two_threads, by_cells; /* whatever was asked for */
+    int two_threads, by_cells; /* set whatever was asked for */
     const char *kernels;       /* NULL: as asked */
     unsigned sets;             /* instruction sets that the kernels may use */
     double angle;
 };
 
 static const struct variation variations[] = {
-    {0, 0, 1, 0, 0, NULL, ~0U, 12}, /* the plain one */
+    {0, 0, 1, 0, 0, NULL, ~0U, 12}, /* the plain case */
     {0, 0, 1, 0, 1, NULL, ~0U, 12},
     {0, 0, 1, 0, 0, "c", 0, 12},
     {0, 0, 1, 0, 0, "sse41", GLINT_SET_SSE41, 12},
@@ -52,10 +52,11 @@ static const struct variation variations[] = {
     {1280, 720, 1, 0, 0, NULL, ~0U, 12},
     {3840, 2160, 1, 0, 0, NULL, ~0U, 12},
     {0, 0, 0, 0, 0, NULL, ~0U, 12},
-    {0, 0, 1, 0, 0, NULL, ~0U, 75}, /* farther out than models go */
+    {0, 0, 1, 0, 0, NULL, ~0U, 75}, /* a light beyond the angles of models */
 };
 
-/* The exposure at which the flare is as bright as the picture's white. */
+/* Sets t->scale to the exposure at which the 99.9th percentile of the flare's
+ * luminance is white. */
 static enum glint_status expose(struct test *t)
 {
     const int w = t->canvas->of.image.width, h = t->canvas->of.image.height;
@@ -113,7 +114,8 @@ static int add_test(struct bench *b, const struct settings *settings,
     b->n_tests++;
     if (expose(t) != GLINT_OK)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-    if (v->angle != 12) { /* exposed as if it were in the picture */
+    /* Such a light is exposed as if it were in the picture. */
+    if (v->angle != 12) {
         canvas_lamps(t->lamp, v->lights, 12);
         if (expose(t) != GLINT_OK)
             return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
@@ -130,7 +132,7 @@ int bench_add_one(struct bench *b, const struct settings *settings, int width,
     return add_test(b, settings, &v);
 }
 
-/* Adds the cases of a frame's size and memory. */
+/* Adds the cases of --sizes. */
 static int add_sizes(struct bench *b, const struct settings *settings)
 {
     static const int size[][2] = {
@@ -142,10 +144,10 @@ static int add_sizes(struct bench *b, const struct settings *settings)
     return code;
 }
 
-/* Frames that a budget has to settle. */
+/* Frames in which a budget may settle before it is timed. */
 enum { SETTLING = 12 };
 
-/* The plain case, held to each budget. */
+/* Adds the plain case for each budget, held to that budget. */
 static int add_budgets(struct bench *b, const struct settings *settings)
 {
     int code = EXIT_OK;
@@ -191,8 +193,7 @@ void bench_move(struct test *t, int round, int n)
         t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / n;
 }
 
-/* Measures the part of drawing the last frame that did not touch the picture.
- */
+/* Returns the ms of drawing the last frame once more without a picture. */
 static double accumulate_ms(const struct test *t)
 {
     const double t0 = tool_seconds();
@@ -210,7 +211,8 @@ enum glint_status bench_run(struct test *t, int round)
     double t0, cpu_ms;
 
     canvas_fresh(c);
-    if (t->series) /* a system call would cool the caches of small frames */
+    if (t->series) /* elsewhere not, as a system call would cool the caches of
+                      small frames */
         cpu0 = clock();
     t0 = tool_seconds();
     status = glint_frame_draw(&t->frame, t->lamp, t->n_lamps, t->scale,
@@ -232,7 +234,6 @@ enum glint_status bench_run(struct test *t, int round)
     return status;
 }
 
-/* PSNR of the flare alone against exact rays. */
 int bench_psnr(struct bench *b, struct test *t)
 {
     const int w = t->canvas->of.image.width, h = t->canvas->of.image.height;

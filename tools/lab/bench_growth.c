@@ -22,8 +22,8 @@ static int add(struct bench *b, const struct settings *settings,
 
 /* ------------------------------------------------------------------ ghosts */
 
-/* Leaves of T's lens the N_KEPT ghosts from the FIRST on of LIST[N], around its
- * end; the others lose their polynomials and are never seen. */
+/* Has T draw N_KEPT ghosts only: those of LIST[N] from FIRST on, then from its
+ * start. All other ghosts lose their polynomials and are not seen. */
 static enum glint_status keep_ghosts(struct test *t, const int *list, int n,
                                      int first, int n_kept)
 {
@@ -53,7 +53,7 @@ static enum glint_status keep_ghosts(struct test *t, const int *list, int n,
     return GLINT_OK;
 }
 
-/* Ghosts that the plain frame of SETTINGS shows, into LIST. */
+/* Lists the ghosts that a frame of T shows. Returns how many. */
 static int list_seen(struct test *t, int *list)
 {
     int n = 0;
@@ -66,8 +66,9 @@ static int list_seen(struct test *t, int *list)
     return n;
 }
 
-/* All that are seen, and half of them, a quarter ... taken from four places:
- * some are large and some are not. */
+/* Adds cases of all ghosts that are seen, and of half of them, a quarter ...
+ * each taken from four places of the list, as some ghosts are large and some
+ * are small. */
 static int add_ghosts(struct bench *b, const struct settings *settings,
                       struct test *plain)
 {
@@ -109,7 +110,8 @@ static int add_sizes(struct bench *b, const struct settings *settings)
     return code;
 }
 
-/* The same rays, fewer edges: steps of irradiance of 1/4 to 10 percent. */
+/* Adds cases of the same rays and fewer edges: steps of irradiance of 1/4 to 10
+ * percent. */
 static int add_quanta(struct bench *b, const struct settings *settings)
 {
     static const int steps[] = {277, 139, 69, 35, 14, 7};

@@ -18,7 +18,7 @@ static double quality_of(const struct test *t)
     return t->report.quality >= 0 ? t->report.quality : t->settings->quality;
 }
 
-/* Characters across. */
+/* Returns the width of the column of STAGE in characters. */
 static int column(int stage)
 {
     const int n = (int)strlen(stage_names[stage]);
@@ -26,7 +26,7 @@ static int column(int stage)
     return n > 7 ? n : 7;
 }
 
-/* Median of what predictions were off by. */
+/* Returns the median size of the relative errors of T's predictions. */
 static double off_by(const struct bench *b, const struct test *t)
 {
     double size[MAX_ROUNDS];

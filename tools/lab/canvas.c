@@ -7,7 +7,8 @@
 
 /* ------------------------------------------------------------------ canvas */
 
-/* Luma rises to the right, colours turn downwards. */
+/* Fills the fresh picture with dim codes, 16 .. 87, that change from byte to
+ * byte. */
 static void paint(struct canvas *c)
 {
     for (size_t i = 0; i < c->bytes; i++)
@@ -48,8 +49,8 @@ void canvas_finish(struct canvas *c)
     c->fresh = c->mem = NULL;
 }
 
-/* Adds a layer that stays in the cache to PX in place; written so that
- * compilers make vectors of it. */
+/* Adds LAYER[256], which stays in the cache, to PX over and over, saturating,
+ * in a loop that compilers vectorise. */
 static void add_layer(uint8_t *restrict px, const uint8_t *restrict layer,
                       size_t bytes)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench: what a frame costs, next to touching its memory.
+ * glint bench: times frames, and compares them with touching their memory.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -65,7 +65,8 @@ static int run_rounds(struct bench *b)
     enum glint_status status = GLINT_OK;
 
     tool_progress_start(&progress, b->tool, "bench");
-    /* the first ones only warm up, for each place of a moving light */
+    /* The first rounds only warm up: one, or one for each place of a moving
+     * light. */
     for (int round = -warm; round < b->rounds && status == GLINT_OK; round++) {
         const int at = round < 0 ? round + warm : round;
 

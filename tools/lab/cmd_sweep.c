@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep: what accuracy costs, dial by dial and together.
+ * glint sweep: measures what accuracy costs, dial by dial and together.
  */
 #include <errno.h>
 #include <math.h>
@@ -68,7 +68,7 @@ struct asked {
     int n_angles;
     double angle[MAX_LIST];
     bool no_growth;
-    bool plain; /* sizes, lights and angles were not said */
+    bool plain; /* no --size, --lights, --angle or --small */
 };
 
 /* ------------------------------------------------------------------- cases */
@@ -79,7 +79,8 @@ static void add_case(struct sweep *s, struct sweep_case c)
         s->scase[s->n_cases++] = c;
 }
 
-/* What differs from the first case in one thing. */
+/* Adds cases for the plots of growth, which differ from the first one of these
+ * in size, number of lights or angle. */
 static void add_growth(struct sweep *s, int lens)
 {
     static const int size[][2] = {{640, 360}, {1920, 1080}, {3840, 2160}};
@@ -99,7 +100,8 @@ static void add_growth(struct sweep *s, int lens)
         other.n_lamps = lights[i];
         add_case(s, other);
     }
-    for (int angle = 0; angle < 20; angle += 5) { /* other numbers of ghosts */
+    /* for other numbers of ghosts */
+    for (int angle = 0; angle < 20; angle += 5) {
         struct sweep_case other = c;
 
         other.angle = angle;
@@ -107,8 +109,8 @@ static void add_growth(struct sweep *s, int lens)
     }
 }
 
-/* Of the first lens also a smaller picture, and lights that can merge: the
- * exact picture takes as long as there are lights. */
+/* Adds, for the first lens, a smaller picture with one light and with 16 that
+ * can merge: exact pictures take time in proportion to lights. */
 static void add_more(struct sweep *s)
 {
     const struct sweep_case c = {
@@ -170,7 +172,8 @@ static int save(const struct sweep *s, const char *folder, const char *name,
                               : tool_fail(s->tool, status, error.text);
 }
 
-/* One of an earlier sweep would be taken for this one's. */
+/* Removes the file NAME of an earlier sweep, which would be taken for one of
+ * this sweep. */
 static void leave_out(const char *folder, const char *name)
 {
     char path[1024];
@@ -204,7 +207,8 @@ static int save_all(const struct sweep *s, const char *folder)
     return code;
 }
 
-/* Lines of "POINT INSTRUCTIONS". */
+/* Reads the instructions of points from the file of --counts, whose lines are
+ * "POINT INSTRUCTIONS". Returns an exit code. */
 static int read_counts(struct sweep *s)
 {
     FILE *file = fopen(s->counts, "r");
@@ -361,7 +365,8 @@ static const struct option options[] = {
     {"counts", required_argument, NULL, OPT_COUNTS},
     TOOL_COMMON_OPTIONS};
 
-/* 1: taken; 0: not something it takes; -2: no option of these. */
+/* Takes option C with the value optarg. Returns 1, or 0 if the option does not
+ * take that value, or -2 if C is another option. */
 static int take(struct sweep *s, struct asked *a, int c)
 {
     switch (c) {
@@ -417,7 +422,7 @@ static int parse(struct tool *tool, int argc, char **argv, struct sweep *s,
     return -1;
 }
 
-/* What was not said. */
+/* Sets what no option has set. */
 static void fill_in(struct sweep *s, struct asked *a)
 {
     const int n =

@@ -56,7 +56,7 @@ void plot_stretch(struct plot *p, double x, double y)
     }
 }
 
-/* How far up the axis V is, 0 to 1. */
+/* Returns how far along the axis V is, 0 to 1. */
 static double along(const struct plot_axis *a, double v)
 {
     return a->is_log ? log(v / a->lo) / log(a->hi / a->lo)
@@ -91,7 +91,7 @@ static void stroke(const struct plot *p, double x0, double y0, double x1,
             x0, y0, x1, y1, colour, width);
 }
 
-/* A little room beside the outermost. */
+/* Widens the axis by a little room beside its outermost points. */
 static void widen(struct plot_axis *a)
 {
     if (a->lo > a->hi)
@@ -127,9 +127,9 @@ static void tick(const struct plot *p, bool is_x, double v)
     }
 }
 
-/* At 1, 2, 5, 10 ... of logarithms, at more where they span little; else every
- * 1, 2 or 5 times a power of ten.
- */
+/* Draws the ticks of axis A: on a logarithmic one 1, 2 and 5 times powers of
+ * ten, and more if it spans less than a factor of 12; else every 1, 2 or 5
+ * times a power of ten. */
 static void ticks(const struct plot *p, const struct plot_axis *a, bool is_x)
 {
     static const double mantissa[] = {1, 2, 5, 0.7, 1.5, 3};

@@ -13,8 +13,8 @@ enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* size of a panel, px */
 struct plot_axis {
     const char *words;
     bool is_log;
-    double lo, hi;     /* lo > hi: nothing yet, see plot_stretch */
-    double least_span; /* hi - lo at least; a logarithmic axis ignores it */
+    double lo, hi;     /* lo > hi: no points yet, see plot_stretch */
+    double least_span; /* least hi - lo; a logarithmic axis ignores it */
 };
 
 struct plot {
@@ -25,29 +25,29 @@ struct plot {
     int n_keys;
 };
 
-/* N panels in two columns, or one. */
+/* Begins a file of N_PANELS panels in two columns, or of one panel. */
 void plot_open(FILE *file, int n_panels);
 void plot_close(FILE *file);
 
-/* Prepares panel NUMBER. */
+/* Prepares PLOT as panel NUMBER, from 0, with linear axes. */
 void plot_init(struct plot *plot, FILE *file, int number, const char *title);
 
-/* Makes room for a point; what is not finite, or by a logarithm not above 0,
- * takes none. */
+/* Stretches the axes to X, Y, unless one of them is not finite, or not above 0
+ * on a logarithmic axis. */
 void plot_stretch(struct plot *plot, double x, double y);
 
-/* Title, axes, grid. After stretching, before marks. */
+/* Draws title, axes and grid, after stretching and before marks. */
 void plot_frame(struct plot *plot);
 
-/* KIND: 'o' circle, '.' small one, 's' square, 'd' diamond, hollow in capitals.
- * TIP: shown by browsers, or NULL. */
+/* Draws a mark of KIND 'o' circle, '.' small circle, 's' square or 'd' diamond;
+ * capitals are hollow. Browsers show TIP, unless it is NULL. */
 void plot_mark(const struct plot *plot, double x, double y, char kind,
                const char *colour, const char *tip);
 void plot_line(const struct plot *plot, double x0, double y0, double x1,
                double y1, const char *colour, bool thick);
 void plot_words(const struct plot *plot, double x, double y, const char *words);
 
-/* An entry of the legend, below the title. */
+/* Adds an entry to the legend below the title. */
 void plot_key(struct plot *plot, char kind, const char *colour,
               const char *words);
 

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * ray_errors [-n NM,...] [-s STEP] [-g GHOST] [-r | -w] LENS MODEL: how far a
- * model is from exact rays, everywhere. A row of a Markdown table; with -w also
- * the ghosts that are off by more than they should, and at which angles; with
- * -r root mean squares instead, one output after the other.
+ * ray_errors [-n NM,...] [-s STEP] [-g GHOST] [-r | -w] LENS MODEL: prints how
+ * far a model is from exact rays, as a row of a Markdown table; with -w also
+ * the ghosts that miss the target, and at which angles; with -r root mean
+ * squares instead, one for each output.
  *
- *   every ghost at the angles of the accuracy table and every STEP degrees up
- *   to the model's largest, at every wavelength: a grid over the box of what
- *   gets through stop and barrels to the field, those rays of it that land in
- *   the picture's circle
+ * It compares every ghost at the angles of the accuracy table and every STEP
+ * degrees up to the model's largest, at every wavelength. Rays start on a grid
+ * over the box of those that get through stop and barrels to the field; rays
+ * that land in the picture's circle count.
  *
- * Rays that the model has no polynomials for count as off by FAR pixels in
+ * A ray that the model has no polynomials for counts as off by FAR pixels in
  * percentiles, and not at all in root mean squares.
  */
 #include <math.h>
@@ -27,7 +27,8 @@
 
 enum {
     ACROSS = 40,
-    DOWN = 20, /* steps over the half with y >= 0, which the other mirrors */
+    DOWN = 20, /* steps over the half with y >= 0; the other half is its mirror
+                  image */
     BINS = 400,
     BINS_A_DECADE = 50,
     MOST_ANGLES = 2000,
@@ -55,7 +56,8 @@ struct task {
     int n_nm;
     double angle[MOST_ANGLES];
     int n_angles;
-    double picture_mm; /* half its diagonal, or the field if that is less */
+    double picture_mm; /* half the picture's diagonal, or the field if that is
+                          less */
     bool worst, squares;
 };
 
@@ -90,7 +92,7 @@ static void tally_add_lost(struct tally *t, double light)
     t->energy[bin_of(1)]++;
 }
 
-/* Adds WEIGHT times FROM. */
+/* Adds WEIGHT times FROM to T. */
 static void tally_join(struct tally *t, const struct tally *from, double weight)
 {
     t->rays += weight * from->rays;
@@ -165,7 +167,8 @@ static void find_parts(const struct task *t, int ghost, double angle_deg,
                                             sine_q30, wave_q24) != 0;
 }
 
-/* The ray from (X, Y) by the model. False: it has none. */
+/* Sets AT to the outputs of the model for the ray from (X, Y). Returns false if
+ * the model has none. */
 static bool model_ray(const struct parts *parts, double x_mm, double y_mm,
                       double at[GLINT_OUT_KINDS])
 {
@@ -271,13 +274,14 @@ static void print_squares(const struct tally *t)
     printf("\n");
 }
 
-/* Of all ghosts at one angle. */
+/* light of all ghosts at one angle, and the part of it that is lost */
 struct light {
     double all, lost;
 };
 
-/* All rays of one ghost; ANGLES counts those at which it is seen and those at
- * which it misses. */
+/* Compares all rays of GHOST: adds their errors to SUM and their light to
+ * LIGHT, and counts in ANGLES the angles at which the ghost is seen, and those
+ * at which it misses the target. */
 static void compare_ghost(const struct task *t, int ghost, struct tally *sum,
                           int angles[2], struct light *light)
 {
@@ -347,7 +351,8 @@ static void add_angle(struct task *t, double angle_deg)
         t->angle[t->n_angles++] = angle_deg;
 }
 
-/* Whether the model is of the lens, and was baked for the wavelengths. */
+/* Checks whether the model is of the lens, and was baked for the wavelengths.
+ * Returns an exit code. */
 static int check_pair(const struct tool *tool, const struct task *t)
 {
     const struct glint_model_header *h = t->header;

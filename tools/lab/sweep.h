@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What glint sweep measures: settings of the dials, each by itself and
- * together, in every case of a lens, a size and some lights.
+ * The measurements of glint sweep: settings of the dials, each dial by itself
+ * and together, in cases of a lens, a size and some lights.
  */
 #ifndef GLINT_TOOLS_LAB_SWEEP_H
 #define GLINT_TOOLS_LAB_SWEEP_H
@@ -16,7 +16,7 @@ enum { SWEEP_LENSES = 16, SWEEP_CASES = 128, SWEEP_ROUNDS = 100 };
 
 #define MAX_FLUX_ERROR 0.02 /* brightness must not depend on a dial */
 
-/* What a point measures. */
+/* kind of setting that a point measures */
 enum sweep_kind {
     SWEEP_STANDARD,
     SWEEP_ALONE,
@@ -35,7 +35,7 @@ struct sweep_setting {
 /* One setting in one case. NAN: not measured. */
 struct sweep_point {
     struct sweep_setting set;
-    int of; /* index of the case it belongs to */
+    int of; /* index of the point's case */
     double ms, floor_ms, ratio, instructions;
     size_t arena_bytes, model_bytes;
     double psnr_db, ssim, p99, flux_error;
@@ -46,20 +46,22 @@ struct sweep_point {
 };
 
 struct sweep_case {
-    int lens; /* number */
+    int lens; /* index of the lens */
     int width, height, n_lamps;
     double angle;
     bool growth;
     bool together; /* dials are combined here */
-    int first, n;  /* its points */
+    int first, n;  /* The case has points first .. first + n - 1. */
 };
 
 /* A picture for the page: small, sRGB codes, [height][width][3]. */
 struct sweep_picture {
-    int of, point; /* case; -1: the exact one */
+    int of, point; /* indices of case and point; point -1: the exact picture */
     int width, height;
     double exposure;
-    uint8_t *rgb, *difference; /* 16 times, about grey; NULL of the exact one */
+    /* difference: 16 times that to the exact picture, about grey; NULL for the
+     * exact picture */
+    uint8_t *rgb, *difference;
 };
 
 struct sweep {
@@ -83,7 +85,7 @@ struct sweep {
     struct glint_workers *one;
 };
 
-/* Makes all points of the cases. GLINT_E_MEMORY. */
+/* Makes the points of all cases. GLINT_E_MEMORY. */
 enum glint_status sweep_plan(struct sweep *s);
 
 /* Measures case C. Returns an exit code. */
@@ -96,15 +98,16 @@ enum glint_status sweep_frame(struct glint_frame *frame,
                               double exposure, const struct glint_image *image,
                               struct glint_frame_report *report);
 
-/* What a frame of POINT costs: times the memory floor, or with
- * by_instructions millions of these. NAN: not measured. */
+/* Returns the cost of a frame of P: in memory floors, or with by_instructions
+ * in millions of instructions; NAN if it was not measured. */
 double sweep_cost(const struct sweep *s, const struct sweep_point *p);
 
 /* Marks the front of each case. */
 void sweep_mark_fronts(struct sweep *s);
 
-/* The front of N points by cost, least first, and quality, most wanted: their
- * numbers into FRONT[N]. Returns how many. Points with NAN are none. */
+/* Sets FRONT[N] to the indices of the points that no other is both cheaper and
+ * better than, the cheapest first. Returns how many. Points with NAN are left
+ * out. */
 int sweep_front(const double *cost, const double *quality, int n, int *front);
 
 /* A setting over all cases that are swept together: geometric mean of costs
@@ -115,16 +118,18 @@ struct sweep_mean {
     bool front;
 };
 
-/* Returns how many, at most MAX, the cheapest first; those on the front are
- * marked: of flux errors above 2 percent none. */
+/* Sets MEAN to the means of all settings, at most MAX, the cheapest first, and
+ * marks the front, on which are none with a flux error above 2 percent. Returns
+ * how many. */
 int sweep_means(const struct sweep *s, struct sweep_mean *mean, int max);
 
-/* Decibels that MEAN[I] lies above what --quality reaches at its cost (or 2
- * percent more, which is noise), by its means among these N, the cheapest
- * first, and between two of them that draw as many pixels. */
+/* Returns the dB by which MEAN[I] lies above the best that --quality reaches at
+ * that cost (or 2 percent more, which is noise): at its means among these N,
+ * the cheapest first, and between two neighbours that draw as many pixels. */
 double sweep_above(const struct sweep_mean *mean, int n, int i);
 
-/* "grid 32, quantum 2": what differs from the standard. */
+/* Writes SET as words: --quality and the dials that differ from the standard,
+ * as "grid 32, quantum 2", or "default". */
 void sweep_words(const struct sweep_setting *set, char *text, size_t bytes);
 
 /* ------------------------------------------------------------------- output */
@@ -132,19 +137,20 @@ void sweep_words(const struct sweep_setting *set, char *text, size_t bytes);
 void sweep_csv(const struct sweep *s, FILE *file);
 void sweep_json(const struct sweep *s, FILE *file);
 void sweep_svg_front(const struct sweep *s, FILE *file);
-/* The means alone, with each dial's: small. */
+/* Plots the means only, and the means of each dial by itself; small. */
 void sweep_svg_trade(const struct sweep *s, FILE *file);
 void sweep_svg_dials(const struct sweep *s, FILE *file);
-/* Whether there is anything of pixels, lights and ghosts to plot. */
+/* Returns whether there are points for plots against pixels, lights and
+ * ghosts. */
 bool sweep_has_growth(const struct sweep *s);
 void sweep_svg_growth(const struct sweep *s, FILE *file);
 void sweep_page(const struct sweep *s, FILE *file);
 
-/* Rows of the table of named qualities, as Markdown, and which dials by
- * themselves lie above them. */
+/* Prints the table of named qualities, as Markdown, and which settings of one
+ * dial lie above --quality. */
 void sweep_names(const struct sweep *s, FILE *file);
 
-/* RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG. */
+/* Prints RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG. */
 void sweep_png(FILE *file, const uint8_t *rgb, int width, int height);
 
 #endif

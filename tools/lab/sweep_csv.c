@@ -7,7 +7,7 @@
 static const char *const kinds[] = {"standard", "alone", "together", "quality",
                                     "growth"};
 
-/* As CSV an empty field, as JSON null, where there is nothing. */
+/* Prints X, or NONE if it is not finite: nothing in CSV, null in JSON. */
 static void number(FILE *file, double x, const char *none)
 {
     if (isfinite(x))
@@ -94,7 +94,8 @@ void sweep_json(const struct sweep *s, FILE *file)
     fputs("]}\n", file);
 }
 
-/* The points of case C with a named quality, the coarsest first. */
+/* Prints the row of case C: its points with a named quality, the coarsest
+ * first. */
 static void names_row(const struct sweep *s, int c, FILE *file)
 {
     const struct sweep_case *k = &s->scase[c];
@@ -112,7 +113,7 @@ static void names_row(const struct sweep *s, int c, FILE *file)
     fputc('\n', file);
 }
 
-/* Of the settings of one dial those that --quality does not reach. */
+/* Prints the settings of one dial that lie at least 0.1 dB above --quality. */
 static void beyond_ladder(const struct sweep *s, FILE *file)
 {
     struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);

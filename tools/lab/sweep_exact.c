@@ -17,7 +17,8 @@ static uint64_t mix(uint64_t hash, const void *data, size_t bytes)
     return hash;
 }
 
-/* Of all that the picture follows from, but for the tracer itself. */
+/* Returns a key of all that the picture depends on, but for the tracer
+ * itself. */
 static uint64_t key_of(const struct settings *s, const struct glint_lamp *lamp,
                        int n_lamps, int grid,
                        const struct glint_float_image *to)

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Exact pictures, which take long: kept where models are.
+ * Exact pictures, which take long and so are kept where models are.
  */
 #ifndef GLINT_TOOLS_LAB_SWEEP_EXACT_H
 #define GLINT_TOOLS_LAB_SWEEP_EXACT_H
 
 #include "lab/canvas.h"
 
-/* As canvas_exact, or the picture that is kept; TO->rgb is the caller's. */
+/* Draws TO as canvas_exact() does, or loads it where it is kept. TO->rgb is the
+ * caller's memory. */
 enum glint_status sweep_exact(const struct tool *tool,
                               const struct settings *settings,
                               const struct glint_lamp *lamp, int n_lamps,

@@ -17,7 +17,8 @@ struct entry {
     int number;
 };
 
-/* Cheapest first; of equal ones the best. */
+/* Orders entries by cost, the cheapest first, and equal ones by quality, the
+ * best first. */
 static int by_cost(const void *a, const void *b)
 {
     const struct entry *x = a, *y = b;
@@ -96,7 +97,8 @@ static const struct sweep_point *find(const struct sweep *s,
     return NULL;
 }
 
-/* Of SET over all cases that have it. False: some case did not measure it. */
+/* Sets M to the means of SET over all cases that are swept together. Returns
+ * false if one of these has not measured it. */
 static bool mean_of(const struct sweep *s, const struct sweep_setting *set,
                     struct sweep_mean *m)
 {
@@ -173,7 +175,8 @@ static bool same_pixels(const struct sweep_mean *a, const struct sweep_mean *b)
     return true;
 }
 
-/* On the line from A to B, at COST between theirs. */
+/* Returns the PSNR at COST, between those of A and B, on a line over
+ * log(cost). */
 static double between(const struct sweep_mean *a, const struct sweep_mean *b,
                       double cost)
 {

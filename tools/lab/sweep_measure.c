@@ -23,6 +23,7 @@ struct run {
     double spent_ms;
 };
 
+/* All that one case is measured with. */
 struct bay {
     struct sweep *s;
     const struct sweep_case *c;
@@ -32,7 +33,7 @@ struct bay {
     struct canvas canvas;
     struct glint_lamp *lamp;
     double exposure, floor_ms[SWEEP_ROUNDS];
-    struct glint_float_image exact; /* rgb NULL: not wanted */
+    struct glint_float_image exact; /* rgb is NULL before it is drawn. */
     struct glint_float_image got;
 };
 
@@ -43,7 +44,8 @@ static bool is_same(const struct settings *a, const struct settings *b)
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Settings that are open for what SET asks, or NULL, said. */
+/* Returns settings that are opened with those dials of SET that opening needs,
+ * or NULL after reporting a failure, with its exit code in *CODE. */
 static const struct settings *
 settings_for(struct bay *b, const struct sweep_setting *set, int *code)
 {
@@ -80,7 +82,7 @@ static int make_run(struct bay *b, struct run *r)
     code =
         settings_frame(b->s->tool, &asked,
                        settings_view(&asked, c->width, c->height), &r->frame);
-    /* asked is of this function only */
+    /* ASKED ends with this function. */
     r->frame.setup = &r->settings->setup;
     r->frame.lens = &r->settings->model.lens;
     r->frame.cfg.workers =
@@ -89,8 +91,8 @@ static int make_run(struct bay *b, struct run *r)
     return code;
 }
 
-/* The exposure at which the flare, as drawn by default, is as bright as the
- * picture's white. */
+/* Sets b->exposure to that at which the 99.9th percentile of the flare's
+ * luminance, as drawn by default, is white. */
 static enum glint_status expose(struct bay *b)
 {
     struct glint_frame_report report;
@@ -141,7 +143,8 @@ static void free_bay(struct bay *b)
 
 /* ------------------------------------------------------------------ timing */
 
-/* Draws R's frame; ROUND -1 only makes room for it. */
+/* Draws R's frame and notes time and instructions. In ROUND -1 it is only
+ * drawn, so that its memory is taken. */
 static enum glint_status draw(struct bay *b, struct run *r, int round)
 {
     struct sweep_point *p = r->point;
@@ -168,7 +171,8 @@ static enum glint_status draw(struct bay *b, struct run *r, int round)
     return status;
 }
 
-/* All points take turns with the floor. */
+/* Times all points, in turns with the memory floor. Progress goes from FROM to
+ * TO meanwhile. */
 static enum glint_status time_all(struct bay *b, struct tool_progress *progress,
                                   double from, double to)
 {
@@ -208,8 +212,8 @@ static double sum_of(const struct glint_float_image *image)
     return sum;
 }
 
-/* Light before it becomes codes, planned as if for codes: over the exact
- * picture's, less 1. */
+/* Sets flux_error of R: its light, planned as for codes but drawn linear, over
+ * that of the exact picture, less 1. */
 static enum glint_status measure_flux(struct bay *b, struct run *r)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;
@@ -242,7 +246,8 @@ static int pick_shrink(int width)
     return by > 1 ? by : 1;
 }
 
-/* Mean of B x B pixels of CODES, width and height in pixels of the result. */
+/* Sets TO, WIDTH x HEIGHT pixels, to the means of BY x BY pixels of CODES,
+ * whose rows are STRIDE bytes apart. */
 static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
                    int width, int height)
 {
@@ -257,8 +262,9 @@ static void shrink(const uint8_t *codes, int stride, int by, uint8_t *to,
         }
 }
 
-/* Keeps the codes of B's last picture, or the exact one's for R NULL, for the
- * page, and 16 times its difference to EXACT_CODES. */
+/* Keeps CODES, the picture of R or for R NULL the exact one, shrunk for the
+ * page, with 16 times its difference to EXACT_CODES. Returns false without
+ * memory. */
 static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
                          const uint8_t *exact_codes)
 {
@@ -307,7 +313,7 @@ static bool keep_picture(struct bay *b, struct run *r, const uint8_t *codes,
     return true;
 }
 
-/* Those that stand for the others on the page. */
+/* Checks whether the page shows P: it is of a named quality. */
 static bool is_pictured(const struct sweep_point *p)
 {
     const double named = p->set.quality * (GLINT_QUALITY_NAMES - 1);
@@ -315,7 +321,7 @@ static bool is_pictured(const struct sweep_point *p)
     return p->set.kind == SWEEP_QUALITY && named == floor(named);
 }
 
-/* CODES is room for them. */
+/* Measures R against EXACT_CODES. CODES is room for its own codes. */
 static enum glint_status measure_point(struct bay *b, struct run *r,
                                        const uint8_t *exact_codes,
                                        double exposure, uint8_t *codes)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * One file that a person can judge by: tables, plots and pictures within.
+ * The page of a sweep: tables, plots and pictures in one file.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -64,7 +64,7 @@ static void table_of_names(const struct sweep *s, FILE *file)
     fputs("</table>\n", file);
 }
 
-/* What --quality should follow. */
+/* Prints the front of the means, which --quality should follow. */
 static void table_of_front(const struct sweep *s, FILE *file)
 {
     struct sweep_mean *mean = malloc(((size_t)s->n_points + 1) * sizeof *mean);
@@ -127,7 +127,7 @@ static void strips(const struct sweep *s, FILE *file)
                     s->lens[c->lens], c->width, c->height, c->n_lamps,
                     c->n_lamps > 1 ? "s" : "", c->angle);
         of = q->of;
-        fputs("<div>", file); /* two abreast */
+        fputs("<div>", file); /* two side by side */
         figure(s, file, q, q->rgb, "");
         if (q->difference)
             figure(s, file, q, q->difference, ", difference");

@@ -6,8 +6,8 @@
 
 enum { QUALITY_STEPS = 8 };
 
-/* Of --quality, between these: half as many pixels with finer grids, and the
- * default with a finer model. */
+/* Values of --quality between those steps: half as many pixels with finer
+ * grids, and the default with a finer model. */
 static const double between_steps[] = {0.0625, 0.505};
 
 static struct sweep_setting standard(enum sweep_kind kind)
@@ -38,7 +38,8 @@ static enum glint_status add(struct sweep *s, int c,
     return GLINT_OK;
 }
 
-/* A small sweep has no time to bake, nor for cells. */
+/* Checks whether dial D is turned in case C. A small sweep has no time for
+ * dials that need a bake, nor for cells. */
 static bool is_swept(const struct sweep *s, const struct sweep_case *c,
                      const struct dial *d)
 {
@@ -65,7 +66,8 @@ static enum glint_status add_alone(struct sweep *s, int c)
     return status;
 }
 
-/* Every combination but the standard one. */
+/* Adds every combination of values in which at least two dials differ from the
+ * standard. */
 static enum glint_status add_together(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;
@@ -93,7 +95,7 @@ static enum glint_status add_together(struct sweep *s, int c)
     return status;
 }
 
-/* What --quality sets, as values of the dials. */
+/* Adds the values that --quality QUALITY gives the dials. */
 static enum glint_status add_quality(struct sweep *s, int c, double quality)
 {
     struct sweep_setting set = standard(SWEEP_QUALITY);

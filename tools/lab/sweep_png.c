@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * PNG as a data: URI, its pixels stored rather than compressed: nothing else is
- * needed to show them.
+ * PNG as a data: URI. Its pixels are stored, not compressed, so that no library
+ * is needed.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +41,7 @@ static uint32_t crc_of(const uint8_t *data, size_t n)
     return ~crc;
 }
 
-/* Where a chunk begins; its contents follow, and end_chunk. */
+/* Begins a chunk and returns its place; contents follow, then end_chunk(). */
 static size_t begin_chunk(struct bytes *b, const char *type)
 {
     const size_t start = b->n;
@@ -61,7 +61,8 @@ static void end_chunk(struct bytes *b, size_t start)
     put_u32(b, crc_of(b->at + start + 4, length + 4));
 }
 
-/* Rows, each after filter 0, as zlib without compression. */
+/* Puts ROWS[N], each row after its filter byte 0, as zlib without
+ * compression. */
 static void put_pixels(struct bytes *b, const uint8_t *rows, size_t n)
 {
     uint32_t a = 1, c = 0;

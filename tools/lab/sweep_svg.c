@@ -30,7 +30,8 @@ static int by_cost(const void *a, const void *b)
     return (x->cost > y->cost) - (x->cost < y->cost);
 }
 
-/* Combinations first, so that the rest lies on top of them. */
+/* Draws the marks of DOT[N], combinations first, so that other marks lie on top
+ * of them. */
 static void draw_dots(const struct plot *p, const struct dot *dot, int n,
                       bool tips)
 {
@@ -56,7 +57,7 @@ static void draw_dots(const struct plot *p, const struct dot *dot, int n,
         }
 }
 
-/* DOT is sorted by cost. */
+/* Draws a line along the front of DOT[N], which is sorted by cost. */
 static void draw_front(const struct plot *p, const struct dot *dot, int n)
 {
     const struct dot *last = NULL;
@@ -97,7 +98,8 @@ static void front_panel(FILE *file, int number, const char *title,
     draw_dots(&p, dot, n, tips);
 }
 
-/* The means over all cases that are swept together, and each of these. */
+/* Plots the means over all cases that are swept together, and each of these
+ * cases. */
 void sweep_svg_front(const struct sweep *s, FILE *file)
 {
     const size_t most = (size_t)s->n_points + 1;
@@ -141,7 +143,8 @@ void sweep_svg_front(const struct sweep *s, FILE *file)
 
 /* ------------------------------------------------------------------- means */
 
-/* Of dial D alone, through the standard, by the order of its values. */
+/* Draws the means of dial D turned by itself as a curve through the standard,
+ * in the order of its values. */
 static void mean_curve(const struct plot *p, const struct sweep_mean *mean,
                        int n, int d)
 {
@@ -163,7 +166,8 @@ static void mean_curve(const struct plot *p, const struct sweep_mean *mean,
         }
 }
 
-/* All dials in one panel, without what is far off the others. */
+/* Plots all dials in one panel, whose axes leave out means of more than six
+ * times the default's cost. */
 static void dials_panel(FILE *file, int number, const struct sweep_mean *mean,
                         int n)
 {
@@ -216,7 +220,7 @@ static bool is_of(const struct sweep_point *p, int dial)
     return p->set.kind == SWEEP_STANDARD || p->set.dial == dial;
 }
 
-/* One lens's curve, by the order of values. */
+/* Draws DIAL in case C as a curve, in the order of its values. */
 static void dial_curve(const struct sweep *s, const struct plot *p, int c,
                        int dial)
 {
@@ -247,7 +251,7 @@ static void dial_curve(const struct sweep *s, const struct plot *p, int c,
     }
 }
 
-/* Whether any case of the first size and lights turned it. */
+/* Checks whether any case turned DIAL by itself. */
 static bool is_swept(const struct sweep *s, int dial)
 {
     for (int i = 0; i < s->n_points; i++)
@@ -307,7 +311,8 @@ static double growth_of(const struct sweep *s, const struct sweep_point *p,
                             : p->report.ghosts;
 }
 
-/* P differs from PLAIN in nothing but what the panel is against. */
+/* Checks whether P differs from PLAIN in nothing but what the panel plots
+ * against. */
 static bool is_in_series(const struct sweep *s, const struct sweep_point *p,
                          const struct sweep_case *plain, enum against what)
 {

@@ -14,8 +14,8 @@ static char *skip_blanks(char *at)
     return at + strspn(at, " \t");
 }
 
-/* The next of the fields between commas, without blanks around it; NULL: none
- * is left. *REST moves on. */
+/* Returns the next field of *REST, up to a comma, without blanks around it, and
+ * moves *REST past it. Returns NULL if none is left. */
 static char *next_field(char **rest)
 {
     char *field = *rest, *end;
@@ -42,7 +42,7 @@ const char *lamp_columns_read(struct lamp_columns *c, const char *heading)
 
     c->n = 0;
     if ((size_t)snprintf(copy, sizeof copy, "%s", heading) >= sizeof copy)
-        return NULL; /* a remark */
+        return NULL; /* too long for a heading, so a remark */
     while ((name = next_field(&rest)) && c->n < LAMP_COLUMNS) {
         const int field = tool_word(name, names);
 
@@ -122,7 +122,7 @@ static int by_lamp(const void *a, const void *b)
     return by_frame(a, b);
 }
 
-/* In order of frames. */
+/* Sets the lamp of each key; keys are in order of frames. */
 static void tell_apart(struct key *key, int n, const struct lamp_list *list)
 {
     int place = 0;
@@ -187,7 +187,7 @@ bool lamp_keys_at(const struct lamp_list *list, int i, int frame,
     return true;
 }
 
-/* The ids of FRAME; returns how many. */
+/* Lists the ids of the lamps at FRAME. Returns how many. */
 static int ids_of(const struct lamp_list *list, int frame,
                   uint32_t id[GLINT_LAMP_DETECTOR_MAX])
 {

@@ -46,7 +46,7 @@ bool lamp_power_ok(double power, const double rgb[3])
            power * most <= LAMP_MAX_POWER;
 }
 
-/* NULL, or what is wrong with the values of a row. */
+/* Returns NULL, or what is wrong with the values V of a row. */
 static const char *check_row(const double *v)
 {
     if (!frame_ok(v[0]))
@@ -66,7 +66,8 @@ static const char *check_row(const double *v)
                                     : "size must be 0 to a million pixels";
 }
 
-/* "frame,x,y,power[,r,g,b[,size]]" */
+/* Reads LINE, "frame,x,y,power[,r,g,b[,size]]" or as COLUMNS say, into V.
+ * Returns NULL, or what is wrong with it. */
 static const char *parse_csv(char *line, const struct lamp_columns *columns,
                              double *v)
 {
@@ -98,7 +99,8 @@ static char *skip(char *at)
     return at;
 }
 
-/* One "key": number; *AT moves behind it. */
+/* Reads one "key": value at *AT into V and moves *AT past it; sets its bit in
+ * GIVEN. Returns NULL, or what is wrong with it. */
 static const char *parse_member(char **at, double *v, unsigned *given)
 {
     char *key = skip(*at), *end, *number;
@@ -132,11 +134,11 @@ static const char *parse_member(char **at, double *v, unsigned *given)
     return NULL;
 }
 
-/* A flat object of numbers. */
+/* Reads LINE, a flat JSON object, into V. Returns NULL, or what is wrong. */
 static const char *parse_json(char *line, double *v)
 {
     unsigned given = 0;
-    char *at = line + 1; /* behind the brace */
+    char *at = line + 1; /* after the brace */
 
     for (;;) {
         const char *cause = parse_member(&at, v, &given);
@@ -262,7 +264,8 @@ void lamp_list_free(struct lamp_list *list)
     *list = (struct lamp_list){NULL, 0, 0};
 }
 
-/* Round unless its SHAPE is not 1. */
+/* Sets the extent of LAMP by R: a disc if its shape is 1, else an ellipse.
+ * TANGENT is that of a pixel. */
 static void set_shape(struct glint_lamp *lamp, const struct lamp_row *r,
                       double tangent)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps of frames as a list in a file.
+ * lamp_list.h - lists of lamps in files, by frame.
  */
 #ifndef GLINT_TOOLS_LAMP_FILES_LAMP_LIST_H
 #define GLINT_TOOLS_LAMP_FILES_LAMP_LIST_H
@@ -12,7 +12,7 @@
 
 enum { LAMP_LIST_MAX_ROWS = 1 << 20 };
 
-#define LAMP_MAX_POWER 1e30 /* a lamp this bright is finite in all outputs */
+#define LAMP_MAX_POWER 1e30 /* Such a lamp is finite in all outputs. */
 
 /* Returns whether POWER and each of POWER * RGB are 0 .. LAMP_MAX_POWER. */
 bool lamp_power_ok(double power, const double rgb[3]);
@@ -26,8 +26,8 @@ struct lamp_row {
     double shape; /* minor axis of the lamp over its major one, 0 .. 1 */
     double turn;  /* degrees of the major axis from +x; 90 is up */
     double level; /* share of the power that a lamp coming or going has */
-    uint32_t id;  /* 0: not said */
-    int next;     /* the row that lamp_keys_link() found to follow, or -1 */
+    uint32_t id;  /* 0: none */
+    int next;     /* index of the lamp's next row, by lamp_keys_link(), or -1 */
 };
 
 struct lamp_list {
@@ -42,18 +42,19 @@ struct lamp_list {
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error);
 
-/* The same from memory. NAME is for errors. */
+/* Reads TEXT[BYTES] as lamp_list_read() reads a file. NAME is for errors. */
 enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
                                   size_t bytes, const char *name,
                                   struct glint_error *error);
 void lamp_list_free(struct lamp_list *list);
 
-/* Adds a row. GLINT_E_MEMORY. */
+/* Appends ROW to LIST. GLINT_E_MEMORY. */
 enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row);
 
-/* The lamps of frame FRAME, also those on their way to a later one where the
- * list is linked, at most MAX; returns how many. LEVEL: of each, or NULL. */
+/* Sets LAMPS to the lamps of FRAME, at most MAX, among them in a linked list
+ * those on their way to a later row. Returns how many. LEVEL gets the level of
+ * each lamp, unless it is NULL. */
 int lamp_list_frame(const struct lamp_list *list, int frame,
                     const struct glint_view *view, double focal_mm,
                     struct glint_lamp *lamps, double *level, int max);

@@ -3,11 +3,11 @@
  * lamp_save.h - the lamps of a run as a list that --lights takes.
  *
  *     lamp_save_open(&save, "lamps.csv", &error);
- *     lamp_save_row(&save, frame, &row);                each lamp of a frame
+ *     lamp_save_row(&save, &row);                       each lamp of a frame
  *     lamp_save_finish(&save, &error);                  or lamp_save_abort
  *
- * Numbers are written so that they are read as the same. The file is whole or
- * not there.
+ * Numbers are written with all digits, so that they read back the same. The
+ * file appears whole or not at all.
  */
 #ifndef GLINT_TOOLS_LAMP_FILES_LAMP_SAVE_H
 #define GLINT_TOOLS_LAMP_FILES_LAMP_SAVE_H
@@ -25,11 +25,12 @@ struct lamp_save {
 enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
                                  struct glint_error *error);
 
-/* What fails is reported by finish. Lamps beyond what a list takes, a million
- * pixels away, are left out. */
+/* Writes ROW, unless it is more than a million pixels away, which lists do not
+ * take. lamp_save_finish() reports failures. */
 void lamp_save_row(struct lamp_save *save, const struct lamp_row *row);
 
-/* Does nothing when closed. */
+/* Ends the list and puts the file in place, or returns the first failure of
+ * writing. Does nothing if SAVE is closed. */
 enum glint_status lamp_save_finish(struct lamp_save *save,
                                    struct glint_error *error);
 void lamp_save_abort(struct lamp_save *save);

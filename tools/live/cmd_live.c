@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint live: the options.
+ * glint live: its options.
  */
 #include <limits.h>
 #include <stdlib.h>
@@ -105,12 +105,13 @@ static const struct option options[] = {
     COMPOSITOR_OPTIONS,
     TOOL_COMMON_OPTIONS};
 
-/* What a reload needs to begin again. */
+/* The command line, which a reload parses again. */
 struct line {
     struct tool *tool;
     int argc;
     char **argv;
-    struct config config, again; /* read at the start; by the last reload */
+    struct config config, again; /* configuration files read at the start and by
+                                    the last reload */
     struct live_options *into;
 };
 
@@ -127,7 +128,7 @@ static void set_defaults(struct live_options *o)
     o->compositor.reserve_bytes = 32 << 20;
 }
 
-/* "30", "30000/1001" */
+/* Reads TEXT, "30" or "30000/1001", as a rate. */
 static bool take_rate(const char *text, int *num, int *den)
 {
     char top[16];
@@ -143,7 +144,8 @@ static bool take_rate(const char *text, int *num, int *den)
            (!slash || tool_integer(slash + 1, 1, 1000000, den));
 }
 
-/* Which of WORDS, counted from FIRST. */
+/* Sets VALUE to the place of TEXT in WORDS, counted from FIRST. Returns false
+ * if it is none of them. */
 static bool take_word(const char *text, const char *const *words, int first,
                       int *value)
 {
@@ -153,7 +155,7 @@ static bool take_word(const char *text, const char *const *words, int first,
     return word >= 0;
 }
 
-/* Exactly one conversion of an int, and no other. */
+/* Checks whether TEXT has exactly one conversion, that of an int. */
 static bool is_pattern(const char *text)
 {
     const char *at = strchr(text, '%');
@@ -226,7 +228,8 @@ static bool take_run(struct live_options *o, int option, const char *value)
     }
 }
 
-/* Options of live alone. -1: taken; -2: not one of these; -3: a bad value. */
+/* Takes an option of live alone. Returns -1, or -2 if it is none of these, or
+ * -3 if VALUE is bad. */
 static int take(struct live_options *o, int option, const char *value)
 {
     switch (option) {
@@ -246,7 +249,7 @@ static int take(struct live_options *o, int option, const char *value)
         o->reconnect = true;
         return -1;
     case OPT_CONFIG:
-        return -1; /* read before the others */
+        return -1; /* was read before */
     case 'd':
     case 's':
     case 'r':
@@ -304,7 +307,9 @@ static int parse_line(struct line *line)
                                              line->argv[optind]);
 }
 
-/* The file first, so that the line wins. CONFIG keeps what INTO points to. */
+/* Reads options into INTO, first from the file of --config, then from the line,
+ * so that the line wins. CONFIG holds the strings of the file. Returns -1 or an
+ * exit code. */
 static int parse(struct line *line, struct config *config,
                  struct live_options *into)
 {
@@ -328,7 +333,8 @@ static int reread(void *ctx, struct tool *tool, struct live_options *into)
     struct line *line = ctx;
 
     (void)tool;
-    config_free(&line->again); /* an open compositor needs no names */
+    /* An open compositor uses none of its strings. */
+    config_free(&line->again);
     return parse(line, &line->again, into);
 }
 

@@ -2,8 +2,8 @@
  *
  * glint live: camera in, flares on the panel.
  *
- * cmd_live.c takes the options, live_input.c opens what frames come from and
- * live_output.c what they go to, live_loop.c runs.
+ * cmd_live.c takes the options, live_input.c opens the source of frames and
+ * live_output.c their sink, and live_loop.c runs.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_H
 #define GLINT_TOOLS_LIVE_LIVE_H
@@ -27,18 +27,21 @@ enum live_adaptive {
 };
 
 struct live_options {
-    struct compositor compositor; /* options only, until opened */
+    /* Only its options are set before it is opened. */
+    struct compositor compositor;
     struct live_wish input;
     const char *output, *snapshot;
     enum glint_panel_fit fit;
-    int count, skip; /* frames to show, 0: no end; and to let pass before */
-    enum live_adaptive adaptive; /* the quality gives way to hold the rate */
+    /* frames to show (0: no end), and frames to skip before them */
+    int count, skip;
+    /* whether quality is lowered to hold the rate */
+    enum live_adaptive adaptive;
     bool reconnect, list_devices, list_formats;
     enum live_report report;
 };
 
-/* Reads options anew, as at the start; for SIGHUP. Returns -1, or an exit code
- * that was said. */
+/* Reads OPTIONS anew, as at the start; for SIGHUP. Returns -1, or an exit code
+ * after reporting the failure. */
 typedef int live_reread_fn(void *ctx, struct tool *tool,
                            struct live_options *options);
 

@@ -7,13 +7,14 @@
 
 #define TIGHT      0.9  /* busy share of a period above which quality drops */
 #define SPARE      0.55 /* busy share below which it may rise, after a while */
-#define SETTLE_S   0.3  /* seconds from a step to the next one down */
+#define SETTLE_S   0.3  /* least seconds from a step to the next one down */
 #define HOLD_S     2.0
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 
-/* Steps go down the table of qualities from its middle, and never above what
- * was asked for; then lights are left out. */
+/* Quality and lights of each step. Steps go down the table of qualities from
+ * its middle, and never above the quality asked for; then lights are left
+ * out. */
 static const struct {
     double quality;
     int max_lights;
@@ -48,7 +49,8 @@ static bool go(struct live_adapt *a, int by)
     return true;
 }
 
-/* Steps down at once: a step saves about a third. */
+/* Returns by how many steps to go down at once if a frame takes PERIODS
+ * periods: each step saves about a third. */
 static int steps_down(const struct live_adapt *a, double periods)
 {
     const int wanted = periods > 8 ? 4 : periods > 4 ? 3 : periods > 2 ? 2 : 1;

@@ -27,18 +27,19 @@ struct live_input {
     } as;
 };
 
-/* Returns whether NAME is a camera's. */
+/* Returns whether NAME stands for a camera. */
 bool live_input_is_camera(const char *name);
 
-/* Checks NAME as far as that goes without a lens. GLINT_E_DEVICE, _IO. */
+/* Checks whether the source NAME is there, before a lens is opened.
+ * GLINT_E_DEVICE, GLINT_E_IO. */
 enum glint_status live_input_check(const char *name, struct glint_error *error);
 
-/* Opens what WISH names; SEED is the test's. */
+/* Opens the source that WISH names; SEED is for the noise of the test. */
 enum glint_status live_input_open(struct live_input *input,
                                   const struct live_wish *wish, uint32_t seed,
                                   struct glint_error *error);
 
-/* Does nothing when closed. */
+/* Closes INPUT, unless it is closed already. */
 void live_input_close(struct live_input *input);
 
 #endif

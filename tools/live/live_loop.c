@@ -28,18 +28,19 @@ struct live {
     struct live_copy copy; /* copy of frames that lie in slow memory */
 
     struct live_adapt adapt;
-    struct glint_dials asked; /* dials of the frame before it was adapted */
+    struct glint_dials asked; /* dials asked for, before adapting */
     struct live_log log;
     int n_shown, n_snapshots;
-    struct glint_error why; /* the camera could not be opened, last time */
-    int64_t time_us;        /* time of the last frame */
+    /* why the camera could not be opened the last time */
+    struct glint_error why;
+    int64_t time_us;  /* time of the last frame */
     int64_t retry_us; /* earliest time to reopen the output; 0: none so far */
     bool had_signal;
 };
 
 /* --------------------------------------------------------------------- made */
 
-/* Asks the input what it delivers, and says it. */
+/* Asks the input for its format, and prints that. */
 static void take_format(struct live *l)
 {
     const struct glint_source *source = l->in.source;
@@ -76,7 +77,8 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     return GLINT_OK;
 }
 
-/* Says ERROR and what does for now where there is no such device. */
+/* Reports ERROR, and if a device is missing what to use INSTEAD. Returns an
+ * exit code. */
 static int fail_without(const struct live *l, enum glint_status status,
                         const struct glint_error *error, const char *instead)
 {
@@ -120,7 +122,8 @@ static int open_output(struct live *l, const struct glint_image *image)
                             : NULL);
 }
 
-/* Makes all that depends on the size of the pictures. */
+/* Prepares the compositor for pictures of IMAGE's size. Returns an exit
+ * code. */
 static int take_size(struct live *l, const struct glint_image *image)
 {
     struct compositor *compositor = &l->o->compositor;
@@ -192,8 +195,8 @@ static int64_t us(double ms)
     return (int64_t)(1e3 * ms);
 }
 
-/* Notes when the frame was taken, copied, drawn and shown, AT_US; NULL: there
- * was no frame to show. */
+/* Adds FRAME to the statistics. AT_US[4]: times at which it was taken, copied,
+ * drawn and shown; NULL: there was no frame to show. */
 static void note(struct live *l, const struct glint_source_frame *frame,
                  const int64_t *at_us)
 {
@@ -222,8 +225,9 @@ static void note(struct live *l, const struct glint_source_frame *frame,
 
 /* ------------------------------------------------------------- what is lost */
 
-/* Takes the loss of a device. With --reconnect it is waited for, and the panel
- * keeps the last picture meanwhile; the cause is said. Returns -1 to go on. */
+/* Reports the loss of a device. With --reconnect the run waits for it, and the
+ * panel keeps the last picture meanwhile. Returns -1 to go on, or an exit
+ * code. */
 static int lose(struct live *l, const char *what, enum glint_status status,
                 const char *why)
 {
@@ -265,7 +269,8 @@ static void retry_camera(struct live *l)
     live_signals_wait(-1, RETRY_MS);
 }
 
-/* Since the frame before; of the first, what a frame takes. */
+/* Returns the us since the frame before, at least 1, at most 10^9; 40000 for
+ * the first frame. */
 static int32_t elapsed_us(struct live *l, int64_t time_us)
 {
     const int64_t before_us = l->time_us;
@@ -277,7 +282,8 @@ static int32_t elapsed_us(struct live *l, int64_t time_us)
                                          : (int32_t)elapsed;
 }
 
-/* Draws FRAME, asked for at TAKEN_US, and shows it. Returns -1 to go on. */
+/* Draws FRAME, which was asked for at TAKEN_US, and shows it. Returns -1 to go
+ * on, or an exit code. */
 static int show(struct live *l, const struct glint_source_frame *frame,
                 int64_t taken_us)
 {
@@ -288,7 +294,7 @@ static int show(struct live *l, const struct glint_source_frame *frame,
     int64_t at_us[4];
     int code;
 
-    at_us[0] = taken_us; /* a JPEG was decoded since */
+    at_us[0] = taken_us; /* A JPEG was decoded after that. */
     if (!frame->is_drawable)
         image = live_copy(&l->copy, image);
     code = image ? take_size(l, image) : tool_fail(l->tool, GLINT_E_MEMORY, "");
@@ -330,7 +336,8 @@ static void say_signal(struct live *l)
     l->had_signal = has;
 }
 
-/* One frame, if there is one. Returns -1 to go on. */
+/* Takes and shows a frame, if there is one. Returns -1 to go on, or an exit
+ * code. */
 static int step(struct live *l)
 {
     struct glint_source *const source = l->in.source;
@@ -357,8 +364,8 @@ static int step(struct live *l)
     return code;
 }
 
-/* Lens and lights as the configuration says now; devices stay. If anything is
- * wrong with it, all stays as it was. */
+/* Reads configuration and lens again; devices stay open. If anything is wrong,
+ * all stays as it was. */
 static void reload(struct live *l)
 {
     struct live_options *fresh = calloc(1, sizeof *fresh);
@@ -413,7 +420,7 @@ static int start(struct live *l)
     code = compositor_open(l->tool, &l->o->compositor);
     if (code != EXIT_OK)
         return code;
-    live_signals_take(); /* an impatient user may kill it until here */
+    live_signals_take(); /* Until here a signal kills the run at once. */
     status = open_camera(l, &error);
     if (status != GLINT_OK)
         return fail_camera(l, status, &error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What live frames go to, by name:
+ * live_output.h - where live frames go to, by name:
  *   fb[:/dev/fb0]     the panel of a framebuffer
  *   y4m:FILE | y4m:-  a video file or pipe
  *   v4l2:/dev/videoN  an output node, as of v4l2loopback
@@ -27,7 +27,7 @@ enum live_output_kind {
 
 struct live_output {
     enum live_output_kind kind;
-    const char *path; /* NULL: the default */
+    const char *path; /* NULL: the default path */
     enum glint_panel_fit fit;
     bool dither;             /* dither on panels with 16 bits a pixel */
     struct glint_sink *sink; /* NULL: closed */
@@ -40,27 +40,30 @@ struct live_output {
     } as;
 };
 
-/* Reads NAME, which is kept. False: it is none of the above. */
+/* Sets kind and path of OUTPUT by NAME, which must outlive it. Returns false if
+ * NAME is none of the above. */
 bool live_output_parse(struct live_output *output, const char *name);
 
 /* Returns whether the output can be opened before there is a picture. */
 bool live_output_is_flexible(const struct live_output *output);
 
-/* IMAGE says format and size; of no meaning to a flexible output. */
+/* Opens OUTPUT for frames of IMAGE's format and size; a flexible output ignores
+ * IMAGE. */
 enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error);
 
-/* Of an open one: what it is, in TEXT, which is returned, "" where its name
- * says all; and what speaks against it, NULL: nothing. */
+/* Describe an open output. The first writes to TEXT what it is, "" if its name
+ * says all, and returns TEXT; the second returns a problem with it, or NULL. */
 const char *live_output_text(const struct live_output *output, char *text,
                              size_t size);
 const char *live_output_note(const struct live_output *output);
 
-/* Frames it could not take because it was busy. */
+/* Returns the number of frames that OUTPUT could not take because it was
+ * busy. */
 long live_output_dropped(const struct live_output *output);
 
-/* Ends it: a file is put in place. Does nothing when closed. */
+/* Closes OUTPUT, unless it is closed already, and puts its file in place. */
 enum glint_status live_output_close(struct live_output *output,
                                     struct glint_error *error);
 

@@ -17,8 +17,8 @@ struct live_copy {
     size_t bytes;
 };
 
-/* Copies FROM, reading each row once. NULL: no memory, which only a larger
- * picture than before takes. */
+/* Returns a copy of FROM, reading each row once, or NULL without memory. Only a
+ * picture larger than all before takes memory. */
 const struct glint_image *live_copy(struct live_copy *copy,
                                     const struct glint_image *from);
 void live_copy_free(struct live_copy *copy);

@@ -22,7 +22,7 @@ enum { N_TAKEN = (int)(sizeof taken / sizeof *taken) };
 
 static volatile sig_atomic_t asked[LIVE_N_SIGNALS];
 
-/* The second signal to stop has waited long enough. */
+/* Notes the signal NUMBER. Dies of the second one that asks to stop. */
 static void note(int number)
 {
     for (int i = 0; i < N_TAKEN; i++)
@@ -47,12 +47,14 @@ bool live_signal(enum live_signal which)
 {
     const bool was = asked[which];
 
-    if (was && which != LIVE_STOP) /* else one might come in between */
+    /* if not set, clearing could lose a new one */
+    if (was && which != LIVE_STOP)
         asked[which] = 0;
     return was;
 }
 
-/* A snapshot waits for the next frame, and that may be long in coming. */
+/* Checks whether a signal is to be handled now. A snapshot is not: it waits for
+ * the next frame, which may take long. */
 static bool is_any_asked(void)
 {
     for (int i = 0; i < LIVE_N_SIGNALS; i++)

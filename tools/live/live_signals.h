@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What signals ask of a live run. Those that arrive while it waits wake it;
- * none is lost between looking and waiting.
+ * live_signals.h - signals to a live run. A signal that arrives while the run
+ * waits wakes it; none is lost between checking and waiting.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_SIGNALS_H
 #define GLINT_TOOLS_LIVE_LIVE_SIGNALS_H
@@ -23,8 +23,8 @@ void live_signals_take(void);
 bool live_signal(enum live_signal which);
 
 /* Waits until FD (unless -1) is readable, has an event or an error, a signal
- * has arrived that nobody looked at (but for a snapshot, which needs a frame),
- * or MS have passed. */
+ * has arrived that live_signal() has not told yet (except for a snapshot, which
+ * needs a frame), or MS have passed. */
 void live_signals_wait(int fd, int ms);
 
 #endif

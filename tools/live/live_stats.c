@@ -37,7 +37,8 @@ void live_stats_next(struct live_stats *stats, int64_t now_us)
     start_sums(&stats->second, now_us);
 }
 
-/* A bin that is full halves all of them: shares stay, and none is forgotten. */
+/* Counts a latency of US. When a bin is full, all bins are halved: shares stay,
+ * and none becomes 0. */
 static void count_latency(struct live_sums *s, int64_t us)
 {
     const int64_t at = us < 0 ? 0 : us / LIVE_BIN_US;
@@ -133,7 +134,8 @@ put(struct writer *w, const char *format, ...)
     w->used = w->used < w->room ? w->used : w->room - 1;
 }
 
-/* Mean of a sum over the frames, with DIGITS; null of none. */
+/* Writes SUM over the number of frames, with DIGITS after the point, or null if
+ * there are none. */
 static void put_mean(struct writer *w, const struct live_sums *s, double sum,
                      int digits)
 {
@@ -217,7 +219,7 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
         return text;
     }
     put(&w, "\r");
-    w.room = 1 + COLUMNS + 1; /* a line that wraps cannot be taken back */
+    w.room = 1 + COLUMNS + 1; /* A line that wraps cannot be overwritten. */
     put_summary(&w, stats, now_us);
     w.room = LIVE_STATS_TEXT;
     put(&w, "\033[K");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_stats.h - what a live run does: each second and in all.
+ * live_stats.h - statistics of a live run, by second and in total.
  *
  *     live_stats_start(&stats, now);
  *     live_stats_add(&stats, &times);                       each frame
@@ -10,11 +10,11 @@
  *     }
  *     puts(live_stats_json(&stats, now, true, text));       at the end
  *
- * Times are microseconds of one clock that does not jump, the one frames are
- * stamped with. Memory is fixed, some 80 KB: latencies go into bins of 0.1 ms
- * up to one second, so percentiles are right to 0.1 ms, and to the longest one
- * beyond a second. Nothing wraps: counters have 64 bits, and bins are halved
- * together before one is full.
+ * Times are microseconds of the clock that frames are stamped with, which does
+ * not jump. Memory is fixed, some 80 KB: latencies go into bins of 0.1 ms up to
+ * one second, so percentiles are right to 0.1 ms; above a second they are the
+ * longest latency. Nothing wraps: counters have 64 bits, and all bins are
+ * halved before one overflows.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_STATS_H
 #define GLINT_TOOLS_LIVE_LIVE_STATS_H
@@ -24,26 +24,26 @@
 #include <stdint.h>
 
 enum live_stage {
-    LIVE_CONVERT, /* the source's format is turned into one that is drawn into
+    LIVE_CONVERT, /* conversion of frames into a format that can be drawn into
                    */
-    LIVE_FIND,    /* lights, and their tracks */
+    LIVE_FIND,    /* finding and following of lamps */
     LIVE_PLAN,
-    LIVE_BIN, /* rays, edges and where they go */
+    LIVE_BIN, /* rays, edges, and their lists for tiles */
     LIVE_DRAW,
-    LIVE_SHOW, /* into the sink */
+    LIVE_SHOW, /* putting frames to the sink */
     LIVE_N_STAGES
 };
 
 enum {
     LIVE_BINS = 10000,    /* bins of latency */
     LIVE_BIN_US = 100,    /* the width of one */
-    LIVE_STATS_TEXT = 640 /* characters that any line fits in */
+    LIVE_STATS_TEXT = 640 /* room for any line, bytes */
 };
 
-/* One frame, or what was lost while there was none. */
+/* Times of one frame, or only counts of lost frames. */
 struct live_frame_times {
-    bool shown; /* false: only the three counts are there */
-    int n_dropped, n_late, n_corrupt; /* before it, as of a source's frame */
+    bool shown; /* false: only the three counts below are set */
+    int n_dropped, n_late, n_corrupt; /* as in struct glint_source_frame */
     int64_t captured_us, shown_us;
     int64_t stage_us[LIVE_N_STAGES];
     int lights, ghosts;
@@ -51,16 +51,17 @@ struct live_frame_times {
     double quality; /* 0 .. 1 */
 };
 
-/* The sums over some span of time. */
+/* Sums over a second, or over the run. */
 struct live_sums {
     int64_t began_us;
     uint64_t frames, drops, late, corrupt;
     uint64_t stage_us[LIVE_N_STAGES];
-    int64_t longest_us; /* latency */
+    int64_t longest_us; /* longest latency */
     int most_lights, most_ghosts;
     size_t most_bytes;
-    double quality;              /* sum */
-    uint32_t bin[LIVE_BINS + 1]; /* the last: a second and more */
+    double quality; /* sum over the frames */
+    /* latencies; the last bin: a second and more */
+    uint32_t bin[LIVE_BINS + 1];
 };
 
 struct live_stats {
@@ -72,14 +73,15 @@ void live_stats_start(struct live_stats *stats, int64_t now_us);
 void live_stats_add(struct live_stats *stats,
                     const struct live_frame_times *times);
 
-/* Returns whether a second has passed since start or next. */
+/* Returns whether a second has passed since live_stats_start() or
+ * live_stats_next(). */
 bool live_stats_due(const struct live_stats *stats, int64_t now_us);
 
 /* Begins the next second. */
 void live_stats_next(struct live_stats *stats, int64_t now_us);
 
-/* The latency, ms, that PERCENT of the frames (1 .. 100) do not exceed; -1 of
- * no frames. */
+/* Returns the latency in ms that PERCENT of the frames (1 .. 100) do not
+ * exceed, or -1 if there are no frames. */
 double live_stats_latency_ms(const struct live_sums *sums, int percent);
 
 /* Writes the second as a line for people into TEXT, which it returns. For a
@@ -93,7 +95,7 @@ char *live_stats_line(const struct live_stats *stats, int64_t now_us,
  * TEXT, which it returns: "t" (seconds since the start), "fps", "frames",
  * "drops", "late", "corrupt", "latency_ms_p50", "latency_ms_p99", "ms" (mean of
  * each stage), the most "lights", "ghosts" and "bytes", mean "quality"; of the
- * total also "total": true. What no frame was there to tell is null. */
+ * total also "total": true. Latencies and means of no frames are null. */
 char *live_stats_json(const struct live_stats *stats, int64_t now_us,
                       bool total, char text[LIVE_STATS_TEXT]);
 

@@ -9,7 +9,7 @@
 
 enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };
 
-/* Well mixed bits of X. */
+/* Returns a hash of X. */
 static uint32_t mixed(uint32_t x)
 {
     x = (x ^ x >> 16) * 0x7feb352du;
@@ -17,8 +17,8 @@ static uint32_t mixed(uint32_t x)
     return x ^ x >> 16;
 }
 
-/* A house from the bottom up, some of its windows lit, none so bright that it
- * would be a lamp. */
+/* Draws house number HOUSE from the bottom up, some of its windows lit, none so
+ * bright that it would count as a lamp. */
 static void build_house(struct live_test *s, int house)
 {
     const int w = s->image.width, h = s->image.height;
@@ -51,7 +51,8 @@ static void build(struct live_test *s)
         build_house(s, house);
 }
 
-/* The still picture with noise of two codes either way. */
+/* Copies the still picture to the frame and adds noise of -1 to 2 codes, by the
+ * seed and N. */
 static void expose(struct live_test *s, int64_t n)
 {
     const int w = s->image.width;
@@ -70,7 +71,8 @@ static void expose(struct live_test *s, int64_t n)
     }
 }
 
-/* A disc with a halo that falls with the square of the distance. */
+/* Adds a disc of RADIUS at CX, CY, with a halo that falls with the square of
+ * the distance. */
 static void light(struct live_test *s, double cx, double cy, double radius)
 {
     const int reach = (int)(12 * radius) + 1;
@@ -137,7 +139,8 @@ static void close_test(struct glint_source *source)
     s->mem = NULL;
 }
 
-/* A picture of limited range without memory. */
+/* Returns the picture of frames, of limited range and without memory, in the
+ * size of WISH or 640 x 360. */
 static struct glint_image lay_out(const struct glint_v4l2_config *wish)
 {
     const int width = wish->width ? wish->width : 640;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_test.h - live frames without a camera: a night street with a lamp that
- * goes round, of sky, houses with lit windows, a lamp with a halo, noise of a
- * sensor.
+ * live_test.h - live frames without a camera: a night street with sky, houses
+ * with lit windows, a lamp with a halo that goes round, and sensor noise.
  *
  * Frame N of a seed and size is the same picture anywhere.
  */
@@ -13,15 +12,16 @@
 
 struct live_test {
     struct live_timed timed;
-    struct glint_image image; /* I420 of limited range; of the last frame */
+    struct glint_image image; /* the last frame, I420 of limited range */
     uint32_t seed;
     uint8_t *still; /* luma without lamp and noise */
     void *mem;
 };
 
-/* WISH may say a size of 16 to GLINT_PANEL_SIDE pixels a side, rate and codes.
- * The lamp goes round in eight seconds. On failure TEST is closed.
- * GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
+/* Opens the test picture. WISH may give a size of 16 to GLINT_PANEL_SIDE pixels
+ * a side, rate, range and matrix. SEED is for the noise. The lamp goes round in
+ * eight seconds. On failure TEST is closed. GLINT_E_UNSUPPORTED,
+ * GLINT_E_MEMORY, GLINT_E_DEVICE. */
 enum glint_status live_test_open(struct live_test *test,
                                  const struct glint_v4l2_config *wish,
                                  uint32_t seed, struct glint_error *error);

@@ -52,7 +52,8 @@ enum glint_status live_timed_start(struct live_timed *timed, const char *name,
 {
     const struct glint_source_format *f = &timed->format;
     const int64_t stated = 1000000000LL * f->fps_den / f->fps_num;
-    const int64_t ns = stated > 1000 ? stated : 1000; /* 0 would stop it */
+    /* 0 would stop the timer */
+    const int64_t ns = stated > 1000 ? stated : 1000;
     const struct timespec period = {(time_t)(ns / 1000000000),
                                     (long)(ns % 1000000000)};
     const struct itimerspec times = {period, period};
@@ -65,7 +66,8 @@ enum glint_status live_timed_start(struct live_timed *timed, const char *name,
     return GLINT_OK;
 }
 
-/* The first is due at once. */
+/* Returns how many frames are due now. The first is due at once; without a
+ * timer one is due at every call. */
 static uint64_t count_due(struct live_timed *timed)
 {
     uint64_t n = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_timed.h - what sources without a device have in common: frames that are
- * due by a clock, and a format that is known when they are opened.
+ * live_timed.h - the common part of sources without a device: frames that are
+ * due by a clock, and a format that is known when the source is opened.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_TIMED_H
 #define GLINT_TOOLS_LIVE_LIVE_TIMED_H
@@ -12,12 +12,13 @@
 struct live_timed {
     struct glint_source source;
     struct glint_source_format format;
-    int timer; /* -1: frames are due when they come */
+    int timer; /* -1: each frame is due when it comes */
     int64_t n; /* number of the next frame */
 };
 
-/* Begins with FORMAT, but for what WISH says of rate and codes; CARD says what
- * it is. The implementation sets next and close, and fd. */
+/* Prepares TIMED for frames of FORMAT, with the rate, range and matrix of WISH
+ * if it gives any. CARD says what the source is. The implementation sets next,
+ * close and fd. */
 void live_timed_init(struct live_timed *timed,
                      const struct glint_source_format *format,
                      const struct glint_v4l2_config *wish, const char *card);
@@ -26,12 +27,12 @@ void live_timed_init(struct live_timed *timed,
 enum glint_status live_timed_start(struct live_timed *timed, const char *name,
                                    struct glint_error *error);
 
-/* Begins FRAME. Returns the frames that are due since the last time, of which
- * the last is to be shown; 0: none yet. */
+/* Begins FRAME. Returns how many frames have come due since the last call, of
+ * which the last is to be shown; 0 if none has. */
 uint64_t live_timed_due(struct live_timed *timed,
                         struct glint_source_frame *frame);
 
-/* Ends FRAME with IMAGE, the last of N that were due. */
+/* Completes FRAME with IMAGE, the last of N frames that were due. */
 void live_timed_show(struct live_timed *timed, struct glint_source_frame *frame,
                      const struct glint_image *image, uint64_t n);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * In place of settings_table.c, for programs without the offline
- * half: a lens is a baked model, and frames are drawn from one.
+ * Stands in for settings_table.c in programs without the offline half, which
+ * take baked models only.
  */
 #include <errno.h>
 #include <string.h>
@@ -33,8 +33,8 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
     return tool_fail(tool, GLINT_E_LENS, error.text);
 }
 
-/* All settings that were opened have a model, so that what follows is not
- * reached; it would say so. */
+/* Reports that there is no model. It is not reached, as all settings that were
+ * opened have one. */
 enum glint_status settings_table_setup(struct settings *settings,
                                        struct glint_error *error)
 {

@@ -54,8 +54,8 @@ void cache_file_make_folders(char *path)
         }
 }
 
-/* A regular file that nobody could have written but us or the machine's owner.
- */
+/* Checks whether ST is a regular file that nobody but this user and root could
+ * have written. */
 static bool is_ours(const struct stat *st)
 {
     return S_ISREG(st->st_mode) &&
@@ -84,8 +84,8 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     return data;
 }
 
-/* Nothing is written through links, into FIFOs and the like; a file that others
- * may write to goes, and with it its permission bits. */
+/* Refuses to write through a link, into a FIFO and the like. Removes a file
+ * that others may write to, and with it its permission bits. */
 static enum glint_status clear_way(const char *path, struct glint_error *error)
 {
     struct stat st;

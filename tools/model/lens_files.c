@@ -16,8 +16,8 @@
 
 enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 
-/* The folder UP levels above the executable, 1 being its own, unless everybody
- * may put things there. */
+/* Sets PATH to the folder UP levels above the executable, 1 being its own.
+ * Returns false if everybody may put things there. */
 static bool folder_above(int up, char *path, size_t bytes)
 {
     const ssize_t n = readlink("/proc/self/exe", path, bytes - 1);
@@ -36,7 +36,7 @@ static bool folder_above(int up, char *path, size_t bytes)
     return stat(path, &st) == 0 && !(st.st_mode & S_IWOTH);
 }
 
-/* "" where there is no such folder: nothing lies there. */
+/* PATH becomes "" where there is no such folder. */
 bool lens_folder(int i, const char *kind, char *path, size_t bytes)
 {
     const char *given = strcmp(kind, "lenses") == 0
@@ -113,7 +113,7 @@ static bool add(struct list *l, const char *name, size_t length)
     return true;
 }
 
-/* The .lens files of a folder. */
+/* Adds the .lens files of the folder PATH. Returns false without memory. */
 static bool add_folder(struct list *l, const char *path)
 {
     DIR *folder = *path ? opendir(path) : NULL;

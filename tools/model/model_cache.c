@@ -31,8 +31,8 @@ static uint8_t *read_ours(const char *path, size_t *bytes)
     return cache_file_read(path, MAX_BYTES, bytes);
 }
 
-/* Reads a model that was installed, which is as good as the program itself,
- * whoever did it. */
+/* Reads a model that was installed, which is trusted as the program itself is,
+ * whoever installed it. */
 static uint8_t *read_installed(const char *path, size_t *bytes)
 {
     struct glint_error error;
@@ -43,7 +43,8 @@ static uint8_t *read_installed(const char *path, size_t *bytes)
                : NULL;
 }
 
-/* A kept model that is whole and the right one. */
+/* Opens the model in PATH, which READ reads. Returns false if it is damaged or
+ * has another key. */
 static bool load(const char *path, uint64_t key,
                  uint8_t *(*read)(const char *path, size_t *bytes),
                  struct model_file *model)
@@ -64,7 +65,8 @@ static bool load(const char *path, uint64_t key,
     return false;
 }
 
-/* One that was installed with the lenses. */
+/* Opens the model of LENS that was installed with the lenses. Returns false if
+ * there is none. */
 static bool load_installed(const char *lens, uint64_t key,
                            struct model_file *model)
 {

@@ -5,27 +5,29 @@
  * They lie in share/glint/models, where glint was installed with them, or in
  * $XDG_CACHE_HOME/glint, or ~/.cache/glint, under the lens's name and a key of
  * its contents and the options, so that a change of either finds no old model.
- * Where nothing can be kept, nothing is.
+ * Where no file can be written, no model is kept.
  */
 #ifndef GLINT_TOOLS_MODEL_MODEL_CACHE_H
 #define GLINT_TOOLS_MODEL_MODEL_CACHE_H
 
 #include "model/model_file.h"
 
-/* The model of LENS by OPTIONS, whose workers and progress are set here.
- * Returns an exit code; has printed on failure. */
+/* Opens MODEL, that of LENS by OPTIONS, whose workers and progress it sets: as
+ * installed, as kept, or baked and then kept. Returns an exit code, after
+ * printing the reason on failure. */
 int model_cached(const struct tool *tool, const struct glint_prescription *lens,
                  struct glint_bake_options options, struct model_file *model);
 
-/* Returns whether the model is there and need not be baked. */
+/* Returns whether the model is installed or kept, and need not be baked. */
 bool model_is_cached(const struct glint_prescription *lens,
                      const struct glint_bake_options *options);
 
-/* Adds "/NAME-KEY.glint" to the folder in PATH. False: too long. */
+/* Appends "/NAME-KEY.glint" to the folder in PATH. Returns false if it is too
+ * long. */
 bool model_cache_name(char *path, size_t bytes, const char *lens, uint64_t key);
 
-/* Gives the PATH at which FILE is kept, and makes its folder. False: there is
- * none. */
+/* Sets PATH to where FILE is kept, and makes its folder. Returns false if there
+ * is no cache. */
 bool model_cache_path(char *path, size_t bytes, const char *file);
 
 #endif

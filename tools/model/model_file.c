@@ -26,7 +26,8 @@ bool tool_is_model(const char *path)
 
     if (!tool_is_file_name(path))
         return false;
-    if (stat(path, &st) < 0 || !S_ISREG(st.st_mode)) /* a pipe reads once */
+    /* A pipe can be read once only. */
+    if (stat(path, &st) < 0 || !S_ISREG(st.st_mode))
         return false;
     file = fopen(path, "rb");
     if (!file)

@@ -13,7 +13,7 @@
 #include "glint/model.h"
 #include "options/tool.h"
 
-/* Closed when zeroed. */
+/* A baked lens in memory; closed if all is 0. */
 struct model_file {
     struct glint_lens lens; /* points into data */
     void *data;
@@ -21,22 +21,22 @@ struct model_file {
 };
 
 /* Returns whether ARGUMENT is the name of a file: with a slash, or ending in
- * .lens or .glint. Else it is that of a lens that comes with glint, whatever
- * lies in the current folder. */
+ * .lens or .glint. Otherwise it is that of a lens that comes with glint,
+ * whatever the current folder holds. */
 bool tool_is_file_name(const char *argument);
 
-/* PATH is such a name, of a file that begins as models do. */
+/* Returns whether PATH is the name of a file that begins as models do. */
 bool tool_is_model(const char *path);
 
-/* Reads and checks the model at PATH. Returns an exit code; has printed on
- * failure, and MODEL is closed then. */
+/* Reads and checks the model at PATH. Returns an exit code; on failure prints
+ * the reason and leaves MODEL closed. */
 int tool_model(const struct tool *tool, const char *path,
                struct model_file *model);
 
-/* Does nothing when closed already. */
+/* Closes MODEL, unless it is closed already. */
 void model_file_close(struct model_file *model);
 
-/* X as a double. */
+/* Returns X as a double. */
 double model_real_of(struct glint_real x);
 
 #endif

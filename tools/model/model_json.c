@@ -5,7 +5,7 @@
 
 #include "model/model_summary.h"
 
-/* "errors": an object by output. */
+/* Prints "errors", an object with a member for each output. */
 static void json_errors(const struct model_summary *sum)
 {
     const char *comma = "";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a baked lens is, for programs. Part of model_report.h.
+ * Reports on baked lenses as JSON. Part of model_report.h.
  */
 #ifndef GLINT_TOOLS_MODEL_MODEL_JSON_H
 #define GLINT_TOOLS_MODEL_MODEL_JSON_H

@@ -60,7 +60,8 @@ static void print_title(const char *more)
            more);
 }
 
-/* Leaves the line open; a part has a plus behind the ghost's number. */
+/* Prints the line of a ghost, or of a part of one, with a plus after its
+ * number, and leaves the line open. */
 static void print_ghost(const struct glint_lens *lens, uint32_t entry,
                         const struct model_summary *sum)
 {
@@ -146,7 +147,7 @@ static void print_info(const struct tool *tool, const struct model_file *model)
         print_systems(&model->lens);
 }
 
-/* Behind the line of a ghost: what misses its target. */
+/* Ends the line of a ghost with the outputs that miss their targets. */
 static void print_misses(const struct model_summary *sum)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
@@ -155,7 +156,7 @@ static void print_misses(const struct model_summary *sum)
     printf("\n");
 }
 
-/* Below it: everything. */
+/* Ends the line of a ghost and prints a line for each output. */
 static void print_details(const struct model_summary *sum)
 {
     printf("\n");
@@ -171,7 +172,7 @@ static void print_details(const struct model_summary *sum)
     }
 }
 
-/* Ghosts that miss the target, or ALL. */
+/* Prints the ghosts that miss a target, or ALL. */
 static void print_fits(const struct glint_lens *lens, bool all)
 {
     bool titled = false;

@@ -10,8 +10,6 @@ const char *const model_output_units[GLINT_OUT_KINDS] = {
     "px of 1920", "px of 1920", "stop radii", "stop radii", "share",
     "radii",      "radii",      "radii",      "radii",      "radii"};
 
-/* Errors at the 99th percentile beyond which a ghost is pointed out: a quarter
- * of a pixel of 1920, and what is worth as much elsewhere. */
 const double model_output_targets[GLINT_OUT_KINDS] = {
     0.25, 0.25, 0.0024, 0.0024, 0.05, 0.005, 0.005, 0.005, 0.005, 0.005};
 
@@ -53,7 +51,7 @@ model_outputs_of(const struct glint_lens *lens,
     return (const void *)(base + s->output_at);
 }
 
-/* Words of a system's box and knots. */
+/* Returns the 32-bit words of a system's box and knots. */
 static size_t box_words(const struct glint_model_system *s)
 {
     size_t n = 4 * (size_t)s->n_knots;
@@ -63,8 +61,6 @@ static size_t box_words(const struct glint_model_system *s)
     return n;
 }
 
-/* Returns the bytes that a span takes in the file, without regard to sharing.
- */
 size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
 {
     size_t sum = 0;
@@ -82,7 +78,6 @@ size_t model_span_bytes(const struct glint_lens *lens, struct model_span span)
     return sum;
 }
 
-/* Angles that a span covers. */
 void model_span_angles(const struct glint_lens *lens, struct model_span span,
                        double range_deg[2])
 {
@@ -145,7 +140,6 @@ double model_terms(const struct model_summary *sum)
     return terms;
 }
 
-/* Returns the mean number of terms of an output. */
 double model_mean_terms(const struct model_summary *sum)
 {
     uint32_t n = 0;
@@ -163,13 +157,11 @@ bool model_misses(const struct model_summary *sum)
     return false;
 }
 
-/* Ghosts without the further parts of their pupils. */
 uint32_t model_ghost_count(const struct glint_lens *lens)
 {
     return lens->header->n_ghosts - lens->header->n_parts;
 }
 
-/* The number of the ghost that ENTRY is, or is a part of. */
 uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry)
 {
     const struct glint_model_ghost *g = &lens->ghost[entry];
@@ -180,7 +172,6 @@ uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry)
     return k;
 }
 
-/* Ghosts of which some part misses. */
 unsigned model_missed_count(const struct glint_lens *lens)
 {
     bool missed[GLINT_MAX_GHOSTS] = {false};

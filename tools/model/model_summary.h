@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * model_summary.h - what a baked lens takes and how far it is off, summed over
- * systems; for reports.
+ * model_summary.h - size and errors of a baked lens, summed over systems, for
+ * reports.
  */
 #ifndef GLINT_TOOLS_MODEL_MODEL_SUMMARY_H
 #define GLINT_TOOLS_MODEL_MODEL_SUMMARY_H
@@ -11,8 +11,8 @@
 extern const char *const model_output_names[GLINT_OUT_KINDS];
 extern const char *const model_output_units[GLINT_OUT_KINDS];
 
-/* Errors at the 99th percentile beyond which a ghost is pointed out: a quarter
- * of a pixel of 1920, and what is worth as much elsewhere. */
+/* Largest errors at the 99th percentile with which a ghost meets its target: a
+ * quarter of a pixel of 1920, and errors of like effect in other outputs. */
 extern const double model_output_targets[GLINT_OUT_KINDS];
 
 const char *model_basis_name(const struct glint_lens *lens);
@@ -20,7 +20,7 @@ double model_degrees(int32_t sine_q30);
 double model_nanometres(
     int32_t wave_q24); /* Turns 1 / square micrometres into nanometres. */
 
-/* Systems that follow each other. */
+/* Systems first .. first + n - 1. */
 struct model_span {
     uint32_t first, n;
 };
@@ -37,11 +37,11 @@ model_outputs_of(const struct glint_lens *lens,
  */
 size_t model_span_bytes(const struct glint_lens *lens, struct model_span span);
 
-/* Angles that a span covers. */
+/* Sets RANGE_DEG to the least and largest angle that a span covers. */
 void model_span_angles(const struct glint_lens *lens, struct model_span span,
                        double range_deg[2]);
 
-/* An output over the systems of a span that have it. */
+/* Errors of an output over the systems of a span that have it. */
 struct model_errors {
     uint32_t n;
     double terms, mean2, p50;         /* means */
@@ -61,13 +61,13 @@ model_mean_terms(const struct model_summary *sum); /* mean terms of an output */
 /* Returns whether some output misses its target. */
 bool model_misses(const struct model_summary *sum);
 
-/* Ghosts without the further parts of their pupils. */
+/* Returns the number of ghosts, without the further parts of their pupils. */
 uint32_t model_ghost_count(const struct glint_lens *lens);
 
-/* The number of the ghost that ENTRY is, or is a part of. */
+/* Returns the number of the ghost that ENTRY is, or is a part of. */
 uint32_t model_ghost_of(const struct glint_lens *lens, uint32_t entry);
 
-/* Ghosts of which some part misses. */
+/* Returns the number of ghosts of which some part misses its target. */
 unsigned model_missed_count(const struct glint_lens *lens);
 
 #endif

@@ -7,9 +7,9 @@
 
 #include "model/cache_file.h"
 
-/* Number of the figures' meaning. It is to be raised when
- * glint_response_measure() gives other figures for the same scene: when it
- * draws or looks otherwise, or light is drawn brighter or darker. */
+/* Revision of the figures. It is to be raised when glint_response_measure()
+ * gives other figures for the same scene: when it draws or looks otherwise, or
+ * light is drawn brighter or darker. */
 enum { REVISION = 1 };
 
 enum {
@@ -17,7 +17,7 @@ enum {
     MAX_BYTES = 4096
 };
 
-/* A file, in the byte order of the machine; there is no padding. */
+/* The file of an entry, in the byte order of the machine, without padding. */
 struct entry {
     char magic[8];
     uint64_t key;
@@ -30,7 +30,7 @@ static const char magic[8] = "glintRS";
 
 /* ---------------------------------------------------------------------- key */
 
-/* FNV-1a over the bytes of WORD, the lowest first. */
+/* Adds the bytes of WORD, the lowest first, to KEY by FNV-1a. */
 static void add_word(uint64_t *key, uint64_t word)
 {
     for (int shift = 0; shift < 64; shift += 8)
@@ -47,7 +47,8 @@ static void add_values(uint64_t *key, const double *value, size_t n)
     }
 }
 
-/* The stop and the colours; the rest of a setup is the model's. */
+/* Adds the stop and the colours of a setup; all else in it follows from the
+ * model. */
 static void add_setup(uint64_t *key, const struct glint_setup *s)
 {
     const size_t n = (size_t)s->n_wavelengths;
@@ -71,7 +72,7 @@ static void add_setup(uint64_t *key, const struct glint_setup *s)
     }
 }
 
-/* The dials but for those that glint_response_measure() sets. */
+/* Adds the dials that glint_response_measure() does not set itself. */
 static void add_dials(uint64_t *key, const struct glint_frame *like)
 {
     const struct glint_dials *d = &like->asked;
@@ -84,8 +85,9 @@ static void add_dials(uint64_t *key, const struct glint_frame *like)
     add_values(key, value, sizeof value / sizeof *value);
 }
 
-/* Pictures of one shape have one response. Of BYTES, too little memory leaves
- * parts of the flare out. */
+/* Returns the key of a scene. It depends on the shape of the picture, not on
+ * its size, and on BYTES, as too little memory leaves parts of the flare
+ * out. */
 static uint64_t key_of(const struct glint_frame *like, size_t bytes)
 {
     const struct glint_model_header *h = like->lens->header;
@@ -138,7 +140,8 @@ static struct entry entry_of(struct glint_response *r, uint64_t key)
     return e;
 }
 
-/* Figures that glint_response_measure() may have given, whoever wrote them. */
+/* Checks whether R has figures that glint_response_measure() could have
+ * given. */
 static bool is_sound(const struct glint_response *r)
 {
     if (r->n < 1 || r->n > GLINT_RESPONSE_ANGLES || r->theta_deg[0] != 0)

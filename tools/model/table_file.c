@@ -40,8 +40,8 @@ static int no_lens(const struct tool *tool, const char *name)
     return EXIT_LENS;
 }
 
-/* Pictures and the like are no tables, which a line and column of one would
- * not say. */
+/* Reads the table in FILE. Pictures and the like are refused as no tables, for
+ * which a line and column would not help. */
 static enum glint_status parse_table(const char *file,
                                      struct glint_prescription *lens,
                                      struct glint_error *error)

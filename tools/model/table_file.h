@@ -9,7 +9,7 @@
 #include "options/tool.h"
 
 /* Reads lens ARGUMENT: a file, or the name of a table that comes with glint.
- * Returns an exit code; has printed on failure. */
+ * Returns an exit code, after printing the reason on failure. */
 int tool_lens(const struct tool *tool, const char *argument,
               struct glint_prescription *lens);
 

@@ -11,7 +11,7 @@ enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_FILMS };
 
 struct coating {
     enum coating_kind kind; /* kind of coating; by default the table's own */
-    bool given;             /* was asked for, not only what is done anyway */
+    bool given;             /* --coating was given, even if as the default */
     int n_films;
     struct glint_film film[GLINT_MAX_FILMS];
 };
@@ -29,16 +29,17 @@ struct coating {
     "out\n"                                                                   \
     "                      from the front again and again\n"
 
-/* Takes the value of --coating. Returns -1, or an exit code, said. */
+/* Takes TEXT, the value of --coating. Returns -1, or an exit code after
+ * printing what is wrong. */
 int coating_take(const struct tool *tool, struct coating *coating,
                  const char *text);
 
-/* Coats LENS. */
+/* Gives the surfaces of LENS the films of COATING. */
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 
-/* A model has its films in it: a usage error if others were asked for, else
- * EXIT_OK. */
+/* Checks that no films were asked for with the model PATH, which has its own.
+ * Returns EXIT_OK, or the code of a usage error. */
 int coating_of_model(const struct tool *tool, const struct coating *coating,
                      const char *path);
 

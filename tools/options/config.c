@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lines are cut out here and handed to inih one by one: by itself it would
- * break long ones in two and take an indented one for more of the last value.
+ * This file cuts lines and hands them to inih one by one. By itself, inih would
+ * break long lines in two and take an indented line as more of the last value.
  */
 #include "options/config.h"
 
@@ -14,8 +14,8 @@
 #include "posix/input.h"
 
 #define MAX_BYTES   (1 << 20) /* largest file */
-#define MAX_OPTIONS 256 /* options without a value that a command may have */
-#define NAME_CHARS  100 /* bytes of a file's name in errors */
+#define MAX_OPTIONS 256       /* most options of a command */
+#define NAME_CHARS  100       /* bytes of a file's name in errors */
 
 /* One pass over a file: the first checks all of it, the second takes it. */
 struct pass {
@@ -26,13 +26,13 @@ struct pass {
     int line, section_line;
     char section[64];            /* section of the last entry */
     char where[NAME_CHARS + 32]; /* "FILE:LINE" */
-    char *value;                 /* room for those to come */
+    char *value;                 /* room for the values to come */
     bool stated[MAX_OPTIONS];
     int code; /* EXIT_OK: all is well so far */
     struct glint_error *error;
 };
 
-/* Points WHERE at LINE; of a long name its end is kept. */
+/* Sets WHERE to the file's name and LINE; of a long name its end. */
 static void set_where(struct pass *p, int line)
 {
     const size_t len = strlen(p->name);
@@ -41,7 +41,8 @@ static void set_where(struct pass *p, int line)
              p->name + (len > NAME_CHARS ? len - NAME_CHARS : 0), line);
 }
 
-/* Ends the pass. FORMAT has one %s for ABOUT. Returns 0, inih's for failure. */
+/* Reports FORMAT, which has one %s for ABOUT, and ends the pass. Returns 0, by
+ * which inih is told of the failure. */
 static int fail(struct pass *p, const char *format, const char *about)
 {
     char cause[160];
@@ -68,7 +69,7 @@ static bool is_text(const char *text, size_t n)
     return true;
 }
 
-/* The next line without blanks around it; its length. */
+/* Sets LINE to the next line, without blanks around it. Returns its length. */
 static size_t take_line(struct pass *p, const char **line)
 {
     const char *const feed = memchr(p->at, '\n', (size_t)(p->end - p->at));
@@ -84,7 +85,7 @@ static size_t take_line(struct pass *p, const char **line)
     return (size_t)(last - first);
 }
 
-/* Stands in for fgets. */
+/* Reads a line for inih, in place of fgets(); a comment as an empty line. */
 static char *read_line(char *dst, int size, void *stream)
 {
     struct pass *const p = stream;
@@ -126,7 +127,8 @@ static void note_section(struct pass *p, const char *section)
             p->config->tool->name, p->where, section);
 }
 
-/* Help and version are for the command line, and files do not nest. */
+/* Returns the option NAME, or NULL if files cannot have it: help and version
+ * are for the command line, and files do not nest. */
 static const struct option *find_option(const struct config *config,
                                         const char *name)
 {
@@ -158,7 +160,7 @@ static int check_entry(struct pass *p, const struct option *option,
     return 1;
 }
 
-/* VALUE is inih's and gone when this returns. */
+/* Takes VALUE of OPTION. VALUE is copied, as inih reuses its memory. */
 static int take_entry(struct pass *p, const struct option *option,
                       const char *value)
 {
@@ -175,7 +177,7 @@ static int take_entry(struct pass *p, const struct option *option,
     code = p->config->take(p->config->ctx, option, plain ? NULL : p->value);
     tool->where = NULL;
     p->value += bytes;
-    if (code == EXIT_OK) /* such as lists devices and is done */
+    if (code == EXIT_OK) /* an option such as --list-devices */
         return fail(p, "%s is for the command line", option->name);
     if (code > 0)
         p->code = code;
@@ -230,7 +232,8 @@ int config_parse(struct config *config, const char *name, const char *text,
     run_pass(&p, text, bytes);
     if (p.code != EXIT_OK)
         return p.code;
-    /* a value is shorter than its line, which has a name and = as well */
+    /* All values fit into BYTES: each is shorter than its line, which has a
+     * name and =, too. */
     p.value = config->values = malloc(bytes + 1);
     if (!p.value) {
         glint_error_report(error, GLINT_E_MEMORY, name, "no memory for it");

@@ -6,27 +6,27 @@
  *     path = tool_value_of(argc, argv, "o:", options, OPT_CONFIG);
  *     if (path && (code = config_read(&config, path)) != EXIT_OK)
  *         return code;
- *     ... getopt_long() as ever: what the line says comes later and wins
+ *     ... getopt_long() as ever: the line comes later and wins
  *     config_free(&config);
  *
  * A file has lines "name = value", name being that of a long option; "name:
  * value" is the same. Options without a value are "name = yes" or "no". Options
  * that may be given several times may be here. Sections [camera], [lens],
- * [light], [flare] and [output] keep it tidy and mean nothing; others are
- * warned of. Lines that begin with ; or # are comments, and so is the rest of a
- * line from a ; behind a blank. No quotes, no continued lines; a line has up to
+ * [light], [flare] and [output] have no effect; any other gives a warning.
+ * Lines that begin with ; or # are comments, and so is the end of a line from a
+ * ; after a blank. There are no quotes and no continued lines; a line has up to
  * CONFIG_LINE characters.
  *
  * Nothing is taken from a file with a line that is malformed or an option that
- * does not exist. The file is parsed by inih; built without, config_read says
- * so and fails.
+ * does not exist. inih parses the file; built without it, config_read() fails
+ * with a message.
  */
 #ifndef GLINT_TOOLS_OPTIONS_CONFIG_H
 #define GLINT_TOOLS_OPTIONS_CONFIG_H
 
 #include "options/tool.h"
 
-#define CONFIG_LINE 190 /* bytes of a line; inih has so many everywhere */
+#define CONFIG_LINE 190 /* most bytes of a line, as any build of inih has */
 
 /* Takes OPTION as from the command line; VALUE is NULL where it has none.
  * Returns -1 to go on, else an exit code, after printing why by tool_usage(),
@@ -36,18 +36,20 @@ typedef int config_take_fn(void *ctx, const struct option *option,
 
 struct config {
     struct tool *tool;
-    const struct option *options; /* up to one without a name */
+    const struct option *options; /* ended by one without a name */
     config_take_fn *take;
     void *ctx;
-    char *values; /* private: what has been given to take; NULL at first */
+    char *values; /* private: values that were given to take; NULL at first */
 };
 
-/* Reads PATH. Values stay where they are until config_free. Returns an exit
- * code, EXIT_INPUT for a bad file; has printed on failure and is freed. */
+/* Reads PATH and takes its options. Values stay in memory until config_free().
+ * Returns an exit code, EXIT_INPUT for a bad file; on failure prints the reason
+ * and frees CONFIG. */
 int config_read(struct config *config, const char *path);
 
-/* The same from memory. NAME is for errors. Returns EXIT_OK or EXIT_RUNTIME or
- * EXIT_INPUT with ERROR filled, or what take returned, with ERROR empty. */
+/* Takes the options in TEXT[BYTES]. NAME is for errors. Returns EXIT_OK; or
+ * EXIT_RUNTIME or EXIT_INPUT with ERROR set; or what take returned, with ERROR
+ * empty. */
 int config_parse(struct config *config, const char *name, const char *text,
                  size_t bytes, struct glint_error *error);
 

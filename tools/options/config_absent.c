@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * In place of config.c where there is no inih to build with.
+ * Stands in for config.c where glint is built without inih.
  */
 #include "options/config.h"
 

@@ -3,9 +3,10 @@
 
 #include <math.h>
 
-/* Finest first. Together are those that are worth combining: raster, apart and
- * lights give up more than they save, wavelengths colour, and tile changes no
- * picture. */
+/* Values go from the finest on. The last list of each dial has the values that
+ * are combined with those of other dials. Not worth combining are raster, apart
+ * and max_lights, which lose more than they save, wavelengths, which lose
+ * colour, and tile, which changes no picture. */
 /* clang-format off */
 const struct dial dials[] = {
     {"grid", "fineness of grids", DIAL_GRID, 64, false, false,
@@ -63,7 +64,7 @@ void dial_set(struct settings *s, const struct dial *dial, double value)
     case DIAL_TOLERANCE:
         s->tolerance = value;
         break;
-    case DIAL_WAVELENGTHS: /* one is the middle one, and grey */
+    case DIAL_WAVELENGTHS: /* one is the middle wavelength, and grey */
         s->n_wavelengths = whole;
         s->wavelength_nm[0] = whole == 1 ? 532 : 650;
         break;

@@ -12,7 +12,7 @@ enum {
     MAX_DIALS = 16,
     DIAL_VALUES = 10, /* values of one dial by itself */
     DIAL_TOGETHER =
-        5 /* values of these that are combined with the other dials' */
+        5 /* values of one dial that are combined with other dials' */
 };
 
 enum dial_id {
@@ -33,8 +33,8 @@ struct dial {
     const char *name, *what; /* words for tables, and for plots */
     enum dial_id id;
     double standard;  /* default of the settings */
-    bool opens;       /* settings have to be opened anew for it */
-    bool many_lights; /* does nothing to a single one */
+    bool opens;       /* Settings have to be opened anew for it. */
+    bool many_lights; /* has no effect on a single light */
     int n_values, n_together;
     double value[DIAL_VALUES], together[DIAL_TOGETHER];
 };

@@ -91,7 +91,8 @@ static int check_band(const struct tool *tool, const struct settings *settings)
     return EXIT_OK;
 }
 
-/* Says what the picture asks of the model that it was not baked for. */
+/* Warns if the picture is larger than the field that the model was baked
+ * for. */
 static void warn_field(const struct tool *tool, const struct settings *settings)
 {
     const double field = model_real_of(settings->model.lens.header->field_mm);
@@ -152,8 +153,8 @@ static int set_up(const struct tool *tool, struct settings *s)
     return EXIT_OK;
 }
 
-/* Refuses options that only drawing by cells has, rather than leave them out in
- * silence. */
+/* Refuses options that do not go with the way of drawing, rather than ignore
+ * them in silence. */
 static int check_raster(const struct tool *tool, const struct settings *s)
 {
     if (s->mask_nodes && s->by_edges)

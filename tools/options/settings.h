@@ -16,7 +16,7 @@ enum { SETTINGS_MAX_LAMPS = 1024 }; /* lamps by hand; a file may have more */
 /* The origin of the integer engine's rays. */
 enum settings_rays { SETTINGS_RAYS_MODEL, SETTINGS_RAYS_EXACT };
 
-/* The wavelengths that are drawn for light of all. */
+/* How the wavelengths that are drawn for all of the light are chosen. */
 enum settings_waves {
     SETTINGS_WAVES_LIST,  /* wavelength_nm */
     SETTINGS_WAVES_COUNT, /* n_wavelengths of glint_spectrum() */
@@ -29,7 +29,7 @@ struct settings {
     struct model_file model; /* closed for exact rays */
     enum settings_rays rays;
     double max_deg;   /* largest angle of the lamps that a model is baked for */
-    double tolerance; /* it is baked with */
+    double tolerance; /* tolerance that it is baked with */
     struct glint_setup setup;
     struct coating coating;
     double f_number; /* 0: as the table says */
@@ -40,29 +40,30 @@ struct settings {
     enum settings_waves waves;
     double sensor_mm[2]; /* 0: the table's film */
     double exposure_ev, gain;
-    double starburst; /* times as much as physics has; 0: none */
+    double starburst; /* factor on the physical starburst; 0: none */
     bool starburst_asked, starburst_only;
     int only_ghost;
     struct glint_dials dials; /* dials, but for max_lights */
-    double quantum;           /* percent: its irradiance_steps */
-    int max_lights;           /* 0: not said */
+    double quantum;           /* dials.irradiance_steps, in percent */
+    int max_lights;           /* 0: not given */
     int area_samples_asked;   /* 0: as the quality has it */
-    double apart_px;          /* lights whose images are nearer are one */
+    double apart_px; /* pixels; lights whose images are nearer are one */
 
     int merge_steps, tile_log2, coarse_log2, mask_nodes;
     double merge_gamma;
     double quality;    /* quality asked for, 0.5 by default */
     double budget_ms;  /* 0: none */
-    double most_minsn; /* bound of a plan, for one light; 0: any */
+    double most_minsn; /* most million instructions of a plan, for one light; 0:
+                          any */
     bool has_work;
     int raster; /* 0: by edges, 1: by cells */
     enum glint_weights weights;
-    bool has_grid; /* fineness was said, by itself or as a quality */
-    bool by_edges; /* was asked for, not only what is done anyway */
+    bool has_grid; /* --grid or a quality was given */
+    bool by_edges; /* --raster edges was given, not only the default */
     bool uniform, antialias, dither, has_exposure, balance;
 };
 
-/* Long options of this file, for a command's array; all above 1000. */
+/* Long options of this file, for a command's array; all from 1000 on. */
 enum settings_option {
     OPT_F_NUMBER = 1000,
     OPT_COATING,
@@ -275,17 +276,17 @@ enum settings_option {
 
 void settings_defaults(struct settings *settings);
 
-/* Takes an option of these. -1: taken; -2: not one of these; else an exit code.
- */
+/* Takes OPTION if it is one of these. Returns -1, or -2 if it is none of these,
+ * or an exit code. */
 int settings_option(const struct tool *tool, struct settings *settings,
                     int option, const char *value);
 
-/* "THETA,PHI[,POWER[,R,G,B[,SIZE]]]" */
+/* Reads TEXT, "THETA,PHI[,POWER[,R,G,B[,SIZE]]]", into LAMP. Returns false if
+ * it is malformed or out of range. */
 bool settings_lamp(const char *text, struct glint_lamp *lamp);
 
-/* Reads LENS, a table or a model, and prepares it. Of a table the model is
- * baked where there is none yet, unless rays are exact. Returns an exit code.
- */
+/* Reads LENS, a table or a model, and prepares it. The model of a table is
+ * baked if there is none yet, unless rays are exact. Returns an exit code. */
 int settings_open(const struct tool *tool, struct settings *settings,
                   const char *lens);
 
@@ -298,16 +299,15 @@ struct glint_view settings_view(const struct settings *settings, int width,
 int settings_frame(const struct tool *tool, const struct settings *settings,
                    struct glint_view view, struct glint_frame *frame);
 
-/* Sets the dials of SETTINGS for QUALITY, 0 to 1; 0.5 is what it has by
- * default.
- */
+/* Sets the dials of SETTINGS for QUALITY, 0 to 1; the default is 0.5. */
 void settings_set_quality(struct settings *settings, double quality);
 
-/* The same from a number or a name; "exact" is the finest with exact rays.
- * False: neither. */
+/* Sets the dials by TEXT, a quality's number or name; "exact" is the finest
+ * with exact rays. Returns false for other texts. */
 bool settings_take_quality(struct settings *settings, const char *text);
 
-/* TEXT of --memory, MiB, in bytes. */
+/* Sets BYTES by TEXT, the MiB of --memory, 1 to 1024. Returns false for other
+ * texts. */
 bool settings_memory(const char *text, size_t *bytes);
 
 #define SETTINGS_MEMORY_HELP                                                 \
@@ -316,18 +316,18 @@ bool settings_memory(const char *text, size_t *bytes);
     "left\n"                                                                 \
     "                      out, with a word\n"
 
-/* gain * 2^EV */
+/* Returns the factor on all light, gain * 2^EV. */
 double settings_scale(const struct settings *settings);
 
 /* Prints the report of a frame as JSON members, without braces. */
 void settings_json(const struct glint_frame_report *report);
 
-/* How many lights there were and are drawn, as text. */
+/* Writes as text how many lights there were and are drawn. */
 void settings_lights_text(const struct glint_frame_report *report,
                           char text[64]);
 
-/* Says on standard error if lights merged only because they were too many, and,
- * however quiet, if a part of the flare is missing. */
+/* Warns on standard error if lights were merged because they were too many,
+ * and, even with -q, if a part of the flare is missing or coarser. */
 void settings_warn_lights(const struct tool *tool,
                           const struct glint_frame_report *report);
 

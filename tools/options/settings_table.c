@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scenes of a lens table: a model is baked, or found where it is kept.
+ * Settings with a lens table, whose model is baked, or found where it is kept.
  */
 #include <math.h>
 
@@ -40,7 +40,7 @@ int settings_open_table(const struct tool *tool, struct settings *settings,
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &settings->lens);
-    /* a model serves all stops narrower than its own */
+    /* A model serves all stops narrower than its own. */
     if (settings->f_number > 0 &&
         (settings->rays == SETTINGS_RAYS_EXACT ||
          settings->f_number < settings->lens.f_number))

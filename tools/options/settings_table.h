@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What of the settings needs the offline half: a lens given as a table.
- * Programs that take baked models only have models_only.c instead.
+ * The part of the settings that needs the offline half: a lens given as a
+ * table. Programs that take baked models only have models_only.c instead.
  */
 #ifndef GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
 #define GLINT_TOOLS_OPTIONS_SETTINGS_TABLE_H
@@ -9,20 +9,20 @@
 #include "options/settings.h"
 
 /* Reads lens NAME and finds or bakes its model, unless rays are exact. Returns
- * an exit code; has printed on failure. */
+ * an exit code, after printing the reason on failure. */
 int settings_open_table(const struct tool *tool, struct settings *settings,
                         const char *name);
 
-/* Returns the options to bake a model for SETTINGS with, whose lens has been
+/* Returns the options to bake a model with for SETTINGS, whose lens has been
  * read. */
 struct glint_bake_options
 settings_bake_options(const struct settings *settings);
 
-/* Makes the setup where there is no model. */
+/* Makes the setup of SETTINGS that have no model. */
 enum glint_status settings_table_setup(struct settings *settings,
                                        struct glint_error *error);
 
-/* Returns what traces the rays of a frame where there is no model. */
+/* Returns the functions that trace the rays of a frame without a model. */
 const struct glint_frame_rays *settings_table_rays(void);
 
 #endif

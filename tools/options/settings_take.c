@@ -8,10 +8,11 @@
 #include "engine/frame/area.h"
 #include "options/settings_waves.h"
 
-/* The fate of an option; false and true are the first two. */
+/* The result of taking an option; the first two stand for false and true. */
 enum taken { WRONG, TAKEN, OTHER };
 
-/* "circle" or "polygon:N[,ROT]" */
+/* Sets the stop by TEXT, "circle" or "polygon:N[,ROT]". Returns false for other
+ * texts. */
 static bool parse_stop(const char *text, struct settings *settings)
 {
     double v[2] = {0, 0};
@@ -50,7 +51,8 @@ static bool parse_merge(const char *text, struct settings *settings)
     return true;
 }
 
-/* A power of two out of a short list, as its logarithm. */
+/* Sets LOG2 by TEXT, a power of two from 2^LOW to 2^HIGH, or if LOW is above 3
+ * also 0. Returns false for other texts. */
 static bool parse_side(const char *text, int low, int high, int *log2)
 {
     int side;
@@ -130,7 +132,7 @@ bool settings_take_quality(struct settings *s, const char *text)
     return true;
 }
 
-/* Options of the lens. */
+/* Takes the options of the lens. */
 static enum taken take_lens(struct settings *s, int option, const char *value)
 {
     switch (option) {
@@ -176,7 +178,7 @@ static bool take_only(const char *value, struct settings *s)
     return part >= 0;
 }
 
-/* Options of light, and of which lights. */
+/* Takes the options of light, and of which lights are drawn. */
 static enum taken take_light(struct settings *s, int option, const char *value)
 {
     switch (option) {
@@ -206,7 +208,7 @@ static enum taken take_light(struct settings *s, int option, const char *value)
     }
 }
 
-/* Options of the way from rays to pixels. */
+/* Takes the options of the way from rays to pixels. */
 static enum taken take_way(struct settings *s, int option, const char *value)
 {
     static const char *const weights[] = {"loop-derose", "wachspress", NULL};
@@ -249,7 +251,7 @@ static enum taken take_way(struct settings *s, int option, const char *value)
     }
 }
 
-/* Options that trade accuracy for time. */
+/* Takes the options that trade accuracy for time. */
 static enum taken take_dial(struct settings *s, int option, const char *value)
 {
     static const char *const rays[] = {"model", "exact", NULL};

@@ -7,8 +7,8 @@
 
 #include "options/settings.h"
 
-/* Takes VALUE of OPTION, one of enum settings_option but OPT_COATING. False: it
- * is not one that this takes. */
+/* Takes VALUE of OPTION, one of enum settings_option but OPT_COATING. Returns
+ * false if the option does not take that value. */
 bool settings_take(struct settings *settings, int option, const char *value);
 
 #endif

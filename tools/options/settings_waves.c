@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Exact rays have no plan that could choose for each ghost. */
+/* Wavelengths of exact rays for "auto": they have no plan that could choose for
+ * each ghost. */
 enum { EXACT_WAVES = 9 };
 
 bool settings_take_waves(struct settings *s, const char *text)

@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * --wavelengths: which ones are drawn.
+ * --wavelengths: which wavelengths are drawn.
  */
 #ifndef GLINT_TOOLS_OPTIONS_SETTINGS_WAVES_H
 #define GLINT_TOOLS_OPTIONS_SETTINGS_WAVES_H
 
 #include "options/settings.h"
 
-/* "auto", a number of wavelengths, or a list of them. False: neither. */
+/* Takes TEXT: "auto", a number of wavelengths, or a list of them in nm. Returns
+ * false for other texts. */
 bool settings_take_waves(struct settings *settings, const char *text);
 
-/* Before SETTINGS's lens is opened: which wavelengths a setup is made for. */
+/* Chooses the wavelengths that a setup is made for, before the lens of SETTINGS
+ * is opened. */
 void settings_choose_waves(struct settings *settings);
 
-/* Once the setup is made: its colours, and sets for ghosts to choose from. */
+/* Sets the colours of the setup, once it is made, and the sets of wavelengths
+ * that ghosts choose from. */
 void settings_weigh(struct settings *settings);
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * suggest.h - what somebody may have meant.
+ * suggest.h - finds the word that a mistyped one may have meant.
  *
  *     struct suggest s;
  *     suggest_begin(&s, "ovrelay");
- *     suggest_try(&s, "overlay", 7);                    each that there is
+ *     suggest_try(&s, "overlay", 7);                    each known word
  *     if (suggest_best(&s))
  *         printf("did you mean %s?", suggest_best(&s));
  */
@@ -16,22 +16,22 @@
 enum { SUGGEST_CHARS = 48 };
 
 struct suggest {
-    const char *word; /* kept */
+    const char *word; /* not owned */
     char best[SUGGEST_CHARS];
     int distance; /* distance of the best word */
 };
 
-/* Letters to insert, leave out, change or swap with the next to come from A to
- * B, each of less than SUGGEST_CHARS characters, else SUGGEST_CHARS. */
+/* Returns how many letters to insert, leave out, change or swap with the next
+ * one lead from A to B; SUGGEST_CHARS if one of them has so many characters. */
 int suggest_distance(const char *a, const char *b);
 
 void suggest_begin(struct suggest *suggest, const char *word);
 
-/* Offers the N characters at CANDIDATE. One that contains the word is as near
- * as one with a letter wrong. */
+/* Offers CANDIDATE[N]. If it contains the word, it counts as one letter off. */
 void suggest_try(struct suggest *suggest, const char *candidate, size_t n);
 
-/* The nearest, if no more than a third of its letters are wrong; or NULL. */
+/* Returns the nearest candidate if no more than a third of its letters (or one)
+ * are wrong, else NULL. */
 const char *suggest_best(const struct suggest *suggest);
 
 #endif

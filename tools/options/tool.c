@@ -69,7 +69,8 @@ static int show_version(void)
     return EXIT_OK;
 }
 
-/* The instruction sets that a word allows. */
+/* Sets the instruction sets that VALUE, a word of --kernels, allows. Returns
+ * false if it is no such word or this CPU lacks the set. */
 static bool take_sets(struct tool *tool, const char *value)
 {
     static const char *const words[] = {"c",    "sse41", "avx2",
@@ -106,7 +107,8 @@ static void try_options(struct suggest *s, const char *help)
     }
 }
 
-/* The name of the long option that getopt_long took last, without a value. */
+/* Sets NAME to the long option that getopt_long() took last, without its value.
+ * Returns false if it took none. */
 static bool last_option(char name[SUGGEST_CHARS])
 {
     const char *text = line && optind > 0 ? line[optind - 1] : NULL;
@@ -229,7 +231,7 @@ void tool_watch_reader(void)
 {
     struct sigaction note = {.sa_handler = note_reader};
 
-    sigaction(SIGPIPE, &note, NULL); /* the write fails, too */
+    sigaction(SIGPIPE, &note, NULL); /* Writing fails as well. */
 }
 
 int tool_end(int code)
@@ -322,7 +324,8 @@ int tool_check_output(const struct tool *tool, const char *path)
     struct glint_error error = {""};
     const char *const slash = strrchr(path, '/'), *pattern = strchr(path, '%');
 
-    if (slash && pattern && pattern < slash) /* folders by number */
+    /* the number is in a folder's name */
+    if (slash && pattern && pattern < slash)
         return EXIT_OK;
     if (glint_output_check(path, &error) == GLINT_OK)
         return EXIT_OK;
@@ -342,7 +345,7 @@ void tool_progress_start(struct tool_progress *p, const struct tool *tool,
     p->is_terminal = isatty(STDERR_FILENO);
 }
 
-/* A line now and then, where there is no terminal to draw a bar on. */
+/* Prints a line every ten seconds, where there is no terminal for a bar. */
 static void show_line(struct tool_progress *p, double now, double done)
 {
     const double spent = now - p->started;

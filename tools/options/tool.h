@@ -24,9 +24,9 @@ enum exit_code {
 
 struct tool {
     const char *name;     /* name of the command */
-    const char *help;     /* help of the command, */
-    const char *help_end; /* more of it, or NULL, */
-    /* And the rest of it: strings of C99 end at 4095 bytes. */
+    const char *help;     /* first part of the command's help */
+    const char *help_end; /* second part, or NULL */
+    /* The third part, or NULL. Strings of C99 end at 4095 bytes. */
     const char *help_last;
     bool json, quiet;
     int verbose;
@@ -52,66 +52,70 @@ struct tool {
         NULL, 0, NULL, 0                                                       \
     }
 
-/* Notes the line that options are read from, so that tool_option can say which
- * was meant. */
+/* Notes the command line, so that tool_option() can suggest what an unknown
+ * option may mean. */
 void tool_line(char **argv);
 
 /* Takes a common option. Returns -1 to go on, else the exit code to leave with
  * (EXIT_OK after --help). An unknown option is a usage error. */
 int tool_option(struct tool *tool, int option, const char *value);
 
-/* Makes the workers. */
+/* Makes the workers, which tool_finish() ends. Returns an exit code. */
 int tool_start(struct tool *tool);
 void tool_finish(struct tool *tool);
 
-/* At the start and the end of a program: what was printed must have arrived,
- * unless the reader has had enough. CODE, or EXIT_OUTPUT. */
+/* Watch standard output: tool_watch_reader() at the start of a program,
+ * tool_end() at its end. The latter returns CODE, or EXIT_OUTPUT if output was
+ * lost, unless the reader of a pipe went away. */
 void tool_watch_reader(void);
 int tool_end(int code);
 
-/* Instruction sets for the kernels. */
+/* Returns the instruction sets that kernels may use. */
 unsigned tool_sets(const struct tool *tool);
 
-/* The value of the last option in ARGV that getopt_long would return as OPTION,
- * or NULL, before any is taken: getopt_long starts afresh afterwards. */
+/* Returns the value of the last option in ARGV that getopt_long() would
+ * return as OPTION, or NULL. Takes no option: getopt_long() starts afresh
+ * afterwards. */
 const char *tool_value_of(int argc, char **argv, const char *shorts,
                           const struct option *options, int option);
 
-/* Prints "glint COMMAND: ..." and returns the code: of usage EXIT_USAGE, or
- * EXIT_INPUT where the option comes from a file. */
+/* Print "glint COMMAND: ..." and return an exit code: tool_usage() EXIT_USAGE,
+ * or EXIT_INPUT if the option comes from a file; tool_fail() that of STATUS. */
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
 
 /* ------------------------------------------------------------------ numbers */
 
-/* All of TEXT is a finite number, or N of them with commas (at most MAX);
- * return how many there were, 0 on failure. */
+/* Read all of TEXT as a finite number, or as up to MAX numbers with commas.
+ * They return how many they have read, 0 on failure. */
 bool tool_number(const char *text, double *value);
 int tool_numbers(const char *text, double *values, int max);
 
-/* All of TEXT is an integer within LOW .. HIGH. */
+/* Reads all of TEXT as an integer within LOW .. HIGH. Returns false on
+ * failure. */
 bool tool_integer(const char *text, int low, int high, int *value);
 
-/* "WxH" */
+/* Reads TEXT, "WxH", sides of 1 .. GLINT_MAX_SIDE. Returns false on failure. */
 bool tool_size(const char *text, int *width, int *height);
 
 /* Returns the index of TEXT in the NULL-terminated WORDS, or -1. */
 int tool_word(const char *text, const char *const *words);
 
-/* Seconds since some moment. */
+/* Returns the seconds since some moment, by a clock that does not jump. */
 double tool_seconds(void);
 
 /* ------------------------------------------------------------------- output */
 
-/* Refuses PATH, where no file can be created, before a lens is baked: EXIT_OK
- * or EXIT_OUTPUT, said. The last part of it may be a pattern. */
+/* Checks, before a lens is baked, whether a file can be created at PATH.
+ * Returns EXIT_OK, or EXIT_OUTPUT after printing the reason. PATH may be a
+ * pattern; it is not checked if its folders have the number. */
 int tool_check_output(const struct tool *tool, const char *path);
 
 /* ----------------------------------------------------------------- progress */
 
-/* A bar on a terminal's standard error, elsewhere a line every ten seconds. CTX
- * is a struct tool_progress. */
+/* Progress as a bar on a terminal's standard error, elsewhere as a line every
+ * ten seconds. PROGRESS below is such a struct, and DONE is 0 .. 1. */
 struct tool_progress {
     const char *what;
     bool shown, is_terminal;
@@ -126,7 +130,7 @@ void tool_progress_end(struct tool_progress *p);
 /* Writes TEXT as a JSON string. */
 void tool_json_string(FILE *file, const char *text);
 
-/* Commands. ARGV[0] is the command's name. Return the exit code. */
+/* The commands. ARGV[0] is the command's name. They return exit codes. */
 int cmd_info(int argc, char **argv);
 int cmd_trace(int argc, char **argv);
 int cmd_render(int argc, char **argv);
